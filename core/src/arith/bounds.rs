@@ -1,0 +1,158 @@
+//! How wide the exact numbers of the kernel are.
+//!
+//! A bound is a number of bits `b` such that the magnitude is below 2^`b`; the sign takes one
+//! bit more. Everything follows from one fact: a determinant of order 2, 3 or 4 with entries in
+//! [−1, 1] is at most 2, 4 or 16 (Hadamard 1893), and it is linear in each column. So the bound
+//! of a determinant is the sum of its columns' bounds plus 1, 2 or 4.
+//!
+//! Notation: `p` bounds a lattice coordinate. A corner of a cell lies half a step between
+//! lattice points; it enters doubled, as the homogeneous point (2x, 2y, 2z, 2).
+
+/// Lattice coordinates are below 2^`COORDINATE_BITS` in magnitude.
+pub const COORDINATE_BITS: u32 = 53;
+
+/// Limbs of a component of a plane's normal; as wide as an `i128`.
+pub const NORMAL_LIMBS: usize = 2;
+
+/// Limbs of a plane's offset.
+pub const OFFSET_LIMBS: usize = 3;
+
+/// Limbs of each of the homogeneous coordinates of a point where three planes meet.
+pub const POINT_LIMBS: usize = 6;
+
+/// Limbs of a plane's value at a point where three planes meet.
+pub const PLANE_AT_POINT_LIMBS: usize = 8;
+
+/// Limbs of a coordinate of one such point times the weight of another.
+pub const CROSS_LIMBS: usize = 12;
+
+/// Limbs of the orientation of three such points in a projection.
+pub const ORIENTATION_LIMBS: usize = 18;
+
+/// The bound of a sum of two numbers.
+const fn sum(a: u32, b: u32) -> u32 {
+    1 + if a > b { a } else { b }
+}
+
+/// The bound of a 2×2 determinant from those of its columns.
+const fn det2(columns: [u32; 2]) -> u32 {
+    columns[0] + columns[1] + 1
+}
+
+/// The bound of a 3×3 determinant from those of its columns.
+const fn det3(columns: [u32; 3]) -> u32 {
+    columns[0] + columns[1] + columns[2] + 2
+}
+
+/// The bound of a 4×4 determinant from those of its columns.
+const fn det4(columns: [u32; 4]) -> u32 {
+    columns[0] + columns[1] + columns[2] + columns[3] + 4
+}
+
+/// A component of the normal of a plane through three lattice points.
+pub const fn normal(p: u32) -> u32 {
+    det3([p, p, 0])
+}
+
+/// The offset of a plane through three lattice points.
+pub const fn offset(p: u32) -> u32 {
+    det3([p, p, p])
+}
+
+/// A lattice point against a plane.
+pub const fn plane_at_lattice_point(p: u32) -> u32 {
+    det4([p, p, p, 0])
+}
+
+/// A corner against a plane.
+pub const fn plane_at_corner(p: u32) -> u32 {
+    plane_at_lattice_point(p) + 1
+}
+
+/// A corner against an edge in a projection along an axis.
+pub const fn edge_at_corner(p: u32) -> u32 {
+    det3([p, p, 0]) + 1
+}
+
+/// A corner, and a line along an axis through it, against the meet of two planes.
+pub const fn plane_pair_at_corner(p: u32) -> u32 {
+    det2([normal(p), plane_at_corner(p)])
+}
+
+/// A component of the direction in which two planes meet.
+pub const fn line_direction(p: u32) -> u32 {
+    det2([normal(p), normal(p)])
+}
+
+/// The point where a plane cuts an edge, against another plane; two such points of one edge.
+pub const fn edge_point_at_plane(p: u32) -> u32 {
+    det2([plane_at_lattice_point(p), plane_at_lattice_point(p)])
+}
+
+/// The point where a plane cuts an edge, against a cut halfway between lattice planes.
+pub const fn edge_point_at_cut(p: u32) -> u32 {
+    let end_to_cut = sum(p + 1, p + 1);
+    det2([end_to_cut, plane_at_lattice_point(p)])
+}
+
+/// The point where two edges of one plane cross in a projection, against another plane.
+pub const fn edge_crossing_at_plane(p: u32) -> u32 {
+    let edge_at_lattice_point = det3([p, p, 0]);
+    det2([edge_at_lattice_point, plane_at_lattice_point(p)])
+}
+
+/// The point where two planes meet a cut, against a plane.
+pub const fn plane_pair_in_cut_at_plane(p: u32) -> u32 {
+    det3([normal(p), normal(p), plane_at_corner(p)])
+}
+
+/// The weight of a point where three planes meet; a direction of a line against a plane.
+pub const fn point_weight(p: u32) -> u32 {
+    det3([normal(p), normal(p), normal(p)])
+}
+
+/// A numerator of a point where three planes meet.
+pub const fn point_numerator(p: u32) -> u32 {
+    det3([normal(p), normal(p), offset(p)])
+}
+
+/// A point where three planes meet, against a cut halfway between lattice planes.
+pub const fn point_at_cut(p: u32) -> u32 {
+    let cut = p + 1;
+    sum(point_numerator(p) + 1, point_weight(p) + cut)
+}
+
+/// A point where three planes meet, against a fourth plane; the order of two on any line.
+pub const fn plane_at_point(p: u32) -> u32 {
+    det4([normal(p), normal(p), normal(p), offset(p)])
+}
+
+/// A numerator of one point where three planes meet times the weight of another.
+pub const fn numerator_times_weight(p: u32) -> u32 {
+    point_numerator(p) + point_weight(p)
+}
+
+/// The orientation of three points where planes meet, in a projection along an axis.
+pub const fn point_orientation(p: u32) -> u32 {
+    det3([point_numerator(p), point_numerator(p), point_weight(p)])
+}
+
+/// The limbs that hold numbers of magnitude below 2^`bits` with their sign.
+pub const fn limbs_for(bits: u32) -> usize {
+    (bits as usize + 1).div_ceil(64)
+}
+
+const _: () = {
+    const P: u32 = COORDINATE_BITS;
+    assert!(limbs_for(normal(P)) <= NORMAL_LIMBS);
+    assert!(limbs_for(edge_at_corner(P)) <= NORMAL_LIMBS);
+    assert!(limbs_for(offset(P)) <= OFFSET_LIMBS);
+    assert!(limbs_for(plane_at_corner(P)) <= OFFSET_LIMBS);
+    assert!(limbs_for(point_numerator(P)) <= POINT_LIMBS);
+    assert!(limbs_for(point_weight(P)) <= POINT_LIMBS);
+    assert!(limbs_for(point_at_cut(P)) <= POINT_LIMBS);
+    assert!(limbs_for(edge_point_at_plane(P)) <= POINT_LIMBS);
+    assert!(limbs_for(plane_at_point(P)) <= PLANE_AT_POINT_LIMBS);
+    assert!(limbs_for(numerator_times_weight(P) + 1) <= CROSS_LIMBS);
+    assert!(limbs_for(point_orientation(P)) <= ORIENTATION_LIMBS);
+};

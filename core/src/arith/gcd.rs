@@ -1,0 +1,49 @@
+//! Greatest common divisors.
+
+/// The greatest common divisor; `gcd_u128(a, 0)` is `a`.
+#[inline]
+pub fn gcd_u128(a: u128, b: u128) -> u128 {
+    let (small, large) = if a <= b { (a, b) } else { (b, a) };
+    match u64::try_from(small) {
+        Ok(0) => large,
+        Ok(1) => 1,
+        Ok(short) => u128::from(gcd_u64(short, (large % small) as u64)),
+        Err(_) => gcd_long(small, large),
+    }
+}
+
+/// The binary algorithm, as long as a number has two limbs; neither may be zero.
+fn gcd_long(a: u128, b: u128) -> u128 {
+    let twos = (a | b).trailing_zeros();
+    let (mut a, mut b) = (a >> a.trailing_zeros(), b >> b.trailing_zeros());
+    while (a | b) >> 64 != 0 {
+        if a == b {
+            return a << twos;
+        }
+        let difference = a.abs_diff(b);
+        a = a.min(b);
+        b = difference >> difference.trailing_zeros();
+    }
+    u128::from(gcd_odd(a as u64, b as u64)) << twos
+}
+
+/// The greatest common divisor of one-limb numbers; `a` is not zero.
+#[inline]
+fn gcd_u64(a: u64, b: u64) -> u64 {
+    if b == 0 {
+        return a;
+    }
+    let twos = (a | b).trailing_zeros();
+    gcd_odd(a >> a.trailing_zeros(), b >> b.trailing_zeros()) << twos
+}
+
+/// The binary algorithm on odd numbers.
+#[inline]
+fn gcd_odd(mut a: u64, mut b: u64) -> u64 {
+    while a != b {
+        let difference = a.abs_diff(b);
+        a = a.min(b);
+        b = difference >> difference.trailing_zeros();
+    }
+    a
+}

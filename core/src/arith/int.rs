@@ -1,0 +1,499 @@
+//! Signed integers of a fixed number of limbs.
+
+use std::cmp::Ordering;
+use std::fmt;
+use std::ops::{Add, AddAssign, Neg, Sub, SubAssign};
+
+use super::modular;
+use super::round;
+
+/// A signed integer of `N` 64-bit limbs, in two's complement.
+///
+/// The limbs are little-endian. Arithmetic is exact as long as results fit; that they do is
+/// the caller's duty, discharged by the widths in [`bounds`](super::bounds) and checked in
+/// debug builds only. In release builds results wrap modulo 2^(64 `N`).
+///
+/// Values are meant to stay within the symmetric range |x| < 2^(64 `N` − 1).
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Int<const N: usize> {
+    limbs: [u64; N],
+}
+
+impl<const N: usize> Int<N> {
+    /// Zero.
+    pub const ZERO: Self = Self { limbs: [0; N] };
+
+    /// One.
+    pub const ONE: Self = Self::from_i64(1);
+
+    /// The integer with these little-endian two's complement limbs.
+    #[inline]
+    pub const fn from_limbs(limbs: [u64; N]) -> Self {
+        Self { limbs }
+    }
+
+    /// The little-endian two's complement limbs.
+    #[inline]
+    pub const fn limbs(&self) -> &[u64; N] {
+        &self.limbs
+    }
+
+    /// The integer equal to `value`.
+    #[inline]
+    pub const fn from_i64(value: i64) -> Self {
+        const { assert!(N >= 1) };
+        let mut limbs = [(value >> 63) as u64; N];
+        limbs[0] = value as u64;
+        Self { limbs }
+    }
+
+    /// The integer equal to `value`; `N` must be at least 2.
+    #[inline]
+    pub const fn from_i128(value: i128) -> Self {
+        const { assert!(N >= 2) };
+        let mut limbs = [(value >> 127) as u64; N];
+        limbs[0] = value as u64;
+        limbs[1] = (value >> 64) as u64;
+        Self { limbs }
+    }
+
+    /// The same value in `M >= N` limbs.
+    #[inline]
+    pub const fn widen<const M: usize>(&self) -> Int<M> {
+        const { assert!(M >= N) };
+        self.resize()
+    }
+
+    /// The same value in `M <= N` limbs, or `None` if it does not fit.
+    #[inline]
+    pub fn narrow<const M: usize>(&self) -> Option<Int<M>> {
+        const { assert!(M <= N) };
+        let low: Int<M> = self.resize();
+        (low.resize::<N>() == *self).then_some(low)
+    }
+
+    /// The value as an `i128`, or `None` if it does not fit.
+    #[inline]
+    pub fn to_i128(&self) -> Option<i128> {
+        let low: Int<2> = self.resize();
+        let fits = N <= 2 || low.resize::<N>() == *self;
+        fits.then_some((low.limbs[1] as i128) << 64 | low.limbs[0] as i128)
+    }
+
+    /// Sign-extends to or truncates to `M` limbs.
+    #[inline]
+    const fn resize<const M: usize>(&self) -> Int<M> {
+        let mut limbs = [self.sign_limb(); M];
+        let mut i = 0;
+        while i < N && i < M {
+            limbs[i] = self.limbs[i];
+            i += 1;
+        }
+        Int { limbs }
+    }
+
+    /// All ones if the value is negative, else zero.
+    #[inline]
+    const fn sign_limb(&self) -> u64 {
+        ((self.limbs[N - 1] as i64) >> 63) as u64
+    }
+
+    /// −1, 0 or 1.
+    #[inline]
+    pub fn signum(&self) -> i32 {
+        if self.is_negative() {
+            -1
+        } else {
+            i32::from(!self.is_zero())
+        }
+    }
+
+    /// Whether the value is zero.
+    #[inline]
+    pub fn is_zero(&self) -> bool {
+        self.limbs.iter().fold(0, |all, limb| all | limb) == 0
+    }
+
+    /// Whether the value is below zero.
+    #[inline]
+    pub const fn is_negative(&self) -> bool {
+        (self.limbs[N - 1] as i64) < 0
+    }
+
+    /// The absolute value.
+    #[inline]
+    #[must_use]
+    pub fn abs(self) -> Self {
+        debug_assert!(!self.is_minimum(), "the absolute value overflows");
+        Self {
+            limbs: self.magnitude(),
+        }
+    }
+
+    /// Whether the value is −2^(64 `N` − 1), the one without a negative.
+    fn is_minimum(&self) -> bool {
+        self.limbs[N - 1] == 1 << 63 && self.limbs[..N - 1].iter().all(|&limb| limb == 0)
+    }
+
+    /// The absolute value as an unsigned number, right for every value.
+    #[inline]
+    pub(super) fn magnitude(&self) -> [u64; N] {
+        let sign = self.sign_limb();
+        let mut limbs = self.limbs;
+        let mut carry = sign & 1;
+        for limb in &mut limbs {
+            let (flipped, overflow) = (*limb ^ sign).overflowing_add(carry);
+            *limb = flipped;
+            carry = u64::from(overflow);
+        }
+        limbs
+    }
+
+    /// The number of bits of the absolute value; 0 for zero.
+    #[inline]
+    pub fn bit_length(&self) -> u32 {
+        round::bit_length(&self.magnitude())
+    }
+
+    /// The nearest double, ties to even; infinite where the value exceeds the doubles.
+    #[inline]
+    pub fn to_f64(&self) -> f64 {
+        let nearest = round::limbs_to_f64(&self.magnitude());
+        if self.is_negative() {
+            -nearest
+        } else {
+            nearest
+        }
+    }
+
+    /// The product with `other`, in `R` limbs.
+    ///
+    /// The product must fit; it always does for `R >= N + B`.
+    #[inline]
+    #[must_use]
+    #[allow(
+        clippy::should_implement_trait,
+        reason = "the width of the product is the caller's choice"
+    )]
+    pub fn mul<const B: usize, const R: usize>(self, other: &Int<B>) -> Int<R> {
+        let mut product = unsigned_product::<N, B, R>(&self.limbs, &other.limbs);
+        subtract_masked(&mut product, N, &other.limbs, self.sign_limb());
+        subtract_masked(&mut product, B, &self.limbs, other.sign_limb());
+        if R > N + B {
+            let sign = ((product[N + B - 1] as i64) >> 63) as u64;
+            product[N + B..].fill(sign);
+        }
+        let product = Int { limbs: product };
+        debug_assert!(
+            R >= N + B || product_fits(&self, other, &product),
+            "a product exceeds {R} limbs"
+        );
+        product
+    }
+
+    /// The product with an `i64`, in `R` limbs; it must fit.
+    #[inline]
+    #[must_use]
+    pub fn mul_i64<const R: usize>(self, other: i64) -> Int<R> {
+        self.mul(&Int::<1>::from_i64(other))
+    }
+
+    /// The product with an `i128`, in `R` limbs; it must fit.
+    #[inline]
+    #[must_use]
+    pub fn mul_i128<const R: usize>(self, other: i128) -> Int<R> {
+        self.mul(&Int::<2>::from_i128(other))
+    }
+
+    /// The residue in `[0, p)`, for `p` one of [`P1`](super::P1) and [`P2`](super::P2).
+    #[inline]
+    pub fn rem_u61(&self, p: u64) -> u64 {
+        let top = self.limbs[N - 1] as i64;
+        let lead = modular::reduce(u128::from(top.unsigned_abs()), p);
+        let mut residue = if top < 0 && lead != 0 { p - lead } else { lead };
+        for &limb in self.limbs[..N - 1].iter().rev() {
+            residue = modular::push_limb(residue, limb, p);
+        }
+        residue
+    }
+
+    /// The remainder of the absolute value on division by `divisor`, which is not zero.
+    #[inline]
+    pub fn rem_u128(&self, divisor: u128) -> u128 {
+        debug_assert!(divisor != 0, "division by zero");
+        match u64::try_from(divisor) {
+            Ok(short) => u128::from(remainder_short(&self.magnitude(), short)),
+            Err(_) => remainder_long(&self.magnitude(), divisor),
+        }
+    }
+
+    /// The quotient by `divisor`, which is not zero and divides the value.
+    #[inline]
+    #[must_use]
+    pub fn div_exact_u128(&self, divisor: u128) -> Self {
+        debug_assert!(self.rem_u128(divisor) == 0, "the division is not exact");
+        let twos = divisor.trailing_zeros();
+        let odd = divisor >> twos;
+        let mut rest = self.shift_right(twos).limbs;
+        let inverse = inverse_mod_limb(odd as u64);
+        for i in 0..N {
+            let digit = rest[i].wrapping_mul(inverse);
+            subtract_multiple(&mut rest[i..], odd, digit);
+            rest[i] = digit;
+        }
+        Self { limbs: rest }
+    }
+
+    /// The floor of the value divided by 2^`bits`, for `bits < 128`.
+    #[inline]
+    fn shift_right(&self, bits: u32) -> Self {
+        let (whole, part) = ((bits / 64) as usize, bits % 64);
+        let limb = |i: usize| self.limbs.get(i).copied().unwrap_or(self.sign_limb());
+        let limbs = std::array::from_fn(|i| {
+            let pair = u128::from(limb(i + whole + 1)) << 64 | u128::from(limb(i + whole));
+            (pair >> part) as u64
+        });
+        Self { limbs }
+    }
+}
+
+/// The low `R` limbs of the product of two unsigned numbers.
+#[inline]
+fn unsigned_product<const A: usize, const B: usize, const R: usize>(
+    a: &[u64; A],
+    b: &[u64; B],
+) -> [u64; R] {
+    let mut product = [0; R];
+    for i in 0..A.min(R) {
+        let mut carry = 0;
+        for j in 0..B.min(R - i) {
+            (product[i + j], carry) = multiply_add(a[i], b[j], product[i + j], carry);
+        }
+        if i + B < R {
+            product[i + B] = carry;
+        }
+    }
+    product
+}
+
+/// The low and the high limb of `a * b + c + d`, which always fits.
+#[inline]
+const fn multiply_add(a: u64, b: u64, c: u64, d: u64) -> (u64, u64) {
+    let wide = (a as u128)
+        .wrapping_mul(b as u128)
+        .wrapping_add(c as u128)
+        .wrapping_add(d as u128);
+    (wide as u64, (wide >> 64) as u64)
+}
+
+/// Subtracts `subtrahend & mask` from the limbs of `number` from `start` on.
+///
+/// Limbs above the subtrahend's are left alone: with a negative factor of `start` limbs they
+/// are not part of the product.
+#[inline]
+fn subtract_masked<const R: usize, const B: usize>(
+    number: &mut [u64; R],
+    start: usize,
+    subtrahend: &[u64; B],
+    mask: u64,
+) {
+    let mut borrow = false;
+    for j in 0..B.min(R.saturating_sub(start)) {
+        (number[start + j], borrow) =
+            borrowing_sub(number[start + j], subtrahend[j] & mask, borrow);
+    }
+}
+
+/// `a + b + carry` and the carry out.
+#[inline]
+const fn carrying_add(a: u64, b: u64, carry: bool) -> (u64, bool) {
+    let (sum, first) = a.overflowing_add(b);
+    let (sum, second) = sum.overflowing_add(carry as u64);
+    (sum, first | second)
+}
+
+/// `a - b - borrow` and the borrow out.
+#[inline]
+const fn borrowing_sub(a: u64, b: u64, borrow: bool) -> (u64, bool) {
+    let (difference, first) = a.overflowing_sub(b);
+    let (difference, second) = difference.overflowing_sub(borrow as u64);
+    (difference, first | second)
+}
+
+/// Whether a truncated product is the true one.
+///
+/// Bit lengths bound the product to one bit more than the limbs can hold; there, and only
+/// there, truncation shows in the sign.
+fn product_fits<const A: usize, const B: usize, const R: usize>(
+    a: &Int<A>,
+    b: &Int<B>,
+    product: &Int<R>,
+) -> bool {
+    let sign = a.signum() * b.signum();
+    sign == 0 || a.bit_length() + b.bit_length() <= 64 * R as u32 && product.signum() == sign
+}
+
+/// The remainder by a divisor of one limb.
+#[inline]
+fn remainder_short<const N: usize>(limbs: &[u64; N], divisor: u64) -> u64 {
+    limbs.iter().rev().fold(0, |rest, &limb| {
+        ((u128::from(rest) << 64 | u128::from(limb)) % u128::from(divisor)) as u64
+    })
+}
+
+/// The remainder by a divisor of two limbs.
+fn remainder_long<const N: usize>(limbs: &[u64; N], divisor: u128) -> u128 {
+    let shift = divisor.leading_zeros();
+    let normalised = divisor << shift;
+    let shifted = |i: usize| {
+        let low = if i == 0 { 0 } else { limbs[i - 1] };
+        let high = limbs.get(i).copied().unwrap_or(0);
+        ((u128::from(high) << 64 | u128::from(low)) << shift >> 64) as u64
+    };
+    let rest = (0..=N)
+        .rev()
+        .fold(0, |rest, i| remainder_step(rest, shifted(i), normalised));
+    rest >> shift
+}
+
+/// The remainder of `rest * 2^64 + limb` by a divisor with its top bit set; `rest < divisor`.
+#[inline]
+fn remainder_step(rest: u128, limb: u64, divisor: u128) -> u128 {
+    let (lead, low) = ((divisor >> 64) as u64, divisor as u64);
+    let guess = (rest / u128::from(lead)).min(u128::from(u64::MAX)) as u64;
+    let (product_low, carry) = multiply_add(guess, low, 0, 0);
+    let (product_mid, product_high) = multiply_add(guess, lead, carry, 0);
+    let (low, borrow) = borrowing_sub(limb, product_low, false);
+    let (mid, borrow) = borrowing_sub(rest as u64, product_mid, borrow);
+    let (mut high, _) = borrowing_sub((rest >> 64) as u64, product_high, borrow);
+    let mut rest = u128::from(mid) << 64 | u128::from(low);
+    // The guess is at most two too large, which leaves a negative remainder.
+    while high != 0 {
+        let (sum, carry) = rest.overflowing_add(divisor);
+        rest = sum;
+        high = high.wrapping_add(u64::from(carry));
+    }
+    rest
+}
+
+/// The inverse of an odd number modulo 2^64.
+#[inline]
+const fn inverse_mod_limb(odd: u64) -> u64 {
+    // Right in five bits; each Newton step doubles them.
+    let mut inverse = odd.wrapping_mul(3) ^ 2;
+    let mut step = 0;
+    while step < 4 {
+        inverse = inverse.wrapping_mul(2u64.wrapping_sub(odd.wrapping_mul(inverse)));
+        step += 1;
+    }
+    inverse
+}
+
+/// Subtracts `factor * digit` from a number, modulo its width.
+#[inline]
+fn subtract_multiple(number: &mut [u64], factor: u128, digit: u64) {
+    let factor = [factor as u64, (factor >> 64) as u64];
+    let (mut carry, mut borrow) = (0, false);
+    for (i, limb) in number.iter_mut().enumerate() {
+        let (low, high) = multiply_add(factor.get(i).copied().unwrap_or(0), digit, carry, 0);
+        carry = high;
+        (*limb, borrow) = borrowing_sub(*limb, low, borrow);
+    }
+}
+
+impl<const N: usize> Add for Int<N> {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        let mut limbs = [0; N];
+        let mut carry = false;
+        for (limb, (&a, &b)) in limbs.iter_mut().zip(self.limbs.iter().zip(&other.limbs)) {
+            (*limb, carry) = carrying_add(a, b, carry);
+        }
+        let sum = Self { limbs };
+        debug_assert!(
+            self.is_negative() != other.is_negative() || sum.is_negative() == self.is_negative(),
+            "a sum exceeds {N} limbs"
+        );
+        sum
+    }
+}
+
+impl<const N: usize> Sub for Int<N> {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        let mut limbs = [0; N];
+        let mut borrow = false;
+        for (limb, (&a, &b)) in limbs.iter_mut().zip(self.limbs.iter().zip(&other.limbs)) {
+            (*limb, borrow) = borrowing_sub(a, b, borrow);
+        }
+        let difference = Self { limbs };
+        debug_assert!(
+            self.is_negative() == other.is_negative()
+                || difference.is_negative() == self.is_negative(),
+            "a difference exceeds {N} limbs"
+        );
+        difference
+    }
+}
+
+impl<const N: usize> Neg for Int<N> {
+    type Output = Self;
+
+    #[inline]
+    fn neg(self) -> Self {
+        Self::ZERO - self
+    }
+}
+
+impl<const N: usize> AddAssign for Int<N> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<const N: usize> SubAssign for Int<N> {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<const N: usize> Default for Int<N> {
+    fn default() -> Self {
+        Self::ZERO
+    }
+}
+
+impl<const N: usize> Ord for Int<N> {
+    #[inline]
+    fn cmp(&self, other: &Self) -> Ordering {
+        let lead = (self.limbs[N - 1] as i64).cmp(&(other.limbs[N - 1] as i64));
+        lead.then_with(|| self.limbs.iter().rev().cmp(other.limbs.iter().rev()))
+    }
+}
+
+impl<const N: usize> PartialOrd for Int<N> {
+    #[inline]
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<const N: usize> fmt::Debug for Int<N> {
+    /// Sign and hexadecimal digits, as in `-0x1f`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let magnitude = self.magnitude();
+        let lead = magnitude.iter().rposition(|&limb| limb != 0).unwrap_or(0);
+        let sign = if self.is_negative() { "-" } else { "" };
+        write!(f, "{sign}{:#x}", magnitude[lead])?;
+        magnitude[..lead]
+            .iter()
+            .rev()
+            .try_for_each(|limb| write!(f, "{limb:016x}"))
+    }
+}

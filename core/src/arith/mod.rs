@@ -1,0 +1,22 @@
+//! Exact integers of fixed width, residues, and correctly rounded ratios.
+//!
+//! Nothing here knows geometry except [`bounds`], which derives how wide the
+//! integers of the exact predicates have to be. Nothing allocates.
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    clippy::cast_lossless
+)]
+
+pub mod bounds;
+mod gcd;
+mod int;
+mod modular;
+mod round;
+
+pub use gcd::gcd_u128;
+pub use int::Int;
+pub use modular::{inv_mod, mul_mod, P1, P2};
+pub use round::ratio_to_f64;

@@ -1,0 +1,175 @@
+//! Correctly rounded conversion of integers and ratios to doubles.
+
+use super::Int;
+
+/// The exponent of the least positive double, 2^-1074.
+const LEAST_EXPONENT: i32 = -1074;
+
+/// The exponent of the least normal double.
+const LEAST_NORMAL_EXPONENT: i32 = -1022;
+
+/// The double nearest to `numerator / denominator`, ties to even; `denominator > 0`.
+///
+/// Subnormal results are rounded once, like all others; ratios beyond the largest double
+/// give an infinity. A zero numerator gives +0.
+#[inline]
+pub fn ratio_to_f64<const A: usize, const B: usize>(
+    numerator: &Int<A>,
+    denominator: &Int<B>,
+) -> f64 {
+    debug_assert!(denominator.signum() > 0, "the denominator is not positive");
+    if numerator.is_zero() {
+        return 0.0;
+    }
+    let nearest = magnitudes_to_f64(&numerator.magnitude(), &denominator.magnitude());
+    if numerator.is_negative() {
+        -nearest
+    } else {
+        nearest
+    }
+}
+
+/// The double nearest to a ratio of positive numbers.
+///
+/// One step of long division is enough. With the denominator shifted to fill its `B` limbs
+/// and the numerator shifted to `64 * B + 63` bits, the quotient has 63 or 64 bits.
+fn magnitudes_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]) -> f64 {
+    let (num_bits, den_bits) = (bit_length(num) as i32, bit_length(den) as i32);
+    let den_start = den_bits - 64 * B as i32;
+    let divisor: [u64; B] = std::array::from_fn(|i| limb_at(den, den_start + 64 * i as i32));
+    let num_start = num_bits - 63 - 64 * B as i32;
+    let low: [u64; B] = std::array::from_fn(|i| limb_at(num, num_start + 64 * i as i32));
+    let lead = limb_at(num, num_start + 64 * B as i32);
+    let (quotient, exact) = divide_step(lead, low, &divisor);
+    let sticky = !exact || any_bit_below(num, num_start);
+    scaled_to_f64(quotient, sticky, num_bits - den_bits - 63)
+}
+
+/// The quotient of `lead * 2^(64 B) + low` by a divisor with its top bit set, and whether
+/// nothing is left over; the quotient must fit in a limb.
+#[inline]
+fn divide_step<const B: usize>(lead: u64, low: [u64; B], divisor: &[u64; B]) -> (u64, bool) {
+    let head = u128::from(lead) << 64 | u128::from(low[B - 1]);
+    let mut quotient = (head / u128::from(divisor[B - 1])) as u64;
+    let (mut high, mut rest) = subtract_multiple(lead, low, divisor, quotient);
+    // The guess from the leading limbs is at most two too large.
+    while high != 0 {
+        quotient -= 1;
+        high = high.wrapping_add(add_to(&mut rest, divisor));
+    }
+    (quotient, rest.iter().all(|&limb| limb == 0))
+}
+
+/// `number - divisor * quotient` with the given top limb, modulo 2^(64 (B + 1)).
+#[inline]
+fn subtract_multiple<const B: usize>(
+    lead: u64,
+    mut number: [u64; B],
+    divisor: &[u64; B],
+    quotient: u64,
+) -> (u64, [u64; B]) {
+    let mut carry = 0u64;
+    for (limb, &part) in number.iter_mut().zip(divisor) {
+        let product = u128::from(part)
+            .wrapping_mul(u128::from(quotient))
+            .wrapping_add(u128::from(carry));
+        let (difference, borrow) = limb.overflowing_sub(product as u64);
+        *limb = difference;
+        carry = ((product >> 64) as u64).wrapping_add(u64::from(borrow));
+    }
+    (lead.wrapping_sub(carry), number)
+}
+
+/// Adds in place and returns the carry out.
+#[inline]
+fn add_to<const B: usize>(number: &mut [u64; B], addend: &[u64; B]) -> u64 {
+    let mut carry = 0;
+    for (limb, &other) in number.iter_mut().zip(addend) {
+        let sum = u128::from(*limb)
+            .wrapping_add(u128::from(other))
+            .wrapping_add(carry);
+        *limb = sum as u64;
+        carry = sum >> 64;
+    }
+    carry as u64
+}
+
+/// The double nearest to an unsigned number, ties to even.
+#[inline]
+pub(super) fn limbs_to_f64<const N: usize>(limbs: &[u64; N]) -> f64 {
+    let start = bit_length(limbs) as i32 - 64;
+    if start <= 0 {
+        return limbs[0] as f64;
+    }
+    scaled_to_f64(limb_at(limbs, start), any_bit_below(limbs, start), start)
+}
+
+/// The double nearest to `(number + part) * 2^exponent`, where `part` lies strictly between
+/// 0 and 1 if `sticky`, else is 0; `number` has at least 63 bits.
+#[inline]
+fn scaled_to_f64(number: u64, sticky: bool, exponent: i32) -> f64 {
+    let lead = exponent + 63 - number.leading_zeros() as i32;
+    if lead < LEAST_NORMAL_EXPONENT {
+        return subnormal(number, sticky, LEAST_EXPONENT - exponent);
+    }
+    // Below the last bit kept, so that it decides ties and nothing else.
+    let rounded = (number | u64::from(sticky)) as f64;
+    // Two steps, because the scale alone can leave the range of doubles.
+    let half = exponent / 2;
+    rounded * power_of_two(half) * power_of_two(exponent - half)
+}
+
+/// The multiple of the least positive double nearest to `(number + part) / 2^shift` of it.
+#[inline]
+fn subnormal(number: u64, sticky: bool, shift: i32) -> f64 {
+    if shift > 64 {
+        return 0.0;
+    }
+    let wide = u128::from(number) << 64 >> shift;
+    let (whole, part) = ((wide >> 64) as u64, wide as u64);
+    let half = 1 << 63;
+    let up = part > half || part == half && (sticky || whole % 2 == 1);
+    f64::from_bits(whole + u64::from(up))
+}
+
+/// 2^`exponent`, infinite above the range; the exponent must not be below the normal range.
+#[inline]
+fn power_of_two(exponent: i32) -> f64 {
+    debug_assert!(exponent >= LEAST_NORMAL_EXPONENT);
+    f64::from_bits(((exponent.min(1024) + 1023) as u64) << 52)
+}
+
+/// The number of significant bits of an unsigned number.
+#[inline]
+pub(super) fn bit_length<const N: usize>(limbs: &[u64; N]) -> u32 {
+    limbs
+        .iter()
+        .rposition(|&limb| limb != 0)
+        .map_or(0, |i| 64 * (i as u32 + 1) - limbs[i].leading_zeros())
+}
+
+/// The 64 bits from bit `start` on; bits outside the number are zero.
+#[inline]
+fn limb_at<const N: usize>(limbs: &[u64; N], start: i32) -> u64 {
+    let limb = |i: i32| {
+        usize::try_from(i)
+            .ok()
+            .and_then(|i| limbs.get(i))
+            .copied()
+            .unwrap_or(0)
+    };
+    let (index, offset) = (start.div_euclid(64), start.rem_euclid(64));
+    let pair = u128::from(limb(index + 1)) << 64 | u128::from(limb(index));
+    (pair >> offset) as u64
+}
+
+/// Whether a bit below bit `end` is set.
+#[inline]
+fn any_bit_below<const N: usize>(limbs: &[u64; N], end: i32) -> bool {
+    let end = usize::try_from(end).unwrap_or(0);
+    let whole = limbs[..(end / 64).min(N)].iter().any(|&limb| limb != 0);
+    whole
+        || limbs
+            .get(end / 64)
+            .is_some_and(|&limb| limb & ((1 << (end % 64)) - 1) != 0)
+}
