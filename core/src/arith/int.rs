@@ -20,6 +20,9 @@ pub struct Int<const N: usize> {
 }
 
 impl<const N: usize> Int<N> {
+    /// The number of bits, the sign included.
+    pub const BITS: u32 = 64 * N as u32;
+
     /// Zero.
     pub const ZERO: Self = Self { limbs: [0; N] };
 
@@ -168,7 +171,7 @@ impl<const N: usize> Int<N> {
 
     /// The product with `other`, in `R` limbs.
     ///
-    /// The product must fit; it always does for `R >= N + B`.
+    /// The product must lie in the symmetric range of `R` limbs; for `R >= N + B` it always fits.
     #[inline]
     #[must_use]
     #[allow(
@@ -330,7 +333,7 @@ fn product_fits<const A: usize, const B: usize, const R: usize>(
     product: &Int<R>,
 ) -> bool {
     let sign = a.signum() * b.signum();
-    sign == 0 || a.bit_length() + b.bit_length() <= 64 * R as u32 && product.signum() == sign
+    sign == 0 || a.bit_length() + b.bit_length() <= Int::<R>::BITS && product.signum() == sign
 }
 
 /// The remainder by a divisor of one limb.
