@@ -1,0 +1,70 @@
+"""Runs every case of `cases/` and notices if there is none."""
+
+import json
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from support.checks import assert_sound
+from support.shapes import cuboid
+
+FOLDER = Path(__file__).parent / "cases"
+CASES = sorted(FOLDER.glob("*.json"))
+
+
+def test_there_are_cases() -> None:
+    assert len(CASES) > 10
+
+
+def operand(description: dict[str, Any]) -> "b.Solid":
+    """Make a solid from its description in a case."""
+    if "box" in description:
+        return b.Solid(*cuboid(*description["box"]))
+    if "half_space" in description:
+        return b.half_space(*description["half_space"])
+    vertices = np.array(description["vertices"], dtype=np.float64)
+    return b.Solid(vertices, np.array(description["faces"], dtype=np.int64))
+
+
+def evaluate(case: dict[str, Any]) -> "b.Solid":
+    """Make the operands and combine them."""
+    names = {chr(ord("a") + k): operand(given) for k, given in enumerate(case["operands"])}
+    result: b.Solid = eval(case["expression"], {"__builtins__": {}}, names)
+    return result
+
+
+def compare(solid: "b.Solid", expect: dict[str, Any]) -> None:
+    """Compare everything that the case expects."""
+    mesh = assert_sound(solid)
+    found = {
+        "volume": solid.volume_exact,
+        "area": mesh.area,
+        "vertices": len(mesh.vertices),
+        "faces": len(mesh.faces),
+        "parts": mesh.components,
+        "euler": mesh.euler_number,
+        "empty": solid.is_empty,
+    }
+    for name, value in expect.items():
+        wanted = Fraction(value) if name == "volume" else value
+        if name == "area":
+            wanted = pytest.approx(value, rel=1e-9)
+        assert found[name] == wanted, name
+
+
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+def test_case(path: Path) -> None:
+    case = json.loads(path.read_text())
+    assert case["why"]
+    expect = dict(case["expect"])
+    code = expect.pop("code", None)
+    if code is None:
+        compare(evaluate(case), expect)
+        return
+    with pytest.raises(b.BspcsgError) as caught:
+        evaluate(case).to_mesh()
+    assert caught.value.code == code

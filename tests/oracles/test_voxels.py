@@ -1,0 +1,94 @@
+"""Unions of unit cells of a small lattice against boolean arrays.
+
+Everything is coplanar with everything, and every answer is known without geometry.
+"""
+
+from itertools import product
+from operator import and_, or_, sub, xor
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from support import DEEP
+from support.checks import assert_sound
+from support.shapes import Grid, cells_as_boxes, cube, moved
+
+OPERATIONS = [
+    (or_, np.logical_or),
+    (and_, np.logical_and),
+    (sub, lambda p, q: p & ~q),
+    (xor, np.logical_xor),
+]
+
+
+def solid_of(grid: Grid) -> "b.Solid":
+    """Return the cells as one mesh of touching boxes, whose inner walls are doubled."""
+    return b.Solid(*cells_as_boxes(grid)) if grid.any() else b.Solid.empty()
+
+
+def exposed_area(grid: Grid) -> int:
+    """Count the unit squares between a set and an unset cell."""
+    padded = np.pad(grid, 1).astype(np.int8)
+    return sum(int(np.abs(np.diff(padded, axis=axis)).sum()) for axis in range(3))
+
+
+def assert_matches(solid: "b.Solid", grid: Grid) -> None:
+    """Compare volume, area and the label of every cell with the array."""
+    assert solid.volume_exact == int(grid.sum()), f"cells {np.argwhere(grid).tolist()}"
+    mesh = assert_sound(solid)
+    assert mesh.area == pytest.approx(exposed_area(grid), rel=1e-12)
+    inside = solid.classify(np.argwhere(np.ones_like(grid)) + 0.5)
+    assert inside.tolist() == np.where(grid.ravel(), 1, -1).tolist()
+
+
+def random_grids(shape: tuple[int, int, int], count: int, seed: int) -> list[Grid]:
+    """Return random fillings, from sparse to dense."""
+    rng = np.random.default_rng(seed)
+    return [rng.random(shape) < rng.uniform(0.2, 0.8) for _ in range(count)]
+
+
+def all_grids() -> list[Grid]:
+    """Return all 256 fillings of 2 × 2 × 2 cells."""
+    return [np.array(bits, dtype=bool).reshape(2, 2, 2) for bits in product((0, 1), repeat=8)]
+
+
+def test_every_filling_of_eight_cells() -> None:
+    for grid in all_grids():
+        assert_matches(solid_of(grid) | b.Solid.empty(), grid)
+
+
+def test_union_of_separate_boxes_equals_one_mesh() -> None:
+    for grid in random_grids((3, 3, 3), 20, seed=1):
+        boxes = [b.Solid(*moved(cube(), cell)) for cell in np.argwhere(grid)]
+        together = b.union(boxes)
+        assert_matches(together, grid)
+        assert together.equals(solid_of(grid))
+
+
+@pytest.mark.parametrize(("merge", "expected"), OPERATIONS, ids=["or", "and", "sub", "xor"])
+@pytest.mark.parametrize(("side", "count"), [(2, 100), (3, 30)])
+def test_pairs(merge, expected, side: int, count: int) -> None:  # type: ignore[no-untyped-def]
+    shape = (side, side, side)
+    firsts, seconds = random_grids(shape, count, seed=2), random_grids(shape, count, seed=3)
+    for p, q in zip(firsts, seconds, strict=True):
+        assert_matches(merge(solid_of(p), solid_of(q)), expected(p, q))
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(7200)
+@pytest.mark.parametrize(("merge", "expected"), OPERATIONS, ids=["or", "and", "sub", "xor"])
+def test_all_pairs_of_eight_cells(merge, expected) -> None:  # type: ignore[no-untyped-def]
+    grids = all_grids()
+    solids = [solid_of(grid) for grid in grids]
+    for (p, a), (q, c) in product(zip(grids, solids, strict=True), repeat=2):
+        assert merge(a, c).volume_exact == int(expected(p, q).sum())
+
+
+def test_expressions_of_four_operands() -> None:
+    for seed in range(40 if DEEP else 12):
+        p, q, r, s = random_grids((3, 3, 3), 4, seed=100 + seed)
+        a, c, d, e = (solid_of(grid) for grid in (p, q, r, s))
+        assert_matches((a | c) - (d ^ e), (p | q) & ~(r ^ s))
+        assert_matches((a - c) ^ (d & ~e), (p & ~q) ^ (r & ~s))
+        assert_matches(~(~a | ~c) - d | e & a, ((p & q) & ~r) | (s & p))

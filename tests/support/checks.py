@@ -1,0 +1,68 @@
+"""What every result must satisfy, whoever asks."""
+
+import manifold3d
+import numpy as np
+import trimesh
+
+import bspcsg as b
+
+from .shapes import Faces, Vertices
+
+
+def open_edges(faces: Faces) -> list[tuple[int, int]]:
+    """Return the directed edges that do not have exactly one opposite, by index."""
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    forth, count = np.unique(np.stack([start, end], axis=1), axis=0, return_counts=True)
+    back = {(int(v), int(u)) for u, v in forth}
+    return [
+        (int(u), int(v))
+        for (u, v), n in zip(forth, count, strict=True)
+        if n != 1 or (int(u), int(v)) not in back
+    ]
+
+
+def assert_closed(faces: Faces) -> None:
+    """Every directed edge has exactly one opposite."""
+    assert (faces[:, 0] != faces[:, 1]).all()
+    assert (faces[:, 1] != faces[:, 2]).all()
+    assert (faces[:, 2] != faces[:, 0]).all()
+    loose = open_edges(faces)
+    assert not loose, f"{len(loose)} directed edges without exactly one opposite, first {loose[:3]}"
+
+
+def manifold_status(vertices: Vertices, faces: Faces) -> str:
+    """Return manifold3d's word on the mesh, in double precision."""
+    mesh = manifold3d.Mesh64(np.array(vertices, order="C"), np.array(faces, np.uint64, order="C"))
+    return str(manifold3d.Manifold(mesh).status().name)
+
+
+def assert_accepted(vertices: Vertices, faces: Faces) -> None:
+    """Both validators take the mesh for a solid."""
+    assert manifold_status(vertices, faces) == "NoError"
+    assert trimesh.Trimesh(vertices, faces, process=False).is_volume
+
+
+def assert_sound(solid: "b.Solid") -> "b.Mesh":
+    """The mesh of a solid is closed, accepted, and bounds what the solid says it holds."""
+    mesh = solid.to_mesh()
+    assert mesh.vertices.dtype == np.float64 and mesh.vertices.shape[1:] == (3,)
+    assert mesh.faces.dtype == np.int64 and mesh.faces.shape[1:] == (3,)
+    assert mesh.source.dtype == np.int64 and mesh.source.shape == (len(mesh.faces), 2)
+    assert np.isfinite(mesh.vertices).all()
+    if solid.is_empty:
+        assert len(mesh.faces) == 0 and len(mesh.vertices) == 0
+        assert solid.volume_exact == 0
+        return mesh
+    assert set(np.unique(mesh.faces)) == set(range(len(mesh.vertices)))
+    assert_closed(mesh.faces)
+    assert_accepted(mesh.vertices, mesh.faces)
+    reach = float(np.ptp(mesh.vertices, axis=0).max())
+    error = abs(mesh.volume - float(solid.volume_exact))
+    # Rounding moves each vertex by less than a step, so the volume by less than area times that.
+    assert error <= mesh.area * 1e-9 + 1e-12 * reach**3
+    return mesh
+
+
+def facts(mesh: "b.Mesh") -> tuple[int, int, int]:
+    """Return vertices, faces and connected surfaces."""
+    return len(mesh.vertices), len(mesh.faces), mesh.components
