@@ -1,0 +1,192 @@
+//! Outlines of sets of polygons: what is left of their edges after opposite ones cancel.
+
+use std::cmp::Ordering;
+use std::sync::Arc;
+
+use super::line::LineKey;
+use super::plane::Plane;
+use super::polygon::{Carrier, Polygon, PolygonSplit};
+use super::vertex::Vertex;
+
+/// A directed edge with the region it bounds on its left, in the plane it lies in.
+#[derive(Clone, Debug)]
+pub struct OutlineEdge {
+    /// Start.
+    pub from: Arc<Vertex>,
+    /// End.
+    pub to: Arc<Vertex>,
+    /// What it lies on, beside the support.
+    pub carrier: Carrier,
+    /// The line it lies on.
+    pub line: LineKey,
+}
+
+impl OutlineEdge {
+    /// The edges of a polygon.
+    pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
+        polygon.edges().map(|(from, to, carrier)| Self {
+            from: Arc::clone(from),
+            to: Arc::clone(to),
+            carrier: carrier.clone(),
+            line: carrier.line(polygon.support()),
+        })
+    }
+
+    /// The same edge run backwards.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self {
+            from: Arc::clone(&self.to),
+            to: Arc::clone(&self.from),
+            ..self.clone()
+        }
+    }
+
+    fn is_forward(&self) -> bool {
+        order_along(&self.from, &self.to, self.line.axis()) == Ordering::Less
+    }
+}
+
+/// Order of two points of one line.
+pub fn order_along(a: &Arc<Vertex>, b: &Arc<Vertex>, axis: usize) -> Ordering {
+    if Arc::ptr_eq(a, b) {
+        Ordering::Equal
+    } else {
+        a.compare(b, axis)
+    }
+}
+
+/// Cancels opposite edges and joins what remains into maximal edges, line by line.
+///
+/// # Order
+/// By line key, then along the line.
+pub fn cancel(mut edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
+    edges.sort_by(|a, b| a.line.cmp(&b.line));
+    let mut kept = Vec::with_capacity(edges.len());
+    for run in edges.chunk_by(|a, b| a.line == b.line) {
+        match run {
+            [single] => kept.push(single.clone()),
+            _ => cancel_line(run, &mut kept),
+        }
+    }
+    kept
+}
+
+struct Event<'a> {
+    at: &'a Arc<Vertex>,
+    change: i32,
+}
+
+fn cancel_line(run: &[OutlineEdge], kept: &mut Vec<OutlineEdge>) {
+    let axis = run[0].line.axis();
+    let mut events = Vec::with_capacity(2 * run.len());
+    for edge in run {
+        events.push(Event { at: &edge.from, change: 1 });
+        events.push(Event { at: &edge.to, change: -1 });
+    }
+    events.sort_by(|a, b| order_along(a.at, b.at, axis));
+    let mut sum = 0;
+    let mut start: Option<&Arc<Vertex>> = None;
+    for group in events.chunk_by(|a, b| order_along(a.at, b.at, axis) == Ordering::Equal) {
+        let next = sum + group.iter().map(|e| e.change).sum::<i32>();
+        if next != sum {
+            if let (Some(from), true) = (start, sum != 0) {
+                emit(run, sum, from, group[0].at, kept);
+            }
+            start = Some(group[0].at);
+            sum = next;
+        }
+    }
+}
+
+/// Emits the maximal edge between two points with the run's net multiplicity.
+fn emit(
+    run: &[OutlineEdge],
+    sum: i32,
+    low: &Arc<Vertex>,
+    high: &Arc<Vertex>,
+    kept: &mut Vec<OutlineEdge>,
+) {
+    let forward = sum > 0;
+    let like = run
+        .iter()
+        .find(|e| e.is_forward() == forward)
+        .unwrap_or(&run[0]);
+    let (from, to) = if forward { (low, high) } else { (high, low) };
+    for _ in 0..sum.unsigned_abs() {
+        kept.push(OutlineEdge {
+            from: Arc::clone(from),
+            to: Arc::clone(to),
+            carrier: like.carrier.clone(),
+            line: like.line,
+        });
+    }
+}
+
+/// The convex pieces of the region that an outline bounds inside a convex polygon.
+///
+/// A planar autopartition by the outline's own edges: the region lies on the minus side of each.
+///
+/// # Source
+/// Lecture notes, autopartition; design review F9.
+pub fn pieces(polygon: Polygon, edges: &[OutlineEdge]) -> Vec<Polygon> {
+    let mut inside = Vec::new();
+    let mut open = vec![(polygon, edges.to_vec())];
+    while let Some((polygon, mut edges)) = open.pop() {
+        let Some(pivot) = edges.pop() else {
+            inside.push(polygon);
+            continue;
+        };
+        let cut = Arc::new(pivot.carrier.plane(polygon.support()));
+        let (minus_edges, plus_edges) = divide_edges(edges, polygon.support(), &cut);
+        let (minus, plus) = match polygon.split(&cut) {
+            PolygonSplit::Minus => (Some(polygon), None),
+            PolygonSplit::Plus => (None, Some(polygon)),
+            PolygonSplit::Both(minus, plus) => (Some(minus), Some(plus)),
+            PolygonSplit::Coplanar => (None, None),
+        };
+        if let (Some(plus), false) = (plus, plus_edges.is_empty()) {
+            open.push((plus, plus_edges));
+        }
+        if let Some(minus) = minus {
+            open.push((minus, minus_edges));
+        }
+    }
+    inside
+}
+
+fn divide_edges(
+    edges: Vec<OutlineEdge>,
+    support: &Plane,
+    cut: &Plane,
+) -> (Vec<OutlineEdge>, Vec<OutlineEdge>) {
+    let (mut minus, mut plus) = (Vec::new(), Vec::new());
+    for edge in edges {
+        match (edge.from.side_of(cut), edge.to.side_of(cut)) {
+            (0, 0) => {}
+            (a, b) if a <= 0 && b <= 0 => minus.push(edge),
+            (a, b) if a >= 0 && b >= 0 => plus.push(edge),
+            (a, _) => {
+                let meet = edge.carrier.meet(support, cut);
+                let at = Arc::new(meet.expect("an edge with ends on both sides meets the plane"));
+                let (first, second) = cut_edge(&edge, &at);
+                let (low, high) = if a < 0 { (first, second) } else { (second, first) };
+                minus.push(low);
+                plus.push(high);
+            }
+        }
+    }
+    (minus, plus)
+}
+
+fn cut_edge(edge: &OutlineEdge, at: &Arc<Vertex>) -> (OutlineEdge, OutlineEdge) {
+    let first = OutlineEdge {
+        to: Arc::clone(at),
+        ..edge.clone()
+    };
+    let second = OutlineEdge {
+        from: Arc::clone(at),
+        ..edge.clone()
+    };
+    (first, second)
+}

@@ -1,0 +1,310 @@
+//! Convex polygons in supporting planes, split exactly by planes.
+//!
+//! Each edge knows a plane that carries it, so that a new corner is always the meet of three
+//! planes of the input and widths do not grow with the number of cuts.
+
+use std::sync::Arc;
+
+use smallvec::SmallVec;
+
+use super::cell::Cell;
+use super::line::LineKey;
+use super::plane::{Lattice, Plane};
+use super::vertex::Vertex;
+
+/// What an edge lies on, beside the supporting plane.
+#[derive(Clone, Debug)]
+pub enum Carrier {
+    /// A lattice edge of a face, in the face's own direction.
+    Edge(Lattice, Lattice),
+    /// A plane; the polygon lies on its minus side, or on its plus side if the flag is set.
+    Cut(Arc<Plane>, bool),
+}
+
+impl Carrier {
+    /// The plane through the edge that has the polygon on its minus side.
+    pub fn plane(&self, support: &Plane) -> Plane {
+        match self {
+            Self::Edge(a, b) => edge_plane(a, b, support),
+            Self::Cut(plane, true) => plane.flipped(),
+            Self::Cut(plane, false) => (**plane).clone(),
+        }
+    }
+
+    /// The key of the line this carrier and the support have in common.
+    pub fn line(&self, support: &Plane) -> LineKey {
+        match self {
+            Self::Edge(a, b) => LineKey::of_edge(a, b),
+            Self::Cut(plane, _) => LineKey::of_planes(support, plane),
+        }
+    }
+
+    /// The meet of this edge's line with a plane that crosses it.
+    pub fn meet(&self, support: &Plane, cut: &Plane) -> Option<Vertex> {
+        match self {
+            Self::Edge(a, b) => Vertex::meet(support, &edge_plane(a, b, support), cut),
+            Self::Cut(plane, _) => Vertex::meet(support, plane, cut),
+        }
+    }
+}
+
+/// The axis-parallel plane through a face's edge, the face on its minus side.
+fn edge_plane(a: &Lattice, b: &Lattice, support: &Plane) -> Plane {
+    let axis = support.main_axis();
+    let plane = Plane::through_edge(a, b, axis)
+        .expect("an edge is not parallel to the main axis of its face's normal");
+    if support.normal()[axis] < 0 {
+        plane.flipped()
+    } else {
+        plane
+    }
+}
+
+/// A corner and the carrier of the edge that leaves it.
+#[derive(Clone, Debug)]
+pub struct Corner {
+    /// Where.
+    pub at: Arc<Vertex>,
+    /// What the edge to the next corner lies on.
+    pub edge: Carrier,
+}
+
+type Corners = SmallVec<[Corner; 5]>;
+
+/// A convex polygon of positive area, counterclockwise as seen from its support's plus side.
+#[derive(Clone, Debug)]
+pub struct Polygon {
+    support: Arc<Plane>,
+    corners: Corners,
+}
+
+/// Where a polygon lies relative to a plane.
+#[derive(Debug)]
+pub enum PolygonSplit {
+    /// Entirely on the minus side, perhaps touching.
+    Minus,
+    /// Entirely on the plus side, perhaps touching.
+    Plus,
+    /// In the plane.
+    Coplanar,
+    /// Strictly on both sides: the two pieces.
+    Both(Polygon, Polygon),
+}
+
+impl Polygon {
+    /// The triangle of three lattice points with this supporting plane.
+    pub fn triangle(points: &[Lattice; 3], support: Arc<Plane>) -> Self {
+        let corners = (0..3)
+            .map(|i| Corner {
+                at: Arc::new(Vertex::lattice(points[i])),
+                edge: Carrier::Edge(points[i], points[(i + 1) % 3]),
+            })
+            .collect();
+        Self { support, corners }
+    }
+
+    /// The part of a plane inside a cell, if it has an area.
+    pub fn span(plane: &Arc<Plane>, cell: &Cell) -> Option<Self> {
+        let walls = cell.walls().map(Arc::new);
+        let axis = plane.main_axis();
+        let (u, v) = (2 * ((axis + 1) % 3), 2 * ((axis + 2) % 3));
+        let mut ring = [(u, v), (v, u + 1), (u + 1, v + 1), (v + 1, u)];
+        if plane.normal()[axis] < 0 {
+            ring = [(v, u), (u, v + 1), (v + 1, u + 1), (u + 1, v)];
+        }
+        let corners = ring
+            .iter()
+            .map(|&(before, after)| {
+                let at = Vertex::meet(plane, &walls[before], &walls[after])?;
+                let edge = Carrier::Cut(Arc::clone(&walls[after]), false);
+                Some(Corner { at: Arc::new(at), edge })
+            })
+            .collect::<Option<Corners>>()?;
+        let support = Arc::clone(plane);
+        Self { support, corners }
+            .inside(&walls[2 * axis])?
+            .inside(&walls[2 * axis + 1])
+    }
+
+    /// The supporting plane.
+    pub fn support(&self) -> &Arc<Plane> {
+        &self.support
+    }
+
+    /// The corners, counterclockwise.
+    pub fn corners(&self) -> &[Corner] {
+        &self.corners
+    }
+
+    /// The directed edges: start, end, carrier.
+    pub fn edges(&self) -> impl Iterator<Item = (&Arc<Vertex>, &Arc<Vertex>, &Carrier)> {
+        let n = self.corners.len();
+        (0..n).map(move |i| {
+            let (from, to) = (&self.corners[i], &self.corners[(i + 1) % n]);
+            (&from.at, &to.at, &from.edge)
+        })
+    }
+
+    /// Splits by a plane.
+    pub fn split(&self, cut: &Arc<Plane>) -> PolygonSplit {
+        let sides: SmallVec<[i32; 8]> = self.corners.iter().map(|c| c.at.side_of(cut)).collect();
+        let minus = sides.iter().any(|s| *s < 0);
+        let plus = sides.iter().any(|s| *s > 0);
+        match (minus, plus) {
+            (true, true) => self.divide(cut, &sides),
+            (true, false) => PolygonSplit::Minus,
+            (false, true) => PolygonSplit::Plus,
+            (false, false) => PolygonSplit::Coplanar,
+        }
+    }
+
+    fn divide(&self, cut: &Arc<Plane>, sides: &[i32]) -> PolygonSplit {
+        let n = self.corners.len();
+        let (mut minus, mut plus) = (Corners::new(), Corners::new());
+        for i in 0..n {
+            let j = (i + 1) % n;
+            let corner = &self.corners[i];
+            match sides[i] {
+                s if s < 0 => minus.push(corner.clone()),
+                s if s > 0 => plus.push(corner.clone()),
+                _ => push_touching(corner, sides[j], cut, &mut minus, &mut plus),
+            }
+            if sides[i] * sides[j] < 0 {
+                let meet = corner.edge.meet(&self.support, cut);
+                let at = Arc::new(meet.expect("an edge with ends on both sides meets the plane"));
+                push_crossing(&at, corner, sides[j], cut, &mut minus, &mut plus);
+            }
+        }
+        let with = |corners| Self {
+            support: Arc::clone(&self.support),
+            corners,
+        };
+        PolygonSplit::Both(with(minus), with(plus))
+    }
+
+    /// The part on the minus side of a plane, if it has an area.
+    #[must_use]
+    pub fn inside(self, cut: &Arc<Plane>) -> Option<Self> {
+        match self.split(cut) {
+            PolygonSplit::Minus => Some(self),
+            PolygonSplit::Both(minus, _) => Some(minus),
+            PolygonSplit::Plus | PolygonSplit::Coplanar => None,
+        }
+    }
+
+    /// The part inside a cell, if it has an area.
+    #[must_use]
+    pub fn clipped(self, cell: &Cell) -> Option<Self> {
+        let (low, high) = (cell.low(), cell.high());
+        let mut polygon = self;
+        for axis in 0..3 {
+            let (below, above) = polygon.reach(axis, low[axis], high[axis]);
+            if below {
+                let wall = Arc::new(Plane::axis_cut(axis, 2 * low[axis] - 1).flipped());
+                polygon = polygon.inside(&wall)?;
+            }
+            if above {
+                polygon = polygon.inside(&Arc::new(Plane::axis_cut(axis, 2 * high[axis] + 1)))?;
+            }
+        }
+        Some(polygon)
+    }
+
+    /// Whether the polygon may reach beyond half a step outside low and high; errs on yes.
+    fn reach(&self, axis: usize, low: i64, high: i64) -> (bool, bool) {
+        let (mut below, mut above) = (false, false);
+        for corner in &self.corners {
+            match corner.at.as_lattice() {
+                Some(p) => {
+                    below |= p[axis] < low;
+                    above |= p[axis] > high;
+                }
+                None => {
+                    let c = corner.at.approx()[axis];
+                    below |= c < low as f64;
+                    above |= c > high as f64;
+                }
+            }
+        }
+        (below, above)
+    }
+
+    /// The same polygon seen from the other side.
+    #[must_use]
+    pub fn flipped(&self) -> Self {
+        let n = self.corners.len();
+        let corners = (0..n)
+            .map(|i| Corner {
+                at: Arc::clone(&self.corners[n - 1 - i].at),
+                edge: reversed(&self.corners[(2 * n - 2 - i) % n].edge),
+            })
+            .collect();
+        Self {
+            support: Arc::new(self.support.flipped()),
+            corners,
+        }
+    }
+
+    /// A box of doubles around the polygon, widened by the rounding of its corners.
+    pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        for corner in &self.corners {
+            let p = corner.at.approx();
+            for i in 0..3 {
+                let slack = p[i].abs() * 4.0 * f64::EPSILON;
+                low[i] = low[i].min(p[i] - slack);
+                high[i] = high[i].max(p[i] + slack);
+            }
+        }
+        (low, high)
+    }
+}
+
+fn reversed(edge: &Carrier) -> Carrier {
+    match edge {
+        Carrier::Edge(a, b) => Carrier::Edge(*b, *a),
+        cut @ Carrier::Cut(..) => cut.clone(),
+    }
+}
+
+/// Sends a corner that lies in the cut to both pieces; each gets the edge that is its own.
+fn push_touching(
+    corner: &Corner,
+    next: i32,
+    cut: &Arc<Plane>,
+    minus: &mut Corners,
+    plus: &mut Corners,
+) {
+    let along = |flip| Corner {
+        at: Arc::clone(&corner.at),
+        edge: Carrier::Cut(Arc::clone(cut), flip),
+    };
+    minus.push(if next < 0 { corner.clone() } else { along(false) });
+    plus.push(if next > 0 { corner.clone() } else { along(true) });
+}
+
+fn push_crossing(
+    at: &Arc<Vertex>,
+    corner: &Corner,
+    next: i32,
+    cut: &Arc<Plane>,
+    minus: &mut Corners,
+    plus: &mut Corners,
+) {
+    let along = |flip| Corner {
+        at: Arc::clone(at),
+        edge: Carrier::Cut(Arc::clone(cut), flip),
+    };
+    let onward = Corner {
+        at: Arc::clone(at),
+        edge: corner.edge.clone(),
+    };
+    if next < 0 {
+        minus.push(onward);
+        plus.push(along(true));
+    } else {
+        minus.push(along(false));
+        plus.push(onward);
+    }
+}

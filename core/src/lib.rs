@@ -1,0 +1,12 @@
+//! Exact set operations on solids by merging binary space partition trees.
+//!
+//! The data's way: mesh → source → deferred tree → evaluation of an expression by one descent →
+//! tree → boundary → mesh. Layers point one way:
+//! `arith < geometry < mesh < tree < merge < extract < query < python`.
+
+pub mod arith;
+pub mod error;
+pub mod geometry;
+pub mod mesh;
+pub mod tree;
+pub mod merge;

@@ -1,0 +1,328 @@
+//! One descent for a whole expression: operands are folded away cell by cell.
+//!
+//! # Source
+//! Naylor, Amanatides, Thibault 1990 (merging: a leaf decides, a common cut is descended);
+//! design review F12 (residual expressions), F14 (one hierarchy for all solids).
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::Arc;
+
+use super::expression::{Expression, Residual};
+use super::join;
+use super::leaf::{self, Rule};
+use super::list::{List, Sources};
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::cell::{Cell, Cut};
+use crate::tree::node::{Branch, Node};
+
+/// Lists that together hold at most this many elements are worked on by the leaf kernel.
+///
+/// Measured on sphere pairs: the kernel's cost per face is flat between 12 and 32.
+const LEAF: usize = 20;
+
+/// Lists at least this long are worth a task of their own.
+const TASK: usize = 512;
+
+/// Three halvings, one round of the axes, should leave at most 7/8 of the elements in a child.
+const ROUND: u32 = 3;
+
+/// Counts of what an evaluation did.
+#[derive(Debug, Default)]
+pub struct Counters {
+    /// Cells visited.
+    pub cells: AtomicU64,
+    /// Cells worked on by the leaf kernel.
+    pub leaves: AtomicU64,
+    /// Elements in these.
+    pub leaf_elements: AtomicU64,
+}
+
+/// What all cells of an evaluation share.
+#[derive(Debug)]
+pub struct Descent<'a> {
+    /// The sources of all operands.
+    pub sources: &'a Sources,
+    /// Which winding numbers of an operand are inside.
+    pub rule: Rule,
+    /// Whether a single operand's boundary is taken as it is, or made the reduced boundary.
+    pub share: bool,
+    /// Set from outside to stop.
+    pub cancel: &'a AtomicBool,
+    /// What was done.
+    pub counters: Counters,
+}
+
+/// What is known of an operand in a cell.
+#[derive(Clone, Debug)]
+enum State {
+    /// One winding number.
+    Constant(i32),
+    /// A subtree whose cell lies in the cell.
+    Tree(Branch),
+    /// The elements that meet the cell.
+    List(List),
+}
+
+type States = Vec<(u32, State)>;
+
+/// How the element count fared in the current round of three halvings.
+#[derive(Clone, Copy)]
+struct Round {
+    depth: u32,
+    start: usize,
+    stuck: bool,
+}
+
+impl Round {
+    fn next(self, total: usize) -> Self {
+        if self.depth + 1 < ROUND {
+            return Self { depth: self.depth + 1, ..self };
+        }
+        Self { depth: 0, start: total, stuck: total * 8 > self.start * 7 }
+    }
+}
+
+impl Descent<'_> {
+    /// The value of an expression over solids, from their root branches.
+    pub fn run(&self, expression: Expression, roots: Vec<Branch>) -> Result<Branch> {
+        let cell = roots.iter().map(|r| r.cell).reduce(|a, b| a.join(&b));
+        let Some(cell) = cell else {
+            let text = "the expression has no operands";
+            return Err(Error::new(ErrorKind::Shape, text));
+        };
+        let mut scratch = Vec::new();
+        let outside = expression.value(|k| self.rule.inside(roots[k as usize].outside), &mut scratch);
+        let states = (0u32..).zip(roots.into_iter().map(State::Tree)).collect();
+        let round = Round { depth: 0, start: usize::MAX / 8, stuck: false };
+        let branch = self.cell(cell, Arc::new(expression), states, round)?;
+        Ok(match branch.constant() {
+            Some(w) => Branch::uniform(branch.cell, w),
+            None => Branch { outside: i32::from(outside), ..branch },
+        })
+    }
+
+    fn cell(
+        &self,
+        cell: Cell,
+        expression: Arc<Expression>,
+        states: States,
+        round: Round,
+    ) -> Result<Branch> {
+        if self.cancel.load(Ordering::Relaxed) {
+            return Err(Error::new(ErrorKind::Cancelled, "stopped"));
+        }
+        self.counters.cells.fetch_add(1, Ordering::Relaxed);
+        let mut states: States = states
+            .into_iter()
+            .map(|(k, s)| (k, s.opened(&cell, self.sources)))
+            .collect();
+        let known = |k: u32| match find(&states, k) {
+            Some(State::Constant(w)) => Some(self.rule.inside(*w)),
+            _ => None,
+        };
+        let residual = if self.share || states.iter().any(|s| matches!(s.1, State::Constant(_))) {
+            expression.residual(known)
+        } else {
+            Residual::Open(expression)
+        };
+        match residual {
+            Residual::Constant(v) => Ok(Branch::uniform(cell, i32::from(v))),
+            Residual::Literal(k, negate) if self.share => {
+                let at = states.iter().position(|s| s.0 == k).unwrap_or(0);
+                Ok(states.swap_remove(at).1.shared(cell, negate, self.sources))
+            }
+            Residual::Literal(..) => Err(Error::internal("a literal where nothing is shared")),
+            Residual::Open(expression) => {
+                let support = expression.operands();
+                states.retain(|s| support.binary_search(&s.0).is_ok());
+                self.open_cell(cell, expression, states, round)
+            }
+        }
+    }
+
+    /// A cell in which the expression still depends on several operands.
+    fn open_cell(
+        &self,
+        cell: Cell,
+        expression: Arc<Expression>,
+        states: States,
+        round: Round,
+    ) -> Result<Branch> {
+        if let Some(inner) = nested(&cell, &states) {
+            let outside = self.value_outside(&expression, &states);
+            let branch = self.cell(inner, expression, states, round)?;
+            return Ok(match branch.constant() {
+                Some(w) if (w > 0) == outside => Branch::uniform(cell, w),
+                _ => Branch { outside: i32::from(outside), ..branch },
+            });
+        }
+        let total: usize = states.iter().map(|s| s.1.len()).sum();
+        let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
+        let cut = cell.cut();
+        match cut {
+            Some(cut) if !(listed && (total <= LEAF || is_stuck(&cell, &states, round, total))) => {
+                self.halves(cell, cut, &expression, states, round.next(total), total)
+            }
+            _ => Ok(self.leaf(cell, &expression, states, total)),
+        }
+    }
+
+    fn value_outside(&self, expression: &Expression, states: &States) -> bool {
+        let outside = |k: u32| match find(states, k) {
+            Some(State::Tree(branch)) => self.rule.inside(branch.outside),
+            _ => false,
+        };
+        expression.value(outside, &mut Vec::new())
+    }
+
+    fn halves(
+        &self,
+        cell: Cell,
+        cut: Cut,
+        expression: &Arc<Expression>,
+        states: States,
+        round: Round,
+        total: usize,
+    ) -> Result<Branch> {
+        let mut below = Vec::with_capacity(states.len());
+        let mut above = Vec::with_capacity(states.len());
+        for (k, state) in states {
+            let (minus, plus) = state.divided(&cell, cut, self.sources);
+            below.push((k, minus));
+            above.push((k, plus));
+        }
+        let half = |plus: bool, states: States| {
+            self.cell(cell.half(cut, plus), Arc::clone(expression), states, round)
+        };
+        let (minus, plus) = if total >= TASK {
+            rayon::join(|| half(false, below), || half(true, above))
+        } else {
+            (half(false, below), half(true, above))
+        };
+        Ok(join::branch(cell, cut, minus?, plus?))
+    }
+
+    fn leaf(&self, cell: Cell, expression: &Expression, states: States, total: usize) -> Branch {
+        self.counters.leaves.fetch_add(1, Ordering::Relaxed);
+        self.counters.leaf_elements.fetch_add(total as u64, Ordering::Relaxed);
+        let lists = states
+            .into_iter()
+            .filter_map(|(k, s)| match s {
+                State::List(list) => Some((k, list)),
+                State::Constant(_) | State::Tree(_) => None,
+            })
+            .collect();
+        let node = leaf::evaluate(&cell, expression, self.rule, lists, self.sources);
+        match node {
+            Node::Leaf(w) => Branch::uniform(cell, w),
+            node => Branch { cell, outside: 0, complement: false, node: Arc::new(node) },
+        }
+    }
+}
+
+/// Whether halving has stopped separating: a round kept nearly all elements, and nearly all of them
+/// reach out of the cell, as around a vertex of many faces.
+fn is_stuck(cell: &Cell, states: &States, round: Round, total: usize) -> bool {
+    let reaching = |s: &(u32, State)| match &s.1 {
+        State::List(list) => list.reaching_out(cell),
+        State::Constant(_) | State::Tree(_) => 0,
+    };
+    round.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
+}
+
+fn find(states: &States, operand: u32) -> Option<&State> {
+    let at = states.binary_search_by_key(&operand, |s| s.0).ok()?;
+    Some(&states[at].1)
+}
+
+/// The smallest cell around all operands' boundaries, if it is smaller than `cell`.
+fn nested(cell: &Cell, states: &States) -> Option<Cell> {
+    let mut inner: Option<Cell> = None;
+    for (_, state) in states {
+        match state {
+            State::Tree(branch) if branch.cell != *cell => {
+                inner = Some(inner.map_or(branch.cell, |c| c.join(&branch.cell)));
+            }
+            _ => return None,
+        }
+    }
+    inner.filter(|c| c != cell)
+}
+
+impl State {
+    fn len(&self) -> usize {
+        match self {
+            Self::Constant(_) => 0,
+            Self::Tree(branch) => match &*branch.node {
+                Node::Deferred(leaf) => leaf.len(),
+                Node::Cut(_) => TASK,
+                Node::Leaf(_) => 0,
+            },
+            Self::List(list) => list.len(),
+        }
+    }
+
+    /// The state with leaves of this cell opened.
+    fn opened(self, cell: &Cell, sources: &Sources) -> Self {
+        match self {
+            Self::Tree(branch) => {
+                if let Some(w) = branch.constant() {
+                    return Self::Constant(w);
+                }
+                match &*branch.node {
+                    Node::Leaf(w) if branch.cell == *cell => Self::Constant(branch.oriented(*w)),
+                    Node::Deferred(leaf) if branch.cell == *cell => {
+                        Self::List(List::open(leaf, &branch, sources))
+                    }
+                    _ => Self::Tree(branch),
+                }
+            }
+            Self::List(list) if list.is_empty() => Self::Constant(list.corner),
+            other => other,
+        }
+    }
+
+    /// The states in the two halves of the cell.
+    fn divided(self, cell: &Cell, cut: Cut, sources: &Sources) -> (Self, Self) {
+        match self {
+            Self::Constant(w) => (Self::Constant(w), Self::Constant(w)),
+            Self::List(list) => {
+                let (minus, plus) = list.divide(cell, cut, sources);
+                (Self::List(minus), Self::List(plus))
+            }
+            Self::Tree(branch) => divide_tree(branch, cell, cut),
+        }
+    }
+
+    /// This operand, perhaps turned inside out, as the result in the cell.
+    fn shared(self, cell: Cell, negate: bool, sources: &Sources) -> Branch {
+        match self {
+            Self::Constant(w) => Branch::uniform(cell, if negate { 1 - w } else { w }),
+            Self::Tree(branch) => {
+                if negate {
+                    branch.complemented()
+                } else {
+                    branch
+                }
+            }
+            Self::List(list) => match list.close(negate, sources) {
+                Node::Leaf(w) => Branch::uniform(cell, w),
+                node => Branch { cell, outside: 0, complement: false, node: Arc::new(node) },
+            },
+        }
+    }
+}
+
+fn divide_tree(branch: Branch, cell: &Cell, cut: Cut) -> (State, State) {
+    if branch.cell == *cell {
+        if let Node::Cut([minus, plus]) = &*branch.node {
+            return (State::Tree(branch.child(minus)), State::Tree(branch.child(plus)));
+        }
+    }
+    let around = State::Constant(branch.outside);
+    if cell.half(cut, false).holds(&branch.cell) {
+        (State::Tree(branch), around)
+    } else {
+        (around, State::Tree(branch))
+    }
+}

@@ -1,0 +1,90 @@
+//! Expressions over solids.
+
+use std::sync::atomic::AtomicBool;
+use std::sync::Arc;
+
+use super::descend::{Counters, Descent};
+use super::expression::{Expression, Term};
+use super::leaf::Rule;
+use super::list::Sources;
+use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::grid::Pitch;
+use crate::mesh::source::Source;
+use crate::tree::solid::Solid;
+
+/// The value of an expression whose operands are these solids.
+///
+/// Always (G1): a point is inside the result where the expression holds for the operands' sides.
+/// If all operands are reduced, so is the result (G2).
+///
+/// # Errors
+/// `PitchMismatch` if the operands live on different lattices, `Cancelled`.
+///
+/// # Source
+/// Naylor, Amanatides, Thibault 1990; `ARCHITECTURE.md`, "One descent".
+pub fn evaluate(expression: Expression, solids: &[Solid], cancel: &AtomicBool) -> Result<(Solid, Counters)> {
+    let pitch = common_pitch(&expression, solids)?;
+    let sources = Sources::new(joint_table(solids));
+    let descent = Descent {
+        sources: &sources,
+        rule: Rule::Positive,
+        share: true,
+        cancel,
+        counters: Counters::default(),
+    };
+    let roots = solids.iter().map(|s| s.root().clone()).collect();
+    let root = descent.run(expression, roots)?;
+    let reduced = solids.iter().all(Solid::is_reduced);
+    let counters = descent.counters;
+    Ok((Solid::new(root, pitch, Arc::clone(sources.table()), reduced), counters))
+}
+
+/// The solid united with itself: the reduced boundary of the points that a rule calls inside.
+///
+/// # Errors
+/// `Cancelled`.
+pub fn normalize(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid> {
+    let sources = Sources::new(Arc::clone(solid.sources()));
+    let descent = Descent {
+        sources: &sources,
+        rule,
+        share: false,
+        cancel,
+        counters: Counters::default(),
+    };
+    let expression = Expression::new(vec![Term::Operand(0)])?;
+    let root = descent.run(expression, vec![solid.root().clone()])?;
+    Ok(Solid::new(root, solid.pitch(), Arc::clone(sources.table()), true))
+}
+
+fn common_pitch(expression: &Expression, solids: &[Solid]) -> Result<Pitch> {
+    let count = solids.len();
+    if let Some(k) = expression.operands().into_iter().find(|k| *k as usize >= count) {
+        let text = format!("the expression names operand {k}, but there are {count} operands");
+        return Err(Error::at(ErrorKind::Shape, vec![u64::from(k)], text));
+    }
+    let pitch = solids.first().map_or(Pitch::DEFAULT, Solid::pitch);
+    if let Some(at) = solids.iter().position(|s| s.pitch() != pitch) {
+        let text = format!(
+            "operand {at} lives on the pitch 10^{}, operand 0 on 10^{}; refine the coarser one",
+            solids[at].pitch().exponent(),
+            pitch.exponent()
+        );
+        return Err(Error::at(ErrorKind::PitchMismatch, vec![at as u64], text));
+    }
+    Ok(pitch)
+}
+
+/// The operands' sources in the order of their first appearance.
+fn joint_table(solids: &[Solid]) -> Arc<[Arc<Source>]> {
+    if let [only] = solids {
+        return Arc::clone(only.sources());
+    }
+    let mut seen = std::collections::HashSet::new();
+    solids
+        .iter()
+        .flat_map(|s| s.sources().iter())
+        .filter(|s| seen.insert(s.id()))
+        .cloned()
+        .collect()
+}

@@ -1,0 +1,249 @@
+//! Boolean expressions over operands, and what is left of them once some operands are known.
+
+use std::sync::Arc;
+
+use crate::error::{Error, ErrorKind, Result};
+
+/// One line of an expression; numbers name earlier lines.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Term {
+    /// An operand, by its number.
+    Operand(u32),
+    /// The complement of a line.
+    Not(u32),
+    /// The intersection of lines.
+    And(Vec<u32>),
+    /// The union of lines.
+    Or(Vec<u32>),
+    /// The symmetric difference of lines.
+    Xor(Vec<u32>),
+}
+
+impl Term {
+    fn arguments(&self) -> &[u32] {
+        match self {
+            Self::Operand(_) => &[],
+            Self::Not(a) => std::slice::from_ref(a),
+            Self::And(list) | Self::Or(list) | Self::Xor(list) => list,
+        }
+    }
+}
+
+/// An expression as topologically ordered lines; the last one is its value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Expression {
+    terms: Vec<Term>,
+}
+
+/// What is left of an expression.
+#[derive(Clone, Debug)]
+pub enum Residual {
+    /// Inside or outside, whatever the unknown operands are.
+    Constant(bool),
+    /// One operand, or its complement.
+    Literal(u32, bool),
+    /// More than one operand matters.
+    Open(Arc<Expression>),
+}
+
+/// A simplified line: a value, or a line of the new expression and whether to negate it.
+#[derive(Clone, Copy)]
+enum Known {
+    Value(bool),
+    Line(u32, bool),
+}
+
+impl Expression {
+    /// An expression; every line may name earlier lines only.
+    pub fn new(terms: Vec<Term>) -> Result<Self> {
+        for (i, term) in terms.iter().enumerate() {
+            if term.arguments().iter().any(|a| *a as usize >= i) {
+                let text = format!("line {i} of the expression names a line that is not before it");
+                return Err(Error::at(ErrorKind::Shape, vec![i as u64], text));
+            }
+        }
+        if terms.is_empty() {
+            return Err(Error::new(ErrorKind::Shape, "the expression has no lines"));
+        }
+        Ok(Self { terms })
+    }
+
+    /// The operands named, ascending.
+    pub fn operands(&self) -> Vec<u32> {
+        let mut list: Vec<u32> = self
+            .terms
+            .iter()
+            .filter_map(|t| match t {
+                Term::Operand(k) => Some(*k),
+                _ => None,
+            })
+            .collect();
+        list.sort_unstable();
+        list.dedup();
+        list
+    }
+
+    /// The value for known operands.
+    pub fn value(&self, operand: impl Fn(u32) -> bool, scratch: &mut Vec<bool>) -> bool {
+        scratch.clear();
+        for term in &self.terms {
+            let at = |i: &u32| scratch[*i as usize];
+            let value = match term {
+                Term::Operand(k) => operand(*k),
+                Term::Not(a) => !at(a),
+                Term::And(list) => list.iter().all(at),
+                Term::Or(list) => list.iter().any(at),
+                Term::Xor(list) => list.iter().filter(|i| at(i)).count() % 2 == 1,
+            };
+            scratch.push(value);
+        }
+        scratch.last().copied().unwrap_or(false)
+    }
+
+    /// Puts in what is known and folds constants.
+    pub fn residual(&self, known: impl Fn(u32) -> Option<bool>) -> Residual {
+        let mut folded = Vec::with_capacity(self.terms.len());
+        let mut terms = Vec::new();
+        for term in &self.terms {
+            let line = fold(term, &folded, &known, &mut terms);
+            folded.push(line);
+        }
+        match folded.last() {
+            None => Residual::Constant(false),
+            Some(Known::Value(v)) => Residual::Constant(*v),
+            Some(Known::Line(line, negate)) => close(terms, *line, *negate),
+        }
+    }
+}
+
+fn fold(
+    term: &Term,
+    folded: &[Known],
+    known: &impl Fn(u32) -> Option<bool>,
+    terms: &mut Vec<Term>,
+) -> Known {
+    match term {
+        Term::Operand(k) => match known(*k) {
+            Some(v) => Known::Value(v),
+            None => append(terms, Term::Operand(*k)),
+        },
+        Term::Not(a) => match folded[*a as usize] {
+            Known::Value(v) => Known::Value(!v),
+            Known::Line(line, negate) => Known::Line(line, !negate),
+        },
+        Term::And(list) => fold_list(list, folded, false, terms),
+        Term::Or(list) => fold_list(list, folded, true, terms),
+        Term::Xor(list) => fold_xor(list, folded, terms),
+    }
+}
+
+fn append(terms: &mut Vec<Term>, term: Term) -> Known {
+    terms.push(term);
+    Known::Line(terms.len() as u32 - 1, false)
+}
+
+/// Lists up to this length are searched for equal and opposite lines; longer ones would cost n².
+const SHORT: usize = 64;
+
+/// Folds a union (`absorbing` is true) or an intersection (`absorbing` is false).
+fn fold_list(list: &[u32], folded: &[Known], absorbing: bool, terms: &mut Vec<Term>) -> Known {
+    let short = list.len() <= SHORT;
+    let mut open: Vec<(u32, bool)> = Vec::new();
+    for i in list {
+        match folded[*i as usize] {
+            Known::Value(v) if v == absorbing => return Known::Value(absorbing),
+            Known::Value(_) => {}
+            Known::Line(line, negate) => {
+                if short && open.contains(&(line, !negate)) {
+                    return Known::Value(absorbing);
+                }
+                if !(short && open.contains(&(line, negate))) {
+                    open.push((line, negate));
+                }
+            }
+        }
+    }
+    match open.as_slice() {
+        [] => Known::Value(!absorbing),
+        [(line, negate)] => Known::Line(*line, *negate),
+        _ => {
+            let lines = positive(&open, terms);
+            append(terms, if absorbing { Term::Or(lines) } else { Term::And(lines) })
+        }
+    }
+}
+
+fn fold_xor(list: &[u32], folded: &[Known], terms: &mut Vec<Term>) -> Known {
+    let mut parity = false;
+    let mut open: Vec<u32> = Vec::new();
+    for i in list {
+        match folded[*i as usize] {
+            Known::Value(v) => parity ^= v,
+            Known::Line(line, negate) => {
+                parity ^= negate;
+                if let Some(twin) = open.iter().position(|l| *l == line) {
+                    open.remove(twin);
+                } else {
+                    open.push(line);
+                }
+            }
+        }
+    }
+    match open.as_slice() {
+        [] => Known::Value(parity),
+        [line] => Known::Line(*line, parity),
+        _ => match append(terms, Term::Xor(open)) {
+            Known::Line(line, _) => Known::Line(line, parity),
+            value @ Known::Value(_) => value,
+        },
+    }
+}
+
+fn positive(open: &[(u32, bool)], terms: &mut Vec<Term>) -> Vec<u32> {
+    open.iter()
+        .map(|(line, negate)| {
+            if *negate {
+                terms.push(Term::Not(*line));
+                terms.len() as u32 - 1
+            } else {
+                *line
+            }
+        })
+        .collect()
+}
+
+/// Keeps the lines the value depends on.
+fn close(mut terms: Vec<Term>, line: u32, negate: bool) -> Residual {
+    if let Term::Operand(k) = terms[line as usize] {
+        return Residual::Literal(k, negate);
+    }
+    terms.truncate(line as usize + 1);
+    if negate {
+        terms.push(Term::Not(line));
+    }
+    let mut needed = vec![false; terms.len()];
+    needed[terms.len() - 1] = true;
+    for i in (0..terms.len()).rev().filter(|i| *i < terms.len()) {
+        if needed[i] {
+            terms[i].arguments().iter().for_each(|a| needed[*a as usize] = true);
+        }
+    }
+    let mut image = vec![0u32; terms.len()];
+    let mut kept = Vec::new();
+    for (i, term) in terms.into_iter().enumerate().filter(|(i, _)| needed[*i]) {
+        image[i] = kept.len() as u32;
+        kept.push(renumbered(term, &image));
+    }
+    Residual::Open(Arc::new(Expression { terms: kept }))
+}
+
+fn renumbered(term: Term, image: &[u32]) -> Term {
+    let list = |l: Vec<u32>| l.into_iter().map(|i| image[i as usize]).collect();
+    match term {
+        Term::Operand(k) => Term::Operand(k),
+        Term::Not(a) => Term::Not(image[a as usize]),
+        Term::And(l) => Term::And(list(l)),
+        Term::Or(l) => Term::Or(list(l)),
+        Term::Xor(l) => Term::Xor(list(l)),
+    }
+}

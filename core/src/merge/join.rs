@@ -1,0 +1,132 @@
+//! Putting the two halves of a cell together again.
+
+use std::sync::Arc;
+
+use super::leaf::is_whole;
+use crate::geometry::cell::{Cell, Cut};
+use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::mesh::source::Source;
+use crate::tree::node::{Branch, Deferred, Group, Node};
+
+/// Two deferred leaves that together list at most this many faces become one.
+///
+/// Half the size at which leaves are worked on, so that a joined leaf is not split at once again.
+pub const JOINED: usize = 16;
+
+/// The branch for a cell from the branches for its halves.
+///
+/// No boundary lies in a dyadic cut, so that next to a uniform half the other one is uniform
+/// along the cut: it then stands for the whole cell (path compression).
+pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch) -> Branch {
+    match (minus.constant(), plus.constant()) {
+        (Some(w), Some(v)) if (w > 0) == (v > 0) => Branch::uniform(cell, w),
+        (Some(w), None) => Branch { outside: w, ..plus },
+        (None, Some(w)) => Branch { outside: w, ..minus },
+        _ => {
+            let outside = minus.outside;
+            let node = joined(&cell, cut, &minus, &plus).unwrap_or(Node::Cut([minus, plus]));
+            Branch { cell, outside, complement: false, node: Arc::new(node) }
+        }
+    }
+}
+
+/// One deferred leaf for both halves, if they are small and hold whole faces only.
+fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch) -> Option<Node> {
+    let (a, b) = (small_leaf(minus)?, small_leaf(plus)?);
+    if a.len() + b.len() > 2 * JOINED {
+        return None;
+    }
+    let mut faces = listed(minus, a);
+    for element in listed(plus, b) {
+        if !faces.iter().any(|f| f.same_as(&element)) {
+            faces.push(element);
+        }
+    }
+    if faces.len() > JOINED {
+        return None;
+    }
+    let halves = [(minus, a, cell.half(cut, false)), (plus, b, cell.half(cut, true))];
+    if !faces.iter().all(|f| f.is_whole_in(cell, &halves)) {
+        return None;
+    }
+    faces.sort_by_key(|f| (f.source.id(), f.flip, f.face));
+    let corner = if minus.cell.low() == cell.low() {
+        minus.oriented(a.corner)
+    } else {
+        minus.outside
+    };
+    Some(Node::Deferred(Deferred { groups: grouped(faces), parts: Vec::new(), corner }))
+}
+
+fn small_leaf(branch: &Branch) -> Option<&Deferred> {
+    match &*branch.node {
+        Node::Deferred(leaf) if leaf.parts.is_empty() && leaf.len() <= JOINED => Some(leaf),
+        _ => None,
+    }
+}
+
+struct Listed {
+    source: Arc<Source>,
+    flip: bool,
+    face: u32,
+}
+
+fn listed(branch: &Branch, leaf: &Deferred) -> Vec<Listed> {
+    let entry = |g: &Group, face: &u32| Listed {
+        source: Arc::clone(&g.source),
+        flip: g.flip ^ branch.complement,
+        face: *face,
+    };
+    leaf.groups
+        .iter()
+        .flat_map(|g| g.faces.iter().map(move |f| entry(g, f)))
+        .collect()
+}
+
+impl Listed {
+    fn same_as(&self, other: &Self) -> bool {
+        self.face == other.face && self.flip == other.flip && Arc::ptr_eq(&self.source, &other.source)
+    }
+
+    fn is_in(&self, branch: &Branch, leaf: &Deferred) -> bool {
+        leaf.groups.iter().any(|g| {
+            g.flip ^ branch.complement == self.flip
+                && Arc::ptr_eq(&g.source, &self.source)
+                && g.faces.binary_search(&self.face).is_ok()
+        })
+    }
+
+    /// Whether what the two leaves hold of the face is all of it inside the cell.
+    fn is_whole_in(&self, cell: &Cell, halves: &[(&Branch, &Deferred, Cell); 2]) -> bool {
+        let (low, high) = self.source.face_box(self.face);
+        let holders = halves.iter().filter(|(branch, leaf, _)| self.is_in(branch, leaf));
+        let mut full = 0;
+        let mut edges = Vec::new();
+        for (branch, _, half) in holders.clone() {
+            if branch.cell.holds_box(&low, &high) {
+                return true;
+            }
+            full += usize::from(branch.cell == *half);
+        }
+        if full == 2 {
+            return true;
+        }
+        for (branch, _, _) in holders {
+            if let Some(polygon) = self.source.clip(self.face, &branch.cell) {
+                edges.extend(OutlineEdge::all_of(&polygon));
+            }
+        }
+        edges.is_empty() || is_whole(&cancel(edges), &self.source, self.face, cell)
+    }
+}
+
+fn grouped(faces: Vec<Listed>) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    for f in faces {
+        match groups.last_mut() {
+            Some(g) if Arc::ptr_eq(&g.source, &f.source) && g.flip == f.flip => g.faces.push(f.face),
+            _ => groups.push(Group { source: f.source, flip: f.flip, faces: vec![f.face] }),
+        }
+    }
+    groups
+}

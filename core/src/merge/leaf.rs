@@ -1,0 +1,276 @@
+//! The leaf kernel: what an expression leaves of its operands' boundaries in a small cell.
+//!
+//! Each operand gets its local autopartition; each operand's fragments are pushed through the
+//! others' trees, and a piece stays if the expression differs on its two sides. This is the dual of
+//! merging the trees (which `merge::merge` does, and tests compare): it labels the same regions,
+//! but cuts only fragments, never regions.
+
+use std::sync::Arc;
+
+use super::expression::Expression;
+use super::list::{List, Sources};
+use super::local_tree::{LocalTree, Weighted};
+use super::overlay::{disjoint, Fragment};
+use crate::geometry::cell::Cell;
+use crate::geometry::line::LineKey;
+use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::geometry::plane::Plane;
+use crate::geometry::polygon::Polygon;
+use crate::mesh::source::{Shape, Source};
+use crate::tree::node::{Deferred, Group, Node, Part, PartElement};
+
+/// Which winding numbers count as inside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Rule {
+    /// w > 0.
+    Positive,
+    /// w ≠ 0.
+    Nonzero,
+    /// w odd.
+    EvenOdd,
+}
+
+impl Rule {
+    /// Whether a region with this winding number is inside.
+    pub fn inside(self, w: i32) -> bool {
+        match self {
+            Self::Positive => w > 0,
+            Self::Nonzero => w != 0,
+            Self::EvenOdd => w % 2 != 0,
+        }
+    }
+}
+
+/// One operand inside the cell.
+struct Operand {
+    number: u32,
+    corner: i32,
+    fragments: Vec<Fragment>,
+    tree: LocalTree,
+    simple: bool,
+}
+
+/// A piece of a fragment, with what is known of the operands on its two sides.
+struct Piece {
+    polygon: Polygon,
+    minus: Vec<bool>,
+    plus: Vec<bool>,
+}
+
+/// What stays of one fragment with one orientation.
+struct Kept {
+    face: (u32, u32),
+    flip: bool,
+    intact: bool,
+    polygons: Vec<Polygon>,
+}
+
+/// Evaluates an expression in a cell: the node that describes the result there.
+pub fn evaluate(
+    cell: &Cell,
+    expression: &Expression,
+    rule: Rule,
+    lists: Vec<(u32, List)>,
+    sources: &Sources,
+) -> Node {
+    let operands: Vec<Operand> = lists
+        .into_iter()
+        .map(|(number, list)| Operand::new(number, list, cell, sources))
+        .collect();
+    let place = |number: u32| operands.iter().position(|o| o.number == number).unwrap_or(0);
+    let scratch = &mut Vec::new();
+    let mut value = |labels: &[bool]| expression.value(|k| labels[place(k)], scratch);
+    let at_corner: Vec<bool> = operands.iter().map(|o| rule.inside(o.corner)).collect();
+    let corner = i32::from(value(&at_corner));
+    let mut kept = Vec::new();
+    for (i, operand) in operands.iter().enumerate() {
+        for fragment in &operand.fragments {
+            let pieces = sides(fragment, i, &operands, rule);
+            kept.extend(keep(fragment, i, pieces, &mut value));
+        }
+    }
+    assemble(kept, corner, cell, sources)
+}
+
+impl Operand {
+    fn new(number: u32, list: List, cell: &Cell, sources: &Sources) -> Self {
+        let corner = list.corner;
+        let fragments = disjoint(fragments(&list, cell, sources));
+        let weighted = fragments
+            .iter()
+            .map(|f| Weighted { polygon: f.polygon.clone(), weight: f.weight })
+            .collect();
+        let tree = if fragments.is_empty() {
+            LocalTree::uniform(corner)
+        } else {
+            LocalTree::build(weighted, &cell.corner(), corner)
+        };
+        let simple = fragments.iter().all(|f| f.weight.abs() == 1)
+            && tree.labels().iter().all(|w| (0..=1).contains(w));
+        Self { number, corner, fragments, tree, simple }
+    }
+}
+
+/// The fragments of a list's elements, clipped to the cell.
+fn fragments(list: &List, cell: &Cell, sources: &Sources) -> Vec<Fragment> {
+    let mut found = Vec::with_capacity(list.len());
+    for r in &list.records {
+        if let Some(polygon) = sources.get(r.slot()).clip(r.face, cell) {
+            let weight = if r.flip() { -1 } else { 1 };
+            let face = (r.slot() as u32, r.face);
+            found.push(Fragment { polygon, weight, face, intact: true });
+        }
+    }
+    for p in &list.parts {
+        let weight = if p.element.flip { -1 } else { 1 };
+        let face = (sources.slot(&p.element.part.source) as u32, p.element.part.face);
+        let clipped = p.pieces.iter().filter_map(|q| q.clone().clipped(cell));
+        found.extend(clipped.map(|polygon| Fragment { polygon, weight, face, intact: false }));
+    }
+    found
+}
+
+/// Cuts a fragment into pieces that have one label of each operand on either side.
+fn sides(fragment: &Fragment, own: usize, operands: &[Operand], rule: Rule) -> Vec<Piece> {
+    let first = Piece {
+        polygon: fragment.polygon.clone(),
+        minus: Vec::with_capacity(operands.len()),
+        plus: Vec::with_capacity(operands.len()),
+    };
+    let mut pieces = vec![first];
+    for (j, operand) in operands.iter().enumerate() {
+        if j == own && operand.simple {
+            let (minus, plus) = if fragment.weight > 0 { (1, 0) } else { (0, 1) };
+            for piece in &mut pieces {
+                piece.minus.push(rule.inside(minus));
+                piece.plus.push(rule.inside(plus));
+            }
+        } else {
+            pieces = pieces.into_iter().flat_map(|p| p.pushed(&operand.tree, rule)).collect();
+        }
+    }
+    pieces
+}
+
+impl Piece {
+    fn pushed(self, tree: &LocalTree, rule: Rule) -> Vec<Self> {
+        let (minus, plus) = (self.minus, self.plus);
+        let with = |labels: &Vec<bool>, w: i32| {
+            let mut labels = labels.clone();
+            labels.push(rule.inside(w));
+            labels
+        };
+        tree.sides(self.polygon)
+            .into_iter()
+            .map(|s| Self {
+                polygon: s.polygon,
+                minus: with(&minus, s.minus),
+                plus: with(&plus, s.plus),
+            })
+            .collect()
+    }
+
+    /// Whether this operand is the first whose label differs on the two sides: it owns the piece.
+    fn is_owned_by(&self, operand: usize) -> bool {
+        let differs = |k: usize| self.minus[k] != self.plus[k];
+        differs(operand) && !(0..operand).any(differs)
+    }
+}
+
+/// The pieces across which the expression changes, by orientation.
+fn keep(
+    fragment: &Fragment,
+    own: usize,
+    pieces: Vec<Piece>,
+    value: &mut impl FnMut(&[bool]) -> bool,
+) -> Vec<Kept> {
+    let total = pieces.len();
+    let mut same = Vec::new();
+    let mut turned = Vec::new();
+    for piece in pieces.into_iter().filter(|p| p.is_owned_by(own)) {
+        match (value(&piece.minus), value(&piece.plus)) {
+            (true, false) => same.push(piece.polygon),
+            (false, true) => turned.push(piece.polygon),
+            _ => {}
+        }
+    }
+    [(same, false), (turned, true)]
+        .into_iter()
+        .filter(|(polygons, _)| !polygons.is_empty())
+        .map(|(polygons, flip)| Kept {
+            face: fragment.face,
+            flip,
+            intact: fragment.intact && polygons.len() == total,
+            polygons,
+        })
+        .collect()
+}
+
+/// Joins the pieces of each face again and lists them.
+fn assemble(mut kept: Vec<Kept>, corner: i32, cell: &Cell, sources: &Sources) -> Node {
+    if kept.is_empty() {
+        return Node::Leaf(corner);
+    }
+    kept.sort_by_key(|k| (k.face.0, k.flip, k.face.1));
+    let mut leaf = Deferred { corner, ..Deferred::default() };
+    for run in kept.chunk_by(|a, b| a.face == b.face && a.flip == b.flip) {
+        let (slot, face) = run[0].face;
+        let source = sources.get(slot as usize);
+        if run.len() == 1 && run[0].intact {
+            list_whole(&mut leaf.groups, source, face, run[0].flip);
+            continue;
+        }
+        let edges = run
+            .iter()
+            .flat_map(|k| &k.polygons)
+            .flat_map(OutlineEdge::all_of)
+            .collect();
+        let edges = cancel(edges);
+        if is_whole(&edges, source, face, cell) {
+            list_whole(&mut leaf.groups, source, face, run[0].flip);
+        } else {
+            let part = Part { source: Arc::clone(source), face, home: *cell, edges };
+            let part = Arc::new(part);
+            leaf.parts.push(PartElement { part, flip: run[0].flip });
+        }
+    }
+    Node::Deferred(leaf)
+}
+
+fn list_whole(groups: &mut Vec<Group>, source: &Arc<Source>, face: u32, flip: bool) {
+    match groups.last_mut() {
+        Some(g) if Arc::ptr_eq(&g.source, source) && g.flip == flip => g.faces.push(face),
+        _ => groups.push(Group { source: Arc::clone(source), flip, faces: vec![face] }),
+    }
+}
+
+/// Whether an outline runs only on the face's own edges and the cell's border: then it is the
+/// border of the whole face inside the cell, for a part of a connected set with no border of its
+/// own is all of it.
+pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: u32, cell: &Cell) -> bool {
+    let mut own: Vec<LineKey> = match source.shape() {
+        Shape::Mesh(mesh) => {
+            let c = mesh.corners(face);
+            (0..3).map(|i| LineKey::of_edge(&c[i], &c[(i + 1) % 3])).collect()
+        }
+        Shape::HalfSpace(_) => Vec::new(),
+    };
+    if edges.iter().all(|e| own.contains(&e.line)) {
+        return !edges.is_empty();
+    }
+    own.extend(border_lines(&source.plane(face), cell));
+    edges.iter().all(|e| own.contains(&e.line))
+}
+
+/// The lines in which a plane meets the planes of a cell's walls.
+fn border_lines(plane: &Plane, cell: &Cell) -> Vec<LineKey> {
+    let crossed = |wall: &Plane| {
+        let axis = wall.main_axis();
+        (0..3).any(|i| i != axis && plane.normal()[i] != 0)
+    };
+    cell.walls()
+        .iter()
+        .filter(|w| crossed(w))
+        .map(|w| LineKey::of_planes(plane, w))
+        .collect()
+}

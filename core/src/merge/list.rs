@@ -1,0 +1,356 @@
+//! The list of elements that meet a cell, and its division at the cell's cut.
+
+use std::sync::Arc;
+
+use crate::geometry::cell::{Cell, Cut};
+use crate::geometry::crossing::{plane_change, polygon_change, triangle_change, Segment};
+use crate::geometry::plane::Lattice;
+use crate::geometry::polygon::Polygon;
+use crate::mesh::source::{Shape, Source};
+use crate::tree::node::{Branch, Deferred, Group, Node, PartElement};
+
+/// Coordinates relative to a cell, coarse enough for 32 bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    origin: Lattice,
+    shift: u32,
+}
+
+impl Frame {
+    fn of(cell: &Cell) -> Self {
+        let largest = cell.size().into_iter().max().unwrap_or(0);
+        Self {
+            origin: *cell.low(),
+            shift: u32::from(largest).saturating_sub(30),
+        }
+    }
+
+    fn index(&self, axis: usize, k: i64) -> i32 {
+        let index = (k - self.origin[axis]) >> self.shift;
+        index.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
+    }
+
+    fn resolves(&self, cell: &Cell) -> bool {
+        cell.size().into_iter().all(|s| u32::from(s) > self.shift)
+    }
+}
+
+/// A whole face with conservative bounds.
+#[derive(Clone, Copy, Debug)]
+pub struct Record {
+    low: [i32; 3],
+    high: [i32; 3],
+    /// The face.
+    pub face: u32,
+    slot_and_flip: u32,
+}
+
+const FLIP: u32 = 1 << 31;
+
+impl Record {
+    /// The source's place in the evaluation's table.
+    pub fn slot(&self) -> usize {
+        (self.slot_and_flip & !FLIP) as usize
+    }
+
+    /// Whether inside and outside are exchanged.
+    pub fn flip(&self) -> bool {
+        self.slot_and_flip & FLIP != 0
+    }
+}
+
+/// A part with its convex pieces.
+#[derive(Clone, Debug)]
+pub struct PartRecord {
+    low: [i32; 3],
+    high: [i32; 3],
+    /// The part.
+    pub element: PartElement,
+    /// Its convex pieces.
+    pub pieces: Arc<Vec<Polygon>>,
+}
+
+/// The elements of one operand that meet a cell, and its winding number at the low corner.
+#[derive(Clone, Debug)]
+pub struct List {
+    frame: Frame,
+    /// Whole faces.
+    pub records: Vec<Record>,
+    /// Parts.
+    pub parts: Vec<PartRecord>,
+    /// The winding number at the cell's low corner.
+    pub corner: i32,
+}
+
+/// The sources of an evaluation, in the order of the expression.
+#[derive(Debug)]
+pub struct Sources {
+    table: Arc<[Arc<Source>]>,
+    by_id: std::collections::HashMap<u64, u32>,
+}
+
+impl Sources {
+    /// A table; the first place of a source counts.
+    pub fn new(table: Arc<[Arc<Source>]>) -> Self {
+        let mut by_id = std::collections::HashMap::with_capacity(table.len());
+        for (slot, source) in (0u32..).zip(table.iter()) {
+            by_id.entry(source.id()).or_insert(slot);
+        }
+        Self { table, by_id }
+    }
+
+    /// The table.
+    pub fn table(&self) -> &Arc<[Arc<Source>]> {
+        &self.table
+    }
+
+    /// The source in a slot.
+    pub fn get(&self, slot: usize) -> &Arc<Source> {
+        &self.table[slot]
+    }
+
+    /// The slot of a source.
+    pub fn slot(&self, source: &Source) -> usize {
+        self.by_id.get(&source.id()).map_or(usize::MAX, |s| *s as usize)
+    }
+}
+
+impl List {
+    /// Opens a deferred leaf whose branch covers `cell`.
+    pub fn open(leaf: &Deferred, branch: &Branch, sources: &Sources) -> Self {
+        let frame = Frame::of(&branch.cell);
+        let mut list = Self {
+            frame,
+            records: Vec::with_capacity(leaf.groups.iter().map(|g| g.faces.len()).sum()),
+            parts: Vec::with_capacity(leaf.parts.len()),
+            corner: branch.oriented(leaf.corner),
+        };
+        for group in &leaf.groups {
+            let slot = sources.slot(&group.source) as u32;
+            let flip = if group.flip ^ branch.complement { FLIP } else { 0 };
+            let record = |face: &u32| frame.record(&group.source, *face, slot | flip);
+            list.records.extend(group.faces.iter().map(record));
+        }
+        for element in &leaf.parts {
+            let flip = element.flip ^ branch.complement;
+            let pieces = Arc::new(element.part.pieces());
+            let part = Arc::clone(&element.part);
+            list.parts.push(frame.part_record(PartElement { part, flip }, pieces));
+        }
+        list
+    }
+
+    /// The number of elements.
+    pub fn len(&self) -> usize {
+        self.records.len() + self.parts.len()
+    }
+
+    /// Whether no element is listed.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The lists of the two halves of `cell`.
+    pub fn divide(mut self, cell: &Cell, cut: Cut, sources: &Sources) -> (Self, Self) {
+        if !self.frame.resolves(cell) {
+            self.reframe(cell, sources);
+        }
+        let plus_corner = self.corner + self.change_along_edge(cell, cut, sources);
+        let at = self.frame.index(cut.axis, cut.at);
+        let halves = [cell.half(cut, false), cell.half(cut, true)];
+        let mut plus = Self {
+            frame: self.frame,
+            records: Vec::with_capacity(self.records.len() / 2 + 8),
+            parts: Vec::new(),
+            corner: plus_corner,
+        };
+        let axis = cut.axis;
+        let (frame, records) = (self.frame, std::mem::take(&mut self.records));
+        let mut minus = Vec::with_capacity(records.len() / 2 + 8);
+        for r in records {
+            let (below, above) = (r.low[axis] < at, r.high[axis] >= at);
+            let large = below && above && frame.exceeds(&r, cell);
+            if below && !(large && misses(&r, &halves[0], sources)) {
+                minus.push(r);
+            }
+            if above && !(large && misses(&r, &halves[1], sources)) {
+                plus.records.push(r);
+            }
+        }
+        self.records = minus;
+        plus.parts.extend(self.parts.iter().filter(|p| p.high[axis] >= at).cloned());
+        self.parts.retain(|p| p.low[axis] < at);
+        (self, plus)
+    }
+
+    /// How many elements reach across the cell's border: these no halving can separate soon.
+    pub fn reaching_out(&self, cell: &Cell) -> usize {
+        let high = cell.high();
+        let low = [0, 1, 2].map(|i| self.frame.index(i, cell.low()[i]));
+        let high = [0, 1, 2].map(|i| self.frame.index(i, high[i]));
+        let out = |a: &[i32; 3], b: &[i32; 3]| (0..3).any(|i| a[i] < low[i] || b[i] > high[i]);
+        self.records.iter().filter(|r| out(&r.low, &r.high)).count()
+            + self.parts.iter().filter(|p| out(&p.low, &p.high)).count()
+    }
+
+    fn reframe(&mut self, cell: &Cell, sources: &Sources) {
+        let frame = Frame::of(cell);
+        for r in &mut self.records {
+            *r = frame.record(sources.get(r.slot()), r.face, r.slot_and_flip);
+        }
+        for p in &mut self.parts {
+            *p = frame.part_record(p.element.clone(), Arc::clone(&p.pieces));
+        }
+        self.frame = frame;
+    }
+
+    /// The change of the winding number from the cell's low corner to the plus half's.
+    fn change_along_edge(&self, cell: &Cell, cut: Cut, sources: &Sources) -> i32 {
+        let from = cell.corner();
+        let segment = Segment { from, axis: cut.axis, to: 2 * cut.at - 1 };
+        let low = *cell.low();
+        let at = [0, 1, 2].map(|i| self.frame.index(i, low[i]));
+        let end = self.frame.index(cut.axis, cut.at);
+        let near = |low: &[i32; 3], high: &[i32; 3]| {
+            (0..3).all(|i| high[i] >= at[i] && low[i] < if i == cut.axis { end } else { at[i] })
+        };
+        let mut change = 0;
+        for r in self.records.iter().filter(|r| near(&r.low, &r.high)) {
+            let across = match sources.get(r.slot()).shape() {
+                Shape::Mesh(mesh) => triangle_change(&mesh.corners(r.face), &segment),
+                Shape::HalfSpace(plane) => plane_change(plane, &segment),
+            };
+            change += if r.flip() { -across } else { across };
+        }
+        let widened = |p: &&PartRecord| (0..3).all(|i| {
+            p.high[i] >= at[i] - 1 && p.low[i] <= if i == cut.axis { end } else { at[i] }
+        });
+        for p in self.parts.iter().filter(widened) {
+            let across: i32 = p.pieces.iter().map(|q| polygon_change(q, &segment)).sum();
+            change += if p.element.flip { -across } else { across };
+        }
+        change
+    }
+
+    /// The list as a deferred leaf, perhaps turned inside out.
+    pub fn close(self, complement: bool, sources: &Sources) -> Node {
+        let corner = if complement { 1 - self.corner } else { self.corner };
+        if self.is_empty() {
+            return Node::Leaf(corner);
+        }
+        let mut groups: Vec<Group> = Vec::new();
+        let mut open = None;
+        for r in &self.records {
+            if open != Some(r.slot_and_flip) {
+                open = Some(r.slot_and_flip);
+                let source = Arc::clone(sources.get(r.slot()));
+                groups.push(Group { source, flip: r.flip() ^ complement, faces: Vec::new() });
+            }
+            if let Some(group) = groups.last_mut() {
+                group.faces.push(r.face);
+            }
+        }
+        let turned = |p: PartRecord| PartElement { flip: p.element.flip ^ complement, ..p.element };
+        let parts = self.parts.into_iter().map(turned).collect();
+        Node::Deferred(Deferred { groups, parts, corner })
+    }
+}
+
+impl Frame {
+    fn record(&self, source: &Source, face: u32, slot_and_flip: u32) -> Record {
+        let (low, high) = source.face_box(face);
+        Record {
+            low: [0, 1, 2].map(|i| self.index(i, low[i])),
+            high: [0, 1, 2].map(|i| self.index(i, high[i])),
+            face,
+            slot_and_flip,
+        }
+    }
+
+    fn part_record(&self, element: PartElement, pieces: Arc<Vec<Polygon>>) -> PartRecord {
+        let mut low = [i32::MAX; 3];
+        let mut high = [i32::MIN; 3];
+        for piece in pieces.iter() {
+            let (a, b) = piece.bounds();
+            for i in 0..3 {
+                low[i] = low[i].min(self.index(i, a[i].floor() as i64));
+                high[i] = high[i].max(self.index(i, b[i].ceil() as i64));
+            }
+        }
+        PartRecord { low, high, element, pieces }
+    }
+
+    /// Whether a record is so large that its plane may miss a cell its bounds meet.
+    fn exceeds(&self, r: &Record, cell: &Cell) -> bool {
+        let size = cell.size();
+        (0..3).any(|i| {
+            let extent = i64::from(r.high[i]) - i64::from(r.low[i]);
+            extent << self.shift >= 1i64 << size[i]
+        })
+    }
+}
+
+/// Whether a face certainly misses a closed cell; errs on no.
+///
+/// Separating axes: the face's normal, and each of its edges projected along each axis.
+fn misses(r: &Record, cell: &Cell, sources: &Sources) -> bool {
+    let source = sources.get(r.slot());
+    match source.shape() {
+        Shape::HalfSpace(plane) => {
+            let n = plane.approx();
+            let (center, half) = middle(cell, &[0; 3]);
+            let value = n[0] * center[0] + n[1] * center[1] + n[2] * center[2] + n[3];
+            let reach: f64 = (0..3).map(|i| n[i].abs() * half[i]).sum();
+            let size: f64 = (0..3).map(|i| n[i].abs() * center[i].abs()).sum::<f64>() + n[3].abs();
+            value.abs() > reach + (size + reach) * SLACK
+        }
+        Shape::Mesh(mesh) => {
+            let corners = mesh.corners(r.face);
+            let (center, half) = middle(cell, &corners[0]);
+            let local = corners.map(|c| [0, 1, 2].map(|i| (c[i] - corners[0][i]) as f64 - center[i]));
+            separated(&local, &half)
+        }
+    }
+}
+
+/// Relative slack of the separating axis tests in doubles: far above their rounding.
+const SLACK: f64 = 1e-13;
+
+/// Center relative to `origin`, and half extents, of a closed cell.
+fn middle(cell: &Cell, origin: &Lattice) -> ([f64; 3], [f64; 3]) {
+    let (low, high) = (cell.low(), cell.high());
+    let center = [0, 1, 2].map(|i| ((low[i] - origin[i]) as f64 + (high[i] - origin[i]) as f64) / 2.0);
+    (center, [0, 1, 2].map(|i| (high[i] - low[i]) as f64 / 2.0 + 0.5))
+}
+
+fn separated(p: &[[f64; 3]; 3], half: &[f64; 3]) -> bool {
+    let e = [0, 1, 2].map(|i| {
+        let (a, b) = (p[i], p[(i + 1) % 3]);
+        [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
+    });
+    let cross = |a: &[f64; 3], b: &[f64; 3]| {
+        [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ]
+    };
+    let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let across = e.iter().flat_map(|edge| unit.iter().map(|u| cross(u, edge)));
+    std::iter::once(cross(&e[0], &e[1]))
+        .chain(across)
+        .any(|axis| apart(p, half, &axis))
+}
+
+fn apart(p: &[[f64; 3]; 3], half: &[f64; 3], axis: &[f64; 3]) -> bool {
+    let value = |c: &[f64; 3]| c[0] * axis[0] + c[1] * axis[1] + c[2] * axis[2];
+    let values = [value(&p[0]), value(&p[1]), value(&p[2])];
+    let low = values[0].min(values[1]).min(values[2]);
+    let high = values[0].max(values[1]).max(values[2]);
+    let reach: f64 = (0..3).map(|i| half[i] * axis[i].abs()).sum();
+    let size: f64 = p
+        .iter()
+        .map(|c| (0..3).map(|i| (c[i] * axis[i]).abs()).sum::<f64>())
+        .fold(reach, f64::max);
+    low > reach + size * SLACK || high < -reach - size * SLACK
+}

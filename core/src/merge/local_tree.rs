@@ -1,0 +1,269 @@
+//! The local autopartition of one operand inside a small cell.
+//!
+//! A transient BSP tree cut by the supporting planes of the operand's own fragments. Regions are
+//! labelled with winding numbers by adjacency, so that overlapping, nested and inverted boundaries
+//! are labelled rightly too: labels by plane sides would hold for simple boundaries only.
+//!
+//! # Source
+//! Thibault and Naylor 1987 (construction, classification); design review F3 (labels).
+
+use std::sync::Arc;
+
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::polygon::{Polygon, PolygonSplit};
+
+/// A convex piece of boundary with its multiplicity.
+///
+/// The winding number on the minus side of the polygon's support exceeds the plus side's by
+/// `weight`.
+#[derive(Clone, Debug)]
+pub struct Weighted {
+    /// The piece.
+    pub polygon: Polygon,
+    /// The jump of the winding number.
+    pub weight: i32,
+}
+
+/// A piece of a fragment and the winding numbers on its support's minus and plus sides.
+#[derive(Debug)]
+pub struct Sided {
+    /// The piece.
+    pub polygon: Polygon,
+    /// The winding number on the minus side.
+    pub minus: i32,
+    /// The winding number on the plus side.
+    pub plus: i32,
+}
+
+/// A subtree: a node, or a leaf.
+#[derive(Clone, Copy, Debug)]
+enum Child {
+    Node(u32),
+    Leaf(u32),
+}
+
+#[derive(Debug)]
+struct LocalNode {
+    cut: Arc<Plane>,
+    children: [Child; 2],
+}
+
+/// A labelled autopartition.
+#[derive(Debug)]
+pub struct LocalTree {
+    nodes: Vec<LocalNode>,
+    labels: Vec<i32>,
+}
+
+/// One fragment of a node's coplanar set: it ties the labels on both sides of the node together.
+struct Link {
+    polygon: Polygon,
+    weight: i32,
+}
+
+struct Task {
+    pieces: Vec<Weighted>,
+    parent: Option<(u32, usize)>,
+}
+
+impl LocalTree {
+    /// Builds the tree of disjoint fragments in a cell.
+    ///
+    /// `corner` is the cell's low corner in half steps, `label` the winding number there.
+    pub fn build(fragments: Vec<Weighted>, corner: &Lattice, label: i32) -> Self {
+        let mut tree = Self { nodes: Vec::new(), labels: Vec::new() };
+        let mut links = Vec::new();
+        let mut open = vec![Task { pieces: fragments, parent: None }];
+        while let Some(task) = open.pop() {
+            let child = if task.pieces.is_empty() {
+                tree.labels.push(0);
+                Child::Leaf(tree.labels.len() as u32 - 1)
+            } else {
+                tree.grow(task.pieces, &mut links, &mut open)
+            };
+            if let Some((node, side)) = task.parent {
+                tree.nodes[node as usize].children[side] = child;
+            }
+        }
+        tree.spread_labels(links, corner, label);
+        tree
+    }
+
+    /// The tree of one region.
+    pub fn uniform(label: i32) -> Self {
+        Self { nodes: Vec::new(), labels: vec![label] }
+    }
+
+    /// The winding numbers of all regions.
+    pub fn labels(&self) -> &[i32] {
+        &self.labels
+    }
+
+    fn root(&self) -> Child {
+        if self.nodes.is_empty() {
+            Child::Leaf(0)
+        } else {
+            Child::Node(0)
+        }
+    }
+
+    fn grow(&mut self, mut pieces: Vec<Weighted>, links: &mut Vec<Link>, open: &mut Vec<Task>) -> Child {
+        let node = self.nodes.len() as u32;
+        let pivot = pieces.swap_remove(pieces.len() / 2);
+        let cut = Arc::clone(pivot.polygon.support());
+        let (mut minus, mut plus) = (Vec::new(), Vec::new());
+        for piece in pieces {
+            if piece.polygon.support().coincides(&cut).is_none() {
+                divide(piece, &cut, &mut minus, &mut plus);
+            }
+        }
+        links.push(Link { polygon: pivot.polygon, weight: pivot.weight });
+        self.nodes.push(LocalNode { cut, children: [Child::Leaf(0); 2] });
+        open.push(Task { pieces: plus, parent: Some((node, 1)) });
+        open.push(Task { pieces: minus, parent: Some((node, 0)) });
+        Child::Node(node)
+    }
+
+    /// Labels the corner's region, then every other one across the links.
+    ///
+    /// The links connect all regions: each ties a region of a node's minus subtree to one of its
+    /// plus subtree, and there is one link for every node.
+    fn spread_labels(&mut self, links: Vec<Link>, corner: &Lattice, label: i32) {
+        let mut neighbours: Vec<Vec<(u32, i32)>> = vec![Vec::new(); self.labels.len()];
+        for (node, link) in links.into_iter().enumerate() {
+            let [minus, plus] = self.nodes[node].children;
+            let (below, polygon) = self.any_leaf(minus, link.polygon);
+            let (above, _) = self.any_leaf(plus, polygon);
+            neighbours[below as usize].push((above, -link.weight));
+            neighbours[above as usize].push((below, link.weight));
+        }
+        let start = self.leaf_at(corner);
+        let mut known = vec![false; self.labels.len()];
+        known[start as usize] = true;
+        self.labels[start as usize] = label;
+        let mut open = vec![start];
+        while let Some(leaf) = open.pop() {
+            let here = self.labels[leaf as usize];
+            for (next, change) in &neighbours[leaf as usize] {
+                if !std::mem::replace(&mut known[*next as usize], true) {
+                    self.labels[*next as usize] = here + change;
+                    open.push(*next);
+                }
+            }
+        }
+    }
+
+    /// A leaf that some piece of the polygon borders or lies in, and that piece.
+    fn any_leaf(&self, from: Child, polygon: Polygon) -> (u32, Polygon) {
+        let (mut at, mut polygon) = (from, polygon);
+        loop {
+            let node = match at {
+                Child::Leaf(leaf) => return (leaf, polygon),
+                Child::Node(node) => &self.nodes[node as usize],
+            };
+            at = match polygon.split(&node.cut) {
+                PolygonSplit::Plus => node.children[1],
+                PolygonSplit::Minus | PolygonSplit::Coplanar => node.children[0],
+                PolygonSplit::Both(minus, _) => {
+                    polygon = minus;
+                    node.children[0]
+                }
+            };
+        }
+    }
+
+    fn leaf_at(&self, corner: &Lattice) -> u32 {
+        let mut at = self.root();
+        loop {
+            match at {
+                Child::Leaf(leaf) => return leaf,
+                Child::Node(node) => {
+                    let node = &self.nodes[node as usize];
+                    at = node.children[usize::from(node.cut.side_of_corner(corner) > 0)];
+                }
+            }
+        }
+    }
+
+    /// The winding number at a lattice point that lies on no fragment.
+    pub fn label_at(&self, point: &Lattice) -> i32 {
+        let mut at = self.root();
+        loop {
+            match at {
+                Child::Leaf(leaf) => return self.labels[leaf as usize],
+                Child::Node(node) => {
+                    let node = &self.nodes[node as usize];
+                    at = node.children[usize::from(node.cut.side_of_lattice(point) > 0)];
+                }
+            }
+        }
+    }
+
+    /// Pushes a polygon down the tree: its pieces with the winding numbers on both sides.
+    pub fn sides(&self, polygon: Polygon) -> Vec<Sided> {
+        let mut found = Vec::new();
+        let mut open = vec![(self.root(), polygon)];
+        while let Some((at, polygon)) = open.pop() {
+            let node = match at {
+                Child::Leaf(leaf) => {
+                    let label = self.labels[leaf as usize];
+                    found.push(Sided { polygon, minus: label, plus: label });
+                    continue;
+                }
+                Child::Node(node) => &self.nodes[node as usize],
+            };
+            if let Some(same) = polygon.support().coincides(&node.cut) {
+                self.coplanar_sides(node, polygon, same, &mut found);
+            } else {
+                descend(polygon, node, &mut open);
+            }
+        }
+        found
+    }
+
+    /// The pieces of a polygon in a node's cut: each side's label from that side's subtree.
+    fn coplanar_sides(&self, node: &LocalNode, polygon: Polygon, same: bool, found: &mut Vec<Sided>) {
+        for (piece, below) in self.labelled(node.children[0], polygon) {
+            for (polygon, above) in self.labelled(node.children[1], piece) {
+                let (minus, plus) = if same { (below, above) } else { (above, below) };
+                found.push(Sided { polygon, minus, plus });
+            }
+        }
+    }
+
+    /// The pieces of a polygon by the leaves of a subtree whose planes it does not lie in.
+    fn labelled(&self, from: Child, polygon: Polygon) -> Vec<(Polygon, i32)> {
+        let mut found = Vec::new();
+        let mut open = vec![(from, polygon)];
+        while let Some((at, polygon)) = open.pop() {
+            match at {
+                Child::Leaf(leaf) => found.push((polygon, self.labels[leaf as usize])),
+                Child::Node(node) => descend(polygon, &self.nodes[node as usize], &mut open),
+            }
+        }
+        found
+    }
+}
+
+fn descend(polygon: Polygon, node: &LocalNode, open: &mut Vec<(Child, Polygon)>) {
+    match polygon.split(&node.cut) {
+        PolygonSplit::Minus | PolygonSplit::Coplanar => open.push((node.children[0], polygon)),
+        PolygonSplit::Plus => open.push((node.children[1], polygon)),
+        PolygonSplit::Both(minus, plus) => {
+            open.push((node.children[1], plus));
+            open.push((node.children[0], minus));
+        }
+    }
+}
+
+fn divide(piece: Weighted, cut: &Arc<Plane>, minus: &mut Vec<Weighted>, plus: &mut Vec<Weighted>) {
+    let weight = piece.weight;
+    match piece.polygon.split(cut) {
+        PolygonSplit::Minus | PolygonSplit::Coplanar => minus.push(piece),
+        PolygonSplit::Plus => plus.push(piece),
+        PolygonSplit::Both(below, above) => {
+            minus.push(Weighted { polygon: below, weight });
+            plus.push(Weighted { polygon: above, weight });
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Coplanar fragments of one operand made disjoint, their multiplicities added up.
+
+use std::sync::Arc;
+
+use crate::geometry::plane::Plane;
+use crate::geometry::polygon::{Polygon, PolygonSplit};
+
+/// A fragment of an operand's boundary in a cell.
+#[derive(Clone, Debug)]
+pub struct Fragment {
+    /// The fragment.
+    pub polygon: Polygon,
+    /// The jump of the winding number from the support's plus to its minus side.
+    pub weight: i32,
+    /// The source's slot and the face.
+    pub face: (u32, u32),
+    /// Whether the fragment is all of a whole face inside the cell.
+    pub intact: bool,
+}
+
+/// Makes the fragments disjoint: where some overlap, the first keeps the place and the sum.
+///
+/// Pieces whose multiplicities add up to nothing bound nothing and are left out.
+pub fn disjoint(fragments: Vec<Fragment>) -> Vec<Fragment> {
+    let mut planes: Vec<Vec<Fragment>> = Vec::new();
+    let mut names: Vec<Arc<Plane>> = Vec::new();
+    for fragment in fragments {
+        let support = fragment.polygon.support();
+        let known = names.iter().position(|p| p.coincides(support).is_some());
+        let at = known.unwrap_or_else(|| {
+            names.push(Arc::clone(support));
+            planes.push(Vec::new());
+            planes.len() - 1
+        });
+        add(&mut planes[at], fragment);
+    }
+    let mut all: Vec<Fragment> = planes.into_iter().flatten().filter(|f| f.weight != 0).collect();
+    all.sort_by_key(|f| f.face);
+    all
+}
+
+/// Adds a fragment to disjoint fragments of its plane.
+fn add(placed: &mut Vec<Fragment>, new: Fragment) {
+    let mut rest = vec![new];
+    let mut carved = Vec::new();
+    let mut i = 0;
+    while i < placed.len() && !rest.is_empty() {
+        let touched = rest.iter().any(|r| !separated(&placed[i].polygon, &r.polygon));
+        if touched {
+            let old = placed.remove(i);
+            rest = combine(old, rest, &mut carved);
+        } else {
+            i += 1;
+        }
+    }
+    placed.append(&mut carved);
+    placed.append(&mut rest);
+}
+
+/// Overlays one placed fragment with the pieces of a new one; returns the pieces outside it.
+fn combine(old: Fragment, rest: Vec<Fragment>, carved: &mut Vec<Fragment>) -> Vec<Fragment> {
+    let mut remaining = Vec::new();
+    let mut old_pieces = vec![old.clone()];
+    for piece in rest {
+        let (inside, outside) = carve(&piece.polygon, &old.polygon);
+        if inside.is_none() {
+            remaining.push(piece);
+            continue;
+        }
+        remaining.extend(outside.into_iter().map(|p| part_of(&piece, p)));
+        old_pieces = old_pieces
+            .into_iter()
+            .flat_map(|o| overlaid(&o, &piece))
+            .collect();
+    }
+    carved.append(&mut old_pieces);
+    remaining
+}
+
+/// The pieces of `old` inside and outside `new`, the inside one with both multiplicities.
+fn overlaid(old: &Fragment, new: &Fragment) -> Vec<Fragment> {
+    let (inside, outside) = carve(&old.polygon, &new.polygon);
+    let Some(inside) = inside else {
+        return vec![old.clone()];
+    };
+    let same = old.polygon.support().coincides(new.polygon.support()) == Some(true);
+    let mut both = part_of(old, inside);
+    both.weight += if same { new.weight } else { -new.weight };
+    let mut pieces = vec![both];
+    pieces.extend(outside.into_iter().map(|p| part_of(old, p)));
+    pieces
+}
+
+fn part_of(fragment: &Fragment, polygon: Polygon) -> Fragment {
+    Fragment {
+        polygon,
+        intact: false,
+        weight: fragment.weight,
+        face: fragment.face,
+    }
+}
+
+/// Whether an edge of one polygon has the other entirely beyond it; both lie in one plane.
+fn separated(a: &Polygon, b: &Polygon) -> bool {
+    beyond_an_edge(a, b) || beyond_an_edge(b, a)
+}
+
+fn beyond_an_edge(a: &Polygon, b: &Polygon) -> bool {
+    a.corners().iter().any(|corner| {
+        let plane = corner.edge.plane(a.support());
+        b.corners().iter().all(|c| c.at.side_of(&plane) >= 0)
+    })
+}
+
+/// The part of a polygon inside a coplanar convex one, and the pieces outside it.
+fn carve(polygon: &Polygon, by: &Polygon) -> (Option<Polygon>, Vec<Polygon>) {
+    let mut outside = Vec::new();
+    let mut inside = polygon.clone();
+    for corner in by.corners() {
+        let cut = Arc::new(corner.edge.plane(by.support()));
+        match inside.split(&cut) {
+            PolygonSplit::Minus => {}
+            PolygonSplit::Plus | PolygonSplit::Coplanar => return (None, vec![polygon.clone()]),
+            PolygonSplit::Both(minus, plus) => {
+                outside.push(plus);
+                inside = minus;
+            }
+        }
+    }
+    (Some(inside), outside)
+}

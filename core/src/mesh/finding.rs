@@ -1,0 +1,57 @@
+//! What was noticed about a mesh, as data.
+
+/// How much a finding matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// Worth knowing; the result is what was asked for.
+    Note,
+    /// Probably not what the author of the mesh meant.
+    Warning,
+}
+
+impl Severity {
+    /// The name used in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Note => "note",
+            Self::Warning => "warning",
+        }
+    }
+}
+
+/// Something noticed: a stable code, how often, where, and a sentence.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    /// A stable name for programs.
+    pub code: &'static str,
+    /// How much it matters.
+    pub severity: Severity,
+    /// How often.
+    pub count: u64,
+    /// The first few places: faces or vertices, as the message says.
+    pub place: Vec<u64>,
+    /// The sentence for a person.
+    pub message: String,
+}
+
+/// How many places a finding names.
+const PLACES: usize = 8;
+
+impl Finding {
+    /// A finding about numbered places, of which the first few are kept.
+    pub fn about(
+        code: &'static str,
+        severity: Severity,
+        places: &[u64],
+        message: impl Into<String>,
+    ) -> Self {
+        Self {
+            code,
+            severity,
+            count: places.len() as u64,
+            place: places.iter().copied().take(PLACES).collect(),
+            message: message.into(),
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! The lattice: the only door between doubles and integers.
+
+use crate::arith::{ratio_to_f64, Int};
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::cell::REACH;
+use crate::geometry::plane::Lattice;
+use crate::geometry::vertex::Vertex;
+
+/// The lattice step 10^exponent, in model units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Pitch(i8);
+
+/// Powers of ten that a double holds exactly.
+const EXACT_POWERS: i8 = 22;
+
+impl Pitch {
+    /// 10^-9 units: CAD numbers are decimals of at most nine places.
+    pub const DEFAULT: Self = Self(-9);
+
+    /// The pitch with this exponent.
+    pub fn new(exponent: i64) -> Result<Self> {
+        i8::try_from(exponent)
+            .ok()
+            .filter(|e| e.abs() <= EXACT_POWERS)
+            .map(Self)
+            .ok_or_else(|| {
+                let text = format!("the pitch 10^{exponent} is not between 10^-22 and 10^22");
+                Error::new(ErrorKind::TooLarge, text)
+            })
+    }
+
+    /// The exponent of ten.
+    pub fn exponent(self) -> i64 {
+        i64::from(self.0)
+    }
+
+    /// The pitch for coordinates of this size and extent: the default unless they do not fit it.
+    ///
+    /// Coarser by powers of 1000 until the largest coordinate fits; finer for meshes less than
+    /// 10^6 steps across, as long as they fit.
+    pub fn suited(largest: f64, extent: f64) -> Result<Self> {
+        let mut pitch = Self::DEFAULT;
+        while !pitch.fits(largest) {
+            pitch = Self::new(pitch.exponent() + 3).map_err(|_| {
+                let text = format!(
+                    "the coordinate {largest:e} is too large for any lattice; scale the mesh down"
+                );
+                Error::new(ErrorKind::TooLarge, text)
+            })?;
+        }
+        while extent > 0.0 && pitch.steps(extent) < 1e6 && pitch.0 > -EXACT_POWERS + 3 {
+            let finer = Self(pitch.0 - 3);
+            if !finer.fits(largest) {
+                break;
+            }
+            pitch = finer;
+        }
+        Ok(pitch)
+    }
+
+    fn steps(self, x: f64) -> f64 {
+        let power = power_of_ten(self.0.abs());
+        if self.0 < 0 {
+            x * power
+        } else {
+            x / power
+        }
+    }
+
+    fn fits(self, x: f64) -> bool {
+        self.steps(x).abs() < LIMIT
+    }
+
+    /// The nearest lattice coordinate, by the exact product; halves go away from zero.
+    pub fn snap(self, x: f64) -> Result<i64> {
+        if !x.is_finite() {
+            let text = format!("a coordinate is {x}; coordinates must be finite");
+            return Err(Error::new(ErrorKind::NonFinite, text));
+        }
+        if !self.fits(x) {
+            let text = format!(
+                "the coordinate {x:e} is beyond 2^53 steps of the pitch 10^{}; use a coarser pitch",
+                self.0
+            );
+            return Err(Error::new(ErrorKind::TooLarge, text));
+        }
+        let rounded = if self.0 <= 0 {
+            snap_product(x, power_of_ten(-self.0))
+        } else {
+            snap_quotient(x, power_of_ten(self.0))
+        };
+        Ok(rounded as i64)
+    }
+
+    /// The double nearest to a lattice coordinate.
+    pub fn coordinate(self, k: i64) -> f64 {
+        let power = power_of_ten(self.0.abs());
+        if self.0 <= 0 {
+            k as f64 / power
+        } else {
+            k as f64 * power
+        }
+    }
+
+    /// The doubles nearest to a vertex's coordinates.
+    pub fn position(self, vertex: &Vertex) -> [f64; 3] {
+        if let Some(p) = vertex.as_lattice() {
+            return p.map(|k| self.coordinate(k));
+        }
+        let h = vertex.coordinates();
+        let power = Int::<2>::from_i128(10i128.pow(u32::from(self.0.unsigned_abs())));
+        let one = Int::<2>::ONE;
+        let (up, down) = if self.0 <= 0 { (one, power) } else { (power, one) };
+        let den: Int<8> = h.w.mul(&down);
+        h.x.map(|x| {
+            let num: Int<8> = x.mul(&up);
+            ratio_to_f64(&num, &den)
+        })
+    }
+
+    /// The integer by which this pitch divides a coarser one.
+    pub fn refinement(self, coarser: Self) -> Option<i64> {
+        let steps = u32::try_from(coarser.0 - self.0).ok()?;
+        10i64.checked_pow(steps)
+    }
+}
+
+/// Lattice coordinates stay strictly below this magnitude.
+pub const LIMIT: f64 = (1u64 << REACH) as f64;
+
+fn power_of_ten(exponent: i8) -> f64 {
+    10f64.powi(i32::from(exponent))
+}
+
+/// Rounds the exact product x·power to an integer; |x·power| < 2^53.
+fn snap_product(x: f64, power: f64) -> f64 {
+    let product = x * power;
+    let rounded = product.round();
+    let rest = product - rounded;
+    let doubt = product.abs() * f64::EPSILON;
+    if rest.abs() + doubt < 0.5 {
+        return rounded;
+    }
+    let error = x.mul_add(power, -product);
+    let exact = rest + error;
+    let tie_away = exact.abs() == 0.5 && (exact > 0.0) == (x > 0.0);
+    if exact.abs() > 0.5 || (tie_away && rounded.abs() < product.abs()) {
+        rounded + exact.signum()
+    } else {
+        rounded
+    }
+}
+
+/// Rounds the exact quotient x/power to an integer.
+fn snap_quotient(x: f64, power: f64) -> f64 {
+    let rounded = (x / power).round();
+    let rest = (-rounded).mul_add(power, x);
+    if rest.abs() > power / 2.0 {
+        rounded + rest.signum()
+    } else {
+        rounded
+    }
+}
+
+/// Snaps a point.
+pub fn snap_point(pitch: Pitch, p: &[f64; 3]) -> Result<Lattice> {
+    Ok([pitch.snap(p[0])?, pitch.snap(p[1])?, pitch.snap(p[2])?])
+}

@@ -1,0 +1,179 @@
+//! Sources: the immutable boundaries that elements of trees refer to.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
+
+use super::finding::Finding;
+use super::grid::Pitch;
+use super::topology::Topology;
+use crate::geometry::cell::Cell;
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::polygon::Polygon;
+
+/// A mesh on the lattice, or the boundary of a half-space.
+#[derive(Debug)]
+pub struct Source {
+    id: u64,
+    pitch: Pitch,
+    shape: Shape,
+    topology: OnceLock<Topology>,
+    findings: Vec<Finding>,
+}
+
+/// What a source consists of.
+#[derive(Debug)]
+pub enum Shape {
+    /// Triangles on the lattice.
+    Mesh(TriangleMesh),
+    /// One unbounded face.
+    HalfSpace(Arc<Plane>),
+}
+
+/// Lattice triangles, and the doubles they came from.
+#[derive(Clone, Debug, Default)]
+pub struct TriangleMesh {
+    /// Vertices in lattice steps.
+    pub vertices: Vec<Lattice>,
+    /// The original doubles of the vertices.
+    pub doubles: Vec<[f64; 3]>,
+    /// Triangles, counterclockwise as seen from outside.
+    pub faces: Vec<[u32; 3]>,
+    /// The index each face had in its input, where faces were left out.
+    pub numbers: Option<Vec<u32>>,
+}
+
+static NEXT_ID: AtomicU64 = AtomicU64::new(0);
+
+impl Source {
+    /// A source of this shape; ids increase with each call and carry no meaning.
+    pub fn new(pitch: Pitch, shape: Shape, findings: Vec<Finding>) -> Self {
+        Self {
+            id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
+            pitch,
+            shape,
+            topology: OnceLock::new(),
+            findings,
+        }
+    }
+
+    /// A source whose half-edges are paired already.
+    pub fn with_topology(mesh: TriangleMesh, pitch: Pitch, topology: Topology, findings: Vec<Finding>) -> Self {
+        let source = Self::new(pitch, Shape::Mesh(mesh), findings);
+        let _ = source.topology.set(topology);
+        source
+    }
+
+    /// A number that tells sources apart.
+    pub fn id(&self) -> u64 {
+        self.id
+    }
+
+    /// The lattice step.
+    pub fn pitch(&self) -> Pitch {
+        self.pitch
+    }
+
+    /// What was noticed at import.
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
+    }
+
+    /// The shape.
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// The triangles; `None` for a half-space.
+    pub fn mesh(&self) -> Option<&TriangleMesh> {
+        match &self.shape {
+            Shape::Mesh(mesh) => Some(mesh),
+            Shape::HalfSpace(_) => None,
+        }
+    }
+
+    /// The number of faces.
+    pub fn face_count(&self) -> usize {
+        self.mesh().map_or(1, |m| m.faces.len())
+    }
+
+    /// The half-edges' mates, paired on first use; `None` for a half-space.
+    pub fn topology(&self) -> Option<&Topology> {
+        let mesh = self.mesh()?;
+        Some(
+            self.topology
+                .get_or_init(|| Topology::new(&mesh.faces, mesh.vertices.len())),
+        )
+    }
+
+    /// The supporting plane of a face.
+    pub fn plane(&self, face: u32) -> Arc<Plane> {
+        match &self.shape {
+            Shape::Mesh(mesh) => {
+                let [a, b, c] = mesh.corners(face);
+                let plane = Plane::through(&a, &b, &c);
+                Arc::new(plane.expect("faces without area were left out at import"))
+            }
+            Shape::HalfSpace(plane) => Arc::clone(plane),
+        }
+    }
+
+    /// The part of a face inside a cell, if it has an area.
+    pub fn clip(&self, face: u32, cell: &Cell) -> Option<Polygon> {
+        match &self.shape {
+            Shape::Mesh(mesh) => {
+                let corners = mesh.corners(face);
+                Polygon::triangle(&corners, self.plane(face)).clipped(cell)
+            }
+            Shape::HalfSpace(plane) => Polygon::span(plane, cell),
+        }
+    }
+
+    /// The lattice box around a face.
+    pub fn face_box(&self, face: u32) -> (Lattice, Lattice) {
+        match &self.shape {
+            Shape::Mesh(mesh) => mesh.face_box(face),
+            Shape::HalfSpace(_) => (*Cell::UNIVERSE.low(), Cell::UNIVERSE.high()),
+        }
+    }
+
+    /// The number a face had in its input.
+    pub fn number(&self, face: u32) -> u32 {
+        self.mesh()
+            .and_then(|m| m.numbers.as_ref())
+            .map_or(face, |n| n[face as usize])
+    }
+
+    /// The smallest cell around everything, and whether there is anything.
+    pub fn cell(&self) -> Option<Cell> {
+        match &self.shape {
+            Shape::Mesh(mesh) => mesh.bounds().map(|(low, high)| Cell::around(&low, &high)),
+            Shape::HalfSpace(_) => Some(Cell::UNIVERSE),
+        }
+    }
+}
+
+impl TriangleMesh {
+    /// The corners of a face.
+    pub fn corners(&self, face: u32) -> [Lattice; 3] {
+        self.faces[face as usize].map(|v| self.vertices[v as usize])
+    }
+
+    /// The lattice box around a face.
+    pub fn face_box(&self, face: u32) -> (Lattice, Lattice) {
+        let [a, b, c] = self.corners(face);
+        let low = [0, 1, 2].map(|i| a[i].min(b[i]).min(c[i]));
+        (low, [0, 1, 2].map(|i| a[i].max(b[i]).max(c[i])))
+    }
+
+    /// The lattice box around all vertices; `None` without any.
+    pub fn bounds(&self) -> Option<(Lattice, Lattice)> {
+        let first = *self.vertices.first()?;
+        let grow = |(low, high): (Lattice, Lattice), p: &Lattice| {
+            (
+                [0, 1, 2].map(|i| low[i].min(p[i])),
+                [0, 1, 2].map(|i| high[i].max(p[i])),
+            )
+        };
+        Some(self.vertices.iter().fold((first, first), grow))
+    }
+}

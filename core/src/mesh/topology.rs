@@ -1,0 +1,173 @@
+//! Which half-edge is whose mate.
+
+use crate::geometry::plane::Lattice;
+
+/// "No mate."
+pub const NONE: u32 = u32::MAX;
+
+/// The half-edges of a triangle mesh, paired with their opposites.
+///
+/// Half-edge 3f + i runs from corner i of face f to the next corner.
+#[derive(Debug)]
+pub struct Topology {
+    mates: Vec<u32>,
+    irregular: Vec<u32>,
+}
+
+impl Topology {
+    /// Pairs each directed edge with an opposite one, in the order of faces.
+    pub fn new(faces: &[[u32; 3]], vertex_count: usize) -> Self {
+        let outgoing = Outgoing::new(faces, vertex_count);
+        let mut mates = vec![NONE; 3 * faces.len()];
+        let mut irregular = Vec::new();
+        for tail in 0..vertex_count {
+            for &half in outgoing.of(tail) {
+                let (a, b) = ends(faces, half);
+                if a > b {
+                    continue;
+                }
+                let twins = outgoing.of(a as usize).iter().filter(|h| ends(faces, **h).1 == b).count();
+                if twins > 1 {
+                    irregular.extend([a, b]);
+                }
+                let free = |h: &&u32| ends(faces, **h).1 == a && mates[**h as usize] == NONE;
+                if let Some(&mate) = outgoing.of(b as usize).iter().find(free) {
+                    mates[half as usize] = mate;
+                    mates[mate as usize] = half;
+                }
+            }
+        }
+        irregular.sort_unstable();
+        irregular.dedup();
+        Self { mates, irregular }
+    }
+
+    /// The mate of each half-edge, or [`NONE`].
+    pub fn mates(&self) -> &[u32] {
+        &self.mates
+    }
+
+    /// Vertices at the ends of edges that more than two faces use, sorted.
+    pub fn irregular(&self) -> &[u32] {
+        &self.irregular
+    }
+
+    /// The half-edges without a mate.
+    pub fn unpaired(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.mates.len()).filter(|h| self.mates[*h] == NONE)
+    }
+}
+
+/// The end vertices of a half-edge.
+pub fn ends(faces: &[[u32; 3]], half: u32) -> (u32, u32) {
+    let face = &faces[half as usize / 3];
+    let corner = half as usize % 3;
+    (face[corner], face[(corner + 1) % 3])
+}
+
+/// Half-edges by their start vertex, in compressed rows.
+struct Outgoing {
+    starts: Vec<u32>,
+    halves: Vec<u32>,
+}
+
+impl Outgoing {
+    fn new(faces: &[[u32; 3]], vertex_count: usize) -> Self {
+        let mut starts = vec![0u32; vertex_count + 1];
+        for vertex in faces.iter().flatten() {
+            starts[*vertex as usize + 1] += 1;
+        }
+        for i in 0..vertex_count {
+            starts[i + 1] += starts[i];
+        }
+        let mut next = starts.clone();
+        let mut halves = vec![0u32; 3 * faces.len()];
+        for (half, vertex) in (0u32..).zip(faces.iter().flatten()) {
+            let slot = &mut next[*vertex as usize];
+            halves[*slot as usize] = half;
+            *slot += 1;
+        }
+        Self { starts, halves }
+    }
+
+    fn of(&self, vertex: usize) -> &[u32] {
+        &self.halves[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
+    }
+}
+
+/// The half-edges left over after opposite edges cancel along each line of the lattice.
+///
+/// A closed surface with T-junctions leaves none: on each line the pieces of its edges cancel.
+pub fn open_edges(
+    vertices: &[Lattice],
+    faces: &[[u32; 3]],
+    unpaired: impl Iterator<Item = usize>,
+) -> Vec<u64> {
+    let mut edges: Vec<LineEdge> = unpaired
+        .filter_map(|half| LineEdge::new(vertices, faces, half))
+        .collect();
+    edges.sort_by_key(|a| (a.line, a.low, a.half));
+    let mut open = Vec::new();
+    for run in edges.chunk_by(|a, b| a.line == b.line) {
+        if !cancels(run) {
+            open.extend(run.iter().map(|e| e.half as u64));
+        }
+    }
+    open.sort_unstable();
+    open
+}
+
+struct LineEdge {
+    line: ([i64; 3], [i128; 3]),
+    low: i64,
+    high: i64,
+    sign: i32,
+    half: usize,
+}
+
+impl LineEdge {
+    fn new(vertices: &[Lattice], faces: &[[u32; 3]], half: usize) -> Option<Self> {
+        let face = &faces[half / 3];
+        let a = vertices[face[half % 3] as usize];
+        let b = vertices[face[(half % 3 + 1) % 3] as usize];
+        let (direction, axis, sign) = primitive_direction(&a, &b)?;
+        let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
+        let line = (direction, moment(&a, &direction));
+        Some(Self { line, low, high, sign, half })
+    }
+}
+
+/// The primitive direction from a to b with a positive lead, its lead axis and its sense.
+fn primitive_direction(a: &Lattice, b: &Lattice) -> Option<([i64; 3], usize, i32)> {
+    let d = [0, 1, 2].map(|i| b[i] - a[i]);
+    let axis = d.iter().position(|c| *c != 0)?;
+    let g = d.iter().fold(0u64, |g, c| gcd(g, c.unsigned_abs()));
+    let g = i64::try_from(g).ok()? * d[axis].signum();
+    let sign = if d[axis] > 0 { 1 } else { -1 };
+    Some((d.map(|c| c / g), axis, sign))
+}
+
+fn gcd(mut a: u64, mut b: u64) -> u64 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}
+
+fn moment(a: &Lattice, d: &[i64; 3]) -> [i128; 3] {
+    let term = |i: usize, j: usize| {
+        i128::from(a[i]) * i128::from(d[j]) - i128::from(a[j]) * i128::from(d[i])
+    };
+    [term(1, 2), term(2, 0), term(0, 1)]
+}
+
+fn cancels(run: &[LineEdge]) -> bool {
+    let mut events: Vec<(i64, i32)> = run
+        .iter()
+        .flat_map(|e| [(e.low, e.sign), (e.high, -e.sign)])
+        .collect();
+    events.sort_unstable();
+    events
+        .chunk_by(|a, b| a.0 == b.0)
+        .all(|group| group.iter().map(|e| e.1).sum::<i32>() == 0)
+}

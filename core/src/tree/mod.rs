@@ -1,0 +1,4 @@
+//! Partition trees: the nodes of solids, and generic trees in one, two and three dimensions.
+
+pub mod node;
+pub mod solid;

@@ -1,0 +1,159 @@
+//! The partition tree of a solid: dyadic cuts above, deferred leaves below.
+
+use std::sync::Arc;
+
+use crate::geometry::cell::Cell;
+use crate::geometry::outline::OutlineEdge;
+use crate::geometry::polygon::Polygon;
+use crate::geometry::outline;
+use crate::mesh::source::Source;
+
+/// A node of the tree. Immutable and shared.
+///
+/// Labels are winding numbers: a region is inside where its number is positive.
+#[derive(Debug)]
+pub enum Node {
+    /// No boundary: one winding number everywhere.
+    Leaf(i32),
+    /// A preliminary leaf: its boundary is listed, not yet partitioned.
+    Deferred(Deferred),
+    /// The cell's dyadic cut, minus half first.
+    Cut([Branch; 2]),
+}
+
+/// A subtree in its place.
+///
+/// The node describes `cell`; what the parent's half has around it is uniformly `outside`
+/// (path compression). With `complement` set the node's winding numbers w count as 1 − w.
+#[derive(Clone, Debug)]
+pub struct Branch {
+    /// The region of the node.
+    pub cell: Cell,
+    /// The winding number around the cell.
+    pub outside: i32,
+    /// Whether the node is meant turned inside out.
+    pub complement: bool,
+    /// The node.
+    pub node: Arc<Node>,
+}
+
+impl Branch {
+    /// One winding number everywhere.
+    pub fn uniform(cell: Cell, w: i32) -> Self {
+        Self {
+            cell,
+            outside: w,
+            complement: false,
+            node: Arc::new(Node::Leaf(w)),
+        }
+    }
+
+    /// The winding number, if it is the same everywhere.
+    pub fn constant(&self) -> Option<i32> {
+        match *self.node {
+            Node::Leaf(w) => {
+                let w = self.oriented(w);
+                (w == self.outside).then_some(w)
+            }
+            _ => None,
+        }
+    }
+
+    /// A winding number of the node as this branch means it.
+    pub fn oriented(&self, w: i32) -> i32 {
+        if self.complement {
+            1 - w
+        } else {
+            w
+        }
+    }
+
+    /// The same set turned inside out.
+    #[must_use]
+    pub fn complemented(&self) -> Self {
+        Self {
+            outside: 1 - self.outside,
+            complement: !self.complement,
+            ..self.clone()
+        }
+    }
+
+    /// A child as this branch means it: the branch's complement bit is passed on.
+    pub fn child(&self, child: &Self) -> Self {
+        if self.complement {
+            child.complemented()
+        } else {
+            child.clone()
+        }
+    }
+}
+
+/// A preliminary leaf: elements, and the winding number at the cell's low corner.
+///
+/// Every element that meets the closed cell is listed; an element that does not may be.
+#[derive(Debug, Default)]
+pub struct Deferred {
+    /// Whole faces by source, sources in the order of the expression.
+    pub groups: Vec<Group>,
+    /// Parts of faces.
+    pub parts: Vec<PartElement>,
+    /// The winding number at the cell's low corner.
+    pub corner: i32,
+}
+
+/// Whole faces of one source with one orientation.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Where the faces live.
+    pub source: Arc<Source>,
+    /// Whether inside and outside are exchanged.
+    pub flip: bool,
+    /// Ascending face indices.
+    pub faces: Vec<u32>,
+}
+
+/// A part of a face, perhaps turned around.
+#[derive(Clone, Debug)]
+pub struct PartElement {
+    /// The part.
+    pub part: Arc<Part>,
+    /// Whether inside and outside are exchanged.
+    pub flip: bool,
+}
+
+/// The part of a face that is boundary inside its home cell.
+///
+/// The outline runs on the face's own edges, input planes and the home cell's border.
+#[derive(Debug)]
+pub struct Part {
+    /// Where the face lives.
+    pub source: Arc<Source>,
+    /// The face.
+    pub face: u32,
+    /// The cell the outline describes.
+    pub home: Cell,
+    /// The outline, counterclockwise on the face.
+    pub edges: Vec<OutlineEdge>,
+}
+
+impl Part {
+    /// The convex pieces, derived from the outline.
+    pub fn pieces(&self) -> Vec<Polygon> {
+        match self.source.clip(self.face, &self.home) {
+            Some(polygon) => outline::pieces(polygon, &self.edges),
+            None => Vec::new(),
+        }
+    }
+}
+
+impl Deferred {
+    /// The number of listed elements.
+    pub fn len(&self) -> usize {
+        self.parts.len() + self.groups.iter().map(|g| g.faces.len()).sum::<usize>()
+    }
+
+    /// Whether nothing is listed.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}

@@ -1,0 +1,86 @@
+//! Solids: a tree, the winding number outside its root, and the sources it refers to.
+
+use std::sync::Arc;
+
+use super::node::{Branch, Deferred, Group, Node};
+use crate::geometry::cell::Cell;
+use crate::mesh::grid::Pitch;
+use crate::mesh::source::{Shape, Source};
+
+/// A set of points as a partition tree. Immutable; clones share everything.
+#[derive(Clone, Debug)]
+pub struct Solid {
+    root: Branch,
+    pitch: Pitch,
+    sources: Arc<[Arc<Source>]>,
+    reduced: bool,
+}
+
+impl Solid {
+    /// A solid from its parts; `reduced` says that its elements are the reduced boundary.
+    pub fn new(root: Branch, pitch: Pitch, sources: Arc<[Arc<Source>]>, reduced: bool) -> Self {
+        Self { root, pitch, sources, reduced }
+    }
+
+    /// The empty set, or all of space.
+    pub fn uniform(pitch: Pitch, inside: bool) -> Self {
+        let cell = Cell::around(&[0; 3], &[0; 3]);
+        let root = Branch::uniform(cell, i32::from(inside));
+        Self::new(root, pitch, Arc::from([]), true)
+    }
+
+    /// The solid a source bounds: all its faces in one deferred leaf.
+    pub fn of_source(source: Arc<Source>, trusted: bool) -> Self {
+        let pitch = source.pitch();
+        let Some(cell) = source.cell() else {
+            return Self::uniform(pitch, false);
+        };
+        let (corner, reduced) = match source.shape() {
+            Shape::Mesh(_) => (0, trusted),
+            Shape::HalfSpace(plane) => (i32::from(plane.side_of_corner(&cell.corner()) < 0), true),
+        };
+        let faces = (0..source.face_count() as u32).collect();
+        let group = Group { source: Arc::clone(&source), flip: false, faces };
+        let leaf = Deferred { groups: vec![group], parts: Vec::new(), corner };
+        let node = Arc::new(Node::Deferred(leaf));
+        let root = Branch { cell, outside: corner, complement: false, node };
+        Self::new(root, pitch, Arc::from([source]), reduced)
+    }
+
+    /// The root.
+    pub fn root(&self) -> &Branch {
+        &self.root
+    }
+
+    /// The lattice step.
+    pub fn pitch(&self) -> Pitch {
+        self.pitch
+    }
+
+    /// The sources, in the order of the expression.
+    pub fn sources(&self) -> &Arc<[Arc<Source>]> {
+        &self.sources
+    }
+
+    /// Whether the elements are known to be the reduced boundary (promise G2).
+    pub fn is_reduced(&self) -> bool {
+        self.reduced
+    }
+
+    /// The same solid, its elements declared or found to be the reduced boundary.
+    #[must_use]
+    pub fn with_reduced(mut self, reduced: bool) -> Self {
+        self.reduced = reduced;
+        self
+    }
+
+    /// Whether the point set is empty; reliable for reduced solids.
+    pub fn is_empty(&self) -> bool {
+        self.root.constant().is_some_and(|w| w <= 0)
+    }
+
+    /// Whether the point set is all of space; reliable for reduced solids.
+    pub fn is_full(&self) -> bool {
+        self.root.constant().is_some_and(|w| w > 0)
+    }
+}
