@@ -1,0 +1,89 @@
+//! Ear clipping of one short loop.
+
+use super::{Error, Planar};
+
+/// Loops up to this length are clipped; the sweep wins on longer ones.
+const SHORT: usize = 8;
+
+/// The vertices of `edges` in order, if the edges are one short loop that visits no vertex twice.
+pub(super) fn small_loop(edges: &[(u32, u32)]) -> Option<Vec<u32>> {
+    if !(3..=SHORT).contains(&edges.len()) {
+        return None;
+    }
+    let mut corners = Vec::with_capacity(edges.len());
+    let (first, mut reached) = edges[0];
+    corners.push(first);
+    while reached != first {
+        if corners.len() == edges.len() || corners.contains(&reached) {
+            return None;
+        }
+        corners.push(reached);
+        reached = edges.iter().find(|edge| edge.0 == reached)?.1;
+    }
+    (corners.len() == edges.len()).then_some(corners)
+}
+
+/// Triangulates a loop by cutting off one corner after the other.
+///
+/// An ear is a strictly convex corner whose closed triangle holds no further corner. The closed triangle
+/// keeps the diagonals off the vertices on straight runs, so what remains is a simple loop again.
+pub(super) fn clip_ears<P: Planar>(
+    points: &P,
+    mut corners: Vec<u32>,
+) -> Result<Vec<[u32; 3]>, Error> {
+    if let [a, b, c] = corners[..] {
+        let is_left = points.orient(a, b, c) > 0;
+        return is_left
+            .then(|| vec![[a, b, c]])
+            .ok_or(Error::Crossing { vertex: a });
+    }
+    let mut triangles = Vec::with_capacity(corners.len() - 2);
+    let mut turns: Vec<i32> = (0..corners.len())
+        .map(|k| turn(points, &corners, k))
+        .collect();
+    while corners.len() > 3 {
+        let ear = (0..corners.len()).find(|&k| is_ear(points, &corners, &turns, k));
+        let ear = ear.ok_or(Error::Crossing { vertex: corners[0] })?;
+        triangles.push(around(&corners, ear));
+        corners.remove(ear);
+        turns.remove(ear);
+        let after = ear % corners.len();
+        let before = (ear + corners.len() - 1) % corners.len();
+        turns[after] = turn(points, &corners, after);
+        turns[before] = turn(points, &corners, before);
+    }
+    if turns[0] <= 0 {
+        return Err(Error::Crossing { vertex: corners[0] });
+    }
+    triangles.push(around(&corners, 1));
+    Ok(triangles)
+}
+
+/// The corner at `k` between its neighbours.
+fn around(corners: &[u32], k: usize) -> [u32; 3] {
+    let n = corners.len();
+    [corners[(k + n - 1) % n], corners[k], corners[(k + 1) % n]]
+}
+
+fn turn<P: Planar>(points: &P, corners: &[u32], k: usize) -> i32 {
+    let [a, b, c] = around(corners, k);
+    points.orient(a, b, c)
+}
+
+/// Only corners that are not strictly convex need a look: where any corner lies in the triangle, one of
+/// those does too.
+fn is_ear<P: Planar>(points: &P, corners: &[u32], turns: &[i32], k: usize) -> bool {
+    if turns[k] <= 0 {
+        return false;
+    }
+    let ear = around(corners, k);
+    let blunt = corners
+        .iter()
+        .zip(turns)
+        .filter(|(v, &turn)| turn <= 0 && !ear.contains(v));
+    !blunt.into_iter().any(|(&v, _)| is_in(points, ear, v))
+}
+
+fn is_in<P: Planar>(points: &P, [a, b, c]: [u32; 3], v: u32) -> bool {
+    points.orient(c, a, v) >= 0 && points.orient(a, b, v) >= 0 && points.orient(b, c, v) >= 0
+}

@@ -1,0 +1,113 @@
+//! Exact triangulation of planar polygons with holes.
+//!
+//! Knows the points of one plane only by id and by the exact answers of [`Planar`]; coordinates appear
+//! only as floats that steer which of several valid triangulations is returned. Small single loops are
+//! triangulated by clipping ears, everything else by one sweep; local flips then widen the narrow angles.
+//! Invariant: every triangle that leaves this module turns strictly left, and the triangles' edges are
+//! the given boundary edges once each and every other edge once in each direction.
+//!
+//! # Source
+//! Hertel, Mehlhorn 1983 (sweep); Meisters 1975 (ears); Lawson 1977 (flips).
+
+mod clip;
+mod flip;
+mod order;
+mod outline;
+mod relabel;
+mod sweep;
+#[cfg(test)]
+mod tests;
+
+use std::cmp::Ordering;
+use std::fmt;
+
+/// Exact questions about the points of one plane, asked by id.
+///
+/// Different ids must stand for different points, and the answers must agree with one placement of them.
+pub trait Planar {
+    /// Lexicographic order of two points by (x, y).
+    fn compare(&self, a: u32, b: u32) -> Ordering;
+
+    /// Turn of the path a, b, c.
+    ///
+    /// - `1`: left turn, the triangle abc is counterclockwise
+    /// - `0`: the three points are collinear
+    /// - `-1`: right turn
+    fn orient(&self, a: u32, b: u32, c: u32) -> i32;
+
+    /// The point in floats. Steers the choice among valid triangulations, never their validity.
+    fn approx(&self, a: u32) -> [f64; 2];
+}
+
+/// Why a set of edges is not the boundary of a region. Every variant names a vertex at the fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Error {
+    /// The vertex does not have as many edges arriving as leaving.
+    Open {
+        /// Id of the vertex.
+        vertex: u32,
+    },
+    /// Two edges at the vertex lie on each other, or an edge there has no length.
+    Overlap {
+        /// Id of the vertex.
+        vertex: u32,
+    },
+    /// Near the vertex the edges cross, or the region is not on their left.
+    Crossing {
+        /// Id of the vertex.
+        vertex: u32,
+    },
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Open { vertex } => write!(f, "the boundary is not closed at vertex {vertex}"),
+            Self::Overlap { vertex } => write!(f, "boundary edges overlap at vertex {vertex}"),
+            Self::Crossing { vertex } => {
+                write!(
+                    f,
+                    "the edges near vertex {vertex} are not the boundary of a region on their left"
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// Triangulates the region on the left of directed boundary edges.
+///
+/// Any number of outer boundaries and holes is allowed, and boundaries may touch at vertices. Edges meet
+/// only at their ends, and no vertex lies inside an edge. Corners of 180 degrees are kept as corners.
+///
+/// # Order
+/// Triangles are counterclockwise; their order is a function of the edges and the points alone.
+///
+/// # Cost
+/// O(n log n) questions for n edges; the flips are bounded by a multiple of n.
+///
+/// # Errors
+/// [`Error`] when the edges are not the boundary of a region.
+pub fn triangulate<P: Planar>(points: &P, edges: &[(u32, u32)]) -> Result<Vec<[u32; 3]>, Error> {
+    if let Some(corners) = clip::small_loop(edges) {
+        let triangles = clip::clip_ears(points, corners)?;
+        return if triangles.len() == 1 {
+            Ok(triangles)
+        } else {
+            flip::improve(points, triangles, edges)
+        };
+    }
+    triangulate_by_sweep(points, edges)
+}
+
+fn triangulate_by_sweep<P: Planar>(
+    points: &P,
+    edges: &[(u32, u32)],
+) -> Result<Vec<[u32; 3]>, Error> {
+    let (local, edges) = relabel::Relabelled::new(points, edges)?;
+    let triangles = sweep::sweep(&local, &edges)
+        .and_then(|triangles| flip::improve(&local, triangles, &edges))
+        .map_err(|error| local.restore_error(error))?;
+    Ok(local.restore(&triangles))
+}

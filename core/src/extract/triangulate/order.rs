@@ -1,0 +1,85 @@
+//! A sequence kept in order by its owner's answers.
+
+/// Longest block; a trade between moving entries and moving blocks.
+const BLOCK: usize = 256;
+
+/// Numbers in an order that only the caller knows, in blocks so that insertion stays cheap.
+#[derive(Default)]
+pub(super) struct Order {
+    /// No block is empty.
+    blocks: Vec<Vec<usize>>,
+}
+
+/// A gap between two entries of an [`Order`], valid until it changes.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    block: usize,
+    offset: usize,
+}
+
+impl Order {
+    /// The place after all entries that are `below`; those must come first.
+    pub(super) fn search(&self, below: impl Fn(usize) -> bool) -> Place {
+        let block = self
+            .blocks
+            .partition_point(|block| below(block[0]))
+            .saturating_sub(1);
+        let offset = self
+            .blocks
+            .get(block)
+            .map_or(0, |entries| entries.partition_point(|&entry| below(entry)));
+        Place { block, offset }
+    }
+
+    /// The entry before a place.
+    pub(super) fn before(&self, place: Place) -> Option<usize> {
+        let offset = place.offset.checked_sub(1)?;
+        self.blocks.get(place.block)?.get(offset).copied()
+    }
+
+    /// Inserts an entry at a place.
+    pub(super) fn insert(&mut self, place: Place, entry: usize) {
+        if self.blocks.is_empty() {
+            self.blocks.push(Vec::new());
+        }
+        let block = &mut self.blocks[place.block];
+        block.insert(place.offset, entry);
+        if block.len() > BLOCK {
+            let tail = block.split_off(BLOCK / 2);
+            self.blocks.insert(place.block + 1, tail);
+        }
+    }
+
+    /// Removes `entry`, which must follow `place` with only `among` between; false if it does not.
+    pub(super) fn remove(
+        &mut self,
+        mut place: Place,
+        entry: usize,
+        among: impl Fn(usize) -> bool,
+    ) -> bool {
+        while let Some(block) = self.blocks.get_mut(place.block) {
+            match block.get(place.offset) {
+                Some(&found) if found == entry => {
+                    block.remove(place.offset);
+                    if block.is_empty() {
+                        self.blocks.remove(place.block);
+                    }
+                    return true;
+                }
+                Some(&other) if !among(other) => return false,
+                Some(_) => place.offset += 1,
+                None => {
+                    place = Place {
+                        block: place.block + 1,
+                        offset: 0,
+                    }
+                }
+            }
+        }
+        false
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.blocks.is_empty()
+    }
+}
