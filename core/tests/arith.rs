@@ -253,12 +253,13 @@ mod overflow {
 fn ratios_at_the_ends_of_the_doubles() {
     let least = f64::from_bits(1);
     let infinity = f64::INFINITY;
-    let cases: [(BigInt, BigInt, f64); 11] = [
+    let cases: [(BigInt, BigInt, f64); 12] = [
         (0.into(), 1.into(), 0.0),
         (1.into(), power(1074), least),
         (1.into(), power(1075), 0.0),
         (3.into(), power(1075), 2.0 * least),
         (power(20) + 1, power(1095), least),
+        (power(70) + 1, power(1145), least),
         ((-1).into(), power(1074), -least),
         (power(54) - 1, power(1076), f64::MIN_POSITIVE),
         (power(1024) - power(971), 1.into(), f64::MAX),
@@ -278,6 +279,15 @@ proptest! {
         let den = big(&den) << shift;
         let value = ratio_to_f64(&num, &wrapped::<18>(&den));
         prop_assert!(is_nearest(value, &big(&num), &den));
+    }
+
+    /// Ties whose only excess lies far below the quotient's last bit.
+    #[test]
+    fn ties_of_long_numerators(m in 1u64 << 53..1 << 54, shift in 1u32..1000, nudge in -1..=1) {
+        let num = (BigInt::from(m | 1) << shift) + nudge;
+        let a = wrapped::<18>(&num);
+        prop_assert!(is_nearest(ratio_to_f64(&a, &Int::<2>::ONE), &num, &1.into()));
+        prop_assert!(is_nearest(a.to_f64(), &num, &1.into()));
     }
 
     #[test]

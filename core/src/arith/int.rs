@@ -1,9 +1,9 @@
 //! Signed integers of a fixed number of limbs.
 
-use std::cmp::Ordering;
-use std::fmt;
-use std::ops::{Add, AddAssign, Neg, Sub, SubAssign};
-
+use super::limbs::{
+    bit_length, inverse_mod_limb, remainder_long, remainder_short, subtract_masked,
+    subtract_multiple, unsigned_product,
+};
 use super::modular;
 use super::round;
 
@@ -155,7 +155,7 @@ impl<const N: usize> Int<N> {
     /// The number of bits of the absolute value; 0 for zero.
     #[inline]
     pub fn bit_length(&self) -> u32 {
-        round::bit_length(&self.magnitude())
+        bit_length(&self.magnitude())
     }
 
     /// The nearest double, ties to even; infinite where the value exceeds the doubles.
@@ -260,69 +260,6 @@ impl<const N: usize> Int<N> {
     }
 }
 
-/// The low `R` limbs of the product of two unsigned numbers.
-#[inline]
-fn unsigned_product<const A: usize, const B: usize, const R: usize>(
-    a: &[u64; A],
-    b: &[u64; B],
-) -> [u64; R] {
-    let mut product = [0; R];
-    for i in 0..A.min(R) {
-        let mut carry = 0;
-        for j in 0..B.min(R - i) {
-            (product[i + j], carry) = multiply_add(a[i], b[j], product[i + j], carry);
-        }
-        if i + B < R {
-            product[i + B] = carry;
-        }
-    }
-    product
-}
-
-/// The low and the high limb of `a * b + c + d`, which always fits.
-#[inline]
-const fn multiply_add(a: u64, b: u64, c: u64, d: u64) -> (u64, u64) {
-    let wide = (a as u128)
-        .wrapping_mul(b as u128)
-        .wrapping_add(c as u128)
-        .wrapping_add(d as u128);
-    (wide as u64, (wide >> 64) as u64)
-}
-
-/// Subtracts `subtrahend & mask` from the limbs of `number` from `start` on.
-///
-/// Limbs above the subtrahend's are left alone: with a negative factor of `start` limbs they
-/// are not part of the product.
-#[inline]
-fn subtract_masked<const R: usize, const B: usize>(
-    number: &mut [u64; R],
-    start: usize,
-    subtrahend: &[u64; B],
-    mask: u64,
-) {
-    let mut borrow = false;
-    for j in 0..B.min(R.saturating_sub(start)) {
-        (number[start + j], borrow) =
-            borrowing_sub(number[start + j], subtrahend[j] & mask, borrow);
-    }
-}
-
-/// `a + b + carry` and the carry out.
-#[inline]
-const fn carrying_add(a: u64, b: u64, carry: bool) -> (u64, bool) {
-    let (sum, first) = a.overflowing_add(b);
-    let (sum, second) = sum.overflowing_add(carry as u64);
-    (sum, first | second)
-}
-
-/// `a - b - borrow` and the borrow out.
-#[inline]
-const fn borrowing_sub(a: u64, b: u64, borrow: bool) -> (u64, bool) {
-    let (difference, first) = a.overflowing_sub(b);
-    let (difference, second) = difference.overflowing_sub(borrow as u64);
-    (difference, first | second)
-}
-
 /// Whether a truncated product is the true one.
 ///
 /// Bit lengths bound the product to one bit more than the limbs can hold; there, and only
@@ -334,169 +271,4 @@ fn product_fits<const A: usize, const B: usize, const R: usize>(
 ) -> bool {
     let sign = a.signum() * b.signum();
     sign == 0 || a.bit_length() + b.bit_length() <= Int::<R>::BITS && product.signum() == sign
-}
-
-/// The remainder by a divisor of one limb.
-#[inline]
-fn remainder_short<const N: usize>(limbs: &[u64; N], divisor: u64) -> u64 {
-    limbs.iter().rev().fold(0, |rest, &limb| {
-        ((u128::from(rest) << 64 | u128::from(limb)) % u128::from(divisor)) as u64
-    })
-}
-
-/// The remainder by a divisor of two limbs.
-fn remainder_long<const N: usize>(limbs: &[u64; N], divisor: u128) -> u128 {
-    let shift = divisor.leading_zeros();
-    let normalised = divisor << shift;
-    let shifted = |i: usize| {
-        let low = if i == 0 { 0 } else { limbs[i - 1] };
-        let high = limbs.get(i).copied().unwrap_or(0);
-        ((u128::from(high) << 64 | u128::from(low)) << shift >> 64) as u64
-    };
-    let rest = (0..=N)
-        .rev()
-        .fold(0, |rest, i| remainder_step(rest, shifted(i), normalised));
-    rest >> shift
-}
-
-/// The remainder of `rest * 2^64 + limb` by a divisor with its top bit set; `rest < divisor`.
-#[inline]
-fn remainder_step(rest: u128, limb: u64, divisor: u128) -> u128 {
-    let (lead, low) = ((divisor >> 64) as u64, divisor as u64);
-    let guess = (rest / u128::from(lead)).min(u128::from(u64::MAX)) as u64;
-    let (product_low, carry) = multiply_add(guess, low, 0, 0);
-    let (product_mid, product_high) = multiply_add(guess, lead, carry, 0);
-    let (low, borrow) = borrowing_sub(limb, product_low, false);
-    let (mid, borrow) = borrowing_sub(rest as u64, product_mid, borrow);
-    let (mut high, _) = borrowing_sub((rest >> 64) as u64, product_high, borrow);
-    let mut rest = u128::from(mid) << 64 | u128::from(low);
-    // The guess is at most two too large, which leaves a negative remainder.
-    while high != 0 {
-        let (sum, carry) = rest.overflowing_add(divisor);
-        rest = sum;
-        high = high.wrapping_add(u64::from(carry));
-    }
-    rest
-}
-
-/// The inverse of an odd number modulo 2^64.
-#[inline]
-const fn inverse_mod_limb(odd: u64) -> u64 {
-    // Right in five bits; each Newton step doubles them.
-    let mut inverse = odd.wrapping_mul(3) ^ 2;
-    let mut step = 0;
-    while step < 4 {
-        inverse = inverse.wrapping_mul(2u64.wrapping_sub(odd.wrapping_mul(inverse)));
-        step += 1;
-    }
-    inverse
-}
-
-/// Subtracts `factor * digit` from a number, modulo its width.
-#[inline]
-fn subtract_multiple(number: &mut [u64], factor: u128, digit: u64) {
-    let factor = [factor as u64, (factor >> 64) as u64];
-    let (mut carry, mut borrow) = (0, false);
-    for (i, limb) in number.iter_mut().enumerate() {
-        let (low, high) = multiply_add(factor.get(i).copied().unwrap_or(0), digit, carry, 0);
-        carry = high;
-        (*limb, borrow) = borrowing_sub(*limb, low, borrow);
-    }
-}
-
-impl<const N: usize> Add for Int<N> {
-    type Output = Self;
-
-    #[inline]
-    fn add(self, other: Self) -> Self {
-        let mut limbs = [0; N];
-        let mut carry = false;
-        for (limb, (&a, &b)) in limbs.iter_mut().zip(self.limbs.iter().zip(&other.limbs)) {
-            (*limb, carry) = carrying_add(a, b, carry);
-        }
-        let sum = Self { limbs };
-        debug_assert!(
-            self.is_negative() != other.is_negative() || sum.is_negative() == self.is_negative(),
-            "a sum exceeds {N} limbs"
-        );
-        sum
-    }
-}
-
-impl<const N: usize> Sub for Int<N> {
-    type Output = Self;
-
-    #[inline]
-    fn sub(self, other: Self) -> Self {
-        let mut limbs = [0; N];
-        let mut borrow = false;
-        for (limb, (&a, &b)) in limbs.iter_mut().zip(self.limbs.iter().zip(&other.limbs)) {
-            (*limb, borrow) = borrowing_sub(a, b, borrow);
-        }
-        let difference = Self { limbs };
-        debug_assert!(
-            self.is_negative() == other.is_negative()
-                || difference.is_negative() == self.is_negative(),
-            "a difference exceeds {N} limbs"
-        );
-        difference
-    }
-}
-
-impl<const N: usize> Neg for Int<N> {
-    type Output = Self;
-
-    #[inline]
-    fn neg(self) -> Self {
-        Self::ZERO - self
-    }
-}
-
-impl<const N: usize> AddAssign for Int<N> {
-    #[inline]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<const N: usize> SubAssign for Int<N> {
-    #[inline]
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
-    }
-}
-
-impl<const N: usize> Default for Int<N> {
-    fn default() -> Self {
-        Self::ZERO
-    }
-}
-
-impl<const N: usize> Ord for Int<N> {
-    #[inline]
-    fn cmp(&self, other: &Self) -> Ordering {
-        let lead = (self.limbs[N - 1] as i64).cmp(&(other.limbs[N - 1] as i64));
-        lead.then_with(|| self.limbs.iter().rev().cmp(other.limbs.iter().rev()))
-    }
-}
-
-impl<const N: usize> PartialOrd for Int<N> {
-    #[inline]
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl<const N: usize> fmt::Debug for Int<N> {
-    /// Sign and hexadecimal digits, as in `-0x1f`.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let magnitude = self.magnitude();
-        let lead = magnitude.iter().rposition(|&limb| limb != 0).unwrap_or(0);
-        let sign = if self.is_negative() { "-" } else { "" };
-        write!(f, "{sign}{:#x}", magnitude[lead])?;
-        magnitude[..lead]
-            .iter()
-            .rev()
-            .try_for_each(|limb| write!(f, "{limb:016x}"))
-    }
 }

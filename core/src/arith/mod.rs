@@ -13,7 +13,9 @@
 pub mod bounds;
 mod gcd;
 mod int;
+mod limbs;
 mod modular;
+mod ops;
 mod round;
 
 pub use gcd::gcd_u128;

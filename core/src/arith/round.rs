@@ -1,5 +1,6 @@
 //! Correctly rounded conversion of integers and ratios to doubles.
 
+use super::limbs::{any_bit_below, bit_length, limb_at};
 use super::Int;
 
 /// The exponent of the least positive double, 2^-1074.
@@ -137,39 +138,4 @@ fn subnormal(number: u64, sticky: bool, shift: i32) -> f64 {
 fn power_of_two(exponent: i32) -> f64 {
     debug_assert!(exponent >= LEAST_NORMAL_EXPONENT);
     f64::from_bits(((exponent.min(1024) + 1023) as u64) << 52)
-}
-
-/// The number of significant bits of an unsigned number.
-#[inline]
-pub(super) fn bit_length<const N: usize>(limbs: &[u64; N]) -> u32 {
-    limbs
-        .iter()
-        .rposition(|&limb| limb != 0)
-        .map_or(0, |i| 64 * (i as u32 + 1) - limbs[i].leading_zeros())
-}
-
-/// The 64 bits from bit `start` on; bits outside the number are zero.
-#[inline]
-fn limb_at<const N: usize>(limbs: &[u64; N], start: i32) -> u64 {
-    let limb = |i: i32| {
-        usize::try_from(i)
-            .ok()
-            .and_then(|i| limbs.get(i))
-            .copied()
-            .unwrap_or(0)
-    };
-    let (index, offset) = (start.div_euclid(64), start.rem_euclid(64));
-    let pair = u128::from(limb(index + 1)) << 64 | u128::from(limb(index));
-    (pair >> offset) as u64
-}
-
-/// Whether a bit below bit `end` is set.
-#[inline]
-fn any_bit_below<const N: usize>(limbs: &[u64; N], end: i32) -> bool {
-    let end = usize::try_from(end).unwrap_or(0);
-    let whole = limbs[..(end / 64).min(N)].iter().any(|&limb| limb != 0);
-    whole
-        || limbs
-            .get(end / 64)
-            .is_some_and(|&limb| limb & ((1 << (end % 64)) - 1) != 0)
 }

@@ -1,0 +1,169 @@
+//! Unsigned numbers as arrays of limbs, little-endian.
+//!
+//! The loops under [`Int`](super::Int) and the rounding. All of them wrap on purpose, so they
+//! spell it out instead of relying on the build's overflow checks being off.
+
+/// The low `R` limbs of the product of two unsigned numbers.
+#[inline]
+pub(super) fn unsigned_product<const A: usize, const B: usize, const R: usize>(
+    a: &[u64; A],
+    b: &[u64; B],
+) -> [u64; R] {
+    let mut product = [0; R];
+    for i in 0..A.min(R) {
+        let mut carry = 0;
+        for j in 0..B.min(R - i) {
+            (product[i + j], carry) = multiply_add(a[i], b[j], product[i + j], carry);
+        }
+        if i + B < R {
+            product[i + B] = carry;
+        }
+    }
+    product
+}
+
+/// The low and the high limb of `a * b + c + d`, which always fits.
+#[inline]
+pub(super) const fn multiply_add(a: u64, b: u64, c: u64, d: u64) -> (u64, u64) {
+    let wide = (a as u128)
+        .wrapping_mul(b as u128)
+        .wrapping_add(c as u128)
+        .wrapping_add(d as u128);
+    (wide as u64, (wide >> 64) as u64)
+}
+
+/// Subtracts `subtrahend & mask` from the limbs of `number` from `start` on.
+///
+/// The borrow out of the subtrahend's last limb is dropped: a product has no limb for it.
+#[inline]
+pub(super) fn subtract_masked<const R: usize, const B: usize>(
+    number: &mut [u64; R],
+    start: usize,
+    subtrahend: &[u64; B],
+    mask: u64,
+) {
+    let mut borrow = false;
+    for j in 0..B.min(R.saturating_sub(start)) {
+        (number[start + j], borrow) =
+            borrowing_sub(number[start + j], subtrahend[j] & mask, borrow);
+    }
+}
+
+/// `a + b + carry` and the carry out.
+#[inline]
+pub(super) const fn carrying_add(a: u64, b: u64, carry: bool) -> (u64, bool) {
+    let (sum, first) = a.overflowing_add(b);
+    let (sum, second) = sum.overflowing_add(carry as u64);
+    (sum, first | second)
+}
+
+/// `a - b - borrow` and the borrow out.
+#[inline]
+pub(super) const fn borrowing_sub(a: u64, b: u64, borrow: bool) -> (u64, bool) {
+    let (difference, first) = a.overflowing_sub(b);
+    let (difference, second) = difference.overflowing_sub(borrow as u64);
+    (difference, first | second)
+}
+
+/// The remainder by a divisor of one limb.
+#[inline]
+pub(super) fn remainder_short<const N: usize>(limbs: &[u64; N], divisor: u64) -> u64 {
+    limbs.iter().rev().fold(0, |rest, &limb| {
+        ((u128::from(rest) << 64 | u128::from(limb)) % u128::from(divisor)) as u64
+    })
+}
+
+/// The remainder by a divisor of two limbs.
+pub(super) fn remainder_long<const N: usize>(limbs: &[u64; N], divisor: u128) -> u128 {
+    let shift = divisor.leading_zeros();
+    let normalised = divisor << shift;
+    let shifted = |i: usize| {
+        let low = if i == 0 { 0 } else { limbs[i - 1] };
+        let high = limbs.get(i).copied().unwrap_or(0);
+        ((u128::from(high) << 64 | u128::from(low)) << shift >> 64) as u64
+    };
+    let rest = (0..=N)
+        .rev()
+        .fold(0, |rest, i| remainder_step(rest, shifted(i), normalised));
+    rest >> shift
+}
+
+/// The remainder of `rest * 2^64 + limb` by a divisor with its top bit set; `rest < divisor`.
+#[inline]
+pub(super) fn remainder_step(rest: u128, limb: u64, divisor: u128) -> u128 {
+    let (lead, low) = ((divisor >> 64) as u64, divisor as u64);
+    let guess = (rest / u128::from(lead)).min(u128::from(u64::MAX)) as u64;
+    let (product_low, carry) = multiply_add(guess, low, 0, 0);
+    let (product_mid, product_high) = multiply_add(guess, lead, carry, 0);
+    let (low, borrow) = borrowing_sub(limb, product_low, false);
+    let (mid, borrow) = borrowing_sub(rest as u64, product_mid, borrow);
+    let (mut high, _) = borrowing_sub((rest >> 64) as u64, product_high, borrow);
+    let mut rest = u128::from(mid) << 64 | u128::from(low);
+    // The guess is at most two too large, which leaves a negative remainder.
+    while high != 0 {
+        let (sum, carry) = rest.overflowing_add(divisor);
+        rest = sum;
+        high = high.wrapping_add(u64::from(carry));
+    }
+    rest
+}
+
+/// The inverse of an odd number modulo 2^64.
+#[inline]
+pub(super) const fn inverse_mod_limb(odd: u64) -> u64 {
+    // Right in five bits; each Newton step doubles them.
+    let mut inverse = odd.wrapping_mul(3) ^ 2;
+    let mut step = 0;
+    while step < 4 {
+        inverse = inverse.wrapping_mul(2u64.wrapping_sub(odd.wrapping_mul(inverse)));
+        step += 1;
+    }
+    inverse
+}
+
+/// Subtracts `factor * digit` from a number, modulo its width.
+#[inline]
+pub(super) fn subtract_multiple(number: &mut [u64], factor: u128, digit: u64) {
+    let factor = [factor as u64, (factor >> 64) as u64];
+    let (mut carry, mut borrow) = (0, false);
+    for (i, limb) in number.iter_mut().enumerate() {
+        let (low, high) = multiply_add(factor.get(i).copied().unwrap_or(0), digit, carry, 0);
+        carry = high;
+        (*limb, borrow) = borrowing_sub(*limb, low, borrow);
+    }
+}
+
+/// The number of significant bits of an unsigned number.
+#[inline]
+pub(super) fn bit_length<const N: usize>(limbs: &[u64; N]) -> u32 {
+    limbs
+        .iter()
+        .rposition(|&limb| limb != 0)
+        .map_or(0, |i| 64 * (i as u32 + 1) - limbs[i].leading_zeros())
+}
+
+/// The 64 bits from bit `start` on; bits outside the number are zero.
+#[inline]
+pub(super) fn limb_at<const N: usize>(limbs: &[u64; N], start: i32) -> u64 {
+    let limb = |i: i32| {
+        usize::try_from(i)
+            .ok()
+            .and_then(|i| limbs.get(i))
+            .copied()
+            .unwrap_or(0)
+    };
+    let (index, offset) = (start.div_euclid(64), start.rem_euclid(64));
+    let pair = u128::from(limb(index + 1)) << 64 | u128::from(limb(index));
+    (pair >> offset) as u64
+}
+
+/// Whether a bit below bit `end` is set.
+#[inline]
+pub(super) fn any_bit_below<const N: usize>(limbs: &[u64; N], end: i32) -> bool {
+    let end = usize::try_from(end).unwrap_or(0);
+    let whole = limbs[..(end / 64).min(N)].iter().any(|&limb| limb != 0);
+    whole
+        || limbs
+            .get(end / 64)
+            .is_some_and(|&limb| limb & ((1 << (end % 64)) - 1) != 0)
+}

@@ -1,0 +1,105 @@
+//! The standard operators, order and display of [`Int`].
+
+use std::cmp::Ordering;
+use std::fmt;
+use std::ops::{Add, AddAssign, Neg, Sub, SubAssign};
+
+use super::limbs::{borrowing_sub, carrying_add};
+use super::Int;
+
+impl<const N: usize> Add for Int<N> {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        let mut limbs = [0; N];
+        let mut carry = false;
+        for (limb, (&a, &b)) in limbs.iter_mut().zip(self.limbs().iter().zip(other.limbs())) {
+            (*limb, carry) = carrying_add(a, b, carry);
+        }
+        let sum = Self::from_limbs(limbs);
+        debug_assert!(
+            self.is_negative() != other.is_negative() || sum.is_negative() == self.is_negative(),
+            "a sum exceeds {N} limbs"
+        );
+        sum
+    }
+}
+
+impl<const N: usize> Sub for Int<N> {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        let mut limbs = [0; N];
+        let mut borrow = false;
+        for (limb, (&a, &b)) in limbs.iter_mut().zip(self.limbs().iter().zip(other.limbs())) {
+            (*limb, borrow) = borrowing_sub(a, b, borrow);
+        }
+        let difference = Self::from_limbs(limbs);
+        debug_assert!(
+            self.is_negative() == other.is_negative()
+                || difference.is_negative() == self.is_negative(),
+            "a difference exceeds {N} limbs"
+        );
+        difference
+    }
+}
+
+impl<const N: usize> Neg for Int<N> {
+    type Output = Self;
+
+    #[inline]
+    fn neg(self) -> Self {
+        Self::ZERO - self
+    }
+}
+
+impl<const N: usize> AddAssign for Int<N> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<const N: usize> SubAssign for Int<N> {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<const N: usize> Default for Int<N> {
+    fn default() -> Self {
+        Self::ZERO
+    }
+}
+
+impl<const N: usize> Ord for Int<N> {
+    #[inline]
+    fn cmp(&self, other: &Self) -> Ordering {
+        let lead = (self.limbs()[N - 1] as i64).cmp(&(other.limbs()[N - 1] as i64));
+        lead.then_with(|| self.limbs().iter().rev().cmp(other.limbs().iter().rev()))
+    }
+}
+
+impl<const N: usize> PartialOrd for Int<N> {
+    #[inline]
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<const N: usize> fmt::Debug for Int<N> {
+    /// Sign and hexadecimal digits, as in `-0x1f`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let magnitude = self.magnitude();
+        let lead = magnitude.iter().rposition(|&limb| limb != 0).unwrap_or(0);
+        let sign = if self.is_negative() { "-" } else { "" };
+        write!(f, "{sign}{:#x}", magnitude[lead])?;
+        magnitude[..lead]
+            .iter()
+            .rev()
+            .try_for_each(|limb| write!(f, "{limb:016x}"))
+    }
+}
