@@ -1,0 +1,67 @@
+"""Exact set operations on solids by merging binary space partition trees.
+
+Meshes become inside/outside partition trees on a decimal lattice; unions, intersections and
+differences merge those trees in exact arithmetic; the result leaves as a closed mesh.
+
+Examples
+--------
+>>> import bspcsg as b
+>>> part = b.cube(10, center=True) - b.cylinder(h=20, r=3, segments=4, center=True)
+>>> part.volume
+820.0
+"""
+
+from ._core import __version__, set_threads
+from .errors import (
+    BspcsgError,
+    Finding,
+    FormatError,
+    InternalError,
+    InvalidMeshError,
+    LimitError,
+    UnboundedError,
+)
+from .mesh import Mesh
+from .primitives import (
+    box,
+    cone,
+    cube,
+    cylinder,
+    extrude,
+    half_space,
+    prism,
+    revolve,
+    sphere,
+    torus,
+)
+from .setops import boolean, difference, intersection, union, xor
+from .solid import Solid
+
+__all__ = [
+    "BspcsgError",
+    "Finding",
+    "FormatError",
+    "InternalError",
+    "InvalidMeshError",
+    "LimitError",
+    "Mesh",
+    "Solid",
+    "UnboundedError",
+    "__version__",
+    "boolean",
+    "box",
+    "cone",
+    "cube",
+    "cylinder",
+    "difference",
+    "extrude",
+    "half_space",
+    "intersection",
+    "prism",
+    "revolve",
+    "set_threads",
+    "sphere",
+    "torus",
+    "union",
+    "xor",
+]

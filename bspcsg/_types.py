@@ -1,0 +1,28 @@
+"""Names for the arrays and values that cross module borders."""
+
+from collections.abc import Sequence
+from typing import Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+#: Coordinates or other measures: float64, the shape is given where the name is used.
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+#: Indices: int64, the docstring that uses it says what they index.
+IndexArray: TypeAlias = npt.NDArray[np.int64]
+
+#: In/on/out answers: int8, +1 inside, 0 on the boundary, -1 outside.
+SideArray: TypeAlias = npt.NDArray[np.int8]
+
+#: One number per axis, in any form numpy understands.
+Vector: TypeAlias = Sequence[float] | npt.NDArray[np.floating] | npt.NDArray[np.integer]
+
+#: Which winding numbers count as inside.
+WindingRule: TypeAlias = Literal["positive", "nonzero", "even-odd"]
+
+#: A boolean of two or more operands, by name.
+SetOp: TypeAlias = Literal["union", "intersection", "difference", "xor"]
+
+#: One line of the program that the core evaluates: what to do, and with which earlier lines.
+ProgramLine: TypeAlias = tuple[str, list[int]]

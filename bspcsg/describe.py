@@ -1,0 +1,47 @@
+"""What a solid's `repr` says: only what is known already."""
+
+from typing import Any
+
+import numpy as np
+
+from ._core import Tree
+from .expression import Node, Pending, make_plan
+from .leaf import ConstantLeaf, MeshLeaf, PlaneLeaf
+from .mesh import Mesh
+from .transform import Factors
+
+
+def describe(node: Node, factors: Factors, mesh: Mesh | None) -> str:
+    """Return a few words on an expression under a transform, without evaluating it."""
+    content = node.content
+    moved = ", transformed" if factors else ""
+    if mesh is not None:
+        return _size(len(mesh.faces), mesh.bounds)
+    if isinstance(content, Pending):
+        return f"pending: {len(make_plan(node).operands)} operands{moved}"
+    if isinstance(content, MeshLeaf):
+        bounds = np.array([content.vertices.min(axis=0), content.vertices.max(axis=0)])
+        return _size(len(content.faces), bounds) + moved
+    if isinstance(content, PlaneLeaf):
+        return "half-space" + moved
+    if isinstance(content, ConstantLeaf):
+        return "all of space" if content.full else "empty"
+    return _tree_description(content.result) + moved
+
+
+def _tree_description(tree: Tree) -> str:
+    if tree.is_empty:
+        return "empty"
+    if not tree.is_bounded:
+        return "unbounded"
+    bounds = tree.bounds
+    return "evaluated" if bounds is None else f"evaluated, bounds {_box(bounds)}"
+
+
+def _size(faces: int, bounds: Any) -> str:
+    return "empty" if bounds is None else f"{faces} triangles, bounds {_box(bounds)}"
+
+
+def _box(bounds: Any) -> str:
+    low, high = ("(" + ", ".join(f"{x:.6g}" for x in corner) + ")" for corner in bounds)
+    return f"{low} to {high}"

@@ -1,0 +1,179 @@
+"""The exceptions of this package, and the one place where the core's errors become them.
+
+Every failure is a `BspcsgError` with a stable `code`, the places it concerns in `where`, and a
+sentence that says what is wrong and what to do.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from . import _core
+
+
+class BspcsgError(Exception):
+    """Anything this package refuses or fails to do.
+
+    Parameters
+    ----------
+    message : str
+        A sentence for people.
+    code : str
+        A stable name for programs, such as ``"not_closed"``.
+    where : sequence of int
+        Indices of the faces or vertices concerned; the message says which of the two.
+    """
+
+    def __init__(self, message: str, code: str = "internal", where: Sequence[int] = ()) -> None:
+        # All arguments go to the base class, so that pickling keeps them.
+        super().__init__(message, code, tuple(where))
+
+    @property
+    def message(self) -> str:
+        """The sentence for people."""
+        return str(self.args[0])
+
+    @property
+    def code(self) -> str:
+        """The stable name of the failure."""
+        return str(self.args[1])
+
+    @property
+    def where(self) -> tuple[int, ...]:
+        """Indices of the faces or vertices concerned."""
+        return tuple(self.args[2])
+
+    def __str__(self) -> str:
+        """Return the sentence alone."""
+        return self.message
+
+
+class InvalidMeshError(BspcsgError, ValueError):
+    """The input is not a closed mesh, or a parameter makes no solid."""
+
+
+class LimitError(BspcsgError, OverflowError):
+    """Coordinates or sizes exceed what the lattice can hold."""
+
+
+class FormatError(BspcsgError, ValueError):
+    """A file cannot be read as what it claims to be, or cannot be written."""
+
+
+class UnboundedError(BspcsgError, ValueError):
+    """A finite answer was asked of a solid that reaches to infinity."""
+
+
+class InternalError(BspcsgError, RuntimeError):
+    """An invariant of this package failed; please report it."""
+
+
+_CLASSES: dict[str, type[BspcsgError]] = {
+    "not_closed": InvalidMeshError,
+    "non_finite": InvalidMeshError,
+    "index_out_of_range": InvalidMeshError,
+    "shape": InvalidMeshError,
+    "empty_mesh": InvalidMeshError,
+    "bad_normal": InvalidMeshError,
+    "too_large": LimitError,
+    "too_small": LimitError,
+    "unbounded": UnboundedError,
+}
+
+_ADVICE = {
+    "not_closed": "Every edge needs an opposite edge; close the holes before making a solid.",
+    "non_finite": "Coordinates must be finite numbers.",
+    "empty_mesh": "A mesh without faces is no solid; use Solid.empty() for the empty set.",
+    "too_large": "Choose a coarser pitch (for example pitch=-6), or move or scale the solids.",
+    "too_small": "Choose a finer pitch (for example pitch=-12), or scale the solid up.",
+    "unbounded": "Intersect it with a bounded solid first.",
+    "internal": "This is a defect of bspcsg; please report it with the input.",
+}
+
+
+def from_core(error: "_core.CoreError") -> BaseException:
+    """Return the exception of this package that says what the core's error says."""
+    if error.code == "cancelled":
+        return KeyboardInterrupt()
+    kind = _CLASSES.get(error.code, InternalError)
+    advice = _ADVICE.get("internal" if kind is InternalError else error.code, "")
+    sentence = error.message.rstrip().rstrip(".")
+    return kind(f"{sentence}. {advice}".rstrip(), error.code, error.where)
+
+
+@contextmanager
+def core_errors() -> Iterator[None]:
+    """Turn the core's errors inside the block into exceptions of this package."""
+    try:
+        yield
+    except _core.CoreError as error:
+        raise from_core(error) from error
+
+
+def invalid_parameter(message: str) -> InvalidMeshError:
+    """Return the error for a parameter that makes no solid."""
+    return InvalidMeshError(message, "invalid_parameter")
+
+
+def number(value: Any, name: str) -> float:
+    """Return a finite float, or raise an error that names the parameter."""
+    try:
+        result = float(value)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise invalid_parameter(f"{name} must be a number, not {value!r}.") from error
+    if not math.isfinite(result):
+        raise invalid_parameter(f"{name} must be finite, not {result}.")
+    return result
+
+
+def positive(value: Any, name: str) -> float:
+    """Return a finite float above 0, or raise an error that names the parameter."""
+    result = number(value, name)
+    if result <= 0:
+        raise invalid_parameter(f"{name} must be above 0, not {result:g}.")
+    return result
+
+
+def at_least(least: int, value: Any, name: str) -> int:
+    """Return a whole number of at least `least`, or raise an error that names the parameter."""
+    result = number(value, name)
+    if result != int(result) or result < least:
+        raise invalid_parameter(f"{name} must be a whole number from {least} on, not {value!r}.")
+    return int(result)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something noteworthy about an input or a result that is not an error.
+
+    Parameters
+    ----------
+    code : str
+        A stable name, such as ``"zero_area"``.
+    severity : {"note", "warning", "error"}
+    message : str
+        A sentence for people.
+    where : tuple of int
+        Indices of the first faces or vertices concerned.
+    count : int
+        How many there are in all.
+    """
+
+    code: str
+    severity: str
+    message: str
+    where: tuple[int, ...]
+    count: int
+
+    @classmethod
+    def from_core(cls, finding: "_core.Finding") -> "Finding":
+        """Return the core's finding as a value."""
+        return cls(
+            finding["code"],
+            finding["severity"],
+            finding["message"],
+            tuple(finding["where"]),
+            finding["count"],
+        )

@@ -1,0 +1,151 @@
+"""What can be measured of a solid: the queries, apart from the value that answers them."""
+
+from abc import ABC, abstractmethod
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from . import interop
+from ._core import Tree
+from ._types import FloatArray, IndexArray, SideArray
+from .errors import Finding, UnboundedError, core_errors
+from .mesh import Mesh
+
+#: Up to this many triangles the exact volume is cheap enough to round from.
+EXACT_VOLUME_FACES = 10_000
+
+
+class Measured(ABC):
+    """A solid as the measures see it."""
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def tree(self) -> Tree:
+        """The partition tree of the set."""
+
+    @abstractmethod
+    def to_mesh(self) -> Mesh:
+        """Return the boundary as a closed mesh."""
+
+    @abstractmethod
+    def normalized(self) -> "Measured":
+        """Return the same set with the reduced boundary as its mesh."""
+
+    @property
+    def vertices(self) -> FloatArray:
+        """Vertices of the mesh, (n, 3) float64, in model units, read-only."""
+        return self.to_mesh().vertices
+
+    @property
+    def faces(self) -> IndexArray:
+        """Triangles of the mesh, (m, 3) int64, indices of `vertices`, read-only."""
+        return self.to_mesh().faces
+
+    @property
+    def sources(self) -> tuple[int, ...]:
+        """Identities of the input meshes, in the order in which `Mesh.source` counts them."""
+        return tuple(self.tree.sources)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What was noteworthy about the inputs and about making the mesh."""
+        self.to_mesh()
+        found = [*self.tree.findings, *self.tree.mesh_findings()]
+        return tuple(Finding.from_core(finding) for finding in found)
+
+    @property
+    def pitch(self) -> int:
+        """Exponent of the lattice step: it is ``10**pitch`` model units."""
+        return self.tree.pitch
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no volume is inside."""
+        return self.normalized().tree.is_empty
+
+    @property
+    def is_bounded(self) -> bool:
+        """Whether the solid fits into some box."""
+        return self.tree.is_bounded
+
+    @property
+    def volume_exact(self) -> Fraction:
+        """Volume of the set in cubic model units, exactly.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity; so for all measures.
+        """
+        with core_errors():
+            return Fraction(*self._measurable().tree.volume6_exact())
+
+    @property
+    def volume(self) -> float:
+        """Volume in cubic model units.
+
+        The exact volume, correctly rounded, up to 10 000 triangles; above that the sum over the
+        rounded vertices of the mesh.
+        """
+        mesh = self._measurable().to_mesh()
+        if len(mesh.faces) <= EXACT_VOLUME_FACES:
+            return float(self.volume_exact)
+        return mesh.volume
+
+    @property
+    def area(self) -> float:
+        """Surface area in square model units."""
+        return self._measurable().to_mesh().area
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Centre of volume, (3,) float64, in model units; NaN for the empty set."""
+        return self._measurable().to_mesh().centroid
+
+    @property
+    def bounds(self) -> FloatArray | None:
+        """Lowest and highest coordinates, (2, 3) float64, or None for the empty set."""
+        bounds = self._measurable().tree.bounds
+        return None if bounds is None else np.array(bounds)
+
+    @property
+    def euler_number(self) -> int:
+        """Vertices - edges + faces of the mesh."""
+        return self._measurable().to_mesh().euler_number
+
+    @property
+    def components(self) -> int:
+        """Number of connected surfaces; the wall of a closed cavity is one of its own."""
+        return self._measurable().to_mesh().components
+
+    @property
+    def genus(self) -> int:
+        """Number of handles, summed over all connected surfaces."""
+        return self._measurable().to_mesh().genus
+
+    def classify(self, points: Any) -> SideArray:
+        """Say of each point whether it is inside, exactly.
+
+        Parameters
+        ----------
+        points : (k, 3) array_like of float
+            In model units; snapped to the lattice.
+
+        Returns
+        -------
+        (k,) int8
+            +1 inside, 0 on the boundary, -1 outside.
+        """
+        array = interop.points_array(points)
+        with core_errors():
+            return self.normalized().tree.classify(array)
+
+    def _measurable(self) -> "Measured":
+        if not self.tree.is_bounded:
+            raise UnboundedError(
+                "The solid reaches to infinity; intersect it with a bounded one first.", "unbounded"
+            )
+        return self.normalized()

@@ -1,0 +1,131 @@
+"""Set operations on any number of solids, and on bare arrays."""
+
+from collections.abc import Iterable
+from typing import Any
+
+from . import interop
+from ._core import Tree
+from ._types import FloatArray, IndexArray, ProgramLine, SetOp
+from .errors import core_errors, invalid_parameter
+from .leaf import at_pitch
+from .solid import Solid, combine
+
+_PROGRAMS: dict[str, list[ProgramLine]] = {
+    "union": [("leaf", [0]), ("leaf", [1]), ("or", [0, 1])],
+    "intersection": [("leaf", [0]), ("leaf", [1]), ("and", [0, 1])],
+    "difference": [("leaf", [0]), ("leaf", [1]), ("not", [1]), ("and", [0, 2])],
+    "xor": [("leaf", [0]), ("leaf", [1]), ("xor", [0, 1])],
+}
+
+
+def union(*solids: Solid | Iterable[Solid]) -> Solid:
+    """Return what is inside at least one solid; the empty set if there is none.
+
+    Parameters
+    ----------
+    *solids : Solid or iterable of Solid
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.union(b.cube(1).translate(i, 0, 0) for i in range(3)).volume
+    3.0
+    """
+    operands = _flat(solids)
+    return _combined("or", operands) if operands else Solid.empty()
+
+
+def intersection(*solids: Solid | Iterable[Solid]) -> Solid:
+    """Return what is inside all solids; all of space if there is none.
+
+    Parameters
+    ----------
+    *solids : Solid or iterable of Solid
+    """
+    operands = _flat(solids)
+    return _combined("and", operands) if operands else Solid.full()
+
+
+def difference(solid: Solid, *rest: Solid | Iterable[Solid]) -> Solid:
+    """Return what is inside the first solid and none of the others.
+
+    Parameters
+    ----------
+    solid : Solid
+    *rest : Solid or iterable of Solid
+    """
+    return _combined("and", [*_flat([solid]), *(~other for other in _flat(rest))])
+
+
+def xor(*solids: Solid | Iterable[Solid]) -> Solid:
+    """Return what is inside an odd number of the solids.
+
+    Parameters
+    ----------
+    *solids : Solid or iterable of Solid
+    """
+    operands = _flat(solids)
+    result = operands[0] if operands else Solid.empty()
+    for operand in operands[1:]:
+        result = result ^ operand
+    return result
+
+
+def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, IndexArray]:
+    """Combine two meshes: arrays in, arrays out.
+
+    Parameters
+    ----------
+    va, vb : (n, 3) array_like of float
+        Vertices, in model units.
+    fa, fb : (m, 3) array_like of int
+        Indices of `va` and `vb`, counter-clockwise seen from outside.
+    op : {"union", "intersection", "difference", "xor"}
+
+    Returns
+    -------
+    vertices : (n, 3) float64
+    faces : (m, 3) int64
+
+    Raises
+    ------
+    InvalidMeshError
+        If a mesh is not closed, as for `Solid`, or the operation is another.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> a, c = b.cube(2).to_mesh(), b.cube(2).translate(1, 1, 1).to_mesh()
+    >>> vertices, faces = b.boolean(*a, *c, "intersection")
+    >>> vertices.shape, faces.shape
+    ((8, 3), (12, 3))
+    """
+    if op not in _PROGRAMS:
+        raise invalid_parameter(f"Unknown operation {op!r}; one of {', '.join(_PROGRAMS)}.")
+    trees = [_tree(va, fa), _tree(vb, fb)]
+    pitch = min(tree.pitch for tree in trees)
+    operands = [at_pitch(tree, pitch) for tree in trees]
+    with core_errors():
+        vertices, faces, _ = Tree.evaluate(_PROGRAMS[op], operands).to_mesh()
+    return vertices, faces
+
+
+def _tree(vertices: Any, faces: Any) -> Tree:
+    points = interop.points_array(vertices)
+    triangles = interop.face_array(faces, points)
+    with core_errors():
+        return Tree.from_mesh(points, triangles)
+
+
+def _combined(operator: Any, operands: list[Solid]) -> Solid:
+    return operands[0] if len(operands) == 1 else combine(operator, operands)
+
+
+def _flat(solids: Iterable[Solid | Iterable[Solid]]) -> list[Solid]:
+    flat: list[Solid] = []
+    for entry in solids:
+        flat.extend([entry] if isinstance(entry, Solid) else entry)
+    for solid in flat:
+        if not isinstance(solid, Solid):
+            raise invalid_parameter(f"Expected solids, not {type(solid).__name__}.")
+    return flat

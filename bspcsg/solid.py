@@ -1,0 +1,373 @@
+"""`Solid`: a set of points with a polyhedral boundary, as an immutable value.
+
+A solid is a lazy expression under a transform. The first query evaluates it, once; the answer is
+kept and the expression let go. Two things are promised, and two kinds of query ask for them:
+
+* the set is right, always: `to_mesh`, `vertices`, `faces` pay for this much and no more;
+* the mesh is the reduced boundary, every wall between inside and outside exactly once: `volume`,
+  `equals`, `save` and the like take `normalized`, which checks inputs that nobody has vouched for.
+"""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import interop, transform
+from ._core import Tree
+from ._types import ProgramLine, Vector, WindingRule
+from .describe import describe
+from .errors import core_errors, invalid_parameter
+from .expression import Node, Operator, Placed, complement, evaluate, operation
+from .leaf import ConstantLeaf, Leaf, MeshLeaf, TreeLeaf, tree_of
+from .measure import Measured
+from .mesh import Mesh
+from .transform import Factors, common_prefix
+
+if TYPE_CHECKING:
+    import manifold3d
+    import trimesh
+
+
+class Solid(Measured):
+    """A closed triangle mesh as a set of points.
+
+    Inside is where the winding number of the faces satisfies the rule; faces may cross, overlap,
+    touch or repeat. Coordinates are snapped to a decimal lattice, by default of step 1e-9.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array_like of float
+        In model units.
+    faces : (m, 3) array_like of int, or sequence of index sequences
+        Indices of `vertices`, counter-clockwise seen from outside. Polygons are triangulated.
+    pitch : int, optional
+        The lattice step is ``10**pitch`` units. By default -9, or what the size asks for.
+    trusted : bool
+        Your word that faces meet in common edges and vertices only, which saves a check.
+    winding : {"positive", "nonzero", "even-odd"}
+        Which winding numbers are inside.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the mesh is not closed (`where` lists faces), has no faces, has coordinates that are not
+        finite, indices out of range, or arrays of another shape.
+    LimitError
+        If the coordinates do not fit on the lattice of the given pitch.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> part = b.cube(2) - b.cube(1)
+    >>> part
+    Solid(pending: 2 operands)
+    >>> part.volume
+    7.0
+    >>> (part | b.cube(1)).equals(b.cube(2))
+    True
+    """
+
+    __slots__ = ("__weakref__", "_factors", "_mesh", "_node", "_placed", "_reduced")
+
+    def __init__(
+        self,
+        vertices: Any,
+        faces: Any,
+        *,
+        pitch: int | None = None,
+        trusted: bool = False,
+        winding: WindingRule = "positive",
+    ) -> None:
+        if winding not in ("positive", "nonzero", "even-odd"):
+            raise invalid_parameter(f"Unknown winding rule {winding!r}.")
+        arrays = interop.own_arrays(vertices, faces)
+        leaf = MeshLeaf(*arrays, pitch=pitch, trusted=trusted, winding=winding)
+        # Errors in a mesh belong to the line that gave it, not to the first query.
+        leaf.own_tree()
+        self._set(Node(leaf), ())
+
+    def _set(self, node: Node, factors: Factors) -> None:
+        self._node = node
+        self._factors = factors
+        self._placed: Leaf | None = None
+        self._mesh: Mesh | None = None
+        self._reduced: Solid | None = None
+
+    @classmethod
+    def from_node(cls, node: Node, factors: Factors = ()) -> "Solid":
+        """Return the solid of an expression under a transform (for the modules of this package)."""
+        solid = cls.__new__(cls)
+        solid._set(node, factors)
+        return solid
+
+    @classmethod
+    def from_leaf(cls, leaf: Leaf) -> "Solid":
+        """Return the solid of a leaf (for the modules of this package)."""
+        return cls.from_node(Node(leaf))
+
+    @classmethod
+    def from_mesh(cls, mesh: Any, **options: Any) -> "Solid":
+        """Return the solid of whatever holds a mesh.
+
+        Parameters
+        ----------
+        mesh : object
+            A trimesh, manifold3d, pymeshlab, open3d, pyvista, vtk or meshio mesh, a CadQuery or
+            build123d shape, a pair (vertices, faces), a path, or anything that has ``vertices``
+            and ``faces``. A `Solid` is returned as it is.
+        **options
+            As for `Solid`.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the object holds no mesh, or as for `Solid`.
+        """
+        if isinstance(mesh, Solid):
+            return mesh
+        if isinstance(mesh, (str, os.PathLike)):
+            return cls.load(mesh, **options)
+        return cls(*interop.arrays_from(mesh), **options)
+
+    @classmethod
+    def empty(cls) -> "Solid":
+        """Return the empty set."""
+        return cls.from_leaf(ConstantLeaf(full=False))
+
+    @classmethod
+    def full(cls) -> "Solid":
+        """Return all of space."""
+        return cls.from_leaf(ConstantLeaf(full=True))
+
+    # Set operations
+
+    def __or__(self, other: object) -> "Solid":
+        """Union."""
+        return combine("or", (self, other)) if isinstance(other, Solid) else NotImplemented
+
+    __add__ = __or__
+
+    def __radd__(self, other: object) -> "Solid":
+        """Make ``sum(solids)`` work, which starts from 0."""
+        return self if isinstance(other, int) and other == 0 else NotImplemented
+
+    def __and__(self, other: object) -> "Solid":
+        """Intersection."""
+        return combine("and", (self, other)) if isinstance(other, Solid) else NotImplemented
+
+    def __sub__(self, other: object) -> "Solid":
+        """Difference."""
+        return combine("and", (self, ~other)) if isinstance(other, Solid) else NotImplemented
+
+    def __xor__(self, other: object) -> "Solid":
+        """Symmetric difference, as for Python's sets (manifold3d's ``^`` is the intersection)."""
+        return combine("xor", (self, other)) if isinstance(other, Solid) else NotImplemented
+
+    def __invert__(self) -> "Solid":
+        """Complement: everything outside."""
+        return Solid.from_node(*complement(Placed(self._node, self._factors)))
+
+    def equals(self, other: "Solid") -> bool:
+        """Whether both are the same set of points, exactly."""
+        return (self ^ other).is_empty
+
+    def __le__(self, other: object) -> bool:
+        """Whether this set is part of the other, exactly."""
+        return (self - other).is_empty if isinstance(other, Solid) else NotImplemented
+
+    def isdisjoint(self, other: "Solid") -> bool:
+        """Whether the two have no volume in common; contact is allowed."""
+        return (self & other).is_empty
+
+    def __bool__(self) -> bool:
+        """Whether the solid is not empty; this evaluates it."""
+        return not self.is_empty
+
+    # Transforms
+
+    def translate(self, *offset: float | Vector) -> "Solid":
+        """Return the solid moved by three numbers or one vector, in model units.
+
+        Exact if the numbers are whole lattice steps, as short decimals are.
+        """
+        vector: Any = offset[0] if len(offset) == 1 else offset
+        return self._moved((transform.translation(vector),))
+
+    def rotate(self, angle: float | Vector, axis: str | Vector = "z") -> "Solid":
+        """Return the solid rotated about an axis through the origin.
+
+        Quarter turns about a coordinate axis are exact.
+
+        Parameters
+        ----------
+        angle : float or (3,) float
+            In degrees, counter-clockwise when the axis points at the viewer. Three angles turn
+            about x, then y, then z, and `axis` is ignored.
+        axis : {"x", "y", "z"} or (3,) float
+        """
+        about: Any = angle
+        if np.ndim(about) == 0:
+            return self._moved((transform.rotation(about, axis),))
+        return self._moved(transform.euler_rotation(about))
+
+    def scale(self, factor: float | Vector) -> "Solid":
+        """Return the solid scaled about the origin, by one factor or one per axis."""
+        return self._moved((transform.scaling(factor),))
+
+    def mirror(self, normal: Vector) -> "Solid":
+        """Return the mirror image in the plane through the origin with this normal."""
+        return self._moved((transform.mirroring(normal),))
+
+    def transform(self, matrix: Any) -> "Solid":
+        """Return the image under an affine map, a (4, 4) or (3, 4) matrix for column vectors.
+
+        Solids that were moved by bitwise equal matrices are combined first and moved afterwards.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the matrix is no invertible affine map.
+        """
+        return self._moved((transform.matrix_factor(matrix),))
+
+    def _moved(self, factors: Factors) -> "Solid":
+        kept = tuple(factor for factor in factors if not factor.is_identity)
+        return Solid.from_node(self._node, kept + self._factors) if kept else self
+
+    # Results
+
+    @property
+    def tree(self) -> Tree:
+        """The partition tree (of the compiled core), after evaluating the solid."""
+        if self._placed is None:
+            leaf = evaluate(self._node)
+            self._placed = leaf.placed(self._factors) if self._factors else leaf
+        return tree_of(self._placed)
+
+    def to_mesh(self) -> Mesh:
+        """Return the boundary as a closed mesh; its arrays are read-only and kept.
+
+        What was not cut comes out as it came in. Walls inside an input that overlaps itself are
+        left where no operation met them; `normalized` removes them.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+        """
+        if self._mesh is None:
+            with core_errors():
+                self._mesh = Mesh(*self.tree.to_mesh()).frozen()
+        return self._mesh
+
+    def normalized(self) -> "Solid":
+        """Return the same set with the reduced boundary as its mesh.
+
+        Inputs that nobody has vouched for are checked, once, and united with themselves if their
+        faces overlap. The queries of measure, comparison, check and file use this form.
+        """
+        tree = self.tree
+        if tree.simple is True:
+            return self
+        if self._reduced is None:
+            with core_errors():
+                self._reduced = Solid.from_leaf(TreeLeaf(tree.normalized()))
+        return self._reduced
+
+    def to_trimesh(self) -> "trimesh.Trimesh":
+        """Return a `trimesh.Trimesh` with the same vertices and faces."""
+        return interop.to_trimesh(self.normalized().to_mesh())
+
+    def to_manifold(self) -> "manifold3d.Manifold":
+        """Return a `manifold3d.Manifold`; ask its ``status()`` whether it was accepted."""
+        return interop.to_manifold(self.normalized().to_mesh())
+
+    def save(self, path: str | os.PathLike[str], **options: Any) -> None:
+        """Write the mesh to a file; the suffix names the format (see `bspcsg.save`)."""
+        from . import io
+
+        io.save(self, path, **options)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], **options: Any) -> "Solid":
+        """Read a mesh file; the suffix names the format (see `bspcsg.load`)."""
+        from . import io
+
+        return io.load(path, **options)
+
+    # Where it came from
+
+    @property
+    def last_operation(self) -> "LastOperation | None":
+        """The operation that made this solid, or None for a mesh, a loaded or a copied solid.
+
+        Exactly one evaluation is remembered: its program, its operands and no further. A chain
+        that asks for each of its results keeps one operation, however long it grows; one that asks
+        at its end only was evaluated as one operation, and that is remembered.
+        """
+        content = evaluate(self._node)
+        if not isinstance(content, TreeLeaf) or content.record is None:
+            return None
+        record = content.record
+        operands = tuple(Solid.from_leaf(leaf) for leaf in record.leaves)
+        return LastOperation(record.program, operands, Solid.from_node(self._node))
+
+    def check(self, **options: Any) -> Any:
+        """Compare the operation that made this solid with manifold3d (see `bspcsg.check`)."""
+        from . import check
+
+        return check.check_result(self, **options)
+
+    # As a value
+
+    def __repr__(self) -> str:
+        """Say what is known without evaluating anything."""
+        if self._placed is None:
+            return f"Solid({describe(self._node, self._factors, self._mesh)})"
+        return f"Solid({describe(Node(self._placed), (), self._mesh)})"
+
+    def __copy__(self) -> "Solid":
+        """Return the solid itself, which never changes."""
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "Solid":
+        """Return the solid itself, which never changes."""
+        return self
+
+    def __reduce__(self) -> tuple[Any, tuple[bytes, Factors]]:
+        """Pickle the evaluated tree, exactly, with the transform still apart."""
+        return _restored, (tree_of(evaluate(self._node)).dump(), self._factors)
+
+
+@dataclass(frozen=True, eq=False)
+class LastOperation:
+    """The evaluation that made a solid.
+
+    Parameters
+    ----------
+    program : list of (str, list of int)
+        Lines ``("leaf", [k])`` for operand k, and "or", "and", "xor", "not" over earlier lines; the
+        last line is the result.
+    operands : tuple of Solid
+    result : Solid
+        Without the transform that was applied to it afterwards.
+    """
+
+    program: list[ProgramLine]
+    operands: tuple[Solid, ...]
+    result: Solid
+
+
+def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:
+    """Return the lazy combination of solids; the transform they share goes to the result."""
+    prefix = common_prefix([solid._factors for solid in solids])
+    operands = [Placed(solid._node, solid._factors[len(prefix) :]) for solid in solids]
+    return Solid.from_node(operation(operator, operands), prefix)
+
+
+def _restored(data: bytes, factors: Factors) -> Solid:
+    with core_errors():
+        return Solid.from_node(Node(TreeLeaf(Tree.load(data))), factors)
