@@ -54,7 +54,8 @@ REFUSED: dict[str, tuple[Callable[[], tuple[Any, Any]], str]] = {
     "nothing at all": (lambda: (np.zeros((0, 3)), np.zeros((0, 3), np.int64)), "empty_mesh"),
     "flat vertices": (lambda: (cube()[0].ravel(), cube()[1]), "shape"),
     "plane vertices": (lambda: (cube()[0][:, :2], cube()[1]), "shape"),
-    "quads": (lambda: (cube()[0], np.array([[0, 1, 3, 2]])), "shape"),
+    "one quad": (lambda: (cube()[0], np.array([[0, 1, 3, 2]])), "not_closed"),
+    "two corners": (lambda: (cube()[0], np.array([[0, 1], [1, 0]])), "shape"),
     "ragged": (lambda: ([[0, 0, 0], [1, 0]], [[0, 1, 0]]), "shape"),
     "words": (lambda: ("no", "mesh"), "shape"),
     "fractional indices": (lambda: (cube()[0], cube()[1] + 0.5), "shape"),
@@ -120,7 +121,7 @@ def test_faces_without_area_are_dropped_with_a_finding() -> None:
 def test_overlap_inside_one_mesh_follows_the_rule(rule: Any) -> None:
     overlapping = joined(cube(), moved(cube(), (0.5, 0.5, 0.5)))
     expected = {"positive": 15, "nonzero": 15, "even-odd": 14}[rule]
-    solid = b.Solid(*overlapping, rule=rule)
+    solid = b.Solid(*overlapping, winding=rule)
     assert solid.volume_exact * 8 == expected
     assert_sound(solid)
 

@@ -45,8 +45,8 @@ def unit() -> "b.Solid":
 
 def mirrored() -> "b.Solid":
     """Mirror two boxes and take one from the other."""
-    small = b.Solid(*cube()).scale(0.5, -1, 0.5)
-    return unit().scale(1, -1, 1) - small
+    small = b.Solid(*cube()).scale((0.5, -1, 0.5))
+    return unit().scale((1, -1, 1)) - small
 
 
 def three_boxes() -> "b.Solid":
