@@ -58,7 +58,7 @@ def test_cut_and_put_back() -> None:
     for k in range(rounds):
         rng = np.random.default_rng([9, k])
         shape = turned(moved(cube(0.8), (-0.4, -0.4, -0.4)), random_rotation(rng))
-        tool = b.Solid(*moved(shape, rng.uniform(0, 1, 3).tolist()))
+        tool = b.Solid(*moved(shape, rng.uniform(0, 1, 3)))
         began = time.perf_counter()
         solid = (solid - tool) | (solid & tool)
         triangles = len(solid.to_mesh().faces)

@@ -1,4 +1,4 @@
-"""What the README shows is what happens: its Python runs, its output is the output, its files exist."""
+"""What the README shows is what happens: its code runs, its output is right, its files exist."""
 
 import contextlib
 import io

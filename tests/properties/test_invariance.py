@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg import _core
 from support.checks import assert_sound
 from support.shapes import (
     Arrays,
@@ -49,7 +48,7 @@ PAIRS = pairs()
 def all_threads_again() -> Iterator[None]:
     """Leave the number of threads as it was."""
     yield
-    _core.set_threads(0)
+    b.set_threads(0)
 
 
 def result_bytes(first: Arrays, second: Arrays, operation: str) -> tuple[bytes, ...]:
@@ -65,7 +64,7 @@ def result_bytes(first: Arrays, second: Arrays, operation: str) -> tuple[bytes, 
 def test_same_bytes_for_any_number_of_threads(pair: int, operation: str) -> None:
     seen = set()
     for threads in (1, 2, 8, 2, 1):
-        _core.set_threads(threads)
+        b.set_threads(threads)
         seen.add(result_bytes(*PAIRS[pair], operation))
     assert len(seen) == 1
 

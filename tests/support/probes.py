@@ -68,7 +68,7 @@ def glued_tetrahedra(rounds: int, seed: int) -> list[Failure]:
 
 def _turned_cube(rng: Rng, reach: float) -> "b.Solid":
     shape = turned(moved(cube(), (-0.5, -0.5, -0.5)), random_rotation(rng))
-    return b.Solid(*moved(shape, rng.uniform(-reach, reach, 3).tolist()))
+    return b.Solid(*moved(shape, rng.uniform(-reach, reach, 3)))
 
 
 def parts_reunited(rounds: int, seed: int) -> list[Failure]:
@@ -103,7 +103,7 @@ def boxes_turned_together(rounds: int, seed: int) -> list[Failure]:
     """Two cubes that share a face, turned by the same matrix: one box of 12 triangles."""
 
     def probe(rng: Rng) -> str:
-        together = affine(random_rotation(rng), rng.uniform(-1, 1, 3).tolist())
+        together = affine(random_rotation(rng), rng.uniform(-1, 1, 3))
         first, second = b.Solid(*cube()), b.Solid(*moved(cube(), (1, 0, 0)))
         union = first.transform(together) | second.transform(together)
         return _is_box(union, b.Solid(*cuboid((0, 0, 0), (2, 1, 1))).transform(together))
@@ -142,7 +142,7 @@ def nearly_identical_cubes(rounds: int, seed: int) -> list[Failure]:
 
     def probe(rng: Rng) -> str:
         shift = rng.integers(-3, 4, 3) * 10.0 ** float(rng.integers(-11, -7))
-        a, c = b.Solid(*cube()), b.Solid(*moved(cube(), shift.tolist()))
+        a, c = b.Solid(*cube()), b.Solid(*moved(cube(), shift))
         steps = [Fraction(abs(round(s * 1e9)), 10**9) for s in shift.tolist()]
         common = (1 - steps[0]) * (1 - steps[1]) * (1 - steps[2])
         found = ((a & c).volume_exact, (a | c).volume_exact, (a - c).volume_exact)

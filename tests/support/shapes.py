@@ -19,7 +19,7 @@ _QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), 
 _CUBE_FACES = np.array([t for a, b, c, d in _QUADS for t in ((a, b, c), (a, c, d))], dtype=np.int64)
 
 
-def cuboid(low: Sequence[float], high: Sequence[float]) -> Arrays:
+def cuboid(low: npt.ArrayLike, high: npt.ArrayLike) -> Arrays:
     """Return the 12 triangles of an axis-parallel box."""
     corner = np.asarray(low, dtype=np.float64)
     return corner + _CORNERS * (np.asarray(high, dtype=np.float64) - corner), _CUBE_FACES.copy()
@@ -127,7 +127,7 @@ def flipped(mesh: Arrays) -> Arrays:
     return mesh[0], mesh[1][:, ::-1].copy()
 
 
-def moved(mesh: Arrays, by: Sequence[float]) -> Arrays:
+def moved(mesh: Arrays, by: npt.ArrayLike) -> Arrays:
     """Return the mesh shifted."""
     return mesh[0] + np.asarray(by, dtype=np.float64), mesh[1]
 
@@ -149,7 +149,7 @@ def random_rotation(rng: np.random.Generator) -> npt.NDArray[np.float64]:
     )
 
 
-def affine(linear: npt.ArrayLike, shift: Sequence[float] = (0, 0, 0)) -> npt.NDArray[np.float64]:
+def affine(linear: npt.ArrayLike, shift: npt.ArrayLike = (0, 0, 0)) -> npt.NDArray[np.float64]:
     """Return the 4 × 4 matrix of a linear part and a shift."""
     matrix = np.eye(4)
     matrix[:3, :3] = linear
