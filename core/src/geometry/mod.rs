@@ -6,9 +6,14 @@
 
 pub mod cell;
 pub mod crossing;
+pub mod dim1;
+pub mod dim2;
+pub mod dim3;
 pub mod line;
 pub mod outline;
 pub mod plane;
 pub mod polygon;
 mod residue;
+pub mod side;
+pub mod space;
 pub mod vertex;

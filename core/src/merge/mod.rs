@@ -8,4 +8,13 @@ mod join;
 pub mod leaf;
 pub mod list;
 pub mod local_tree;
+pub mod merge_trees;
+pub mod op;
 mod overlay;
+pub mod partition_tree;
+pub mod split_tree;
+
+pub use merge_trees::merge;
+pub use op::{Outcome, SetOp};
+pub use partition_tree::partition_tree;
+pub use split_tree::{split_tree, Halves};

@@ -1,4 +1,5 @@
 //! Partition trees: the nodes of solids, and generic trees in one, two and three dimensions.
 
 pub mod node;
+pub mod partition;
 pub mod solid;

@@ -1,0 +1,89 @@
+//! The set operations and their leaf table.
+
+use crate::geometry::space::Space;
+use crate::tree::partition::{Label, PartitionTree};
+
+/// A regularized set operation of two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SetOp {
+    /// In either.
+    Union,
+    /// In both.
+    Intersection,
+    /// In the first, not in the second.
+    Difference,
+    /// In exactly one.
+    SymmetricDifference,
+}
+
+/// What an operation makes of one operand where the other is a leaf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Outcome {
+    /// A leaf, whatever the operand is.
+    Leaf(Label),
+    /// The operand as it is.
+    Operand,
+    /// The operand's complement.
+    Complement,
+}
+
+impl SetOp {
+    /// All operations.
+    pub const ALL: [Self; 4] = [
+        Self::Union,
+        Self::Intersection,
+        Self::Difference,
+        Self::SymmetricDifference,
+    ];
+
+    /// The operation on two labels.
+    pub fn labels(self, a: Label, b: Label) -> Label {
+        let (a, b) = (a == Label::In, b == Label::In);
+        Label::from_inside(match self {
+            Self::Union => a || b,
+            Self::Intersection => a && b,
+            Self::Difference => a && !b,
+            Self::SymmetricDifference => a != b,
+        })
+    }
+
+    /// The leaf table: the outcome for the second operand where the first is a leaf.
+    pub fn with_first(self, a: Label) -> Outcome {
+        Outcome::of(|b| self.labels(a, b))
+    }
+
+    /// The leaf table: the outcome for the first operand where the second is a leaf.
+    pub fn with_second(self, b: Label) -> Outcome {
+        Outcome::of(|a| self.labels(a, b))
+    }
+
+    /// The outcome for an operand combined with itself.
+    pub fn with_itself(self) -> Outcome {
+        Outcome::of(|a| self.labels(a, a))
+    }
+
+    /// The outcome for an operand combined with its complement.
+    pub fn with_complement(self) -> Outcome {
+        Outcome::of(|a| self.labels(a, a.complement()))
+    }
+}
+
+impl Outcome {
+    /// The outcome that a function of one label amounts to.
+    fn of(function: impl Fn(Label) -> Label) -> Self {
+        match (function(Label::Out), function(Label::In)) {
+            (Label::Out, Label::In) => Self::Operand,
+            (Label::In, Label::Out) => Self::Complement,
+            (constant, _) => Self::Leaf(constant),
+        }
+    }
+
+    /// The tree this outcome makes of an operand; its nodes are shared.
+    pub fn apply<S: Space>(self, operand: &PartitionTree<S>) -> PartitionTree<S> {
+        match self {
+            Self::Leaf(label) => PartitionTree::Leaf(label),
+            Self::Operand => operand.clone(),
+            Self::Complement => operand.complement(),
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! A tree with a chosen hyperplane in its root.
+
+use std::sync::Arc;
+
+use super::split_tree::split_tree;
+use crate::error::Result;
+use crate::geometry::space::Space;
+use crate::tree::partition::{PartitionTree, Sheet};
+
+/// The same set as a tree whose root is cut by the hyperplane of `span`.
+///
+/// `span` is H ∩ region(T), the part of the hyperplane inside the region of the tree's root. A tree
+/// whose halves are equal leaves needs no cut and gets none.
+///
+/// # Errors
+/// `Internal` if `span` is not the part of its hyperplane inside the tree's region.
+///
+/// # Source
+/// Naylor, Amanatides, Thibault 1990, section 4.
+pub fn partition_tree<S: Space>(
+    tree: &PartitionTree<S>,
+    span: S::Fragment,
+) -> Result<PartitionTree<S>> {
+    let halves = split_tree(tree, &span)?;
+    let facets = halves.coplanar;
+    let sheet = Arc::new(Sheet { span, facets });
+    Ok(PartitionTree::cut(sheet, halves.minus, halves.plus))
+}

@@ -1,0 +1,197 @@
+//! One tree cut by a hyperplane into the trees of its two sides.
+//!
+//! `T` is the tree, `H` the hyperplane, `P` = H ∩ region(T). A piece lies on one side of a cut if no
+//! point of it lies *strictly* on the other; then, in exact arithmetic, P crosses the tree's cut if
+//! and only if the tree's own span crosses H, and exactly the cases of [`Case`] can occur.
+//!
+//! # Source
+//! Naylor, Amanatides, Thibault 1990, section 4.
+
+use std::sync::Arc;
+
+use crate::error::{Error, Result};
+use crate::geometry::side::{Half, Orientation, Split};
+use crate::geometry::space::Space;
+use crate::tree::partition::{Cut, Facet, PartitionTree, Sheet};
+
+/// A tree's parts on the two sides of a hyperplane.
+#[derive(Clone, Debug)]
+pub struct Halves<S: Space> {
+    /// The set on the minus side: a tree of the region's minus part.
+    pub minus: PartitionTree<S>,
+    /// The set on the plus side.
+    pub plus: PartitionTree<S>,
+    /// The tree's coplanar fragments that lie in the hyperplane.
+    pub coplanar: Vec<Facet<S>>,
+}
+
+/// How an inner node and the splitting hyperplane lie to each other inside the node's region.
+enum Case<S: Space> {
+    /// H is the node's own cut.
+    Same,
+    /// H is the node's own cut with its sides exchanged.
+    Opposite,
+    /// P lies on the side `deep` of the node's cut, the node's span on the side `home` of H.
+    ///
+    /// The subtree `deep` is split; the node keeps its cut in H's half `home`, where the other
+    /// subtree lies whole.
+    OneSided { deep: Half, home: Half },
+    /// P and the span cross.
+    Crossing {
+        /// P on the minus and plus sides of the node's cut.
+        parts: [S::Fragment; 2],
+        /// The node's sheet on the minus and plus sides of H.
+        sheets: [Arc<Sheet<S>>; 2],
+    },
+}
+
+/// Splits a tree by a hyperplane into its parts on the minus and plus sides.
+///
+/// `span` is P = H ∩ region(T), the part of the hyperplane inside the region of the tree's root; H
+/// is the hyperplane in which it lies. What lies on one side is shared, not copied.
+///
+/// # Order
+/// Nodes keep the relative order of their originals.
+///
+/// # Cost
+/// Proportional to the nodes whose regions H crosses.
+///
+/// # Errors
+/// `Internal` if `span` is not the part of its hyperplane inside the tree's region.
+pub fn split_tree<S: Space>(tree: &PartitionTree<S>, span: &S::Fragment) -> Result<Halves<S>> {
+    let mut splitter = Splitter::new();
+    splitter.steps.push(Step::Split(tree.clone(), span.clone()));
+    while let Some(step) = splitter.steps.pop() {
+        splitter.advance(step)?;
+    }
+    let (minus, plus) = splitter.pop()?;
+    let coplanar = splitter.coplanar;
+    Ok(Halves {
+        minus,
+        plus,
+        coplanar,
+    })
+}
+
+struct Splitter<S: Space> {
+    steps: Vec<Step<S>>,
+    done: Vec<(PartitionTree<S>, PartitionTree<S>)>,
+    coplanar: Vec<Facet<S>>,
+}
+
+enum Step<S: Space> {
+    /// Split a tree by the hyperplane of a fragment.
+    Split(PartitionTree<S>, S::Fragment),
+    /// Rebuild a node around the halves of its subtree `deep`.
+    OneSided {
+        node: Cut<S>,
+        deep: Half,
+        home: Half,
+    },
+    /// Join the halves of a node's subtrees under the halves of its sheet.
+    Crossing { sheets: [Arc<Sheet<S>>; 2] },
+}
+
+impl<S: Space> Splitter<S> {
+    fn new() -> Self {
+        Self {
+            steps: Vec::new(),
+            done: Vec::new(),
+            coplanar: Vec::new(),
+        }
+    }
+
+    fn advance(&mut self, step: Step<S>) -> Result<()> {
+        match step {
+            Step::Split(PartitionTree::Leaf(label), _) => {
+                let leaf = PartitionTree::Leaf(label);
+                self.done.push((leaf.clone(), leaf));
+                Ok(())
+            }
+            Step::Split(PartitionTree::Cut(node), span) => self.split(node, span),
+            Step::OneSided { node, deep, home } => self.rebuild(&node, deep, home),
+            Step::Crossing { sheets } => self.join(sheets),
+        }
+    }
+
+    fn split(&mut self, node: Cut<S>, span: S::Fragment) -> Result<()> {
+        match case_of(&node, &span)? {
+            Case::Same => self.open(&node, [Half::Minus, Half::Plus]),
+            Case::Opposite => self.open(&node, [Half::Plus, Half::Minus]),
+            Case::OneSided { deep, home } => {
+                let child = node.child(deep);
+                self.steps.push(Step::OneSided { node, deep, home });
+                self.steps.push(Step::Split(child, span));
+            }
+            Case::Crossing { parts, sheets } => {
+                let [inner, outer] = parts;
+                self.steps.push(Step::Crossing { sheets });
+                let minus = Step::Split(node.child(Half::Minus), inner);
+                let plus = Step::Split(node.child(Half::Plus), outer);
+                self.steps.extend([plus, minus]);
+            }
+        }
+        Ok(())
+    }
+
+    /// The coplanar cases: the subtrees are the halves.
+    fn open(&mut self, node: &Cut<S>, halves: [Half; 2]) {
+        let [minus, plus] = halves.map(|half| node.child(half));
+        self.coplanar.extend_from_slice(&node.sheet().facets);
+        self.done.push((minus, plus));
+    }
+
+    /// The one-sided cases: the node lives on in the half `home`, the other half is clear of it.
+    fn rebuild(&mut self, node: &Cut<S>, deep: Half, home: Half) -> Result<()> {
+        let (minus, plus) = self.pop()?;
+        self.done.push(match home {
+            Half::Minus => (node.with_child(deep, minus), plus),
+            Half::Plus => (minus, node.with_child(deep, plus)),
+        });
+        Ok(())
+    }
+
+    /// The crossing case: a node in each half.
+    fn join(&mut self, [inner, outer]: [Arc<Sheet<S>>; 2]) -> Result<()> {
+        let (plus_minus, plus_plus) = self.pop()?;
+        let (minus_minus, minus_plus) = self.pop()?;
+        let minus = PartitionTree::cut(inner, minus_minus, plus_minus);
+        let plus = PartitionTree::cut(outer, minus_plus, plus_plus);
+        self.done.push((minus, plus));
+        Ok(())
+    }
+
+    fn pop(&mut self) -> Result<(PartitionTree<S>, PartitionTree<S>)> {
+        let missing = || Error::internal("split_tree joined a node before its subtrees");
+        self.done.pop().ok_or_else(missing)
+    }
+}
+
+/// The case of a node and a splitting hyperplane's part in the node's region.
+fn case_of<S: Space>(node: &Cut<S>, span: &S::Fragment) -> Result<Case<S>> {
+    let (own, cut) = (node.hyperplane(), S::hyperplane(span));
+    let sheet = node.sheet();
+    let one_sided = |deep, home| Ok(Case::OneSided { deep, home });
+    match (S::split(span, own), S::split(&sheet.span, cut)) {
+        (Split::Coplanar(Orientation::Same), _) => Ok(Case::Same),
+        (Split::Coplanar(Orientation::Opposite), _) => Ok(Case::Opposite),
+        (Split::Minus, Split::Minus) => one_sided(Half::Minus, Half::Minus),
+        (Split::Minus, Split::Plus) => one_sided(Half::Minus, Half::Plus),
+        (Split::Plus, Split::Minus) => one_sided(Half::Plus, Half::Minus),
+        (Split::Plus, Split::Plus) => one_sided(Half::Plus, Half::Plus),
+        (
+            Split::Both { minus, plus },
+            Split::Both {
+                minus: inner,
+                plus: outer,
+            },
+        ) => {
+            let sheets = sheet.parted(cut, inner, outer).map(Arc::new);
+            let parts = [minus, plus];
+            Ok(Case::Crossing { parts, sheets })
+        }
+        _ => Err(Error::internal(
+            "one of two crossing sub-hyperplanes does not cross the other",
+        )),
+    }
+}

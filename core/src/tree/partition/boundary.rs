@@ -1,0 +1,139 @@
+//! The parts of sub-hyperplanes that separate In from Out.
+
+use super::node::{Cut, Facet, Label, PartitionTree};
+use crate::error::{Error, Result};
+use crate::geometry::side::{Half, Orientation, Split};
+use crate::geometry::space::{overlay, Space};
+
+/// The boundary of a tree's set, in convex pieces with In on their minus sides.
+///
+/// The border of the frame is not part of it.
+///
+/// # Order
+/// Nodes before their subtrees, minus before plus.
+///
+/// # Errors
+/// `Internal` if a cut lies in the border of its own region.
+pub fn boundary<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<S::Fragment>> {
+    let mut pieces = Vec::new();
+    for_each_cut(tree, |cut| {
+        pieces.extend(walls(cut, cut.sheet().span.clone())?);
+        Ok(())
+    })?;
+    Ok(pieces)
+}
+
+/// The boundary as parts of the facets in the tree's coplanar sets, each with its source.
+///
+/// Where facets overlap, the one with the smallest source number owns the place. Boundary on which
+/// no facet lies (a half-space's) is left out.
+///
+/// # Order
+/// Nodes before their subtrees, minus before plus; within a node by source.
+///
+/// # Errors
+/// `Internal` if a cut lies in the border of its own region.
+pub fn owned_boundary<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<Facet<S>>> {
+    let mut pieces = Vec::new();
+    for_each_cut(tree, |cut| {
+        for Facet { fragment, source } in disjoint_facets(&cut.sheet().facets) {
+            let facet = |fragment| Facet { fragment, source };
+            pieces.extend(walls(cut, fragment)?.into_iter().map(facet));
+        }
+        Ok(())
+    })?;
+    Ok(pieces)
+}
+
+/// Calls `visit` for each inner node, before its subtrees, minus first.
+pub fn for_each_cut<S: Space>(
+    tree: &PartitionTree<S>,
+    mut visit: impl FnMut(&Cut<S>) -> Result<()>,
+) -> Result<()> {
+    let mut pending = vec![tree.clone()];
+    while let Some(next) = pending.pop() {
+        if let PartitionTree::Cut(cut) = next {
+            visit(&cut)?;
+            pending.extend([cut.child(Half::Plus), cut.child(Half::Minus)]);
+        }
+    }
+    Ok(())
+}
+
+/// Coplanar facets without what others with smaller source numbers cover, sorted by source.
+fn disjoint_facets<S: Space>(facets: &[Facet<S>]) -> Vec<Facet<S>> {
+    let mut order: Vec<&Facet<S>> = facets.iter().collect();
+    order.sort_by_key(|facet| facet.source);
+    let mut owned = Vec::new();
+    for (i, facet) in order.iter().enumerate() {
+        let masks = order[..i].iter().map(|mask| &mask.fragment);
+        let visible = uncovered::<S>(facet.fragment.clone(), masks);
+        owned.extend(visible.into_iter().map(|fragment| Facet {
+            fragment,
+            source: facet.source,
+        }));
+    }
+    owned
+}
+
+/// The parts of a fragment that no coplanar mask covers.
+fn uncovered<'a, S: Space>(
+    piece: S::Fragment,
+    masks: impl Iterator<Item = &'a S::Fragment>,
+) -> Vec<S::Fragment> {
+    masks.fold(vec![piece], |rest, mask| {
+        let outside = |part| overlay::<S>(part, mask).1;
+        rest.into_iter().flat_map(outside).collect()
+    })
+}
+
+/// The parts of a fragment in a node's cut that separate In from Out, In on the minus side.
+fn walls<S: Space>(cut: &Cut<S>, piece: S::Fragment) -> Result<Vec<S::Fragment>> {
+    let mut walls = Vec::new();
+    for (part, minus) in labelled(&cut.child(Half::Minus), piece)? {
+        for (part, plus) in labelled(&cut.child(Half::Plus), part)? {
+            if minus != plus {
+                walls.push(facing::<S>(part, cut.hyperplane(), minus));
+            }
+        }
+    }
+    Ok(walls)
+}
+
+/// A wall turned so that In lies on its minus side, given the label on the cut's minus side.
+fn facing<S: Space>(part: S::Fragment, cut: &S::Hyperplane, minus: Label) -> S::Fragment {
+    let as_cut = S::coincide(S::hyperplane(&part), cut) == Some(Orientation::Same);
+    if as_cut == (minus == Label::In) {
+        part
+    } else {
+        S::reversed(&part)
+    }
+}
+
+/// The parts of a fragment in the border of a tree's region, each with the label next to it.
+fn labelled<S: Space>(
+    tree: &PartitionTree<S>,
+    piece: S::Fragment,
+) -> Result<Vec<(S::Fragment, Label)>> {
+    let mut found = Vec::new();
+    let mut pending = vec![(tree.clone(), piece)];
+    while let Some((tree, piece)) = pending.pop() {
+        let cut = match tree {
+            PartitionTree::Leaf(label) => {
+                found.push((piece, label));
+                continue;
+            }
+            PartitionTree::Cut(cut) => cut,
+        };
+        match S::split(&piece, cut.hyperplane()) {
+            Split::Minus => pending.push((cut.child(Half::Minus), piece)),
+            Split::Plus => pending.push((cut.child(Half::Plus), piece)),
+            Split::Both { minus, plus } => {
+                pending.push((cut.child(Half::Plus), plus));
+                pending.push((cut.child(Half::Minus), minus));
+            }
+            Split::Coplanar(_) => return Err(Error::internal("a cut lies in its region's border")),
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,235 @@
+//! Facets → tree by autopartition: every cut is the supporting hyperplane of a facet.
+//!
+//! A region without facets is labelled by the side of the last cut on which it lies, which is right
+//! if the facets are the boundary of a set, each once, inside in front of no other. What else comes
+//! in is recognised (`Built::simple`) where it shows, and labelled by `winding` instead.
+
+use std::sync::Arc;
+
+use super::node::{Facet, Label, PartitionTree, Sheet};
+use super::random::SplitMix;
+use crate::error::{Error, Result};
+use crate::geometry::side::{Half, Orientation, Split};
+use crate::geometry::space::{Region, Space};
+
+/// The rule by which a node's cut is chosen among the hyperplanes of its facets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PivotPolicy {
+    /// The first facet in the order given.
+    First,
+    /// A random facet; the seed makes the tree reproducible.
+    Random(u64),
+    /// Of this many candidates, evenly spaced in the list, the first that cuts the fewest facets.
+    FewestSplits(usize),
+}
+
+/// A tree and whether its facets looked like the boundary of one set.
+#[derive(Clone, Debug)]
+pub struct Built<S: Space> {
+    /// The tree; its labels mean nothing unless the facets bound a set.
+    pub tree: PartitionTree<S>,
+    /// Whether no leaf was seen from two sides at once; false proves overlap or a hole.
+    pub simple: bool,
+}
+
+/// Builds a tree by supporting hyperplanes alone.
+///
+/// `facets` lie in `frame`, each with the inside on its minus side; without facets the tree is the
+/// leaf `empty`. Coplanar facets share one node.
+///
+/// # Order
+/// The tree is a function of the list and the policy.
+///
+/// # Cost
+/// Worst case quadratic: a convex body becomes a chain.
+///
+/// # Errors
+/// `Internal` if a facet's hyperplane does not cross the region the facet lies in.
+///
+/// # Source
+/// Paterson, Yao 1990; de Berg et al., Computational Geometry, chapter 12.
+pub fn autopartition<S: Space>(
+    facets: Vec<Facet<S>>,
+    frame: S::Frame,
+    empty: Label,
+    policy: PivotPolicy,
+) -> Result<Built<S>> {
+    let mut builder = Builder::new(frame, policy);
+    if facets.is_empty() {
+        builder.done.push(PartitionTree::Leaf(empty));
+    } else {
+        builder.divide(facets)?;
+    }
+    while let Some(step) = builder.steps.pop() {
+        builder.advance(step)?;
+    }
+    let tree = builder.done.pop();
+    let simple = builder.simple;
+    tree.map(|tree| Built { tree, simple })
+        .ok_or_else(|| Error::internal("autopartition ended without a tree"))
+}
+
+struct Builder<S: Space> {
+    region: Region<S>,
+    choice: Choice,
+    steps: Vec<Step<S>>,
+    done: Vec<PartitionTree<S>>,
+    simple: bool,
+}
+
+enum Step<S: Space> {
+    /// Build the subtree on one side of a sheet whose node lies at `depth`.
+    Side {
+        sheet: Arc<Sheet<S>>,
+        half: Half,
+        depth: usize,
+        facets: Vec<Facet<S>>,
+    },
+    /// Join the two subtrees built last.
+    Join(Arc<Sheet<S>>),
+}
+
+impl<S: Space> Builder<S> {
+    fn new(frame: S::Frame, policy: PivotPolicy) -> Self {
+        Self {
+            region: Region::new(frame),
+            choice: Choice::new(policy),
+            steps: Vec::new(),
+            done: Vec::new(),
+            simple: true,
+        }
+    }
+
+    fn advance(&mut self, step: Step<S>) -> Result<()> {
+        match step {
+            Step::Side {
+                sheet,
+                half,
+                facets,
+                ..
+            } if facets.is_empty() => {
+                self.label(&sheet, half);
+                Ok(())
+            }
+            Step::Side {
+                sheet,
+                half,
+                depth,
+                facets,
+            } => {
+                self.region.truncate(depth);
+                self.region.push(S::hyperplane(&sheet.span).clone(), half);
+                self.divide(facets)
+            }
+            Step::Join(sheet) => self.join(sheet),
+        }
+    }
+
+    /// Chooses a cut for the current region and leaves its two sides to be built.
+    fn divide(&mut self, facets: Vec<Facet<S>>) -> Result<()> {
+        let depth = self.region.depth();
+        let pivot = self.choice.pivot(&facets);
+        let cut = S::hyperplane(&facets[pivot].fragment).clone();
+        let span = self
+            .region
+            .span(&cut)
+            .ok_or_else(|| Error::internal("a facet lies outside the region it was given to"))?;
+        let [minus, plus, coplanar] = distribute(facets, &cut);
+        let sheet = Arc::new(Sheet {
+            span,
+            facets: coplanar,
+        });
+        let side = |half, facets| Step::Side {
+            sheet: Arc::clone(&sheet),
+            half,
+            depth,
+            facets,
+        };
+        let (first, second) = (side(Half::Minus, minus), side(Half::Plus, plus));
+        self.steps.push(Step::Join(sheet));
+        self.steps.extend([second, first]);
+        Ok(())
+    }
+
+    /// Labels a region in which no facet lies by the side of its last cut.
+    fn label(&mut self, sheet: &Sheet<S>, half: Half) {
+        let cut = S::hyperplane(&sheet.span);
+        let faces_as_cut = |facet: &Facet<S>| {
+            S::coincide(S::hyperplane(&facet.fragment), cut) == Some(Orientation::Same)
+        };
+        let same = sheet.facets.iter().filter(|f| faces_as_cut(f)).count();
+        self.simple &= same == 0 || same == sheet.facets.len();
+        let inside = (half == Half::Minus) == (same > 0);
+        self.done
+            .push(PartitionTree::Leaf(Label::from_inside(inside)));
+    }
+
+    fn join(&mut self, sheet: Arc<Sheet<S>>) -> Result<()> {
+        let (Some(plus), Some(minus)) = (self.done.pop(), self.done.pop()) else {
+            return Err(Error::internal(
+                "a cut was joined before its sides were built",
+            ));
+        };
+        self.done.push(PartitionTree::cut(sheet, minus, plus));
+        Ok(())
+    }
+}
+
+/// The facets on the minus side, on the plus side, and in the cut.
+fn distribute<S: Space>(facets: Vec<Facet<S>>, cut: &S::Hyperplane) -> [Vec<Facet<S>>; 3] {
+    let mut lists = [Vec::new(), Vec::new(), Vec::new()];
+    for facet in facets {
+        let source = facet.source;
+        let part = |fragment| Facet { fragment, source };
+        match S::split(&facet.fragment, cut) {
+            Split::Minus => lists[0].push(facet),
+            Split::Plus => lists[1].push(facet),
+            Split::Coplanar(_) => lists[2].push(facet),
+            Split::Both { minus, plus } => {
+                lists[0].push(part(minus));
+                lists[1].push(part(plus));
+            }
+        }
+    }
+    lists
+}
+
+/// A pivot policy and the state it needs.
+struct Choice {
+    policy: PivotPolicy,
+    random: SplitMix,
+}
+
+impl Choice {
+    fn new(policy: PivotPolicy) -> Self {
+        let seed = match policy {
+            PivotPolicy::Random(seed) => seed,
+            _ => 0,
+        };
+        let random = SplitMix::new(seed);
+        Self { policy, random }
+    }
+
+    /// The index of the facet whose hyperplane becomes the cut; the list is not empty.
+    fn pivot<S: Space>(&mut self, facets: &[Facet<S>]) -> usize {
+        match self.policy {
+            PivotPolicy::First => 0,
+            PivotPolicy::Random(_) => self.random.below(facets.len()),
+            PivotPolicy::FewestSplits(sample) => fewest_splits(facets, sample),
+        }
+    }
+}
+
+fn fewest_splits<S: Space>(facets: &[Facet<S>], sample: usize) -> usize {
+    let stride = facets.len().div_ceil(sample.max(1)).max(1);
+    (0..facets.len())
+        .step_by(stride)
+        .min_by_key(|&candidate| splits_by(facets, candidate))
+        .unwrap_or(0)
+}
+
+fn splits_by<S: Space>(facets: &[Facet<S>], candidate: usize) -> usize {
+    let cut = S::hyperplane(&facets[candidate].fragment);
+    let crossed = |facet: &&Facet<S>| matches!(S::split(&facet.fragment, cut), Split::Both { .. });
+    facets.iter().filter(crossed).count()
+}

@@ -1,0 +1,52 @@
+//! Where does a point lie?
+
+use super::node::{Label, PartitionTree};
+use crate::geometry::side::{Half, Side};
+use crate::geometry::space::Space;
+
+/// Where a point lies relative to a set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Location {
+    /// In the set's interior.
+    In,
+    /// On its boundary.
+    On,
+    /// Outside.
+    Out,
+}
+
+/// Classifies a point of the tree's region.
+///
+/// The leaves that touch the point are visited: a point in a cut belongs to the set's interior if
+/// all of them are In, to the boundary if they differ.
+///
+/// # Exactness
+/// Exact.
+///
+/// # Cost
+/// One path for a point in no cut.
+pub fn classify<S: Space>(tree: &PartitionTree<S>, point: &S::Point) -> Location {
+    let mut pending = vec![tree.clone()];
+    let mut seen = None;
+    while let Some(next) = pending.pop() {
+        match next {
+            PartitionTree::Leaf(label) if seen.is_some_and(|other| other != label) => {
+                return Location::On;
+            }
+            PartitionTree::Leaf(label) => seen = Some(label),
+            PartitionTree::Cut(cut) => {
+                let side = S::side(cut.hyperplane(), point);
+                if side != Side::Plus {
+                    pending.push(cut.child(Half::Minus));
+                }
+                if side != Side::Minus {
+                    pending.push(cut.child(Half::Plus));
+                }
+            }
+        }
+    }
+    match seen {
+        Some(Label::In) => Location::In,
+        _ => Location::Out,
+    }
+}

@@ -1,0 +1,93 @@
+//! Size of a tree, and the check of its invariants.
+
+use super::node::{Cut, PartitionTree};
+use crate::error::{Error, Result};
+use crate::geometry::side::Half;
+use crate::geometry::space::{overlay, Region, Space};
+
+/// Size figures of a tree; shared subtrees count once for each place where they occur.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TreeStats {
+    /// Inner nodes.
+    pub cuts: usize,
+    /// Leaves.
+    pub leaves: usize,
+    /// Cuts on the longest way from the root to a leaf.
+    pub depth: usize,
+    /// Fragments in all coplanar sets.
+    pub facets: usize,
+}
+
+/// Counts what a tree consists of.
+pub fn stats<S: Space>(tree: &PartitionTree<S>) -> TreeStats {
+    let mut stats = TreeStats::default();
+    let mut pending = vec![(tree.clone(), 0)];
+    while let Some((next, depth)) = pending.pop() {
+        match next {
+            PartitionTree::Leaf(_) => {
+                stats.leaves += 1;
+                stats.depth = stats.depth.max(depth);
+            }
+            PartitionTree::Cut(cut) => {
+                stats.cuts += 1;
+                stats.facets += cut.sheet().facets.len();
+                pending.extend(cut.children().map(|child| (child, depth + 1)));
+            }
+        }
+    }
+    stats
+}
+
+/// Verifies a tree's invariants: spans, coplanar sets, no cut between equal leaves.
+///
+/// # Cost
+/// One split per node and ancestor.
+///
+/// # Errors
+/// `Internal`, naming the first invariant that does not hold.
+pub fn check<S: Space>(tree: &PartitionTree<S>, frame: &S::Frame) -> Result<()> {
+    let mut region = Region::new(frame.clone());
+    let mut pending = vec![(tree.clone(), None)];
+    while let Some((next, from)) = pending.pop() {
+        if let Some((depth, bound, half)) = from {
+            region.truncate(depth);
+            region.push(bound, half);
+        }
+        if let PartitionTree::Cut(cut) = next {
+            check_cut(&cut, &region)?;
+            let depth = region.depth();
+            for (half, child) in [Half::Plus, Half::Minus].into_iter().zip(cut.children()) {
+                pending.push((child, Some((depth, cut.hyperplane().clone(), half))));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_cut<S: Space>(cut: &Cut<S>, region: &Region<S>) -> Result<()> {
+    let span = &cut.sheet().span;
+    let broken = |what: &str| Err(Error::internal(format!("{what} at {cut:?}")));
+    let Some(expected) = region.span(cut.hyperplane()) else {
+        return broken("a cut misses its node's region");
+    };
+    if !holds::<S>(span, &expected) || !holds::<S>(&expected, span) {
+        return broken("a stored span is not the cut inside its region");
+    }
+    let in_span = |piece: &S::Fragment| {
+        S::coincide(S::hyperplane(piece), cut.hyperplane()).is_some() && holds::<S>(span, piece)
+    };
+    if !cut.sheet().facets.iter().all(|f| in_span(&f.fragment)) {
+        return broken("a coplanar fragment lies outside its node's span");
+    }
+    let [a, b] = cut.children().map(|child| child.label());
+    if a.is_some() && a == b {
+        return broken("equal leaves on both sides");
+    }
+    Ok(())
+}
+
+/// Whether `outer` covers the coplanar `inner`.
+fn holds<S: Space>(outer: &S::Fragment, inner: &S::Fragment) -> bool {
+    let (inside, outside) = overlay::<S>(inner.clone(), outer);
+    inside.is_some() && outside.is_empty()
+}

@@ -1,0 +1,235 @@
+//! Labels by winding numbers, for facets that overlap, cross or face each other.
+//!
+//! Each leaf of an autopartition lies wholly in one cell of the facets' arrangement. The jump of the
+//! winding number across a piece of a cut is the number of facets that cover it, each counted with
+//! its orientation; from one leaf whose number is known all others follow by adjacency.
+
+use std::collections::VecDeque;
+
+use super::node::{Cut, Facet, Label, PartitionTree};
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::side::{Half, Orientation, Split};
+use crate::geometry::space::{overlay, Space};
+
+/// A tree labelled by winding numbers.
+#[derive(Clone, Debug)]
+pub struct Winding<S: Space> {
+    /// The set of places whose number satisfies the rule.
+    pub tree: PartitionTree<S>,
+    /// Whether all numbers are 0 or 1 and no two facets overlap.
+    pub simple: bool,
+}
+
+/// Labels an autopartition by the winding numbers of its facets.
+///
+/// `reference` tells on which side of each hyperplane a point lies that is in no cut, `number` is
+/// the winding number there, and `inside` the rule that turns a number into a label.
+///
+/// # Errors
+/// `NotClosed` if the facets do not give every place one number; `Internal` for a broken tree.
+pub fn winding_tree<S: Space>(
+    tree: &PartitionTree<S>,
+    reference: impl Fn(&S::Hyperplane) -> Half,
+    number: i32,
+    inside: impl Fn(i32) -> bool,
+) -> Result<Winding<S>> {
+    let flat = Flat::new(tree);
+    let (jumps, disjoint) = flat.jumps()?;
+    let numbers = flat.numbers(&jumps, flat.leaf_at(reference), number)?;
+    let simple = disjoint && flat.leaves().all(|leaf| matches!(numbers[leaf], 0 | 1));
+    let tree = flat.relabelled(|leaf| Label::from_inside(inside(numbers[leaf])));
+    Ok(Winding { tree, simple })
+}
+
+/// A tree as a list, parents before children, so that each leaf has a number of its own.
+struct Flat<S: Space> {
+    nodes: Vec<Option<FlatCut<S>>>,
+}
+
+struct FlatCut<S: Space> {
+    cut: Cut<S>,
+    minus: usize,
+    plus: usize,
+}
+
+/// Two leaves on the sides of a piece of a cut, and the number on the minus side minus the other.
+struct Jump {
+    minus: usize,
+    plus: usize,
+    rise: i32,
+}
+
+impl<S: Space> Flat<S> {
+    fn new(tree: &PartitionTree<S>) -> Self {
+        let mut nodes = Vec::new();
+        let mut pending = VecDeque::from([tree.clone()]);
+        while let Some(next) = pending.pop_front() {
+            nodes.push(match next {
+                PartitionTree::Leaf(_) => None,
+                PartitionTree::Cut(cut) => {
+                    let minus = nodes.len() + 1 + pending.len();
+                    pending.extend([cut.child(Half::Minus), cut.child(Half::Plus)]);
+                    let plus = minus + 1;
+                    Some(FlatCut { cut, minus, plus })
+                }
+            });
+        }
+        Self { nodes }
+    }
+
+    fn leaves(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.nodes.len()).filter(|&i| self.nodes[i].is_none())
+    }
+
+    fn leaf_at(&self, reference: impl Fn(&S::Hyperplane) -> Half) -> usize {
+        let mut at = 0;
+        while let Some(node) = &self.nodes[at] {
+            at = match reference(node.cut.hyperplane()) {
+                Half::Minus => node.minus,
+                Half::Plus => node.plus,
+            };
+        }
+        at
+    }
+
+    /// All jumps between neighbouring leaves, and whether no two facets overlap.
+    fn jumps(&self) -> Result<(Vec<Jump>, bool)> {
+        let mut jumps = Vec::new();
+        let mut disjoint = true;
+        for node in self.nodes.iter().flatten() {
+            for piece in covered_pieces(&node.cut) {
+                disjoint &= piece.layers <= 1;
+                self.cross(node, piece, &mut jumps)?;
+            }
+        }
+        Ok((jumps, disjoint))
+    }
+
+    fn cross(&self, node: &FlatCut<S>, piece: Piece<S>, jumps: &mut Vec<Jump>) -> Result<()> {
+        let rise = piece.rise;
+        for (part, minus) in self.beside(node.minus, piece.fragment)? {
+            for (_, plus) in self.beside(node.plus, part)? {
+                jumps.push(Jump { minus, plus, rise });
+            }
+        }
+        Ok(())
+    }
+
+    /// The leaves next to a fragment in the border of a node's region.
+    fn beside(&self, node: usize, piece: S::Fragment) -> Result<Vec<(S::Fragment, usize)>> {
+        let mut found = Vec::new();
+        let mut pending = vec![(node, piece)];
+        while let Some((at, piece)) = pending.pop() {
+            let Some(node) = &self.nodes[at] else {
+                found.push((piece, at));
+                continue;
+            };
+            match S::split(&piece, node.cut.hyperplane()) {
+                Split::Minus => pending.push((node.minus, piece)),
+                Split::Plus => pending.push((node.plus, piece)),
+                Split::Both { minus, plus } => {
+                    pending.extend([(node.plus, plus), (node.minus, minus)]);
+                }
+                Split::Coplanar(_) => {
+                    return Err(Error::internal("a cut lies in its region's border"));
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// The winding number of each leaf, by node index; zero for inner nodes.
+    fn numbers(&self, jumps: &[Jump], start: usize, number: i32) -> Result<Vec<i32>> {
+        let mut neighbours = vec![Vec::new(); self.nodes.len()];
+        for jump in jumps {
+            neighbours[jump.minus].push((jump.plus, -jump.rise));
+            neighbours[jump.plus].push((jump.minus, jump.rise));
+        }
+        let mut numbers = vec![None; self.nodes.len()];
+        numbers[start] = Some(number);
+        let mut pending = vec![(start, number)];
+        while let Some((leaf, number)) = pending.pop() {
+            for &(next, rise) in &neighbours[leaf] {
+                let expected = number + rise;
+                match numbers[next] {
+                    None => {
+                        numbers[next] = Some(expected);
+                        pending.push((next, expected));
+                    }
+                    Some(known) if known != expected => return Err(not_closed()),
+                    Some(_) => {}
+                }
+            }
+        }
+        Ok(numbers.into_iter().map(Option::unwrap_or_default).collect())
+    }
+
+    /// The tree with other labels.
+    fn relabelled(&self, label: impl Fn(usize) -> Label) -> PartitionTree<S> {
+        let mut trees: Vec<PartitionTree<S>> = Vec::new();
+        trees.resize(self.nodes.len(), PartitionTree::EMPTY);
+        for (i, node) in self.nodes.iter().enumerate().rev() {
+            trees[i] = match node {
+                None => PartitionTree::Leaf(label(i)),
+                Some(node) => {
+                    let [minus, plus] = [node.minus, node.plus].map(|at| trees[at].clone());
+                    node.cut.with_children(minus, plus)
+                }
+            };
+        }
+        trees.swap_remove(0)
+    }
+}
+
+fn not_closed() -> Error {
+    Error::new(
+        ErrorKind::NotClosed,
+        "the faces in a cell do not give every place one winding number",
+    )
+}
+
+/// A part of a span that each facet covers wholly or not at all.
+struct Piece<S: Space> {
+    fragment: S::Fragment,
+    rise: i32,
+    layers: u32,
+}
+
+fn covered_pieces<S: Space>(cut: &Cut<S>) -> Vec<Piece<S>> {
+    let whole = Piece {
+        fragment: cut.sheet().span.clone(),
+        rise: 0,
+        layers: 0,
+    };
+    cut.sheet()
+        .facets
+        .iter()
+        .fold(vec![whole], |pieces, facet| {
+            let same = S::coincide(S::hyperplane(&facet.fragment), cut.hyperplane());
+            let rise = if same == Some(Orientation::Same) {
+                1
+            } else {
+                -1
+            };
+            pieces
+                .into_iter()
+                .flat_map(|piece| cover(piece, facet, rise))
+                .collect()
+        })
+}
+
+/// The parts of a piece under a facet and beside it.
+fn cover<S: Space>(piece: Piece<S>, facet: &Facet<S>, rise: i32) -> Vec<Piece<S>> {
+    let (under, beside) = overlay::<S>(piece.fragment, &facet.fragment);
+    let beside = beside.into_iter().map(|fragment| Piece {
+        fragment,
+        rise: piece.rise,
+        layers: piece.layers,
+    });
+    let under = under.map(|fragment| Piece {
+        fragment,
+        rise: piece.rise + rise,
+        layers: piece.layers + 1,
+    });
+    beside.chain(under).collect()
+}
