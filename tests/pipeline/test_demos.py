@@ -39,7 +39,9 @@ def test_cubes_that_share_an_edge_or_a_vertex_stay_two(shift: tuple[float, float
     both = a | touching
     assert facts(assert_sound(both)) == (16, 24, 2)
     assert both.volume_exact == 2
-    assert any(finding.code == "contact" for finding in both.findings)
+    codes = {finding.code for finding in both.findings}
+    assert ("edge_contact" in codes) == (shift == (1, 1, 0))
+    assert ("vertex_contact" in codes) == (shift == (1, 1, 1))
 
 
 def test_cubes_turned_by_45_degrees_share_their_caps() -> None:
