@@ -1,0 +1,148 @@
+//! The triangles around one edge, in angular order, and the wedges of the inside between them.
+
+use std::cmp::Ordering;
+
+use crate::arith::Int;
+
+use super::Radial;
+
+/// Products of two normal components, and sums of three of them, in bits: 2 · 120 + 2 < 256.
+type Wide = Int<4>;
+
+/// A triangle at the edge.
+struct Spoke {
+    half: usize,
+    forward: bool,
+    /// Normal, reversed for backward half-edges: a quarter turn from the triangle, for all the same way.
+    across: [i128; 3],
+}
+
+/// The line of an edge, from its lower to its higher vertex.
+struct Axis {
+    /// A coordinate in which the edge's ends differ.
+    coordinate: usize,
+    /// Whether the edge runs up or down in it.
+    sign: i32,
+}
+
+/// Pairs the half-edges of one edge, so that the triangles of a pair bound a wedge of the inside.
+///
+/// Counterclockwise around the edge, the inside begins at a backward half-edge and ends at a forward
+/// one. Of triangles in one half-plane the forward ones count as first, so that walls of no thickness
+/// separate what they are between. Beginnings and ends are matched like parentheses, which leaves no
+/// crossing pairs where wedges overlap.
+///
+/// # Order
+/// Depends on the half-edges' numbers only among triangles in one half-plane.
+pub(super) fn wedges<R: Radial>(
+    radial: &R,
+    [a, b]: [u32; 2],
+    forward: &[usize],
+    backward: &[usize],
+) -> Vec<(usize, usize)> {
+    let axis = Axis::new(radial.direction(a, b));
+    let mut spokes: Vec<Spoke> = Vec::with_capacity(forward.len() + backward.len());
+    for (&half, is_forward) in forward
+        .iter()
+        .map(|h| (h, true))
+        .chain(backward.iter().map(|h| (h, false)))
+    {
+        let spoke = Spoke::new(radial, half, is_forward);
+        // Insertion, unlike the library's sorts, puts up with normals that contradict each other.
+        let place = spokes.partition_point(|other| {
+            axis.order(&spokes[0].across, &other.across, &spoke.across)
+                .is_le()
+        });
+        spokes.insert(place, spoke);
+    }
+    match_wedges(&spokes)
+}
+
+/// Matches each forward half-edge with the last unmatched backward one, going round.
+fn match_wedges(spokes: &[Spoke]) -> Vec<(usize, usize)> {
+    let mut pairs = Vec::with_capacity(spokes.len() / 2);
+    let mut begun = Vec::new();
+    let twice = spokes.iter().chain(spokes);
+    for spoke in twice.skip(start(spokes)).take(spokes.len()) {
+        if !spoke.forward {
+            begun.push(spoke.half);
+        } else if let Some(backward) = begun.pop() {
+            pairs.push((spoke.half, backward));
+        }
+    }
+    pairs
+}
+
+/// Where to start so that at any time at least as many wedges have begun as ended.
+fn start(spokes: &[Spoke]) -> usize {
+    let (mut depth, mut lowest, mut start) = (0_i64, 0_i64, 0);
+    for (k, spoke) in spokes.iter().enumerate() {
+        depth += if spoke.forward { -1 } else { 1 };
+        if depth < lowest {
+            (lowest, start) = (depth, k + 1);
+        }
+    }
+    start
+}
+
+impl Spoke {
+    fn new<R: Radial>(radial: &R, half: usize, forward: bool) -> Self {
+        // The caller has checked that triangles count in 32 bits.
+        let normal = radial.normal(u32::try_from(half / 3).unwrap_or(u32::MAX));
+        let across = if forward {
+            normal
+        } else {
+            normal.map(i128::wrapping_neg)
+        };
+        Self {
+            half,
+            forward,
+            across,
+        }
+    }
+}
+
+impl Axis {
+    fn new(direction: [i32; 3]) -> Self {
+        let coordinate = direction.iter().position(|&sign| sign != 0).unwrap_or(0);
+        Self {
+            coordinate,
+            sign: direction[coordinate].signum(),
+        }
+    }
+
+    /// Order by angle around the axis, counterclockwise from `zero`.
+    fn order(&self, zero: &[i128; 3], u: &[i128; 3], v: &[i128; 3]) -> Ordering {
+        let by_half = self.half(zero, u).cmp(&self.half(zero, v));
+        by_half.then_with(|| 0.cmp(&self.turn(u, v)))
+    }
+
+    /// 0 at `zero`, 1 before the half turn, 2 at it, 3 after it.
+    fn half(&self, zero: &[i128; 3], u: &[i128; 3]) -> u8 {
+        match self.turn(zero, u) {
+            1.. => 1,
+            0 if dot_sign(zero, u) > 0 => 0,
+            0 => 2,
+            _ => 3,
+        }
+    }
+
+    /// Sign of the turn from `u` to `v` about the axis, for vectors at right angles to it.
+    ///
+    /// - `1`: counterclockwise, by less than a half turn
+    /// - `0`: none, or a half turn
+    /// - `-1`: clockwise
+    fn turn(&self, u: &[i128; 3], v: &[i128; 3]) -> i32 {
+        let (j, k) = ((self.coordinate + 1) % 3, (self.coordinate + 2) % 3);
+        // The cross product is parallel to the axis: one coordinate tells its direction.
+        (product(u[j], v[k]) - product(u[k], v[j])).signum() * self.sign
+    }
+}
+
+fn dot_sign(u: &[i128; 3], v: &[i128; 3]) -> i32 {
+    (product(u[0], v[0]) + product(u[1], v[1]) + product(u[2], v[2])).signum()
+}
+
+fn product(a: i128, b: i128) -> Wide {
+    Int::<2>::from_i128(a).mul(&Int::<2>::from_i128(b))
+}
