@@ -1,6 +1,7 @@
 """Bad input at the Python door: a clear error, or a finding and a right result."""
 
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -159,13 +160,14 @@ def test_t_junctions_are_closed() -> None:
     assert_sound(solid | b.Solid(*moved(cube(), (5, 0, 0))))
 
 
-def test_numbers_below_the_lattice_are_rounded_or_refused() -> None:
-    vertices, faces = cube(1e-12)
-    try:
-        solid = b.Solid(vertices, faces)
-        assert abs(float(solid.volume_exact) - 1e-36) < 1e-36
-    except b.BspcsgError as error:
-        assert error.code in {"too_small", "empty_mesh"}
+def test_a_tiny_mesh_gets_a_finer_lattice() -> None:
+    solid = b.Solid(*cube(1e-12))
+    assert solid.volume_exact == Fraction(1, 10**36)
+    assert solid.pitch <= -12
+    assert any(finding.code == "pitch" for finding in solid.findings)
+
+
+def test_subnormal_coordinates_are_rounded() -> None:
     vertices, faces = cube()
     vertices[vertices == 0] = 5e-324
     assert b.Solid(vertices, faces).volume_exact == 1
