@@ -2,7 +2,7 @@
 //!
 //! `T` is the tree, `H` the hyperplane, `P` = H ∩ region(T). A piece lies on one side of a cut if no
 //! point of it lies *strictly* on the other; then, in exact arithmetic, P crosses the tree's cut if
-//! and only if the tree's own span crosses H, and exactly the cases of [`Case`] can occur.
+//! and only if the tree's own span crosses H, and exactly the cases of `Case` can occur.
 //!
 //! # Source
 //! Naylor, Amanatides, Thibault 1990, section 4.
