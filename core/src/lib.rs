@@ -6,7 +6,12 @@
 
 pub mod arith;
 pub mod error;
+pub mod extract;
 pub mod geometry;
-pub mod mesh;
-pub mod tree;
 pub mod merge;
+pub mod mesh;
+pub mod query;
+pub mod tree;
+
+#[cfg(feature = "python")]
+mod python;

@@ -14,7 +14,7 @@ use super::overlay::{disjoint, Fragment};
 use crate::geometry::cell::Cell;
 use crate::geometry::line::LineKey;
 use crate::geometry::outline::{cancel, OutlineEdge};
-use crate::geometry::plane::Plane;
+use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Polygon;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Deferred, Group, Node, Part, PartElement};
@@ -273,4 +273,24 @@ fn border_lines(plane: &Plane, cell: &Cell) -> Vec<LineKey> {
         .filter(|w| crossed(w))
         .map(|w| LineKey::of_planes(plane, w))
         .collect()
+}
+
+/// One operand's local tree in a small cell, for queries.
+pub struct LeafTree(Operand);
+
+impl LeafTree {
+    /// The local tree of a list.
+    pub fn new(list: List, cell: &Cell, sources: &Sources) -> Self {
+        Self(Operand::new(0, list, cell, sources))
+    }
+
+    /// The pieces of boundary in the cell.
+    pub fn polygons(&self) -> impl Iterator<Item = &Polygon> {
+        self.0.fragments.iter().map(|f| &f.polygon)
+    }
+
+    /// The winding number at a lattice point that lies on none of the pieces.
+    pub fn label_at(&self, point: &Lattice) -> i32 {
+        self.0.tree.label_at(point)
+    }
 }

@@ -17,6 +17,7 @@ pub struct Source {
     pitch: Pitch,
     shape: Shape,
     topology: OnceLock<Topology>,
+    cell: OnceLock<Option<Cell>>,
     findings: Vec<Finding>,
 }
 
@@ -52,6 +53,7 @@ impl Source {
             pitch,
             shape,
             topology: OnceLock::new(),
+            cell: OnceLock::new(),
             findings,
         }
     }
@@ -143,12 +145,12 @@ impl Source {
             .map_or(face, |n| n[face as usize])
     }
 
-    /// The smallest cell around everything, and whether there is anything.
+    /// The smallest cell around everything; `None` if there is nothing.
     pub fn cell(&self) -> Option<Cell> {
-        match &self.shape {
+        *self.cell.get_or_init(|| match &self.shape {
             Shape::Mesh(mesh) => mesh.bounds().map(|(low, high)| Cell::around(&low, &high)),
             Shape::HalfSpace(_) => Some(Cell::UNIVERSE),
-        }
+        })
     }
 }
 

@@ -1,0 +1,358 @@
+//! From a boundary to a closed triangle mesh.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::collect::{collect, Fate};
+use super::contacts;
+use super::planes::{frontier, group, half_edge_ends, FrontierEdge, PlaneGroup};
+use super::seams::{subdivisions, Edge};
+use super::triangulate::triangulate;
+use super::vertices::{Projection, VertexTable};
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::line::LineKey;
+use crate::geometry::plane::Plane;
+use crate::geometry::vertex::Vertex;
+use crate::merge::list::Sources;
+use crate::mesh::finding::Finding;
+use crate::mesh::source::TriangleMesh;
+use crate::tree::solid::Solid;
+
+/// A closed triangle mesh with exact vertices.
+#[derive(Debug, Default)]
+pub struct ExactMesh {
+    /// Where each vertex is.
+    pub vertices: Vec<Corner>,
+    /// Triangles, counterclockwise as seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// For each triangle the source's slot and the number of the face in its input.
+    pub origins: Vec<[u32; 2]>,
+    /// The constructed points that [`Corner::Point`] names.
+    pub table: VertexTable,
+    /// What was noticed on the way.
+    pub findings: Vec<Finding>,
+}
+
+/// Where a vertex of an [`ExactMesh`] is.
+#[derive(Clone, Copy, Debug)]
+pub enum Corner {
+    /// A vertex of a source: slot and index.
+    Source(u32, u32),
+    /// A point of the table.
+    Point(u32),
+}
+
+/// The mesh in the making.
+pub(super) struct Assembly<'a> {
+    pub(super) sources: &'a Sources,
+    pub(super) table: VertexTable,
+    /// For each slot the output vertex of each of its vertices.
+    images: Vec<Vec<u32>>,
+    /// For each table point its output vertex.
+    point_images: Vec<u32>,
+    /// For each table point the first source vertex there.
+    names: HashMap<u32, (u32, u32)>,
+    pub(super) vertices: Vec<Corner>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) faces: Vec<TriangleFace>,
+    /// Output vertices that lie where something was cut or touches.
+    pub(super) special: Vec<bool>,
+}
+
+/// The face a triangle lies in, as the source has it, and whether it is turned around.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TriangleFace {
+    pub(super) slot: u32,
+    pub(super) face: u32,
+    pub(super) flip: bool,
+}
+
+const NONE: u32 = u32::MAX;
+
+/// The mesh of a bounded solid.
+///
+/// Untouched faces leave as they came, same triangle; cut faces and their coplanar neighbours are
+/// triangulated anew; every directed edge has exactly one opposite.
+///
+/// # Errors
+/// `Unbounded` if the solid reaches infinity.
+pub fn assemble(solid: &Solid) -> Result<ExactMesh> {
+    let sources = Sources::new(Arc::clone(solid.sources()));
+    if solid.root().outside > 0 {
+        return Err(unbounded());
+    }
+    let (fates, groups) = group(collect(solid, &sources), &sources);
+    if groups.iter().any(reaches_infinity) {
+        return Err(unbounded());
+    }
+    let mut assembly = Assembly::new(&sources, &fates);
+    assembly.run(&fates, &groups)?;
+    let findings = contacts::split(&mut assembly)?;
+    Ok(assembly.finish(findings))
+}
+
+fn unbounded() -> Error {
+    let text = "the solid is unbounded and has no mesh; intersect it with a box first";
+    Error::new(ErrorKind::Unbounded, text)
+}
+
+/// Whether an outline runs on the border of the universe, where only half-spaces reach.
+fn reaches_infinity(group: &PlaneGroup) -> bool {
+    let limit = crate::mesh::grid::LIMIT - 1.0;
+    let far = |v: &Vertex| v.as_lattice().is_none() && v.approx().iter().any(|c| c.abs() > limit);
+    group.edges.iter().any(|e| far(&e.from))
+}
+
+impl<'a> Assembly<'a> {
+    fn new(sources: &'a Sources, fates: &[Vec<Fate>]) -> Self {
+        let image = |(slot, fates): (usize, &Vec<Fate>)| {
+            let count = sources.get(slot).mesh().map_or(0, |m| m.vertices.len());
+            vec![NONE; if fates.is_empty() { 0 } else { count }]
+        };
+        Self {
+            sources,
+            table: VertexTable::default(),
+            images: fates.iter().enumerate().map(image).collect(),
+            point_images: Vec::new(),
+            names: HashMap::new(),
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+            faces: Vec::new(),
+            special: Vec::new(),
+        }
+    }
+
+    fn run(&mut self, fates: &[Vec<Fate>], groups: &[PlaneGroup]) -> Result<()> {
+        self.mark_irregular(fates);
+        let frontier = frontier(fates, self.sources);
+        let mut edges = Vec::new();
+        for group in groups {
+            for e in &group.edges {
+                let (from, to) = (self.table.number(&e.from), self.table.number(&e.to));
+                edges.push(Edge { from, to, line: e.line });
+            }
+        }
+        for e in &frontier {
+            edges.extend(self.frontier_edge(e, fates));
+        }
+        self.name_cut_corners(fates);
+        let inner = subdivisions(&edges, &self.table);
+        let offset: usize = groups.iter().map(|g| g.edges.len()).sum();
+        let split = split_faces(&frontier, &inner[offset..]);
+        self.emit_whole(fates, &split);
+        for (slot, face) in order_of(&split) {
+            self.emit_split(slot, face, fates, &split)?;
+        }
+        let mut start = 0;
+        for group in groups {
+            let range = start..start + group.edges.len();
+            start = range.end;
+            self.emit_group(group, &edges[range.clone()], &inner[range])?;
+        }
+        Ok(())
+    }
+
+    fn frontier_edge(&mut self, e: &FrontierEdge, fates: &[Vec<Fate>]) -> Option<Edge> {
+        let mesh = self.sources.get(e.slot as usize).mesh()?;
+        let ends = half_edge_ends(mesh, e.half);
+        let [a, b] = ends.map(|v| mesh.vertices[v as usize]);
+        let line = LineKey::of_edge(&a, &b);
+        let [p, q] = ends.map(|v| self.point_of(e.slot, mesh, v));
+        let turned = fates[e.slot as usize][e.half as usize / 3] == Fate::Whole(true);
+        let (from, to) = if turned { (q, p) } else { (p, q) };
+        Some(Edge { from, to, line })
+    }
+
+    /// The table number of a source's vertex; from now on the vertex is that point.
+    fn point_of(&mut self, slot: u32, mesh: &TriangleMesh, vertex: u32) -> u32 {
+        let point = self.table.number(&Arc::new(Vertex::lattice(mesh.vertices[vertex as usize])));
+        self.names.entry(point).or_insert((slot, vertex));
+        let image = self.image_of_point(point);
+        self.images[slot as usize][vertex as usize] = image;
+        point
+    }
+
+    fn image_of_point(&mut self, point: u32) -> u32 {
+        if self.point_images.len() < self.table.len() {
+            self.point_images.resize(self.table.len(), NONE);
+        }
+        let image = &mut self.point_images[point as usize];
+        if *image == NONE {
+            *image = self.vertices.len() as u32;
+            self.vertices.push(Corner::Point(point));
+            self.special.push(true);
+        }
+        *image
+    }
+
+    fn image_of(&mut self, slot: u32, vertex: u32) -> u32 {
+        let image = &mut self.images[slot as usize][vertex as usize];
+        if *image == NONE {
+            *image = self.vertices.len() as u32;
+            self.vertices.push(Corner::Source(slot, vertex));
+            self.special.push(false);
+        }
+        *image
+    }
+
+    /// Remembers which source vertices the corners of cut faces are, for their original doubles.
+    fn name_cut_corners(&mut self, fates: &[Vec<Fate>]) {
+        for (slot, fates) in (0u32..).zip(fates) {
+            let Some(mesh) = self.sources.get(slot as usize).mesh() else {
+                continue;
+            };
+            for (face, _) in fates.iter().enumerate().filter(|(_, f)| **f == Fate::Cut) {
+                for vertex in mesh.faces[face] {
+                    let place = mesh.vertices[vertex as usize];
+                    if let Some(point) = self.table.find(&Vertex::lattice(place)) {
+                        self.names.entry(point).or_insert((slot, vertex));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Vertices on edges that more than two faces of a source share are identified by place.
+    fn mark_irregular(&mut self, fates: &[Vec<Fate>]) {
+        for (slot, fates) in (0u32..).zip(fates) {
+            let source = Arc::clone(self.sources.get(slot as usize));
+            let (Some(mesh), false) = (source.mesh(), fates.is_empty()) else {
+                continue;
+            };
+            let irregular = source.topology().map_or(&[][..], |t| t.irregular());
+            for &vertex in irregular {
+                self.point_of(slot, mesh, vertex);
+            }
+        }
+    }
+
+    fn emit_whole(&mut self, fates: &[Vec<Fate>], split: &HashMap<(u32, u32), [Vec<u32>; 3]>) {
+        for (slot, fates) in (0u32..).zip(fates) {
+            let source = Arc::clone(self.sources.get(slot as usize));
+            let Some(mesh) = source.mesh() else {
+                continue;
+            };
+            for (face, fate) in (0u32..).zip(fates) {
+                let Fate::Whole(flip) = *fate else {
+                    continue;
+                };
+                if !split.is_empty() && split.contains_key(&(slot, face)) {
+                    continue;
+                }
+                let [a, b, c] = mesh.faces[face as usize].map(|v| self.image_of(slot, v));
+                self.triangles.push(if flip { [a, c, b] } else { [a, b, c] });
+                self.faces.push(TriangleFace { slot, face, flip });
+            }
+        }
+    }
+
+    /// Triangulates a whole face that received vertices on its edges.
+    fn emit_split(
+        &mut self,
+        slot: u32,
+        face: u32,
+        fates: &[Vec<Fate>],
+        split: &HashMap<(u32, u32), [Vec<u32>; 3]>,
+    ) -> Result<()> {
+        let source = Arc::clone(self.sources.get(slot as usize));
+        let Some(mesh) = source.mesh() else {
+            return Ok(());
+        };
+        let flip = fates[slot as usize][face as usize] == Fate::Whole(true);
+        let corners = mesh.faces[face as usize].map(|v| self.point_of(slot, mesh, v));
+        let mut ring = Vec::new();
+        for i in 0..3 {
+            ring.push(corners[i]);
+            let inner = split[&(slot, face)][i].iter();
+            if flip {
+                ring.extend(inner.rev());
+            } else {
+                ring.extend(inner);
+            }
+        }
+        if flip {
+            ring.reverse();
+        }
+        let edges: Vec<(u32, u32)> = (0..ring.len())
+            .map(|i| (ring[i], ring[(i + 1) % ring.len()]))
+            .collect();
+        let plane = source.plane(face);
+        let plane = if flip { plane.flipped() } else { (*plane).clone() };
+        self.emit_polygon(&plane, &edges, TriangleFace { slot, face, flip })
+    }
+
+    fn emit_group(&mut self, group: &PlaneGroup, edges: &[Edge], inner: &[Vec<u32>]) -> Result<()> {
+        let mut chain = Vec::with_capacity(edges.len());
+        for (edge, inner) in edges.iter().zip(inner) {
+            let mut at = edge.from;
+            for next in inner.iter().chain(std::iter::once(&edge.to)) {
+                chain.push((at, *next));
+                at = *next;
+            }
+        }
+        let (slot, face) = group.face;
+        let flip = *self.sources.get(slot as usize).plane(face) != group.plane;
+        self.emit_polygon(&group.plane, &chain, TriangleFace { slot, face, flip })
+    }
+
+    fn emit_polygon(&mut self, plane: &Plane, edges: &[(u32, u32)], face: TriangleFace) -> Result<()> {
+        let view = Projection::onto(plane, &self.table);
+        let triangles = triangulate(&view, edges)
+            .map_err(|e| Error::internal(format!("an outline could not be triangulated: {e}")))?;
+        for triangle in triangles {
+            let triangle = triangle.map(|p| self.image_of_point(p));
+            self.triangles.push(triangle);
+            self.faces.push(face);
+        }
+        Ok(())
+    }
+
+    fn finish(mut self, findings: Vec<Finding>) -> ExactMesh {
+        let origin = |f: &TriangleFace| [f.slot, self.sources.get(f.slot as usize).number(f.face)];
+        let origins = self.faces.iter().map(origin).collect();
+        for vertex in &mut self.vertices {
+            if let Corner::Point(point) = *vertex {
+                if let Some((slot, index)) = self.names.get(&point) {
+                    *vertex = Corner::Source(*slot, *index);
+                }
+            }
+        }
+        ExactMesh {
+            vertices: self.vertices,
+            triangles: self.triangles,
+            origins,
+            table: self.table,
+            findings,
+        }
+    }
+
+    /// The exact position of an output vertex.
+    pub(super) fn position(&self, vertex: u32) -> Arc<Vertex> {
+        match self.vertices[vertex as usize] {
+            Corner::Point(point) => Arc::clone(self.table.point(point)),
+            Corner::Source(slot, index) => {
+                let mesh = self.sources.get(slot as usize).mesh();
+                let place = mesh.map_or([0; 3], |m| m.vertices[index as usize]);
+                Arc::new(Vertex::lattice(place))
+            }
+        }
+    }
+}
+
+/// The points inserted on the three edges of each whole face that received any.
+fn split_faces(frontier: &[FrontierEdge], inner: &[Vec<u32>]) -> HashMap<(u32, u32), [Vec<u32>; 3]> {
+    let mut split: HashMap<(u32, u32), [Vec<u32>; 3]> = HashMap::new();
+    for (edge, points) in frontier.iter().zip(inner) {
+        if !points.is_empty() {
+            let face = split.entry((edge.slot, edge.half / 3)).or_default();
+            face[edge.half as usize % 3].clone_from(points);
+        }
+    }
+    split
+}
+
+fn order_of(split: &HashMap<(u32, u32), [Vec<u32>; 3]>) -> Vec<(u32, u32)> {
+    let mut order: Vec<(u32, u32)> = split.keys().copied().collect();
+    order.sort_unstable();
+    order
+}

@@ -1,0 +1,12 @@
+//! From a tree back to a mesh: collecting, joining, pairing, triangulating, splitting, rounding.
+#![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
+
+pub mod assemble;
+pub mod collect;
+mod contacts;
+pub mod fans;
+pub mod planes;
+pub mod round;
+pub mod seams;
+pub mod triangulate;
+pub mod vertices;

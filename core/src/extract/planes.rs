@@ -1,0 +1,215 @@
+//! Cut faces and their coplanar neighbours joined into polygons with holes.
+
+use std::collections::{HashMap, HashSet};
+
+use super::collect::{Boundary, CutFace, Fate};
+use crate::geometry::line::LineKey;
+use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::geometry::plane::Plane;
+use crate::geometry::polygon::Polygon;
+use crate::merge::list::Sources;
+use crate::mesh::source::TriangleMesh;
+use crate::mesh::topology::NONE;
+
+/// All boundary in one oriented plane that is not left as it came.
+#[derive(Debug)]
+pub struct PlaneGroup {
+    /// The plane, inside on its minus side.
+    pub plane: Plane,
+    /// The first face that lies in it: slot and face.
+    pub face: (u32, u32),
+    /// The outline, counterclockwise as seen from outside.
+    pub edges: Vec<OutlineEdge>,
+}
+
+/// An edge of a whole face whose mate is not a whole face of the same orientation.
+#[derive(Clone, Copy, Debug)]
+pub struct FrontierEdge {
+    /// The source's slot.
+    pub slot: u32,
+    /// The half-edge.
+    pub half: u32,
+}
+
+/// Groups in the making.
+struct Grouping<'a> {
+    sources: &'a Sources,
+    fates: Vec<Vec<Fate>>,
+    groups: Vec<PlaneGroup>,
+    by_plane: HashMap<Plane, usize>,
+    open: Vec<(u32, u32, bool, usize)>,
+}
+
+/// Joins cut faces by plane; returns the fates that remain and the groups.
+pub fn group(boundary: Boundary, sources: &Sources) -> (Vec<Vec<Fate>>, Vec<PlaneGroup>) {
+    let mut grouping = Grouping {
+        sources,
+        fates: boundary.fates,
+        groups: Vec::new(),
+        by_plane: HashMap::new(),
+        open: Vec::new(),
+    };
+    for cut in boundary.cut {
+        grouping.add_cut(cut);
+    }
+    grouping.spread();
+    grouping.absorb_seams();
+    grouping.spread();
+    let mut groups = grouping.groups;
+    for group in &mut groups {
+        group.edges = cancel(std::mem::take(&mut group.edges));
+    }
+    groups.retain(|g| !g.edges.is_empty());
+    (grouping.fates, groups)
+}
+
+impl Grouping<'_> {
+    fn group_of(&mut self, plane: Plane, face: (u32, u32)) -> usize {
+        let next = self.groups.len();
+        let at = *self.by_plane.entry(plane.clone()).or_insert(next);
+        if at == next {
+            self.groups.push(PlaneGroup { plane, face, edges: Vec::new() });
+        }
+        at
+    }
+
+    fn add_cut(&mut self, cut: CutFace) {
+        let plane = self.oriented_plane(cut.slot, cut.face, cut.flip);
+        let at = self.group_of(plane, (cut.slot, cut.face));
+        let edges = &mut self.groups[at].edges;
+        if cut.flip {
+            edges.extend(cut.edges.iter().map(OutlineEdge::reversed));
+        } else {
+            edges.extend(cut.edges);
+        }
+        self.open.push((cut.slot, cut.face, cut.flip, at));
+    }
+
+    fn oriented_plane(&self, slot: u32, face: u32, flip: bool) -> Plane {
+        let plane = self.sources.get(slot as usize).plane(face);
+        if flip {
+            plane.flipped()
+        } else {
+            (*plane).clone()
+        }
+    }
+
+    /// Moves a whole face into the group of its plane.
+    fn absorb(&mut self, slot: u32, face: u32, flip: bool, group: usize) {
+        let source = self.sources.get(slot as usize);
+        let Some(mesh) = source.mesh() else {
+            return;
+        };
+        self.fates[slot as usize][face as usize] = Fate::Cut;
+        let polygon = Polygon::triangle(&mesh.corners(face), source.plane(face));
+        let edges = OutlineEdge::all_of(&polygon);
+        let target = &mut self.groups[group].edges;
+        if flip {
+            target.extend(edges.map(|e| e.reversed()));
+        } else {
+            target.extend(edges);
+        }
+        self.open.push((slot, face, flip, group));
+    }
+
+    /// Absorbs the whole faces that continue a group's faces across an edge in the same plane.
+    fn spread(&mut self) {
+        while let Some((slot, face, flip, group)) = self.open.pop() {
+            let source = self.sources.get(slot as usize);
+            let Some(topology) = source.topology() else {
+                continue;
+            };
+            for corner in 0..3 {
+                let mate = topology.mates()[3 * face as usize + corner];
+                if mate == NONE {
+                    continue;
+                }
+                let next = mate / 3;
+                let whole = self.fates[slot as usize][next as usize] == Fate::Whole(flip);
+                if whole && self.oriented_plane(slot, next, flip) == self.groups[group].plane {
+                    self.absorb(slot, next, flip, group);
+                }
+            }
+        }
+    }
+
+    /// Absorbs whole faces that share a line and a plane with others of another source or part.
+    fn absorb_seams(&mut self) {
+        let frontier = frontier(&self.fates, self.sources);
+        let mut seen: HashMap<(usize, LineKey), (u32, u32)> = HashMap::new();
+        let mut candidates = Vec::new();
+        for edge in &frontier {
+            let (slot, face) = (edge.slot, edge.half / 3);
+            let Fate::Whole(flip) = self.fates[slot as usize][face as usize] else {
+                continue;
+            };
+            let plane = self.oriented_plane(slot, face, flip);
+            let group = self.group_of(plane, (slot, face));
+            let line = self.line_of(edge);
+            candidates.push((slot, face, flip, group, line));
+        }
+        let group_lines: HashSet<(usize, LineKey)> = self
+            .groups
+            .iter()
+            .enumerate()
+            .flat_map(|(at, g)| g.edges.iter().map(move |e| (at, e.line)))
+            .collect();
+        let mut shared: HashSet<(usize, LineKey)> = HashSet::new();
+        for (slot, face, _, group, line) in &candidates {
+            let first = *seen.entry((*group, *line)).or_insert((*slot, *face));
+            if first != (*slot, *face) || group_lines.contains(&(*group, *line)) {
+                shared.insert((*group, *line));
+            }
+        }
+        for (slot, face, flip, group, line) in candidates {
+            let whole = self.fates[slot as usize][face as usize] == Fate::Whole(flip);
+            if whole && shared.contains(&(group, line)) {
+                self.absorb(slot, face, flip, group);
+            }
+        }
+    }
+
+    fn line_of(&self, edge: &FrontierEdge) -> LineKey {
+        let mesh = self.sources.get(edge.slot as usize).mesh();
+        mesh.map_or_else(
+            || LineKey::of_edge(&[0; 3], &[1, 0, 0]),
+            |m| {
+                let [a, b] = half_edge_ends(m, edge.half).map(|v| m.vertices[v as usize]);
+                LineKey::of_edge(&a, &b)
+            },
+        )
+    }
+}
+
+/// The end vertices of a half-edge.
+pub fn half_edge_ends(mesh: &TriangleMesh, half: u32) -> [u32; 2] {
+    let face = &mesh.faces[half as usize / 3];
+    let corner = half as usize % 3;
+    [face[corner], face[(corner + 1) % 3]]
+}
+
+/// The frontier: half-edges of whole faces whose mates are not whole and turned alike.
+pub fn frontier(fates: &[Vec<Fate>], sources: &Sources) -> Vec<FrontierEdge> {
+    let mut found = Vec::new();
+    for (slot, fates) in (0u32..).zip(fates) {
+        let source = sources.get(slot as usize);
+        if fates.is_empty() {
+            continue;
+        }
+        let Some(topology) = source.topology() else {
+            continue;
+        };
+        for (face, fate) in fates.iter().enumerate() {
+            if !matches!(fate, Fate::Whole(_)) {
+                continue;
+            }
+            for half in 3 * face..3 * face + 3 {
+                let mate = topology.mates()[half];
+                if mate == NONE || fates[mate as usize / 3] != *fate {
+                    found.push(FrontierEdge { slot, half: half as u32 });
+                }
+            }
+        }
+    }
+    found
+}

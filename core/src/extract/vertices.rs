@@ -1,0 +1,137 @@
+//! Exact vertex identity: one number for each point, whatever it was made from.
+
+use std::cmp::Ordering;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::triangulate::Planar;
+use crate::arith::Int;
+use crate::geometry::plane::Plane;
+use crate::geometry::vertex::{Vertex, VertexKey};
+
+/// Numbered points; equal points have equal numbers.
+#[derive(Debug, Default)]
+pub struct VertexTable {
+    points: Vec<Arc<Vertex>>,
+    by_key: HashMap<VertexKey, Vec<u32>>,
+    by_address: HashMap<usize, u32>,
+}
+
+impl VertexTable {
+    /// The number of a point, found by fingerprint and confirmed exactly.
+    pub fn number(&mut self, vertex: &Arc<Vertex>) -> u32 {
+        let address = Arc::as_ptr(vertex) as usize;
+        if let Some(id) = self.by_address.get(&address) {
+            return *id;
+        }
+        let same_key = self.by_key.entry(vertex.key()).or_default();
+        let known = same_key.iter().find(|id| self.points[**id as usize].same(vertex));
+        if let Some(id) = known {
+            return *id;
+        }
+        let id = self.points.len() as u32;
+        same_key.push(id);
+        self.points.push(Arc::clone(vertex));
+        self.by_address.insert(address, id);
+        id
+    }
+
+    /// The number of a point that is in the table.
+    pub fn find(&self, vertex: &Vertex) -> Option<u32> {
+        let same_key = self.by_key.get(&vertex.key())?;
+        same_key.iter().copied().find(|id| self.points[*id as usize].same(vertex))
+    }
+
+    /// The point with this number.
+    pub fn point(&self, id: u32) -> &Arc<Vertex> {
+        &self.points[id as usize]
+    }
+
+    /// How many points there are.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+}
+
+/// The table's points as seen along the main axis of a plane's normal, from its plus side.
+#[derive(Debug)]
+pub struct Projection<'a> {
+    table: &'a VertexTable,
+    u: usize,
+    v: usize,
+}
+
+impl<'a> Projection<'a> {
+    /// The view onto a plane.
+    pub fn onto(plane: &Plane, table: &'a VertexTable) -> Self {
+        let axis = plane.main_axis();
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let (u, v) = if plane.normal()[axis] < 0 { (v, u) } else { (u, v) };
+        Self { table, u, v }
+    }
+}
+
+impl Planar for Projection<'_> {
+    fn compare(&self, a: u32, b: u32) -> Ordering {
+        if a == b {
+            return Ordering::Equal;
+        }
+        let (p, q) = (self.table.point(a), self.table.point(b));
+        p.compare(q, self.u).then_with(|| p.compare(q, self.v))
+    }
+
+    fn orient(&self, a: u32, b: u32, c: u32) -> i32 {
+        let points = [a, b, c].map(|id| &**self.table.point(id));
+        orient(points, self.u, self.v)
+    }
+
+    fn approx(&self, a: u32) -> [f64; 2] {
+        let p = self.table.point(a).approx();
+        [p[self.u], p[self.v]]
+    }
+}
+
+/// Sign of the turn a → b → c in the (u, v) projection: +1 left, 0 straight, -1 right.
+fn orient(points: [&Vertex; 3], u: usize, v: usize) -> i32 {
+    if let [Some(a), Some(b), Some(c)] = points.map(Vertex::as_lattice) {
+        let d = |p: &[i64; 3], q: &[i64; 3], i: usize| i128::from(q[i] - p[i]);
+        let cross = d(a, b, u) * d(a, c, v) - d(a, b, v) * d(a, c, u);
+        return cross.signum() as i32;
+    }
+    rough_orient(&points, u, v).unwrap_or_else(|| exact_orient(&points, u, v))
+}
+
+/// The sign where doubles decide it: coordinates are within two units in the last place.
+fn rough_orient(points: &[&Vertex; 3], u: usize, v: usize) -> Option<i32> {
+    let [a, b, c] = points.map(Vertex::approx);
+    let (bu, bv) = (b[u] - a[u], b[v] - a[v]);
+    let (cu, cv) = (c[u] - a[u], c[v] - a[v]);
+    let largest = [a, b, c]
+        .iter()
+        .map(|p| p[u].abs().max(p[v].abs()))
+        .fold(0.0, f64::max);
+    let doubt = 8.0 * f64::EPSILON * largest;
+    let size = bu.abs() + bv.abs() + cu.abs() + cv.abs();
+    let bound = 2.0 * doubt * (size + 2.0 * doubt) + 4.0 * f64::EPSILON * (bu * cv).abs().max((bv * cu).abs());
+    let cross = bu * cv - bv * cu;
+    (cross.abs() > bound).then_some(if cross > 0.0 { 1 } else { -1 })
+}
+
+fn exact_orient(points: &[&Vertex; 3], u: usize, v: usize) -> i32 {
+    let [a, b, c] = points.map(Vertex::coordinates);
+    let minor = |p: &Int<6>, q: &Int<6>, r: &Int<6>, s: &Int<6>| -> Int<12> {
+        let left: Int<12> = p.mul(q);
+        let right: Int<12> = r.mul(s);
+        left - right
+    };
+    let by_x: Int<18> = minor(&b.x[v], &c.w, &c.x[v], &b.w).mul(&a.x[u]);
+    let by_y: Int<18> = minor(&b.x[u], &c.w, &c.x[u], &b.w).mul(&a.x[v]);
+    let by_w: Int<18> = minor(&b.x[u], &c.x[v], &c.x[u], &b.x[v]).mul(&a.w);
+    (by_x - by_y + by_w).signum()
+}
+
+/// The signs of the coordinate differences b − a.
+pub fn direction(a: &Vertex, b: &Vertex) -> [i32; 3] {
+    [0, 1, 2].map(|axis| b.compare(a, axis) as i32)
+}
+

@@ -1,0 +1,130 @@
+//! Where lattice points lie.
+
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::geometry::cell::Cell;
+use crate::geometry::plane::Lattice;
+use crate::geometry::polygon::Polygon;
+use crate::merge::leaf::LeafTree;
+use crate::merge::list::{List, Sources};
+use crate::tree::node::{Branch, Node};
+use crate::tree::solid::Solid;
+
+/// Where a point lies relative to a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Location {
+    /// In the interior.
+    Inside,
+    /// On the boundary.
+    Boundary,
+    /// In the complement's interior.
+    Outside,
+}
+
+/// Lists with at most this many elements are searched with a local tree.
+const LEAF: usize = 20;
+
+/// Where each lattice point lies; the solid must be reduced for "on" to mean its boundary.
+///
+/// Deferred leaves are divided on the way, for the points at hand only.
+///
+/// # Errors
+/// None for points on the lattice; reserved for cancellation.
+pub fn classify(solid: &Solid, points: &[Lattice]) -> Result<Vec<Location>> {
+    let sources = Sources::new(Arc::clone(solid.sources()));
+    let mut found = vec![Location::Outside; points.len()];
+    let all: Vec<usize> = (0..points.len()).collect();
+    let mut search = Search { sources: &sources, points, found: &mut found };
+    search.tree(solid.root(), all);
+    Ok(found)
+}
+
+struct Search<'a> {
+    sources: &'a Sources,
+    points: &'a [Lattice],
+    found: &'a mut [Location],
+}
+
+impl Search<'_> {
+    fn label(&mut self, points: &[usize], w: i32) {
+        let location = if w > 0 { Location::Inside } else { Location::Outside };
+        for i in points {
+            self.found[*i] = location;
+        }
+    }
+
+    fn split(&self, points: Vec<usize>, inside: impl Fn(&Lattice) -> bool) -> (Vec<usize>, Vec<usize>) {
+        points.into_iter().partition(|i| inside(&self.points[*i]))
+    }
+
+    fn tree(&mut self, root: &Branch, points: Vec<usize>) {
+        let mut open = vec![(root.clone(), points)];
+        while let Some((branch, points)) = open.pop() {
+            let (points, around) = self.split(points, |p| branch.cell.holds_box(p, p));
+            self.label(&around, branch.outside);
+            if points.is_empty() {
+                continue;
+            }
+            match &*branch.node {
+                Node::Leaf(w) => self.label(&points, branch.oriented(*w)),
+                Node::Deferred(leaf) => {
+                    let list = List::open(leaf, &branch, self.sources);
+                    self.list(branch.cell, list, points);
+                }
+                Node::Cut([minus, plus]) => {
+                    if let Some(cut) = branch.cell.cut() {
+                        let (below, above) = self.split(points, |p| p[cut.axis] < cut.at);
+                        open.push((branch.child(minus), below));
+                        open.push((branch.child(plus), above));
+                    }
+                }
+            }
+        }
+    }
+
+    fn list(&mut self, cell: Cell, list: List, points: Vec<usize>) {
+        let mut open = vec![(cell, list, points)];
+        while let Some((cell, list, points)) = open.pop() {
+            if points.is_empty() {
+                continue;
+            }
+            if list.is_empty() {
+                self.label(&points, list.corner);
+                continue;
+            }
+            let small = list.len() <= LEAF || list.reaching_out(&cell) * 8 > list.len() * 7;
+            match cell.cut().filter(|_| !small) {
+                Some(cut) => {
+                    let (below, above) = self.split(points, |p| p[cut.axis] < cut.at);
+                    let (minus, plus) = list.divide(&cell, cut, self.sources);
+                    open.push((cell.half(cut, false), minus, below));
+                    open.push((cell.half(cut, true), plus, above));
+                }
+                None => self.leaf(&cell, list, &points),
+            }
+        }
+    }
+
+    fn leaf(&mut self, cell: &Cell, list: List, points: &[usize]) {
+        let leaf = LeafTree::new(list, cell, self.sources);
+        for i in points {
+            let p = &self.points[*i];
+            let on = leaf.polygons().any(|q| touches(q, p));
+            self.found[*i] = match leaf.label_at(p) {
+                _ if on => Location::Boundary,
+                w if w > 0 => Location::Inside,
+                _ => Location::Outside,
+            };
+        }
+    }
+}
+
+/// Whether a point lies on a closed polygon.
+fn touches(polygon: &Polygon, p: &Lattice) -> bool {
+    polygon.support().side_of_lattice(p) == 0
+        && polygon
+            .corners()
+            .iter()
+            .all(|c| c.edge.plane(polygon.support()).side_of_lattice(p) <= 0)
+}
