@@ -1,7 +1,7 @@
 """Names for the arrays and values that cross module borders."""
 
 from collections.abc import Sequence
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +15,11 @@ IndexArray: TypeAlias = npt.NDArray[np.int64]
 #: In/on/out answers: int8, +1 inside, 0 on the boundary, -1 outside.
 SideArray: TypeAlias = npt.NDArray[np.int8]
 
+#: A number, Python's or numpy's.
+Scalar: TypeAlias = float | np.floating[Any] | np.integer[Any]
+
 #: One number per axis, in any form numpy understands.
-Vector: TypeAlias = Sequence[float] | npt.NDArray[np.floating] | npt.NDArray[np.integer]
+Vector: TypeAlias = Sequence[Scalar] | npt.NDArray[np.floating] | npt.NDArray[np.integer]
 
 #: Which winding numbers count as inside.
 WindingRule: TypeAlias = Literal["positive", "nonzero", "even-odd"]

@@ -18,7 +18,8 @@ def describe(node: Node, factors: Factors, mesh: Mesh | None) -> str:
     if mesh is not None:
         return _size(len(mesh.faces), mesh.bounds)
     if isinstance(content, Pending):
-        return f"pending: {len(make_plan(node).operands)} operands{moved}"
+        count = len(make_plan(node).operands)
+        return f"pending: {count} operand{'' if count == 1 else 's'}{moved}"
     if isinstance(content, MeshLeaf):
         bounds = np.array([content.vertices.min(axis=0), content.vertices.max(axis=0)])
         return _size(len(content.faces), bounds) + moved

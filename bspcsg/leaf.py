@@ -6,6 +6,7 @@ acts on the leaf's coordinates in one rounding, before they are snapped to the l
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TypeAlias
@@ -183,6 +184,14 @@ class PlaneLeaf:
     factors: Factors = ()
     pitch: int | None = field(default=None, init=False)
 
+    @classmethod
+    def through(cls, normal: Sequence[Fraction], offset: Fraction) -> "PlaneLeaf":
+        """Return the half-space of an exact normal, not zero, and offset."""
+        # Only the direction counts. A power of two brings it into range without rounding.
+        size = _power_of_two_near(max(abs(entry) for entry in normal))
+        x, y, z = (float(entry / size) for entry in normal)
+        return cls((x, y, z), float(offset / size))
+
     def tree(self, pitch: int) -> Tree:
         """Return the tree on the lattice of this pitch."""
         rigid = transform.permuting_run(self.factors)
@@ -214,10 +223,7 @@ class PlaneLeaf:
         normal = [transform.exact_dot(row, old) for row in cofactors]
         shift = [Fraction(entry) for entry in factor.matrix[:3, 3].tolist()]
         offset = abs(determinant) * Fraction(self.offset) + transform.exact_dot(normal, shift)
-        # Only the direction counts. A power of two brings it into range without rounding.
-        size = _power_of_two_below(max(abs(entry) for entry in normal))
-        x, y, z = (float(entry / size) for entry in normal)
-        return PlaneLeaf((x, y, z), float(offset / size))
+        return PlaneLeaf.through(normal, offset)
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,7 +271,7 @@ def transformed_arrays(
     return moved, np.ascontiguousarray(faces[:, ::-1]) if mirrored else faces
 
 
-def _power_of_two_below(value: Fraction) -> Fraction:
+def _power_of_two_near(value: Fraction) -> Fraction:
     return Fraction(2) ** (value.numerator.bit_length() - value.denominator.bit_length())
 
 

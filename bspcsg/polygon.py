@@ -86,9 +86,12 @@ def _raw_contours(polygon: Any) -> list[Any]:
         return [ring.coords for ring in rings]
     if hasattr(polygon, "to_polygons"):
         return list(polygon.to_polygons())
-    points = list(polygon)
-    # The entries of a single contour are points, whose entries are numbers.
-    single = bool(points) and np.ndim(points[0][0]) == 0
+    try:
+        points = list(polygon)
+        # The entries of a single contour are points, whose entries are numbers.
+        single = bool(points) and np.ndim(points[0][0]) == 0
+    except (TypeError, IndexError) as error:
+        raise invalid_parameter("A polygon is a list of points, or of contours.") from error
     return [points] if single else points
 
 

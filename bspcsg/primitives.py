@@ -7,11 +7,12 @@ units; parameters that make no solid raise `InvalidMeshError` with the code "inv
 """
 
 import math
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from ._types import FloatArray, IndexArray, Vector
+from ._types import FloatArray, IndexArray, Scalar, Vector
 from .errors import InvalidMeshError, at_least, invalid_parameter, number, positive
 from .leaf import MeshLeaf, PlaneLeaf
 from .polygon import triangulate
@@ -44,7 +45,7 @@ _BOX_FACES = np.array(
 )  # fmt: skip
 
 
-def box(size: float | Vector, center: bool = False) -> Solid:
+def box(size: Scalar | Vector, center: bool = False) -> Solid:
     """Return a box.
 
     Parameters
@@ -68,12 +69,12 @@ def box(size: float | Vector, center: bool = False) -> Solid:
     return from_arrays(vertices, _BOX_FACES)
 
 
-def cube(size: float | Vector, center: bool = False) -> Solid:
+def cube(size: Scalar | Vector, center: bool = False) -> Solid:
     """Return a cube of this edge length, or a box: another name for `box`."""
     return box(size, center)
 
 
-def sphere(r: float, segments: int = 32) -> Solid:
+def sphere(r: Scalar, segments: int = 32) -> Solid:
     """Return a sphere about the origin, made of meridians and parallels.
 
     Parameters
@@ -97,11 +98,11 @@ def sphere(r: float, segments: int = 32) -> Solid:
 
 
 def cylinder(
-    h: float,
-    r: float | None = None,
+    h: Scalar,
+    r: Scalar | None = None,
     *,
-    r1: float | None = None,
-    r2: float | None = None,
+    r1: Scalar | None = None,
+    r2: Scalar | None = None,
     segments: int = 32,
     center: bool = False,
 ) -> Solid:
@@ -140,12 +141,12 @@ def cylinder(
     return from_arrays(vertices, np.concatenate([sides, bottom, top]))
 
 
-def cone(h: float, r: float, *, segments: int = 32, center: bool = False) -> Solid:
+def cone(h: Scalar, r: Scalar, *, segments: int = 32, center: bool = False) -> Solid:
     """Return a cone along z with its apex up: a `cylinder` whose upper radius is 0."""
     return cylinder(h, r1=r, r2=0, segments=segments, center=center)
 
 
-def torus(r: float, tube: float, *, segments: int = 32, tube_segments: int = 16) -> Solid:
+def torus(r: Scalar, tube: Scalar, *, segments: int = 32, tube_segments: int = 16) -> Solid:
     """Return a torus around the z axis.
 
     Parameters
@@ -172,7 +173,7 @@ def torus(r: float, tube: float, *, segments: int = 32, tube_segments: int = 16)
     )
 
 
-def prism(sides: int, h: float, r: float, *, center: bool = False) -> Solid:
+def prism(sides: int, h: Scalar, r: Scalar, *, center: bool = False) -> Solid:
     """Return an upright regular prism.
 
     Parameters
@@ -189,7 +190,7 @@ def prism(sides: int, h: float, r: float, *, center: bool = False) -> Solid:
     return cylinder(h, r, segments=at_least(3, sides, "sides"), center=center)
 
 
-def half_space(normal: Vector, offset: float = 0.0) -> Solid:
+def half_space(normal: Vector, offset: Scalar = 0.0) -> Solid:
     """Return all points x with ``normal . x <= offset``.
 
     Parameters
@@ -213,9 +214,10 @@ def half_space(normal: Vector, offset: float = 0.0) -> Solid:
         x, y, z = (float(entry) for entry in normal)
     except (TypeError, ValueError) as error:
         raise InvalidMeshError("A normal has three numbers.", "bad_normal") from error
-    if not math.isfinite(x + y + z) or x == y == z == 0:
+    if not all(map(math.isfinite, (x, y, z))) or x == y == z == 0:
         raise InvalidMeshError("A normal needs finite entries, not all 0.", "bad_normal")
-    return Solid.from_leaf(PlaneLeaf((x, y, z), number(offset, "offset")))
+    exact = [Fraction(entry) for entry in (x, y, z)]
+    return Solid.from_leaf(PlaneLeaf.through(exact, Fraction(number(offset, "offset"))))
 
 
 def from_arrays(vertices: FloatArray, faces: IndexArray) -> Solid:
@@ -240,7 +242,7 @@ def _survives_snapping(vertices: FloatArray, faces: IndexArray) -> bool:
         return bool(altitude.min() > 1e-6 * max(1.0, np.abs(vertices).max() / 1000))
 
 
-def _radius(given: float | None, default: Any) -> float:
+def _radius(given: Scalar | None, default: Any) -> float:
     value = default if given is None else given
     if value is None:
         raise invalid_parameter("A cylinder needs r, or both r1 and r2.")

@@ -17,7 +17,7 @@ import numpy as np
 
 from . import interop, transform
 from ._core import Tree
-from ._types import ProgramLine, Vector, WindingRule
+from ._types import ProgramLine, Scalar, Vector, WindingRule
 from .describe import describe
 from .errors import core_errors, invalid_parameter
 from .expression import Node, Operator, Placed, complement, evaluate, operation
@@ -188,7 +188,7 @@ class Solid(Measured):
 
     # Transforms
 
-    def translate(self, *offset: float | Vector) -> "Solid":
+    def translate(self, *offset: Scalar | Vector) -> "Solid":
         """Return the solid moved by three numbers or one vector, in model units.
 
         Exact if the numbers are whole lattice steps, as short decimals are.
@@ -196,7 +196,7 @@ class Solid(Measured):
         vector: Any = offset[0] if len(offset) == 1 else offset
         return self._moved((transform.translation(vector),))
 
-    def rotate(self, angle: float | Vector, axis: str | Vector = "z") -> "Solid":
+    def rotate(self, angle: Scalar | Vector, axis: str | Vector = "z") -> "Solid":
         """Return the solid rotated about an axis through the origin.
 
         Quarter turns about a coordinate axis are exact.
@@ -213,7 +213,7 @@ class Solid(Measured):
             return self._moved((transform.rotation(about, axis),))
         return self._moved(transform.euler_rotation(about))
 
-    def scale(self, factor: float | Vector) -> "Solid":
+    def scale(self, factor: Scalar | Vector) -> "Solid":
         """Return the solid scaled about the origin, by one factor or one per axis."""
         return self._moved((transform.scaling(factor),))
 

@@ -26,6 +26,8 @@ def _on_circle(index: int, count: int) -> tuple[float, float]:
 
 
 def _cos_sin_of_quarter(part: int, count: int) -> tuple[float, float]:
+    if 2 * part == count:
+        return math.sqrt(0.5), math.sqrt(0.5)
     angle = math.pi / 2 * part / count
     # 1/3 of a quarter turn is 30 degrees, where the sine is rational.
     return math.cos(angle), 0.5 if 3 * part == count else math.sin(angle)

@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from ._types import FloatArray, Vector
+from ._types import FloatArray, Scalar, Vector
 from .errors import invalid_parameter, number
 
 #: Largest number of lattice steps from the origin.
@@ -77,7 +77,7 @@ def translation(offset: Vector) -> Factor:
     return Factor(matrix)
 
 
-def scaling(factor: float | Vector) -> Factor:
+def scaling(factor: Scalar | Vector) -> Factor:
     """Return the scaling about the origin by one number, or by one per axis."""
     return matrix_factor(np.diag([*vector3(factor, "scale factor", spread=True), 1.0]))
 
@@ -88,7 +88,7 @@ def mirroring(normal: Vector) -> Factor:
     return _from_linear(_snapped(np.eye(3) - 2 * np.outer(unit, unit)))
 
 
-def rotation(angle: float, axis: str | Vector) -> Factor:
+def rotation(angle: Scalar, axis: str | Vector) -> Factor:
     """Return the rotation about an axis through the origin.
 
     Parameters
@@ -151,6 +151,8 @@ def _cos_sin_in_quarter(angle: float) -> tuple[float, float]:
         # Mirroring in the diagonal makes the answers of angle and 90 - angle agree bit by bit.
         sine, cosine = _cos_sin_in_quarter(90 - angle)
         return cosine, sine
+    if angle == 45:
+        return math.sqrt(0.5), math.sqrt(0.5)
     sine = 0.5 if angle == 30 else math.sin(math.radians(angle))
     return math.cos(math.radians(angle)), sine
 

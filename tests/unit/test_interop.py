@@ -1,0 +1,211 @@
+"""Meshes of other libraries, some of them by stand-ins with the same attributes."""
+
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import manifold3d
+import numpy as np
+import pytest
+import trimesh
+
+import bspcsg as b
+from bspcsg import interop
+
+V, F = b.box((1, 2, 3)).to_mesh()
+QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+
+
+def manifold() -> manifold3d.Manifold:
+    return manifold3d.Manifold.cube((1, 2, 3))
+
+
+def pymeshlab_set() -> Any:
+    pymeshlab = pytest.importorskip("pymeshlab")
+    meshes = pymeshlab.MeshSet()
+    meshes.add_mesh(pymeshlab.Mesh(V, F))
+    return meshes
+
+
+def pymeshlab_mesh() -> Any:
+    pymeshlab = pytest.importorskip("pymeshlab")
+    return pymeshlab.Mesh(V, F)
+
+
+def split_manifold_mesh() -> Any:
+    """Return a manifold3d mesh whose seam vertices are doubled and merged by its own tables."""
+    mesh = manifold().to_mesh64()
+    vertices, faces = np.array(mesh.vert_properties), np.array(mesh.tri_verts)
+    doubled = faces.copy()
+    doubled[0, 0] = len(vertices)
+    return manifold3d.Mesh64(
+        np.concatenate([vertices, vertices[faces[0, :1]]]),
+        doubled,
+        merge_from_vert=np.array([len(vertices)], dtype=np.uint64),
+        merge_to_vert=faces[0, :1].copy(),
+    )
+
+
+def padded(faces: Any) -> Any:
+    return np.concatenate([[len(face), *face] for face in faces])
+
+
+def vtk_like() -> Any:
+    def cell(face: Any) -> Any:
+        return SimpleNamespace(GetNumberOfPoints=lambda: len(face), GetPointId=lambda k: face[k])
+
+    cells = [cell([0, 1]), *map(cell, QUADS)]
+    return SimpleNamespace(
+        GetNumberOfPoints=lambda: len(V),
+        GetPoint=lambda index: tuple(V[index]),
+        GetNumberOfCells=lambda: len(cells),
+        GetCell=lambda index: cells[index],
+    )
+
+
+def block(kind: str, data: Any) -> Any:
+    return SimpleNamespace(type=kind, data=np.asarray(data))
+
+
+def open3d_like() -> Any:
+    return SimpleNamespace(vertices=V, triangles=F.astype(np.int32))
+
+
+def shape(corners: list[Any]) -> Any:
+    return SimpleNamespace(
+        tessellate=lambda tolerance: (corners, [tuple(face) for face in F]),
+        vertices=lambda: None,
+        faces=lambda: None,
+    )
+
+
+def cadquery_like() -> Any:
+    corners = [SimpleNamespace(toTuple=lambda v=v: tuple(v)) for v in V]
+    return SimpleNamespace(val=lambda: shape(corners), plane=None)
+
+
+SOURCES: dict[str, Callable[[], Any]] = {
+    "pair": lambda: (V, F),
+    "lists": lambda: [V.tolist(), F.tolist()],
+    "quads": lambda: (V, QUADS),
+    "quads as array": lambda: (V, np.array(QUADS, dtype=np.uint8)),
+    "mixed polygons": lambda: (V, [*QUADS[:5], [1, 5, 7], [1, 7, 3]]),
+    "whole floats as indices": lambda: (V, F.astype(float)),
+    "unsigned indices": lambda: (V, F.astype(np.uint32)),
+    "Fortran order, float32": lambda: (
+        np.asfortranarray(V, dtype=np.float32),
+        np.asfortranarray(F),
+    ),
+    "Mesh": lambda: b.box((1, 2, 3)).to_mesh(),
+    "Solid": lambda: b.box((1, 2, 3)),
+    "trimesh": lambda: trimesh.Trimesh(V, F),
+    "trimesh scene": lambda: trimesh.Scene([trimesh.Trimesh(V, F)]),
+    "manifold": manifold,
+    "manifold Mesh64": lambda: manifold().to_mesh64(),
+    "manifold Mesh": lambda: manifold().to_mesh(),
+    "manifold Mesh64 with seams": split_manifold_mesh,
+    "pymeshlab MeshSet": pymeshlab_set,
+    "pymeshlab Mesh": pymeshlab_mesh,
+    "open3d": open3d_like,
+    "open3d tensor": lambda: SimpleNamespace(to_legacy=open3d_like),
+    "polydata": lambda: SimpleNamespace(points=V.astype(np.float32), faces=padded(F)),
+    "polydata of quads": lambda: SimpleNamespace(points=V, faces=padded(QUADS)),
+    "polydata, mixed": lambda: SimpleNamespace(
+        points=V, faces=padded([*QUADS[:5], [1, 5, 7], [1, 7, 3]])
+    ),
+    "grid": lambda: SimpleNamespace(
+        points=V, cells=None, extract_surface=lambda: SimpleNamespace(points=V, faces=padded(F))
+    ),
+    "meshio": lambda: SimpleNamespace(points=V, cells=[block("triangle", F)]),
+    "meshio, mixed": lambda: SimpleNamespace(
+        points=V,
+        cells=[
+            block("line", [[0, 1]]),
+            block("quad", QUADS[:5]),
+            block("triangle", [[1, 5, 7], [1, 7, 3]]),
+        ],
+    ),
+    "vtk": vtk_like,
+    "build123d": lambda: shape([tuple(v) for v in V]),
+    "cadquery": cadquery_like,
+}
+
+
+@pytest.mark.parametrize("name", SOURCES)
+def test_meshes_are_read(name: str) -> None:
+    solid = b.Solid.from_mesh(SOURCES[name]())
+    assert solid.volume == 6
+    assert solid.to_trimesh().is_volume
+
+
+@pytest.mark.parametrize(
+    "source", [None, 7, object(), (V, F, F), {"vertices": V}, SimpleNamespace(vertices=V)]
+)
+def test_what_holds_no_mesh_is_refused(source: Any) -> None:
+    with pytest.raises(b.InvalidMeshError) as caught:
+        b.Solid.from_mesh(source)
+    assert caught.value.code == "invalid_parameter"
+
+
+WRONG: dict[str, tuple[Any, Any, str]] = {
+    "points in the plane": (V[:, :2], F, "shape"),
+    "flat points": (V.ravel(), F, "shape"),
+    "words": ("vertices", F, "shape"),
+    "ragged points": ([[0, 0, 0], [1]], F, "shape"),
+    "edges": (V, F[:, :2], "shape"),
+    "flat faces": (V, F.ravel(), "shape"),
+    "fractional indices": (V, F + 0.5, "shape"),
+    "NaN as index": (V, np.full((1, 3), np.nan), "shape"),
+    "huge unsigned index": (V, np.full((1, 3), 2**63, dtype=np.uint64), "shape"),
+    "flags": (V, np.ones((1, 3), dtype=bool), "shape"),
+    "short face among long": (V, [[0, 1, 2, 3], [0, 1]], "shape"),
+    "quad out of range": (V, [[0, 1, 3, 8]], "index_out_of_range"),
+    "negative quad": (V, [[0, 1, 3, -1]], "index_out_of_range"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_arrays_are_refused(name: str) -> None:
+    vertices, faces, code = WRONG[name]
+    with pytest.raises(b.InvalidMeshError) as caught:
+        b.Solid(vertices, faces)
+    assert caught.value.code == code
+
+
+def test_volume_cells_are_refused() -> None:
+    mesh = SimpleNamespace(points=V, cells=[block("tetra", [[0, 1, 2, 3]])])
+    with pytest.raises(b.InvalidMeshError, match="tetra"):
+        b.Solid.from_mesh(mesh)
+
+
+def test_arrays_are_copied_only_if_somebody_else_holds_them() -> None:
+    points = interop.points_array(V)
+    assert points is V
+    own, _ = interop.own_arrays(V, F)
+    assert not np.shares_memory(own, V)
+    assert interop.own_arrays(V.tolist(), F.tolist())[1].dtype == np.int64
+
+
+def test_options_reach_the_solid() -> None:
+    assert b.Solid.from_mesh((V, F), pitch=-6).pitch == -6
+
+
+def test_exported_arrays_are_the_callers_own() -> None:
+    solid = b.box((1, 2, 3))
+    exported = solid.to_trimesh()
+    exported.vertices *= 2
+    assert solid.volume == 6
+    assert solid.to_manifold().volume() == pytest.approx(6)
+
+
+def test_solids_serve_as_meshes_of_other_libraries() -> None:
+    union = trimesh.boolean.union([b.cube(1), b.cube(1).translate(0.5, 0, 0)], check_volume=False)
+    assert union.volume == pytest.approx(1.5)
+
+
+def test_paths_are_read_as_files(tmp_path: Path) -> None:
+    pytest.importorskip("bspcsg.io")
+    path = tmp_path / "box.off"
+    b.box((1, 2, 3)).save(path)
+    assert b.Solid.from_mesh(path).volume == b.Solid.from_mesh(str(path)).volume == 6

@@ -1,0 +1,334 @@
+"""`Solid` as a value: operators, transforms, queries, errors, pickling."""
+
+import copy
+import pickle
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+
+CUBE = b.cube(1).to_mesh()
+
+
+def test_operators_are_those_of_sets() -> None:
+    a, c = b.cube(2), b.cube(2).translate(1, 0, 0)
+    assert (a | c).volume == (a + c).volume == 12
+    assert (a & c).volume == 4
+    assert (a - c).volume == 4
+    assert (a ^ c).volume == 8
+    assert (a & ~c).equals(a - c)
+
+
+def test_sum_and_functions_take_many() -> None:
+    cubes = [b.cube(1).translate(2 * k, 0, 0) for k in range(4)]
+    assert sum(cubes).volume == 4  # type: ignore[union-attr]
+    assert b.union(cubes).volume == b.union(*cubes).volume == 4
+    assert b.union(cubes[0], cubes[1:]).volume == 4
+    assert b.intersection(cubes).is_empty
+    assert b.difference(b.box((7, 1, 1)), cubes).volume == 3
+    assert b.difference(b.box((7, 1, 1)), *cubes).volume == 3
+    assert b.xor(cubes[0], cubes[0], cubes[1]).volume == 1
+
+
+def test_functions_of_nothing_are_the_neutral_elements() -> None:
+    assert b.union().is_empty
+    assert b.union([]).is_empty
+    assert b.xor().is_empty
+    assert not b.intersection([]).is_bounded
+    assert b.union(b.cube(1)).volume == 1
+
+
+@pytest.mark.parametrize("other", [1, None, "cube", CUBE])
+def test_operators_refuse_what_is_no_solid(other: Any) -> None:
+    for operate in (
+        lambda: b.cube(1) | other,
+        lambda: b.cube(1) & other,
+        lambda: b.cube(1) - other,
+        lambda: b.cube(1) ^ other,
+        lambda: b.cube(1) <= other,
+        lambda: 5 + b.cube(1),
+    ):
+        with pytest.raises(TypeError):
+            operate()
+    with pytest.raises(b.InvalidMeshError):
+        b.union([b.cube(1), other])
+
+
+def test_comparison_is_by_set_and_identity_stays_identity() -> None:
+    a, c = b.cube(1), b.cube(2)
+    assert a <= c and c >= a
+    assert not c <= a
+    assert a.equals(b.cube(2) & a)
+    assert a != b.cube(1)
+    assert len({a, b.cube(1), a}) == 2
+    assert a.isdisjoint(a.translate(1, 0, 0))
+
+
+def test_truth_means_not_empty() -> None:
+    a = b.cube(1)
+    assert a
+    assert not (a - a)
+    assert ~a
+    assert not b.Solid.empty()
+    assert b.Solid.full()
+
+
+def test_measures_of_a_box() -> None:
+    box = b.box((1, 2, 3)).translate(0.5, 0, 0)
+    assert (box.volume, box.area, box.genus, box.euler_number, box.components) == (6, 22, 0, 2, 1)
+    assert box.volume_exact == Fraction(6)
+    assert box.bounds is not None
+    assert box.bounds.tolist() == [[0.5, 0, 0], [1.5, 2, 3]]
+    assert box.centroid.tolist() == [1, 1, 1.5]
+    assert box.pitch == -9
+
+
+def test_measures_of_the_empty_set() -> None:
+    empty = b.cube(1) - b.cube(1)
+    assert (empty.volume, empty.area, empty.genus, empty.components) == (0, 0, 0, 0)
+    assert empty.bounds is None
+    assert np.isnan(empty.centroid).all()
+    mesh = empty.to_mesh()
+    assert (mesh.vertices.shape, mesh.faces.shape) == ((0, 3), (0, 3))
+
+
+@pytest.mark.parametrize(
+    "name", ["volume", "volume_exact", "area", "centroid", "bounds", "genus", "vertices", "faces"]
+)
+def test_unbounded_solids_have_no_measures(name: str) -> None:
+    with pytest.raises(b.UnboundedError) as caught:
+        getattr(~b.cube(1), name)
+    assert caught.value.code == "unbounded"
+
+
+def test_a_cavity_is_a_surface_of_its_own() -> None:
+    hollow = b.cube(3, center=True) - b.cube(1, center=True)
+    assert (hollow.components, hollow.genus, hollow.euler_number) == (2, 0, 4)
+
+
+def test_mesh_arrays_are_the_documented_ones_and_kept() -> None:
+    solid = b.cube(2) - b.cube(1)
+    mesh = solid.to_mesh()
+    assert mesh.vertices.dtype == np.float64
+    assert mesh.faces.dtype == mesh.source.dtype == np.int64
+    assert mesh.source.shape == (len(mesh.faces), 2)
+    assert solid.to_mesh() is mesh
+    assert solid.vertices is mesh.vertices
+    with pytest.raises(ValueError, match="read-only"):
+        solid.vertices[0, 0] = 1
+
+
+def test_a_solid_does_not_see_later_changes_of_the_arrays() -> None:
+    vertices, faces = CUBE.vertices.copy(), CUBE.faces.copy()
+    solid = b.Solid(vertices, faces)
+    vertices *= 2
+    faces[:] = 0
+    assert solid.rotate(90).volume == 1
+
+
+def test_uncut_meshes_come_out_as_they_came_in() -> None:
+    vertices = CUBE.vertices / 3
+    mesh = b.Solid(vertices, CUBE.faces).to_mesh()
+    assert set(map(tuple, mesh.vertices.tolist())) == set(map(tuple, vertices.tolist()))
+
+
+def test_points_are_classified() -> None:
+    points = [(0.5, 0.5, 0.5), (1, 0.5, 0.5), (1.5, 0.5, 0.5), (0, 0, 0)]
+    sides = b.cube(1).classify(points)
+    assert sides.dtype == np.int8
+    assert sides.tolist() == [1, 0, -1, 0]
+    assert (~b.cube(1)).classify(points).tolist() == [-1, 0, 1, 0]
+    assert b.cube(1).classify(np.zeros((0, 3))).shape == (0,)
+    with pytest.raises(b.InvalidMeshError):
+        b.cube(1).classify([(0, 0)])
+
+
+def test_whole_steps_are_exact() -> None:
+    a = b.cube(0.1).translate(0.2, 0, 0)
+    assert set(a.vertices[:, 0].tolist()) == {0.2, 0.3}
+    assert (a | b.cube(0.1).translate(0.3, 0, 0)).volume_exact == Fraction(2, 1000)
+
+
+def test_every_transform_keeps_the_outside_outside() -> None:
+    part = b.cube(2) - b.cube(1)
+    for moved in (
+        part.mirror((1, 0, 0)),
+        part.mirror((1, 2, 3)),
+        part.scale(-1),
+        part.scale((1, -1, 1)),
+        part.rotate(37, (1, 1, 0)),
+        part.rotate((10, 20, 30)),
+        part.mirror((1, 2, 3)).mirror((3, 0, 1)),
+        b.cube(2).mirror((1, 2, 3)) - b.cube(1).mirror((1, 2, 3)),
+    ):
+        assert moved.volume == pytest.approx(7, abs=1e-7)
+
+
+def test_scaling_takes_numpy_numbers() -> None:
+    assert b.cube(1).scale(2).volume == b.cube(1).scale(np.int64(2)).volume == 8
+    assert b.cube(1).scale((1, 2, 3)).volume == 6
+    assert b.cube(1).scale(np.array([1, 2, 3])).volume == 6
+    assert b.cube(np.float32(2)).translate(np.array([1, 2, 3])).volume == 8
+
+
+def test_boxes_turned_together_unite_as_if_they_had_not_been() -> None:
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        angles = rng.uniform(-180, 180, 3)
+        a, c = b.cube(1).rotate(angles), b.cube(1).translate(1, 0, 0).rotate(angles)
+        mesh = (a | c).to_mesh()
+        assert (mesh.components, mesh.euler_number) == (1, 2)
+
+
+def test_a_result_is_turned_as_a_whole() -> None:
+    union = b.cube(1) | b.cube(1).translate(1, 0, 0)
+    mesh = (union.rotate(30) | b.cube(1).translate(9, 0, 0)).to_mesh()
+    assert (mesh.components, mesh.euler_number) == (2, 4)
+
+
+def test_identity_transforms_change_nothing() -> None:
+    a = b.cube(1)
+    assert a.translate(0, 0, 0) is a
+    assert a.rotate(360) is a
+    assert a.scale(1) is a
+    assert a.transform(np.eye(4)[:3]) is a
+
+
+def test_half_spaces_cut_and_move() -> None:
+    box = b.cube(2, center=True)
+    below = b.half_space((0, 0, 1), 0.5)
+    assert (box & below).volume == 6
+    assert (box - below).volume == 2
+    assert (box & below.translate(0, 0, 0.25)).volume == 7
+    assert (box & below.rotate(90, "x")).volume == 6
+    assert (box & below.mirror((0, 0, 1))).volume == 6
+    assert (box & below.scale(2)).volume == 8
+    assert (box & b.half_space((3, 3, 3), 0).rotate(17, (1, 1, 1))).volume == pytest.approx(4)
+
+
+def test_half_spaces_follow_the_solid_under_oblique_maps() -> None:
+    shear = np.array([[1, 0.3, 0, 1], [0, 2, 0.1, 0], [0.2, 0, -1, 3], [0, 0, 0, 1]])
+    cut = (b.cube(2, center=True) & b.half_space((1, 2, 3), 0.5)).transform(shear)
+    apart = b.cube(2, center=True).transform(shear) & b.half_space((1, 2, 3), 0.5).transform(shear)
+    beside = apart & b.cube(50, center=True)
+    assert beside.volume == pytest.approx(cut.volume, rel=1e-6)
+
+
+def test_unbounded_results_can_still_be_moved() -> None:
+    outside = ~(b.cube(2) | b.cube(1))
+    assert not outside.is_empty
+    assert (b.cube(20, center=True) & outside.rotate(30)).volume == pytest.approx(7992)
+    mixed = b.half_space((0, 0, 1), 0) - b.cube(2, center=True)
+    assert not mixed.is_empty
+    assert (mixed.rotate(30) & b.cube(4, center=True)).volume == pytest.approx(28)
+
+
+def test_far_solids_get_a_coarser_lattice() -> None:
+    a, c = (b.cube(k).translate(1e12, 0, 0) for k in (2, 1))
+    assert a.pitch == -3
+    assert (a - c).volume == 7
+
+
+def test_a_pitch_can_be_chosen() -> None:
+    coarse = b.Solid(CUBE.vertices, CUBE.faces, pitch=-3)
+    assert coarse.pitch == -3
+    assert (coarse | b.cube(0.5)).pitch == -9
+
+
+def test_wrong_winding_rules_are_refused() -> None:
+    with pytest.raises(b.InvalidMeshError):
+        b.Solid(CUBE.vertices, CUBE.faces, winding="odd")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("op", ["union", "intersection", "difference", "xor"])
+def test_arrays_in_arrays_out(op: Any) -> None:
+    moved = CUBE.vertices + np.array([0.5, 0, 0])
+    vertices, faces = b.boolean(CUBE.vertices, CUBE.faces, moved, CUBE.faces, op)
+    volume = b.Solid(vertices, faces).volume
+    assert volume == {"union": 1.5, "intersection": 0.5, "difference": 0.5, "xor": 1}[op]
+
+
+def test_repr_tells_what_is_known_and_evaluates_nothing() -> None:
+    a = b.cube(1)
+    assert repr(a) == "Solid(12 triangles, bounds (0, 0, 0) to (1, 1, 1))"
+    assert repr(a.rotate(30)).endswith("transformed)")
+    difference = b.cube(2) - a
+    assert repr(difference) == "Solid(pending: 2 operands)"
+    assert difference.volume == 7
+    assert "bounds (0, 0, 0) to (2, 2, 2)" in repr(difference)
+    assert repr(~a) == "Solid(pending: 1 operand)"
+    assert repr(b.half_space((0, 0, 1))) == "Solid(half-space)"
+    assert repr(b.Solid.empty()) == "Solid(empty)"
+    assert repr(b.Solid.full()) == "Solid(all of space)"
+    empty = a - a
+    assert empty.is_empty
+    assert repr(empty) == "Solid(empty)"
+
+
+def test_copies_are_the_solid_itself() -> None:
+    a = b.cube(2) - b.cube(1)
+    assert copy.copy(a) is a
+    assert copy.deepcopy([a])[0] is a
+
+
+SOLIDS: dict[str, Callable[[], b.Solid]] = {
+    "mesh": lambda: b.cube(1),
+    "expression": lambda: b.cube(2) - b.cube(1),
+    "moved": lambda: (b.cube(2) - b.cube(1)).rotate(30),
+    "empty": b.Solid.empty,
+    "half-space": lambda: b.half_space((1, 2, 3), 4) & b.cube(1),
+}
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_pickling_keeps_the_set_and_the_transform(name: str) -> None:
+    solid = SOLIDS[name]()
+    again = pickle.loads(pickle.dumps(solid))
+    assert again.equals(solid)
+    assert again._factors == solid._factors
+    assert again.to_mesh().faces.shape == solid.to_mesh().faces.shape
+
+
+def test_errors_have_a_code_places_and_a_sentence() -> None:
+    with pytest.raises(b.InvalidMeshError) as caught:
+        b.Solid(CUBE.vertices, CUBE.faces[1:])
+    assert caught.value.code == "not_closed"
+    assert caught.value.where
+    assert isinstance(caught.value, ValueError)
+    assert "close the holes" in str(caught.value)
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (again.code, again.where, str(again)) == (
+        caught.value.code,
+        caught.value.where,
+        str(caught.value),
+    )
+
+
+def test_errors_of_the_core_become_errors_of_the_package() -> None:
+    from bspcsg import _core
+    from bspcsg.errors import from_core
+
+    kinds = {
+        "not_closed": b.InvalidMeshError,
+        "bad_normal": b.InvalidMeshError,
+        "too_small": b.LimitError,
+        "unbounded": b.UnboundedError,
+        "internal": b.InternalError,
+        "never heard of": b.InternalError,
+        "cancelled": KeyboardInterrupt,
+    }
+    for code, kind in kinds.items():
+        error = _core.CoreError("sentence")
+        error.code, error.where, error.message = code, [3], "A sentence"
+        assert isinstance(from_core(error), kind)
+
+
+def test_results_leave_for_other_libraries() -> None:
+    part = b.cube(2) - b.cube(1)
+    assert part.to_trimesh().is_volume
+    assert part.to_trimesh().volume == pytest.approx(7)
+    assert part.to_manifold().status().name == "NoError"

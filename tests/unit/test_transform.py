@@ -1,0 +1,190 @@
+"""Factors, their common prefix, and what counts as an exact motion."""
+
+import math
+import pickle
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import bspcsg as b
+from bspcsg import transform
+from bspcsg.transform import Factor, LatticeMotion
+
+PITCH = -9
+
+
+def as_motion(factor: Factor) -> LatticeMotion | None:
+    return transform.lattice_motion((factor,), PITCH)
+
+
+@pytest.mark.parametrize(
+    ("angle", "expected"),
+    [
+        (0, (1, 0)),
+        (30, (math.cos(math.pi / 6), 0.5)),
+        (60, (0.5, math.cos(math.pi / 6))),
+        (90, (0, 1)),
+        (180, (-1, 0)),
+        (-90, (0, -1)),
+        (3690, (0, 1)),
+        (330, (math.cos(math.pi / 6), -0.5)),
+    ],
+)
+def test_cosine_and_sine_are_exact_where_rational(
+    angle: float, expected: tuple[float, float]
+) -> None:
+    assert transform.cos_sin(angle) == expected
+
+
+@given(st.floats(-1e6, 1e6))
+def test_cosine_and_sine_agree_with_radians(angle: float) -> None:
+    exact = math.radians(math.fmod(angle, 360))
+    assert transform.cos_sin(angle) == pytest.approx((math.cos(exact), math.sin(exact)), abs=1e-14)
+
+
+@pytest.mark.parametrize("axis", ["x", "y", "z", (0, 0, -2), (0.5, 0, 0)])
+@pytest.mark.parametrize("angle", [90, 180, 270, -90, 450])
+def test_quarter_turns_are_lattice_motions(axis: str, angle: float) -> None:
+    motion = as_motion(transform.rotation(angle, axis))
+    assert motion is not None
+    assert sorted(map(abs, motion.axes)) == [1, 2, 3]
+    assert motion.shift == (0, 0, 0)
+
+
+def test_quarter_turn_goes_counter_clockwise() -> None:
+    turned = transform.apply(transform.rotation(90, "z").matrix, np.array([[1.0, 0.0, 0.0]]))
+    assert turned.tolist() == [[0, 1, 0]]
+
+
+def test_third_turns_about_the_diagonal_permute_axes() -> None:
+    motion = as_motion(transform.rotation(120, (1, 1, 1)))
+    assert motion == LatticeMotion((3, 1, 2))
+
+
+def test_other_rotations_are_no_lattice_motions() -> None:
+    assert as_motion(transform.rotation(45, "x")) is None
+    assert as_motion(transform.rotation(89.9999999, "z")) is None
+
+
+def test_mirrors_in_diagonal_planes_swap_axes() -> None:
+    assert as_motion(transform.mirroring((1, -1, 0))) == LatticeMotion((2, 1, 3))
+    assert as_motion(transform.mirroring((0, 7, 0))) == LatticeMotion((1, -2, 3))
+
+
+@pytest.mark.parametrize(
+    ("length", "steps"),
+    [
+        (0.1, 10**8),
+        (0.3, 3 * 10**8),
+        (-7, -7 * 10**9),
+        (1e-9, 1),
+        (0, 0),
+        (9007199.0, 9007199 * 10**9),
+    ],
+)
+def test_short_decimals_are_whole_steps(length: float, steps: int) -> None:
+    assert transform.whole_steps(length, PITCH) == steps
+
+
+@pytest.mark.parametrize("length", [1 / 3, 1e-10, 0.1 + 0.2, math.pi, 1e12])
+def test_other_lengths_are_not(length: float) -> None:
+    assert transform.whole_steps(length, PITCH) is None
+
+
+def test_coarser_lattices_have_fewer_whole_steps() -> None:
+    assert transform.whole_steps(1e12, -3) == 10**15
+    assert transform.whole_steps(3000.0, 3) == 3
+    assert transform.whole_steps(0.1, 0) is None
+
+
+@given(st.lists(st.integers(0, 5), max_size=6))
+def test_composed_motions_agree_with_the_product(choice: list[int]) -> None:
+    known = [
+        transform.rotation(90, "x"),
+        transform.rotation(-90, "y"),
+        transform.mirroring((0, 0, 1)),
+        transform.translation((1, 2, 3)),
+        transform.translation((0.5, 0, -0.25)),
+        transform.rotation(120, (1, 1, 1)),
+    ]
+    factors = tuple(known[index] for index in choice)
+    motion = transform.lattice_motion(factors, PITCH)
+    assert motion is not None
+    point = [1.0, 10.0, 100.0]
+    moved = [
+        math.copysign(1, axis) * Fraction(point[abs(axis) - 1]) + Fraction(shift, 10**9)
+        for axis, shift in zip(motion.axes, motion.shift, strict=True)
+    ]
+    image = transform.apply(transform.product(factors), np.array([point]))
+    assert image[0].tolist() == moved
+
+
+def test_common_prefix_is_the_outermost_equal_part() -> None:
+    m, t, s = (transform.translation((k, 0, 0)) for k in (1, 2, 3))
+    assert transform.common_prefix([(m, t), (m, s)]) == (m,)
+    assert transform.common_prefix([(m, t), (m, t)]) == (m, t)
+    assert transform.common_prefix([(m, t), ()]) == ()
+    assert transform.common_prefix([(t, m), (s, m)]) == ()
+
+
+def test_factors_are_equal_bit_by_bit_but_for_the_sign_of_zero() -> None:
+    minus_zero = np.eye(4)
+    minus_zero[0, 1] = -0.0
+    assert Factor(minus_zero) == Factor(np.eye(4))
+    nearly = np.eye(4)
+    nearly[0, 3] = 5e-324
+    assert Factor(nearly) != Factor(np.eye(4))
+    assert pickle.loads(pickle.dumps(Factor(nearly))) == Factor(nearly)
+
+
+def test_euler_angles_turn_about_x_first() -> None:
+    factors = transform.euler_rotation((90, 0, 90))
+    assert factors == (transform.rotation(90, "z"), transform.rotation(90, "x"))
+    image = transform.apply(transform.product(factors), np.array([[0.0, 1.0, 0.0]]))
+    assert image.tolist() == [[0, 0, 1]]
+
+
+@pytest.mark.parametrize(
+    "matrix",
+    [
+        np.zeros((3, 3)),
+        np.diag([1.0, 1.0, 0.0, 1.0]),
+        np.diag([1.0, 1.0, 1.0, 2.0]),
+        np.full((4, 4), np.nan),
+        np.array([[1, 2, 0, 0], [2, 4, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]]),
+    ],
+)
+def test_matrices_that_are_no_invertible_affine_map_are_refused(matrix: np.ndarray) -> None:
+    with pytest.raises(b.InvalidMeshError) as caught:
+        b.cube(1).transform(matrix)
+    assert caught.value.code == "invalid_parameter"
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        lambda: b.cube(1).translate(1, 2),
+        lambda: b.cube(1).translate(float("nan"), 0, 0),
+        lambda: b.cube(1).scale(0),
+        lambda: b.cube(1).scale((1, 0, 1)),
+        lambda: b.cube(1).mirror((0, 0, 0)),
+        lambda: b.cube(1).rotate(30, "w"),
+        lambda: b.cube(1).rotate(30, (0, 0, 0)),
+        lambda: b.cube(1).rotate(float("inf")),
+        lambda: b.cube(1).rotate("far"),  # type: ignore[arg-type]
+        lambda: b.cube(1).rotate((1, 2)),
+    ],
+)
+def test_wrong_parameters_are_named(wrong) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(b.InvalidMeshError) as caught:
+        wrong()
+    assert caught.value.code == "invalid_parameter"
+
+
+def test_determinant_signs_are_exact() -> None:
+    nearly_flat = np.diag([1e-200, 1e-200, 1e-200, 1.0])
+    assert transform.determinant_sign(nearly_flat) == 1
+    assert transform.determinant_sign(-nearly_flat) == -1
