@@ -8,5 +8,6 @@ pub mod fans;
 pub mod planes;
 pub mod round;
 pub mod seams;
+pub mod snapshot;
 pub mod triangulate;
 pub mod vertices;

@@ -37,6 +37,17 @@ pub struct Counters {
     pub leaf_elements: AtomicU64,
 }
 
+impl Counters {
+    /// The counts with their names.
+    pub fn named(&self) -> [(&'static str, u64); 3] {
+        [
+            ("cells", self.cells.load(Ordering::Relaxed)),
+            ("kernels", self.leaves.load(Ordering::Relaxed)),
+            ("kernel_elements", self.leaf_elements.load(Ordering::Relaxed)),
+        ]
+    }
+}
+
 /// What all cells of an evaluation share.
 #[derive(Debug)]
 pub struct Descent<'a> {

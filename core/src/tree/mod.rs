@@ -3,3 +3,4 @@
 pub mod node;
 pub mod partition;
 pub mod solid;
+pub mod stats;

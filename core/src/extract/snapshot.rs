@@ -1,0 +1,416 @@
+//! A solid's exact boundary as plain data: stored, moved, refined, and made into a tree again.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::collect::{collect, Fate};
+use crate::arith::Int;
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::cell::{Cell, REACH};
+use crate::geometry::outline::OutlineEdge;
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::polygon::Carrier;
+use crate::geometry::vertex::Vertex;
+use crate::merge::list::Sources;
+use crate::mesh::grid::Pitch;
+use crate::mesh::source::{Shape, Source, TriangleMesh};
+use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
+use crate::tree::solid::Solid;
+
+/// The format's number; readers refuse others.
+const FORMAT: u32 = 1;
+
+/// An exact boundary without its tree.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Snapshot {
+    format: u32,
+    pitch: i64,
+    outside: i32,
+    reduced: bool,
+    sources: Vec<SourceData>,
+    wholes: Vec<WholeFaces>,
+    parts: Vec<PartData>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+enum SourceData {
+    Mesh {
+        vertices: Vec<Lattice>,
+        doubles: Vec<[f64; 3]>,
+        faces: Vec<[u32; 3]>,
+        numbers: Option<Vec<u32>>,
+    },
+    HalfSpace(PlaneData),
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct WholeFaces {
+    slot: u32,
+    flip: bool,
+    faces: Vec<u32>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct PartData {
+    slot: u32,
+    face: u32,
+    flip: bool,
+    edges: Vec<EdgeData>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct EdgeData {
+    from: VertexData,
+    to: VertexData,
+    carrier: CarrierData,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+enum CarrierData {
+    Edge(Lattice, Lattice),
+    Cut(PlaneData, bool),
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+enum VertexData {
+    Lattice(Lattice),
+    Meet([[u64; 6]; 3], [u64; 6]),
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct PlaneData([i128; 3], [u64; 3]);
+
+/// A map of the lattice onto itself: a signed permutation of the axes, a scale and a shift.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// For each new axis the old axis it takes and its sign.
+    pub axes: [(usize, i64); 3],
+    /// Steps added after the permutation.
+    pub shift: Lattice,
+    /// A positive factor applied first.
+    pub scale: i64,
+}
+
+impl Motion {
+    /// The motion that leaves everything where it is.
+    pub const IDENTITY: Self = Self {
+        axes: [(0, 1), (1, 1), (2, 1)],
+        shift: [0; 3],
+        scale: 1,
+    };
+
+    /// Whether the motion turns right hands into left ones.
+    pub fn mirrors(&self) -> bool {
+        let order = self.axes.map(|a| a.0);
+        let even = matches!(order, [0, 1, 2] | [1, 2, 0] | [2, 0, 1]);
+        let signs: i64 = self.axes.iter().map(|a| a.1).product();
+        even != (signs > 0)
+    }
+
+    fn point(&self, p: &Lattice) -> Result<Lattice> {
+        let mut image = [0; 3];
+        for i in 0..3 {
+            let (axis, sign) = self.axes[i];
+            image[i] = p[axis]
+                .checked_mul(self.scale * sign)
+                .and_then(|k| k.checked_add(self.shift[i]))
+                .filter(|k| k.unsigned_abs() < 1 << REACH)
+                .ok_or_else(too_large)?;
+        }
+        Ok(image)
+    }
+
+    fn double(&self, pitch: Pitch, p: &[f64; 3], image: &Lattice) -> [f64; 3] {
+        [0, 1, 2].map(|i| {
+            let (axis, sign) = self.axes[i];
+            if self.shift[i] == 0 {
+                p[axis] * sign as f64
+            } else {
+                pitch.coordinate(image[i])
+            }
+        })
+    }
+
+    fn plane(&self, data: &PlaneData) -> Result<PlaneData> {
+        let plane = data.plane()?.scaled(self.scale).ok_or_else(too_large)?;
+        let moved = plane.moved(&self.axes, &self.shift).ok_or_else(too_large)?;
+        Ok(PlaneData::of(&moved))
+    }
+
+    fn vertex(&self, data: &VertexData) -> Result<VertexData> {
+        match data {
+            VertexData::Lattice(p) => Ok(VertexData::Lattice(self.point(p)?)),
+            VertexData::Meet(x, w) => {
+                let w6 = Int::from_limbs(*w);
+                let mut image = [[0; 6]; 3];
+                for i in 0..3 {
+                    let (axis, sign) = self.axes[i];
+                    let turned: Int<8> = Int::from_limbs(x[axis]).mul_i64(sign * self.scale);
+                    let shifted: Int<8> = w6.mul_i64(self.shift[i]);
+                    let sum = (turned + shifted).narrow::<6>().ok_or_else(too_large)?;
+                    image[i] = *sum.limbs();
+                }
+                Ok(VertexData::Meet(image, *w))
+            }
+        }
+    }
+}
+
+fn too_large() -> Error {
+    let text = "the moved or refined solid does not fit the lattice of 2^53 steps";
+    Error::new(ErrorKind::TooLarge, text)
+}
+
+fn bad_snapshot() -> Error {
+    Error::new(ErrorKind::BadSnapshot, "the bytes are not a snapshot of a solid")
+}
+
+impl Snapshot {
+    /// The exact boundary of a solid.
+    pub fn of(solid: &Solid) -> Self {
+        let sources = Sources::new(Arc::clone(solid.sources()));
+        let boundary = collect(solid, &sources);
+        let mut wholes = Vec::new();
+        for (slot, fates) in (0u32..).zip(&boundary.fates) {
+            for flip in [false, true] {
+                let like = |(_, f): &(u32, &Fate)| **f == Fate::Whole(flip);
+                let faces: Vec<u32> = (0u32..).zip(fates).filter(like).map(|(i, _)| i).collect();
+                if !faces.is_empty() {
+                    wholes.push(WholeFaces { slot, flip, faces });
+                }
+            }
+        }
+        let parts = boundary.cut.iter().map(|c| PartData {
+            slot: c.slot,
+            face: c.face,
+            flip: c.flip,
+            edges: c.edges.iter().map(EdgeData::of).collect(),
+        });
+        Self {
+            format: FORMAT,
+            pitch: solid.pitch().exponent(),
+            outside: solid.root().outside,
+            reduced: solid.is_reduced(),
+            sources: solid.sources().iter().map(|s| SourceData::of(s)).collect(),
+            wholes,
+            parts: parts.collect(),
+        }
+    }
+
+    /// The solid with this boundary, in one deferred leaf.
+    ///
+    /// # Errors
+    /// `BadSnapshot` if the data contradict themselves.
+    pub fn solid(&self) -> Result<Solid> {
+        let pitch = Pitch::new(self.pitch)?;
+        let sources = self
+            .sources
+            .iter()
+            .map(|s| Ok(Arc::new(s.source(pitch)?)))
+            .collect::<Result<Vec<_>>>()?;
+        let cell = sources.iter().filter_map(|s| s.cell()).reduce(|a, b| a.join(&b));
+        let Some(cell) = cell.filter(|_| !(self.wholes.is_empty() && self.parts.is_empty())) else {
+            return Ok(Solid::uniform(pitch, self.outside > 0));
+        };
+        let mut leaf = Deferred { corner: self.outside, ..Deferred::default() };
+        for w in &self.wholes {
+            let source = sources.get(w.slot as usize).ok_or_else(bad_snapshot)?;
+            if w.faces.iter().any(|f| *f as usize >= source.face_count()) {
+                return Err(bad_snapshot());
+            }
+            let source = Arc::clone(source);
+            leaf.groups.push(Group { source, flip: w.flip, faces: w.faces.clone() });
+        }
+        for p in &self.parts {
+            leaf.parts.push(p.element(&sources, cell)?);
+        }
+        let node = Arc::new(Node::Deferred(leaf));
+        let root = Branch { cell, outside: self.outside, complement: false, node };
+        Ok(Solid::new(root, pitch, Arc::from(sources), self.reduced))
+    }
+
+    /// The image under a motion of the lattice, on a lattice of the given pitch.
+    ///
+    /// # Errors
+    /// `TooLarge` if something leaves the lattice.
+    pub fn moved(&self, motion: &Motion, pitch: Pitch) -> Result<Self> {
+        let mut image = self.clone();
+        image.pitch = pitch.exponent();
+        for source in &mut image.sources {
+            source.apply(motion, pitch)?;
+        }
+        for edge in image.parts.iter_mut().flat_map(|p| &mut p.edges) {
+            edge.apply(motion)?;
+        }
+        Ok(image)
+    }
+
+    /// The data as bytes.
+    ///
+    /// # Errors
+    /// `Internal` if encoding fails.
+    pub fn to_bytes(&self) -> Result<Vec<u8>> {
+        postcard::to_stdvec(self).map_err(|e| Error::internal(e.to_string()))
+    }
+
+    /// The data from bytes.
+    ///
+    /// # Errors
+    /// `BadSnapshot`.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        postcard::from_bytes::<Self>(bytes)
+            .ok()
+            .filter(|s| s.format == FORMAT)
+            .ok_or_else(bad_snapshot)
+    }
+}
+
+impl SourceData {
+    fn of(source: &Source) -> Self {
+        match source.shape() {
+            Shape::Mesh(m) => Self::Mesh {
+                vertices: m.vertices.clone(),
+                doubles: m.doubles.clone(),
+                faces: m.faces.clone(),
+                numbers: m.numbers.clone(),
+            },
+            Shape::HalfSpace(plane) => Self::HalfSpace(PlaneData::of(plane)),
+        }
+    }
+
+    fn source(&self, pitch: Pitch) -> Result<Source> {
+        let shape = match self {
+            Self::HalfSpace(plane) => Shape::HalfSpace(Arc::new(plane.plane()?)),
+            Self::Mesh { vertices, doubles, faces, numbers } => {
+                let count = vertices.len();
+                let named = faces.iter().flatten().all(|v| (*v as usize) < count);
+                let fits = vertices.iter().flatten().all(|k| k.unsigned_abs() < 1 << REACH);
+                let numbered = numbers.as_ref().is_none_or(|n| n.len() == faces.len());
+                if !(named && fits && numbered && doubles.len() == count) {
+                    return Err(bad_snapshot());
+                }
+                Shape::Mesh(TriangleMesh {
+                    vertices: vertices.clone(),
+                    doubles: doubles.clone(),
+                    faces: faces.clone(),
+                    numbers: numbers.clone(),
+                })
+            }
+        };
+        Ok(Source::new(pitch, shape, Vec::new()))
+    }
+
+    fn apply(&mut self, motion: &Motion, pitch: Pitch) -> Result<()> {
+        match self {
+            Self::HalfSpace(plane) => *plane = motion.plane(plane)?,
+            Self::Mesh { vertices, doubles, faces, .. } => {
+                for (vertex, double) in vertices.iter_mut().zip(doubles) {
+                    *vertex = motion.point(vertex)?;
+                    *double = motion.double(pitch, double, vertex);
+                }
+                if motion.mirrors() {
+                    faces.iter_mut().for_each(|f| f.swap(1, 2));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl PartData {
+    fn element(&self, sources: &[Arc<Source>], home: Cell) -> Result<PartElement> {
+        let source = sources.get(self.slot as usize).ok_or_else(bad_snapshot)?;
+        if self.face as usize >= source.face_count() {
+            return Err(bad_snapshot());
+        }
+        let support = source.plane(self.face);
+        let edges = self
+            .edges
+            .iter()
+            .map(|e| e.edge(&support))
+            .collect::<Result<Vec<_>>>()?;
+        let part = Part { source: Arc::clone(source), face: self.face, home, edges };
+        Ok(PartElement { part: Arc::new(part), flip: self.flip })
+    }
+}
+
+impl EdgeData {
+    fn of(edge: &OutlineEdge) -> Self {
+        let carrier = match &edge.carrier {
+            Carrier::Edge(a, b) => CarrierData::Edge(*a, *b),
+            Carrier::Cut(plane, flip) => CarrierData::Cut(PlaneData::of(plane), *flip),
+        };
+        Self {
+            from: VertexData::of(&edge.from),
+            to: VertexData::of(&edge.to),
+            carrier,
+        }
+    }
+
+    fn edge(&self, support: &Plane) -> Result<OutlineEdge> {
+        let carrier = match &self.carrier {
+            CarrierData::Edge(a, b) => Carrier::Edge(*a, *b),
+            CarrierData::Cut(plane, flip) => Carrier::Cut(Arc::new(plane.plane()?), *flip),
+        };
+        let line = carrier.line(support);
+        Ok(OutlineEdge {
+            from: Arc::new(self.from.vertex()?),
+            to: Arc::new(self.to.vertex()?),
+            carrier,
+            line,
+        })
+    }
+
+    fn apply(&mut self, motion: &Motion) -> Result<()> {
+        self.from = motion.vertex(&self.from)?;
+        self.to = motion.vertex(&self.to)?;
+        self.carrier = match &self.carrier {
+            CarrierData::Edge(a, b) => CarrierData::Edge(motion.point(a)?, motion.point(b)?),
+            CarrierData::Cut(plane, flip) => CarrierData::Cut(motion.plane(plane)?, *flip),
+        };
+        if motion.mirrors() {
+            std::mem::swap(&mut self.from, &mut self.to);
+            if let CarrierData::Edge(a, b) = &mut self.carrier {
+                std::mem::swap(a, b);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl VertexData {
+    fn of(vertex: &Vertex) -> Self {
+        if let Some(p) = vertex.as_lattice() {
+            return Self::Lattice(*p);
+        }
+        let h = vertex.coordinates();
+        Self::Meet(h.x.map(|c| *c.limbs()), *h.w.limbs())
+    }
+
+    fn vertex(&self) -> Result<Vertex> {
+        match self {
+            Self::Lattice(p) if p.iter().all(|k| k.unsigned_abs() < 1 << REACH) => {
+                Ok(Vertex::lattice(*p))
+            }
+            Self::Lattice(_) => Err(bad_snapshot()),
+            Self::Meet(x, w) => {
+                let w = Int::from_limbs(*w);
+                if w.signum() <= 0 {
+                    return Err(bad_snapshot());
+                }
+                Ok(Vertex::homogeneous(x.map(Int::from_limbs), w))
+            }
+        }
+    }
+}
+
+impl PlaneData {
+    fn of(plane: &Plane) -> Self {
+        Self(*plane.normal(), *plane.offset().limbs())
+    }
+
+    fn plane(&self) -> Result<Plane> {
+        Plane::new(self.0, Int::from_limbs(self.1)).ok_or_else(bad_snapshot)
+    }
+}

@@ -1,0 +1,26 @@
+//! Core errors as Python exceptions with `code`, `where` and `message`.
+
+use pyo3::create_exception;
+use pyo3::exceptions::{PyException, PyKeyboardInterrupt};
+use pyo3::prelude::*;
+
+use crate::error::{Error, ErrorKind};
+
+create_exception!(bspcsg._core, CoreError, PyException, "An error of the core: code, where, message.");
+
+/// The Python exception for an error.
+pub fn to_python(py: Python<'_>, error: &Error) -> PyErr {
+    if error.kind() == ErrorKind::Cancelled {
+        return PyKeyboardInterrupt::new_err(());
+    }
+    let exception = CoreError::new_err(error.message().to_owned());
+    let value = exception.value(py);
+    let set = value
+        .setattr("code", error.kind().code())
+        .and_then(|()| value.setattr("where", error.place().to_vec()))
+        .and_then(|()| value.setattr("message", error.message()));
+    match set {
+        Ok(()) => exception,
+        Err(failed) => failed,
+    }
+}

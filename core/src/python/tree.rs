@@ -1,0 +1,360 @@
+//! The class `Tree`: an immutable exact solid.
+
+use std::sync::{Arc, OnceLock};
+
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use num_bigint::BigInt;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyType};
+
+use super::arrays::{array, rows};
+use super::errors::to_python;
+use super::run::run;
+use crate::error::{Error, ErrorKind, Result};
+use crate::extract::collect::is_its_source;
+use crate::extract::round::{self, Mesh};
+use crate::extract::snapshot::{Motion, Snapshot};
+use crate::merge::descend::Counters;
+use crate::merge::evaluate::{evaluate, normalize};
+use crate::merge::expression::{Expression, Term};
+use crate::merge::leaf::Rule;
+use crate::mesh::finding::Finding;
+use crate::mesh::grid::{snap_point, Pitch};
+use crate::mesh::import::{half_space, import};
+use crate::query::classify::{classify, Location};
+use crate::query::measure::volume;
+use crate::tree::solid::Solid;
+use crate::tree::stats::{stats, Stats};
+
+type MeshArrays<'py> = (
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray2<i64>>,
+    Bound<'py, PyArray2<i64>>,
+);
+
+/// An immutable exact solid: a partition tree. See `_core.pyi`.
+#[pyclass(frozen, module = "bspcsg._core")]
+pub struct Tree {
+    solid: Solid,
+    counters: Option<Counters>,
+    mesh: OnceLock<Arc<Mesh>>,
+    reduced: OnceLock<Solid>,
+}
+
+impl Tree {
+    fn of(solid: Solid) -> Self {
+        Self { solid, counters: None, mesh: OnceLock::new(), reduced: OnceLock::new() }
+    }
+
+    fn size(&self) -> usize {
+        self.solid.sources().iter().map(|s| s.face_count()).sum()
+    }
+
+    fn rounded(&self, py: Python<'_>, threads: usize) -> PyResult<Arc<Mesh>> {
+        if let Some(mesh) = self.mesh.get() {
+            return Ok(Arc::clone(mesh));
+        }
+        let mesh = run(py, threads, self.size(), |_| round::mesh(&self.solid))?;
+        Ok(Arc::clone(self.mesh.get_or_init(|| Arc::new(mesh))))
+    }
+}
+
+#[pymethods]
+impl Tree {
+    #[classmethod]
+    #[pyo3(signature = (vertices, faces, pitch=None, trusted=false))]
+    fn from_mesh(
+        _cls: &Bound<'_, PyType>,
+        py: Python<'_>,
+        vertices: PyReadonlyArray2<'_, f64>,
+        faces: PyReadonlyArray2<'_, i64>,
+        pitch: Option<i64>,
+        trusted: bool,
+    ) -> PyResult<Self> {
+        let fail = |e: Error| to_python(py, &e);
+        let vertices = rows(&vertices, "vertices").map_err(fail)?;
+        let faces = rows(&faces, "faces").map_err(fail)?;
+        let pitch = pitch.map(Pitch::new).transpose().map_err(fail)?;
+        let source = run(py, 0, faces.len(), |_| import(&vertices, &faces, pitch))?;
+        Ok(Self::of(Solid::of_source(Arc::new(source), trusted)))
+    }
+
+    #[classmethod]
+    fn half_space(
+        _cls: &Bound<'_, PyType>,
+        py: Python<'_>,
+        normal: (f64, f64, f64),
+        offset: f64,
+        pitch: i64,
+    ) -> PyResult<Self> {
+        let fail = |e: Error| to_python(py, &e);
+        let pitch = Pitch::new(pitch).map_err(fail)?;
+        let source = half_space(normal.into(), offset, pitch).map_err(fail)?;
+        Ok(Self::of(Solid::of_source(Arc::new(source), true)))
+    }
+
+    #[classmethod]
+    fn empty(_cls: &Bound<'_, PyType>, py: Python<'_>, pitch: i64) -> PyResult<Self> {
+        let pitch = Pitch::new(pitch).map_err(|e| to_python(py, &e))?;
+        Ok(Self::of(Solid::uniform(pitch, false)))
+    }
+
+    #[classmethod]
+    fn full(_cls: &Bound<'_, PyType>, py: Python<'_>, pitch: i64) -> PyResult<Self> {
+        let pitch = Pitch::new(pitch).map_err(|e| to_python(py, &e))?;
+        Ok(Self::of(Solid::uniform(pitch, true)))
+    }
+
+    #[classmethod]
+    #[pyo3(signature = (program, operands, threads=0))]
+    fn evaluate(
+        _cls: &Bound<'_, PyType>,
+        py: Python<'_>,
+        program: Vec<(String, Vec<u32>)>,
+        operands: Vec<PyRef<'_, Self>>,
+        threads: usize,
+    ) -> PyResult<Self> {
+        let terms = program
+            .into_iter()
+            .map(|(name, arguments)| term(&name, arguments))
+            .collect::<Result<Vec<_>>>();
+        let expression = terms
+            .and_then(Expression::new)
+            .map_err(|e| to_python(py, &e))?;
+        let size = operands.iter().map(|o| o.size()).sum();
+        let solids: Vec<Solid> = operands.iter().map(|o| o.solid.clone()).collect();
+        let (solid, counters) = run(py, threads, size, |cancel| evaluate(expression, &solids, cancel))?;
+        Ok(Self { counters: Some(counters), ..Self::of(solid) })
+    }
+
+    #[pyo3(signature = (rule="positive", threads=0))]
+    fn normalized(&self, py: Python<'_>, rule: &str, threads: usize) -> PyResult<Self> {
+        let rule = match rule {
+            "positive" => Rule::Positive,
+            "nonzero" => Rule::Nonzero,
+            "even-odd" => Rule::EvenOdd,
+            _ => {
+                let text = format!("'{rule}' is not a winding rule; use positive, nonzero or even-odd");
+                return Err(to_python(py, &Error::new(ErrorKind::Shape, text)));
+            }
+        };
+        if self.solid.is_reduced() {
+            return Ok(Self::of(self.solid.clone()));
+        }
+        if rule == Rule::Positive {
+            if let Some(known) = self.reduced.get() {
+                return Ok(Self::of(known.clone()));
+            }
+        }
+        let solid = run(py, threads, self.size(), |cancel| {
+            let solid = normalize(&self.solid, rule, cancel)?;
+            let unchanged = is_its_source(&solid);
+            Ok(if unchanged { self.solid.clone().with_reduced(true) } else { solid })
+        })?;
+        if rule == Rule::Positive {
+            let _ = self.reduced.set(solid.clone());
+        }
+        Ok(Self::of(solid))
+    }
+
+    /// Whether the elements are the reduced boundary; None if nobody has looked.
+    #[getter]
+    fn simple(&self) -> Option<bool> {
+        if self.solid.is_reduced() {
+            return Some(true);
+        }
+        let reduced = self.reduced.get()?;
+        Some(Arc::ptr_eq(&reduced.root().node, &self.solid.root().node))
+    }
+
+    #[pyo3(signature = (threads=0))]
+    fn to_mesh<'py>(&self, py: Python<'py>, threads: usize) -> PyResult<MeshArrays<'py>> {
+        let mesh = self.rounded(py, threads)?;
+        let triangles = mesh.triangles.iter().map(|t| t.map(i64::from)).collect();
+        let origins = mesh.origins.iter().map(|o| o.map(i64::from)).collect();
+        Ok((
+            array(py, mesh.vertices.clone())?,
+            array(py, triangles)?,
+            array(py, origins)?,
+        ))
+    }
+
+    #[getter]
+    fn sources(&self) -> Vec<u64> {
+        self.solid.sources().iter().map(|s| s.id()).collect()
+    }
+
+    #[getter]
+    fn source_id(&self) -> Option<u64> {
+        self.solid.sources().first().map(|s| s.id())
+    }
+
+    #[getter]
+    fn findings<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let all = self.solid.sources().iter().flat_map(|s| s.findings());
+        all.map(|f| finding(py, f)).collect()
+    }
+
+    fn mesh_findings<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let mesh = self.rounded(py, 0)?;
+        mesh.findings.iter().map(|f| finding(py, f)).collect()
+    }
+
+    fn volume6_exact(&self, py: Python<'_>) -> PyResult<(BigInt, BigInt)> {
+        let fraction = run(py, 0, self.size(), |_| volume(&self.solid))?;
+        Ok((fraction.numerator, fraction.denominator))
+    }
+
+    fn classify<'py>(
+        &self,
+        py: Python<'py>,
+        points: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<i8>>> {
+        let points = rows(&points, "points").map_err(|e| to_python(py, &e))?;
+        let size = self.size() + points.len();
+        let found = run(py, 0, size, |_| {
+            let pitch = self.solid.pitch();
+            let points = points.iter().map(|p| snap_point(pitch, p)).collect::<Result<Vec<_>>>()?;
+            classify(&self.solid, &points)
+        })?;
+        let sign = |l: &Location| match l {
+            Location::Inside => 1i8,
+            Location::Boundary => 0,
+            Location::Outside => -1,
+        };
+        Ok(PyArray1::from_vec(py, found.iter().map(sign).collect()))
+    }
+
+    #[getter]
+    fn is_empty(&self) -> bool {
+        self.solid.is_empty()
+    }
+
+    #[getter]
+    fn is_full(&self) -> bool {
+        self.solid.is_full()
+    }
+
+    #[getter]
+    fn is_bounded(&self, py: Python<'_>) -> PyResult<bool> {
+        match self.rounded(py, 0) {
+            Ok(_) => Ok(true),
+            Err(e) if e.value(py).getattr("code")?.extract::<String>()? == "unbounded" => Ok(false),
+            Err(e) => Err(e),
+        }
+    }
+
+    #[getter]
+    fn bounds(&self, py: Python<'_>) -> PyResult<Option<((f64, f64, f64), (f64, f64, f64))>> {
+        let mesh = self.rounded(py, 0)?;
+        let mut used = mesh.vertices.iter();
+        let Some(first) = used.next() else {
+            return Ok(None);
+        };
+        let (mut low, mut high) = (*first, *first);
+        for p in used {
+            low = [0, 1, 2].map(|i| low[i].min(p[i]));
+            high = [0, 1, 2].map(|i| high[i].max(p[i]));
+        }
+        Ok(Some((low.into(), high.into())))
+    }
+
+    #[getter]
+    fn pitch(&self) -> i64 {
+        self.solid.pitch().exponent()
+    }
+
+    fn moved(&self, py: Python<'_>, axes: [i64; 3], shift: [i64; 3]) -> PyResult<Self> {
+        let fail = |e: Error| to_python(py, &e);
+        let motion = motion(axes, shift).map_err(fail)?;
+        self.mapped(&motion, self.solid.pitch()).map_err(fail)
+    }
+
+    fn refined(&self, py: Python<'_>, pitch: i64) -> PyResult<Self> {
+        let fail = |e: Error| to_python(py, &e);
+        let finer = Pitch::new(pitch).map_err(fail)?;
+        if finer == self.solid.pitch() {
+            return Ok(Self::of(self.solid.clone()));
+        }
+        let scale = finer.refinement(self.solid.pitch()).ok_or_else(|| {
+            let text = format!("10^{pitch} does not refine 10^{} within 64 bits", self.pitch());
+            to_python(py, &Error::new(ErrorKind::PitchMismatch, text))
+        })?;
+        let motion = Motion { scale, ..Motion::IDENTITY };
+        self.mapped(&motion, finer).map_err(fail)
+    }
+
+    fn dump<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = Snapshot::of(&self.solid).to_bytes();
+        Ok(PyBytes::new(py, &bytes.map_err(|e| to_python(py, &e))?))
+    }
+
+    #[classmethod]
+    fn load(_cls: &Bound<'_, PyType>, py: Python<'_>, data: &[u8]) -> PyResult<Self> {
+        let solid = Snapshot::from_bytes(data).and_then(|s| s.solid());
+        Ok(Self::of(solid.map_err(|e| to_python(py, &e))?))
+    }
+
+    fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        let Stats { nodes, leaves, deferred, elements, parts, depth } = stats(&self.solid);
+        for (name, value) in [
+            ("nodes", nodes),
+            ("leaves", leaves),
+            ("deferred", deferred),
+            ("elements", elements),
+            ("parts", parts),
+            ("depth", depth),
+        ] {
+            dict.set_item(name, value)?;
+        }
+        if let Some(counters) = &self.counters {
+            for (name, value) in counters.named() {
+                dict.set_item(name, value)?;
+            }
+        }
+        Ok(dict)
+    }
+}
+
+impl Tree {
+    fn mapped(&self, motion: &Motion, pitch: Pitch) -> Result<Self> {
+        let image = Snapshot::of(&self.solid).moved(motion, pitch)?;
+        Ok(Self::of(image.solid()?))
+    }
+}
+
+fn term(name: &str, arguments: Vec<u32>) -> Result<Term> {
+    match (name, arguments.as_slice()) {
+        ("leaf", [k]) => Ok(Term::Operand(*k)),
+        ("not", [a]) => Ok(Term::Not(*a)),
+        ("or", _) => Ok(Term::Or(arguments)),
+        ("and", _) => Ok(Term::And(arguments)),
+        ("xor", _) => Ok(Term::Xor(arguments)),
+        _ => {
+            let text = format!("'{name}' with {} arguments is not a line", arguments.len());
+            Err(Error::new(ErrorKind::Shape, text))
+        }
+    }
+}
+
+fn motion(axes: [i64; 3], shift: [i64; 3]) -> Result<Motion> {
+    let mut sorted = axes.map(i64::abs);
+    sorted.sort_unstable();
+    if sorted != [1, 2, 3] {
+        let text = format!("{axes:?} is not a signed permutation of [1, 2, 3]");
+        return Err(Error::new(ErrorKind::Shape, text));
+    }
+    let axes = axes.map(|a| (a.unsigned_abs() as usize - 1, a.signum()));
+    Ok(Motion { axes, shift, scale: 1 })
+}
+
+fn finding<'py>(py: Python<'py>, finding: &Finding) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("code", finding.code)?;
+    dict.set_item("severity", finding.severity.name())?;
+    dict.set_item("count", finding.count)?;
+    dict.set_item("where", &finding.place)?;
+    dict.set_item("message", &finding.message)?;
+    Ok(dict)
+}
