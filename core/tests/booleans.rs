@@ -14,8 +14,18 @@ fn cuboid(low: [f64; 3], high: [f64; 3]) -> Solid {
     let corner = |i: usize| [0, 1, 2].map(|k| if i >> k & 1 == 1 { high[k] } else { low[k] });
     let vertices: Vec<[f64; 3]> = (0..8).map(corner).collect();
     let faces = [
-        [0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4],
-        [2, 6, 7], [2, 7, 3], [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5],
+        [0, 2, 3],
+        [0, 3, 1],
+        [4, 5, 7],
+        [4, 7, 6],
+        [0, 1, 5],
+        [0, 5, 4],
+        [2, 6, 7],
+        [2, 7, 3],
+        [0, 4, 6],
+        [0, 6, 2],
+        [1, 3, 7],
+        [1, 7, 5],
     ];
     let source = import(&vertices, &faces, None).expect("a cuboid is closed");
     Solid::of_source(Arc::new(source), true)
@@ -23,7 +33,9 @@ fn cuboid(low: [f64; 3], high: [f64; 3]) -> Solid {
 
 fn combine(terms: Vec<Term>, solids: &[Solid]) -> Solid {
     let expression = Expression::new(terms).expect("well formed");
-    evaluate(expression, solids, &AtomicBool::new(false)).expect("evaluates").0
+    evaluate(expression, solids, &AtomicBool::new(false))
+        .expect("evaluates")
+        .0
 }
 
 fn union(a: &Solid, b: &Solid) -> Solid {
@@ -37,7 +49,12 @@ fn intersection(a: &Solid, b: &Solid) -> Solid {
 }
 
 fn difference(a: &Solid, b: &Solid) -> Solid {
-    let terms = vec![Term::Operand(0), Term::Operand(1), Term::Not(1), Term::And(vec![0, 2])];
+    let terms = vec![
+        Term::Operand(0),
+        Term::Operand(1),
+        Term::Not(1),
+        Term::And(vec![0, 2]),
+    ];
     combine(terms, &[a.clone(), b.clone()])
 }
 
@@ -54,7 +71,10 @@ fn overlapping_cubes() {
     assert_eq!(volume_of(&intersection(&a, &b)), "1/8");
     assert_eq!(volume_of(&union(&a, &b)), "15/8");
     assert_eq!(volume_of(&difference(&a, &b)), "7/8");
-    assert_eq!(round::mesh(&union(&a, &b)).expect("mesh").triangles.len(), 36);
+    assert_eq!(
+        round::mesh(&union(&a, &b)).expect("mesh").triangles.len(),
+        36
+    );
 }
 
 #[test]

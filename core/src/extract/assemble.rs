@@ -129,7 +129,11 @@ impl<'a> Assembly<'a> {
         for group in groups {
             for e in &group.edges {
                 let (from, to) = (self.table.number(&e.from), self.table.number(&e.to));
-                edges.push(Edge { from, to, line: e.line });
+                edges.push(Edge {
+                    from,
+                    to,
+                    line: e.line,
+                });
             }
         }
         for e in &frontier {
@@ -165,7 +169,9 @@ impl<'a> Assembly<'a> {
 
     /// The table number of a source's vertex; from now on the vertex is that point.
     fn point_of(&mut self, slot: u32, mesh: &TriangleMesh, vertex: u32) -> u32 {
-        let point = self.table.number(&Arc::new(Vertex::lattice(mesh.vertices[vertex as usize])));
+        let point = self
+            .table
+            .number(&Arc::new(Vertex::lattice(mesh.vertices[vertex as usize])));
         self.names.entry(point).or_insert((slot, vertex));
         let image = self.image_of_point(point);
         self.images[slot as usize][vertex as usize] = image;
@@ -240,7 +246,8 @@ impl<'a> Assembly<'a> {
                     continue;
                 }
                 let [a, b, c] = mesh.faces[face as usize].map(|v| self.image_of(slot, v));
-                self.triangles.push(if flip { [a, c, b] } else { [a, b, c] });
+                self.triangles
+                    .push(if flip { [a, c, b] } else { [a, b, c] });
                 self.faces.push(TriangleFace { slot, face, flip });
             }
         }
@@ -277,7 +284,11 @@ impl<'a> Assembly<'a> {
             .map(|i| (ring[i], ring[(i + 1) % ring.len()]))
             .collect();
         let plane = source.plane(face);
-        let plane = if flip { plane.flipped() } else { (*plane).clone() };
+        let plane = if flip {
+            plane.flipped()
+        } else {
+            (*plane).clone()
+        };
         self.emit_polygon(&plane, &edges, TriangleFace { slot, face, flip })
     }
 
@@ -295,7 +306,12 @@ impl<'a> Assembly<'a> {
         self.emit_polygon(&group.plane, &chain, TriangleFace { slot, face, flip })
     }
 
-    fn emit_polygon(&mut self, plane: &Plane, edges: &[(u32, u32)], face: TriangleFace) -> Result<()> {
+    fn emit_polygon(
+        &mut self,
+        plane: &Plane,
+        edges: &[(u32, u32)],
+        face: TriangleFace,
+    ) -> Result<()> {
         let view = Projection::onto(plane, &self.table);
         let triangles = triangulate(&view, edges)
             .map_err(|e| Error::internal(format!("an outline could not be triangulated: {e}")))?;
@@ -340,7 +356,10 @@ impl<'a> Assembly<'a> {
 }
 
 /// The points inserted on the three edges of each whole face that received any.
-fn split_faces(frontier: &[FrontierEdge], inner: &[Vec<u32>]) -> HashMap<(u32, u32), [Vec<u32>; 3]> {
+fn split_faces(
+    frontier: &[FrontierEdge],
+    inner: &[Vec<u32>],
+) -> HashMap<(u32, u32), [Vec<u32>; 3]> {
     let mut split: HashMap<(u32, u32), [Vec<u32>; 3]> = HashMap::new();
     for (edge, points) in frontier.iter().zip(inner) {
         if !points.is_empty() {

@@ -112,7 +112,12 @@ impl Collector<'_> {
                 if inside || holds_face(&branch.cell, &group.source, face) {
                     fates[face as usize] = Fate::Whole(flip);
                 } else {
-                    self.spanning.push(Spanning { slot: slot as u32, face, flip, leaf: number });
+                    self.spanning.push(Spanning {
+                        slot: slot as u32,
+                        face,
+                        flip,
+                        leaf: number,
+                    });
                 }
             }
         }
@@ -122,7 +127,12 @@ impl Collector<'_> {
             fates_of(&mut self.fates[slot], &part.source);
             self.fates[slot][part.face as usize] = Fate::Cut;
             let flip = element.flip ^ branch.complement;
-            self.parts.push(Listed { slot: slot as u32, flip, part, cell: branch.cell });
+            self.parts.push(Listed {
+                slot: slot as u32,
+                flip,
+                part,
+                cell: branch.cell,
+            });
         }
     }
 
@@ -145,7 +155,10 @@ impl Collector<'_> {
             }
         }
         let cut = self.outline(&open);
-        Boundary { fates: self.fates, cut }
+        Boundary {
+            fates: self.fates,
+            cut,
+        }
     }
 
     fn outline(&mut self, open: &[&[Spanning]]) -> Vec<CutFace> {
@@ -154,12 +167,22 @@ impl Collector<'_> {
             let source = self.sources.get(s.slot as usize);
             if let Some(polygon) = source.clip(s.face, &self.cells[s.leaf as usize]) {
                 let edges = OutlineEdge::all_of(&polygon).collect();
-                pieces.push(CutFace { slot: s.slot, face: s.face, flip: s.flip, edges });
+                pieces.push(CutFace {
+                    slot: s.slot,
+                    face: s.face,
+                    flip: s.flip,
+                    edges,
+                });
             }
         }
         for p in &self.parts {
             let edges = part_edges(&p.part, &p.cell);
-            pieces.push(CutFace { slot: p.slot, face: p.part.face, flip: p.flip, edges });
+            pieces.push(CutFace {
+                slot: p.slot,
+                face: p.part.face,
+                flip: p.flip,
+                edges,
+            });
         }
         pieces.sort_by_key(|p| (p.slot, p.face, p.flip));
         let mut cut: Vec<CutFace> = Vec::new();
@@ -201,7 +224,11 @@ fn part_edges(part: &Part, cell: &Cell) -> Vec<OutlineEdge> {
         return part.edges.clone();
     }
     let clipped = part.pieces().into_iter().filter_map(|p| p.clipped(cell));
-    cancel(clipped.flat_map(|p| OutlineEdge::all_of(&p).collect::<Vec<_>>()).collect())
+    cancel(
+        clipped
+            .flat_map(|p| OutlineEdge::all_of(&p).collect::<Vec<_>>())
+            .collect(),
+    )
 }
 
 /// Whether an outline is the face's own triangle.
@@ -275,6 +302,7 @@ fn lists(leaf: &Deferred, branch: &Branch, source: &Source, face: u32, flip: boo
 pub fn is_its_source(solid: &Solid) -> bool {
     let sources = Sources::new(Arc::clone(solid.sources()));
     let boundary = collect(solid, &sources);
-    let whole = |fates: &Vec<Fate>| !fates.is_empty() && fates.iter().all(|f| *f == Fate::Whole(false));
+    let whole =
+        |fates: &Vec<Fate>| !fates.is_empty() && fates.iter().all(|f| *f == Fate::Whole(false));
     boundary.cut.is_empty() && sources.table().len() == 1 && boundary.fates.iter().all(whole)
 }

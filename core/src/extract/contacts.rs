@@ -25,14 +25,28 @@ pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>> {
     let mut findings = Vec::new();
     if !edges.is_empty() {
         let text = "the solid touches itself along edges, here split (start vertices)";
-        findings.push(Finding::about("edge_contact", Severity::Note, &place(&edges), text));
+        findings.push(Finding::about(
+            "edge_contact",
+            Severity::Note,
+            &place(&edges),
+            text,
+        ));
     }
     if !split.split_vertices.is_empty() {
         let text = "the solid touches itself at vertices, here split";
         let places = place(&split.split_vertices);
-        findings.push(Finding::about("vertex_contact", Severity::Note, &places, text));
+        findings.push(Finding::about(
+            "vertex_contact",
+            Severity::Note,
+            &places,
+            text,
+        ));
     }
-    assembly.vertices = split.origin.iter().map(|v| assembly.vertices[*v as usize]).collect();
+    assembly.vertices = split
+        .origin
+        .iter()
+        .map(|v| assembly.vertices[*v as usize])
+        .collect();
     assembly.triangles = split.corners;
     Ok(findings)
 }
@@ -80,7 +94,9 @@ fn balanced(vertex: u32, fan: &[(u32, u32)]) -> Result<()> {
     if starts == ends {
         return Ok(());
     }
-    Err(Error::internal(format!("the assembled boundary is open at vertex {vertex}")))
+    Err(Error::internal(format!(
+        "the assembled boundary is open at vertex {vertex}"
+    )))
 }
 
 fn is_single_fan(fan: &[(u32, u32)]) -> bool {

@@ -68,7 +68,11 @@ impl Grouping<'_> {
         let next = self.groups.len();
         let at = *self.by_plane.entry(plane.clone()).or_insert(next);
         if at == next {
-            self.groups.push(PlaneGroup { plane, face, edges: Vec::new() });
+            self.groups.push(PlaneGroup {
+                plane,
+                face,
+                edges: Vec::new(),
+            });
         }
         at
     }
@@ -206,7 +210,10 @@ pub fn frontier(fates: &[Vec<Fate>], sources: &Sources) -> Vec<FrontierEdge> {
             for half in 3 * face..3 * face + 3 {
                 let mate = topology.mates()[half];
                 if mate == NONE || fates[mate as usize / 3] != *fate {
-                    found.push(FrontierEdge { slot, half: half as u32 });
+                    found.push(FrontierEdge {
+                        slot,
+                        half: half as u32,
+                    });
                 }
             }
         }

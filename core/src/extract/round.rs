@@ -26,7 +26,11 @@ pub struct Mesh {
 /// `Unbounded`.
 pub fn mesh(solid: &Solid) -> Result<Mesh> {
     let exact = assemble(solid)?;
-    let vertices = exact.vertices.iter().map(|c| position(solid, &exact, *c)).collect();
+    let vertices = exact
+        .vertices
+        .iter()
+        .map(|c| position(solid, &exact, *c))
+        .collect();
     let mut mesh = Mesh {
         vertices,
         triangles: exact.triangles,
@@ -60,6 +64,7 @@ fn report_collapsed(mesh: &mut Mesh) {
         .collect();
     if !places.is_empty() {
         let text = "rounding to doubles put two corners of these triangles in one place";
-        mesh.findings.push(Finding::about("collapsed", Severity::Note, &places, text));
+        mesh.findings
+            .push(Finding::about("collapsed", Severity::Note, &places, text));
     }
 }

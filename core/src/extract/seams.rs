@@ -51,7 +51,10 @@ fn unpaired(edges: &[Edge]) -> Vec<usize> {
 
 fn subdivide_line(run: &[usize], edges: &[Edge], table: &VertexTable, inner: &mut [Vec<u32>]) {
     let axis = edges[run[0]].line.axis();
-    let mut points: Vec<u32> = run.iter().flat_map(|i| [edges[*i].from, edges[*i].to]).collect();
+    let mut points: Vec<u32> = run
+        .iter()
+        .flat_map(|i| [edges[*i].from, edges[*i].to])
+        .collect();
     points.sort_unstable();
     points.dedup();
     points.sort_by(|a, b| table.point(*a).compare(table.point(*b), axis));

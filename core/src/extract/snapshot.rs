@@ -163,7 +163,10 @@ fn too_large() -> Error {
 }
 
 fn bad_snapshot() -> Error {
-    Error::new(ErrorKind::BadSnapshot, "the bytes are not a snapshot of a solid")
+    Error::new(
+        ErrorKind::BadSnapshot,
+        "the bytes are not a snapshot of a solid",
+    )
 }
 
 impl Snapshot {
@@ -209,24 +212,39 @@ impl Snapshot {
             .iter()
             .map(|s| Ok(Arc::new(s.source(pitch)?)))
             .collect::<Result<Vec<_>>>()?;
-        let cell = sources.iter().filter_map(|s| s.cell()).reduce(|a, b| a.join(&b));
+        let cell = sources
+            .iter()
+            .filter_map(|s| s.cell())
+            .reduce(|a, b| a.join(&b));
         let Some(cell) = cell.filter(|_| !(self.wholes.is_empty() && self.parts.is_empty())) else {
             return Ok(Solid::uniform(pitch, self.outside > 0));
         };
-        let mut leaf = Deferred { corner: self.outside, ..Deferred::default() };
+        let mut leaf = Deferred {
+            corner: self.outside,
+            ..Deferred::default()
+        };
         for w in &self.wholes {
             let source = sources.get(w.slot as usize).ok_or_else(bad_snapshot)?;
             if w.faces.iter().any(|f| *f as usize >= source.face_count()) {
                 return Err(bad_snapshot());
             }
             let source = Arc::clone(source);
-            leaf.groups.push(Group { source, flip: w.flip, faces: w.faces.clone() });
+            leaf.groups.push(Group {
+                source,
+                flip: w.flip,
+                faces: w.faces.clone(),
+            });
         }
         for p in &self.parts {
             leaf.parts.push(p.element(&sources, cell)?);
         }
         let node = Arc::new(Node::Deferred(leaf));
-        let root = Branch { cell, outside: self.outside, complement: false, node };
+        let root = Branch {
+            cell,
+            outside: self.outside,
+            complement: false,
+            node,
+        };
         Ok(Solid::new(root, pitch, Arc::from(sources), self.reduced))
     }
 
@@ -282,10 +300,18 @@ impl SourceData {
     fn source(&self, pitch: Pitch) -> Result<Source> {
         let shape = match self {
             Self::HalfSpace(plane) => Shape::HalfSpace(Arc::new(plane.plane()?)),
-            Self::Mesh { vertices, doubles, faces, numbers } => {
+            Self::Mesh {
+                vertices,
+                doubles,
+                faces,
+                numbers,
+            } => {
                 let count = vertices.len();
                 let named = faces.iter().flatten().all(|v| (*v as usize) < count);
-                let fits = vertices.iter().flatten().all(|k| k.unsigned_abs() < 1 << REACH);
+                let fits = vertices
+                    .iter()
+                    .flatten()
+                    .all(|k| k.unsigned_abs() < 1 << REACH);
                 let numbered = numbers.as_ref().is_none_or(|n| n.len() == faces.len());
                 if !(named && fits && numbered && doubles.len() == count) {
                     return Err(bad_snapshot());
@@ -304,7 +330,12 @@ impl SourceData {
     fn apply(&mut self, motion: &Motion, pitch: Pitch) -> Result<()> {
         match self {
             Self::HalfSpace(plane) => *plane = motion.plane(plane)?,
-            Self::Mesh { vertices, doubles, faces, .. } => {
+            Self::Mesh {
+                vertices,
+                doubles,
+                faces,
+                ..
+            } => {
                 for (vertex, double) in vertices.iter_mut().zip(doubles) {
                     *vertex = motion.point(vertex)?;
                     *double = motion.double(pitch, double, vertex);
@@ -330,8 +361,16 @@ impl PartData {
             .iter()
             .map(|e| e.edge(&support))
             .collect::<Result<Vec<_>>>()?;
-        let part = Part { source: Arc::clone(source), face: self.face, home, edges };
-        Ok(PartElement { part: Arc::new(part), flip: self.flip })
+        let part = Part {
+            source: Arc::clone(source),
+            face: self.face,
+            home,
+            edges,
+        };
+        Ok(PartElement {
+            part: Arc::new(part),
+            flip: self.flip,
+        })
     }
 }
 

@@ -25,7 +25,9 @@ impl VertexTable {
             return *id;
         }
         let same_key = self.by_key.entry(vertex.key()).or_default();
-        let known = same_key.iter().find(|id| self.points[**id as usize].same(vertex));
+        let known = same_key
+            .iter()
+            .find(|id| self.points[**id as usize].same(vertex));
         if let Some(id) = known {
             return *id;
         }
@@ -39,7 +41,10 @@ impl VertexTable {
     /// The number of a point that is in the table.
     pub fn find(&self, vertex: &Vertex) -> Option<u32> {
         let same_key = self.by_key.get(&vertex.key())?;
-        same_key.iter().copied().find(|id| self.points[*id as usize].same(vertex))
+        same_key
+            .iter()
+            .copied()
+            .find(|id| self.points[*id as usize].same(vertex))
     }
 
     /// The point with this number.
@@ -66,7 +71,11 @@ impl<'a> Projection<'a> {
     pub fn onto(plane: &Plane, table: &'a VertexTable) -> Self {
         let axis = plane.main_axis();
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        let (u, v) = if plane.normal()[axis] < 0 { (v, u) } else { (u, v) };
+        let (u, v) = if plane.normal()[axis] < 0 {
+            (v, u)
+        } else {
+            (u, v)
+        };
         Self { table, u, v }
     }
 }
@@ -112,7 +121,8 @@ fn rough_orient(points: &[&Vertex; 3], u: usize, v: usize) -> Option<i32> {
         .fold(0.0, f64::max);
     let doubt = 8.0 * f64::EPSILON * largest;
     let size = bu.abs() + bv.abs() + cu.abs() + cv.abs();
-    let bound = 2.0 * doubt * (size + 2.0 * doubt) + 4.0 * f64::EPSILON * (bu * cv).abs().max((bv * cu).abs());
+    let bound = 2.0 * doubt * (size + 2.0 * doubt)
+        + 4.0 * f64::EPSILON * (bu * cv).abs().max((bv * cu).abs());
     let cross = bu * cv - bv * cu;
     (cross.abs() > bound).then_some(if cross > 0.0 { 1 } else { -1 })
 }
@@ -134,4 +144,3 @@ fn exact_orient(points: &[&Vertex; 3], u: usize, v: usize) -> i32 {
 pub fn direction(a: &Vertex, b: &Vertex) -> [i32; 3] {
     [0, 1, 2].map(|axis| b.compare(a, axis) as i32)
 }
-

@@ -66,9 +66,7 @@ pub fn triangle_change(corners: &[Lattice; 3], segment: &Segment) -> i32 {
 
 /// Sign of n·(q + δ − a), for a corner q in half steps.
 fn side_of_corner(n: &[i128; 3], a: &Lattice, q: &Lattice) -> i32 {
-    let term = |i: usize| -> Int<3> {
-        Int::<2>::from_i128(n[i]).mul_i64(q[i] - 2 * a[i])
-    };
+    let term = |i: usize| -> Int<3> { Int::<2>::from_i128(n[i]).mul_i64(q[i] - 2 * a[i]) };
     match (term(0) + term(1) + term(2)).signum() {
         0 => first_sign(n),
         sign => sign,
@@ -102,7 +100,11 @@ pub fn polygon_change(polygon: &Polygon, segment: &Segment) -> i32 {
         return 0;
     }
     let (u, v) = segment.across();
-    let upward = if support.normal()[segment.axis] > 0 { 1 } else { -1 };
+    let upward = if support.normal()[segment.axis] > 0 {
+        1
+    } else {
+        -1
+    };
     let inside = polygon.corners().iter().all(|corner| match &corner.edge {
         Carrier::Edge(a, b) => turn_at_corner(a, b, &segment.from, u, v) == upward,
         Carrier::Cut(plane, flip) => {

@@ -1,8 +1,5 @@
 //! Exact predicates, planes, points and convex pieces.
-#![allow(
-    clippy::cast_precision_loss,
-    clippy::cast_possible_truncation
-)]
+#![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
 pub mod cell;
 pub mod crossing;

@@ -81,8 +81,14 @@ fn cancel_line(run: &[OutlineEdge], kept: &mut Vec<OutlineEdge>) {
     let axis = run[0].line.axis();
     let mut events = Vec::with_capacity(2 * run.len());
     for edge in run {
-        events.push(Event { at: &edge.from, change: 1 });
-        events.push(Event { at: &edge.to, change: -1 });
+        events.push(Event {
+            at: &edge.from,
+            change: 1,
+        });
+        events.push(Event {
+            at: &edge.to,
+            change: -1,
+        });
     }
     events.sort_by(|a, b| order_along(a.at, b.at, axis));
     let mut sum = 0;
@@ -170,7 +176,11 @@ fn divide_edges(
                 let meet = edge.carrier.meet(support, cut);
                 let at = Arc::new(meet.expect("an edge with ends on both sides meets the plane"));
                 let (first, second) = cut_edge(&edge, &at);
-                let (low, high) = if a < 0 { (first, second) } else { (second, first) };
+                let (low, high) = if a < 0 {
+                    (first, second)
+                } else {
+                    (second, first)
+                };
                 minus.push(low);
                 plus.push(high);
             }

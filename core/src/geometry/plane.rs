@@ -42,15 +42,16 @@ impl Plane {
         if g == 0 {
             return None;
         }
-        let g = if g == 1 { 1 } else { gcd_u128(g, d.rem_u128(g)) };
+        let g = if g == 1 {
+            1
+        } else {
+            gcd_u128(g, d.rem_u128(g))
+        };
         if g == 1 {
             return Some(Self::primitive(n, d));
         }
         let divisor = i128::try_from(g).ok()?;
-        Some(Self::primitive(
-            n.map(|c| c / divisor),
-            d.div_exact_u128(g),
-        ))
+        Some(Self::primitive(n.map(|c| c / divisor), d.div_exact_u128(g)))
     }
 
     fn primitive(n: [i128; 3], d: Int<3>) -> Self {
@@ -122,8 +123,7 @@ impl Plane {
         if self == other {
             return Some(true);
         }
-        let opposite =
-            (0..3).all(|i| self.n[i] == -other.n[i]) && self.d == -other.d;
+        let opposite = (0..3).all(|i| self.n[i] == -other.n[i]) && self.d == -other.d;
         opposite.then_some(false)
     }
 

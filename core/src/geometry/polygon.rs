@@ -117,7 +117,10 @@ impl Polygon {
             .map(|&(before, after)| {
                 let at = Vertex::meet(plane, &walls[before], &walls[after])?;
                 let edge = Carrier::Cut(Arc::clone(&walls[after]), false);
-                Some(Corner { at: Arc::new(at), edge })
+                Some(Corner {
+                    at: Arc::new(at),
+                    edge,
+                })
             })
             .collect::<Option<Corners>>()?;
         let support = Arc::clone(plane);
@@ -280,8 +283,16 @@ fn push_touching(
         at: Arc::clone(&corner.at),
         edge: Carrier::Cut(Arc::clone(cut), flip),
     };
-    minus.push(if next < 0 { corner.clone() } else { along(false) });
-    plus.push(if next > 0 { corner.clone() } else { along(true) });
+    minus.push(if next < 0 {
+        corner.clone()
+    } else {
+        along(false)
+    });
+    plus.push(if next > 0 {
+        corner.clone()
+    } else {
+        along(true)
+    });
 }
 
 fn push_crossing(

@@ -150,9 +150,7 @@ fn meet_key(h: &Homogeneous) -> VertexKey {
         return VertexKey([u64::MAX; 3]);
     }
     let inverse = inv_mod(w, P1);
-    VertexKey([0, 1, 2].map(|i| {
-        mul_mod(h.x[i].rem_u61(P1), inverse, P1)
-    }))
+    VertexKey([0, 1, 2].map(|i| mul_mod(h.x[i].rem_u61(P1), inverse, P1)))
 }
 
 fn exact_side(h: &Homogeneous, plane: &Plane) -> i32 {

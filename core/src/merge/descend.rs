@@ -43,7 +43,10 @@ impl Counters {
         [
             ("cells", self.cells.load(Ordering::Relaxed)),
             ("kernels", self.leaves.load(Ordering::Relaxed)),
-            ("kernel_elements", self.leaf_elements.load(Ordering::Relaxed)),
+            (
+                "kernel_elements",
+                self.leaf_elements.load(Ordering::Relaxed),
+            ),
         ]
     }
 }
@@ -87,9 +90,16 @@ struct Round {
 impl Round {
     fn next(self, total: usize) -> Self {
         if self.depth + 1 < ROUND {
-            return Self { depth: self.depth + 1, ..self };
+            return Self {
+                depth: self.depth + 1,
+                ..self
+            };
         }
-        Self { depth: 0, start: total, stuck: total * 8 > self.start * 7 }
+        Self {
+            depth: 0,
+            start: total,
+            stuck: total * 8 > self.start * 7,
+        }
     }
 }
 
@@ -102,13 +112,23 @@ impl Descent<'_> {
             return Err(Error::new(ErrorKind::Shape, text));
         };
         let mut scratch = Vec::new();
-        let outside = expression.value(|k| self.rule.inside(roots[k as usize].outside), &mut scratch);
+        let outside = expression.value(
+            |k| self.rule.inside(roots[k as usize].outside),
+            &mut scratch,
+        );
         let states = (0u32..).zip(roots.into_iter().map(State::Tree)).collect();
-        let round = Round { depth: 0, start: usize::MAX / 8, stuck: false };
+        let round = Round {
+            depth: 0,
+            start: usize::MAX / 8,
+            stuck: false,
+        };
         let branch = self.cell(cell, Arc::new(expression), states, round)?;
         Ok(match branch.constant() {
             Some(w) => Branch::uniform(branch.cell, w),
-            None => Branch { outside: i32::from(outside), ..branch },
+            None => Branch {
+                outside: i32::from(outside),
+                ..branch
+            },
         })
     }
 
@@ -164,7 +184,10 @@ impl Descent<'_> {
             let branch = self.cell(inner, expression, states, round)?;
             return Ok(match branch.constant() {
                 Some(w) if (w > 0) == outside => Branch::uniform(cell, w),
-                _ => Branch { outside: i32::from(outside), ..branch },
+                _ => Branch {
+                    outside: i32::from(outside),
+                    ..branch
+                },
             });
         }
         let total: usize = states.iter().map(|s| s.1.len()).sum();
@@ -215,7 +238,9 @@ impl Descent<'_> {
 
     fn leaf(&self, cell: Cell, expression: &Expression, states: States, total: usize) -> Branch {
         self.counters.leaves.fetch_add(1, Ordering::Relaxed);
-        self.counters.leaf_elements.fetch_add(total as u64, Ordering::Relaxed);
+        self.counters
+            .leaf_elements
+            .fetch_add(total as u64, Ordering::Relaxed);
         let lists = states
             .into_iter()
             .filter_map(|(k, s)| match s {
@@ -226,7 +251,12 @@ impl Descent<'_> {
         let node = leaf::evaluate(&cell, expression, self.rule, lists, self.sources);
         match node {
             Node::Leaf(w) => Branch::uniform(cell, w),
-            node => Branch { cell, outside: 0, complement: false, node: Arc::new(node) },
+            node => Branch {
+                cell,
+                outside: 0,
+                complement: false,
+                node: Arc::new(node),
+            },
         }
     }
 }
@@ -318,7 +348,12 @@ impl State {
             }
             Self::List(list) => match list.close(negate, sources) {
                 Node::Leaf(w) => Branch::uniform(cell, w),
-                node => Branch { cell, outside: 0, complement: false, node: Arc::new(node) },
+                node => Branch {
+                    cell,
+                    outside: 0,
+                    complement: false,
+                    node: Arc::new(node),
+                },
             },
         }
     }
@@ -327,7 +362,10 @@ impl State {
 fn divide_tree(branch: Branch, cell: &Cell, cut: Cut) -> (State, State) {
     if branch.cell == *cell {
         if let Node::Cut([minus, plus]) = &*branch.node {
-            return (State::Tree(branch.child(minus)), State::Tree(branch.child(plus)));
+            return (
+                State::Tree(branch.child(minus)),
+                State::Tree(branch.child(plus)),
+            );
         }
     }
     let around = State::Constant(branch.outside);

@@ -22,7 +22,11 @@ use crate::tree::solid::Solid;
 ///
 /// # Source
 /// Naylor, Amanatides, Thibault 1990; `ARCHITECTURE.md`, "One descent".
-pub fn evaluate(expression: Expression, solids: &[Solid], cancel: &AtomicBool) -> Result<(Solid, Counters)> {
+pub fn evaluate(
+    expression: Expression,
+    solids: &[Solid],
+    cancel: &AtomicBool,
+) -> Result<(Solid, Counters)> {
     let pitch = common_pitch(&expression, solids)?;
     let sources = Sources::new(joint_table(solids));
     let descent = Descent {
@@ -36,7 +40,10 @@ pub fn evaluate(expression: Expression, solids: &[Solid], cancel: &AtomicBool) -
     let root = descent.run(expression, roots)?;
     let reduced = solids.iter().all(Solid::is_reduced);
     let counters = descent.counters;
-    Ok((Solid::new(root, pitch, Arc::clone(sources.table()), reduced), counters))
+    Ok((
+        Solid::new(root, pitch, Arc::clone(sources.table()), reduced),
+        counters,
+    ))
 }
 
 /// The solid united with itself: the reduced boundary of the points that a rule calls inside.
@@ -54,12 +61,21 @@ pub fn normalize(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid
     };
     let expression = Expression::new(vec![Term::Operand(0)])?;
     let root = descent.run(expression, vec![solid.root().clone()])?;
-    Ok(Solid::new(root, solid.pitch(), Arc::clone(sources.table()), true))
+    Ok(Solid::new(
+        root,
+        solid.pitch(),
+        Arc::clone(sources.table()),
+        true,
+    ))
 }
 
 fn common_pitch(expression: &Expression, solids: &[Solid]) -> Result<Pitch> {
     let count = solids.len();
-    if let Some(k) = expression.operands().into_iter().find(|k| *k as usize >= count) {
+    if let Some(k) = expression
+        .operands()
+        .into_iter()
+        .find(|k| *k as usize >= count)
+    {
         let text = format!("the expression names operand {k}, but there are {count} operands");
         return Err(Error::at(ErrorKind::Shape, vec![u64::from(k)], text));
     }

@@ -168,7 +168,14 @@ fn fold_list(list: &[u32], folded: &[Known], absorbing: bool, terms: &mut Vec<Te
         [(line, negate)] => Known::Line(*line, *negate),
         _ => {
             let lines = positive(&open, terms);
-            append(terms, if absorbing { Term::Or(lines) } else { Term::And(lines) })
+            append(
+                terms,
+                if absorbing {
+                    Term::Or(lines)
+                } else {
+                    Term::And(lines)
+                },
+            )
         }
     }
 }
@@ -225,7 +232,10 @@ fn close(mut terms: Vec<Term>, line: u32, negate: bool) -> Residual {
     needed[terms.len() - 1] = true;
     for i in (0..terms.len()).rev().filter(|i| *i < terms.len()) {
         if needed[i] {
-            terms[i].arguments().iter().for_each(|a| needed[*a as usize] = true);
+            terms[i]
+                .arguments()
+                .iter()
+                .for_each(|a| needed[*a as usize] = true);
         }
     }
     let mut image = vec![0u32; terms.len()];

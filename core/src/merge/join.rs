@@ -21,11 +21,19 @@ pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch) -> Branch {
     match (minus.constant(), plus.constant()) {
         (Some(w), Some(v)) if (w > 0) == (v > 0) => Branch::uniform(cell, w),
         (Some(w), None) => Branch { outside: w, ..plus },
-        (None, Some(w)) => Branch { outside: w, ..minus },
+        (None, Some(w)) => Branch {
+            outside: w,
+            ..minus
+        },
         _ => {
             let outside = minus.outside;
             let node = joined(&cell, cut, &minus, &plus).unwrap_or(Node::Cut([minus, plus]));
-            Branch { cell, outside, complement: false, node: Arc::new(node) }
+            Branch {
+                cell,
+                outside,
+                complement: false,
+                node: Arc::new(node),
+            }
         }
     }
 }
@@ -45,7 +53,10 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch) -> Option<Node> 
     if faces.len() > JOINED {
         return None;
     }
-    let halves = [(minus, a, cell.half(cut, false)), (plus, b, cell.half(cut, true))];
+    let halves = [
+        (minus, a, cell.half(cut, false)),
+        (plus, b, cell.half(cut, true)),
+    ];
     if !faces.iter().all(|f| f.is_whole_in(cell, &halves)) {
         return None;
     }
@@ -55,7 +66,11 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch) -> Option<Node> 
     } else {
         minus.outside
     };
-    Some(Node::Deferred(Deferred { groups: grouped(faces), parts: Vec::new(), corner }))
+    Some(Node::Deferred(Deferred {
+        groups: grouped(faces),
+        parts: Vec::new(),
+        corner,
+    }))
 }
 
 fn small_leaf(branch: &Branch) -> Option<&Deferred> {
@@ -85,7 +100,9 @@ fn listed(branch: &Branch, leaf: &Deferred) -> Vec<Listed> {
 
 impl Listed {
     fn same_as(&self, other: &Self) -> bool {
-        self.face == other.face && self.flip == other.flip && Arc::ptr_eq(&self.source, &other.source)
+        self.face == other.face
+            && self.flip == other.flip
+            && Arc::ptr_eq(&self.source, &other.source)
     }
 
     fn is_in(&self, branch: &Branch, leaf: &Deferred) -> bool {
@@ -99,7 +116,9 @@ impl Listed {
     /// Whether what the two leaves hold of the face is all of it inside the cell.
     fn is_whole_in(&self, cell: &Cell, halves: &[(&Branch, &Deferred, Cell); 2]) -> bool {
         let (low, high) = self.source.face_box(self.face);
-        let holders = halves.iter().filter(|(branch, leaf, _)| self.is_in(branch, leaf));
+        let holders = halves
+            .iter()
+            .filter(|(branch, leaf, _)| self.is_in(branch, leaf));
         let mut full = 0;
         let mut edges = Vec::new();
         for (branch, _, half) in holders.clone() {
@@ -124,8 +143,14 @@ fn grouped(faces: Vec<Listed>) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for f in faces {
         match groups.last_mut() {
-            Some(g) if Arc::ptr_eq(&g.source, &f.source) && g.flip == f.flip => g.faces.push(f.face),
-            _ => groups.push(Group { source: f.source, flip: f.flip, faces: vec![f.face] }),
+            Some(g) if Arc::ptr_eq(&g.source, &f.source) && g.flip == f.flip => {
+                g.faces.push(f.face)
+            }
+            _ => groups.push(Group {
+                source: f.source,
+                flip: f.flip,
+                faces: vec![f.face],
+            }),
         }
     }
     groups

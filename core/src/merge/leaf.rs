@@ -77,7 +77,12 @@ pub fn evaluate(
         .into_iter()
         .map(|(number, list)| Operand::new(number, list, cell, sources))
         .collect();
-    let place = |number: u32| operands.iter().position(|o| o.number == number).unwrap_or(0);
+    let place = |number: u32| {
+        operands
+            .iter()
+            .position(|o| o.number == number)
+            .unwrap_or(0)
+    };
     let scratch = &mut Vec::new();
     let mut value = |labels: &[bool]| expression.value(|k| labels[place(k)], scratch);
     let at_corner: Vec<bool> = operands.iter().map(|o| rule.inside(o.corner)).collect();
@@ -98,7 +103,10 @@ impl Operand {
         let fragments = disjoint(fragments(&list, cell, sources));
         let weighted = fragments
             .iter()
-            .map(|f| Weighted { polygon: f.polygon.clone(), weight: f.weight })
+            .map(|f| Weighted {
+                polygon: f.polygon.clone(),
+                weight: f.weight,
+            })
             .collect();
         let tree = if fragments.is_empty() {
             LocalTree::uniform(corner)
@@ -107,7 +115,13 @@ impl Operand {
         };
         let simple = fragments.iter().all(|f| f.weight.abs() == 1)
             && tree.labels().iter().all(|w| (0..=1).contains(w));
-        Self { number, corner, fragments, tree, simple }
+        Self {
+            number,
+            corner,
+            fragments,
+            tree,
+            simple,
+        }
     }
 }
 
@@ -118,14 +132,27 @@ fn fragments(list: &List, cell: &Cell, sources: &Sources) -> Vec<Fragment> {
         if let Some(polygon) = sources.get(r.slot()).clip(r.face, cell) {
             let weight = if r.flip() { -1 } else { 1 };
             let face = (r.slot() as u32, r.face);
-            found.push(Fragment { polygon, weight, face, intact: true });
+            found.push(Fragment {
+                polygon,
+                weight,
+                face,
+                intact: true,
+            });
         }
     }
     for p in &list.parts {
         let weight = if p.element.flip { -1 } else { 1 };
-        let face = (sources.slot(&p.element.part.source) as u32, p.element.part.face);
+        let face = (
+            sources.slot(&p.element.part.source) as u32,
+            p.element.part.face,
+        );
         let clipped = p.pieces.iter().filter_map(|q| q.clone().clipped(cell));
-        found.extend(clipped.map(|polygon| Fragment { polygon, weight, face, intact: false }));
+        found.extend(clipped.map(|polygon| Fragment {
+            polygon,
+            weight,
+            face,
+            intact: false,
+        }));
     }
     found
 }
@@ -146,7 +173,10 @@ fn sides(fragment: &Fragment, own: usize, operands: &[Operand], rule: Rule) -> V
                 piece.plus.push(rule.inside(plus));
             }
         } else {
-            pieces = pieces.into_iter().flat_map(|p| p.pushed(&operand.tree, rule)).collect();
+            pieces = pieces
+                .into_iter()
+                .flat_map(|p| p.pushed(&operand.tree, rule))
+                .collect();
         }
     }
     pieces
@@ -212,7 +242,10 @@ fn assemble(mut kept: Vec<Kept>, corner: i32, cell: &Cell, sources: &Sources) ->
         return Node::Leaf(corner);
     }
     kept.sort_by_key(|k| (k.face.0, k.flip, k.face.1));
-    let mut leaf = Deferred { corner, ..Deferred::default() };
+    let mut leaf = Deferred {
+        corner,
+        ..Deferred::default()
+    };
     for run in kept.chunk_by(|a, b| a.face == b.face && a.flip == b.flip) {
         let (slot, face) = run[0].face;
         let source = sources.get(slot as usize);
@@ -229,9 +262,17 @@ fn assemble(mut kept: Vec<Kept>, corner: i32, cell: &Cell, sources: &Sources) ->
         if is_whole(&edges, source, face, cell) {
             list_whole(&mut leaf.groups, source, face, run[0].flip);
         } else {
-            let part = Part { source: Arc::clone(source), face, home: *cell, edges };
+            let part = Part {
+                source: Arc::clone(source),
+                face,
+                home: *cell,
+                edges,
+            };
             let part = Arc::new(part);
-            leaf.parts.push(PartElement { part, flip: run[0].flip });
+            leaf.parts.push(PartElement {
+                part,
+                flip: run[0].flip,
+            });
         }
     }
     Node::Deferred(leaf)
@@ -240,7 +281,11 @@ fn assemble(mut kept: Vec<Kept>, corner: i32, cell: &Cell, sources: &Sources) ->
 fn list_whole(groups: &mut Vec<Group>, source: &Arc<Source>, face: u32, flip: bool) {
     match groups.last_mut() {
         Some(g) if Arc::ptr_eq(&g.source, source) && g.flip == flip => g.faces.push(face),
-        _ => groups.push(Group { source: Arc::clone(source), flip, faces: vec![face] }),
+        _ => groups.push(Group {
+            source: Arc::clone(source),
+            flip,
+            faces: vec![face],
+        }),
     }
 }
 
@@ -251,7 +296,9 @@ pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: u32, cell: &Cell) 
     let mut own: Vec<LineKey> = match source.shape() {
         Shape::Mesh(mesh) => {
             let c = mesh.corners(face);
-            (0..3).map(|i| LineKey::of_edge(&c[i], &c[(i + 1) % 3])).collect()
+            (0..3)
+                .map(|i| LineKey::of_edge(&c[i], &c[(i + 1) % 3]))
+                .collect()
         }
         Shape::HalfSpace(_) => Vec::new(),
     };

@@ -111,7 +111,9 @@ impl Sources {
 
     /// The slot of a source.
     pub fn slot(&self, source: &Source) -> usize {
-        self.by_id.get(&source.id()).map_or(usize::MAX, |s| *s as usize)
+        self.by_id
+            .get(&source.id())
+            .map_or(usize::MAX, |s| *s as usize)
     }
 }
 
@@ -127,7 +129,11 @@ impl List {
         };
         for group in &leaf.groups {
             let slot = sources.slot(&group.source) as u32;
-            let flip = if group.flip ^ branch.complement { FLIP } else { 0 };
+            let flip = if group.flip ^ branch.complement {
+                FLIP
+            } else {
+                0
+            };
             let record = |face: &u32| frame.record(&group.source, *face, slot | flip);
             list.records.extend(group.faces.iter().map(record));
         }
@@ -135,7 +141,8 @@ impl List {
             let flip = element.flip ^ branch.complement;
             let pieces = Arc::new(element.part.pieces());
             let part = Arc::clone(&element.part);
-            list.parts.push(frame.part_record(PartElement { part, flip }, pieces));
+            list.parts
+                .push(frame.part_record(PartElement { part, flip }, pieces));
         }
         list
     }
@@ -178,7 +185,8 @@ impl List {
             }
         }
         self.records = minus;
-        plus.parts.extend(self.parts.iter().filter(|p| p.high[axis] >= at).cloned());
+        plus.parts
+            .extend(self.parts.iter().filter(|p| p.high[axis] >= at).cloned());
         self.parts.retain(|p| p.low[axis] < at);
         (self, plus)
     }
@@ -207,7 +215,11 @@ impl List {
     /// The change of the winding number from the cell's low corner to the plus half's.
     fn change_along_edge(&self, cell: &Cell, cut: Cut, sources: &Sources) -> i32 {
         let from = cell.corner();
-        let segment = Segment { from, axis: cut.axis, to: 2 * cut.at - 1 };
+        let segment = Segment {
+            from,
+            axis: cut.axis,
+            to: 2 * cut.at - 1,
+        };
         let low = *cell.low();
         let at = [0, 1, 2].map(|i| self.frame.index(i, low[i]));
         let end = self.frame.index(cut.axis, cut.at);
@@ -222,9 +234,11 @@ impl List {
             };
             change += if r.flip() { -across } else { across };
         }
-        let widened = |p: &&PartRecord| (0..3).all(|i| {
-            p.high[i] >= at[i] - 1 && p.low[i] <= if i == cut.axis { end } else { at[i] }
-        });
+        let widened = |p: &&PartRecord| {
+            (0..3).all(|i| {
+                p.high[i] >= at[i] - 1 && p.low[i] <= if i == cut.axis { end } else { at[i] }
+            })
+        };
         for p in self.parts.iter().filter(widened) {
             let across: i32 = p.pieces.iter().map(|q| polygon_change(q, &segment)).sum();
             change += if p.element.flip { -across } else { across };
@@ -234,7 +248,11 @@ impl List {
 
     /// The list as a deferred leaf, perhaps turned inside out.
     pub fn close(self, complement: bool, sources: &Sources) -> Node {
-        let corner = if complement { 1 - self.corner } else { self.corner };
+        let corner = if complement {
+            1 - self.corner
+        } else {
+            self.corner
+        };
         if self.is_empty() {
             return Node::Leaf(corner);
         }
@@ -244,15 +262,26 @@ impl List {
             if open != Some(r.slot_and_flip) {
                 open = Some(r.slot_and_flip);
                 let source = Arc::clone(sources.get(r.slot()));
-                groups.push(Group { source, flip: r.flip() ^ complement, faces: Vec::new() });
+                groups.push(Group {
+                    source,
+                    flip: r.flip() ^ complement,
+                    faces: Vec::new(),
+                });
             }
             if let Some(group) = groups.last_mut() {
                 group.faces.push(r.face);
             }
         }
-        let turned = |p: PartRecord| PartElement { flip: p.element.flip ^ complement, ..p.element };
+        let turned = |p: PartRecord| PartElement {
+            flip: p.element.flip ^ complement,
+            ..p.element
+        };
         let parts = self.parts.into_iter().map(turned).collect();
-        Node::Deferred(Deferred { groups, parts, corner })
+        Node::Deferred(Deferred {
+            groups,
+            parts,
+            corner,
+        })
     }
 }
 
@@ -277,7 +306,12 @@ impl Frame {
                 high[i] = high[i].max(self.index(i, b[i].ceil() as i64));
             }
         }
-        PartRecord { low, high, element, pieces }
+        PartRecord {
+            low,
+            high,
+            element,
+            pieces,
+        }
     }
 
     /// Whether a record is so large that its plane may miss a cell its bounds meet.
@@ -307,7 +341,8 @@ fn misses(r: &Record, cell: &Cell, sources: &Sources) -> bool {
         Shape::Mesh(mesh) => {
             let corners = mesh.corners(r.face);
             let (center, half) = middle(cell, &corners[0]);
-            let local = corners.map(|c| [0, 1, 2].map(|i| (c[i] - corners[0][i]) as f64 - center[i]));
+            let local =
+                corners.map(|c| [0, 1, 2].map(|i| (c[i] - corners[0][i]) as f64 - center[i]));
             separated(&local, &half)
         }
     }
@@ -319,8 +354,12 @@ const SLACK: f64 = 1e-13;
 /// Center relative to `origin`, and half extents, of a closed cell.
 fn middle(cell: &Cell, origin: &Lattice) -> ([f64; 3], [f64; 3]) {
     let (low, high) = (cell.low(), cell.high());
-    let center = [0, 1, 2].map(|i| ((low[i] - origin[i]) as f64 + (high[i] - origin[i]) as f64) / 2.0);
-    (center, [0, 1, 2].map(|i| (high[i] - low[i]) as f64 / 2.0 + 0.5))
+    let center =
+        [0, 1, 2].map(|i| ((low[i] - origin[i]) as f64 + (high[i] - origin[i]) as f64) / 2.0);
+    (
+        center,
+        [0, 1, 2].map(|i| (high[i] - low[i]) as f64 / 2.0 + 0.5),
+    )
 }
 
 fn separated(p: &[[f64; 3]; 3], half: &[f64; 3]) -> bool {
@@ -336,7 +375,9 @@ fn separated(p: &[[f64; 3]; 3], half: &[f64; 3]) -> bool {
         ]
     };
     let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let across = e.iter().flat_map(|edge| unit.iter().map(|u| cross(u, edge)));
+    let across = e
+        .iter()
+        .flat_map(|edge| unit.iter().map(|u| cross(u, edge)));
     std::iter::once(cross(&e[0], &e[1]))
         .chain(across)
         .any(|axis| apart(p, half, &axis))

@@ -71,9 +71,15 @@ impl LocalTree {
     ///
     /// `corner` is the cell's low corner in half steps, `label` the winding number there.
     pub fn build(fragments: Vec<Weighted>, corner: &Lattice, label: i32) -> Self {
-        let mut tree = Self { nodes: Vec::new(), labels: Vec::new() };
+        let mut tree = Self {
+            nodes: Vec::new(),
+            labels: Vec::new(),
+        };
         let mut links = Vec::new();
-        let mut open = vec![Task { pieces: fragments, parent: None }];
+        let mut open = vec![Task {
+            pieces: fragments,
+            parent: None,
+        }];
         while let Some(task) = open.pop() {
             let child = if task.pieces.is_empty() {
                 tree.labels.push(0);
@@ -91,7 +97,10 @@ impl LocalTree {
 
     /// The tree of one region.
     pub fn uniform(label: i32) -> Self {
-        Self { nodes: Vec::new(), labels: vec![label] }
+        Self {
+            nodes: Vec::new(),
+            labels: vec![label],
+        }
     }
 
     /// The winding numbers of all regions.
@@ -107,7 +116,12 @@ impl LocalTree {
         }
     }
 
-    fn grow(&mut self, mut pieces: Vec<Weighted>, links: &mut Vec<Link>, open: &mut Vec<Task>) -> Child {
+    fn grow(
+        &mut self,
+        mut pieces: Vec<Weighted>,
+        links: &mut Vec<Link>,
+        open: &mut Vec<Task>,
+    ) -> Child {
         let node = self.nodes.len() as u32;
         let pivot = pieces.swap_remove(pieces.len() / 2);
         let cut = Arc::clone(pivot.polygon.support());
@@ -117,10 +131,22 @@ impl LocalTree {
                 divide(piece, &cut, &mut minus, &mut plus);
             }
         }
-        links.push(Link { polygon: pivot.polygon, weight: pivot.weight });
-        self.nodes.push(LocalNode { cut, children: [Child::Leaf(0); 2] });
-        open.push(Task { pieces: plus, parent: Some((node, 1)) });
-        open.push(Task { pieces: minus, parent: Some((node, 0)) });
+        links.push(Link {
+            polygon: pivot.polygon,
+            weight: pivot.weight,
+        });
+        self.nodes.push(LocalNode {
+            cut,
+            children: [Child::Leaf(0); 2],
+        });
+        open.push(Task {
+            pieces: plus,
+            parent: Some((node, 1)),
+        });
+        open.push(Task {
+            pieces: minus,
+            parent: Some((node, 0)),
+        });
         Child::Node(node)
     }
 
@@ -207,7 +233,11 @@ impl LocalTree {
             let node = match at {
                 Child::Leaf(leaf) => {
                     let label = self.labels[leaf as usize];
-                    found.push(Sided { polygon, minus: label, plus: label });
+                    found.push(Sided {
+                        polygon,
+                        minus: label,
+                        plus: label,
+                    });
                     continue;
                 }
                 Child::Node(node) => &self.nodes[node as usize],
@@ -222,11 +252,21 @@ impl LocalTree {
     }
 
     /// The pieces of a polygon in a node's cut: each side's label from that side's subtree.
-    fn coplanar_sides(&self, node: &LocalNode, polygon: Polygon, same: bool, found: &mut Vec<Sided>) {
+    fn coplanar_sides(
+        &self,
+        node: &LocalNode,
+        polygon: Polygon,
+        same: bool,
+        found: &mut Vec<Sided>,
+    ) {
         for (piece, below) in self.labelled(node.children[0], polygon) {
             for (polygon, above) in self.labelled(node.children[1], piece) {
                 let (minus, plus) = if same { (below, above) } else { (above, below) };
-                found.push(Sided { polygon, minus, plus });
+                found.push(Sided {
+                    polygon,
+                    minus,
+                    plus,
+                });
             }
         }
     }
@@ -262,8 +302,14 @@ fn divide(piece: Weighted, cut: &Arc<Plane>, minus: &mut Vec<Weighted>, plus: &m
         PolygonSplit::Minus | PolygonSplit::Coplanar => minus.push(piece),
         PolygonSplit::Plus => plus.push(piece),
         PolygonSplit::Both(below, above) => {
-            minus.push(Weighted { polygon: below, weight });
-            plus.push(Weighted { polygon: above, weight });
+            minus.push(Weighted {
+                polygon: below,
+                weight,
+            });
+            plus.push(Weighted {
+                polygon: above,
+                weight,
+            });
         }
     }
 }

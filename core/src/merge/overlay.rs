@@ -34,7 +34,11 @@ pub fn disjoint(fragments: Vec<Fragment>) -> Vec<Fragment> {
         });
         add(&mut planes[at], fragment);
     }
-    let mut all: Vec<Fragment> = planes.into_iter().flatten().filter(|f| f.weight != 0).collect();
+    let mut all: Vec<Fragment> = planes
+        .into_iter()
+        .flatten()
+        .filter(|f| f.weight != 0)
+        .collect();
     all.sort_by_key(|f| f.face);
     all
 }
@@ -45,7 +49,9 @@ fn add(placed: &mut Vec<Fragment>, new: Fragment) {
     let mut carved = Vec::new();
     let mut i = 0;
     while i < placed.len() && !rest.is_empty() {
-        let touched = rest.iter().any(|r| !separated(&placed[i].polygon, &r.polygon));
+        let touched = rest
+            .iter()
+            .any(|r| !separated(&placed[i].polygon, &r.polygon));
         if touched {
             let old = placed.remove(i);
             rest = combine(old, rest, &mut carved);

@@ -110,7 +110,11 @@ impl Pitch {
         let h = vertex.coordinates();
         let power = Int::<2>::from_i128(10i128.pow(u32::from(self.0.unsigned_abs())));
         let one = Int::<2>::ONE;
-        let (up, down) = if self.0 <= 0 { (one, power) } else { (power, one) };
+        let (up, down) = if self.0 <= 0 {
+            (one, power)
+        } else {
+            (power, one)
+        };
         let den: Int<8> = h.w.mul(&down);
         h.x.map(|x| {
             let num: Int<8> = x.mul(&up);

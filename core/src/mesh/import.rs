@@ -10,8 +10,8 @@ use super::grid::{snap_point, Pitch};
 use super::source::{Shape, Source, TriangleMesh};
 use super::topology::{open_edges, Topology};
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::plane::{normal, Lattice};
 use crate::geometry::plane::Plane;
+use crate::geometry::plane::{normal, Lattice};
 
 /// Reads a closed triangle mesh onto the lattice.
 ///
@@ -42,7 +42,11 @@ pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -
         findings.push(Finding::about(
             "non_manifold",
             Severity::Note,
-            &topology.irregular().iter().map(|v| u64::from(*v)).collect::<Vec<_>>(),
+            &topology
+                .irregular()
+                .iter()
+                .map(|v| u64::from(*v))
+                .collect::<Vec<_>>(),
             "edges are shared by more than two faces, at these vertices",
         ));
     }
@@ -61,7 +65,9 @@ pub fn half_space(normal: [f64; 3], offset: f64, pitch: Pitch) -> Result<Source>
         return Err(Error::new(ErrorKind::BadNormal, text));
     }
     let (n, exact) = integer_normal(&normal, size);
-    let axis = (0..3).max_by(|i, j| normal[*i].abs().total_cmp(&normal[*j].abs())).unwrap_or(0);
+    let axis = (0..3)
+        .max_by(|i, j| normal[*i].abs().total_cmp(&normal[*j].abs()))
+        .unwrap_or(0);
     let scale = offset / size / square;
     let mut foot = [0, 1, 2].map(|i| normal[i] / size * scale);
     if (0..3).all(|i| i == axis || normal[i] == 0.0) {
@@ -80,7 +86,11 @@ pub fn half_space(normal: [f64; 3], offset: f64, pitch: Pitch) -> Result<Source>
             "the half-space's normal was rounded to 53 bits relative to its largest component",
         ));
     }
-    Ok(Source::new(pitch, Shape::HalfSpace(Arc::new(plane)), findings))
+    Ok(Source::new(
+        pitch,
+        Shape::HalfSpace(Arc::new(plane)),
+        findings,
+    ))
 }
 
 /// The normal as integers of at most 53 bits, and whether nothing was lost.
@@ -98,7 +108,10 @@ fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[u32; 3]>> {
         .filter(|c| *c < u32::MAX / 4)
         .ok_or_else(|| Error::new(ErrorKind::TooLarge, "a mesh holds at most 2^30 vertices"))?;
     if faces.len() >= (u32::MAX / 4) as usize {
-        return Err(Error::new(ErrorKind::TooLarge, "a mesh holds at most 2^30 faces"));
+        return Err(Error::new(
+            ErrorKind::TooLarge,
+            "a mesh holds at most 2^30 faces",
+        ));
     }
     let narrow = |(row, face): (usize, &[i64; 3])| {
         let ok = face.iter().all(|v| (0..i64::from(limit)).contains(v));
@@ -106,7 +119,11 @@ fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[u32; 3]>> {
             return Ok(face.map(|v| v as u32));
         }
         let text = format!("face {row} names vertices {face:?}, but there are {count} vertices");
-        Err(Error::at(ErrorKind::IndexOutOfRange, vec![row as u64], text))
+        Err(Error::at(
+            ErrorKind::IndexOutOfRange,
+            vec![row as u64],
+            text,
+        ))
     };
     faces.iter().enumerate().map(narrow).collect()
 }
@@ -116,8 +133,14 @@ fn choose_pitch(
     pitch: Option<Pitch>,
     findings: &mut Vec<Finding>,
 ) -> Result<Pitch> {
-    if let Some(row) = vertices.iter().position(|p| p.iter().any(|c| !c.is_finite())) {
-        let text = format!("vertex {row} is {:?}; coordinates must be finite", vertices[row]);
+    if let Some(row) = vertices
+        .iter()
+        .position(|p| p.iter().any(|c| !c.is_finite()))
+    {
+        let text = format!(
+            "vertex {row} is {:?}; coordinates must be finite",
+            vertices[row]
+        );
         return Err(Error::at(ErrorKind::NonFinite, vec![row as u64], text));
     }
     if let Some(pitch) = pitch {
@@ -149,7 +172,11 @@ fn snap_all(vertices: &[[f64; 3]], pitch: Pitch) -> Result<Vec<Lattice>> {
         .enumerate()
         .map(|(row, p)| {
             snap_point(pitch, p).map_err(|e| {
-                Error::at(e.kind(), vec![row as u64], format!("vertex {row}: {}", e.message()))
+                Error::at(
+                    e.kind(),
+                    vec![row as u64],
+                    format!("vertex {row}: {}", e.message()),
+                )
             })
         })
         .collect()
@@ -163,11 +190,19 @@ fn drop_flat_faces(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) {
         .with_min_len(1 << 13)
         .map(|f| is_flat(&f.map(|v| mesh.vertices[v as usize])))
         .collect();
-    let places: Vec<u64> = (0u64..).zip(&flat).filter(|(_, f)| **f).map(|(i, _)| i).collect();
+    let places: Vec<u64> = (0u64..)
+        .zip(&flat)
+        .filter(|(_, f)| **f)
+        .map(|(i, _)| i)
+        .collect();
     if places.is_empty() {
         return;
     }
-    let keep: Vec<u32> = (0u32..).zip(&flat).filter(|(_, f)| !**f).map(|(i, _)| i).collect();
+    let keep: Vec<u32> = (0u32..)
+        .zip(&flat)
+        .filter(|(_, f)| !**f)
+        .map(|(i, _)| i)
+        .collect();
     mesh.faces = keep.iter().map(|i| mesh.faces[*i as usize]).collect();
     mesh.numbers = Some(keep);
     findings.push(Finding::about(

@@ -59,7 +59,12 @@ impl Source {
     }
 
     /// A source whose half-edges are paired already.
-    pub fn with_topology(mesh: TriangleMesh, pitch: Pitch, topology: Topology, findings: Vec<Finding>) -> Self {
+    pub fn with_topology(
+        mesh: TriangleMesh,
+        pitch: Pitch,
+        topology: Topology,
+        findings: Vec<Finding>,
+    ) -> Self {
         let source = Self::new(pitch, Shape::Mesh(mesh), findings);
         let _ = source.topology.set(topology);
         source

@@ -26,7 +26,11 @@ impl Topology {
                 if a > b {
                     continue;
                 }
-                let twins = outgoing.of(a as usize).iter().filter(|h| ends(faces, **h).1 == b).count();
+                let twins = outgoing
+                    .of(a as usize)
+                    .iter()
+                    .filter(|h| ends(faces, **h).1 == b)
+                    .count();
                 if twins > 1 {
                     irregular.extend([a, b]);
                 }
@@ -133,7 +137,13 @@ impl LineEdge {
         let (direction, axis, sign) = primitive_direction(&a, &b)?;
         let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
         let line = (direction, moment(&a, &direction));
-        Some(Self { line, low, high, sign, half })
+        Some(Self {
+            line,
+            low,
+            high,
+            sign,
+            half,
+        })
     }
 }
 

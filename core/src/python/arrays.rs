@@ -6,7 +6,10 @@ use pyo3::prelude::*;
 use crate::error::{Error, ErrorKind, Result};
 
 /// The rows of an (n, 3) array.
-pub fn rows<T: numpy::Element + Copy>(array: &PyReadonlyArray2<'_, T>, name: &str) -> Result<Vec<[T; 3]>> {
+pub fn rows<T: numpy::Element + Copy>(
+    array: &PyReadonlyArray2<'_, T>,
+    name: &str,
+) -> Result<Vec<[T; 3]>> {
     let view = array.as_array();
     if view.ncols() != 3 {
         let text = format!("{name} must have shape (n, 3), not {:?}", view.shape());
@@ -16,11 +19,18 @@ pub fn rows<T: numpy::Element + Copy>(array: &PyReadonlyArray2<'_, T>, name: &st
         let row = |r: &[T]| [r[0], r[1], r[2]];
         return Ok(flat.chunks_exact(3).map(row).collect());
     }
-    Ok(view.rows().into_iter().map(|r| [r[0], r[1], r[2]]).collect())
+    Ok(view
+        .rows()
+        .into_iter()
+        .map(|r| [r[0], r[1], r[2]])
+        .collect())
 }
 
 /// An (n, k) array from rows.
-pub fn array<'py, T, const K: usize>(py: Python<'py>, rows: Vec<[T; K]>) -> PyResult<Bound<'py, PyArray2<T>>>
+pub fn array<'py, T, const K: usize>(
+    py: Python<'py>,
+    rows: Vec<[T; K]>,
+) -> PyResult<Bound<'py, PyArray2<T>>>
 where
     T: numpy::Element,
 {

@@ -6,7 +6,12 @@ use pyo3::prelude::*;
 
 use crate::error::{Error, ErrorKind};
 
-create_exception!(bspcsg._core, CoreError, PyException, "An error of the core: code, where, message.");
+create_exception!(
+    bspcsg._core,
+    CoreError,
+    PyException,
+    "An error of the core: code, where, message."
+);
 
 /// The Python exception for an error.
 pub fn to_python(py: Python<'_>, error: &Error) -> PyErr {

@@ -29,13 +29,22 @@ pub fn set_default_threads(n: usize) {
 
 fn pool(threads: usize) -> Result<Arc<ThreadPool>> {
     static POOLS: OnceLock<Mutex<HashMap<usize, Arc<ThreadPool>>>> = OnceLock::new();
-    let threads = if threads == 0 { DEFAULT_THREADS.load(Ordering::Relaxed) } else { threads };
+    let threads = if threads == 0 {
+        DEFAULT_THREADS.load(Ordering::Relaxed)
+    } else {
+        threads
+    };
     let pools = POOLS.get_or_init(Mutex::default);
-    let mut pools = pools.lock().map_err(|_| Error::internal("the table of pools is poisoned"))?;
+    let mut pools = pools
+        .lock()
+        .map_err(|_| Error::internal("the table of pools is poisoned"))?;
     if let Some(pool) = pools.get(&threads) {
         return Ok(Arc::clone(pool));
     }
-    let built = ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build();
+    let built = ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .stack_size(STACK)
+        .build();
     let pool = Arc::new(built.map_err(|e| Error::internal(e.to_string()))?);
     pools.insert(threads, Arc::clone(&pool));
     Ok(pool)

@@ -2,8 +2,8 @@
 
 use std::sync::{Arc, OnceLock};
 
-use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use num_bigint::BigInt;
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 
@@ -43,7 +43,12 @@ pub struct Tree {
 
 impl Tree {
     fn of(solid: Solid) -> Self {
-        Self { solid, counters: None, mesh: OnceLock::new(), reduced: OnceLock::new() }
+        Self {
+            solid,
+            counters: None,
+            mesh: OnceLock::new(),
+            reduced: OnceLock::new(),
+        }
     }
 
     fn size(&self) -> usize {
@@ -123,8 +128,13 @@ impl Tree {
             .map_err(|e| to_python(py, &e))?;
         let size = operands.iter().map(|o| o.size()).sum();
         let solids: Vec<Solid> = operands.iter().map(|o| o.solid.clone()).collect();
-        let (solid, counters) = run(py, threads, size, |cancel| evaluate(expression, &solids, cancel))?;
-        Ok(Self { counters: Some(counters), ..Self::of(solid) })
+        let (solid, counters) = run(py, threads, size, |cancel| {
+            evaluate(expression, &solids, cancel)
+        })?;
+        Ok(Self {
+            counters: Some(counters),
+            ..Self::of(solid)
+        })
     }
 
     #[pyo3(signature = (rule="positive", threads=0))]
@@ -134,7 +144,8 @@ impl Tree {
             "nonzero" => Rule::Nonzero,
             "even-odd" => Rule::EvenOdd,
             _ => {
-                let text = format!("'{rule}' is not a winding rule; use positive, nonzero or even-odd");
+                let text =
+                    format!("'{rule}' is not a winding rule; use positive, nonzero or even-odd");
                 return Err(to_python(py, &Error::new(ErrorKind::Shape, text)));
             }
         };
@@ -149,7 +160,11 @@ impl Tree {
         let solid = run(py, threads, self.size(), |cancel| {
             let solid = normalize(&self.solid, rule, cancel)?;
             let unchanged = is_its_source(&solid);
-            Ok(if unchanged { self.solid.clone().with_reduced(true) } else { solid })
+            Ok(if unchanged {
+                self.solid.clone().with_reduced(true)
+            } else {
+                solid
+            })
         })?;
         if rule == Rule::Positive {
             let _ = self.reduced.set(solid.clone());
@@ -214,7 +229,10 @@ impl Tree {
         let size = self.size() + points.len();
         let found = run(py, 0, size, |_| {
             let pitch = self.solid.pitch();
-            let points = points.iter().map(|p| snap_point(pitch, p)).collect::<Result<Vec<_>>>()?;
+            let points = points
+                .iter()
+                .map(|p| snap_point(pitch, p))
+                .collect::<Result<Vec<_>>>()?;
             classify(&self.solid, &points)
         })?;
         let sign = |l: &Location| match l {
@@ -277,10 +295,16 @@ impl Tree {
             return Ok(Self::of(self.solid.clone()));
         }
         let scale = finer.refinement(self.solid.pitch()).ok_or_else(|| {
-            let text = format!("10^{pitch} does not refine 10^{} within 64 bits", self.pitch());
+            let text = format!(
+                "10^{pitch} does not refine 10^{} within 64 bits",
+                self.pitch()
+            );
             to_python(py, &Error::new(ErrorKind::PitchMismatch, text))
         })?;
-        let motion = Motion { scale, ..Motion::IDENTITY };
+        let motion = Motion {
+            scale,
+            ..Motion::IDENTITY
+        };
         self.mapped(&motion, finer).map_err(fail)
     }
 
@@ -297,7 +321,14 @@ impl Tree {
 
     fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        let Stats { nodes, leaves, deferred, elements, parts, depth } = stats(&self.solid);
+        let Stats {
+            nodes,
+            leaves,
+            deferred,
+            elements,
+            parts,
+            depth,
+        } = stats(&self.solid);
         for (name, value) in [
             ("nodes", nodes),
             ("leaves", leaves),
@@ -346,7 +377,11 @@ fn motion(axes: [i64; 3], shift: [i64; 3]) -> Result<Motion> {
         return Err(Error::new(ErrorKind::Shape, text));
     }
     let axes = axes.map(|a| (a.unsigned_abs() as usize - 1, a.signum()));
-    Ok(Motion { axes, shift, scale: 1 })
+    Ok(Motion {
+        axes,
+        shift,
+        scale: 1,
+    })
 }
 
 fn finding<'py>(py: Python<'py>, finding: &Finding) -> PyResult<Bound<'py, PyDict>> {

@@ -35,7 +35,11 @@ pub fn classify(solid: &Solid, points: &[Lattice]) -> Result<Vec<Location>> {
     let sources = Sources::new(Arc::clone(solid.sources()));
     let mut found = vec![Location::Outside; points.len()];
     let all: Vec<usize> = (0..points.len()).collect();
-    let mut search = Search { sources: &sources, points, found: &mut found };
+    let mut search = Search {
+        sources: &sources,
+        points,
+        found: &mut found,
+    };
     search.tree(solid.root(), all);
     Ok(found)
 }
@@ -48,13 +52,21 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn label(&mut self, points: &[usize], w: i32) {
-        let location = if w > 0 { Location::Inside } else { Location::Outside };
+        let location = if w > 0 {
+            Location::Inside
+        } else {
+            Location::Outside
+        };
         for i in points {
             self.found[*i] = location;
         }
     }
 
-    fn split(&self, points: Vec<usize>, inside: impl Fn(&Lattice) -> bool) -> (Vec<usize>, Vec<usize>) {
+    fn split(
+        &self,
+        points: Vec<usize>,
+        inside: impl Fn(&Lattice) -> bool,
+    ) -> (Vec<usize>, Vec<usize>) {
         points.into_iter().partition(|i| inside(&self.points[*i]))
     }
 

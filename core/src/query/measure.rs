@@ -38,7 +38,11 @@ pub fn volume(solid: &Solid) -> Result<Fraction> {
     }
     cut.push((big(&whole), BigInt::from(1)));
     let (numerator, denominator) = pairwise_sum(cut);
-    Ok(in_units(numerator, denominator * 6, solid.pitch().exponent()))
+    Ok(in_units(
+        numerator,
+        denominator * 6,
+        solid.pitch().exponent(),
+    ))
 }
 
 fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Option<Lattice> {
@@ -52,11 +56,17 @@ fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Option<Lattice> {
 
 fn homogeneous(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Homogeneous {
     if let Some(p) = lattice(solid, mesh, vertex) {
-        return Homogeneous { x: p.map(Int::from_i64), w: Int::ONE };
+        return Homogeneous {
+            x: p.map(Int::from_i64),
+            w: Int::ONE,
+        };
     }
     match mesh.vertices[vertex as usize] {
         Corner::Point(point) => mesh.table.point(point).coordinates(),
-        Corner::Source(..) => Homogeneous { x: [Int::ZERO; 3], w: Int::ONE },
+        Corner::Source(..) => Homogeneous {
+            x: [Int::ZERO; 3],
+            w: Int::ONE,
+        },
     }
 }
 
@@ -108,7 +118,10 @@ fn in_units(numerator: BigInt, denominator: BigInt, exponent: i64) -> Fraction {
         (numerator * power, denominator)
     };
     let (numerator, denominator) = lowest(n, d);
-    Fraction { numerator, denominator }
+    Fraction {
+        numerator,
+        denominator,
+    }
 }
 
 fn big<const N: usize>(value: &Int<N>) -> BigInt {
@@ -118,6 +131,10 @@ fn big<const N: usize>(value: &Int<N>) -> BigInt {
         .iter()
         .flat_map(|l| [*l as u32, (*l >> 32) as u32])
         .collect();
-    let sign = if value.is_negative() { Sign::Minus } else { Sign::Plus };
+    let sign = if value.is_negative() {
+        Sign::Minus
+    } else {
+        Sign::Plus
+    };
     BigInt::from_slice(sign, &digits)
 }

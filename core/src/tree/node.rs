@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::geometry::cell::Cell;
+use crate::geometry::outline;
 use crate::geometry::outline::OutlineEdge;
 use crate::geometry::polygon::Polygon;
-use crate::geometry::outline;
 use crate::mesh::source::Source;
 
 /// A node of the tree. Immutable and shared.

@@ -19,7 +19,12 @@ pub struct Solid {
 impl Solid {
     /// A solid from its parts; `reduced` says that its elements are the reduced boundary.
     pub fn new(root: Branch, pitch: Pitch, sources: Arc<[Arc<Source>]>, reduced: bool) -> Self {
-        Self { root, pitch, sources, reduced }
+        Self {
+            root,
+            pitch,
+            sources,
+            reduced,
+        }
     }
 
     /// The empty set, or all of space.
@@ -40,10 +45,23 @@ impl Solid {
             Shape::HalfSpace(plane) => (i32::from(plane.side_of_corner(&cell.corner()) < 0), true),
         };
         let faces = (0..source.face_count() as u32).collect();
-        let group = Group { source: Arc::clone(&source), flip: false, faces };
-        let leaf = Deferred { groups: vec![group], parts: Vec::new(), corner };
+        let group = Group {
+            source: Arc::clone(&source),
+            flip: false,
+            faces,
+        };
+        let leaf = Deferred {
+            groups: vec![group],
+            parts: Vec::new(),
+            corner,
+        };
         let node = Arc::new(Node::Deferred(leaf));
-        let root = Branch { cell, outside: corner, complement: false, node };
+        let root = Branch {
+            cell,
+            outside: corner,
+            complement: false,
+            node,
+        };
         Self::new(root, pitch, Arc::from([source]), reduced)
     }
 
