@@ -149,10 +149,14 @@ def _unpadded(stream: IndexArray) -> Any:
 
 def _from_vtk(mesh: Any) -> Arrays:
     points = [mesh.GetPoint(index) for index in range(mesh.GetNumberOfPoints())]
-    cells = [mesh.GetCell(index) for index in range(mesh.GetNumberOfCells())]
-    corners = [[cell.GetPointId(k) for k in range(cell.GetNumberOfPoints())] for cell in cells]
-    # Loose points and lines are no part of a surface.
-    return points, [face for face in corners if len(face) >= 3]
+    faces = []
+    for index in range(mesh.GetNumberOfCells()):
+        cell = mesh.GetCell(index)  # the next call overwrites it
+        corners = [cell.GetPointId(k) for k in range(cell.GetNumberOfPoints())]
+        # Loose points and lines are no part of a surface.
+        if len(corners) >= 3:
+            faces.append(corners)
+    return points, faces
 
 
 def _from_meshio(mesh: Any) -> Arrays:
@@ -180,17 +184,17 @@ _READERS: tuple[tuple[tuple[str, ...], Callable[[Any], Arrays]], ...] = (
     (("vert_properties", "tri_verts"), _from_manifold_mesh),
     (("current_mesh",), lambda meshes: arrays_from(meshes.current_mesh())),
     (("vertex_matrix", "face_matrix"), lambda mesh: (mesh.vertex_matrix(), mesh.face_matrix())),
+    (("points", "faces"), _from_polydata),
+    # Grids have points and cells too, but are no surface: the last name leaves them out.
+    (("points", "cells", "cell_sets"), _from_meshio),
+    (("GetPoint", "GetCell", "GetPolys"), _from_vtk),
     # Shapes of CAD kernels have methods named vertices and faces: they come before plain meshes.
-    (("tessellate",), _from_shape),
+    (("tessellate", "wrapped"), _from_shape),
     (("val", "plane"), lambda workplane: arrays_from(workplane.val())),
     (("geometry", "to_mesh"), lambda scene: arrays_from(scene.to_mesh())),
     (("to_legacy",), lambda mesh: arrays_from(mesh.to_legacy())),
     (("vertices", "faces"), lambda mesh: (mesh.vertices, mesh.faces)),
     (("vertices", "triangles"), lambda mesh: (mesh.vertices, mesh.triangles)),
-    (("points", "faces"), _from_polydata),
-    (("extract_surface",), lambda grid: arrays_from(grid.extract_surface())),
-    (("points", "cells"), _from_meshio),
-    (("GetPoint", "GetCell"), _from_vtk),
 )
 
 

@@ -51,17 +51,30 @@ def padded(faces: Any) -> Any:
     return np.concatenate([[len(face), *face] for face in faces])
 
 
-def vtk_like() -> Any:
-    def cell(face: Any) -> Any:
-        return SimpleNamespace(GetNumberOfPoints=lambda: len(face), GetPointId=lambda k: face[k])
+class VtkLike:
+    """Polygons that, like vtk's, show every cell in one object."""
 
-    cells = [cell([0, 1]), *map(cell, QUADS)]
-    return SimpleNamespace(
-        GetNumberOfPoints=lambda: len(V),
-        GetPoint=lambda index: tuple(V[index]),
-        GetNumberOfCells=lambda: len(cells),
-        GetCell=lambda index: cells[index],
-    )
+    GetPolys = None
+
+    def __init__(self) -> None:
+        self._cells: list[list[int]] = [[0, 1], *QUADS]
+        self._shown = 0
+
+    def GetNumberOfPoints(self) -> int:  # noqa: N802
+        return len(V)
+
+    def GetPoint(self, index: int) -> Any:  # noqa: N802
+        return tuple(V[index])
+
+    def GetNumberOfCells(self) -> int:  # noqa: N802
+        return len(self._cells)
+
+    def GetCell(self, index: int) -> Any:  # noqa: N802
+        self._shown = index
+        return SimpleNamespace(
+            GetNumberOfPoints=lambda: len(self._cells[self._shown]),
+            GetPointId=lambda k: self._cells[self._shown][k],
+        )
 
 
 def block(kind: str, data: Any) -> Any:
@@ -75,6 +88,7 @@ def open3d_like() -> Any:
 def shape(corners: list[Any]) -> Any:
     return SimpleNamespace(
         tessellate=lambda tolerance: (corners, [tuple(face) for face in F]),
+        wrapped=None,
         vertices=lambda: None,
         faces=lambda: None,
     )
@@ -114,19 +128,17 @@ SOURCES: dict[str, Callable[[], Any]] = {
     "polydata, mixed": lambda: SimpleNamespace(
         points=V, faces=padded([*QUADS[:5], [1, 5, 7], [1, 7, 3]])
     ),
-    "grid": lambda: SimpleNamespace(
-        points=V, cells=None, extract_surface=lambda: SimpleNamespace(points=V, faces=padded(F))
-    ),
-    "meshio": lambda: SimpleNamespace(points=V, cells=[block("triangle", F)]),
+    "meshio": lambda: SimpleNamespace(points=V, cell_sets={}, cells=[block("triangle", F)]),
     "meshio, mixed": lambda: SimpleNamespace(
         points=V,
+        cell_sets={},
         cells=[
             block("line", [[0, 1]]),
             block("quad", QUADS[:5]),
             block("triangle", [[1, 5, 7], [1, 7, 3]]),
         ],
     ),
-    "vtk": vtk_like,
+    "vtk": VtkLike,
     "build123d": lambda: shape([tuple(v) for v in V]),
     "cadquery": cadquery_like,
 }
@@ -140,7 +152,16 @@ def test_meshes_are_read(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "source", [None, 7, object(), (V, F, F), {"vertices": V}, SimpleNamespace(vertices=V)]
+    "source",
+    [
+        None,
+        7,
+        object(),
+        (V, F, F),
+        {"vertices": V},
+        SimpleNamespace(vertices=V),
+        SimpleNamespace(points=V, cells=[]),
+    ],
 )
 def test_what_holds_no_mesh_is_refused(source: Any) -> None:
     with pytest.raises(b.InvalidMeshError) as caught:
@@ -174,7 +195,7 @@ def test_wrong_arrays_are_refused(name: str) -> None:
 
 
 def test_volume_cells_are_refused() -> None:
-    mesh = SimpleNamespace(points=V, cells=[block("tetra", [[0, 1, 2, 3]])])
+    mesh = SimpleNamespace(points=V, cell_sets={}, cells=[block("tetra", [[0, 1, 2, 3]])])
     with pytest.raises(b.InvalidMeshError, match="tetra"):
         b.Solid.from_mesh(mesh)
 
