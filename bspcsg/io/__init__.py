@@ -1,0 +1,87 @@
+"""Mesh files: STL, OBJ, PLY and OFF in and out, 3MF in.
+
+Everything is read and written in double precision where the format has it. A file that is cut off,
+or says what cannot be, is refused with its name and the line or byte; a file that is written
+appears complete or not at all.
+"""
+
+import os
+from typing import TYPE_CHECKING, Any
+
+from ..errors import BspcsgError, Finding
+from .formats import FORMATS, encoder_of, format_of, read, write
+from .raw import RawMesh
+
+if TYPE_CHECKING:
+    from ..solid import Solid
+
+__all__ = ["FORMATS", "RawMesh", "encoder_of", "format_of", "load", "read", "save", "write"]
+
+
+def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
+    """Read a mesh file as a solid; the suffix names the format.
+
+    Parameters
+    ----------
+    path : str or path
+        Ending in ``.stl``, ``.obj``, ``.ply``, ``.off`` or ``.3mf``. 3MF comes in millimetres,
+        the other formats in whatever unit they were written in.
+    **options
+        As for `Solid`: ``pitch``, ``trusted``, ``winding``.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be read as what its suffix says.
+    InvalidMeshError, LimitError
+        If what it holds is no solid: the message names the file and a place, `where` the faces.
+    """
+    return solid_of(read(path), path, **options)
+
+
+def solid_of(raw: RawMesh, path: str | os.PathLike[str], **options: Any) -> "Solid":
+    """Return the solid of what was read from a file; errors name the file and a place in space."""
+    from ..solid import Solid
+
+    try:
+        return Solid(raw.vertices, raw.faces, **options)
+    except BspcsgError as error:
+        message = f"{os.fspath(path)}: {error.message}{_near(raw, error)}"
+        raise type(error)(message, error.code, error.where) from error
+
+
+def _near(raw: RawMesh, error: BspcsgError) -> str:
+    """Return where in space the first face lies that an error about faces names."""
+    if error.code != "not_closed" or not error.where or error.where[0] >= len(raw.faces):
+        return ""
+    x, y, z = raw.vertices[raw.faces[error.where[0]]].mean(axis=0)
+    return f" Look near ({x:.6g}, {y:.6g}, {z:.6g})."
+
+
+def save(
+    solid: "Solid", path: str | os.PathLike[str], *, text: bool = False
+) -> tuple[Finding, ...]:
+    """Write the reduced boundary of a solid; the suffix names the format.
+
+    Parameters
+    ----------
+    solid : Solid
+    path : str or path
+        Ending in ``.stl``, ``.obj``, ``.ply`` or ``.off``. Binary STL holds single precision.
+    text : bool
+        Write STL and PLY as text; OBJ and OFF always are.
+
+    Returns
+    -------
+    tuple of Finding
+        What the format could not keep.
+
+    Raises
+    ------
+    FormatError
+        If the format is unknown, cannot hold the coordinates, or the file cannot be written.
+    UnboundedError
+        If the solid reaches to infinity.
+    """
+    encoder_of(path, text)
+    return write(solid.normalized().to_mesh(), path, text=text)

@@ -1,0 +1,57 @@
+"""Files that are either complete or not there."""
+
+import contextlib
+import os
+import secrets
+from collections.abc import Iterable
+from pathlib import Path
+
+from ..errors import FormatError
+
+
+def write_file(path: str | os.PathLike[str], chunks: Iterable[bytes]) -> None:
+    """Write the chunks to a new file beside `path`, then give it that name in one step.
+
+    Whatever goes wrong, a file that was there before stays as it was.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be written; code ``"unwritable"``.
+    """
+    name = os.fspath(path)
+    # A link stays a link: what it points to is replaced.
+    target = Path(os.path.realpath(name))
+    try:
+        _check_target(target)
+        part = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+        _write_new(part, target, chunks)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise FormatError(f"{name}: cannot write this file: {reason}.", "unwritable") from error
+
+
+def _check_target(target: Path) -> None:
+    if target.is_dir():
+        raise IsADirectoryError(21, "it is a folder")
+    if target.exists() and not target.is_file():
+        raise OSError(22, "it is no ordinary file")
+    if not target.parent.is_dir():
+        raise FileNotFoundError(2, f"there is no folder {target.parent}")
+
+
+def _write_new(part: Path, target: Path, chunks: Iterable[bytes]) -> None:
+    # Opened like any new file, so that the user's mask decides about its mode.
+    handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
+    try:
+        with open(handle, "wb", buffering=1 << 20) as stream:
+            stream.writelines(chunks)
+            stream.flush()
+            os.fsync(stream.fileno())
+        if target.exists():
+            part.chmod(target.stat().st_mode & 0o7777)
+        os.replace(part, target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            part.unlink()
+        raise

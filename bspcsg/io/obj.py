@@ -1,0 +1,105 @@
+"""Wavefront OBJ: its vertices and polygons. Materials, normals, groups and curves are passed by."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..errors import Finding, FormatError
+from ..mesh import Mesh
+from .raw import Polygons, RawMesh
+from .source import Source, quoted
+
+#: Statements that would add surface which is not in the polygons.
+_SURFACES = frozenset({b"surf", b"curv", b"cstype", b"bmat"})
+
+
+def read(source: Source) -> RawMesh:
+    """Read all objects and groups as one mesh.
+
+    Raises
+    ------
+    FormatError
+        If a line is no valid statement, or names a vertex that does not exist; names the line.
+    """
+    rows: list[list[bytes]] = []
+    row_lines: list[int] = []
+    polygons: list[list[int]] = []
+    face_lines: list[int] = []
+    name, surfaces = b"", 0
+    for number, words in _statements(source):
+        key = words[0]
+        if key == b"v":
+            rows.append(words[1:])
+            row_lines.append(number)
+        elif key == b"f":
+            polygons.append(_references(source, number, words, len(rows)))
+            face_lines.append(number)
+        elif key == b"o":
+            name = name or b" ".join(words[1:])
+        surfaces += key in _SURFACES
+    if not rows:
+        raise source.error("this is no OBJ mesh: it has no vertex.")
+    vertices = source.coordinates(rows, row_lines)
+    faces = _faces(source, polygons, face_lines).triangles(
+        vertices,
+        lambda polygon, message, code: source.error(message, code, line=face_lines[polygon]),
+    )
+    return RawMesh(vertices, faces, name.decode("utf-8", "replace"), _curved(surfaces))
+
+
+def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
+    """Yield number and words of each line; a line that ends in a backslash goes on."""
+    held: list[bytes] = []
+    start = 0
+    for number, words in source.text_lines(b"#"):
+        start = start if held else number
+        if words[-1].endswith(b"\\"):
+            held += [*words[:-1], *filter(None, [words[-1][:-1]])]
+            continue
+        yield start, held + words
+        held = []
+    if held:
+        raise source.error("the file ends in a line that must go on.", "truncated", line=start)
+
+
+def _references(source: Source, number: int, words: list[bytes], known: int) -> list[int]:
+    """Return the vertices of a face, from 0; negative numbers count back from the last vertex."""
+    try:
+        references = [int(word.partition(b"/")[0]) for word in words[1:]]
+    except ValueError:
+        message = f"expected vertex numbers, found {quoted(b' '.join(words[1:]))}."
+        raise source.error(message, line=number) from None
+    if all(reference > 0 for reference in references):
+        return [reference - 1 for reference in references]
+    if 0 in references or min(references) < -known:
+        wrong = 0 if 0 in references else min(references)
+        message = f"vertex number {wrong} names no vertex; {known} precede this face."
+        raise source.error(message, "index_out_of_range", line=number)
+    return [known + reference if reference < 0 else reference - 1 for reference in references]
+
+
+def _faces(source: Source, polygons: list[list[int]], lines: list[int]) -> Polygons:
+    try:
+        return Polygons.from_lists(polygons)
+    except OverflowError:
+        bad = next(k for k, polygon in enumerate(polygons) if max(polygon) >= 2**63)
+        raise _too_large(source, lines[bad]) from None
+
+
+def _too_large(source: Source, line: int) -> FormatError:
+    return source.error("a vertex number is far too large.", "index_out_of_range", line=line)
+
+
+def _curved(count: int) -> tuple[Finding, ...]:
+    if not count:
+        return ()
+    message = f"{count} statements about free-form curves and surfaces were ignored."
+    return (Finding("curves_ignored", "warning", message, (), count),)
+
+
+def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
+    """Yield the file; every coordinate reads back as the same double."""
+    for point in mesh.vertices.tolist():
+        yield "v {!r} {!r} {!r}\n".format(*point).encode()
+    for face in (mesh.faces + np.int64(1)).tolist():
+        yield "f {} {} {}\n".format(*face).encode()

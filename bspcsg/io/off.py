@@ -1,0 +1,103 @@
+"""OFF and its kin with colours, normals or texture coordinates, in text."""
+
+import re
+from collections.abc import Iterator
+
+from ..errors import Finding
+from ..mesh import Mesh
+from .raw import Polygons, RawMesh
+from .source import Source, quoted
+
+_KEYWORD = re.compile(rb"(ST)?C?N?(4?)(n?)(?:OFF|off)")
+
+_Line = tuple[int, list[bytes]]
+
+
+def read(source: Source) -> RawMesh:
+    """Read the file.
+
+    Raises
+    ------
+    FormatError
+        If it is cut off, names a vertex that does not exist, or is not of this family; names the
+        line.
+    """
+    lines = list(_body(source))
+    vertex_count, face_count, lines = _counts(source, lines)
+    if vertex_count + face_count > len(lines):
+        message = (
+            f"the file ends after {len(lines)} lines of data, but its header promises"
+            f" {vertex_count} vertices and {face_count} faces."
+        )
+        raise source.error(message, "truncated", line=lines[-1][0] if lines else 1)
+    points, polygons = lines[:vertex_count], lines[vertex_count : vertex_count + face_count]
+    vertices = source.coordinates([row for _, row in points], [number for number, _ in points])
+    corners = [_corners(source, number, words) for number, words in polygons]
+    faces = Polygons.from_lists(corners).triangles(
+        vertices, lambda k, message, code: source.error(message, code, line=polygons[k][0])
+    )
+    return RawMesh(vertices, faces, "", _extra_lines(lines[vertex_count + face_count :]))
+
+
+def _body(source: Source) -> Iterator[_Line]:
+    """Yield the lines after the keyword, which may be absent, and may have the counts beside it."""
+    lines = source.text_lines(b"#")
+    number, words = next(lines, (1, [b""]))
+    keyword = _KEYWORD.fullmatch(words[0])
+    if keyword is None:
+        if not words[0].isdigit():
+            raise source.error(f"this is no OFF: it begins with {quoted(words[0])}.", line=number)
+        yield number, words
+    elif keyword[2] or keyword[3]:
+        raise source.error("only OFF in three dimensions can be read.", line=number)
+    elif len(words) > 1 and words[1].upper() == b"BINARY":
+        raise source.error("binary OFF cannot be read; save it as text, or as PLY.", line=number)
+    elif len(words) > 1:
+        yield number, words[1:]
+    yield from lines
+
+
+def _counts(source: Source, lines: list[_Line]) -> tuple[int, int, list[_Line]]:
+    """Return the numbers of vertices and faces, and the lines after them."""
+    number, words = lines[0] if lines else (1, [])
+    try:
+        counts = [int(word) for word in words[:2]]
+    except ValueError:
+        counts = []
+    if len(counts) < 2 or min(counts) < 0:
+        found = quoted(b" ".join(words))
+        raise source.error(f"expected numbers of vertices and faces, found {found}.", line=number)
+    return counts[0], counts[1], lines[1:]
+
+
+def _corners(source: Source, number: int, words: list[bytes]) -> list[int]:
+    """Return the vertex indices of a face; a colour may follow them."""
+    try:
+        count = int(words[0])
+        indices = [int(word) for word in words[1 : count + 1]]
+    except ValueError:
+        message = f"expected a face of whole numbers, found {quoted(b' '.join(words))}."
+        raise source.error(message, line=number) from None
+    if len(indices) != count:
+        message = f"a face of {count} corners has only {len(indices)} vertex numbers."
+        raise source.error(message, line=number)
+    if any(not 0 <= index < 2**63 for index in indices):
+        message = f"a face names vertex {min(indices) if min(indices) < 0 else max(indices)}."
+        raise source.error(message, "index_out_of_range", line=number)
+    return indices
+
+
+def _extra_lines(lines: list[_Line]) -> tuple[Finding, ...]:
+    if not lines:
+        return ()
+    message = f"{len(lines)} lines after the last face were ignored."
+    return (Finding("extra_data", "warning", message, (lines[0][0],), len(lines)),)
+
+
+def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
+    """Yield the file; every coordinate reads back as the same double."""
+    yield f"OFF\n{len(mesh.vertices)} {len(mesh.faces)} 0\n".encode()
+    for point in mesh.vertices.tolist():
+        yield "{!r} {!r} {!r}\n".format(*point).encode()
+    for face in mesh.faces.tolist():
+        yield "3 {} {} {}\n".format(*face).encode()

@@ -1,0 +1,182 @@
+"""`RawMesh`: what a file says, before anything is made of it; polygons become triangles here.
+
+Readers neither weld, orient, repair nor drop anything, with one exception: STL has no indices, so
+its corners with equal coordinates become one vertex.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._types import FloatArray, IndexArray
+from ..errors import Finding, FormatError
+from ..polygon import triangulate_face
+
+#: Odd multipliers that spread the bits of three coordinates over one 64-bit word.
+_MIXERS = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)
+
+
+@dataclass(frozen=True, eq=False)
+class RawMesh:
+    """Triangles as a file gives them; nothing says that they enclose anything.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64
+        In the file's unit; millimetres if the format has units.
+    faces : (m, 3) int64
+        Indices of `vertices`, all in range.
+    name : str
+        What the file calls the mesh, or the file's stem.
+    findings : tuple of Finding
+        What was noteworthy about the file.
+    """
+
+    vertices: FloatArray
+    faces: IndexArray
+    name: str = ""
+    findings: tuple[Finding, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Polygons:
+    """Polygons as index lists of different lengths.
+
+    Parameters
+    ----------
+    corners : (sum of counts,) int64
+        Vertex indices, one polygon after another.
+    counts : (p,) int64
+        How many corners each polygon has.
+    """
+
+    corners: IndexArray
+    counts: IndexArray
+
+    @classmethod
+    def from_lists(cls, polygons: list[list[int]]) -> "Polygons":
+        """Return the polygons of a list of index lists.
+
+        Raises
+        ------
+        OverflowError
+            If an index does not fit into 64 bits.
+        """
+        counts = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
+        flat = [corner for polygon in polygons for corner in polygon]
+        return cls(np.array(flat, dtype=np.int64), counts)
+
+    @classmethod
+    def from_rows(cls, rows: IndexArray) -> "Polygons":
+        """Return polygons that all have as many corners as `rows` has columns."""
+        corners = np.ascontiguousarray(rows, dtype=np.int64).ravel()
+        return cls(corners, np.full(len(rows), rows.shape[1], dtype=np.int64))
+
+    def triangles(
+        self, vertices: FloatArray, error_at: Callable[[int, str, str], FormatError]
+    ) -> IndexArray:
+        """Return (m, 3) triangles, those of each polygon together, in the order of the polygons.
+
+        Polygons may be concave; the edges of each stay what they are, so a closed surface of
+        polygons gives a closed surface of triangles.
+
+        Parameters
+        ----------
+        vertices : (n, 3) float64
+        error_at : callable
+            Makes the error for polygon k from k, a sentence and a code.
+
+        Raises
+        ------
+        FormatError
+            If a polygon has fewer than three corners, or names a vertex that does not exist.
+        """
+        self._check(len(vertices), error_at)
+        starts = np.cumsum(self.counts) - self.counts
+        parts, owners = [np.zeros((0, 3), dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
+        for count in np.unique(self.counts).tolist():
+            which = np.flatnonzero(self.counts == count)
+            rows = self.corners[starts[which][:, None] + np.arange(count)]
+            faces, row = _triangulated(rows, vertices)
+            parts.append(faces)
+            owners.append(which[row])
+        order = np.argsort(np.concatenate(owners), kind="stable")
+        return np.concatenate(parts)[order]
+
+    def _check(self, vertex_count: int, error_at: Callable[[int, str, str], FormatError]) -> None:
+        if (self.counts < 3).any():
+            polygon = int(np.flatnonzero(self.counts < 3)[0])
+            number = int(self.counts[polygon])
+            raise error_at(polygon, f"a face with {number} corners is no polygon.", "syntax")
+        bad = (self.corners < 0) | (self.corners >= vertex_count)
+        if bad.any():
+            at = int(np.flatnonzero(bad)[0])
+            polygon = int(np.searchsorted(np.cumsum(self.counts), at, side="right"))
+            message = (
+                f"a face names vertex {int(self.corners[at])} (counted from 0),"
+                f" but the file has {vertex_count} vertices."
+            )
+            raise error_at(polygon, message, "index_out_of_range")
+
+
+def _triangulated(rows: IndexArray, vertices: FloatArray) -> tuple[IndexArray, IndexArray]:
+    """Return triangles of (k, n) polygons, and for each the row that it is from."""
+    count = rows.shape[1]
+    if count == 3:
+        return rows, np.arange(len(rows))
+    convex = _are_convex(vertices[rows])
+    fans = rows[convex][:, _fan(count)].reshape(-1, 3)
+    parts, owners = [fans], [np.repeat(np.flatnonzero(convex), count - 2)]
+    for row in np.flatnonzero(~convex).tolist():
+        corners = vertices[rows[row]]
+        # Measured from its own first corner, a small polygon far out keeps its shape.
+        faces = rows[row][triangulate_face(corners - corners[0])]
+        parts.append(faces)
+        owners.append(np.full(len(faces), row))
+    return np.concatenate(parts), np.concatenate(owners)
+
+
+def _fan(count: int) -> IndexArray:
+    second = np.arange(1, count - 1)
+    return np.column_stack([np.zeros_like(second), second, second + 1])
+
+
+def _are_convex(corners: FloatArray) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
+    """Whether each of (k, n, 3) polygons is strictly convex, and the fan of corner 0 is inside."""
+    local = corners - corners[:, :1]
+    with np.errstate(over="ignore", invalid="ignore"):
+        normal = np.cross(local, np.roll(local, -1, axis=1)).sum(axis=1)
+        ahead = np.roll(local, -1, axis=1) - local
+        turns = np.cross(np.roll(ahead, 1, axis=1), ahead)
+        fans = np.cross(local[:, 1:-1], local[:, 2:])
+        sides = np.einsum("kni,ki->kn", np.concatenate([turns, fans], axis=1), normal)
+    convex: np.ndarray[tuple[int], np.dtype[np.bool_]] = (sides > 0).all(axis=1)
+    return convex
+
+
+def welded(points: FloatArray) -> tuple[FloatArray, IndexArray]:
+    """Return the different points in the order in which they first occur, and who is which.
+
+    Points are the same if their coordinates are equal as numbers; 0.0 and -0.0 are.
+
+    Parameters
+    ----------
+    points : (k, 3) float64
+
+    Returns
+    -------
+    (n, 3) float64, (k,) int64
+    """
+    points = points + 0.0
+    words = points.view(np.uint64)
+    mixed = words[:, 0] * np.uint64(_MIXERS[0])
+    for axis in (1, 2):
+        mixed = (mixed ^ (mixed >> np.uint64(29))) + words[:, axis] * np.uint64(_MIXERS[axis])
+    _, first, same = np.unique(mixed, return_index=True, return_inverse=True)
+    if not np.array_equal(points[first[same]], points):
+        # Two different points fell on one word.
+        _, first, same = np.unique(points, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.argsort(order)
+    return points[first[order]], rank[same.ravel()]

@@ -1,0 +1,92 @@
+"""A file's bytes with the name and the places that errors about it carry."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._types import FloatArray
+from ..errors import FormatError
+
+_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+
+#: How much of an offending word an error quotes.
+_QUOTED = 24
+
+
+@dataclass(frozen=True)
+class Source:
+    """What a reader reads.
+
+    Parameters
+    ----------
+    name : str
+        The path as the caller gave it.
+    data : bytes
+        The whole file.
+    """
+
+    name: str
+    data: bytes
+
+    def error(
+        self,
+        message: str,
+        code: str = "syntax",
+        *,
+        line: int | None = None,
+        offset: int | None = None,
+    ) -> FormatError:
+        """Return the error for a place in this file, a line (from 1) or a byte (from 0)."""
+        if line is not None:
+            return FormatError(f"{self.name}:{line}: {message}", code, [line])
+        if offset is not None:
+            return FormatError(f"{self.name}: at byte {offset}: {message}", code, [offset])
+        return FormatError(f"{self.name}: {message}", code)
+
+    def text_lines(self, comment: bytes = b"") -> Iterator[tuple[int, list[bytes]]]:
+        """Yield number and words of each line that is not blank, without its comment."""
+        for number, line in enumerate(self.data.removeprefix(_BYTE_ORDER_MARK).splitlines(), 1):
+            words = (line.partition(comment)[0] if comment else line).split()
+            if words:
+                yield number, words
+
+    def coordinates(self, rows: Sequence[Sequence[bytes]], lines: Sequence[int]) -> FloatArray:
+        """Return the first three words of each row as (n, 3) float64, each rounded once.
+
+        Raises
+        ------
+        FormatError
+            If a row has fewer than three words, or one is no finite number; names its line.
+        """
+        try:
+            numbers = [(float(row[0]), float(row[1]), float(row[2])) for row in rows]
+        except (ValueError, IndexError):
+            raise self._bad_row(rows, lines) from None
+        points = np.array(numbers, dtype=np.float64).reshape(-1, 3)
+        if not np.isfinite(points).all():
+            row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+            words = b" ".join(rows[row][:3])
+            message = f"the coordinates {quoted(words)} are not three finite numbers."
+            raise self.error(message, "non_finite", line=lines[row])
+        return points
+
+    def _bad_row(self, rows: Sequence[Sequence[bytes]], lines: Sequence[int]) -> FormatError:
+        row = next(row for row, words in enumerate(rows) if not _is_point(words))
+        words = b" ".join(rows[row][:3])
+        message = f"expected three coordinates, found {quoted(words)}."
+        return self.error(message, line=lines[row])
+
+
+def quoted(words: bytes) -> str:
+    """Return the beginning of some bytes in quotes, fit for a message."""
+    text = words.decode("utf-8", "replace")
+    short = text if len(text) <= _QUOTED else text[:_QUOTED] + "…"
+    return f"“{short}”" if text else "nothing"
+
+
+def _is_point(words: Sequence[bytes]) -> bool:
+    try:
+        return len([float(word) for word in words[:3]]) == 3
+    except ValueError:
+        return False

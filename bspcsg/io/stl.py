@@ -1,0 +1,179 @@
+"""STL, binary and ASCII: loose triangles, which are joined where coordinates are equal.
+
+The binary form holds single precision. Whether a file is binary follows from its size, never from
+its first word: binary files begin with "solid" often enough.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from .._types import FloatArray
+from ..errors import Finding
+from ..mesh import Mesh
+from .raw import RawMesh, welded
+from .source import Source, quoted
+
+_HEADER = 84
+_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+#: The lines of one facet, by their first word.
+_FACET = (b"facet", b"outer", b"vertex", b"vertex", b"vertex", b"endloop", b"endfacet")
+
+
+def read(source: Source) -> RawMesh:
+    """Read either form.
+
+    Raises
+    ------
+    FormatError
+        If the file is cut off, is no STL, or has coordinates that are not finite.
+    """
+    return _read_binary(source) if _is_binary(source.data) else _read_text(source)
+
+
+def _is_binary(data: bytes) -> bool:
+    if len(data) >= _HEADER and len(data) == _HEADER + _RECORD.itemsize * _promised(data):
+        return True
+    return data.lstrip()[:5].lower() != b"solid" or b"\0" in data[:1024]
+
+
+def _promised(data: bytes) -> int:
+    return int.from_bytes(data[_HEADER - 4 : _HEADER], "little")
+
+
+def _read_binary(source: Source) -> RawMesh:
+    data = source.data
+    if len(data) < _HEADER:
+        message = f"this is no STL: a binary one has at least {_HEADER} bytes, not {len(data)}."
+        raise source.error(message, "truncated", offset=len(data))
+    count, held = _promised(data), (len(data) - _HEADER) // _RECORD.itemsize
+    if count > held:
+        message = f"the file ends in triangle {held}, but its header promises {count} triangles."
+        raise source.error(message, "truncated", offset=len(data))
+    if count == 0 and held:
+        message = f"the header promises 0 triangles, but data for {held} follow."
+        raise source.error(message, offset=_HEADER)
+    records = np.frombuffer(data, _RECORD, count, _HEADER)
+    corners = records["corners"].reshape(-1, 3).astype(np.float64)
+    _check_finite(source, corners)
+    extra = len(data) - _HEADER - count * _RECORD.itemsize
+    name = data[: _HEADER - 4].split(b"\0")[0].strip().decode("latin-1")
+    return _joined(corners, name, _extra_bytes(extra))
+
+
+def _check_finite(source: Source, corners: FloatArray) -> None:
+    finite = np.isfinite(corners).all(axis=1)
+    if not finite.all():
+        triangle = int(np.flatnonzero(~finite)[0]) // 3
+        offset = _HEADER + triangle * _RECORD.itemsize
+        message = f"triangle {triangle} has a coordinate that is not a finite number."
+        raise source.error(message, "non_finite", offset=offset)
+
+
+def _extra_bytes(count: int) -> tuple[Finding, ...]:
+    if not count:
+        return ()
+    message = f"{count} bytes after the last triangle were ignored."
+    return (Finding("extra_data", "warning", message, (), count),)
+
+
+def _read_text(source: Source) -> RawMesh:
+    rows: list[list[bytes]] = []
+    lines: list[int] = []
+    name, inside, step, number = b"", False, 0, 0
+    for number, words in source.text_lines():
+        key = words[0].lower()
+        if step == 0 and key == (b"endsolid" if inside else b"solid"):
+            inside = not inside
+            name = name or b" ".join(words[1:])
+            continue
+        if not inside or key != _FACET[step]:
+            expected = _FACET[step] if inside else b"solid"
+            message = f"expected “{expected.decode()}”, found {quoted(words[0])}."
+            raise source.error(message, line=number)
+        if key == b"vertex":
+            rows.append(words[1:4])
+            lines.append(number)
+        step = (step + 1) % len(_FACET)
+    if inside:
+        missing = _FACET[step].decode() if step else "endsolid"
+        raise source.error(
+            f"the file ends where “{missing}” must follow.", "truncated", line=number
+        )
+    return _joined(source.coordinates(rows, lines), name.decode("utf-8", "replace"), ())
+
+
+def _joined(corners: FloatArray, name: str, findings: tuple[Finding, ...]) -> RawMesh:
+    vertices, indices = welded(corners)
+    return RawMesh(vertices, indices.reshape(-1, 3), name, findings)
+
+
+def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
+    """Yield the binary form; coordinates are rounded to single precision."""
+    header = b"bspcsg".ljust(_HEADER - 4, b" ")
+    yield header + len(mesh.faces).to_bytes(4, "little")
+    records = np.zeros(len(mesh.faces), _RECORD)
+    corners = mesh.vertices.astype(np.float32)[mesh.faces]
+    records["corners"] = corners
+    records["normal"] = _normals(mesh.vertices[mesh.faces])
+    yield records.tobytes()
+
+
+def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
+    """Yield the ASCII form; every coordinate reads back as the same double."""
+    yield b"solid bspcsg\n"
+    corners = mesh.vertices[mesh.faces]
+    for normal, triangle in zip(_normals(corners).tolist(), corners.tolist(), strict=True):
+        yield (
+            "facet normal {} {} {}\n outer loop\n".format(*normal)
+            + "".join("  vertex {!r} {!r} {!r}\n".format(*corner) for corner in triangle)
+            + " endloop\nendfacet\n"
+        ).encode()
+    yield b"endsolid bspcsg\n"
+
+
+def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
+    """Return what single precision would change about a mesh.
+
+    Raises
+    ------
+    OverflowError
+        If a coordinate is beyond single precision.
+    """
+    with np.errstate(over="ignore"):
+        rounded = mesh.vertices.astype(np.float32).astype(np.float64)
+    if not np.isfinite(rounded).all():
+        raise OverflowError
+    shift = float(np.abs(rounded - mesh.vertices).max(initial=0.0))
+    if shift == 0:
+        return ()
+    message = (
+        f"binary STL holds single precision: coordinates moved by up to {shift:.2g}."
+        " PLY, OBJ, OFF and ASCII STL keep every digit."
+    )
+    return Finding("single_precision", "note", message, (), 1), *_merged(mesh, rounded)
+
+
+def _merged(mesh: Mesh | RawMesh, rounded: FloatArray) -> tuple[Finding, ...]:
+    before, after = len(welded(mesh.vertices)[0]), welded(rounded)[1]
+    lost = before - len(np.unique(after))
+    if not lost:
+        return ()
+    faces = after[mesh.faces]
+    flat = (faces == np.roll(faces, 1, axis=1)).any(axis=1)
+    message = (
+        f"single precision merges {lost} vertices with others and flattens {int(flat.sum())}"
+        " triangles; write PLY, OBJ or OFF to keep the mesh as it is."
+    )
+    where = tuple(np.flatnonzero(flat)[:8].tolist())
+    return (Finding("merged_by_rounding", "warning", message, where, lost),)
+
+
+def _normals(corners: FloatArray) -> FloatArray:
+    """Return unit normals of (m, 3, 3) triangles, zero for those without area."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    normals = np.cross(b - a, c - a)
+    lengths = np.linalg.norm(normals, axis=1)[:, None]
+    units: FloatArray = np.divide(normals, lengths, np.zeros_like(normals), where=lengths > 0)
+    return units

@@ -1,0 +1,184 @@
+"""3MF, reading only: build items with their components and transforms, in millimetres.
+
+A file is a ZIP archive of XML parts. Sizes are limited before anything is unpacked and document
+types are refused, so that a small file cannot grow without bound.
+"""
+
+import io
+import posixpath
+import zipfile
+import zlib
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import numpy as np
+
+from .._types import FloatArray, IndexArray
+from ..errors import Finding
+from .raw import RawMesh
+from .source import Source
+from .threemf_part import MILLIMETRES, Part, PartReader, Placed, parse_xml
+
+#: How many objects a build may place, and how deep components may lie in one another.
+_MOST_PLACED = 100_000
+_DEEPEST = 64
+
+#: How many triangles a build may have.
+_MOST_TRIANGLES = 1 << 27
+
+#: Unpacked size that a part may have, in bytes.
+_LARGEST_PART = 1 << 31
+
+_MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
+
+
+def read(source: Source) -> RawMesh:
+    """Read every build item as one mesh.
+
+    Raises
+    ------
+    FormatError
+        If the archive is damaged, has no model, or the model is not valid.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
+            package = _Package(source, archive)
+            return package.assemble(package.root())
+    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, zlib.error) as error:
+        message = f"the archive is damaged or cut off: {error}."
+        raise source.error(message, "truncated") from error
+
+
+#: The part that names an object, the object, and the transforms around it, innermost first.
+_Waiting: TypeAlias = tuple[str, Placed, tuple[FloatArray, ...]]
+
+
+@dataclass(frozen=True, eq=False)
+class _Piece:
+    vertices: FloatArray
+    faces: IndexArray
+
+
+class _Package:
+    """The parts of one archive, each parsed once."""
+
+    def __init__(self, source: Source, archive: zipfile.ZipFile) -> None:
+        self._source = source
+        self._archive = archive
+        self._parts: dict[str, Part] = {}
+
+    def root(self) -> str:
+        """Return the name of the part that the package's relationships call its model."""
+        targets: list[str] = []
+
+        def start(tag: str, attributes: dict[str, str]) -> None:
+            if tag.endswith("Relationship") and attributes.get("Type") == _MODEL:
+                targets.append(_part_name(attributes.get("Target", "")))
+
+        if "_rels/.rels" in self._archive.namelist():
+            parse_xml(self._opened("_rels/.rels"), start)
+        return targets[0] if targets else "3D/3dmodel.model"
+
+    def assemble(self, root: str) -> RawMesh:
+        """Return the mesh of all build items."""
+        part = self._part(root)
+        pieces, findings = [], list(_unit_finding(part))
+        beams = skipped = triangles = 0
+        for path, item, transforms in self._placed(root, part.items):
+            model = self._part(path)
+            beams += model.objects[item].beams
+            if model.objects[item].kind != "model":
+                skipped += 1
+                continue
+            pieces.append(_moved(model, item, transforms))
+            triangles += len(pieces[-1].faces)
+            if triangles > _MOST_TRIANGLES:
+                raise self._source.error("the build has too many triangles.", "too_large")
+        findings += _ignored(beams, "beams")
+        findings += _ignored(skipped, "objects that are support or surface")
+        mesh = replace(_joined(pieces), findings=tuple(findings))
+        scale = MILLIMETRES[part.unit]
+        return mesh if scale == 1 else replace(mesh, vertices=mesh.vertices * scale)
+
+    def _placed(
+        self, root: str, items: list[Placed]
+    ) -> list[tuple[str, str, tuple[FloatArray, ...]]]:
+        """Return part, object and transforms (innermost first) of all meshes, in file order."""
+        found: list[tuple[str, str, tuple[FloatArray, ...]]] = []
+        waiting: list[_Waiting] = [(root, item, ()) for item in reversed(items)]
+        visited = 0
+        while waiting:
+            here, placed, outer = waiting.pop()
+            visited += 1
+            path = placed.path or here
+            transforms: tuple[FloatArray, ...] = (placed.transform, *outer)
+            if visited > _MOST_PLACED or len(transforms) > _DEEPEST:
+                raise self._source.error("the objects contain each other too often.", "too_large")
+            known = self._part(path).objects.get(placed.item)
+            if known is None:
+                message = f"object {placed.item} does not exist in {path}."
+                raise self._source.error(message, "index_out_of_range")
+            if known.triangles or known.beams:
+                found.append((path, placed.item, transforms))
+            waiting.extend((path, inner, transforms) for inner in reversed(known.components))
+        return found
+
+    def _part(self, name: str) -> Part:
+        if name not in self._parts:
+            reader = PartReader(self._opened(name), _part_name)
+            self._parts[name] = reader.read()
+        return self._parts[name]
+
+    def _opened(self, name: str) -> Source:
+        """Return the bytes of a part."""
+        entries = {entry.filename.lower(): entry for entry in self._archive.infolist()}
+        entry = entries.get(name.lower())
+        if entry is None:
+            raise self._source.error(f"the archive has no part {name}.", "truncated")
+        if entry.file_size > _LARGEST_PART:
+            raise self._source.error(f"the part {name} is too large.", "too_large")
+        with self._archive.open(entry) as stream:
+            return Source(f"{self._source.name}/{name}", stream.read())
+
+
+def _part_name(target: str) -> str:
+    return posixpath.normpath(target).lstrip("/")
+
+
+def _moved(part: Part, item: str, transforms: tuple[FloatArray, ...]) -> _Piece:
+    """Return the mesh of an object under transforms; a mirrored one is turned right side out."""
+    vertices, faces = part.objects[item].arrays()
+    for matrix in transforms:
+        if (matrix == np.eye(4, 3)).all():
+            continue
+        x, y, z = vertices.T
+        columns = [
+            x * matrix[0, k] + y * matrix[1, k] + z * matrix[2, k] + matrix[3, k] for k in range(3)
+        ]
+        vertices = np.stack(columns, axis=1)
+        if np.linalg.det(matrix[:3]) < 0:
+            faces = faces[:, ::-1]
+    return _Piece(vertices, faces)
+
+
+def _joined(pieces: list[_Piece]) -> RawMesh:
+    starts = np.cumsum([0] + [len(piece.vertices) for piece in pieces])
+    vertices = [np.zeros((0, 3))] + [piece.vertices for piece in pieces]
+    faces = [np.zeros((0, 3), dtype=np.int64)]
+    faces += [piece.faces + start for piece, start in zip(pieces, starts.tolist(), strict=False)]
+    return RawMesh(np.concatenate(vertices), np.concatenate(faces))
+
+
+def _unit_finding(part: Part) -> tuple[Finding, ...]:
+    if part.unit == "millimeter":
+        return ()
+    message = (
+        f"the file is in {part.unit}s; coordinates were multiplied by {MILLIMETRES[part.unit]}."
+    )
+    return (Finding("unit", "note", message, (), 1),)
+
+
+def _ignored(count: int, what: str) -> tuple[Finding, ...]:
+    if not count:
+        return ()
+    return (Finding("ignored", "warning", f"{count} {what} were ignored.", (), count),)

@@ -1,0 +1,127 @@
+"""3MF: units, transforms, components, and what is refused."""
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bspcsg.io import RawMesh, read
+from support.io import cube_mesh, refusal
+
+NAMESPACE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+
+
+def mesh_xml(mesh: RawMesh) -> str:
+    vertices = "".join(
+        '<vertex x="{}" y="{}" z="{}"/>'.format(*point) for point in mesh.vertices.tolist()
+    )
+    faces = "".join(
+        '<triangle v1="{}" v2="{}" v3="{}"/>'.format(*face) for face in mesh.faces.tolist()
+    )
+    return f"<mesh><vertices>{vertices}</vertices><triangles>{faces}</triangles></mesh>"
+
+
+def model(objects: str, items: str, unit: str = "") -> str:
+    return (
+        f'<model xmlns="{NAMESPACE}" {unit}><resources>{objects}</resources>'
+        f"<build>{items}</build></model>"
+    )
+
+
+def package(path: Path, xml: str) -> Path:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("3D/3dmodel.model", xml)
+    return path
+
+
+CUBE = f'<object id="1">{mesh_xml(cube_mesh())}</object>'
+ITEM = '<item objectid="1"/>'
+
+
+def volume(mesh: RawMesh) -> float:
+    a, b, c = (mesh.vertices[mesh.faces[:, corner]] for corner in range(3))
+    return float(np.einsum("ij,ij->", np.cross(a, b), c) / 6)
+
+
+@pytest.mark.parametrize(("unit", "size"), [("", 1), ('unit="inch"', 25.4), ('unit="meter"', 1e3)])
+def test_units(tmp_path: Path, unit: str, size: float) -> None:
+    raw = read(package(tmp_path / "x.3mf", model(CUBE, ITEM, unit)))
+    assert raw.vertices.max() == size
+    assert [finding.code for finding in raw.findings] == (["unit"] if unit else [])
+
+
+def test_transforms_of_items_and_components(tmp_path: Path) -> None:
+    pair = (
+        '<object id="2"><components><component objectid="1"/>'
+        '<component objectid="1" transform="-1 0 0 0 1 0 0 0 1 5 0 0"/></components></object>'
+    )
+    items = '<item objectid="2" transform="2 0 0 0 2 0 0 0 2 0 0 7"/>' + ITEM
+    raw = read(package(tmp_path / "x.3mf", model(CUBE + pair, items)))
+    assert len(raw.faces) == 36
+    assert volume(raw) == 17
+    assert raw.vertices[:8].min(axis=0).tolist() == [0, 0, 7]
+    assert raw.vertices[8:16].min(axis=0).tolist() == [8, 0, 7]
+
+
+def test_support_is_left_out(tmp_path: Path) -> None:
+    support = CUBE.replace('id="1"', 'id="2" type="support"')
+    items = ITEM + '<item objectid="2"/>'
+    raw = read(package(tmp_path / "x.3mf", model(CUBE + support, items)))
+    assert len(raw.faces) == 12
+    assert [finding.code for finding in raw.findings] == ["ignored"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code"),
+    [
+        ('x="1.0"', 'x="nan"', "syntax"),
+        ('x="1.0"', "", "syntax"),
+        ('v1="0"', 'v1="8"', "index_out_of_range"),
+        ('v1="0"', 'v1="-1"', "syntax"),
+        ('<item objectid="1"/>', '<item objectid="7"/>', "index_out_of_range"),
+        ('<item objectid="1"/>', '<item objectid="1" transform="1 0 0"/>', "syntax"),
+        ("<model ", '<!DOCTYPE x [<!ENTITY a "a">]><model ', "syntax"),
+        ("</build>", "", "syntax"),
+        ("<model ", '<model unit="parsec" ', "syntax"),
+    ],
+)
+def test_refused_models(tmp_path: Path, old: str, new: str, code: str) -> None:
+    xml = model(CUBE, ITEM)
+    assert old in xml
+    path = package(tmp_path / "bad.3mf", xml.replace(old, new, 1))
+    refusal(path, path.read_bytes(), code)
+
+
+def test_objects_that_contain_each_other(tmp_path: Path) -> None:
+    loop = '<object id="1"><components><component objectid="1"/></components></object>'
+    path = package(tmp_path / "loop.3mf", model(loop, ITEM))
+    refusal(path, path.read_bytes(), "too_large")
+
+
+def test_objects_that_multiply(tmp_path: Path) -> None:
+    doubled = "".join(
+        f'<object id="{n}"><components><component objectid="{n - 1}"/>'
+        f'<component objectid="{n - 1}"/></components></object>'
+        for n in range(2, 50)
+    )
+    path = package(tmp_path / "many.3mf", model(CUBE + doubled, '<item objectid="49"/>'))
+    refusal(path, path.read_bytes(), "too_large")
+
+
+@pytest.mark.parametrize("cut", [10, 100])
+def test_damaged_archives(tmp_path: Path, cut: int) -> None:
+    path = package(tmp_path / "cut.3mf", model(CUBE, ITEM))
+    refusal(path, path.read_bytes()[:-cut], "truncated")
+
+
+def test_damaged_part(tmp_path: Path) -> None:
+    data = bytearray(package(tmp_path / "x.3mf", model(CUBE, ITEM)).read_bytes())
+    data[60:90] = bytes(30)
+    refusal(tmp_path / "x.3mf", bytes(data), "truncated")
+
+
+def test_archive_without_a_model(tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "x.3mf", "w") as archive:
+        archive.writestr("readme.txt", "nothing")
+    refusal(tmp_path / "x.3mf", (tmp_path / "x.3mf").read_bytes(), "truncated")

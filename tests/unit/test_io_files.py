@@ -1,0 +1,145 @@
+"""Suffixes, missing and unwritable files, atomic writing, and real files."""
+
+import csv
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bspcsg.errors import FormatError
+from bspcsg.io import RawMesh, read, write
+from bspcsg.io.atomic import write_file
+from bspcsg.io.raw import welded
+from support.io import cube_mesh
+
+
+@pytest.mark.parametrize("name", ["x.stp", "x", "x.stl.gz", ".stl"])
+def test_unknown_suffix_comes_before_any_work(tmp_path: Path, name: str) -> None:
+    with pytest.raises(FormatError) as caught:
+        read(tmp_path / name)
+    assert caught.value.code == "unknown_format"
+    with pytest.raises(FormatError) as caught:
+        write(cube_mesh(), tmp_path / name)
+    assert caught.value.code == "unknown_format"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_suffix_in_capitals(tmp_path: Path) -> None:
+    write(cube_mesh(), tmp_path / "CUBE.STL")
+    assert read(tmp_path / "CUBE.STL").name == "bspcsg"
+
+
+def test_3mf_is_not_written(tmp_path: Path) -> None:
+    with pytest.raises(FormatError) as caught:
+        write(cube_mesh(), tmp_path / "x.3mf")
+    assert caught.value.code == "unknown_format"
+
+
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "off", "3mf"])
+def test_empty_and_missing_files(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"x.{suffix}"
+    with pytest.raises(FormatError) as caught:
+        read(path)
+    assert caught.value.code == "unreadable"
+    path.touch()
+    with pytest.raises(FormatError) as caught:
+        read(path)
+    assert caught.value.code == "empty_file"
+
+
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "off", "3mf"])
+def test_rubbish_is_refused(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"x.{suffix}"
+    rng = np.random.default_rng(1)
+    for size in (1, 7, 84, 500):
+        path.write_bytes(rng.bytes(size))
+        with pytest.raises(FormatError):
+            read(path)
+
+
+def test_a_folder_is_no_file(tmp_path: Path) -> None:
+    folder = tmp_path / "x.stl"
+    folder.mkdir()
+    with pytest.raises(FormatError) as caught:
+        read(folder)
+    assert caught.value.code == "unreadable"
+    with pytest.raises(FormatError) as caught:
+        write(cube_mesh(), folder)
+    assert caught.value.code == "unwritable"
+
+
+def test_no_such_folder(tmp_path: Path) -> None:
+    with pytest.raises(FormatError) as caught:
+        write(cube_mesh(), tmp_path / "no" / "x.stl")
+    assert caught.value.code == "unwritable"
+
+
+def test_failure_leaves_the_old_file(tmp_path: Path) -> None:
+    def chunks() -> Iterator[bytes]:
+        yield b"half"
+        raise KeyboardInterrupt
+
+    path = tmp_path / "x.off"
+    path.write_bytes(b"old")
+    with pytest.raises(KeyboardInterrupt):
+        write_file(path, chunks())
+    assert path.read_bytes() == b"old"
+    assert os.listdir(tmp_path) == ["x.off"]
+
+
+def test_mode_and_link_are_kept(tmp_path: Path) -> None:
+    target, link = tmp_path / "target.off", tmp_path / "link.off"
+    target.touch(mode=0o640)
+    target.chmod(0o640)
+    link.symlink_to(target)
+    write(cube_mesh(), link)
+    assert link.is_symlink()
+    assert target.stat().st_mode & 0o777 == 0o640
+    assert len(read(target).faces) == 12
+
+
+def test_new_files_follow_the_mask(tmp_path: Path) -> None:
+    before = os.umask(0o027)
+    try:
+        write(cube_mesh(), tmp_path / "x.off")
+    finally:
+        os.umask(before)
+    assert (tmp_path / "x.off").stat().st_mode & 0o777 == 0o640
+
+
+@pytest.mark.parametrize("suffix", ["obj", "ply", "off"])
+def test_extreme_doubles_survive(tmp_path: Path, suffix: str) -> None:
+    values = [5e-324, 1.7976931348623157e308, -0.0, 0.1, 1 / 3, 1e16 + 2, 2**53 + 2.0, -1e-7, 1e22]
+    mesh = RawMesh(np.array(values).reshape(3, 3), np.array([[0, 1, 2]]))
+    write(mesh, tmp_path / f"x.{suffix}")
+    assert read(tmp_path / f"x.{suffix}").vertices.tobytes() == mesh.vertices.tobytes()
+
+
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "off"])
+def test_mesh_without_faces(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"x.{suffix}"
+    write(RawMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64)), path)
+    if suffix == "obj":
+        with pytest.raises(FormatError):
+            read(path)
+    else:
+        assert len(read(path).faces) == 0
+
+
+def test_welding_keeps_the_first_of_each() -> None:
+    points = np.array([(1.0, 0, 0), (0.0, 0, 0), (1.0, 0, 0), (-0.0, 0, 0), (0, 0, 1)])
+    vertices, which = welded(points)
+    assert vertices.tolist() == [[1, 0, 0], [0, 0, 0], [0, 0, 1]]
+    assert which.tolist() == [0, 1, 0, 1, 2]
+
+
+def test_real_files(shared_meshes: Path) -> None:
+    with open(shared_meshes / "MANIFEST.tsv", newline="") as table:
+        rows = list(csv.DictReader(table, delimiter="\t"))
+    assert len(rows) > 100
+    for row in rows:
+        raw = read(shared_meshes / row["file"])
+        found = len(raw.vertices), len(raw.faces)
+        assert found == (int(row["n_vertices"]), int(row["n_triangles"])), row["file"]
