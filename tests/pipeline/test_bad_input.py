@@ -71,7 +71,6 @@ def test_refused_with_a_code_and_a_sentence(name: str) -> None:
         b.Solid(*make()).to_mesh()
     assert caught.value.code == code
     assert len(str(caught.value)) > 20
-    assert str(caught.value)[0].isupper() or str(caught.value)[0].isdigit()
 
 
 @pytest.mark.parametrize("name", ["nan", "index too large", "one face missing", "side missing"])
