@@ -1,9 +1,11 @@
 """Types of the compiled core; what each call means is described in `core/ARCHITECTURE.md`."""
 
-from typing import TypedDict, final
+from typing import TypedDict, final, type_check_only
 
 import numpy as np
 import numpy.typing as npt
+
+__all__ = ["CoreError", "Tree", "__version__", "set_threads"]
 
 __version__: str
 
@@ -12,6 +14,7 @@ class CoreError(Exception):
     where: list[int]
     message: str
 
+@type_check_only
 class Finding(TypedDict):
     code: str
     severity: str
@@ -19,29 +22,30 @@ class Finding(TypedDict):
     where: list[int]
     count: int
 
-def set_threads(count: int) -> None: ...
+def set_threads(n: int) -> None: ...
 
 @final
 class Tree:
-    @staticmethod
+    @classmethod
     def from_mesh(
+        cls,
         vertices: npt.NDArray[np.float64],
         faces: npt.NDArray[np.int64],
         pitch: int | None = None,
         trusted: bool = False,
     ) -> Tree: ...
-    @staticmethod
-    def half_space(normal: tuple[float, float, float], offset: float, pitch: int) -> Tree: ...
-    @staticmethod
-    def empty(pitch: int) -> Tree: ...
-    @staticmethod
-    def full(pitch: int) -> Tree: ...
-    @staticmethod
+    @classmethod
+    def half_space(cls, normal: tuple[float, float, float], offset: float, pitch: int) -> Tree: ...
+    @classmethod
+    def empty(cls, pitch: int) -> Tree: ...
+    @classmethod
+    def full(cls, pitch: int) -> Tree: ...
+    @classmethod
     def evaluate(
-        program: list[tuple[str, list[int]]], operands: list[Tree], threads: int = 0
+        cls, program: list[tuple[str, list[int]]], operands: list[Tree], threads: int = 0
     ) -> Tree: ...
-    @staticmethod
-    def load(data: bytes) -> Tree: ...
+    @classmethod
+    def load(cls, data: bytes) -> Tree: ...
     def dump(self) -> bytes: ...
     def normalized(self, rule: str = "positive", threads: int = 0) -> Tree: ...
     def to_mesh(
@@ -58,7 +62,7 @@ class Tree:
     @property
     def sources(self) -> list[int]: ...
     @property
-    def source_id(self) -> int: ...
+    def source_id(self) -> int | None: ...
     @property
     def findings(self) -> list[Finding]: ...
     @property

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from ._core import Tree
 from .expression import Node, Pending, make_plan
 from .leaf import ConstantLeaf, MeshLeaf, PlaneLeaf
 from .mesh import Mesh
@@ -27,16 +26,8 @@ def describe(node: Node, factors: Factors, mesh: Mesh | None) -> str:
         return "half-space" + moved
     if isinstance(content, ConstantLeaf):
         return "all of space" if content.full else "empty"
-    return _tree_description(content.result) + moved
-
-
-def _tree_description(tree: Tree) -> str:
-    if tree.is_empty:
-        return "empty"
-    if not tree.is_bounded:
-        return "unbounded"
-    bounds = tree.bounds
-    return "evaluated" if bounds is None else f"evaluated, bounds {_box(bounds)}"
+    # Its bounds are not known before a mesh is made.
+    return ("empty" if content.result.is_empty else "evaluated") + moved
 
 
 def _size(faces: int, bounds: Any) -> str:

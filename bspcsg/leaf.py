@@ -66,6 +66,11 @@ class MeshLeaf:
         """Exponent of the lattice step."""
         return self.own_tree().pitch
 
+    @property
+    def extent(self) -> "Extent":
+        """A closed mesh is bounded."""
+        return True
+
     def own_tree(self) -> Tree:
         """Return the tree on the leaf's own lattice, made on first use."""
         if self._tree is None:
@@ -89,7 +94,7 @@ class MeshLeaf:
     def _grow(self) -> Tree:
         with core_errors():
             tree = Tree.from_mesh(self.vertices, self.faces, self._chosen_pitch, self._trusted)
-            if self._winding != "positive" or tree.simple is False:
+            if self._winding != "positive":
                 tree = tree.normalized(self._winding)
         return tree
 
@@ -111,10 +116,12 @@ class TreeLeaf:
     result : Tree
     record : Record or None
         What it was evaluated from, as long as that is remembered.
+    extent : Extent
     """
 
     result: Tree
     record: Record | None = None
+    extent: "Extent" = None
 
     @property
     def pitch(self) -> int | None:
@@ -139,22 +146,24 @@ class TreeLeaf:
         UnboundedError
             If neither the solid nor its complement has an output mesh.
         """
-        if self.result.is_bounded:
+        if self._is_bounded():
             return _moved_output(self.result, factors)
-        with core_errors():
-            outside = Tree.evaluate(_COMPLEMENT, [self.result])
-        if not outside.is_bounded:
+        outside = run(Record(_COMPLEMENT, (self,)))
+        if not outside._is_bounded():
             return self._moved_operands(factors)
-        moved = _moved_output(outside, factors)
-        with core_errors():
-            return TreeLeaf(Tree.evaluate(_COMPLEMENT, [moved.own_tree()]))
+        moved = run(Record(_COMPLEMENT, (_moved_output(outside.result, factors),)))
+        return TreeLeaf(moved.result, extent=False)
 
     def forgetful(self) -> "TreeLeaf":
         """Return the leaf without its history, unless a later transform would need that.
 
         Only a solid that is unbounded and has an unbounded complement has no mesh to transform.
+        Expressions with half-spaces may be of that kind.
         """
-        return TreeLeaf(self.result) if self.result.is_bounded else self
+        return self if self.extent is None else TreeLeaf(self.result, extent=self.extent)
+
+    def _is_bounded(self) -> bool:
+        return self.result.is_bounded if self.extent is None else self.extent
 
     def _moved_operands(self, factors: Factors) -> "Leaf":
         if self.record is None:
@@ -183,6 +192,7 @@ class PlaneLeaf:
     offset: float
     factors: Factors = ()
     pitch: int | None = field(default=None, init=False)
+    extent: "Extent" = field(default=None, init=False)
 
     @classmethod
     def through(cls, normal: Sequence[Fraction], offset: Fraction) -> "PlaneLeaf":
@@ -233,6 +243,11 @@ class ConstantLeaf:
     full: bool
     pitch: int | None = field(default=None, init=False)
 
+    @property
+    def extent(self) -> "Extent":
+        """Nothing is bounded; the complement of everything is."""
+        return not self.full
+
     def tree(self, pitch: int) -> Tree:
         """Return the tree on the lattice of this pitch."""
         with core_errors():
@@ -243,6 +258,9 @@ class ConstantLeaf:
         del factors
         return self
 
+
+#: What is known without asking the core: True if the solid is bounded, False if its complement is.
+Extent: TypeAlias = bool | None
 
 Leaf: TypeAlias = MeshLeaf | TreeLeaf | PlaneLeaf | ConstantLeaf
 
@@ -259,7 +277,29 @@ def run(record: Record) -> TreeLeaf:
     pitch = min((pitch for pitch in pitches if pitch is not None), default=DEFAULT_PITCH)
     trees = [leaf.tree(pitch) for leaf in record.leaves]
     with core_errors():
-        return TreeLeaf(Tree.evaluate(record.program, trees), record)
+        return TreeLeaf(Tree.evaluate(record.program, trees), record, _extent(record))
+
+
+def _extent(record: Record) -> Extent:
+    """Follow the program to what its result's extent must be."""
+    known: list[Extent] = []
+    for operator, arguments in record.program:
+        if operator == "leaf":
+            known.append(record.leaves[arguments[0]].extent)
+        else:
+            known.append(_extent_of(operator, [known[line] for line in arguments]))
+    return known[-1]
+
+
+def _extent_of(operator: str, operands: list[Extent]) -> Extent:
+    if operator == "or":
+        # One operand of bounded complement is enough; bounded ones must be all.
+        return False if False in operands else all(operands) or None
+    if operator == "and":
+        return True if True in operands else None if None in operands else False
+    if None in operands:
+        return None
+    return operands.count(False) % 2 == 0 if operator == "xor" else not operands[0]
 
 
 def transformed_arrays(
@@ -294,7 +334,8 @@ def _place(leaf: MeshLeaf | TreeLeaf, factors: Factors) -> Leaf:
         return leaf.transformed(factors)
     try:
         with core_errors():
-            return TreeLeaf(tree.moved(list(motion.axes), list(motion.shift)))
+            moved = tree.moved(list(motion.axes), list(motion.shift))
+        return TreeLeaf(moved, extent=base.extent)
     except LimitError:
         # Too far out for this lattice; from coordinates the core may choose a coarser one.
         return leaf.transformed(factors)

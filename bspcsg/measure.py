@@ -4,12 +4,10 @@ from abc import ABC, abstractmethod
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
-
 from . import interop
 from ._core import Tree
 from ._types import FloatArray, IndexArray, SideArray
-from .errors import Finding, UnboundedError, core_errors
+from .errors import Finding, core_errors
 from .mesh import Mesh
 
 #: Up to this many triangles the exact volume is cheap enough to round from.
@@ -82,7 +80,7 @@ class Measured(ABC):
             If the solid reaches to infinity; so for all measures.
         """
         with core_errors():
-            return Fraction(*self._measurable().tree.volume6_exact())
+            return Fraction(*self.normalized().tree.volume6_exact())
 
     @property
     def volume(self) -> float:
@@ -91,7 +89,7 @@ class Measured(ABC):
         The exact volume, correctly rounded, up to 10 000 triangles; above that the sum over the
         rounded vertices of the mesh.
         """
-        mesh = self._measurable().to_mesh()
+        mesh = self.normalized().to_mesh()
         if len(mesh.faces) <= EXACT_VOLUME_FACES:
             return float(self.volume_exact)
         return mesh.volume
@@ -99,33 +97,32 @@ class Measured(ABC):
     @property
     def area(self) -> float:
         """Surface area in square model units."""
-        return self._measurable().to_mesh().area
+        return self.normalized().to_mesh().area
 
     @property
     def centroid(self) -> FloatArray:
         """Centre of volume, (3,) float64, in model units; NaN for the empty set."""
-        return self._measurable().to_mesh().centroid
+        return self.normalized().to_mesh().centroid
 
     @property
     def bounds(self) -> FloatArray | None:
         """Lowest and highest coordinates, (2, 3) float64, or None for the empty set."""
-        bounds = self._measurable().tree.bounds
-        return None if bounds is None else np.array(bounds)
+        return self.normalized().to_mesh().bounds
 
     @property
     def euler_number(self) -> int:
         """Vertices - edges + faces of the mesh."""
-        return self._measurable().to_mesh().euler_number
+        return self.normalized().to_mesh().euler_number
 
     @property
     def components(self) -> int:
         """Number of connected surfaces; the wall of a closed cavity is one of its own."""
-        return self._measurable().to_mesh().components
+        return self.normalized().to_mesh().components
 
     @property
     def genus(self) -> int:
         """Number of handles, summed over all connected surfaces."""
-        return self._measurable().to_mesh().genus
+        return self.normalized().to_mesh().genus
 
     def classify(self, points: Any) -> SideArray:
         """Say of each point whether it is inside, exactly.
@@ -143,10 +140,3 @@ class Measured(ABC):
         array = interop.points_array(points)
         with core_errors():
             return self.normalized().tree.classify(array)
-
-    def _measurable(self) -> "Measured":
-        if not self.tree.is_bounded:
-            raise UnboundedError(
-                "The solid reaches to infinity; intersect it with a bounded one first.", "unbounded"
-            )
-        return self.normalized()

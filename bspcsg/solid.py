@@ -270,12 +270,13 @@ class Solid(Measured):
         faces overlap. The queries of measure, comparison, check and file use this form.
         """
         tree = self.tree
-        if tree.simple is True:
-            return self
-        if self._reduced is None:
+        if self._reduced is None and not _is_reduced(tree):
             with core_errors():
-                self._reduced = Solid.from_leaf(TreeLeaf(tree.normalized()))
-        return self._reduced
+                reduced = tree.normalized()
+            # If the check found nothing to change, the tree itself is the reduced one.
+            if not _is_reduced(tree):
+                self._reduced = Solid.from_leaf(TreeLeaf(reduced))
+        return self if self._reduced is None else self._reduced
 
     def to_trimesh(self) -> "trimesh.Trimesh":
         """Return a `trimesh.Trimesh` with the same vertices and faces."""
@@ -366,6 +367,10 @@ def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:
     prefix = common_prefix([solid._factors for solid in solids])
     operands = [Placed(solid._node, solid._factors[len(prefix) :]) for solid in solids]
     return Solid.from_node(operation(operator, operands), prefix)
+
+
+def _is_reduced(tree: Tree) -> bool:
+    return tree.simple is True
 
 
 def _restored(data: bytes, factors: Factors) -> Solid:

@@ -13,8 +13,9 @@ import trimesh
 import bspcsg as b
 from bspcsg import interop
 
-V, F = b.box((1, 2, 3)).to_mesh()
+V = np.array([(x, y, z) for x in (0.0, 1.0) for y in (0.0, 2.0) for z in (0.0, 3.0)])
 QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+F = np.array([[a, *pair] for a, p, q, r in QUADS for pair in ((p, q), (q, r))])
 
 
 def manifold() -> manifold3d.Manifold:
