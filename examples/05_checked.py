@@ -16,6 +16,6 @@ print(report)
 rest.save(out / "rest.stl")
 
 try:
-    b.load(meshes / "pocket_cracked.ply")
+    b.load(meshes / "teapot_open.stl")
 except b.BspcsgError as error:
     print(f"refused: {error.code}, first faces {error.where[:3]}")

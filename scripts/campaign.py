@@ -77,11 +77,13 @@ class Worker:
 class Campaign:
     """The journal of answers and the pool that extends it."""
 
-    def __init__(self, journal: Path, jobs: int, limit: float) -> None:
+    def __init__(self, journal: Path, jobs: int, limit: float, again: bool) -> None:
         self.journal, self.jobs, self.limit = journal, jobs, limit
         journal.parent.mkdir(parents=True, exist_ok=True)
         lines = journal.read_text().splitlines() if journal.exists() else []
-        self.answers: dict[str, Case] = {case["key"]: case for case in map(json.loads, lines)}
+        answers = {case["key"]: case for case in map(json.loads, lines)}
+        kept = {key: case for key, case in answers.items() if not (again and faults_of(case))}
+        self.answers: dict[str, Case] = kept
         self._lock = threading.Lock()
 
     def run(self, cases: list[Case]) -> list[Case]:
@@ -215,10 +217,11 @@ def main() -> int:
     parser.add_argument("--timeout", type=float, default=300, help="seconds for one case")
     parser.add_argument("--max-faces", type=int, default=100_000, help="of a mesh in a pair")
     parser.add_argument("--results", type=Path, default=REPOSITORY / "out" / "campaign.jsonl")
+    parser.add_argument("--again", action="store_true", help="run cases with faults again")
     parser.add_argument("--record", action="store_true", help="keep the counts in scripts/records")
     options = parser.parse_args()
     folder = options.meshes.resolve()
-    campaign = Campaign(options.results, options.jobs, options.timeout)
+    campaign = Campaign(options.results, options.jobs, options.timeout, options.again)
     files = campaign.run(file_cases(folder))
     usable = [
         case["file"]

@@ -36,7 +36,7 @@ def run(case: dict[str, Any]) -> dict[str, Any]:
 
 def run_file(case: dict[str, Any]) -> dict[str, Any]:
     """Load a file, and look at the solid that it holds."""
-    solid = b.load(Path(case["folder"]) / case["file"])
+    solid = b.Solid.load(Path(case["folder"]) / case["file"])
     findings = sorted({finding.code for finding in solid.findings})
     answer = {"verdict": "loaded", "triangles": len(solid.to_mesh().faces), "findings": findings}
     return {**answer, "faults": mesh_faults(solid)}
@@ -98,7 +98,7 @@ def identity_faults(a: Fraction, c: Fraction, volumes: dict[str, Fraction]) -> l
 
 def arrays_of(case: dict[str, Any], which: str) -> Arrays:
     """Return a file's mesh as it came."""
-    mesh = b.load(Path(case["folder"]) / case[which]).to_mesh()
+    mesh = b.Solid.load(Path(case["folder"]) / case[which]).to_mesh()
     return mesh.vertices, mesh.faces
 
 

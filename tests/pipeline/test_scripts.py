@@ -31,7 +31,7 @@ def test_campaign_goes_on_where_it_stopped(tmp_path: Path) -> None:
     assert first.returncode == 0, first.stdout + first.stderr
     answers = [json.loads(line) for line in journal.read_text().splitlines()]
     refused = [answer for answer in answers if answer["verdict"] == "refused"]
-    assert [answer["file"] for answer in refused] == ["pocket_cracked.ply"]
+    assert [answer["file"] for answer in refused] == ["teapot_open.stl"]
     assert refused[0]["code"] == "not_closed" and refused[0]["where"]
     second = run("campaign", *common, "--pairs", "6")
     assert second.returncode == 0, second.stdout + second.stderr
