@@ -21,6 +21,7 @@ from .errors import (
     LimitError,
     UnboundedError,
 )
+from .io import load, save
 from .mesh import Mesh
 from .primitives import (
     box,
@@ -57,8 +58,10 @@ __all__ = [
     "extrude",
     "half_space",
     "intersection",
+    "load",
     "prism",
     "revolve",
+    "save",
     "set_threads",
     "sphere",
     "torus",

@@ -186,6 +186,12 @@ def prism(sides: int, h: Scalar, r: Scalar, *, center: bool = False) -> Solid:
         From the axis to a vertical edge; the first one is on the x axis.
     center : bool
         Whether the middle is at z = 0, instead of the lower end.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.prism(4, h=1, r=1).volume
+    2.0
     """
     return cylinder(h, r, segments=at_least(3, sides, "sides"), center=center)
 

@@ -41,6 +41,12 @@ def intersection(*solids: Solid | Iterable[Solid]) -> Solid:
     Parameters
     ----------
     *solids : Solid or iterable of Solid
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.intersection(b.cube(2), b.cube(2).translate(1, 1, 1)).volume
+    1.0
     """
     operands = _flat(solids)
     return _combined("and", operands) if operands else Solid.full()
@@ -53,6 +59,12 @@ def difference(solid: Solid, *rest: Solid | Iterable[Solid]) -> Solid:
     ----------
     solid : Solid
     *rest : Solid or iterable of Solid
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.difference(b.cube(3), [b.cube(1), b.cube(1).translate(2, 0, 0)]).volume
+    25.0
     """
     return _combined("and", [*_flat([solid]), *(~other for other in _flat(rest))])
 
@@ -63,6 +75,12 @@ def xor(*solids: Solid | Iterable[Solid]) -> Solid:
     Parameters
     ----------
     *solids : Solid or iterable of Solid
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.xor(b.cube(2), b.cube(2)).is_empty
+    True
     """
     operands = _flat(solids)
     result = operands[0] if operands else Solid.empty()
