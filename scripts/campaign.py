@@ -25,7 +25,7 @@ from recording import REPOSITORY, keep
 
 FORMATS = {".stl", ".obj", ".ply", ".off", ".3mf"}
 COINCIDENT = ("corner", "beside", "copy", "mirror", "turned", "same")
-BAD = ("crash", "timeout")
+BAD = ("crash", "timeout", "defect")
 
 Case = dict[str, Any]
 

@@ -28,7 +28,8 @@ def run(case: dict[str, Any]) -> dict[str, Any]:
         answer = run_file(case) if case["kind"] == "file" else run_pair(case)
     except b.BspcsgError as error:
         where = [int(index) for index in error.where[:5]]
-        answer = {"verdict": "refused", "code": error.code, "where": where, "says": str(error)}
+        verdict = "defect" if error.code == "internal" else "refused"
+        answer = {"verdict": verdict, "code": error.code, "where": where, "says": str(error)}
     except Exception as error:
         answer = {"verdict": "crash", "says": f"{type(error).__name__}: {error}"}
     return {**case, **answer, "seconds": round(time.perf_counter() - began, 3)}
