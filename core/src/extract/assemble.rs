@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::collect::{collect, Fate};
 use super::contacts;
 use super::planes::{frontier, group, half_edge_ends, FrontierEdge, PlaneGroup};
-use super::seams::{subdivisions, Edge};
+use super::seams::{find_touching, subdivisions, Edge};
 use super::triangulate::triangulate;
 use super::vertices::{Projection, VertexTable};
 use crate::error::{Error, ErrorKind, Result};
@@ -140,9 +140,11 @@ impl<'a> Assembly<'a> {
             edges.extend(self.frontier_edge(e, fates));
         }
         self.name_cut_corners(fates);
-        let inner = subdivisions(&edges, &self.table);
+        let touching = self.touching(groups, &edges);
+        let inner = subdivisions(&edges, &touching, &self.table);
         let offset: usize = groups.iter().map(|g| g.edges.len()).sum();
         let split = split_faces(&frontier, &inner[offset..]);
+        self.identify_corners(&split);
         self.emit_whole(fates, &split);
         for (slot, face) in order_of(&split) {
             self.emit_split(slot, face, fates, &split)?;
@@ -154,6 +156,19 @@ impl<'a> Assembly<'a> {
             self.emit_group(group, &edges[range.clone()], &inner[range])?;
         }
         Ok(())
+    }
+
+    /// For each line the points at which a polygon touches an edge of its own.
+    fn touching(&self, groups: &[PlaneGroup], edges: &[Edge]) -> HashMap<LineKey, Vec<u32>> {
+        let mut touching = HashMap::new();
+        let mut start = 0;
+        for group in groups {
+            let own = &edges[start..start + group.edges.len()];
+            start += group.edges.len();
+            let view = Projection::onto(&group.plane, &self.table);
+            find_touching(own, &view, &mut touching);
+        }
+        touching
     }
 
     fn frontier_edge(&mut self, e: &FrontierEdge, fates: &[Vec<Fate>]) -> Option<Edge> {
@@ -228,6 +243,18 @@ impl<'a> Assembly<'a> {
             let irregular = source.topology().map_or(&[][..], |t| t.irregular());
             for &vertex in irregular {
                 self.point_of(slot, mesh, vertex);
+            }
+        }
+    }
+
+    /// Makes points of all corners of split faces before any face names them.
+    fn identify_corners(&mut self, split: &HashMap<(u32, u32), [Vec<u32>; 3]>) {
+        for (slot, face) in order_of(split) {
+            let source = Arc::clone(self.sources.get(slot as usize));
+            if let Some(mesh) = source.mesh() {
+                for vertex in mesh.faces[face as usize] {
+                    self.point_of(slot, mesh, vertex);
+                }
             }
         }
     }

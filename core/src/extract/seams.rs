@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::vertices::VertexTable;
+use super::triangulate::Planar;
+use super::vertices::{Projection, VertexTable};
 use crate::geometry::line::LineKey;
 
 /// A directed edge between numbered points, on a line.
@@ -23,18 +24,55 @@ pub struct Edge {
 ///
 /// # Source
 /// Design review F6.
-pub fn subdivisions(edges: &[Edge], table: &VertexTable) -> Vec<Vec<u32>> {
+pub fn subdivisions(
+    edges: &[Edge],
+    touching: &HashMap<LineKey, Vec<u32>>,
+    table: &VertexTable,
+) -> Vec<Vec<u32>> {
     let mut inner = vec![Vec::new(); edges.len()];
-    let mut open = unpaired(edges);
+    let mut open = unpaired(edges, touching);
     open.sort_by_key(|i| (edges[*i].line, *i));
     for run in open.chunk_by(|a, b| edges[*a].line == edges[*b].line) {
-        subdivide_line(run, edges, table, &mut inner);
+        let extra = touching.get(&edges[run[0]].line).map_or(&[][..], |t| t);
+        subdivide_line(run, edges, extra, table, &mut inner);
     }
     inner
 }
 
-/// The edges left after opposite ones with equal ends cancel.
-fn unpaired(edges: &[Edge]) -> Vec<usize> {
+/// Adds the points of one polygon that lie inside edges of the same polygon, by line.
+///
+/// Such an edge must have the point as a vertex, on both its sides, or the polygon cannot be
+/// triangulated.
+pub fn find_touching(edges: &[Edge], view: &Projection, touching: &mut HashMap<LineKey, Vec<u32>>) {
+    let mut points: Vec<(f64, f64, u32)> = edges
+        .iter()
+        .map(|e| {
+            let [x, y] = view.approx(e.from);
+            (x, y, e.from)
+        })
+        .collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
+    points.dedup_by_key(|p| p.2);
+    for edge in edges {
+        let (a, b) = (view.approx(edge.from), view.approx(edge.to));
+        let slack = [0, 1].map(|i| (a[i].abs() + b[i].abs()) * 8.0 * f64::EPSILON);
+        let low = [0, 1].map(|i| a[i].min(b[i]) - slack[i]);
+        let high = [0, 1].map(|i| a[i].max(b[i]) + slack[i]);
+        let start = points.partition_point(|p| p.0 < low[0]);
+        let near = points[start..].iter().take_while(|p| p.0 <= high[0]);
+        for point in near
+            .filter(|p| p.1 >= low[1] && p.1 <= high[1])
+            .map(|p| p.2)
+        {
+            if view.is_between(edge.from, point, edge.to) {
+                touching.entry(edge.line).or_default().push(point);
+            }
+        }
+    }
+}
+
+/// The edges left after opposite ones with equal ends cancel, and all on lines with touching points.
+fn unpaired(edges: &[Edge], touching: &HashMap<LineKey, Vec<u32>>) -> Vec<usize> {
     let mut waiting: HashMap<(u32, u32), Vec<usize>> = HashMap::with_capacity(edges.len());
     let mut paired = vec![false; edges.len()];
     for (i, edge) in edges.iter().enumerate() {
@@ -46,14 +84,23 @@ fn unpaired(edges: &[Edge]) -> Vec<usize> {
             waiting.entry((edge.from, edge.to)).or_default().push(i);
         }
     }
-    (0..edges.len()).filter(|i| !paired[*i]).collect()
+    (0..edges.len())
+        .filter(|i| !paired[*i] || touching.contains_key(&edges[*i].line))
+        .collect()
 }
 
-fn subdivide_line(run: &[usize], edges: &[Edge], table: &VertexTable, inner: &mut [Vec<u32>]) {
+fn subdivide_line(
+    run: &[usize],
+    edges: &[Edge],
+    extra: &[u32],
+    table: &VertexTable,
+    inner: &mut [Vec<u32>],
+) {
     let axis = edges[run[0]].line.axis();
     let mut points: Vec<u32> = run
         .iter()
         .flat_map(|i| [edges[*i].from, edges[*i].to])
+        .chain(extra.iter().copied())
         .collect();
     points.sort_unstable();
     points.dedup();

@@ -253,6 +253,10 @@ impl Snapshot {
     /// # Errors
     /// `TooLarge` if something leaves the lattice.
     pub fn moved(&self, motion: &Motion, pitch: Pitch) -> Result<Self> {
+        if self.reaches_infinity() {
+            let text = "an unbounded boundary other than one plane cannot be moved";
+            return Err(Error::new(ErrorKind::Unbounded, text));
+        }
         let mut image = self.clone();
         image.pitch = pitch.exponent();
         for source in &mut image.sources {
@@ -261,7 +265,37 @@ impl Snapshot {
         for edge in image.parts.iter_mut().flat_map(|p| &mut p.edges) {
             edge.apply(motion)?;
         }
+        image.outside = image.label_at_infinity()?;
         Ok(image)
+    }
+
+    /// Whether an unbounded face is boundary beside others, or cut at the border of the universe.
+    fn reaches_infinity(&self) -> bool {
+        let unbounded = |slot: u32| {
+            matches!(
+                self.sources.get(slot as usize),
+                Some(SourceData::HalfSpace(_))
+            )
+        };
+        let alone = self.wholes.len() == 1 && self.parts.is_empty();
+        let edges = self
+            .parts
+            .iter()
+            .filter(|p| unbounded(p.slot))
+            .flat_map(|p| &p.edges);
+        (self.wholes.iter().any(|w| unbounded(w.slot)) && !alone)
+            || edges.into_iter().any(|e| e.from.is_on_border())
+    }
+
+    /// The label at the low corner of the universe: a lone plane decides it by its side there.
+    fn label_at_infinity(&self) -> Result<i32> {
+        if let [only] = self.wholes.as_slice() {
+            if let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot as usize) {
+                let side = plane.plane()?.side_of_corner(&Cell::UNIVERSE.corner());
+                return Ok(i32::from((side < 0) != only.flip));
+            }
+        }
+        Ok(self.outside)
     }
 
     /// The data as bytes.
@@ -425,6 +459,13 @@ impl VertexData {
         }
         let h = vertex.coordinates();
         Self::Meet(h.x.map(|c| *c.limbs()), *h.w.limbs())
+    }
+
+    /// Whether a half-space was clipped here by the border of the universe.
+    fn is_on_border(&self) -> bool {
+        let limit = crate::mesh::grid::LIMIT - 1.0;
+        self.vertex()
+            .is_ok_and(|v| v.as_lattice().is_none() && v.approx().iter().any(|c| c.abs() > limit))
     }
 
     fn vertex(&self) -> Result<Vertex> {

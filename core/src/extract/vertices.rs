@@ -80,6 +80,16 @@ impl<'a> Projection<'a> {
     }
 }
 
+impl Projection<'_> {
+    /// Whether a point lies strictly between two others, on their line.
+    pub fn is_between(&self, a: u32, point: u32, b: u32) -> bool {
+        point != a
+            && point != b
+            && self.orient(a, point, b) == 0
+            && self.compare(a, point) == self.compare(point, b)
+    }
+}
+
 impl Planar for Projection<'_> {
     fn compare(&self, a: u32, b: u32) -> Ordering {
         if a == b {

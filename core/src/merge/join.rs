@@ -57,9 +57,15 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch) -> Option<Node> 
         (minus, a, cell.half(cut, false)),
         (plus, b, cell.half(cut, true)),
     ];
-    if !faces.iter().all(|f| f.is_whole_in(cell, &halves)) {
-        return None;
+    let mut held = Vec::with_capacity(faces.len());
+    for face in faces {
+        match face.extent_in(cell, &halves) {
+            Extent::All => held.push(face),
+            Extent::Nothing => {}
+            Extent::Some => return None,
+        }
     }
+    let mut faces = held;
     faces.sort_by_key(|f| (f.source.id(), f.flip, f.face));
     let corner = if minus.cell.low() == cell.low() {
         minus.oriented(a.corner)
@@ -113,30 +119,38 @@ impl Listed {
         })
     }
 
-    /// Whether what the two leaves hold of the face is all of it inside the cell.
-    fn is_whole_in(&self, cell: &Cell, halves: &[(&Branch, &Deferred, Cell); 2]) -> bool {
+    /// How much of the face's part in the cell the two leaves hold.
+    fn extent_in(&self, cell: &Cell, halves: &[(&Branch, &Deferred, Cell); 2]) -> Extent {
         let (low, high) = self.source.face_box(self.face);
-        let holders = halves
+        let holders: Vec<_> = halves
             .iter()
-            .filter(|(branch, leaf, _)| self.is_in(branch, leaf));
-        let mut full = 0;
-        let mut edges = Vec::new();
-        for (branch, _, half) in holders.clone() {
-            if branch.cell.holds_box(&low, &high) {
-                return true;
-            }
-            full += usize::from(branch.cell == *half);
+            .filter(|(branch, leaf, _)| self.is_in(branch, leaf))
+            .collect();
+        let enclosed = holders.iter().any(|h| h.0.cell.holds_box(&low, &high));
+        if enclosed || holders.iter().filter(|h| h.0.cell == h.2).count() == 2 {
+            return Extent::All;
         }
-        if full == 2 {
-            return true;
+        let clipped = holders
+            .iter()
+            .filter_map(|h| self.source.clip(self.face, &h.0.cell));
+        let edges: Vec<OutlineEdge> = clipped
+            .flat_map(|p| OutlineEdge::all_of(&p).collect::<Vec<_>>())
+            .collect();
+        if edges.is_empty() {
+            Extent::Nothing
+        } else if is_whole(&cancel(edges), &self.source, self.face, cell) {
+            Extent::All
+        } else {
+            Extent::Some
         }
-        for (branch, _, _) in holders {
-            if let Some(polygon) = self.source.clip(self.face, &branch.cell) {
-                edges.extend(OutlineEdge::all_of(&polygon));
-            }
-        }
-        edges.is_empty() || is_whole(&cancel(edges), &self.source, self.face, cell)
     }
+}
+
+/// How much of a face inside a cell is boundary.
+enum Extent {
+    All,
+    Some,
+    Nothing,
 }
 
 fn grouped(faces: Vec<Listed>) -> Vec<Group> {

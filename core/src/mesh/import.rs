@@ -50,7 +50,31 @@ pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -
             "edges are shared by more than two faces, at these vertices",
         ));
     }
+    if signed_volume(&mesh) < 0.0 {
+        findings.push(Finding::about(
+            "inside_out",
+            Severity::Warning,
+            &[0],
+            "the faces enclose a negative volume: they are probably oriented inside out",
+        ));
+    }
     Ok(Source::with_topology(mesh, pitch, topology, findings))
+}
+
+/// Six times the enclosed volume in doubles, about the first vertex.
+fn signed_volume(mesh: &TriangleMesh) -> f64 {
+    let origin = mesh.doubles.first().copied().unwrap_or_default();
+    let local = |v: u32| {
+        let p = mesh.doubles[v as usize];
+        [p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]]
+    };
+    let determinant = |f: &[u32; 3]| {
+        let [a, b, c] = f.map(local);
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+            + a[1] * (b[2] * c[0] - b[0] * c[2])
+            + a[2] * (b[0] * c[1] - b[1] * c[0])
+    };
+    mesh.faces.iter().map(determinant).sum()
 }
 
 /// The half-space normal·x ≤ offset, in model units.
