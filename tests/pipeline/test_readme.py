@@ -30,7 +30,7 @@ def test_python_blocks_run_and_print_what_they_say(
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
         exec(compile(PYTHON[number], f"README block {number}", "exec"), {})
-    expected = re.findall(r"#> (.*)$", PYTHON[number], re.MULTILINE)
+    expected = re.findall(r"# -> (.*)$", PYTHON[number], re.MULTILINE)
     assert printed.getvalue().splitlines() == expected
 
 
