@@ -135,13 +135,13 @@ def faults_of(answer: Case) -> list[str]:
     for name, operation in answer.get("operations", {}).items():
         faults += [f"{name}: {fault}" for fault in operation["faults"]]
         if is_disagreement(operation["verdict"]):
-            faults.append(f"{name}: {operation['verdict']}")
+            faults.append(f"{name}: {operation['verdict']}: {operation['reason']}")
     return faults
 
 
 def is_disagreement(verdict: str) -> bool:
-    """Whether a verdict says that the two engines hold different sets."""
-    return verdict.lower() == "disagree"
+    """Whether a verdict speaks against the result."""
+    return verdict in ("DISAGREE", "subject failed")
 
 
 def file_cases(folder: Path) -> list[Case]:

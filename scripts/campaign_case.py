@@ -78,12 +78,9 @@ def run_operation(result: "b.Solid") -> dict[str, Any]:
     began = time.perf_counter()
     triangles = len(result.to_mesh().faces)
     seconds = round(time.perf_counter() - began, 4)
-    return {
-        "triangles": triangles,
-        "seconds": seconds,
-        "faults": mesh_faults(result),
-        "verdict": str(result.check().verdict),
-    }
+    report = result.check()
+    verdict = {"verdict": str(report.verdict), "reason": report.reason}
+    return {"triangles": triangles, "seconds": seconds, "faults": mesh_faults(result), **verdict}
 
 
 def identity_faults(a: Fraction, c: Fraction, volumes: dict[str, Fraction]) -> list[str]:
