@@ -34,28 +34,20 @@ def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
     FormatError
         If the file cannot be read as what its suffix says.
     InvalidMeshError, LimitError
-        If what it holds is no solid: the message names the file and a place, `where` the faces.
+        If what it holds is no solid: the message names the file, `where` the faces.
     """
     return solid_of(read(path), path, **options)
 
 
 def solid_of(raw: RawMesh, path: str | os.PathLike[str], **options: Any) -> "Solid":
-    """Return the solid of what was read from a file; errors name the file and a place in space."""
+    """Return the solid of what was read from a file; errors name the file."""
     from ..solid import Solid
 
     try:
         return Solid(raw.vertices, raw.faces, **options)
     except BspcsgError as error:
-        message = f"{os.fspath(path)}: {error.message}{_near(raw, error)}"
+        message = f"{os.fspath(path)}: {error.message}"
         raise type(error)(message, error.code, error.where) from error
-
-
-def _near(raw: RawMesh, error: BspcsgError) -> str:
-    """Return where in space the first face lies that an error about faces names."""
-    if error.code != "not_closed" or not error.where or error.where[0] >= len(raw.faces):
-        return ""
-    x, y, z = raw.vertices[raw.faces[error.where[0]]].mean(axis=0)
-    return f" Look near ({x:.6g}, {y:.6g}, {z:.6g})."
 
 
 def save(

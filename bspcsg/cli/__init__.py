@@ -1,0 +1,1 @@
+"""The command line: the same operations on files, with exit codes that scripts can trust."""

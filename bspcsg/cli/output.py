@@ -1,0 +1,95 @@
+"""What goes to which stream, and which exit code a failure has."""
+
+import json
+import sys
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import click
+
+from ..errors import BspcsgError, Finding, FormatError, InternalError
+
+#: Version of the JSON documents.
+SCHEMA = 1
+
+DONE = 0
+FOUND = 1
+USAGE = 2
+UNREADABLE = 3
+REFUSED = 4
+UNWRITABLE = 5
+INTERNAL = 70
+INTERRUPTED = 130
+CLOSED_PIPE = 141
+
+
+class EmptyResultError(BspcsgError):
+    """The result holds nothing, and nobody said that this is meant."""
+
+
+@dataclass(frozen=True)
+class Output:
+    """Where a command tells what.
+
+    Parameters
+    ----------
+    verbosity : int
+        Below 0 for no notes, above 0 for more of them.
+    as_json : bool
+        Standard output gets one JSON document, and nothing else.
+    """
+
+    verbosity: int = 0
+    as_json: bool = False
+
+    def result(self, line: str, document: dict[str, Any]) -> None:
+        """Print a result, as text or as the document."""
+        if self.as_json:
+            click.echo(json.dumps({"schema": SCHEMA, **document}, allow_nan=False))
+        elif line:
+            click.echo(line)
+
+    def detail(self, line: str) -> None:
+        """Say on standard error what only ``--verbose`` asks for."""
+        if self.verbosity > 0:
+            click.echo(line, err=True)
+
+    def finding(self, name: str, finding: Finding) -> None:
+        """Say on standard error what was noteworthy about a file."""
+        least = -1 if finding.severity == "error" else 0
+        if self.verbosity >= least:
+            click.echo(f"{finding.severity}: {name}: {finding.message}", err=True)
+
+
+def exit_code_of(error: BspcsgError) -> int:
+    """Return the exit code of a failure."""
+    if isinstance(error, InternalError):
+        return INTERNAL
+    if isinstance(error, FormatError):
+        return UNWRITABLE if error.code == "unwritable" else UNREADABLE
+    return REFUSED
+
+
+def tell_error(error: BspcsgError, as_json: bool) -> int:
+    """Say what failed, on standard error and as JSON if that was asked for."""
+    code = exit_code_of(error)
+    click.echo(f"bspcsg: error: {error.message}", err=True)
+    if as_json:
+        said = {"code": error.code, "message": error.message, "where": list(error.where)}
+        click.echo(json.dumps({"schema": SCHEMA, "error": said, "exit": code}))
+    return code
+
+
+def finding_values(findings: tuple[Finding, ...]) -> list[dict[str, Any]]:
+    """Return findings as JSON values."""
+    return [asdict(finding) for finding in findings]
+
+
+def grouped(number: int) -> str:
+    """Return a whole number with its thousands apart."""
+    return f"{number:,}".replace(",", "\N{NO-BREAK SPACE}" if sys.stdout.isatty() else " ")
+
+
+def counted(number: int, one: str) -> str:
+    """Return a number and what it counts."""
+    return f"{grouped(number)} {one}{'' if number == 1 else 's'}"
