@@ -33,7 +33,7 @@ fn cuboid(low: [f64; 3], high: [f64; 3]) -> Solid {
 
 fn combine(terms: Vec<Term>, solids: &[Solid]) -> Solid {
     let expression = Expression::new(terms).expect("well formed");
-    evaluate(expression, solids, &AtomicBool::new(false))
+    evaluate(&expression, solids, &AtomicBool::new(false))
         .expect("evaluates")
         .0
 }

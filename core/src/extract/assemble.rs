@@ -7,7 +7,7 @@ use super::collect::{collect, Fate};
 use super::contacts;
 use super::planes::{frontier, group, half_edge_ends, FrontierEdge, PlaneGroup};
 use super::seams::{find_touching, subdivisions, Edge};
-use super::triangulate::triangulate;
+use super::triangulate::{triangulate, Planar};
 use super::vertices::{Projection, VertexTable};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::line::LineKey;
@@ -57,6 +57,8 @@ pub(super) struct Assembly<'a> {
     pub(super) faces: Vec<TriangleFace>,
     /// Output vertices that lie where something was cut or touches.
     pub(super) special: Vec<bool>,
+    /// Whether to compare areas, because faces of one plane might overlap.
+    verify: bool,
 }
 
 /// The face a triangle lies in, as the source has it, and whether it is turned around.
@@ -81,11 +83,25 @@ pub fn assemble(solid: &Solid) -> Result<ExactMesh> {
     if solid.root().outside > 0 {
         return Err(unbounded());
     }
-    let (fates, groups) = group(collect(solid, &sources), &sources);
+    match attempt(solid, &sources, true) {
+        Err(e) if e.kind() == ErrorKind::Internal && !solid.is_reduced() => {
+            attempt(solid, &sources, false)
+        }
+        result => result,
+    }
+}
+
+/// Assembles with or without joining faces by plane.
+///
+/// Joining supposes that faces of one plane do not overlap. A solid that is not known to be
+/// reduced may break that; then its polygons fail to triangulate, or to the right area.
+fn attempt(solid: &Solid, sources: &Sources, join: bool) -> Result<ExactMesh> {
+    let (fates, groups) = group(collect(solid, sources), sources, join);
     if groups.iter().any(reaches_infinity) {
         return Err(unbounded());
     }
-    let mut assembly = Assembly::new(&sources, &fates);
+    let mut assembly = Assembly::new(sources, &fates);
+    assembly.verify = join && !solid.is_reduced();
     assembly.run(&fates, &groups)?;
     let findings = contacts::split(&mut assembly)?;
     Ok(assembly.finish(findings))
@@ -119,6 +135,7 @@ impl<'a> Assembly<'a> {
             triangles: Vec::new(),
             faces: Vec::new(),
             special: Vec::new(),
+            verify: false,
         }
     }
 
@@ -342,6 +359,9 @@ impl<'a> Assembly<'a> {
         let view = Projection::onto(plane, &self.table);
         let triangles = triangulate(&view, edges)
             .map_err(|e| Error::internal(format!("an outline could not be triangulated: {e}")))?;
+        if self.verify && !covers_once(&view, edges, &triangles) {
+            return Err(Error::internal("faces of one plane overlap"));
+        }
         for triangle in triangles {
             let triangle = triangle.map(|p| self.image_of_point(p));
             self.triangles.push(triangle);
@@ -395,6 +415,27 @@ fn split_faces(
         }
     }
     split
+}
+
+/// Whether the triangles' area is the one the outline encloses, as far as doubles can tell.
+fn covers_once(view: &Projection, edges: &[(u32, u32)], triangles: &[[u32; 3]]) -> bool {
+    let Some(origin) = edges.first().map(|e| view.approx(e.0)) else {
+        return true;
+    };
+    let at = |p: u32| {
+        let [x, y] = view.approx(p);
+        [x - origin[0], y - origin[1]]
+    };
+    let turn = |a: u32, b: u32| {
+        let (p, q) = (at(a), at(b));
+        p[0] * q[1] - p[1] * q[0]
+    };
+    let enclosed: f64 = edges.iter().map(|e| turn(e.0, e.1)).sum();
+    let covered: f64 = triangles
+        .iter()
+        .map(|t| turn(t[0], t[1]) + turn(t[1], t[2]) + turn(t[2], t[0]))
+        .sum();
+    (enclosed - covered).abs() <= 1e-6 * covered.abs()
 }
 
 fn order_of(split: &HashMap<(u32, u32), [Vec<u32>; 3]>) -> Vec<(u32, u32)> {

@@ -297,12 +297,3 @@ fn lists(leaf: &Deferred, branch: &Branch, source: &Source, face: u32, flip: boo
             && g.faces.binary_search(&face).is_ok()
     })
 }
-
-/// Whether a solid's boundary is all faces of its one source, none turned around.
-pub fn is_its_source(solid: &Solid) -> bool {
-    let sources = Sources::new(Arc::clone(solid.sources()));
-    let boundary = collect(solid, &sources);
-    let whole =
-        |fates: &Vec<Fate>| !fates.is_empty() && fates.iter().all(|f| *f == Fate::Whole(false));
-    boundary.cut.is_empty() && sources.table().len() == 1 && boundary.fates.iter().all(whole)
-}

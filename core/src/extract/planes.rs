@@ -34,6 +34,7 @@ pub struct FrontierEdge {
 /// Groups in the making.
 struct Grouping<'a> {
     sources: &'a Sources,
+    join: bool,
     fates: Vec<Vec<Fate>>,
     groups: Vec<PlaneGroup>,
     by_plane: HashMap<Plane, usize>,
@@ -41,9 +42,16 @@ struct Grouping<'a> {
 }
 
 /// Joins cut faces by plane; returns the fates that remain and the groups.
-pub fn group(boundary: Boundary, sources: &Sources) -> (Vec<Vec<Fate>>, Vec<PlaneGroup>) {
+///
+/// Without `join` each cut face stays on its own, as it must where faces of one plane may overlap.
+pub fn group(
+    boundary: Boundary,
+    sources: &Sources,
+    join: bool,
+) -> (Vec<Vec<Fate>>, Vec<PlaneGroup>) {
     let mut grouping = Grouping {
         sources,
+        join,
         fates: boundary.fates,
         groups: Vec::new(),
         by_plane: HashMap::new(),
@@ -52,9 +60,11 @@ pub fn group(boundary: Boundary, sources: &Sources) -> (Vec<Vec<Fate>>, Vec<Plan
     for cut in boundary.cut {
         grouping.add_cut(cut);
     }
-    grouping.spread();
-    grouping.absorb_seams();
-    grouping.spread();
+    if join {
+        grouping.spread();
+        grouping.absorb_seams();
+        grouping.spread();
+    }
     let mut groups = grouping.groups;
     for group in &mut groups {
         group.edges = cancel(std::mem::take(&mut group.edges));
@@ -66,7 +76,11 @@ pub fn group(boundary: Boundary, sources: &Sources) -> (Vec<Vec<Fate>>, Vec<Plan
 impl Grouping<'_> {
     fn group_of(&mut self, plane: Plane, face: (u32, u32)) -> usize {
         let next = self.groups.len();
-        let at = *self.by_plane.entry(plane.clone()).or_insert(next);
+        let at = if self.join {
+            *self.by_plane.entry(plane.clone()).or_insert(next)
+        } else {
+            next
+        };
         if at == next {
             self.groups.push(PlaneGroup {
                 plane,

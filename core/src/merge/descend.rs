@@ -64,6 +64,8 @@ pub struct Descent<'a> {
     pub cancel: &'a AtomicBool,
     /// What was done.
     pub counters: Counters,
+    /// For each operand whether a visited cell showed that it overlaps itself.
+    pub overlaps: Vec<AtomicBool>,
 }
 
 /// What is known of an operand in a cell.
@@ -103,7 +105,31 @@ impl Round {
     }
 }
 
-impl Descent<'_> {
+impl<'a> Descent<'a> {
+    /// A descent over this many operands.
+    pub fn new(
+        sources: &'a Sources,
+        rule: Rule,
+        share: bool,
+        cancel: &'a AtomicBool,
+        operands: usize,
+    ) -> Self {
+        Self {
+            sources,
+            rule,
+            share,
+            cancel,
+            counters: Counters::default(),
+            overlaps: (0..operands).map(|_| AtomicBool::new(false)).collect(),
+        }
+    }
+
+    /// The operands that a visited cell showed to overlap themselves.
+    pub fn overlapping(&self) -> Vec<usize> {
+        let seen = |k: &usize| self.overlaps[*k].load(Ordering::Relaxed);
+        (0..self.overlaps.len()).filter(seen).collect()
+    }
+
     /// The value of an expression over solids, from their root branches.
     pub fn run(&self, expression: Expression, roots: Vec<Branch>) -> Result<Branch> {
         let cell = roots.iter().map(|r| r.cell).reduce(|a, b| a.join(&b));
@@ -248,7 +274,9 @@ impl Descent<'_> {
                 State::Constant(_) | State::Tree(_) => None,
             })
             .collect();
-        let node = leaf::evaluate(&cell, expression, self.rule, lists, self.sources);
+        let node = leaf::evaluate(&cell, expression, self.rule, lists, self.sources, |k| {
+            self.overlaps[k as usize].store(true, Ordering::Relaxed);
+        });
         match node {
             Node::Leaf(w) => Branch::uniform(cell, w),
             node => Branch {

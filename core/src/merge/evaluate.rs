@@ -15,7 +15,8 @@ use crate::tree::solid::Solid;
 /// The value of an expression whose operands are these solids.
 ///
 /// Always (G1): a point is inside the result where the expression holds for the operands' sides.
-/// If all operands are reduced, so is the result (G2).
+/// If all operands are reduced, so is the result (G2). An operand that a visited cell shows to
+/// overlap itself is united with itself, and the evaluation starts again.
 ///
 /// # Errors
 /// `PitchMismatch` if the operands live on different lattices, `Cancelled`.
@@ -23,27 +24,32 @@ use crate::tree::solid::Solid;
 /// # Source
 /// Naylor, Amanatides, Thibault 1990; `ARCHITECTURE.md`, "One descent".
 pub fn evaluate(
-    expression: Expression,
+    expression: &Expression,
     solids: &[Solid],
     cancel: &AtomicBool,
 ) -> Result<(Solid, Counters)> {
-    let pitch = common_pitch(&expression, solids)?;
-    let sources = Sources::new(joint_table(solids));
-    let descent = Descent {
-        sources: &sources,
-        rule: Rule::Positive,
-        share: true,
-        cancel,
-        counters: Counters::default(),
-    };
-    let roots = solids.iter().map(|s| s.root().clone()).collect();
-    let root = descent.run(expression, roots)?;
-    let reduced = solids.iter().all(Solid::is_reduced);
-    let counters = descent.counters;
-    Ok((
-        Solid::new(root, pitch, Arc::clone(sources.table()), reduced),
-        counters,
-    ))
+    let pitch = common_pitch(expression, solids)?;
+    let mut operands = solids.to_vec();
+    loop {
+        let sources = Sources::new(joint_table(&operands));
+        let descent = Descent::new(&sources, Rule::Positive, true, cancel, operands.len());
+        let roots = operands.iter().map(|s| s.root().clone()).collect();
+        let root = descent.run(expression.clone(), roots)?;
+        let overlaps = descent.overlapping();
+        if overlaps.is_empty() {
+            let reduced = operands.iter().all(Solid::is_reduced);
+            let table = Arc::clone(sources.table());
+            return Ok((Solid::new(root, pitch, table, reduced), descent.counters));
+        }
+        for k in overlaps {
+            if operands[k].is_reduced() {
+                return Err(Error::internal(format!(
+                    "reduced operand {k} overlaps itself"
+                )));
+            }
+            operands[k] = normalize(&operands[k], Rule::Positive, cancel)?;
+        }
+    }
 }
 
 /// The solid united with itself: the reduced boundary of the points that a rule calls inside.
@@ -51,22 +57,29 @@ pub fn evaluate(
 /// # Errors
 /// `Cancelled`.
 pub fn normalize(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid> {
+    if solid.is_reduced() {
+        return Ok(solid.clone());
+    }
+    if rule != Rule::Positive {
+        return unite(solid, rule, cancel);
+    }
+    if let Some(known) = solid.united().get() {
+        return Ok(known.clone());
+    }
+    let united = unite(solid, rule, cancel)?;
+    Ok(solid.united().get_or_init(|| united).clone())
+}
+
+fn unite(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid> {
     let sources = Sources::new(Arc::clone(solid.sources()));
-    let descent = Descent {
-        sources: &sources,
-        rule,
-        share: false,
-        cancel,
-        counters: Counters::default(),
-    };
+    let descent = Descent::new(&sources, rule, false, cancel, 1);
     let expression = Expression::new(vec![Term::Operand(0)])?;
     let root = descent.run(expression, vec![solid.root().clone()])?;
-    Ok(Solid::new(
-        root,
-        solid.pitch(),
-        Arc::clone(sources.table()),
-        true,
-    ))
+    if descent.overlapping().is_empty() {
+        return Ok(solid.clone().with_reduced(true));
+    }
+    let table = Arc::clone(sources.table());
+    Ok(Solid::new(root, solid.pitch(), table, true))
 }
 
 fn common_pitch(expression: &Expression, solids: &[Solid]) -> Result<Pitch> {

@@ -66,17 +66,23 @@ struct Kept {
 }
 
 /// Evaluates an expression in a cell: the node that describes the result there.
+///
+/// `evidence` is told the operands that overlap themselves here.
 pub fn evaluate(
     cell: &Cell,
     expression: &Expression,
     rule: Rule,
     lists: Vec<(u32, List)>,
     sources: &Sources,
+    mut evidence: impl FnMut(u32),
 ) -> Node {
     let operands: Vec<Operand> = lists
         .into_iter()
         .map(|(number, list)| Operand::new(number, list, cell, sources))
         .collect();
+    for operand in operands.iter().filter(|o| !o.simple) {
+        evidence(operand.number);
+    }
     let place = |number: u32| {
         operands
             .iter()
@@ -100,7 +106,7 @@ pub fn evaluate(
 impl Operand {
     fn new(number: u32, list: List, cell: &Cell, sources: &Sources) -> Self {
         let corner = list.corner;
-        let fragments = disjoint(fragments(&list, cell, sources));
+        let (fragments, overlap) = disjoint(fragments(&list, cell, sources));
         let weighted = fragments
             .iter()
             .map(|f| Weighted {
@@ -113,7 +119,8 @@ impl Operand {
         } else {
             LocalTree::build(weighted, &cell.corner(), corner)
         };
-        let simple = fragments.iter().all(|f| f.weight.abs() == 1)
+        let simple = !overlap
+            && fragments.iter().all(|f| f.weight.abs() == 1)
             && tree.labels().iter().all(|w| (0..=1).contains(w));
         Self {
             number,

@@ -20,8 +20,10 @@ pub struct Fragment {
 
 /// Makes the fragments disjoint: where some overlap, the first keeps the place and the sum.
 ///
-/// Pieces whose multiplicities add up to nothing bound nothing and are left out.
-pub fn disjoint(fragments: Vec<Fragment>) -> Vec<Fragment> {
+/// Pieces whose multiplicities add up to nothing bound nothing and are left out. The flag says
+/// whether any did overlap.
+pub fn disjoint(fragments: Vec<Fragment>) -> (Vec<Fragment>, bool) {
+    let mut overlap = false;
     let mut planes: Vec<Vec<Fragment>> = Vec::new();
     let mut names: Vec<Arc<Plane>> = Vec::new();
     for fragment in fragments {
@@ -32,7 +34,7 @@ pub fn disjoint(fragments: Vec<Fragment>) -> Vec<Fragment> {
             planes.push(Vec::new());
             planes.len() - 1
         });
-        add(&mut planes[at], fragment);
+        overlap |= add(&mut planes[at], fragment);
     }
     let mut all: Vec<Fragment> = planes
         .into_iter()
@@ -40,13 +42,14 @@ pub fn disjoint(fragments: Vec<Fragment>) -> Vec<Fragment> {
         .filter(|f| f.weight != 0)
         .collect();
     all.sort_by_key(|f| f.face);
-    all
+    (all, overlap)
 }
 
-/// Adds a fragment to disjoint fragments of its plane.
-fn add(placed: &mut Vec<Fragment>, new: Fragment) {
+/// Adds a fragment to disjoint fragments of its plane; says whether it overlapped any.
+fn add(placed: &mut Vec<Fragment>, new: Fragment) -> bool {
     let mut rest = vec![new];
     let mut carved = Vec::new();
+    let mut overlap = false;
     let mut i = 0;
     while i < placed.len() && !rest.is_empty() {
         let touched = rest
@@ -54,18 +57,27 @@ fn add(placed: &mut Vec<Fragment>, new: Fragment) {
             .any(|r| !separated(&placed[i].polygon, &r.polygon));
         if touched {
             let old = placed.remove(i);
-            rest = combine(old, rest, &mut carved);
+            let (remaining, met) = combine(old, rest, &mut carved);
+            rest = remaining;
+            overlap |= met;
         } else {
             i += 1;
         }
     }
     placed.append(&mut carved);
     placed.append(&mut rest);
+    overlap
 }
 
-/// Overlays one placed fragment with the pieces of a new one; returns the pieces outside it.
-fn combine(old: Fragment, rest: Vec<Fragment>, carved: &mut Vec<Fragment>) -> Vec<Fragment> {
+/// Overlays one placed fragment with the pieces of a new one; returns the pieces outside it, and
+/// whether any was inside.
+fn combine(
+    old: Fragment,
+    rest: Vec<Fragment>,
+    carved: &mut Vec<Fragment>,
+) -> (Vec<Fragment>, bool) {
     let mut remaining = Vec::new();
+    let mut met = false;
     let mut old_pieces = vec![old.clone()];
     for piece in rest {
         let (inside, outside) = carve(&piece.polygon, &old.polygon);
@@ -73,6 +85,7 @@ fn combine(old: Fragment, rest: Vec<Fragment>, carved: &mut Vec<Fragment>) -> Ve
             remaining.push(piece);
             continue;
         }
+        met = true;
         remaining.extend(outside.into_iter().map(|p| part_of(&piece, p)));
         old_pieces = old_pieces
             .into_iter()
@@ -80,7 +93,7 @@ fn combine(old: Fragment, rest: Vec<Fragment>, carved: &mut Vec<Fragment>) -> Ve
             .collect();
     }
     carved.append(&mut old_pieces);
-    remaining
+    (remaining, met)
 }
 
 /// The pieces of `old` inside and outside `new`, the inside one with both multiplicities.

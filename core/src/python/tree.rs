@@ -11,7 +11,6 @@ use super::arrays::{array, rows};
 use super::errors::to_python;
 use super::run::run;
 use crate::error::{Error, ErrorKind, Result};
-use crate::extract::collect::is_its_source;
 use crate::extract::round::{self, Mesh};
 use crate::extract::snapshot::{Motion, Snapshot};
 use crate::merge::descend::Counters;
@@ -38,7 +37,6 @@ pub struct Tree {
     solid: Solid,
     counters: Option<Counters>,
     mesh: OnceLock<Arc<Mesh>>,
-    reduced: OnceLock<Solid>,
 }
 
 impl Tree {
@@ -47,7 +45,6 @@ impl Tree {
             solid,
             counters: None,
             mesh: OnceLock::new(),
-            reduced: OnceLock::new(),
         }
     }
 
@@ -129,7 +126,7 @@ impl Tree {
         let size = operands.iter().map(|o| o.size()).sum();
         let solids: Vec<Solid> = operands.iter().map(|o| o.solid.clone()).collect();
         let (solid, counters) = run(py, threads, size, |cancel| {
-            evaluate(expression, &solids, cancel)
+            evaluate(&expression, &solids, cancel)
         })?;
         Ok(Self {
             counters: Some(counters),
@@ -149,26 +146,9 @@ impl Tree {
                 return Err(to_python(py, &Error::new(ErrorKind::Shape, text)));
             }
         };
-        if self.solid.is_reduced() {
-            return Ok(Self::of(self.solid.clone()));
-        }
-        if rule == Rule::Positive {
-            if let Some(known) = self.reduced.get() {
-                return Ok(Self::of(known.clone()));
-            }
-        }
         let solid = run(py, threads, self.size(), |cancel| {
-            let solid = normalize(&self.solid, rule, cancel)?;
-            let unchanged = is_its_source(&solid);
-            Ok(if unchanged {
-                self.solid.clone().with_reduced(true)
-            } else {
-                solid
-            })
+            normalize(&self.solid, rule, cancel)
         })?;
-        if rule == Rule::Positive {
-            let _ = self.reduced.set(solid.clone());
-        }
         Ok(Self::of(solid))
     }
 
@@ -178,8 +158,8 @@ impl Tree {
         if self.solid.is_reduced() {
             return Some(true);
         }
-        let reduced = self.reduced.get()?;
-        Some(Arc::ptr_eq(&reduced.root().node, &self.solid.root().node))
+        let united = self.solid.united().get()?;
+        Some(Arc::ptr_eq(&united.root().node, &self.solid.root().node))
     }
 
     #[pyo3(signature = (threads=0))]

@@ -1,6 +1,6 @@
 //! Solids: a tree, the winding number outside its root, and the sources it refers to.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::node::{Branch, Deferred, Group, Node};
 use crate::geometry::cell::Cell;
@@ -14,6 +14,7 @@ pub struct Solid {
     pitch: Pitch,
     sources: Arc<[Arc<Source>]>,
     reduced: bool,
+    united: Arc<OnceLock<Solid>>,
 }
 
 impl Solid {
@@ -24,6 +25,7 @@ impl Solid {
             pitch,
             sources,
             reduced,
+            united: Arc::default(),
         }
     }
 
@@ -90,6 +92,11 @@ impl Solid {
     pub fn with_reduced(mut self, reduced: bool) -> Self {
         self.reduced = reduced;
         self
+    }
+
+    /// The solid united with itself, once somebody has computed it; shared by clones.
+    pub fn united(&self) -> &OnceLock<Self> {
+        &self.united
     }
 
     /// Whether the point set is empty; reliable for reduced solids.
