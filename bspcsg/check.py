@@ -23,7 +23,7 @@ import numpy as np
 from . import oracle
 from ._types import ProgramLine, SetOp
 from .discrepancy import SetDifference, difference_of
-from .errors import BspcsgError, InternalError, LimitError, invalid_parameter
+from .errors import BspcsgError, InternalError, invalid_parameter
 from .mesh import Mesh
 from .oracle import Answer
 from .primitives import box as box_of
@@ -174,10 +174,7 @@ class _Check:
         # Whole numbers lie on every lattice that is not coarser than the unit.
         margin = np.ceil((high - low).max() / 8 + 1)
         low, high = np.floor(low - margin), np.ceil(high + margin)
-        try:
-            return box_of(high - low).translate(low)
-        except LimitError as error:
-            raise oracle.OracleRefusedError(f"an operand is unbounded: {error.message}") from error
+        return box_of(high - low).translate(low)
 
     def _operand(self, number: int, solid: Solid, box: Solid | None) -> Mesh:
         if box is not None and not solid.is_bounded:

@@ -76,7 +76,8 @@ def ask(
     """
     solids = [_taken(number, operand) for number, operand in enumerate(operands, 1)]
     limit = None if inside is None else interop.to_manifold(inside)
-    tolerance = max((solid.get_tolerance() for solid in solids), default=0.0)
+    # An empty solid's tolerance is negative.
+    tolerance = max([0.0, *(solid.get_tolerance() for solid in solids)])
     try:
         result, outside = _carried_out(program, solids)
         if limit is not None:

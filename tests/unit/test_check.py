@@ -1,0 +1,252 @@
+"""Verdicts: right results agree, and every kind of wrong one is found."""
+
+import json
+from fractions import Fraction
+from typing import Any, cast
+
+import manifold3d
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg import oracle
+from bspcsg.check import Verdict, check_result, validate
+from bspcsg.verdict import count_open_edges
+from support.shapes import cube, cuboid, flipped, joined, moved, random_rotation, turned
+
+OPS: list[Any] = ["union", "intersection", "difference", "xor"]
+
+
+def boxes() -> tuple["b.Solid", "b.Solid"]:
+    return b.cube(2), b.cube(2).translate(1, 1, 1)
+
+
+def turned_cube(seed: int) -> "b.Solid":
+    shape = turned(moved(cube(), (-0.5, -0.5, -0.5)), random_rotation(np.random.default_rng(seed)))
+    return b.Solid(*moved(shape, (0.1 * seed, 0.2, 0.3)))
+
+
+@pytest.mark.parametrize("op", OPS)
+def test_right_results_agree(op: Any) -> None:
+    report = validate(op, *boxes())
+    assert report.set_difference is not None and report.set_difference.volume == 0
+    assert report.ok and report.theirs is not None
+    assert report.verdict is Verdict.AGREE
+
+
+@pytest.mark.parametrize("op", OPS)
+@pytest.mark.parametrize("seed", range(4))
+def test_general_position_agrees(op: Any, seed: int) -> None:
+    report = validate(op, turned_cube(seed), b.sphere(0.7), turned_cube(seed + 9))
+    assert report.verdict in (Verdict.AGREE, Verdict.OTHER_TOPOLOGY)
+    assert report.set_difference is not None
+    assert report.set_difference.thickness <= report.same_set_bound
+
+
+def test_the_remembered_operation_is_checked() -> None:
+    a, c = boxes()
+    assert (a - c).check().operation == "difference"
+    assert ((a | c) ^ b.sphere(1)).check().ok
+
+
+@pytest.mark.parametrize(
+    ("program", "name"),
+    [
+        (lambda a, c: a | c, "union"),
+        (lambda a, c: a & c, "intersection"),
+        (lambda a, c: a - c, "difference"),
+        (lambda a, c: a ^ c, "xor"),
+        (lambda a, c: (a | c) - (a & c), "expression"),
+    ],
+)
+def test_operations_are_named(program: Any, name: str) -> None:
+    report = program(*boxes()).check()
+    assert report.operation == name
+    assert report.set_difference.volume == 0
+
+
+def test_a_lost_part_is_found() -> None:
+    body, crumb = b.cube(100), b.cube(0.001).translate(200, 0, 0)
+    report = check_result(body, "union", [body, crumb])
+    assert report.verdict is Verdict.DISAGREE and not report.ok
+    assert "(200," in report.reason.replace("200.001", "200")
+
+
+def test_a_bump_that_moved_is_found_although_the_volume_is_right() -> None:
+    body, bump = b.cube(10), b.box((1, 1, 0.001))
+    wrong = body | bump.translate(1, 1, 10)
+    report = check_result(wrong, "union", [body, bump.translate(5, 5, 10)])
+    assert report.verdict is Verdict.DISAGREE
+    assert report.theirs is not None and report.ours.volume == pytest.approx(report.theirs.volume)
+
+
+def test_a_film_of_rounding_is_no_difference() -> None:
+    body = b.cube(1000)
+    thicker = b.box((1000.000000001, 1000, 1000))
+    report = check_result(thicker, "union", [body, body])
+    assert report.verdict is Verdict.AGREE
+    assert report.set_difference is not None
+    assert report.set_difference.volume == Fraction(1, 1000)
+
+
+def test_a_film_that_closes_on_itself() -> None:
+    body = b.cube(1000, center=True)
+    larger = b.cube(1000.000000002, center=True)
+    assert check_result(larger, "union", [body, body]).verdict is Verdict.AGREE
+    larger = b.cube(1000.001, center=True)
+    report = check_result(larger, "union", [body, body])
+    assert report.verdict is Verdict.DISAGREE
+    assert report.set_difference is not None
+    assert report.set_difference.thickness == pytest.approx(0.0005, rel=1e-3)
+
+
+def test_within_the_tolerance_of_the_oracle() -> None:
+    body = b.cube(1).translate(1e6, 0, 0)
+    report = check_result(body.translate(1e-8, 0, 0), "union", [body, body])
+    assert report.verdict is Verdict.WITHIN_ROUNDING and report.ok
+
+
+def test_operands_that_overlap_themselves() -> None:
+    double = b.Solid(*joined(cube(), moved(cube(), (0.5, 0.5, 0.5))))
+    report = validate("difference", double, b.cube(0.25))
+    assert report.verdict is Verdict.AGREE
+    assert [note.split(";")[0] for note in report.notes] == ["operand 1 overlaps itself"]
+    assert report.exact_volume == Fraction(15, 8) - Fraction(1, 64)
+
+
+@pytest.mark.parametrize("op", ["intersection", "difference"])
+def test_half_spaces_are_compared_in_a_box(op: Any) -> None:
+    report = validate(op, b.cube(1), b.half_space((0, 0, 1), 0.25))
+    assert report.verdict is Verdict.AGREE
+    assert "operand 2 is unbounded" in report.notes[0]
+
+
+def test_complements() -> None:
+    a, c = boxes()
+    assert (~(~a | ~c)).check().verdict is Verdict.AGREE
+    assert (c & ~a).check().verdict is Verdict.AGREE
+
+
+def test_a_box_that_needs_a_coarser_lattice() -> None:
+    far = b.box((8.9e6, 8.9e6, 8.9e6))
+    report = validate("intersection", far, b.half_space((0, 0, 1), 0.25))
+    assert report.verdict is Verdict.AGREE
+
+
+def test_empty_operands_and_results() -> None:
+    assert validate("difference", b.cube(1), b.cube(1)).verdict is Verdict.AGREE
+    assert validate("union", b.Solid.empty(), b.Solid.empty()).verdict is Verdict.AGREE
+    assert validate("intersection", b.cube(1), b.cube(1).translate(1, 0, 0)).ours.triangles == 0
+
+
+@pytest.mark.parametrize("count", [1, 3, 4])
+@pytest.mark.parametrize("op", OPS)
+def test_any_number_of_operands(op: Any, count: int) -> None:
+    solids = [b.cube(2).translate(0.5 * k, 0.25 * k, 0) for k in range(count)]
+    report = validate(op, *solids)
+    assert report.set_difference is not None and report.set_difference.volume == 0
+
+
+def test_nothing_to_compare() -> None:
+    with pytest.raises(b.InvalidMeshError):
+        check_result(b.cube(1))
+    with pytest.raises(b.InvalidMeshError):
+        validate("union")
+    with pytest.raises(b.InvalidMeshError):
+        validate(cast(Any, "sum"), b.cube(1))
+
+
+def test_unbounded_results_have_no_mesh() -> None:
+    with pytest.raises(b.UnboundedError):
+        validate("union", b.cube(1), b.half_space((0, 0, 1), 0))
+
+
+class OpenResult:
+    """A result whose mesh lacks a face."""
+
+    pitch = -9
+    is_bounded = True
+    volume_exact = Fraction(1)
+
+    def normalized(self) -> "OpenResult":
+        return self
+
+    def to_mesh(self) -> "b.Mesh":
+        vertices, faces = cube()
+        return b.Mesh(vertices, faces[1:], np.zeros((11, 2), np.int64))
+
+
+def test_an_open_result_fails() -> None:
+    report = check_result(cast(Any, OpenResult()), "union", [b.cube(1)])
+    assert report.verdict is Verdict.SUBJECT_FAILED and not report.ok
+    assert "3 open edges" in report.reason
+
+
+def test_a_mesh_that_is_not_its_set_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(OpenResult, "to_mesh", lambda _: b.cube(2).to_mesh())
+    report = check_result(cast(Any, OpenResult()), "union", [b.cube(1)])
+    assert report.verdict is Verdict.SUBJECT_FAILED
+
+
+def test_an_oracle_that_raises(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise RuntimeError("no luck")
+
+    monkeypatch.setattr(oracle, "_carried_out", fail)
+    report = validate("union", *boxes())
+    assert report.verdict is Verdict.ORACLE_FAILED and "no luck" in report.reason
+    assert report.ok and report.theirs is None
+
+
+def test_operands_the_oracle_refuses() -> None:
+    vertices, faces = cube()
+    mesh = b.Mesh(vertices, faces[1:], np.zeros((11, 2), np.int64))
+    with pytest.raises(oracle.OracleRefusedError, match="operand 1: NotManifold"):
+        oracle.ask([("leaf", [0])], [mesh])
+
+
+def test_the_oracle_knows_complements() -> None:
+    a, c = (solid.to_mesh() for solid in boxes())
+    leaves: list[tuple[str, list[int]]] = [("leaf", [0]), ("leaf", [1]), ("not", [1])]
+    assert oracle.ask([*leaves, ("and", [0, 2])], [a, c]).mesh.volume == 7
+    assert oracle.ask([*leaves, ("xor", [0, 2]), ("not", [3])], [a, c]).mesh.volume == 14
+    with pytest.raises(oracle.OracleRefusedError, match="unbounded"):
+        oracle.ask([*leaves, ("or", [0, 2])], [a, c])
+
+
+def test_reports_are_json_and_words() -> None:
+    report = validate("union", turned_cube(1), b.sphere(0.5))
+    found = json.loads(json.dumps(report.to_dict(), allow_nan=False))
+    assert found["verdict"] == "agree" and found["ok"] is True
+    assert Fraction(found["set_difference"]["exact_volume"]) >= 0
+    assert found["oracle"] == f"manifold3d {manifold3d_version()}"
+    assert str(report).startswith("union: agree with manifold3d")
+
+
+def manifold3d_version() -> str:
+    from importlib.metadata import version
+
+    assert manifold3d.Manifold is not None
+    return version("manifold3d")
+
+
+@pytest.mark.parametrize(
+    ("faces", "count"),
+    [
+        (cube()[1], 0),
+        (cube()[1][1:], 3),
+        (np.concatenate([cube()[1], cube()[1]]), 36),
+        (np.concatenate([cube()[1][:-1], cube()[1][-1:, ::-1]]), 3),
+        (np.zeros((0, 3), np.int64), 0),
+        (np.array([[0, 0, 1]]), 1),
+    ],
+)
+def test_open_edges(faces: "np.ndarray[Any, Any]", count: int) -> None:
+    mesh = b.Mesh(cube()[0], faces, np.zeros((len(faces), 2), np.int64))
+    assert count_open_edges(mesh) == count
+
+
+def test_inverted_operands_are_empty_to_both() -> None:
+    inverted = b.Solid(*flipped(cuboid((0, 0, 0), (1, 1, 1))))
+    report = validate("union", b.cube(2), inverted)
+    assert report.verdict is Verdict.AGREE and report.exact_volume == 8

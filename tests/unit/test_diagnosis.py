@@ -1,0 +1,125 @@
+"""Every defect is named, counted and placed."""
+
+import json
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from bspcsg.diagnosis import diagnose
+from bspcsg.io import RawMesh
+from support.shapes import Arrays, cube, cuboid, flipped, joined, moved
+
+
+def without(*faces: int) -> Arrays:
+    vertices, triangles = cube()
+    return vertices, np.delete(triangles, faces, axis=0)
+
+
+def with_turned_face() -> Arrays:
+    vertices, faces = cube()
+    faces[4] = faces[4, ::-1]
+    return vertices, faces
+
+
+def with_repeated_face() -> Arrays:
+    vertices, faces = cube()
+    return vertices, np.concatenate([faces, faces[2:3], faces[2:3, ::-1]])
+
+
+def with_flat_face() -> Arrays:
+    # A corner on the middle of an edge, and a triangle that fills the gap of no width.
+    vertices, faces = cube()
+    a, c, d = faces[0]
+    middle = (vertices[a] + vertices[c]) / 2
+    vertices = np.concatenate([vertices, middle[None]])
+    more = np.array([(a, 8, d), (8, c, d), (a, c, 8)])
+    return vertices, np.concatenate([more, faces[1:]])
+
+
+def cubes_at_an_edge() -> Arrays:
+    return joined(cube(), moved(cube(), (1, 1, 0)))
+
+
+SOLIDS: dict[str, tuple[Callable[[], Arrays], set[str]]] = {
+    "cube": (cube, set()),
+    "two cubes apart": (lambda: joined(cube(), moved(cube(), (5, 0, 0))), set()),
+    "cubes at an edge": (cubes_at_an_edge, {"non_manifold"}),
+    "overlapping cubes": (
+        lambda: joined(cube(), moved(cube(), (0.5, 0.5, 0.5))),
+        {"self_overlap"},
+    ),
+    "cavity": (lambda: joined(cuboid((-1, -1, -1), (2, 2, 2)), flipped(cube())), set()),
+    "flat face": (with_flat_face, {"degenerate"}),
+    "repeated face": (with_repeated_face, {"duplicate", "non_manifold", "self_overlap"}),
+}
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_solids(name: str) -> None:
+    make, expected = SOLIDS[name]
+    found = diagnose(RawMesh(*make()))
+    assert found.verdict == "solid" and found.closed
+    assert expected <= {finding.code for finding in found.findings}
+    serious = {finding.code for finding in found.findings if finding.severity != "note"}
+    assert serious <= expected | {"self_overlap"}
+
+
+REFUSED: dict[str, tuple[Callable[[], Arrays], str, str, int]] = {
+    "one face missing": (lambda: without(3), "not closed", "open_edges", 3),
+    "side missing": (lambda: without(0, 1), "not closed", "open_edges", 4),
+    "face turned": (with_turned_face, "not closed", "orientation", 3),
+    "no faces": (lambda: (cube()[0], np.zeros((0, 3), np.int64)), "empty", "empty_mesh", 0),
+    "huge": (lambda: moved(cube(), (1e308, 0, 0)), "refused", "too_large", 0),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_no_solids(name: str) -> None:
+    make, verdict, code, count = REFUSED[name]
+    found = diagnose(RawMesh(*make()))
+    assert found.verdict == verdict and not found.is_solid and found.volume is None
+    assert found.findings[0].severity == "error"
+    finding = next(finding for finding in found.findings if finding.code == code)
+    assert not count or finding.count == count
+
+
+def test_places_are_named() -> None:
+    found = diagnose(RawMesh(*moved(without(3), (7, 0, 0))))
+    (finding,) = (finding for finding in found.findings if finding.code == "open_edges")
+    assert "around 1 hole" in finding.message and "(8, 0, 0)" in finding.message
+    assert len(finding.where) == 3
+
+
+def test_inside_out() -> None:
+    found = diagnose(RawMesh(*flipped(cube())))
+    assert found.verdict == "inside out" and not found.is_solid
+    assert (found.signed_volume, found.volume) == (-1.0, 0.0)
+
+
+def test_measures() -> None:
+    found = diagnose(RawMesh(*joined(cube(), moved(cube(), (0.5, 0.5, 0.5)))))
+    assert (found.signed_volume, found.volume, found.surfaces) == (2.0, 1.875, 2)
+    assert found.self_overlapping is True
+    assert diagnose(RawMesh(*cube())).self_overlapping is False
+    assert diagnose(RawMesh(*without(3))).self_overlapping is None
+
+
+def test_loose_corners_are_joined_first() -> None:
+    vertices, faces = cube()
+    soup = RawMesh(vertices[faces].reshape(-1, 3), np.arange(36).reshape(-1, 3))
+    found = diagnose(soup)
+    assert found.verdict == "solid" and found.genus == 0 and found.surfaces == 1
+
+
+def test_unused_vertices_are_a_note() -> None:
+    vertices, faces = cube()
+    found = diagnose(RawMesh(np.concatenate([vertices, [[9.0, 9, 9]]]), faces))
+    assert [(finding.code, finding.severity) for finding in found.findings] == [
+        ("unused_vertices", "note")
+    ]
+
+
+@pytest.mark.parametrize("make", [cube, lambda: moved(cube(), (1e308, 0, 0)), lambda: without(1)])
+def test_as_json(make: Callable[[], Arrays]) -> None:
+    json.dumps(diagnose(RawMesh(*make())).to_dict(), allow_nan=False)
