@@ -17,8 +17,8 @@ tiles = []
 for name, solid in {
     "union": goat | ball,
     "intersection": goat & ball,
-    "difference": goat - ball,
-    "symmetric difference": goat ^ ball,
+    "goat without ball": goat - ball,
+    "ball without goat": ball - goat,
 }.items():
     mesh = solid.to_mesh()
     print(f"{name:20} {len(mesh.faces):6d} triangles, volume {solid.volume:.6f}")

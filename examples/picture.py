@@ -28,8 +28,7 @@ def shade(
 
     `window` is the lowest corner and the width of what is seen, in turned coordinates.
     """
-    points = vertices @ pose.T
-    points[:, :2] = (points[:, :2] - window[:2]) / window[2] * size
+    points = (vertices @ pose.T - [*window[:2], 0]) / window[2] * size
     corners = points[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
