@@ -1,6 +1,6 @@
 //! From a boundary to a closed triangle mesh.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 use std::sync::Arc;
 
 use super::collect::{collect, Fate};
@@ -130,7 +130,7 @@ impl<'a> Assembly<'a> {
             table: VertexTable::default(),
             images: fates.iter().enumerate().map(image).collect(),
             point_images: Vec::new(),
-            names: HashMap::new(),
+            names: HashMap::default(),
             vertices: Vec::new(),
             triangles: Vec::new(),
             faces: Vec::new(),
@@ -177,7 +177,7 @@ impl<'a> Assembly<'a> {
 
     /// For each line the points at which a polygon touches an edge of its own.
     fn touching(&self, groups: &[PlaneGroup], edges: &[Edge]) -> HashMap<LineKey, Vec<u32>> {
-        let mut touching = HashMap::new();
+        let mut touching = HashMap::default();
         let mut start = 0;
         for group in groups {
             let own = &edges[start..start + group.edges.len()];
@@ -407,7 +407,7 @@ fn split_faces(
     frontier: &[FrontierEdge],
     inner: &[Vec<u32>],
 ) -> HashMap<(u32, u32), [Vec<u32>; 3]> {
-    let mut split: HashMap<(u32, u32), [Vec<u32>; 3]> = HashMap::new();
+    let mut split: HashMap<(u32, u32), [Vec<u32>; 3]> = HashMap::default();
     for (edge, points) in frontier.iter().zip(inner) {
         if !points.is_empty() {
             let face = split.entry((edge.slot, edge.half / 3)).or_default();

@@ -1,6 +1,6 @@
 //! What a tree says of each face: kept whole, cut, or gone.
 
-use std::collections::HashSet;
+use rustc_hash::FxHashSet as HashSet;
 use std::sync::Arc;
 
 use crate::geometry::cell::Cell;

@@ -1,6 +1,6 @@
 //! Where a solid touches itself: edges of four or more faces, vertices of several fans.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::assemble::Assembly;
 use super::fans::{split_fans, Radial};
@@ -66,8 +66,9 @@ fn special_triangles(assembly: &Assembly) -> Vec<u32> {
 /// # Errors
 /// `Internal` if an edge at a special vertex has no opposite: the assembly is not closed.
 fn is_manifold(assembly: &Assembly, triangles: &[u32]) -> Result<bool> {
-    let mut fans: HashMap<u32, Vec<(u32, u32)>> = HashMap::new();
-    let mut directed: HashSet<(u32, u32)> = HashSet::with_capacity(3 * triangles.len());
+    let mut fans: HashMap<u32, Vec<(u32, u32)>> = HashMap::default();
+    let mut directed: HashSet<(u32, u32)> =
+        HashSet::with_capacity_and_hasher(3 * triangles.len(), rustc_hash::FxBuildHasher);
     let mut single = true;
     for triangle in triangles {
         let t = assembly.triangles[*triangle as usize];

@@ -1,6 +1,6 @@
 //! Cut faces and their coplanar neighbours joined into polygons with holes.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::collect::{Boundary, CutFace, Fate};
 use crate::geometry::line::LineKey;
@@ -54,7 +54,7 @@ pub fn group(
         join,
         fates: boundary.fates,
         groups: Vec::new(),
-        by_plane: HashMap::new(),
+        by_plane: HashMap::default(),
         open: Vec::new(),
     };
     for cut in boundary.cut {
@@ -154,7 +154,7 @@ impl Grouping<'_> {
     /// Absorbs whole faces that share a line and a plane with others of another source or part.
     fn absorb_seams(&mut self) {
         let frontier = frontier(&self.fates, self.sources);
-        let mut seen: HashMap<(usize, LineKey), (u32, u32)> = HashMap::new();
+        let mut seen: HashMap<(usize, LineKey), (u32, u32)> = HashMap::default();
         let mut candidates = Vec::new();
         for edge in &frontier {
             let (slot, face) = (edge.slot, edge.half / 3);
@@ -172,7 +172,7 @@ impl Grouping<'_> {
             .enumerate()
             .flat_map(|(at, g)| g.edges.iter().map(move |e| (at, e.line)))
             .collect();
-        let mut shared: HashSet<(usize, LineKey)> = HashSet::new();
+        let mut shared: HashSet<(usize, LineKey)> = HashSet::default();
         for (slot, face, _, group, line) in &candidates {
             let first = *seen.entry((*group, *line)).or_insert((*slot, *face));
             if first != (*slot, *face) || group_lines.contains(&(*group, *line)) {

@@ -1,6 +1,6 @@
 //! No T-junctions: edges that do not pair are subdivided along their lines until they do.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 use super::triangulate::Planar;
 use super::vertices::{Projection, VertexTable};
@@ -73,7 +73,8 @@ pub fn find_touching(edges: &[Edge], view: &Projection, touching: &mut HashMap<L
 
 /// The edges left after opposite ones with equal ends cancel, and all on lines with touching points.
 fn unpaired(edges: &[Edge], touching: &HashMap<LineKey, Vec<u32>>) -> Vec<usize> {
-    let mut waiting: HashMap<(u32, u32), Vec<usize>> = HashMap::with_capacity(edges.len());
+    let mut waiting: HashMap<(u32, u32), Vec<usize>> =
+        HashMap::with_capacity_and_hasher(edges.len(), rustc_hash::FxBuildHasher);
     let mut paired = vec![false; edges.len()];
     for (i, edge) in edges.iter().enumerate() {
         let twin = waiting.get_mut(&(edge.to, edge.from)).and_then(Vec::pop);

@@ -1,7 +1,7 @@
 //! Exact vertex identity: one number for each point, whatever it was made from.
 
+use rustc_hash::FxHashMap as HashMap;
 use std::cmp::Ordering;
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::triangulate::Planar;

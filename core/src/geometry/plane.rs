@@ -127,6 +127,16 @@ impl Plane {
         opposite.then_some(false)
     }
 
+    /// The axis the plane is perpendicular to, if it is perpendicular to one.
+    pub fn only_axis(&self) -> Option<usize> {
+        match self.n {
+            [_, 0, 0] => Some(0),
+            [0, _, 0] => Some(1),
+            [0, 0, _] => Some(2),
+            _ => None,
+        }
+    }
+
     /// The axis along which the normal is largest.
     pub fn main_axis(&self) -> usize {
         let size = |i: usize| self.n[i].unsigned_abs();

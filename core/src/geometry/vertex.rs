@@ -46,6 +46,11 @@ impl Vertex {
 
     /// The meet of three planes; `None` if they have no single common point.
     pub fn meet(a: &Plane, b: &Plane, c: &Plane) -> Option<Self> {
+        for (cut, p, q) in [(c, a, b), (b, a, c), (a, b, c)] {
+            if let Some(axis) = cut.only_axis() {
+                return Self::meet_on_axis_cut(cut, axis, p, q);
+            }
+        }
         let bc = cross(b.normal(), c.normal());
         let ca = cross(c.normal(), a.normal());
         let ab = cross(a.normal(), b.normal());
@@ -60,6 +65,30 @@ impl Vertex {
         match w.signum() {
             0 => None,
             1 => Some(Self::homogeneous(x.map(|v| -v), w)),
+            _ => Some(Self::homogeneous(x, -w)),
+        }
+    }
+
+    /// The meet of two planes with an axis-parallel one, by 2×2 determinants.
+    fn meet_on_axis_cut(cut: &Plane, axis: usize, p: &Plane, q: &Plane) -> Option<Self> {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let lead = cut.normal()[axis];
+        let reduced = |plane: &Plane| -> Int<5> {
+            let here: Int<5> = plane.offset().mul_i128(lead);
+            let there: Int<5> = cut.offset().mul_i128(plane.normal()[axis]);
+            here - there
+        };
+        let (d, e) = (reduced(p), reduced(q));
+        let (n, m) = (p.normal(), q.normal());
+        let minor = product(n[u], m[v]) - product(n[v], m[u]);
+        let w: Int<6> = minor.mul_i128(lead);
+        let mut x = [Int::<6>::ZERO; 3];
+        x[axis] = cut.offset().mul(&minor);
+        x[u] = d.mul_i128::<6>(m[v]) - e.mul_i128::<6>(n[v]);
+        x[v] = e.mul_i128::<6>(n[u]) - d.mul_i128::<6>(m[u]);
+        match w.signum() {
+            0 => None,
+            1 => Some(Self::homogeneous(x.map(|c| -c), w)),
             _ => Some(Self::homogeneous(x, -w)),
         }
     }
@@ -161,12 +190,17 @@ fn exact_side(h: &Homogeneous, plane: &Plane) -> i32 {
 
 /// The cross product of two normals, exact: components below 2^217.
 pub fn cross(a: &[i128; 3], b: &[i128; 3]) -> [Int<4>; 3] {
-    let product = |i: usize, j: usize| -> Int<4> {
-        Int::<2>::from_i128(a[i]).mul(&Int::<2>::from_i128(b[j]))
-    };
     [
-        product(1, 2) - product(2, 1),
-        product(2, 0) - product(0, 2),
-        product(0, 1) - product(1, 0),
+        product(a[1], b[2]) - product(a[2], b[1]),
+        product(a[2], b[0]) - product(a[0], b[2]),
+        product(a[0], b[1]) - product(a[1], b[0]),
     ]
+}
+
+/// The product of two normal components; one machine multiplication where both are short.
+fn product(a: i128, b: i128) -> Int<4> {
+    match (i64::try_from(a), i64::try_from(b)) {
+        (Ok(a), Ok(b)) => Int::from_i128(i128::from(a) * i128::from(b)),
+        _ => Int::<2>::from_i128(a).mul(&Int::<2>::from_i128(b)),
+    }
 }

@@ -18,13 +18,16 @@ use crate::tree::node::{Branch, Node};
 /// Lists that together hold at most this many elements are worked on by the leaf kernel.
 ///
 /// Measured on sphere pairs: the kernel's cost per face is flat between 12 and 32.
-const LEAF: usize = 20;
+pub const LEAF: usize = 20;
 
 /// Lists at least this long are worth a task of their own.
 const TASK: usize = 512;
 
 /// Three halvings, one round of the axes, should leave at most 7/8 of the elements in a child.
 const ROUND: u32 = 3;
+
+/// Longer lists than this are halved on, stuck or not: the kernel's cost grows with their square.
+const STUCK: usize = 2048;
 
 /// Counts of what an evaluation did.
 #[derive(Debug, Default)]
@@ -296,7 +299,7 @@ fn is_stuck(cell: &Cell, states: &States, round: Round, total: usize) -> bool {
         State::List(list) => list.reaching_out(cell),
         State::Constant(_) | State::Tree(_) => 0,
     };
-    round.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
+    round.stuck && total <= STUCK && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
 }
 
 fn find(states: &States, operand: u32) -> Option<&State> {

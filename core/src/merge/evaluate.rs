@@ -7,6 +7,7 @@ use super::descend::{Counters, Descent};
 use super::expression::{Expression, Term};
 use super::leaf::Rule;
 use super::list::Sources;
+use super::simple::is_simple;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::Source;
@@ -72,6 +73,9 @@ pub fn normalize(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid
 
 fn unite(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid> {
     let sources = Sources::new(Arc::clone(solid.sources()));
+    if is_simple(solid, &sources, cancel)? == Some(true) {
+        return Ok(solid.clone().with_reduced(true));
+    }
     let descent = Descent::new(&sources, rule, false, cancel, 1);
     let expression = Expression::new(vec![Term::Operand(0)])?;
     let root = descent.run(expression, vec![solid.root().clone()])?;

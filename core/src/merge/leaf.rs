@@ -343,6 +343,16 @@ impl LeafTree {
         self.0.fragments.iter().map(|f| &f.polygon)
     }
 
+    /// Whether nothing overlaps in the cell and all winding numbers are 0 or 1.
+    pub fn is_simple(&self) -> bool {
+        self.0.simple
+    }
+
+    /// The faces that truly meet the cell.
+    pub fn faces(&self) -> impl Iterator<Item = u32> + '_ {
+        self.0.fragments.iter().map(|f| f.face.1)
+    }
+
     /// The winding number at a lattice point that lies on none of the pieces.
     pub fn label_at(&self, point: &Lattice) -> i32 {
         self.0.tree.label_at(point)

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use rustc_hash::FxHashMap as HashMap;
+
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, polygon_change, triangle_change, Segment};
 use crate::geometry::plane::Lattice;
@@ -86,13 +88,16 @@ pub struct List {
 #[derive(Debug)]
 pub struct Sources {
     table: Arc<[Arc<Source>]>,
-    by_id: std::collections::HashMap<u64, u32>,
+    by_id: HashMap<u64, u32>,
 }
 
 impl Sources {
     /// A table; the first place of a source counts.
     pub fn new(table: Arc<[Arc<Source>]>) -> Self {
-        let mut by_id = std::collections::HashMap::with_capacity(table.len());
+        let mut by_id = std::collections::HashMap::with_capacity_and_hasher(
+            table.len(),
+            rustc_hash::FxBuildHasher,
+        );
         for (slot, source) in (0u32..).zip(table.iter()) {
             by_id.entry(source.id()).or_insert(slot);
         }

@@ -12,6 +12,7 @@ pub mod merge_trees;
 pub mod op;
 mod overlay;
 pub mod partition_tree;
+pub mod simple;
 pub mod split_tree;
 
 pub use merge_trees::merge;

@@ -1,6 +1,6 @@
 //! From arrays of doubles to a source: snapping, judging, welding.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -299,7 +299,8 @@ fn not_closed(mesh: &TriangleMesh, open: &[u64]) -> Error {
 
 /// Makes vertices at one lattice point one vertex; says whether there were any.
 fn weld(mesh: &mut TriangleMesh) -> bool {
-    let mut first: HashMap<Lattice, u32> = HashMap::with_capacity(mesh.vertices.len());
+    let mut first: HashMap<Lattice, u32> =
+        HashMap::with_capacity_and_hasher(mesh.vertices.len(), rustc_hash::FxBuildHasher);
     let image: Vec<u32> = (0u32..)
         .zip(&mesh.vertices)
         .map(|(i, p)| *first.entry(*p).or_insert(i))
