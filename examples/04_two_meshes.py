@@ -18,7 +18,7 @@ for name, solid in {
     "union": goat | ball,
     "intersection": goat & ball,
     "goat without ball": goat - ball,
-    "ball without goat": ball - goat,
+    "ball without goat": ~goat & ball,
 }.items():
     mesh = solid.to_mesh()
     print(f"{name:20} {len(mesh.faces):6d} triangles, volume {solid.volume:.6f}")
