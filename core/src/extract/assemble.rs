@@ -96,13 +96,15 @@ pub fn assemble(solid: &Solid) -> Result<ExactMesh> {
 /// Joining supposes that faces of one plane do not overlap. A solid that is not known to be
 /// reduced may break that; then its polygons fail to triangulate, or to the right area.
 fn attempt(solid: &Solid, sources: &Sources, join: bool) -> Result<ExactMesh> {
-    let (fates, groups) = group(collect(solid, sources), sources, join);
+    let mut boundary = collect(solid, sources);
+    let near = std::mem::take(&mut boundary.near);
+    let (fates, groups) = group(boundary, sources, join);
     if groups.iter().any(reaches_infinity) {
         return Err(unbounded());
     }
     let mut assembly = Assembly::new(sources, &fates);
     assembly.verify = join && !solid.is_reduced();
-    assembly.run(&fates, &groups)?;
+    assembly.run(&fates, &groups, &near)?;
     let findings = contacts::split(&mut assembly)?;
     Ok(assembly.finish(findings))
 }
@@ -139,8 +141,14 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    fn run(&mut self, fates: &[Vec<Fate>], groups: &[PlaneGroup]) -> Result<()> {
+    fn run(
+        &mut self,
+        fates: &[Vec<Fate>],
+        groups: &[PlaneGroup],
+        near: &[(u32, u32)],
+    ) -> Result<()> {
         self.mark_irregular(fates);
+        self.identify_near(near, fates);
         let frontier = frontier(fates, self.sources);
         let mut edges = Vec::new();
         for group in groups {
@@ -175,17 +183,29 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// For each line the points at which a polygon touches an edge of its own.
-    fn touching(&self, groups: &[PlaneGroup], edges: &[Edge]) -> HashMap<LineKey, Vec<u32>> {
+    /// For each line the points at which a polygon touches or crosses an edge of its own.
+    fn touching(&mut self, groups: &[PlaneGroup], edges: &[Edge]) -> HashMap<LineKey, Vec<u32>> {
         let mut touching = HashMap::default();
         let mut start = 0;
         for group in groups {
             let own = &edges[start..start + group.edges.len()];
             start += group.edges.len();
-            let view = Projection::onto(&group.plane, &self.table);
-            find_touching(own, &view, &mut touching);
+            find_touching(own, group, &mut self.table, &mut touching);
         }
         touching
+    }
+
+    /// Identifies by place the corners of faces that lay near another operand: contacts.
+    fn identify_near(&mut self, near: &[(u32, u32)], fates: &[Vec<Fate>]) {
+        for &(slot, face) in near {
+            let whole = matches!(fates[slot as usize][face as usize], Fate::Whole(_));
+            let source = Arc::clone(self.sources.get(slot as usize));
+            if let (Some(mesh), true) = (source.mesh(), whole) {
+                for vertex in mesh.faces[face as usize] {
+                    self.point_of(slot, mesh, vertex);
+                }
+            }
+        }
     }
 
     fn frontier_edge(&mut self, e: &FrontierEdge, fates: &[Vec<Fate>]) -> Option<Edge> {
@@ -380,12 +400,38 @@ impl<'a> Assembly<'a> {
                 }
             }
         }
+        self.drop_unused();
         ExactMesh {
             vertices: self.vertices,
             triangles: self.triangles,
             origins,
             table: self.table,
             findings,
+        }
+    }
+
+    /// Leaves out vertices that no triangle uses; the others keep their order.
+    fn drop_unused(&mut self) {
+        let mut used = vec![false; self.vertices.len()];
+        for vertex in self.triangles.iter().flatten() {
+            used[*vertex as usize] = true;
+        }
+        if used.iter().all(|u| *u) {
+            return;
+        }
+        let mut next = 0;
+        let image: Vec<u32> = used
+            .iter()
+            .map(|u| {
+                next += u32::from(*u);
+                next - u32::from(*u)
+            })
+            .collect();
+        let mut keep = used.iter();
+        self.vertices
+            .retain(|_| keep.next().copied().unwrap_or(false));
+        for vertex in self.triangles.iter_mut().flatten() {
+            *vertex = image[*vertex as usize];
         }
     }
 

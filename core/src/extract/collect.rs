@@ -1,7 +1,6 @@
 //! What a tree says of each face: kept whole, cut, or gone.
 
 use rustc_hash::FxHashSet as HashSet;
-use std::sync::Arc;
 
 use crate::geometry::cell::Cell;
 use crate::geometry::line::LineKey;
@@ -43,6 +42,8 @@ pub struct Boundary {
     pub fates: Vec<Vec<Fate>>,
     /// The cut faces, by slot, face and orientation.
     pub cut: Vec<CutFace>,
+    /// Faces in cells where several operands met, by slot: they may touch others.
+    pub near: Vec<(u32, u32)>,
 }
 
 /// A face that reaches out of a leaf that lists it.
@@ -54,21 +55,14 @@ struct Spanning {
     leaf: u32,
 }
 
-/// A part in the leaf that lists it.
-struct Listed {
-    slot: u32,
-    flip: bool,
-    part: Arc<Part>,
-    cell: Cell,
-}
-
 struct Collector<'a> {
     sources: &'a Sources,
     root: &'a Branch,
     fates: Vec<Vec<Fate>>,
     spanning: Vec<Spanning>,
-    parts: Vec<Listed>,
+    parts: Vec<CutFace>,
     cells: Vec<Cell>,
+    near: Vec<(u32, u32)>,
 }
 
 /// Collects the boundary of a solid.
@@ -80,6 +74,7 @@ pub fn collect(solid: &Solid, sources: &Sources) -> Boundary {
         spanning: Vec::new(),
         parts: Vec::new(),
         cells: Vec::new(),
+        near: Vec::new(),
     };
     collector.visit_leaves();
     collector.settle()
@@ -108,6 +103,10 @@ impl Collector<'_> {
             let flip = group.flip ^ branch.complement;
             let fates = fates_of(&mut self.fates[slot], &group.source);
             let inside = group.source.cell().is_some_and(|c| branch.cell.holds(&c));
+            if leaf.worked {
+                self.near
+                    .extend(group.faces.iter().map(|f| (slot as u32, *f)));
+            }
             for &face in &group.faces {
                 if inside || holds_face(&branch.cell, &group.source, face) {
                     fates[face as usize] = Fate::Whole(flip);
@@ -122,16 +121,18 @@ impl Collector<'_> {
             }
         }
         for element in &leaf.parts {
-            let part = Arc::clone(&element.part);
+            let part = &element.part;
+            let edges = part_edges(part, &branch.cell);
+            if edges.is_empty() {
+                continue;
+            }
             let slot = self.sources.slot(&part.source);
-            fates_of(&mut self.fates[slot], &part.source);
-            self.fates[slot][part.face as usize] = Fate::Cut;
-            let flip = element.flip ^ branch.complement;
-            self.parts.push(Listed {
+            fates_of(&mut self.fates[slot], &part.source)[part.face as usize] = Fate::Cut;
+            self.parts.push(CutFace {
                 slot: slot as u32,
-                flip,
-                part,
-                cell: branch.cell,
+                face: part.face,
+                flip: element.flip ^ branch.complement,
+                edges,
             });
         }
     }
@@ -139,7 +140,6 @@ impl Collector<'_> {
     /// Decides the faces that span leaves, and outlines the cut ones.
     fn settle(mut self) -> Boundary {
         self.spanning.sort_unstable();
-        self.parts.sort_by_key(|p| (p.slot, p.part.face, p.flip));
         let spanning = std::mem::take(&mut self.spanning);
         let mut open: Vec<&[Spanning]> = Vec::new();
         for run in spanning.chunk_by(|a, b| (a.slot, a.face) == (b.slot, b.face)) {
@@ -155,9 +155,12 @@ impl Collector<'_> {
             }
         }
         let cut = self.outline(&open);
+        self.near.sort_unstable();
+        self.near.dedup();
         Boundary {
             fates: self.fates,
             cut,
+            near: self.near,
         }
     }
 
@@ -175,15 +178,7 @@ impl Collector<'_> {
                 });
             }
         }
-        for p in &self.parts {
-            let edges = part_edges(&p.part, &p.cell);
-            pieces.push(CutFace {
-                slot: p.slot,
-                face: p.part.face,
-                flip: p.flip,
-                edges,
-            });
-        }
+        pieces.append(&mut self.parts);
         pieces.sort_by_key(|p| (p.slot, p.face, p.flip));
         let mut cut: Vec<CutFace> = Vec::new();
         for piece in pieces {

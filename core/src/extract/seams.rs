@@ -1,10 +1,14 @@
 //! No T-junctions: edges that do not pair are subdivided along their lines until they do.
 
+use std::sync::Arc;
+
 use rustc_hash::FxHashMap as HashMap;
 
+use super::planes::PlaneGroup;
 use super::triangulate::Planar;
 use super::vertices::{Projection, VertexTable};
 use crate::geometry::line::LineKey;
+use crate::geometry::outline::OutlineEdge;
 
 /// A directed edge between numbered points, on a line.
 #[derive(Clone, Copy, Debug)]
@@ -39,34 +43,66 @@ pub fn subdivisions(
     inner
 }
 
-/// Adds the points of one polygon that lie inside edges of the same polygon, by line.
+/// An edge with its box in a projection.
+struct Boxed<'a> {
+    edge: &'a Edge,
+    outline: &'a OutlineEdge,
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+/// Adds the points at which a polygon touches or crosses itself inside edges, by line.
 ///
 /// Such an edge must have the point as a vertex, on both its sides, or the polygon cannot be
-/// triangulated.
-pub fn find_touching(edges: &[Edge], view: &Projection, touching: &mut HashMap<LineKey, Vec<u32>>) {
-    let mut points: Vec<(f64, f64, u32)> = edges
+/// triangulated. Edges of one polygon cross where three or more lines meet and the wedges between
+/// them are in and out by turns.
+pub fn find_touching(
+    edges: &[Edge],
+    group: &PlaneGroup,
+    table: &mut VertexTable,
+    touching: &mut HashMap<LineKey, Vec<u32>>,
+) {
+    let view = Projection::onto(&group.plane, table);
+    let mut boxed: Vec<Boxed> = edges
         .iter()
-        .map(|e| {
-            let [x, y] = view.approx(e.from);
-            (x, y, e.from)
-        })
+        .zip(&group.edges)
+        .map(|(edge, outline)| Boxed::new(edge, outline, &view))
         .collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
-    points.dedup_by_key(|p| p.2);
-    for edge in edges {
+    boxed.sort_by(|a, b| a.low[0].total_cmp(&b.low[0]));
+    let mut crossings = Vec::new();
+    for (i, a) in boxed.iter().enumerate() {
+        let near = boxed[i + 1..].iter().take_while(|b| b.low[0] <= a.high[0]);
+        for b in near.filter(|b| b.low[1] <= a.high[1] && a.low[1] <= b.high[1]) {
+            for (edge, point) in [(a.edge, b.edge.from), (b.edge, a.edge.from)] {
+                if view.is_between(edge.from, point, edge.to) {
+                    touching.entry(edge.line).or_default().push(point);
+                }
+            }
+            if view.crosses([a.edge.from, a.edge.to], [b.edge.from, b.edge.to]) {
+                crossings.push((a.outline, b.outline));
+            }
+        }
+    }
+    for (a, b) in crossings {
+        let cut = b.carrier.plane(&group.plane);
+        if let Some(vertex) = a.carrier.meet(&group.plane, &cut) {
+            let point = table.number(&Arc::new(vertex));
+            touching.entry(a.line).or_default().push(point);
+            touching.entry(b.line).or_default().push(point);
+        }
+    }
+}
+
+impl<'a> Boxed<'a> {
+    /// The box is widened by the rounding of its ends.
+    fn new(edge: &'a Edge, outline: &'a OutlineEdge, view: &Projection) -> Self {
         let (a, b) = (view.approx(edge.from), view.approx(edge.to));
         let slack = [0, 1].map(|i| (a[i].abs() + b[i].abs()) * 8.0 * f64::EPSILON);
-        let low = [0, 1].map(|i| a[i].min(b[i]) - slack[i]);
-        let high = [0, 1].map(|i| a[i].max(b[i]) + slack[i]);
-        let start = points.partition_point(|p| p.0 < low[0]);
-        let near = points[start..].iter().take_while(|p| p.0 <= high[0]);
-        for point in near
-            .filter(|p| p.1 >= low[1] && p.1 <= high[1])
-            .map(|p| p.2)
-        {
-            if view.is_between(edge.from, point, edge.to) {
-                touching.entry(edge.line).or_default().push(point);
-            }
+        Self {
+            edge,
+            outline,
+            low: [0, 1].map(|i| a[i].min(b[i]) - slack[i]),
+            high: [0, 1].map(|i| a[i].max(b[i]) + slack[i]),
         }
     }
 }

@@ -90,6 +90,15 @@ impl Projection<'_> {
     }
 }
 
+impl Projection<'_> {
+    /// Whether two segments cross inside both.
+    pub fn crosses(&self, a: [u32; 2], b: [u32; 2]) -> bool {
+        a.iter().all(|p| !b.contains(p))
+            && self.orient(a[0], a[1], b[0]) * self.orient(a[0], a[1], b[1]) < 0
+            && self.orient(b[0], b[1], a[0]) * self.orient(b[0], b[1], a[1]) < 0
+    }
+}
+
 impl Planar for Projection<'_> {
     fn compare(&self, a: u32, b: u32) -> Ordering {
         if a == b {

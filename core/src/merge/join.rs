@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::leaf::is_whole;
 use crate::geometry::cell::{Cell, Cut};
+use crate::geometry::crossing::{plane_change, triangle_change, Segment};
 use crate::geometry::outline::{cancel, OutlineEdge};
-use crate::mesh::source::Source;
+use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Branch, Deferred, Group, Node};
 
 /// Two deferred leaves that together list at most this many faces become one.
@@ -67,16 +68,46 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch) -> Option<Node> 
     }
     let mut faces = held;
     faces.sort_by_key(|f| (f.source.id(), f.flip, f.face));
-    let corner = if minus.cell.low() == cell.low() {
-        minus.oriented(a.corner)
-    } else {
-        minus.outside
-    };
+    let corner = corner_of(minus, a, cell);
+    let plus_corner = corner_of(plus, b, &halves[1].2);
+    if plus_corner != corner + change_along_edge(&faces, cell, cut) {
+        return None;
+    }
     Some(Node::Deferred(Deferred {
         groups: grouped(faces),
         parts: Vec::new(),
         corner,
+        worked: a.worked || b.worked,
     }))
+}
+
+/// The winding number at the low corner of the cell that a branch stands for.
+fn corner_of(branch: &Branch, leaf: &Deferred, cell: &Cell) -> i32 {
+    if branch.cell.low() == cell.low() {
+        branch.oriented(leaf.corner)
+    } else {
+        branch.outside
+    }
+}
+
+/// The change of the winding number from the cell's low corner to the plus half's.
+///
+/// An operand taken as it is may count more than one inside where the leaf kernel says one: leaves
+/// that do not agree across the cut must not become one.
+fn change_along_edge(faces: &[Listed], cell: &Cell, cut: Cut) -> i32 {
+    let segment = Segment {
+        from: cell.corner(),
+        axis: cut.axis,
+        to: 2 * cut.at - 1,
+    };
+    let across = |f: &Listed| match f.source.shape() {
+        Shape::Mesh(mesh) => triangle_change(&mesh.corners(f.face), &segment),
+        Shape::HalfSpace(plane) => plane_change(plane, &segment),
+    };
+    faces
+        .iter()
+        .map(|f| if f.flip { -across(f) } else { across(f) })
+        .sum()
 }
 
 fn small_leaf(branch: &Branch) -> Option<&Deferred> {

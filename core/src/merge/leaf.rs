@@ -251,6 +251,7 @@ fn assemble(mut kept: Vec<Kept>, corner: i32, cell: &Cell, sources: &Sources) ->
     kept.sort_by_key(|k| (k.face.0, k.flip, k.face.1));
     let mut leaf = Deferred {
         corner,
+        worked: true,
         ..Deferred::default()
     };
     for run in kept.chunk_by(|a, b| a.face == b.face && a.flip == b.flip) {

@@ -82,6 +82,7 @@ pub struct List {
     pub parts: Vec<PartRecord>,
     /// The winding number at the cell's low corner.
     pub corner: i32,
+    worked: bool,
 }
 
 /// The sources of an evaluation, in the order of the expression.
@@ -131,6 +132,7 @@ impl List {
             records: Vec::with_capacity(leaf.groups.iter().map(|g| g.faces.len()).sum()),
             parts: Vec::with_capacity(leaf.parts.len()),
             corner: branch.oriented(leaf.corner),
+            worked: leaf.worked,
         };
         for group in &leaf.groups {
             let slot = sources.slot(&group.source) as u32;
@@ -175,6 +177,7 @@ impl List {
             records: Vec::with_capacity(self.records.len() / 2 + 8),
             parts: Vec::new(),
             corner: plus_corner,
+            worked: self.worked,
         };
         let axis = cut.axis;
         let (frame, records) = (self.frame, std::mem::take(&mut self.records));
@@ -286,6 +289,7 @@ impl List {
             groups,
             parts,
             corner,
+            worked: self.worked,
         })
     }
 }

@@ -99,6 +99,8 @@ pub struct Deferred {
     pub parts: Vec<PartElement>,
     /// The winding number at the cell's low corner.
     pub corner: i32,
+    /// Whether several operands had boundary here: elements may touch each other.
+    pub worked: bool,
 }
 
 /// Whole faces of one source with one orientation.

@@ -56,6 +56,7 @@ impl Solid {
             groups: vec![group],
             parts: Vec::new(),
             corner,
+            worked: false,
         };
         let node = Arc::new(Node::Deferred(leaf));
         let root = Branch {
