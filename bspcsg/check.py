@@ -17,6 +17,7 @@ symmetric difference comes from the engine that is being judged.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 
 import numpy as np
 
@@ -134,10 +135,12 @@ class _Check:
     operands: list[Solid]
     result: Solid
     notes: list[str] = field(default_factory=list)
+    exact_volume: Fraction = Fraction(0)
 
     def run(self) -> CheckReport:
         mesh = self.result.normalized().to_mesh()
         ours = Facts.of(mesh)
+        self.exact_volume = self.result.volume_exact
         fault = self._fault(mesh, ours)
         if fault:
             return self._report(Verdict.SUBJECT_FAILED, fault, ours)
@@ -159,7 +162,7 @@ class _Check:
         status = oracle.status_of(mesh)
         if status != "NoError":
             return f"manifold3d does not take the result: {status}"
-        gap = abs(ours.volume - float(self.result.volume_exact))
+        gap = abs(ours.volume - float(self.exact_volume))
         if gap > self._same_set_bound(mesh) * ours.area + _SUMMING * abs(ours.volume):
             return f"the mesh's volume differs from the set's by {gap:.3g}"
         return ""
@@ -195,7 +198,7 @@ class _Check:
         same = self._same_set_bound(mesh, answer.mesh)
         rounding = same + TOLERANCES * answer.tolerance
         try:
-            found = difference_of(mesh, answer.mesh, self.result.pitch)
+            found = difference_of(mesh, answer.mesh, self.result.pitch, same)
         except InternalError as error:
             reason = f"the symmetric difference from manifold3d's mesh failed: {error.message}"
             return self._report(Verdict.SUBJECT_FAILED, reason, ours, theirs)
@@ -224,7 +227,7 @@ class _Check:
             reason,
             ours,
             theirs,
-            self.result.volume_exact,
+            self.exact_volume,
             found,
             *bounds,
             oracle.name(),

@@ -92,7 +92,8 @@ def _diagnosed(raw: RawMesh) -> Diagnosis:
     edges = _Edges(mesh.faces, len(vertices))
     findings = [*raw.findings, *_edge_findings(mesh, edges), *_face_findings(mesh, edges)]
     solid, verdict = _as_solid(raw, findings)
-    overlapping = None if solid is None else _overlaps(solid, findings)
+    # Inside out, the set is empty, and comparing the mesh with its boundary says nothing.
+    overlapping = _overlaps(solid, findings) if solid is not None and verdict == "solid" else None
     return Diagnosis(
         triangles=len(raw.faces),
         vertices=len(raw.vertices),

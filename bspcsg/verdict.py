@@ -1,13 +1,13 @@
 """What a check reports: verdicts, facts about meshes, and both in words and as JSON values."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from .discrepancy import SetDifference
+from .discrepancy import SetDifference, exact_text
 from .mesh import Mesh
 
 
@@ -94,7 +94,7 @@ class CheckReport:
     reason: str
     ours: Facts
     theirs: Facts | None
-    exact_volume: Fraction
+    exact_volume: Fraction = field(repr=False)
     set_difference: SetDifference | None
     same_set_bound: float
     rounding_bound: float
@@ -107,14 +107,14 @@ class CheckReport:
         return self.verdict not in (Verdict.DISAGREE, Verdict.SUBJECT_FAILED)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything as JSON values; exact numbers are strings like ``"1/3"``."""
+        """Return everything as JSON values; exact numbers as `exact_text` has them."""
         found = {**asdict(self), "verdict": str(self.verdict), "ok": self.ok}
-        found["exact_volume"] = str(self.exact_volume)
+        found["exact_volume"] = exact_text(self.exact_volume)
         found["notes"] = list(self.notes)
         if self.set_difference is not None:
             place = self.set_difference.place
             found["set_difference"]["volume"] = float(self.set_difference.volume)
-            found["set_difference"]["exact_volume"] = str(self.set_difference.volume)
+            found["set_difference"]["exact_volume"] = exact_text(self.set_difference.volume)
             found["set_difference"]["place"] = None if place is None else list(place)
         return found
 

@@ -181,11 +181,15 @@ class _Job:
             line = f"{line}\n  check: {report.summary()}"
         if not written:
             line = f"{self.target}: not written\n  check: {report.summary() if report else ''}"
-        self.out.result(line, self._document(result, mesh, report, written))
+        as_json = self.out.as_json
+        self.out.result(line, self._document(result, mesh, report, written) if as_json else {})
 
     def _document(
         self, result: "Solid", mesh: "Mesh", report: "CheckReport | None", written: bool
     ) -> dict[str, Any]:
+        from ..discrepancy import exact_text
+
+        exact = result.volume_exact if report is None else report.exact_volume
         return {
             "operation": self.op,
             "files": [str(path) for path in self.files],
@@ -196,8 +200,8 @@ class _Job:
             "vertices": len(mesh.vertices),
             "surfaces": mesh.components if len(mesh.faces) else 0,
             "genus": mesh.genus if len(mesh.faces) else 0,
-            "volume": result.volume,
-            "volume_exact": str(result.volume_exact),
+            "volume": float(exact),
+            "volume_exact": exact_text(exact),
             "area": mesh.area,
             "bounds": None if (bounds := mesh.bounds) is None else bounds.tolist(),
             "findings": output.finding_values(result.normalized().findings),

@@ -250,3 +250,26 @@ def test_inverted_operands_are_empty_to_both() -> None:
     inverted = b.Solid(*flipped(cuboid((0, 0, 0), (1, 1, 1))))
     report = validate("union", b.cube(2), inverted)
     assert report.verdict is Verdict.AGREE and report.exact_volume == 8
+
+
+def test_reports_of_volumes_with_thousands_of_digits() -> None:
+    report = validate("difference", b.sphere(1, segments=96), turned_cube(3), turned_cube(5))
+    assert report.exact_volume.denominator.bit_length() > 15_000
+    found = report.to_dict()
+    assert found["exact_volume"] is None
+    assert report.verdict is Verdict.AGREE, repr(report)
+
+
+def test_needles_are_no_pieces() -> None:
+    # Far longer than wide: in doubles, its volume is all rounding.
+    from bspcsg.discrepancy import _exact_volume, _measures
+
+    far = np.array([4868.5, -19325.25, 1819.875])
+    tip = far + [69.4, 192.3, 187.8]
+    near = far + np.array([(0, 0, 0), (1e-9, 3e-9, -2e-9), (-2e-9, 1e-9, 3e-9)])
+    vertices = np.concatenate([near, tip[None]])
+    faces = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)], dtype=np.int64)
+    mesh = b.Mesh(vertices, faces, np.zeros((4, 2), np.int64))
+    volumes, areas = _measures(mesh, np.zeros(4, np.int64), 1e-9)
+    assert volumes[0] == _exact_volume(vertices[faces])
+    assert 2 * abs(volumes[0]) / areas[0] < 1e-8
