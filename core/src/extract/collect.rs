@@ -2,6 +2,8 @@
 
 use rustc_hash::FxHashSet as HashSet;
 
+use std::sync::Arc;
+
 use crate::geometry::cell::Cell;
 use crate::geometry::line::LineKey;
 use crate::geometry::outline::{cancel, OutlineEdge};
@@ -291,4 +293,17 @@ fn lists(leaf: &Deferred, branch: &Branch, source: &Source, face: u32, flip: boo
             && g.flip ^ branch.complement == flip
             && g.faces.binary_search(&face).is_ok()
     })
+}
+
+/// Whether a solid has no boundary: it is empty or all of space.
+///
+/// A tree may list faces that meet none of their cells, so that the tree alone does not tell.
+pub fn has_no_boundary(solid: &Solid) -> bool {
+    if solid.root().constant().is_some() {
+        return true;
+    }
+    let sources = Sources::new(Arc::clone(solid.sources()));
+    let boundary = collect(solid, &sources);
+    let gone = |fates: &Vec<Fate>| fates.iter().all(|f| !matches!(f, Fate::Whole(_)));
+    boundary.cut.is_empty() && boundary.fates.iter().all(gone)
 }

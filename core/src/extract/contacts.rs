@@ -32,9 +32,16 @@ pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>> {
             text,
         ));
     }
-    if !split.split_vertices.is_empty() {
+    let ends: HashSet<u32> = split.split_edges.iter().flatten().copied().collect();
+    let alone: Vec<u32> = split
+        .split_vertices
+        .iter()
+        .copied()
+        .filter(|v| !ends.contains(v))
+        .collect();
+    if !alone.is_empty() {
         let text = "the solid touches itself at vertices, here split";
-        let places = place(&split.split_vertices);
+        let places = place(&alone);
         findings.push(Finding::about(
             "vertex_contact",
             Severity::Note,

@@ -11,6 +11,7 @@ use super::arrays::{array, rows};
 use super::errors::to_python;
 use super::run::run;
 use crate::error::{Error, ErrorKind, Result};
+use crate::extract::collect::has_no_boundary;
 use crate::extract::round::{self, Mesh};
 use crate::extract::snapshot::{Motion, Snapshot};
 use crate::merge::descend::Counters;
@@ -224,13 +225,15 @@ impl Tree {
     }
 
     #[getter]
-    fn is_empty(&self) -> bool {
-        self.solid.is_empty()
+    fn is_empty(&self, py: Python<'_>) -> PyResult<bool> {
+        let bare = run(py, 0, self.size(), |_| Ok(has_no_boundary(&self.solid)))?;
+        Ok(bare && self.solid.root().outside <= 0)
     }
 
     #[getter]
-    fn is_full(&self) -> bool {
-        self.solid.is_full()
+    fn is_full(&self, py: Python<'_>) -> PyResult<bool> {
+        let bare = run(py, 0, self.size(), |_| Ok(has_no_boundary(&self.solid)))?;
+        Ok(bare && self.solid.root().outside > 0)
     }
 
     #[getter]

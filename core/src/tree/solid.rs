@@ -99,14 +99,4 @@ impl Solid {
     pub fn united(&self) -> &OnceLock<Self> {
         &self.united
     }
-
-    /// Whether the point set is empty; reliable for reduced solids.
-    pub fn is_empty(&self) -> bool {
-        self.root.constant().is_some_and(|w| w <= 0)
-    }
-
-    /// Whether the point set is all of space; reliable for reduced solids.
-    pub fn is_full(&self) -> bool {
-        self.root.constant().is_some_and(|w| w > 0)
-    }
 }
