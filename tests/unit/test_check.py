@@ -262,7 +262,7 @@ def test_reports_of_volumes_with_thousands_of_digits() -> None:
 
 def test_needles_are_no_pieces() -> None:
     # Far longer than wide: in doubles, its volume is all rounding.
-    from bspcsg.discrepancy import _exact_volume, _measures
+    from bspcsg.pieces import _exact_volume, _measures
 
     far = np.array([4868.5, -19325.25, 1819.875])
     tip = far + [69.4, 192.3, 187.8]
@@ -273,3 +273,11 @@ def test_needles_are_no_pieces() -> None:
     volumes, areas = _measures(mesh, np.zeros(4, np.int64), 1e-9)
     assert volumes[0] == _exact_volume(vertices[faces])
     assert 2 * abs(volumes[0]) / areas[0] < 1e-8
+
+
+def test_a_wrong_oracle_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    wrong = (b.sphere(1) | b.cube(0.01).translate(3, 3, 3)).to_mesh()
+    monkeypatch.setattr(oracle, "_mesh_of", lambda _: wrong)
+    report = validate("union", b.sphere(1), b.sphere(0.5))
+    assert report.verdict is Verdict.ORACLE_FAILED and report.ok
+    assert "manifold3d's mesh is wrong" in report.reason
