@@ -22,7 +22,7 @@ use crate::mesh::finding::Finding;
 use crate::mesh::grid::{snap_point, Pitch};
 use crate::mesh::import::{half_space, import};
 use crate::query::classify::{classify, Location};
-use crate::query::measure::volume;
+use crate::query::measure::{volume, volume_near, volume_residues};
 use crate::tree::solid::Solid;
 use crate::tree::stats::{stats, Stats};
 
@@ -199,6 +199,16 @@ impl Tree {
     fn volume6_exact(&self, py: Python<'_>) -> PyResult<(BigInt, BigInt)> {
         let fraction = run(py, 0, self.size(), |_| volume(&self.solid))?;
         Ok((fraction.numerator, fraction.denominator))
+    }
+
+    fn volume_near(&self, py: Python<'_>) -> PyResult<(BigInt, BigInt)> {
+        let fraction = run(py, 0, self.size(), |_| volume_near(&self.solid))?;
+        Ok((fraction.numerator, fraction.denominator))
+    }
+
+    fn volume_residues(&self, py: Python<'_>) -> PyResult<Option<(u64, u64)>> {
+        let residues = run(py, 0, self.size(), |_| volume_residues(&self.solid))?;
+        Ok(residues.map(Into::into))
     }
 
     fn classify<'py>(
