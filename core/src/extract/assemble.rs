@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::collect::{collect, Fate};
 use super::contacts;
 use super::planes::{frontier, group, half_edge_ends, FrontierEdge, PlaneGroup};
-use super::seams::{find_touching, subdivisions, Edge};
+use super::seams::{find_touching, subdivisions, Edge, LinePoints};
 use super::triangulate::{triangulate, Planar};
 use super::vertices::{Projection, VertexTable};
 use crate::error::{Error, ErrorKind, Result};
@@ -162,7 +162,7 @@ impl<'a> Assembly<'a> {
             }
         }
         for e in &frontier {
-            edges.extend(self.frontier_edge(e, fates));
+            edges.extend(self.frontier_edge(*e, fates));
         }
         self.name_cut_corners(fates);
         let touching = self.touching(groups, &edges);
@@ -184,8 +184,8 @@ impl<'a> Assembly<'a> {
     }
 
     /// For each line the points at which a polygon touches or crosses an edge of its own.
-    fn touching(&mut self, groups: &[PlaneGroup], edges: &[Edge]) -> HashMap<LineKey, Vec<u32>> {
-        let mut touching = HashMap::default();
+    fn touching(&mut self, groups: &[PlaneGroup], edges: &[Edge]) -> LinePoints {
+        let mut touching = LinePoints::default();
         let mut start = 0;
         for group in groups {
             let own = &edges[start..start + group.edges.len()];
@@ -208,7 +208,7 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    fn frontier_edge(&mut self, e: &FrontierEdge, fates: &[Vec<Fate>]) -> Option<Edge> {
+    fn frontier_edge(&mut self, e: FrontierEdge, fates: &[Vec<Fate>]) -> Option<Edge> {
         let mesh = self.sources.get(e.slot as usize).mesh()?;
         let ends = half_edge_ends(mesh, e.half);
         let [a, b] = ends.map(|v| mesh.vertices[v as usize]);

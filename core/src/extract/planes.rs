@@ -163,7 +163,7 @@ impl Grouping<'_> {
             };
             let plane = self.oriented_plane(slot, face, flip);
             let group = self.group_of(plane, (slot, face));
-            let line = self.line_of(edge);
+            let line = self.line_of(*edge);
             candidates.push((slot, face, flip, group, line));
         }
         let group_lines: HashSet<(usize, LineKey)> = self
@@ -187,7 +187,7 @@ impl Grouping<'_> {
         }
     }
 
-    fn line_of(&self, edge: &FrontierEdge) -> LineKey {
+    fn line_of(&self, edge: FrontierEdge) -> LineKey {
         let mesh = self.sources.get(edge.slot as usize).mesh();
         mesh.map_or_else(
             || LineKey::of_edge(&[0; 3], &[1, 0, 0]),

@@ -52,6 +52,7 @@ fn position(solid: &Solid, exact: &ExactMesh, corner: Corner) -> [f64; 3] {
 }
 
 /// Reports triangles two corners of which were rounded to the same place.
+#[allow(clippy::float_cmp)]
 fn report_collapsed(mesh: &mut Mesh) {
     let same = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|v| mesh.vertices[v as usize]);

@@ -10,6 +10,9 @@ use super::vertices::{Projection, VertexTable};
 use crate::geometry::line::LineKey;
 use crate::geometry::outline::OutlineEdge;
 
+/// Numbered points by the line they lie on.
+pub type LinePoints = HashMap<LineKey, Vec<u32>>;
+
 /// A directed edge between numbered points, on a line.
 #[derive(Clone, Copy, Debug)]
 pub struct Edge {
@@ -28,11 +31,7 @@ pub struct Edge {
 ///
 /// # Source
 /// Design review F6.
-pub fn subdivisions(
-    edges: &[Edge],
-    touching: &HashMap<LineKey, Vec<u32>>,
-    table: &VertexTable,
-) -> Vec<Vec<u32>> {
+pub fn subdivisions(edges: &[Edge], touching: &LinePoints, table: &VertexTable) -> Vec<Vec<u32>> {
     let mut inner = vec![Vec::new(); edges.len()];
     let mut open = unpaired(edges, touching);
     open.sort_by_key(|i| (edges[*i].line, *i));
@@ -60,7 +59,7 @@ pub fn find_touching(
     edges: &[Edge],
     group: &PlaneGroup,
     table: &mut VertexTable,
-    touching: &mut HashMap<LineKey, Vec<u32>>,
+    touching: &mut LinePoints,
 ) {
     let view = Projection::onto(&group.plane, table);
     let mut boxed: Vec<Boxed> = edges
@@ -108,7 +107,7 @@ impl<'a> Boxed<'a> {
 }
 
 /// The edges left after opposite ones with equal ends cancel, and all on lines with touching points.
-fn unpaired(edges: &[Edge], touching: &HashMap<LineKey, Vec<u32>>) -> Vec<usize> {
+fn unpaired(edges: &[Edge], touching: &LinePoints) -> Vec<usize> {
     let mut waiting: HashMap<(u32, u32), Vec<usize>> =
         HashMap::with_capacity_and_hasher(edges.len(), rustc_hash::FxBuildHasher);
     let mut paired = vec![false; edges.len()];

@@ -110,8 +110,7 @@ impl Motion {
 
     fn point(&self, p: &Lattice) -> Result<Lattice> {
         let mut image = [0; 3];
-        for i in 0..3 {
-            let (axis, sign) = self.axes[i];
+        for (i, (axis, sign)) in self.axes.into_iter().enumerate() {
             image[i] = p[axis]
                 .checked_mul(self.scale * sign)
                 .and_then(|k| k.checked_add(self.shift[i]))
@@ -144,8 +143,7 @@ impl Motion {
             VertexData::Meet(x, w) => {
                 let w6 = Int::from_limbs(*w);
                 let mut image = [[0; 6]; 3];
-                for i in 0..3 {
-                    let (axis, sign) = self.axes[i];
+                for (i, (axis, sign)) in self.axes.into_iter().enumerate() {
                     let turned: Int<8> = Int::from_limbs(x[axis]).mul_i64(sign * self.scale);
                     let shifted: Int<8> = w6.mul_i64(self.shift[i]);
                     let sum = (turned + shifted).narrow::<6>().ok_or_else(too_large)?;
@@ -375,7 +373,9 @@ impl SourceData {
                     *double = motion.double(pitch, double, vertex);
                 }
                 if motion.mirrors() {
-                    faces.iter_mut().for_each(|f| f.swap(1, 2));
+                    for face in faces {
+                        face.swap(1, 2);
+                    }
                 }
             }
         }

@@ -52,6 +52,11 @@ impl VertexTable {
         &self.points[id as usize]
     }
 
+    /// Whether there are no points.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
     /// How many points there are.
     pub fn len(&self) -> usize {
         self.points.len()

@@ -24,8 +24,8 @@ impl LineKey {
 
     /// The line in which two planes meet.
     pub fn of_planes(a: &Plane, b: &Plane) -> Self {
-        let n = a.normal().map(|c| residue(c));
-        let m = b.normal().map(|c| residue(c));
+        let n = a.normal().map(residue);
+        let m = b.normal().map(residue);
         let (d, e) = (a.offset().rem_u61(P1), b.offset().rem_u61(P1));
         let moment = [0, 1, 2].map(|i| sub(mul_mod(d, m[i], P1), mul_mod(e, n[i], P1)));
         Self::normalized(cross(&n, &m), moment)

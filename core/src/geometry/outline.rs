@@ -61,7 +61,7 @@ pub fn order_along(a: &Arc<Vertex>, b: &Arc<Vertex>, axis: usize) -> Ordering {
 /// # Order
 /// By line key, then along the line.
 pub fn cancel(mut edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
-    edges.sort_by(|a, b| a.line.cmp(&b.line));
+    edges.sort_by_key(|e| e.line);
     let mut kept = Vec::with_capacity(edges.len());
     for run in edges.chunk_by(|a, b| a.line == b.line) {
         match run {

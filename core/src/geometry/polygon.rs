@@ -79,7 +79,10 @@ pub struct Polygon {
 }
 
 /// Where a polygon lies relative to a plane.
+///
+/// Pieces are moved on at once, never stored, so that boxing the large variant would only cost.
 #[derive(Debug)]
+#[allow(clippy::large_enum_variant)]
 pub enum PolygonSplit {
     /// Entirely on the minus side, perhaps touching.
     Minus,
@@ -217,16 +220,13 @@ impl Polygon {
     fn reach(&self, axis: usize, low: i64, high: i64) -> (bool, bool) {
         let (mut below, mut above) = (false, false);
         for corner in &self.corners {
-            match corner.at.as_lattice() {
-                Some(p) => {
-                    below |= p[axis] < low;
-                    above |= p[axis] > high;
-                }
-                None => {
-                    let c = corner.at.approx()[axis];
-                    below |= c < low as f64;
-                    above |= c > high as f64;
-                }
+            if let Some(p) = corner.at.as_lattice() {
+                below |= p[axis] < low;
+                above |= p[axis] > high;
+            } else {
+                let c = corner.at.approx()[axis];
+                below |= c < low as f64;
+                above |= c > high as f64;
             }
         }
         (below, above)

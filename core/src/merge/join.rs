@@ -189,7 +189,7 @@ fn grouped(faces: Vec<Listed>) -> Vec<Group> {
     for f in faces {
         match groups.last_mut() {
             Some(g) if Arc::ptr_eq(&g.source, &f.source) && g.flip == f.flip => {
-                g.faces.push(f.face)
+                g.faces.push(f.face);
             }
             _ => groups.push(Group {
                 source: f.source,

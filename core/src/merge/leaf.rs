@@ -78,7 +78,7 @@ pub fn evaluate(
 ) -> Node {
     let operands: Vec<Operand> = lists
         .into_iter()
-        .map(|(number, list)| Operand::new(number, list, cell, sources))
+        .map(|(number, list)| Operand::new(number, &list, cell, sources))
         .collect();
     for operand in operands.iter().filter(|o| !o.simple) {
         evidence(operand.number);
@@ -104,9 +104,9 @@ pub fn evaluate(
 }
 
 impl Operand {
-    fn new(number: u32, list: List, cell: &Cell, sources: &Sources) -> Self {
+    fn new(number: u32, list: &List, cell: &Cell, sources: &Sources) -> Self {
         let corner = list.corner;
-        let (fragments, overlap) = disjoint(fragments(&list, cell, sources));
+        let (fragments, overlap) = disjoint(fragments(list, cell, sources));
         let weighted = fragments
             .iter()
             .map(|f| Weighted {
@@ -335,7 +335,7 @@ pub struct LeafTree(Operand);
 
 impl LeafTree {
     /// The local tree of a list.
-    pub fn new(list: List, cell: &Cell, sources: &Sources) -> Self {
+    pub fn new(list: &List, cell: &Cell, sources: &Sources) -> Self {
         Self(Operand::new(0, list, cell, sources))
     }
 

@@ -364,7 +364,7 @@ const SLACK: f64 = 1e-13;
 fn middle(cell: &Cell, origin: &Lattice) -> ([f64; 3], [f64; 3]) {
     let (low, high) = (cell.low(), cell.high());
     let center =
-        [0, 1, 2].map(|i| ((low[i] - origin[i]) as f64 + (high[i] - origin[i]) as f64) / 2.0);
+        [0, 1, 2].map(|i| f64::midpoint((low[i] - origin[i]) as f64, (high[i] - origin[i]) as f64));
     (
         center,
         [0, 1, 2].map(|i| (high[i] - low[i]) as f64 / 2.0 + 0.5),

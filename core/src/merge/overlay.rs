@@ -57,7 +57,7 @@ fn add(placed: &mut Vec<Fragment>, new: Fragment) -> bool {
             .any(|r| !separated(&placed[i].polygon, &r.polygon));
         if touched {
             let old = placed.remove(i);
-            let (remaining, met) = combine(old, rest, &mut carved);
+            let (remaining, met) = combine(&old, rest, &mut carved);
             rest = remaining;
             overlap |= met;
         } else {
@@ -72,7 +72,7 @@ fn add(placed: &mut Vec<Fragment>, new: Fragment) -> bool {
 /// Overlays one placed fragment with the pieces of a new one; returns the pieces outside it, and
 /// whether any was inside.
 fn combine(
-    old: Fragment,
+    old: &Fragment,
     rest: Vec<Fragment>,
     carved: &mut Vec<Fragment>,
 ) -> (Vec<Fragment>, bool) {

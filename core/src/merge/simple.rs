@@ -101,7 +101,7 @@ impl Check<'_> {
         let stuck = || total <= STUCK && list.reaching_out(&cell) * 8 > total * 7;
         let cut = cell.cut().filter(|_| total > LEAF && !stuck());
         let Some(cut) = cut else {
-            self.leaf(&cell, list);
+            self.leaf(&cell, &list);
             return;
         };
         let (minus, plus) = list.divide(&cell, cut, self.sources);
@@ -115,7 +115,7 @@ impl Check<'_> {
         }
     }
 
-    fn leaf(&self, cell: &Cell, list: List) {
+    fn leaf(&self, cell: &Cell, list: &List) {
         let faces: Vec<u32> = list.records.iter().map(|r| r.face).collect();
         let shells = || {
             faces

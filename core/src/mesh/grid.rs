@@ -137,6 +137,7 @@ fn power_of_ten(exponent: i8) -> f64 {
 }
 
 /// Rounds the exact product x·power to an integer; |x·power| < 2^53.
+#[allow(clippy::float_cmp)]
 fn snap_product(x: f64, power: f64) -> f64 {
     let product = x * power;
     let rounded = product.round();

@@ -118,6 +118,7 @@ pub fn half_space(normal: [f64; 3], offset: f64, pitch: Pitch) -> Result<Source>
 }
 
 /// The normal as integers of at most 53 bits, and whether nothing was lost.
+#[allow(clippy::float_cmp)]
 fn integer_normal(normal: &[f64; 3], size: f64) -> ([i128; 3], bool) {
     let exponent = size.log2().floor();
     let scaled = normal.map(|c| c / 2f64.powf(exponent) * 2f64.powi(52));

@@ -1,4 +1,9 @@
 //! Triangle meshes on the lattice: import, topology and findings.
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss
+)]
 
 pub mod finding;
 pub mod grid;

@@ -113,6 +113,9 @@ impl Source {
     }
 
     /// The supporting plane of a face.
+    ///
+    /// # Panics
+    /// Never for faces of this source: those without area were left out at import.
     pub fn plane(&self, face: u32) -> Arc<Plane> {
         match &self.shape {
             Shape::Mesh(mesh) => {

@@ -26,6 +26,8 @@ use crate::query::measure::{volume, volume_near, volume_residues};
 use crate::tree::solid::Solid;
 use crate::tree::stats::{stats, Stats};
 
+type Corners = ((f64, f64, f64), (f64, f64, f64));
+
 type MeshArrays<'py> = (
     Bound<'py, PyArray2<f64>>,
     Bound<'py, PyArray2<i64>>,
@@ -256,7 +258,7 @@ impl Tree {
     }
 
     #[getter]
-    fn bounds(&self, py: Python<'_>) -> PyResult<Option<((f64, f64, f64), (f64, f64, f64))>> {
+    fn bounds(&self, py: Python<'_>) -> PyResult<Option<Corners>> {
         let mesh = self.rounded(py, 0)?;
         let mut used = mesh.vertices.iter();
         let Some(first) = used.next() else {

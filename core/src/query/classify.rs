@@ -113,12 +113,12 @@ impl Search<'_> {
                     open.push((cell.half(cut, false), minus, below));
                     open.push((cell.half(cut, true), plus, above));
                 }
-                None => self.leaf(&cell, list, &points),
+                None => self.leaf(&cell, &list, &points),
             }
         }
     }
 
-    fn leaf(&mut self, cell: &Cell, list: List, points: &[usize]) {
+    fn leaf(&mut self, cell: &Cell, list: &List, points: &[usize]) {
         let leaf = LeafTree::new(list, cell, self.sources);
         for i in points {
             let p = &self.points[*i];

@@ -79,6 +79,7 @@ impl Branch {
     }
 
     /// A child as this branch means it: the branch's complement bit is passed on.
+    #[must_use]
     pub fn child(&self, child: &Self) -> Self {
         if self.complement {
             child.complemented()
