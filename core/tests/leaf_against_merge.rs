@@ -1,0 +1,373 @@
+//! The leaf kernel, which labels pieces of boundary, against the merging of whole trees.
+//!
+//! Two ways to one set: `merge::leaf` pushes each operand's fragments through the other operands'
+//! local trees; `merge::merge` splits one tree by the other's cuts and reads the boundary off the
+//! result. They share predicates and polygons, and nothing else.
+
+mod support;
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use bspcsg::geometry::cell::Cell;
+use bspcsg::geometry::dim3::Dim3;
+use bspcsg::geometry::plane::{Lattice, Plane};
+use bspcsg::geometry::polygon::Polygon;
+use bspcsg::geometry::side::Half;
+use bspcsg::geometry::vertex::Vertex;
+use bspcsg::merge::expression::{Expression, Term};
+use bspcsg::merge::leaf::{self, Rule};
+use bspcsg::merge::list::{List, Sources};
+use bspcsg::merge::{merge, SetOp};
+use bspcsg::mesh::source::Source;
+use bspcsg::query::classify::Location;
+use bspcsg::tree::node::{Branch, Node};
+use bspcsg::tree::partition::{self, autopartition, winding_tree, Facet, Label, PivotPolicy};
+use bspcsg::tree::solid::Solid;
+
+use support::{applied, located, normalized, sixfold_volume, volume, Numbers, Ratio, Shape};
+
+type Tree = partition::PartitionTree<Dim3>;
+
+/// Coordinates of all shapes here are in `0..REACH`; one cell holds them all.
+const REACH: i64 = 16;
+
+fn everything() -> Cell {
+    Cell::around(&[0; 3], &[REACH - 1; 3])
+}
+
+/// A tetrahedron, a box, a mixture that overlaps itself, or one with an inverted part.
+fn any_shape(numbers: &mut Numbers, reach: i64) -> Shape {
+    let one = |numbers: &mut Numbers| match numbers.below(2) {
+        0 => Shape::any_tetrahedron(numbers, reach),
+        _ => Shape::any_cuboid(numbers, reach),
+    };
+    let first = one(numbers);
+    match numbers.below(4) {
+        0 | 1 => first,
+        2 => first.with(one(numbers)).with(one(numbers)),
+        _ => first.with(one(numbers)).with(one(numbers).inverted()),
+    }
+}
+
+fn reference(cell: &Cell) -> impl Fn(&Arc<Plane>) -> Half {
+    let corner = cell.corner();
+    move |cut| {
+        if cut.side_of_corner(&corner) < 0 {
+            Half::Minus
+        } else {
+            Half::Plus
+        }
+    }
+}
+
+/// The tree of a source inside a cell, its facets numbered from `first`; `number` is the winding
+/// number at the cell's low corner.
+fn tree_in(source: &Source, cell: &Cell, number: i32, first: u64, seed: u64) -> Tree {
+    let face_count = u32::try_from(source.face_count()).expect("small");
+    let facets = (0..face_count).filter_map(|face| {
+        let fragment = source.clip(face, cell)?;
+        let source = first + u64::from(face);
+        Some(Facet { fragment, source })
+    });
+    let policy = PivotPolicy::Random(seed);
+    let built = autopartition(facets.collect(), *cell, Label::Out, policy).expect("built");
+    let labelled = winding_tree(&built.tree, reference(cell), number, |w| w > 0);
+    labelled.expect("a closed surface").tree
+}
+
+/// What pieces of boundary add up to: for each face and orientation their cones' exact volume.
+///
+/// Cones are additive over pieces, and a plane through the origin is the only one they miss.
+type Flux = HashMap<(u64, bool), Ratio>;
+
+fn add_flux(flux: &mut Flux, key: (u64, bool), polygon: &Polygon) {
+    let corners: Vec<_> = polygon
+        .corners()
+        .iter()
+        .map(|c| c.at.coordinates())
+        .collect();
+    let sum = flux.entry(key).or_insert_with(|| Ratio::whole(0));
+    for pair in corners[1..].windows(2) {
+        *sum = sum.plus(&sixfold_volume([&corners[0], &pair[0], &pair[1]]));
+    }
+}
+
+fn without_zeros(mut flux: Flux) -> Flux {
+    flux.retain(|_, sum| *sum != Ratio::whole(0));
+    flux
+}
+
+/// The flux of a set by the owners of its boundary.
+fn flux_of_tree(tree: &Tree, plane_of: impl Fn(u64) -> Arc<Plane>) -> Flux {
+    let mut flux = Flux::new();
+    for facet in partition::owned_boundary(tree).expect("a boundary") {
+        let turned = *plane_of(facet.source) != **facet.fragment.support();
+        add_flux(&mut flux, (facet.source, turned), &facet.fragment);
+    }
+    without_zeros(flux)
+}
+
+/// The flux of a deferred leaf; `first` numbers the first face of each source.
+fn flux_of_node(node: &Node, cell: &Cell, first: impl Fn(&Source) -> u64) -> Flux {
+    let mut flux = Flux::new();
+    let Node::Deferred(leaf) = node else {
+        return flux;
+    };
+    let mut add = |source: &Source, face: u32, flip: bool, polygon: &Polygon| {
+        let key = (first(source) + u64::from(face), flip);
+        if flip {
+            add_flux(&mut flux, key, &polygon.flipped());
+        } else {
+            add_flux(&mut flux, key, polygon);
+        }
+    };
+    for group in &leaf.groups {
+        for face in &group.faces {
+            let whole = group.source.clip(*face, cell).expect("a face in its cell");
+            add(&group.source, *face, group.flip, &whole);
+        }
+    }
+    for element in &leaf.parts {
+        let part = &element.part;
+        for piece in part.pieces() {
+            add(&part.source, part.face, element.flip, &piece);
+        }
+    }
+    without_zeros(flux)
+}
+
+/// The list of a solid in a cell below its root, by repeated halving.
+fn list_in(solid: &Solid, cell: &Cell, sources: &Sources) -> Option<List> {
+    let root = solid.root();
+    let Node::Deferred(leaf) = &*root.node else {
+        return None;
+    };
+    let mut at = root.cell;
+    let mut list = List::open(leaf, root, sources);
+    while at.holds(cell) && at != *cell {
+        let cut = at.cut()?;
+        let above = cell.low()[cut.axis] >= cut.at;
+        let (minus, plus) = list.divide(&at, cut, sources);
+        list = if above { plus } else { minus };
+        at = at.half(cut, above);
+    }
+    (at == *cell).then_some(list)
+}
+
+/// A random cell that a few halvings of `everything` lead to.
+fn any_cell(numbers: &mut Numbers) -> Cell {
+    let point = numbers.point(REACH);
+    let mut cell = everything();
+    for _ in 0..numbers.below(9) {
+        let Some(cut) = cell.cut() else { break };
+        cell = cell.half(cut, point[cut.axis] >= cut.at);
+    }
+    cell
+}
+
+fn lattice_points(cell: &Cell) -> Vec<Lattice> {
+    let (low, high) = (*cell.low(), cell.high());
+    let along = |i: usize| low[i]..=high[i];
+    let plane = move |x| along(1).flat_map(move |y| along(2).map(move |z| [x, y, z]));
+    along(0).flat_map(plane).collect()
+}
+
+fn location_in(tree: &Tree, point: &Lattice) -> Location {
+    match partition::classify(tree, &Vertex::lattice(*point)) {
+        partition::Location::In => Location::Inside,
+        partition::Location::On => Location::Boundary,
+        partition::Location::Out => Location::Outside,
+    }
+}
+
+fn assert_same_points(tree: &Tree, solid: &Solid, points: &[Lattice], context: &str) {
+    for (point, found) in points.iter().zip(located(solid, points)) {
+        assert_eq!(location_in(tree, point), found, "{context} at {point:?}");
+    }
+}
+
+fn expression(op: SetOp) -> Expression {
+    let mut terms = vec![Term::Operand(0), Term::Operand(1)];
+    terms.extend(match op {
+        SetOp::Union => vec![Term::Or(vec![0, 1])],
+        SetOp::Intersection => vec![Term::And(vec![0, 1])],
+        SetOp::Difference => vec![Term::Not(1), Term::And(vec![0, 2])],
+        SetOp::SymmetricDifference => vec![Term::Xor(vec![0, 1])],
+    });
+    Expression::new(terms).expect("well formed")
+}
+
+/// Two operands in one small cell: the kernel on their lists, and their local trees merged.
+struct Pair {
+    cell: Cell,
+    shapes: [Shape; 2],
+    sources: Sources,
+    lists: [List; 2],
+    trees: [Tree; 2],
+}
+
+impl Pair {
+    fn new(shapes: [Shape; 2], cell: Cell, seed: u64) -> Option<Self> {
+        let solids = shapes.each_ref().map(Shape::unchecked);
+        let table: Vec<Arc<Source>> = solids.iter().flat_map(|s| s.sources().to_vec()).collect();
+        let sources = Sources::new(Arc::from(table));
+        let [a, b] = solids.each_ref().map(|s| list_in(s, &cell, &sources));
+        let lists = [a?, b?];
+        let count = sources.get(0).face_count() as u64;
+        let tree = |i: usize| {
+            let first = if i == 0 { 0 } else { count };
+            tree_in(sources.get(i), &cell, lists[i].corner, first, seed)
+        };
+        let trees = [tree(0), tree(1)];
+        Some(Self {
+            cell,
+            shapes,
+            sources,
+            lists,
+            trees,
+        })
+    }
+
+    fn first_of(&self, source: &Source) -> u64 {
+        let slot = self.sources.slot(source);
+        (0..slot)
+            .map(|i| self.sources.get(i).face_count() as u64)
+            .sum()
+    }
+
+    fn plane_of(&self, number: u64) -> Arc<Plane> {
+        let count = self.sources.get(0).face_count() as u64;
+        let (slot, face) = if number < count {
+            (0, number)
+        } else {
+            (1, number - count)
+        };
+        self.sources
+            .get(slot)
+            .plane(u32::try_from(face).expect("small"))
+    }
+
+    fn compare(&self, op: SetOp) {
+        let context = || format!("{op:?} in {:?} of {:?}", self.cell, self.shapes);
+        let lists = (0..).zip(self.lists.iter().cloned()).collect();
+        let rule = Rule::Positive;
+        let expression = expression(op);
+        let node = leaf::evaluate(&self.cell, &expression, rule, lists, &self.sources, |_| ());
+        let merged = merge(&self.trees[0], &self.trees[1], op).expect("merged");
+        let expected = flux_of_tree(&merged, |number| self.plane_of(number));
+        let found = flux_of_node(&node, &self.cell, |source| self.first_of(source));
+        assert_eq!(
+            by_plane(&expected, self),
+            by_plane(&found, self),
+            "{}",
+            context()
+        );
+        if self.shapes.iter().all(|s| s.faces.len() <= 12) {
+            assert_eq!(expected, found, "owners: {}", context());
+        }
+        assert_same_points(
+            &merged,
+            &self.solid(node),
+            &lattice_points(&self.cell),
+            &context(),
+        );
+    }
+
+    fn solid(&self, node: Node) -> Solid {
+        let root = Branch {
+            cell: self.cell,
+            outside: 0,
+            complement: false,
+            node: Arc::new(node),
+        };
+        let sources = Arc::clone(self.sources.table());
+        Solid::new(root, self.sources.get(0).pitch(), sources, true)
+    }
+}
+
+/// The flux by oriented planes, for operands whose own faces overlap have no one owner.
+fn by_plane(flux: &Flux, pair: &Pair) -> HashMap<Plane, Ratio> {
+    let mut sums: HashMap<Plane, Ratio> = HashMap::new();
+    for ((number, turned), value) in flux {
+        let plane = pair.plane_of(*number);
+        let plane = if *turned {
+            plane.flipped()
+        } else {
+            (*plane).clone()
+        };
+        let sum = sums.entry(plane).or_insert_with(|| Ratio::whole(0));
+        *sum = sum.plus(value);
+    }
+    sums.retain(|_, sum| *sum != Ratio::whole(0));
+    sums
+}
+
+#[test]
+fn the_kernel_agrees_with_merged_trees_in_small_cells() {
+    let mut numbers = Numbers::new(1);
+    let mut compared = 0;
+    for round in 0..400 {
+        let shapes = [0; 2].map(|_| any_shape(&mut numbers, REACH));
+        let cell = any_cell(&mut numbers);
+        if let Some(pair) = Pair::new(shapes, cell, round) {
+            for op in SetOp::ALL {
+                pair.compare(op);
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared > 100, "only {compared} pairs met");
+}
+
+/// The tree of a whole solid that has not been operated on.
+fn whole_tree(solid: &Solid, seed: u64) -> Tree {
+    tree_in(&solid.sources()[0], &everything(), 0, 0, seed)
+}
+
+fn assert_same_solid(tree: &Tree, solid: &Solid, context: &str) {
+    let mut sum = Ratio::whole(0);
+    for wall in partition::boundary(tree).expect("a boundary") {
+        let mut flux = Flux::new();
+        add_flux(&mut flux, (0, false), &wall);
+        sum = sum.plus(&flux[&(0, false)]);
+    }
+    assert_eq!(volume(solid).times(6), sum, "{context}");
+    assert_same_points(tree, solid, &lattice_points(&everything()), context);
+}
+
+#[test]
+fn whole_solids_agree_with_merged_trees() {
+    let mut numbers = Numbers::new(2);
+    for round in 0..40 {
+        let shapes = [0; 2].map(|_| any_shape(&mut numbers, 8));
+        let raw = shapes.each_ref().map(Shape::unchecked);
+        let [a, b] = raw.each_ref().map(|s| normalized(s, Rule::Positive));
+        let trees = raw.each_ref().map(|s| whole_tree(s, round));
+        for op in SetOp::ALL {
+            let context = format!("{op:?} of {shapes:?}");
+            let merged = merge(&trees[0], &trees[1], op).expect("merged");
+            assert_same_solid(&merged, &applied(op, &a, &b), &context);
+            let late = normalized(&applied(op, &raw[0], &raw[1]), Rule::Positive);
+            assert_same_solid(&merged, &late, &format!("normalized {context}"));
+        }
+    }
+}
+
+/// A chain of operations: results are operands, trees grow by merging.
+#[test]
+fn chains_agree_with_merged_trees() {
+    let mut numbers = Numbers::new(3);
+    for round in 0..6 {
+        let first = any_shape(&mut numbers, 8).unchecked();
+        let mut tree = whole_tree(&first, round);
+        let mut solid = normalized(&first, Rule::Positive);
+        for _ in 0..8 {
+            let op = numbers.pick(&SetOp::ALL);
+            let next = Shape::any_tetrahedron(&mut numbers, 8).solid();
+            tree = merge(&tree, &whole_tree(&next, round), op).expect("merged");
+            solid = applied(op, &solid, &next);
+            assert_same_solid(&tree, &solid, &format!("{op:?} in round {round}"));
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Checks of meshes.
+
+use std::collections::{HashMap, HashSet};
+
+use bspcsg::extract::round::{self, Mesh};
+use bspcsg::tree::solid::Solid;
+
+/// The mesh, checked: every directed edge has exactly one opposite, every vertex is used.
+pub fn closed_mesh(solid: &Solid, context: &str) -> Mesh {
+    let mesh = round::mesh(solid).unwrap_or_else(|e| panic!("{context}: {e}"));
+    let after = corners(&mesh, context);
+    let closed = after.keys().all(|(a, b)| after.contains_key(&(*b, *a)));
+    assert!(closed, "{context}: an edge has no opposite");
+    let used: HashSet<u32> = mesh.triangles.iter().flatten().copied().collect();
+    assert_eq!(
+        used.len(),
+        mesh.vertices.len(),
+        "{context}: unused vertices"
+    );
+    mesh
+}
+
+/// The closed mesh of manifold operands, checked: every vertex has one fan of triangles.
+pub fn manifold_mesh(solid: &Solid, context: &str) -> Mesh {
+    let mesh = closed_mesh(solid, context);
+    let fans = fans(&corners(&mesh, context));
+    assert_eq!(fans, mesh.vertices.len(), "{context}: a vertex of two fans");
+    mesh
+}
+
+/// For each vertex and edge that leaves it the end of the next edge around the vertex.
+fn corners(mesh: &Mesh, context: &str) -> HashMap<(u32, u32), u32> {
+    let mut after = HashMap::new();
+    for &[a, b, c] in &mesh.triangles {
+        for (v, from, to) in [(a, b, c), (b, c, a), (c, a, b)] {
+            let twice = after.insert((v, from), to);
+            assert!(twice.is_none(), "{context}: edge {v} {from} is used twice");
+        }
+    }
+    after
+}
+
+/// How many closed fans the corners make, given what comes after each edge around its start.
+fn fans(after: &HashMap<(u32, u32), u32>) -> usize {
+    let mut seen: HashSet<(u32, u32)> = HashSet::with_capacity(after.len());
+    let mut count = 0;
+    for &(vertex, start) in after.keys() {
+        let mut spoke = start;
+        count += usize::from(!seen.contains(&(vertex, start)));
+        while seen.insert((vertex, spoke)) {
+            spoke = after[&(vertex, spoke)];
+        }
+    }
+    count
+}
+
+/// The triangles by the doubles of their corners, the smallest corner first, sorted.
+pub fn triangle_set(mesh: &Mesh) -> Vec<[[u64; 3]; 3]> {
+    let corner = |v: u32| mesh.vertices[v as usize].map(f64::to_bits);
+    let mut set: Vec<_> = mesh
+        .triangles
+        .iter()
+        .map(|t| {
+            let mut t = t.map(corner);
+            while t[0] > t[1] || t[0] > t[2] {
+                t.rotate_left(1);
+            }
+            t
+        })
+        .collect();
+    set.sort_unstable();
+    set
+}
