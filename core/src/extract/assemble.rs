@@ -116,9 +116,7 @@ fn unbounded() -> Error {
 
 /// Whether an outline runs on the border of the universe, where only half-spaces reach.
 fn reaches_infinity(group: &PlaneGroup) -> bool {
-    let limit = crate::mesh::grid::LIMIT - 1.0;
-    let far = |v: &Vertex| v.as_lattice().is_none() && v.approx().iter().any(|c| c.abs() > limit);
-    group.edges.iter().any(|e| far(&e.from))
+    group.edges.iter().any(|e| e.carrier.is_border())
 }
 
 impl<'a> Assembly<'a> {

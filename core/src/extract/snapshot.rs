@@ -11,9 +11,10 @@ use crate::geometry::cell::{Cell, REACH};
 use crate::geometry::outline::OutlineEdge;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
-use crate::geometry::vertex::Vertex;
+use crate::geometry::vertex::{cross, Vertex};
 use crate::merge::list::Sources;
 use crate::mesh::grid::Pitch;
+use crate::mesh::import::is_flat;
 use crate::mesh::source::{Shape, Source, TriangleMesh};
 use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
 use crate::tree::solid::Solid;
@@ -282,7 +283,9 @@ impl Snapshot {
             .filter(|p| unbounded(p.slot))
             .flat_map(|p| &p.edges);
         (self.wholes.iter().any(|w| unbounded(w.slot)) && !alone)
-            || edges.into_iter().any(|e| e.from.is_on_border())
+            || edges
+                .into_iter()
+                .any(|e| e.carrier.carrier().is_ok_and(|c| c.is_border()))
     }
 
     /// The label at the low corner of the universe: a lone plane decides it by its side there.
@@ -345,7 +348,9 @@ impl SourceData {
                     .flatten()
                     .all(|k| k.unsigned_abs() < 1 << REACH);
                 let numbered = numbers.as_ref().is_none_or(|n| n.len() == faces.len());
-                if !(named && fits && numbered && doubles.len() == count) {
+                let flat = |f: &[u32; 3]| is_flat(&f.map(|v| vertices[v as usize]));
+                let sound = named && fits && numbered && doubles.len() == count;
+                if !sound || faces.iter().any(flat) {
                     return Err(bad_snapshot());
                 }
                 Shape::Mesh(TriangleMesh {
@@ -395,6 +400,9 @@ impl PartData {
             .iter()
             .map(|e| e.edge(&support))
             .collect::<Result<Vec<_>>>()?;
+        if !is_balanced(&edges) {
+            return Err(bad_snapshot());
+        }
         let part = Part {
             source: Arc::clone(source),
             face: self.face,
@@ -422,14 +430,15 @@ impl EdgeData {
     }
 
     fn edge(&self, support: &Plane) -> Result<OutlineEdge> {
-        let carrier = match &self.carrier {
-            CarrierData::Edge(a, b) => Carrier::Edge(*a, *b),
-            CarrierData::Cut(plane, flip) => Carrier::Cut(Arc::new(plane.plane()?), *flip),
-        };
+        let carrier = self.carrier.carrier()?;
+        let (from, to) = (self.from.vertex()?, self.to.vertex()?);
+        if !carries(&carrier, support, &from, &to) {
+            return Err(bad_snapshot());
+        }
         let line = carrier.line(support);
         Ok(OutlineEdge {
-            from: Arc::new(self.from.vertex()?),
-            to: Arc::new(self.to.vertex()?),
+            from: Arc::new(from),
+            to: Arc::new(to),
             carrier,
             line,
         })
@@ -452,6 +461,47 @@ impl EdgeData {
     }
 }
 
+impl CarrierData {
+    fn carrier(&self) -> Result<Carrier> {
+        Ok(match self {
+            Self::Edge(a, b) => Carrier::Edge(*a, *b),
+            Self::Cut(plane, flip) => Carrier::Cut(Arc::new(plane.plane()?), *flip),
+        })
+    }
+}
+
+/// Whether a carrier and a support meet in a line that both ends lie on.
+fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bool {
+    let on = |plane: &Plane| from.side_of(plane) == 0 && to.side_of(plane) == 0;
+    let crosses = |plane: &Plane| {
+        cross(plane.normal(), support.normal())
+            .iter()
+            .any(|c| !c.is_zero())
+    };
+    let carried = match carrier {
+        Carrier::Edge(a, b) => {
+            let near = [a, b]
+                .iter()
+                .all(|p| p.iter().all(|k| k.unsigned_abs() < 1 << REACH));
+            near && a != b
+                && support.side_of_lattice(a) == 0
+                && support.side_of_lattice(b) == 0
+                && on(&carrier.plane(support))
+        }
+        Carrier::Cut(plane, _) => crosses(plane) && on(plane),
+    };
+    carried && on(support) && !from.same(to)
+}
+
+/// Whether as many edges of an outline leave each point as arrive.
+fn is_balanced(edges: &[OutlineEdge]) -> bool {
+    let mut ends: Vec<_> = edges.iter().map(|e| e.from.key()).collect();
+    let mut starts: Vec<_> = edges.iter().map(|e| e.to.key()).collect();
+    ends.sort_unstable();
+    starts.sort_unstable();
+    ends == starts
+}
+
 impl VertexData {
     fn of(vertex: &Vertex) -> Self {
         if let Some(p) = vertex.as_lattice() {
@@ -459,13 +509,6 @@ impl VertexData {
         }
         let h = vertex.coordinates();
         Self::Meet(h.x.map(|c| *c.limbs()), *h.w.limbs())
-    }
-
-    /// Whether a half-space was clipped here by the border of the universe.
-    fn is_on_border(&self) -> bool {
-        let limit = crate::mesh::grid::LIMIT - 1.0;
-        self.vertex()
-            .is_ok_and(|v| v.as_lattice().is_none() && v.approx().iter().any(|c| c.abs() > limit))
     }
 
     fn vertex(&self) -> Result<Vertex> {

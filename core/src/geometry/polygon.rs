@@ -31,6 +31,20 @@ impl Carrier {
         }
     }
 
+    /// Whether this is the border of the universe, which cuts half-spaces off and nothing else.
+    pub fn is_border(&self) -> bool {
+        match self {
+            Self::Edge(..) => false,
+            Self::Cut(plane, _) => {
+                plane.only_axis().is_some()
+                    && Cell::UNIVERSE
+                        .walls()
+                        .iter()
+                        .any(|w| w.coincides(plane).is_some())
+            }
+        }
+    }
+
     /// The key of the line this carrier and the support have in common.
     pub fn line(&self, support: &Plane) -> LineKey {
         match self {
@@ -225,8 +239,9 @@ impl Polygon {
                 above |= p[axis] > high;
             } else {
                 let c = corner.at.approx()[axis];
-                below |= c < low as f64;
-                above |= c > high as f64;
+                let slack = c.abs() * 4.0 * f64::EPSILON;
+                below |= c - slack < low as f64;
+                above |= c + slack > high as f64;
             }
         }
         (below, above)

@@ -235,9 +235,12 @@ impl List {
             (0..3).all(|i| high[i] >= at[i] && low[i] < if i == cut.axis { end } else { at[i] })
         };
         let mut change = 0;
-        for r in self.records.iter().filter(|r| near(&r.low, &r.high)) {
+        for r in &self.records {
             let across = match sources.get(r.slot()).shape() {
-                Shape::Mesh(mesh) => triangle_change(&mesh.corners(r.face), &segment),
+                Shape::Mesh(mesh) if near(&r.low, &r.high) => {
+                    triangle_change(&mesh.corners(r.face), &segment)
+                }
+                Shape::Mesh(_) => 0,
                 Shape::HalfSpace(plane) => plane_change(plane, &segment),
             };
             change += if r.flip() { -across } else { across };
@@ -311,8 +314,8 @@ impl Frame {
         for piece in pieces.iter() {
             let (a, b) = piece.bounds();
             for i in 0..3 {
-                low[i] = low[i].min(self.index(i, a[i].floor() as i64));
-                high[i] = high[i].max(self.index(i, b[i].ceil() as i64));
+                low[i] = low[i].min(self.index(i, (a[i] - 0.5).ceil() as i64));
+                high[i] = high[i].max(self.index(i, (b[i] + 0.5).floor() as i64));
             }
         }
         PartRecord {

@@ -47,7 +47,7 @@ pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -
                 .iter()
                 .map(|v| u64::from(*v))
                 .collect::<Vec<_>>(),
-            "edges are shared by more than two faces, at these vertices",
+            "more than two faces share an edge, or several fans a vertex, at these vertices",
         ));
     }
     if signed_volume(&mesh) < 0.0 {
@@ -238,7 +238,8 @@ fn drop_flat_faces(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) {
     ));
 }
 
-fn is_flat(corners: &[Lattice; 3]) -> bool {
+/// Whether a triangle has no area.
+pub fn is_flat(corners: &[Lattice; 3]) -> bool {
     let [a, b, c] = corners;
     let u = [0, 1, 2].map(|i| (b[i] - a[i]) as f64);
     let v = [0, 1, 2].map(|i| (c[i] - a[i]) as f64);

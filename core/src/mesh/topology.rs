@@ -41,6 +41,12 @@ impl Topology {
                 }
             }
         }
+        let mates_of = |half: u32| mates[half as usize];
+        irregular.extend((0..vertex_count).filter_map(|v| {
+            let fan = outgoing.of(v);
+            let several = fan.len() > 3 && turns(fan[0], mates_of) < fan.len();
+            several.then_some(v as u32)
+        }));
         irregular.sort_unstable();
         irregular.dedup();
         Self { mates, irregular }
@@ -51,7 +57,7 @@ impl Topology {
         &self.mates
     }
 
-    /// Vertices at the ends of edges that more than two faces use, sorted.
+    /// Vertices at the ends of edges that more than two faces use, or with several fans, sorted.
     pub fn irregular(&self) -> &[u32] {
         &self.irregular
     }
@@ -59,6 +65,23 @@ impl Topology {
     /// The half-edges without a mate.
     pub fn unpaired(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.mates.len()).filter(|h| self.mates[*h] == NONE)
+    }
+}
+
+/// How many half-edges leave a vertex in the fan of one of them; open fans count as endless.
+fn turns(start: u32, mate: impl Fn(u32) -> u32) -> usize {
+    let mut half = start;
+    let mut count = 0;
+    loop {
+        let before = half - half % 3 + (half + 2) % 3;
+        count += 1;
+        half = mate(before);
+        if half == NONE {
+            return usize::MAX;
+        }
+        if half == start {
+            return count;
+        }
     }
 }
 
