@@ -15,9 +15,9 @@ import numpy as np
 from ._types import FloatArray, IndexArray
 from .errors import BspcsgError, Finding
 from .io import RawMesh
-from .io.raw import welded
 from .mesh import Mesh
 from .solid import Solid
+from .weld import welded
 
 #: How many places a finding keeps.
 _PLACES = 8

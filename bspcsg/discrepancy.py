@@ -5,26 +5,16 @@ more of it than a small lost part. So the symmetric difference is built exactly,
 its connected pieces, and judged by the thickest one.
 """
 
-import math
-from dataclasses import dataclass, field
-from fractions import Fraction
+from dataclasses import dataclass
 
-from .errors import LimitError
+import numpy as np
+
+from ._types import IndexArray
+from .errors import InvalidMeshError, LimitError
 from .mesh import Mesh
 from .pieces import Pieces
 from .solid import Solid
-
-#: Digits beyond which an exact number is not written out.
-_MOST_DIGITS = 4000
-
-
-def exact_text(number: Fraction) -> str | None:
-    """Return a fraction like ``"1/3"``, or None if it has thousands of digits.
-
-    Each cut of an exact solid multiplies the denominators; those of a real part fill pages.
-    """
-    bits = max(number.numerator.bit_length(), number.denominator.bit_length())
-    return str(number) if bits * math.log10(2) < _MOST_DIGITS else None
+from .weld import welded
 
 
 @dataclass(frozen=True)
@@ -33,8 +23,8 @@ class SetDifference:
 
     Parameters
     ----------
-    volume : Fraction
-        Exact, of both meshes as they lie on the lattice.
+    volume : float
+        Of both meshes as they lie on the lattice, rounded once; zero only if the sets are equal.
     area : float
     thickness : float
         Of its thickest piece, in model units: twice the volume by the area, which is the thickness
@@ -43,7 +33,7 @@ class SetDifference:
         A point of that piece.
     """
 
-    volume: Fraction = field(repr=False)
+    volume: float
     area: float = 0.0
     thickness: float = 0.0
     place: tuple[float, float, float] | None = None
@@ -73,24 +63,51 @@ def difference_of(
     InvalidMeshError
         If a mesh is not closed.
     """
-    difference = _solid(a, pitch) ^ _solid(b, pitch)
-    volume = difference.volume_near
-    if volume == 0:
-        return SetDifference(volume), None
+    difference = _where_windings_differ(a, b, pitch)
+    if difference.is_empty:
+        return SetDifference(0.0), None
+    volume = difference.volume
     mesh = difference.normalized().to_mesh()
     if len(mesh.faces) == 0 or mesh.area == 0:
         return SetDifference(volume), None
     pieces = Pieces.of(mesh, film)
     worst = pieces.thickest
     # The exact volume also counts what rounding to doubles has pressed flat.
-    thickness = max(float(pieces.thickness[worst]), 2 * float(volume) / mesh.area)
+    thickness = max(float(pieces.thickness[worst]), 2 * volume / mesh.area)
     return SetDifference(volume, mesh.area, thickness, pieces.corner_of(worst)), pieces
 
 
-def _solid(mesh: Mesh, pitch: int) -> Solid:
-    if len(mesh.faces) == 0:
+def _where_windings_differ(a: Mesh, b: Mesh, pitch: int) -> Solid:
+    """Return the set of points around which the two meshes wind differently often.
+
+    Both meshes are taken as one, the second inside out: its winding number is the difference, and
+    the faces that the meshes have in common cancel before any geometry is done.
+    """
+    count = len(a.vertices)
+    vertices, same = welded(np.concatenate([a.vertices, b.vertices]))
+    faces = _cancelled(np.concatenate([same[:count][a.faces], same[count:][b.faces][:, ::-1]]))
+    if len(faces) == 0:
         return Solid.empty()
     try:
-        return Solid(mesh.vertices, mesh.faces, pitch=pitch)
+        return Solid(vertices, faces, pitch=pitch, winding="nonzero")
     except LimitError:
-        return Solid(mesh.vertices, mesh.faces)
+        return Solid(vertices, faces, winding="nonzero")
+    except InvalidMeshError as error:
+        if error.code != "empty_mesh":
+            raise
+        # Whatever is left has no area on the lattice.
+        return Solid.empty()
+
+
+def _cancelled(faces: IndexArray) -> IndexArray:
+    """Return the faces without pairs over the same corners that run opposite ways."""
+    faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
+    first = faces.argmin(axis=1)
+    rows = np.arange(len(faces))
+    low, mid, high = (faces[rows, (first + step) % 3] for step in range(3))
+    forth = mid < high
+    corners = np.stack([low, np.minimum(mid, high), np.maximum(mid, high)], axis=1)
+    kinds, which = np.unique(corners, axis=0, return_inverse=True)
+    surplus = np.bincount(which.ravel(), np.where(forth, 1, -1), len(kinds)).astype(np.int64)
+    oriented = np.where((surplus > 0)[:, None], kinds, kinds[:, [0, 2, 1]])
+    return np.repeat(oriented, np.abs(surplus), axis=0)

@@ -1,13 +1,12 @@
 """What a check reports: verdicts, facts about meshes, and both in words and as JSON values."""
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from enum import StrEnum
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from .discrepancy import SetDifference, exact_text
+from .discrepancy import SetDifference
 from .mesh import Mesh
 
 
@@ -79,8 +78,8 @@ class CheckReport:
         Why it is not `Verdict.AGREE`, or empty.
     ours : Facts
     theirs : Facts or None
-    exact_volume : Fraction
-        Of our set, before rounding.
+    set_volume : float
+        Of our set before its vertices were rounded, itself rounded once.
     set_difference : SetDifference or None
     same_set_bound, rounding_bound : float
         Thicknesses up to which sets count as the same, and as within rounding; in model units.
@@ -94,7 +93,7 @@ class CheckReport:
     reason: str
     ours: Facts
     theirs: Facts | None
-    exact_volume: Fraction = field(repr=False)
+    set_volume: float
     set_difference: SetDifference | None
     same_set_bound: float
     rounding_bound: float
@@ -107,14 +106,12 @@ class CheckReport:
         return self.verdict not in (Verdict.DISAGREE, Verdict.SUBJECT_FAILED)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything as JSON values; exact numbers as `exact_text` has them."""
+        """Return everything as JSON values."""
         found = {**asdict(self), "verdict": str(self.verdict), "ok": self.ok}
-        found["exact_volume"] = exact_text(self.exact_volume)
         found["notes"] = list(self.notes)
         if self.set_difference is not None:
             place = self.set_difference.place
-            found["set_difference"]["volume"] = float(self.set_difference.volume)
-            found["set_difference"]["exact_volume"] = exact_text(self.set_difference.volume)
+            found["set_difference"]["equal"] = self.set_difference.volume == 0
             found["set_difference"]["place"] = None if place is None else list(place)
         return found
 
@@ -141,7 +138,7 @@ class CheckReport:
             return "exactly the same set"
         return (
             f"the sets differ by a film {found.thickness:.2g} thick"
-            f" (up to {self.same_set_bound:.2g} is rounding), of volume {float(found.volume):.3g}"
+            f" (up to {self.same_set_bound:.2g} is rounding), of volume {found.volume:.3g}"
         )
 
 

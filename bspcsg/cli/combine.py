@@ -31,6 +31,9 @@ _EXAMPLES = {
     "xor": "bspcsg xor old.stl new.stl -o changed.ply",
 }
 
+#: Triangles and bits up to which the exact volume is printed; of more, its digits fill pages.
+_EXACT_FACES, _EXACT_BITS = 500, 10_000
+
 _PATH = click.Path(path_type=Path)
 
 
@@ -187,9 +190,6 @@ class _Job:
     def _document(
         self, result: "Solid", mesh: "Mesh", report: "CheckReport | None", written: bool
     ) -> dict[str, Any]:
-        from ..discrepancy import exact_text
-
-        exact = result.volume_exact if report is None else report.exact_volume
         return {
             "operation": self.op,
             "files": [str(path) for path in self.files],
@@ -200,8 +200,8 @@ class _Job:
             "vertices": len(mesh.vertices),
             "surfaces": mesh.components if len(mesh.faces) else 0,
             "genus": mesh.genus if len(mesh.faces) else 0,
-            "volume": float(exact),
-            "volume_exact": exact_text(exact),
+            "volume": result.volume,
+            "volume_exact": _exact_volume(result, mesh),
             "area": mesh.area,
             "bounds": None if (bounds := mesh.bounds) is None else bounds.tolist(),
             "findings": output.finding_values(result.normalized().findings),
@@ -214,6 +214,15 @@ class _Job:
         self.seconds[name] = round(now - self._last, 4)
         self._last = now
         self.out.detail(f"{name}: {self.seconds[name]:.3f} s")
+
+
+def _exact_volume(result: "Solid", mesh: "Mesh") -> str | None:
+    """Return a fraction like ``"1/3"``, unless it is unwieldy."""
+    if len(mesh.faces) > _EXACT_FACES:
+        return None
+    volume = result.volume_exact
+    longest = max(volume.numerator.bit_length(), volume.denominator.bit_length())
+    return str(volume) if longest <= _EXACT_BITS else None
 
 
 def _summary(target: Path, mesh: "Mesh", seconds: float) -> str:

@@ -11,7 +11,8 @@ import numpy as np
 from .._types import FloatArray
 from ..errors import Finding
 from ..mesh import Mesh
-from .raw import RawMesh, welded
+from ..weld import welded
+from .raw import RawMesh
 from .source import Source, quoted
 
 _HEADER = 84

@@ -80,6 +80,14 @@ def test_json_is_one_document(folder: Path, capsys: Capture) -> None:
     assert found["triangles"] == len(read("x.ply").faces)
 
 
+def test_json_of_volumes_with_thousands_of_digits(folder: Path, capsys: Capture) -> None:
+    put("ball.off", icosphere(4))
+    put("other.off", moved(icosphere(4), (0.1, 0.2, 0.3)))
+    _, out, _ = ran(capsys, "union", "ball.off", "other.off", "-o", "x.ply", "--json")
+    found = json.loads(out)
+    assert found["volume_exact"] is None and found["volume"] > 4
+
+
 def test_no_check(folder: Path, capsys: Capture) -> None:
     code, out, _ = ran(capsys, "union", "a.off", "c.stl", "-o", "x.ply", "--no-check")
     assert code == 0 and "check" not in out

@@ -1,7 +1,6 @@
 """Verdicts: right results agree, and every kind of wrong one is found."""
 
 import json
-from fractions import Fraction
 from typing import Any, cast
 
 import manifold3d
@@ -86,7 +85,7 @@ def test_a_film_of_rounding_is_no_difference() -> None:
     report = check_result(thicker, "union", [body, body])
     assert report.verdict is Verdict.AGREE
     assert report.set_difference is not None
-    assert report.set_difference.volume == Fraction(1, 1000)
+    assert report.set_difference.volume == 0.001
 
 
 def test_a_film_that_closes_on_itself() -> None:
@@ -111,7 +110,7 @@ def test_operands_that_overlap_themselves() -> None:
     report = validate("difference", double, b.cube(0.25))
     assert report.verdict is Verdict.AGREE
     assert [note.split(";")[0] for note in report.notes] == ["operand 1 overlaps itself"]
-    assert report.exact_volume == Fraction(15, 8) - Fraction(1, 64)
+    assert report.set_volume == 15 / 8 - 1 / 64
 
 
 @pytest.mark.parametrize("op", ["intersection", "difference"])
@@ -166,7 +165,7 @@ class OpenResult:
 
     pitch = -9
     is_bounded = True
-    volume_exact = Fraction(1)
+    volume = 1.0
 
     def normalized(self) -> "OpenResult":
         return self
@@ -218,7 +217,7 @@ def test_reports_are_json_and_words() -> None:
     report = validate("union", turned_cube(1), b.sphere(0.5))
     found = json.loads(json.dumps(report.to_dict(), allow_nan=False))
     assert found["verdict"] == "agree" and found["ok"] is True
-    assert Fraction(found["set_difference"]["exact_volume"]) >= 0
+    assert found["set_difference"]["equal"] == (found["set_difference"]["volume"] == 0)
     assert found["oracle"] == f"manifold3d {manifold3d_version()}"
     assert str(report).startswith("union: agree with manifold3d")
 
@@ -249,15 +248,7 @@ def test_open_edges(faces: "np.ndarray[Any, Any]", count: int) -> None:
 def test_inverted_operands_are_empty_to_both() -> None:
     inverted = b.Solid(*flipped(cuboid((0, 0, 0), (1, 1, 1))))
     report = validate("union", b.cube(2), inverted)
-    assert report.verdict is Verdict.AGREE and report.exact_volume == 8
-
-
-def test_reports_of_volumes_with_thousands_of_digits() -> None:
-    report = validate("difference", b.sphere(1, segments=96), turned_cube(3), turned_cube(5))
-    assert report.exact_volume.denominator.bit_length() > 15_000
-    found = report.to_dict()
-    assert found["exact_volume"] is None
-    assert report.verdict is Verdict.AGREE, repr(report)
+    assert report.verdict is Verdict.AGREE and report.set_volume == 8
 
 
 def test_needles_are_no_pieces() -> None:

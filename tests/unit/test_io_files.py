@@ -11,7 +11,7 @@ import pytest
 from bspcsg.errors import FormatError
 from bspcsg.io import RawMesh, read, write
 from bspcsg.io.atomic import write_file
-from bspcsg.io.raw import welded
+from bspcsg.weld import welded
 from support.io import cube_mesh
 
 
