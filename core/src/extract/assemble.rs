@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::collect::{collect, Fate};
 use super::contacts;
+use super::origin::Owners;
 use super::planes::{frontier, group, half_edge_ends, FrontierEdge, PlaneGroup};
 use super::seams::{find_touching, subdivisions, Edge, LinePoints};
 use super::triangulate::{triangulate, Planar};
@@ -351,7 +352,10 @@ impl<'a> Assembly<'a> {
         } else {
             (*plane).clone()
         };
-        self.emit_polygon(&plane, &edges, TriangleFace { slot, face, flip })
+        for triangle in self.triangulated(&plane, &edges)? {
+            self.push(triangle, TriangleFace { slot, face, flip });
+        }
+        Ok(())
     }
 
     fn emit_group(&mut self, group: &PlaneGroup, edges: &[Edge], inner: &[Vec<u32>]) -> Result<()> {
@@ -363,29 +367,35 @@ impl<'a> Assembly<'a> {
                 at = *next;
             }
         }
-        let (slot, face) = group.face;
-        let flip = *self.sources.get(slot as usize).plane(face) != group.plane;
-        self.emit_polygon(&group.plane, &chain, TriangleFace { slot, face, flip })
+        let triangles = self.triangulated(&group.plane, &chain)?;
+        let view = Projection::onto(&group.plane, &self.table);
+        let owners = Owners::new(group, &view, self.sources);
+        let faces: Vec<(u32, u32)> = triangles
+            .iter()
+            .map(|t| owners.at_centre(*t, &view))
+            .collect();
+        for (triangle, (slot, face)) in triangles.into_iter().zip(faces) {
+            let flip = *self.sources.get(slot as usize).plane(face) != group.plane;
+            self.push(triangle, TriangleFace { slot, face, flip });
+        }
+        Ok(())
     }
 
-    fn emit_polygon(
-        &mut self,
-        plane: &Plane,
-        edges: &[(u32, u32)],
-        face: TriangleFace,
-    ) -> Result<()> {
+    fn triangulated(&self, plane: &Plane, edges: &[(u32, u32)]) -> Result<Vec<[u32; 3]>> {
         let view = Projection::onto(plane, &self.table);
         let triangles = triangulate(&view, edges)
             .map_err(|e| Error::internal(format!("an outline could not be triangulated: {e}")))?;
         if self.verify && !covers_once(&view, edges, &triangles) {
             return Err(Error::internal("faces of one plane overlap"));
         }
-        for triangle in triangles {
-            let triangle = triangle.map(|p| self.image_of_point(p));
-            self.triangles.push(triangle);
-            self.faces.push(face);
-        }
-        Ok(())
+        Ok(triangles)
+    }
+
+    /// Emits a triangle of table points.
+    fn push(&mut self, triangle: [u32; 3], face: TriangleFace) {
+        let triangle = triangle.map(|p| self.image_of_point(p));
+        self.triangles.push(triangle);
+        self.faces.push(face);
     }
 
     fn finish(mut self, findings: Vec<Finding>) -> ExactMesh {

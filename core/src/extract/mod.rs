@@ -5,6 +5,7 @@ pub mod assemble;
 pub mod collect;
 mod contacts;
 pub mod fans;
+mod origin;
 pub mod planes;
 pub mod round;
 pub mod seams;

@@ -16,8 +16,8 @@ use crate::mesh::topology::NONE;
 pub struct PlaneGroup {
     /// The plane, inside on its minus side.
     pub plane: Plane,
-    /// The first face that lies in it: slot and face.
-    pub face: (u32, u32),
+    /// The faces that lie in it, slot and face, as they were joined.
+    pub faces: Vec<(u32, u32)>,
     /// The outline, counterclockwise as seen from outside.
     pub edges: Vec<OutlineEdge>,
 }
@@ -68,13 +68,14 @@ pub fn group(
     let mut groups = grouping.groups;
     for group in &mut groups {
         group.edges = cancel(std::mem::take(&mut group.edges));
+        group.faces.sort_unstable();
     }
     groups.retain(|g| !g.edges.is_empty());
     (grouping.fates, groups)
 }
 
 impl Grouping<'_> {
-    fn group_of(&mut self, plane: Plane, face: (u32, u32)) -> usize {
+    fn group_of(&mut self, plane: Plane) -> usize {
         let next = self.groups.len();
         let at = if self.join {
             *self.by_plane.entry(plane.clone()).or_insert(next)
@@ -84,7 +85,7 @@ impl Grouping<'_> {
         if at == next {
             self.groups.push(PlaneGroup {
                 plane,
-                face,
+                faces: Vec::new(),
                 edges: Vec::new(),
             });
         }
@@ -93,7 +94,8 @@ impl Grouping<'_> {
 
     fn add_cut(&mut self, cut: CutFace) {
         let plane = self.oriented_plane(cut.slot, cut.face, cut.flip);
-        let at = self.group_of(plane, (cut.slot, cut.face));
+        let at = self.group_of(plane);
+        self.groups[at].faces.push((cut.slot, cut.face));
         let edges = &mut self.groups[at].edges;
         if cut.flip {
             edges.extend(cut.edges.iter().map(OutlineEdge::reversed));
@@ -121,6 +123,7 @@ impl Grouping<'_> {
         self.fates[slot as usize][face as usize] = Fate::Cut;
         let polygon = Polygon::triangle(&mesh.corners(face), source.plane(face));
         let edges = OutlineEdge::all_of(&polygon);
+        self.groups[group].faces.push((slot, face));
         let target = &mut self.groups[group].edges;
         if flip {
             target.extend(edges.map(|e| e.reversed()));
@@ -162,7 +165,7 @@ impl Grouping<'_> {
                 continue;
             };
             let plane = self.oriented_plane(slot, face, flip);
-            let group = self.group_of(plane, (slot, face));
+            let group = self.group_of(plane);
             let line = self.line_of(*edge);
             candidates.push((slot, face, flip, group, line));
         }

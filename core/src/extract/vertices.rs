@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::triangulate::Planar;
 use crate::arith::Int;
-use crate::geometry::plane::Plane;
+use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::vertex::{Vertex, VertexKey};
 
 /// Numbered points; equal points have equal numbers.
@@ -86,6 +86,11 @@ impl<'a> Projection<'a> {
 }
 
 impl Projection<'_> {
+    /// A lattice point in the view.
+    pub fn flat(&self, p: &Lattice) -> [f64; 2] {
+        [p[self.u] as f64, p[self.v] as f64]
+    }
+
     /// Whether a point lies strictly between two others, on their line.
     pub fn is_between(&self, a: u32, point: u32, b: u32) -> bool {
         point != a
