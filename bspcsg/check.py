@@ -228,7 +228,7 @@ class _Check:
     def _ruling(self, ours: Mesh, theirs: Mesh, pieces: Pieces, rounding: float) -> Ruling:
         """Return whom the operands as they came support in the pieces that rounding leaves."""
         disputed = pieces.thicker_than(rounding)[:_MOST_PIECES]
-        points = [list(pieces.points_in(piece)) for piece in disputed]
+        points = [pieces.points_in(piece) for piece in disputed]
         return settle(self.program, self.came, ours, theirs, points)
 
     def _same_set_bound(self, *meshes: Mesh) -> float:

@@ -1,6 +1,5 @@
 """The connected pieces of a mesh, how thick each is, and points inside them."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
@@ -15,8 +14,8 @@ Point: TypeAlias = tuple[float, float, float]
 #: Relative rounding error of a tetrahedron's volume, by the lengths of three edges.
 _NOISE = 1e-15
 
-#: How many points of a piece are tried.
-_TRIES = 6
+#: How many faces of a piece are looked below, and how many of the points are kept.
+_TRIES, _POINTS = 60, 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,27 +59,33 @@ class Pieces:
     def corner_of(self, piece: int) -> Point:
         """Return a vertex of a piece."""
         face = self.mesh.faces[int((self.owner == piece).argmax())]
-        x, y, z = self.mesh.vertices[face[0]].tolist()
-        return x, y, z
+        return _as_point(self.mesh.vertices[face[0]])
 
-    def points_in(self, piece: int) -> Iterator[Point]:
-        """Yield points that should be inside a piece: between its largest faces and what is below.
+    def points_in(self, piece: int) -> list[Point]:
+        """Return points that should be inside a piece, the deepest first.
 
-        Computed in doubles: who needs to be sure has to test them.
+        They lie half-way between a large face and what is below it, computed in doubles: who needs
+        to be sure has to test them.
         """
         triangles = self.mesh.vertices[self.mesh.faces[self.owner == piece]]
         origin = triangles[0, 0]
         local = triangles - origin
         normals = np.cross(local[:, 1] - local[:, 0], local[:, 2] - local[:, 0])
-        for face in np.argsort(-np.linalg.norm(normals, axis=1), kind="stable")[:_TRIES].tolist():
-            point = _below(local, normals, face)
-            if point is not None:
-                x, y, z = (point + origin).tolist()
-                yield x, y, z
+        largest = np.argsort(-np.linalg.norm(normals, axis=1), kind="stable")[:_TRIES]
+        below = [_below(local, normals, face) for face in largest.tolist()]
+        found = sorted((pair for pair in below if pair is not None), key=lambda pair: -pair[0])
+        return [_as_point(point + origin) for _, point in found[:_POINTS]]
 
 
-def _below(triangles: FloatArray, normals: FloatArray, face: int) -> FloatArray | None:
-    """Return the point half-way from the middle of a face to the next surface behind it."""
+def _as_point(point: FloatArray) -> Point:
+    x, y, z = point.tolist()
+    return x, y, z
+
+
+def _below(
+    triangles: FloatArray, normals: FloatArray, face: int
+) -> tuple[float, FloatArray] | None:
+    """Return the point half-way from the middle of a face to what is behind it, and how deep."""
     start = triangles[face].mean(axis=0)
     length = np.linalg.norm(normals[face])
     if length == 0:
@@ -97,7 +102,10 @@ def _below(triangles: FloatArray, normals: FloatArray, face: int) -> FloatArray 
         depth = np.einsum("ij,ij->i", edge[:, 1], turned) / scale
         hit = (u >= 0) & (v >= 0) & (u + v <= 1) & (depth > 0)
     hit[face] = False
-    return None if not hit.any() else start + down * (depth[hit].min() / 2)
+    if not hit.any():
+        return None
+    half = float(depth[hit].min()) / 2
+    return half, start + down * half
 
 
 def _surfaces(faces: IndexArray, vertex_count: int) -> IndexArray:

@@ -55,7 +55,7 @@ def test_rulings() -> None:
     first, second = b.cube(1).to_mesh(), b.cube(1).translate(3, 0, 0).to_mesh()
     both = (b.cube(1) | b.cube(1).translate(3, 0, 0)).to_mesh()
     piece = Pieces.of(second)
-    points = [list(piece.points_in(piece.thickest))]
+    points = [piece.points_in(piece.thickest)]
     assert settle(PROGRAM, [first, second], both, first, points) is Ruling.OURS
     assert settle(PROGRAM, [first, second], first, both, points) is Ruling.THEIRS
     assert settle(PROGRAM, [first, second], both, both, points) is Ruling.UNCLEAR
@@ -66,7 +66,7 @@ def test_points_in_thin_pieces() -> None:
     plate = b.box((5, 7, 1e-7)).rotate((10, 20, 30)).to_mesh()
     pieces = Pieces.of(plate)
     assert pieces.thickness[pieces.thickest] == pytest.approx(1e-7, rel=1e-3)
-    points = list(pieces.points_in(pieces.thickest))
+    points = pieces.points_in(pieces.thickest)
     assert points and all(is_inside(plate, point) is not False for point in points)
     assert any(is_inside(plate, point) for point in points)
 
