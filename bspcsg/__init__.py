@@ -12,6 +12,7 @@ Examples
 """
 
 from ._core import __version__, set_threads
+from .check import CheckReport, Verdict, validate
 from .errors import (
     BspcsgError,
     Finding,
@@ -40,6 +41,7 @@ from .solid import Solid
 
 __all__ = [
     "BspcsgError",
+    "CheckReport",
     "Finding",
     "FormatError",
     "InternalError",
@@ -48,6 +50,7 @@ __all__ = [
     "Mesh",
     "Solid",
     "UnboundedError",
+    "Verdict",
     "__version__",
     "boolean",
     "box",
@@ -66,5 +69,6 @@ __all__ = [
     "sphere",
     "torus",
     "union",
+    "validate",
     "xor",
 ]
