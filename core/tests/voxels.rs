@@ -12,7 +12,7 @@ use bspcsg::query::measure;
 use bspcsg::tree::solid::Solid;
 
 use support::{
-    applied, closed_mesh, combined, complement, inside, is_empty, is_full, normalized, straight,
+    applied, combined, complement, inside, is_empty, is_full, manifold_mesh, normalized, straight,
     turned, volume, Numbers, Ratio, Shape, Voxels,
 };
 
@@ -49,7 +49,7 @@ impl Placement {
         for (at, found) in Voxels::places(expected.side).zip(found) {
             assert_eq!(found, expected.has(at), "{context}: the cube at {at:?}");
         }
-        closed_mesh(solid, context);
+        manifold_mesh(solid, context);
         let cubes = i64::from(expected.bits.count_ones());
         assert_eq!(volume(solid), Ratio::whole(cubes * self.cube), "{context}");
         assert_eq!(is_empty(solid), expected.bits == 0, "{context}: emptiness");

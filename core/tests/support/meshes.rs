@@ -3,10 +3,14 @@
 use std::collections::{HashMap, HashSet};
 
 use bspcsg::extract::round::{self, Mesh};
+use bspcsg::merge::SetOp;
 use bspcsg::tree::solid::Solid;
 
-/// The mesh, checked: every directed edge has exactly one opposite, every vertex is used.
-pub fn closed_mesh(solid: &Solid, context: &str) -> Mesh {
+use super::{applied, is_empty};
+
+/// The mesh, checked: every directed edge has exactly one opposite, every vertex is used and has one
+/// fan of triangles.
+pub fn manifold_mesh(solid: &Solid, context: &str) -> Mesh {
     let mesh = round::mesh(solid).unwrap_or_else(|e| panic!("{context}: {e}"));
     let after = corners(&mesh, context);
     let closed = after.keys().all(|(a, b)| after.contains_key(&(*b, *a)));
@@ -17,14 +21,6 @@ pub fn closed_mesh(solid: &Solid, context: &str) -> Mesh {
         mesh.vertices.len(),
         "{context}: unused vertices"
     );
-    mesh
-}
-
-/// The closed mesh of manifold operands, checked: every vertex has one fan of triangles.
-pub fn manifold_mesh(solid: &Solid, context: &str) -> Mesh {
-    let mesh = closed_mesh(solid, context);
-    let fans = fans(&corners(&mesh, context));
-    assert_eq!(fans, mesh.vertices.len(), "{context}: a vertex of two fans");
     mesh
 }
 
@@ -55,7 +51,7 @@ fn fans(after: &HashMap<(u32, u32), u32>) -> usize {
 }
 
 /// The triangles by the doubles of their corners, the smallest corner first, sorted.
-pub fn triangle_set(mesh: &Mesh) -> Vec<[[u64; 3]; 3]> {
+fn triangle_set(mesh: &Mesh) -> Vec<[[u64; 3]; 3]> {
     let corner = |v: u32| mesh.vertices[v as usize].map(f64::to_bits);
     let mut set: Vec<_> = mesh
         .triangles
@@ -70,4 +66,15 @@ pub fn triangle_set(mesh: &Mesh) -> Vec<[[u64; 3]; 3]> {
         .collect();
     set.sort_unstable();
     set
+}
+
+/// Asserts that two solids differ nowhere.
+pub fn assert_same_set(a: &Solid, b: &Solid) {
+    assert!(is_empty(&applied(SetOp::SymmetricDifference, a, b)));
+}
+
+/// Asserts that two solids have the same triangles, whatever their order.
+pub fn assert_same_triangles(a: &Solid, b: &Solid, context: &str) {
+    let [a, b] = [a, b].map(|s| triangle_set(&manifold_mesh(s, context)));
+    assert_eq!(a, b, "{context}");
 }

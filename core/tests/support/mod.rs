@@ -7,8 +7,8 @@ mod solids;
 mod volumes;
 mod voxels;
 
-pub use meshes::{closed_mesh, manifold_mesh, triangle_set};
-pub use shapes::{double, straight, turned, Numbers, Shape};
+pub use meshes::{assert_same_set, assert_same_triangles, manifold_mesh};
+pub use shapes::{double, straight, turned, Numbers, Shape, LIMIT};
 pub use solids::{applied, combined, complement, inside, is_empty, is_full, located, normalized};
 pub use volumes::{sixfold_volume, volume, Ratio};
 pub use voxels::Voxels;

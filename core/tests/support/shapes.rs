@@ -12,6 +12,9 @@ use bspcsg::tree::solid::Solid;
 
 use super::normalized;
 
+/// The largest lattice coordinate.
+pub const LIMIT: i64 = (1 << 53) - 1;
+
 /// Deterministic numbers below a bound.
 pub struct Numbers(u64);
 

@@ -1,10 +1,11 @@
 //! Exact sums.
 
-use bspcsg::arith::Int;
+use bspcsg::arith::{inv_mod, mul_mod, Int, P1, P2};
 use bspcsg::geometry::vertex::Homogeneous;
-use bspcsg::query::measure;
+use bspcsg::query::measure::{self, Fraction};
 use bspcsg::tree::solid::Solid;
 use num_bigint::{BigInt, Sign};
+use num_integer::Integer;
 
 /// A rational number, numerator over positive denominator, not reduced.
 #[derive(Clone, Debug)]
@@ -32,6 +33,24 @@ impl Ratio {
     }
 }
 
+impl Ratio {
+    pub fn of(fraction: Fraction) -> Self {
+        Self(fraction.numerator, fraction.denominator)
+    }
+
+    pub fn is_between_zero_and_one(&self) -> bool {
+        self.0.sign() != Sign::Minus && self.0 < self.1
+    }
+
+    /// The number modulo the two primes of `arith`; its denominator must not vanish there.
+    pub fn residues(&self) -> [u64; 2] {
+        [P1, P2].map(|p| {
+            let of = |n: &BigInt| u64::try_from(n.mod_floor(&BigInt::from(p))).expect("below p");
+            mul_mod(of(&self.0), inv_mod(of(&self.1), p), p)
+        })
+    }
+}
+
 impl PartialEq for Ratio {
     fn eq(&self, other: &Self) -> bool {
         &self.0 * &other.1 == &other.0 * &self.1
@@ -40,8 +59,7 @@ impl PartialEq for Ratio {
 
 /// The exact volume.
 pub fn volume(solid: &Solid) -> Ratio {
-    let volume = measure::volume(solid).expect("a bounded solid");
-    Ratio(volume.numerator, volume.denominator)
+    Ratio::of(measure::volume(solid).expect("a bounded solid"))
 }
 
 /// Six times the volume of the tetrahedron from the origin to three points.

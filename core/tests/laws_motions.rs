@@ -1,0 +1,201 @@
+//! What keeps a solid as it is: snapshots, motions of the lattice, threads; and quick volumes.
+
+mod support;
+
+use std::sync::atomic::AtomicBool;
+
+use bspcsg::extract::round;
+use bspcsg::extract::snapshot::{Motion, Snapshot};
+use bspcsg::geometry::plane::Lattice;
+use bspcsg::merge::evaluate::evaluate;
+use bspcsg::merge::expression::{Expression, Term};
+use bspcsg::merge::SetOp;
+use bspcsg::mesh::grid::Pitch;
+use bspcsg::query::classify::classify;
+use bspcsg::query::measure;
+use bspcsg::tree::solid::Solid;
+use rayon::ThreadPoolBuilder;
+
+use support::{
+    applied, assert_same_set, assert_same_triangles, combined, located, manifold_mesh, volume,
+    Numbers, Ratio, Shape, LIMIT,
+};
+
+/// What must not depend on the number of threads: the boundary and the mesh, byte for byte.
+fn fingerprint() -> (Vec<u8>, Vec<[u64; 3]>, Vec<[u32; 3]>) {
+    let ball = |x: i64| Shape::sphere([x, 900, 900], 800.0, 3).solid();
+    let tool = Shape::any_cuboid(&mut Numbers::new(8), 1500).solid();
+    let operands = [ball(900), ball(1300), tool];
+    let lines = vec![Term::Or(vec![0, 1]), Term::Not(2), Term::And(vec![3, 4])];
+    let solid = combined(&operands, lines);
+    let mesh = manifold_mesh(&solid, "threads");
+    let bytes = Snapshot::of(&solid).to_bytes().expect("bytes");
+    let vertices = mesh.vertices.iter().map(|p| p.map(f64::to_bits)).collect();
+    (bytes, vertices, mesh.triangles)
+}
+
+#[test]
+fn results_do_not_depend_on_the_number_of_threads() {
+    let with = |threads: usize| {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("a pool").install(fingerprint)
+    };
+    let one = with(1);
+    assert!(one == with(2), "two threads");
+    assert!(one == with(8), "eight threads");
+    assert!(one == with(1), "once more");
+}
+
+/// A solid with lattice and constructed vertices, cut and whole faces, and a hole.
+fn mixture(numbers: &mut Numbers) -> Solid {
+    let a = Shape::any_cuboid(numbers, 40).solid();
+    let b = Shape::any_tetrahedron(numbers, 40).solid();
+    let c = Shape::any_tetrahedron(numbers, 40).solid();
+    let lines = vec![Term::Or(vec![0, 1]), Term::Not(2), Term::And(vec![3, 4])];
+    combined(&[a, b, c], lines)
+}
+
+#[test]
+fn snapshots_keep_everything() {
+    let mut numbers = Numbers::new(9);
+    for round in 0..20 {
+        let solid = mixture(&mut numbers);
+        let bytes = Snapshot::of(&solid).to_bytes().expect("bytes");
+        let stored = Snapshot::from_bytes(&bytes).expect("a snapshot");
+        let again = stored.solid().expect("a solid");
+        assert_same_triangles(&again, &solid, &format!("round {round}"));
+        let tool = Shape::any_tetrahedron(&mut numbers, 40).solid();
+        let [first, second] = [&solid, &again].map(|s| applied(SetOp::Difference, s, &tool));
+        assert_eq!(volume(&first), volume(&second), "round {round}");
+        assert_same_triangles(&first, &second, &format!("operated, round {round}"));
+        let copy = Snapshot::of(&again).to_bytes().expect("bytes");
+        assert_eq!(copy, bytes, "stored twice, round {round}");
+    }
+}
+
+/// Bytes that were changed are refused or stand for some solid; nothing panics on them.
+#[test]
+fn damaged_snapshots_do_no_harm() {
+    let mut numbers = Numbers::new(15);
+    let tool = Shape::any_tetrahedron(&mut numbers, 40).solid();
+    let mut refused = 0;
+    for _ in 0..400 {
+        let mut bytes = Snapshot::of(&mixture(&mut numbers))
+            .to_bytes()
+            .expect("bytes");
+        for _ in 0..=numbers.below(2) {
+            let place = numbers.index(bytes.len());
+            bytes[place] = bytes[place].wrapping_add(numbers.pick(&[1, 2, 64, 128, 255]));
+        }
+        match Snapshot::from_bytes(&bytes).and_then(|s| s.solid()) {
+            Err(_) => refused += 1,
+            Ok(solid) => {
+                let lines = [0, 1].map(Term::Operand).into_iter();
+                let terms = lines.chain([Term::Or(vec![0, 1])]).collect();
+                let union = Expression::new(terms).expect("well formed");
+                let operands = [solid.clone(), tool.clone()];
+                let _ = evaluate(&union, &operands, &AtomicBool::new(false));
+                let _ = (round::mesh(&solid), classify(&solid, &[[20; 3]]));
+            }
+        }
+    }
+    assert!(refused > 0);
+}
+
+fn moved(solid: &Solid, motion: &Motion, pitch: i64) -> Solid {
+    let pitch = Pitch::new(pitch).expect("a pitch");
+    let image = Snapshot::of(solid).moved(motion, pitch).expect("in range");
+    image.solid().expect("a solid")
+}
+
+fn image_of(motion: &Motion, p: Lattice) -> Lattice {
+    [0, 1, 2].map(|i| {
+        let (axis, sign) = motion.axes[i];
+        p[axis] * sign * motion.scale + motion.shift[i]
+    })
+}
+
+/// Mirrors, permutations and shifts keep the volume and carry the set; a refinement too.
+#[test]
+fn motions_of_the_lattice_carry_solids_exactly() {
+    let mut numbers = Numbers::new(10);
+    let axes = [
+        [(0, -1), (1, 1), (2, 1)],
+        [(1, 1), (2, 1), (0, 1)],
+        [(2, -1), (1, 1), (0, 1)],
+        [(1, -1), (0, -1), (2, -1)],
+    ];
+    for round in 0..16 {
+        let solid = mixture(&mut numbers);
+        let (scale, pitch) = if round % 4 == 0 { (10, -1) } else { (1, 0) };
+        let motion = Motion {
+            axes: axes[round % 4],
+            shift: numbers.point(1000).map(|c| (c - 500) * scale),
+            scale,
+        };
+        let image = moved(&solid, &motion, pitch);
+        let context = format!("{motion:?} in round {round}");
+        manifold_mesh(&image, &context);
+        assert_eq!(volume(&image), volume(&solid), "{context}");
+        let points: Vec<Lattice> = (0..200).map(|_| numbers.point(40)).collect();
+        let images: Vec<Lattice> = points.iter().map(|p| image_of(&motion, *p)).collect();
+        assert_eq!(
+            located(&image, &images),
+            located(&solid, &points),
+            "{context}"
+        );
+        let tool = Shape::any_tetrahedron(&mut numbers, 40).solid();
+        let before = moved(&applied(SetOp::Union, &solid, &tool), &motion, pitch);
+        let after = applied(SetOp::Union, &image, &moved(&tool, &motion, pitch));
+        assert_eq!(volume(&before), volume(&after), "{context}");
+        assert_same_set(&before, &after);
+    }
+}
+
+/// Several shapes at once, which may overlap.
+fn any_mixture(numbers: &mut Numbers, reach: i64) -> Shape {
+    let one = |_| match numbers.below(2) {
+        0 => Shape::any_tetrahedron(numbers, reach),
+        _ => Shape::any_cuboid(numbers, reach),
+    };
+    (0..4).map(one).fold(Shape::default(), Shape::with)
+}
+
+/// Small cells at the border of the lattice, where the doubles of constructed points err by steps.
+#[test]
+fn results_are_the_same_at_the_border_of_the_lattice() {
+    let mut numbers = Numbers::new(13);
+    for shift in [LIMIT - 30, -LIMIT, 1 << 52] {
+        for _ in 0..4 {
+            let shapes = [0; 2].map(|_| any_mixture(&mut numbers, 30));
+            let far = shapes.clone().map(|s| s.mapped(|p| p.map(|c| c + shift)));
+            let [a, b] = shapes.map(|s| s.united());
+            let [c, d] = far.each_ref().map(Shape::united);
+            for op in SetOp::ALL {
+                let (near, far) = (applied(op, &a, &b), applied(op, &c, &d));
+                let context = format!("{op:?} of {far:?}");
+                assert_eq!(
+                    manifold_mesh(&far, &context).triangles.len(),
+                    manifold_mesh(&near, &context).triangles.len(),
+                    "{context}"
+                );
+                assert_eq!(volume(&far), volume(&near), "{context}");
+            }
+        }
+    }
+}
+
+/// The quick answers about volumes against the exact ones.
+#[test]
+fn near_volumes_and_residues_agree_with_exact_ones() {
+    let mut numbers = Numbers::new(14);
+    for _ in 0..20 {
+        let solid = mixture(&mut numbers);
+        let exact = volume(&solid);
+        let near = measure::volume_near(&solid).expect("bounded");
+        let error = exact.minus(&Ratio::of(near)).times(1 << 60).times(1 << 60);
+        assert!(error.is_between_zero_and_one(), "{error:?}");
+        let residues = measure::volume_residues(&solid).expect("bounded");
+        assert_eq!(residues, Some(exact.times(6).residues()));
+    }
+}
