@@ -154,7 +154,7 @@ def file_cases(folder: Path) -> list[Case]:
     ]
 
 
-def pair_cases(folder: Path, names: list[str], count: int, seed: int) -> list[Case]:
+def pair_cases(folder: Path, names: list[str], count: int, seed: int, check: bool) -> list[Case]:
     """Draw pairs and poses, half of them random and half coincident."""
     cases = []
     for number in range(count):
@@ -164,7 +164,7 @@ def pair_cases(folder: Path, names: list[str], count: int, seed: int) -> list[Ca
         key = f"pair {seed}/{number} {pose} {first} {second}"
         names_of = {"first": first, "second": second, "pose": pose}
         place = {"kind": "pair", "folder": str(folder), "seed": seed, "number": number}
-        cases.append({"key": key, **place, **names_of})
+        cases.append({"key": key, "check": check, **place, **names_of})
     return cases
 
 
@@ -218,6 +218,12 @@ def main() -> int:
     parser.add_argument("--max-faces", type=int, default=100_000, help="of a mesh in a pair")
     parser.add_argument("--results", type=Path, default=REPOSITORY / "out" / "campaign.jsonl")
     parser.add_argument("--again", action="store_true", help="run cases with faults again")
+    parser.add_argument(
+        "--check",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="compare with manifold3d, which takes most of the time",
+    )
     parser.add_argument("--record", action="store_true", help="keep the counts in scripts/records")
     options = parser.parse_args()
     folder = options.meshes.resolve()
@@ -228,7 +234,8 @@ def main() -> int:
         for case in files
         if case["verdict"] == "loaded" and 0 < case["triangles"] <= options.max_faces
     ]
-    pairs = campaign.run(pair_cases(folder, usable, options.pairs, options.seed)) if usable else []
+    drawn = pair_cases(folder, usable, options.pairs, options.seed, options.check) if usable else []
+    pairs = campaign.run(drawn)
     counts = summary(files, pairs)
     show(counts)
     if options.record:
