@@ -336,6 +336,7 @@ def _place(leaf: MeshLeaf | TreeLeaf, factors: Factors) -> Leaf:
         with core_errors():
             moved = tree.moved(list(motion.axes), list(motion.shift))
         return TreeLeaf(moved, extent=base.extent)
-    except LimitError:
-        # Too far out for this lattice; from coordinates the core may choose a coarser one.
+    except (LimitError, UnboundedError):
+        # Too far out for this lattice, where coordinates let the core choose a coarser one; or cut
+        # off by the border of the universe, which does not move with it.
         return leaf.transformed(factors)

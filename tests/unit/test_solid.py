@@ -210,6 +210,24 @@ def test_half_spaces_cut_and_move() -> None:
     assert (box & b.half_space((3, 3, 3), 0).rotate(17, (1, 1, 1))).volume == pytest.approx(4)
 
 
+@pytest.mark.parametrize("normal", [(0, 0, 1), (1, 2, 3)])
+def test_half_spaces_and_their_complements_are_unbounded(normal: tuple[float, ...]) -> None:
+    half, box = b.half_space(normal, 0.5), b.cube(1)
+    for unbounded in (half, ~half, half | box, half - box, ~(half & box), half ^ ~box):
+        assert not unbounded.is_bounded
+        assert pickle.loads(pickle.dumps(unbounded)).equals(unbounded)
+    for bounded in (half & box, box - half, ~(~half | ~box)):
+        assert bounded.is_bounded
+    assert (half & box).volume + (~half & box).volume == pytest.approx(1)
+
+
+def test_unbounded_solids_of_several_planes_move_after_evaluation() -> None:
+    outside = b.half_space((0, 0, 1), 0) | b.half_space((0, 0, -1), -2)
+    assert not outside.is_bounded
+    assert not (~outside).is_bounded
+    assert (outside.translate(0, 0, 0.25) & b.box((1, 1, 3))).volume == 1
+
+
 def test_half_spaces_follow_the_solid_under_oblique_maps() -> None:
     shear = np.array([[1, 0.3, 0, 1], [0, 2, 0.1, 0], [0.2, 0, -1, 3], [0, 0, 0, 1]])
     cut = (b.cube(2, center=True) & b.half_space((1, 2, 3), 0.5)).transform(shear)
@@ -259,6 +277,8 @@ def test_repr_tells_what_is_known_and_evaluates_nothing() -> None:
     difference = b.cube(2) - a
     assert repr(difference) == "Solid(pending: 2 operands)"
     assert difference.volume == 7
+    assert repr(difference) == "Solid(evaluated)"
+    assert len(difference.faces) > 12
     assert repr(difference).endswith("triangles, bounds (0, 0, 0) to (2, 2, 2))")
     assert repr(~a) == "Solid(pending: 1 operand)"
     assert repr(b.half_space((0, 0, 1))) == "Solid(half-space)"

@@ -18,7 +18,8 @@ use crate::tree::solid::Solid;
 pub enum Fate {
     /// No part of it is boundary.
     Gone,
-    /// All of it is boundary; turned around if the flag is set.
+    /// All of it is boundary; turned around if the flag is set. Never said of a half-space's face,
+    /// which only the border of the universe ends.
     Whole(bool),
     /// Some of it is boundary, or it joins a polygon of its plane.
     Cut,
@@ -104,13 +105,14 @@ impl Collector<'_> {
             let slot = self.sources.slot(&group.source);
             let flip = group.flip ^ branch.complement;
             let fates = fates_of(&mut self.fates[slot], &group.source);
-            let inside = group.source.cell().is_some_and(|c| branch.cell.holds(&c));
+            let bounded = group.source.mesh().is_some();
+            let inside = bounded && group.source.cell().is_some_and(|c| branch.cell.holds(&c));
             if leaf.worked {
                 self.near
                     .extend(group.faces.iter().map(|f| (slot as u32, *f)));
             }
             for &face in &group.faces {
-                if inside || holds_face(&branch.cell, &group.source, face) {
+                if inside || bounded && holds_face(&branch.cell, &group.source, face) {
                     fates[face as usize] = Fate::Whole(flip);
                 } else {
                     self.spanning.push(Spanning {
@@ -148,7 +150,8 @@ impl Collector<'_> {
             let (slot, face) = (run[0].slot as usize, run[0].face);
             let one_side = run.iter().all(|s| s.flip == run[0].flip);
             let fate = &mut self.fates[slot][face as usize];
-            let uncut = *fate == Fate::Gone && one_side;
+            let bounded = self.sources.get(slot).mesh().is_some();
+            let uncut = bounded && *fate == Fate::Gone && one_side;
             if uncut && covers(self.root, self.sources.get(slot), face, run[0].flip) {
                 *fate = Fate::Whole(run[0].flip);
             } else {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::collect::{collect, Fate};
+use super::collect::{collect, CutFace, Fate};
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, REACH};
@@ -183,7 +183,9 @@ impl Snapshot {
                 }
             }
         }
-        let parts = boundary.cut.iter().map(|c| PartData {
+        let (planes, cut): (Vec<_>, Vec<_>) = boundary.cut.iter().partition(|c| is_full_plane(c));
+        wholes.extend(planes.into_iter().map(WholeFaces::plane));
+        let parts = cut.into_iter().map(|c| PartData {
             slot: c.slot,
             face: c.face,
             flip: c.flip,
@@ -316,6 +318,21 @@ impl Snapshot {
             .ok()
             .filter(|s| s.format == FORMAT)
             .ok_or_else(bad_snapshot)
+    }
+}
+
+/// Whether nothing but the border of the universe bounds a half-space's face.
+fn is_full_plane(cut: &CutFace) -> bool {
+    cut.edges.iter().all(|e| e.carrier.is_border())
+}
+
+impl WholeFaces {
+    fn plane(cut: &CutFace) -> Self {
+        Self {
+            slot: cut.slot,
+            flip: cut.flip,
+            faces: vec![cut.face],
+        }
     }
 }
 

@@ -27,10 +27,10 @@ pub fn rows<T: numpy::Element + Copy>(
 }
 
 /// An (n, k) array from rows.
-pub fn array<'py, T, const K: usize>(
-    py: Python<'py>,
+pub fn array<T, const K: usize>(
+    py: Python<'_>,
     rows: Vec<[T; K]>,
-) -> PyResult<Bound<'py, PyArray2<T>>>
+) -> PyResult<Bound<'_, PyArray2<T>>>
 where
     T: numpy::Element,
 {

@@ -81,7 +81,7 @@ pub fn run<T: Send>(
                         return Err(Error::internal("the work ended without an answer"));
                     }
                     Err(mpsc::RecvTimeoutError::Timeout) => {
-                        if let Err(e) = Python::attach(|py| py.check_signals()) {
+                        if let Err(e) = pending_signal() {
                             *raised = Some(e);
                             flag.store(true, Ordering::Relaxed);
                         }
@@ -95,4 +95,13 @@ pub fn run<T: Send>(
         (Ok(value), None) => Ok(value),
         (Err(error), None) => Err(to_python(py, &error)),
     }
+}
+
+/// The exception of a signal that has arrived, such as `KeyboardInterrupt`.
+#[expect(
+    clippy::redundant_closure_for_method_calls,
+    reason = "the method is bound to one lifetime, `attach` wants any"
+)]
+fn pending_signal() -> PyResult<()> {
+    Python::attach(|py| py.check_signals())
 }
