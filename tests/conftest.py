@@ -23,13 +23,12 @@ for _name, _count in (("fast", 15), ("ci", 40), ("deep", 2000)):
 hypothesis.settings.load_profile(os.environ.get("BSPCSG_HYPOTHESIS", "ci"))
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Leave out what takes minutes, with a reason that the summary counts."""
-    if DEEP:
-        return
-    for item in items:
-        if item.get_closest_marker("slow"):
-            item.add_marker(pytest.mark.skip(reason="slow; set BSPCSG_DEEP=1 to run it"))
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Deselect what takes minutes; the summary counts it, and BSPCSG_DEEP=1 runs it."""
+    slow = [] if DEEP else [item for item in items if item.get_closest_marker("slow")]
+    if slow:
+        config.hook.pytest_deselected(items=slow)
+        items[:] = [item for item in items if not item.get_closest_marker("slow")]
 
 
 @pytest.fixture(scope="session")
