@@ -83,7 +83,7 @@ _CLASSES: dict[str, type[BspcsgError]] = {
 }
 
 _ADVICE = {
-    "not_closed": "Every edge needs an opposite edge; close the holes before making a solid.",
+    "not_closed": "Before making a solid, close the holes and orient the faces consistently.",
     "non_finite": "Coordinates must be finite numbers.",
     "empty_mesh": "A mesh without faces is no solid; use Solid.empty() for the empty set.",
     "too_large": "Choose a coarser pitch (for example pitch=-6), or move or scale the solids.",

@@ -163,8 +163,8 @@ fn choose_pitch(
         .position(|p| p.iter().any(|c| !c.is_finite()))
     {
         let text = format!(
-            "vertex {row} is {:?}; coordinates must be finite",
-            vertices[row]
+            "vertex {row} is {}; coordinates must be finite",
+            place(&vertices[row])
         );
         return Err(Error::at(ErrorKind::NonFinite, vec![row as u64], text));
     }
@@ -290,13 +290,18 @@ fn not_closed(mesh: &TriangleMesh, open: &[u64]) -> Error {
     let (a, b) = (face[half % 3] as usize, face[(half % 3 + 1) % 3] as usize);
     let text = format!(
         "the mesh is not closed: {} edges have no matching opposite; the first belongs to face {} \
-         and runs from {:?} to {:?}; close the holes or orient the faces consistently",
+         and runs from {} to {}",
         open.len(),
         faces[0],
-        mesh.doubles[a],
-        mesh.doubles[b],
+        place(&mesh.doubles[a]),
+        place(&mesh.doubles[b]),
     );
     Error::at(ErrorKind::NotClosed, faces, text)
+}
+
+/// A point as a message shows it.
+fn place([x, y, z]: &[f64; 3]) -> String {
+    format!("({x}, {y}, {z})")
 }
 
 /// Makes vertices at one lattice point one vertex; says whether there were any.
