@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::collect::{collect, CutFace, Fate};
+use crate::arith::bounds::{self, COORDINATE_BITS};
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, REACH};
@@ -226,7 +227,8 @@ impl Snapshot {
         };
         for w in &self.wholes {
             let source = sources.get(w.slot as usize).ok_or_else(bad_snapshot)?;
-            if w.faces.iter().any(|f| *f as usize >= source.face_count()) {
+            let known = w.faces.iter().all(|f| (*f as usize) < source.face_count());
+            if !known || !w.faces.is_sorted_by(|a, b| a < b) {
                 return Err(bad_snapshot());
             }
             let source = Arc::clone(source);
@@ -535,11 +537,16 @@ impl VertexData {
             }
             Self::Lattice(_) => Err(bad_snapshot()),
             Self::Meet(x, w) => {
-                let w = Int::from_limbs(*w);
-                if w.signum() <= 0 {
+                let (x, w) = (x.map(Int::from_limbs), Int::from_limbs(*w));
+                let fits = |c: &Int<6>, bits| c.bit_length() <= bits;
+                let numerators = x
+                    .iter()
+                    .all(|c| fits(c, bounds::point_numerator(COORDINATE_BITS)));
+                let weight = fits(&w, bounds::point_weight(COORDINATE_BITS));
+                if w.signum() <= 0 || !numerators || !weight {
                     return Err(bad_snapshot());
                 }
-                Ok(Vertex::homogeneous(x.map(Int::from_limbs), w))
+                Ok(Vertex::homogeneous(x, w))
             }
         }
     }
@@ -551,6 +558,12 @@ impl PlaneData {
     }
 
     fn plane(&self) -> Result<Plane> {
-        Plane::new(self.0, Int::from_limbs(self.1)).ok_or_else(bad_snapshot)
+        let offset: Int<3> = Int::from_limbs(self.1);
+        let limit = 1u128 << bounds::normal(COORDINATE_BITS);
+        let normal = self.0.iter().all(|c| c.unsigned_abs() < limit);
+        if !normal || offset.bit_length() > bounds::offset(COORDINATE_BITS) {
+            return Err(bad_snapshot());
+        }
+        Plane::new(self.0, offset).ok_or_else(bad_snapshot)
     }
 }

@@ -263,7 +263,7 @@ impl<'a> Descent<'a> {
         } else {
             (half(false, below), half(true, above))
         };
-        Ok(join::branch(cell, cut, minus?, plus?))
+        Ok(join::branch(cell, cut, minus?, plus?, self.sources))
     }
 
     fn leaf(&self, cell: Cell, expression: &Expression, states: States, total: usize) -> Branch {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::leaf::is_whole;
+use super::list::Sources;
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, triangle_change, Segment};
 use crate::geometry::outline::{cancel, OutlineEdge};
@@ -18,7 +19,7 @@ pub const JOINED: usize = 16;
 ///
 /// No boundary lies in a dyadic cut, so that next to a uniform half the other one is uniform
 /// along the cut: it then stands for the whole cell (path compression).
-pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch) -> Branch {
+pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch, sources: &Sources) -> Branch {
     match (minus.constant(), plus.constant()) {
         (Some(w), Some(v)) if (w > 0) == (v > 0) => Branch::uniform(cell, w),
         (Some(w), None) => Branch { outside: w, ..plus },
@@ -28,7 +29,8 @@ pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch) -> Branch {
         },
         _ => {
             let outside = minus.outside;
-            let node = joined(&cell, cut, &minus, &plus).unwrap_or(Node::Cut([minus, plus]));
+            let node =
+                joined(&cell, cut, &minus, &plus, sources).unwrap_or(Node::Cut([minus, plus]));
             Branch {
                 cell,
                 outside,
@@ -40,7 +42,7 @@ pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch) -> Branch {
 }
 
 /// One deferred leaf for both halves, if they are small and hold whole faces only.
-fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch) -> Option<Node> {
+fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Sources) -> Option<Node> {
     let (a, b) = (small_leaf(minus)?, small_leaf(plus)?);
     if a.len() + b.len() > 2 * JOINED {
         return None;
@@ -67,7 +69,7 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch) -> Option<Node> 
         }
     }
     let mut faces = held;
-    faces.sort_by_key(|f| (f.source.id(), f.flip, f.face));
+    faces.sort_by_key(|f| (sources.slot(&f.source), f.flip, f.face));
     let corner = corner_of(minus, a, cell);
     let plus_corner = corner_of(plus, b, &halves[1].2);
     if plus_corner != corner + change_along_edge(&faces, cell, cut) {

@@ -29,6 +29,8 @@ struct Check<'a> {
     sources: &'a Sources,
     mesh: &'a TriangleMesh,
     shells: Vec<u32>,
+    /// By vertex, whether surfaces may meet there that pairs of faces do not show.
+    irregular: Vec<bool>,
     seen: Vec<AtomicBool>,
     overlap: AtomicBool,
     cancel: &'a AtomicBool,
@@ -54,6 +56,7 @@ pub fn is_simple(solid: &Solid, sources: &Sources, cancel: &AtomicBool) -> Resul
         sources,
         mesh,
         shells,
+        irregular: irregular(source, mesh),
         seen: (0..count).map(|_| AtomicBool::new(false)).collect(),
         overlap: AtomicBool::new(false),
         cancel,
@@ -90,6 +93,14 @@ fn shells(source: &Source, count: usize) -> Vec<u32> {
         next += 1;
     }
     shell
+}
+
+fn irregular(source: &Source, mesh: &TriangleMesh) -> Vec<bool> {
+    let mut marks = vec![false; mesh.vertices.len()];
+    for vertex in source.topology().map_or(&[][..], |t| t.irregular()) {
+        marks[*vertex as usize] = true;
+    }
+    marks
 }
 
 impl Check<'_> {
@@ -137,7 +148,8 @@ impl Check<'_> {
 
     /// Whether no two of the faces overlap, as far as a quick look can tell; errs on no.
     fn is_clean(&self, faces: &[u32]) -> bool {
-        let looked: Vec<Looked> = faces.iter().map(|f| Looked::at(self.mesh, *f)).collect();
+        let look = |f: &u32| Looked::at(self.mesh, *f, &self.irregular);
+        let looked: Vec<Looked> = faces.iter().map(look).collect();
         (1..looked.len()).all(|i| looked[..i].iter().all(|other| looked[i].is_clear_of(other)))
     }
 }
@@ -147,6 +159,8 @@ struct Looked {
     corners: [Lattice; 3],
     low: Lattice,
     high: Lattice,
+    /// The corners that are irregular vertices.
+    irregular: [bool; 3],
     /// The normal in doubles, relative to the first corner.
     normal: [f64; 3],
     /// A bound on the rounding of the normal's components relative to the edges' lengths.
@@ -154,7 +168,7 @@ struct Looked {
 }
 
 impl Looked {
-    fn at(mesh: &TriangleMesh, face: u32) -> Self {
+    fn at(mesh: &TriangleMesh, face: u32, irregular: &[bool]) -> Self {
         let corners = mesh.corners(face);
         let (low, high) = mesh.face_box(face);
         let u = difference(&corners[1], &corners[0]);
@@ -169,6 +183,7 @@ impl Looked {
             corners,
             low,
             high,
+            irregular: mesh.faces[face as usize].map(|v| irregular[v as usize]),
             normal,
             size: longest(&u) * longest(&v),
         }
@@ -182,9 +197,16 @@ impl Looked {
         let shared = |p: &&Lattice| self.corners.contains(p);
         match other.corners.iter().filter(shared).count() {
             0 | 1 => self.has_beyond(other) || other.has_beyond(self),
-            2 => self.folds_away(other),
+            2 => !self.shares_irregular_edge(other) && self.folds_away(other),
             _ => false,
         }
+    }
+
+    /// Whether more than two faces may meet in the common edge: surfaces can cross there although
+    /// no two faces do.
+    fn shares_irregular_edge(&self, other: &Self) -> bool {
+        let common = |i: &usize| other.corners.contains(&self.corners[*i]);
+        (0..3).filter(common).all(|i| self.irregular[i])
     }
 
     /// Whether the other face's corners that are not shared lie strictly on one side of this plane.

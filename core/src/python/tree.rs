@@ -278,9 +278,10 @@ impl Tree {
     }
 
     fn moved(&self, py: Python<'_>, axes: [i64; 3], shift: [i64; 3]) -> PyResult<Self> {
-        let fail = |e: Error| to_python(py, &e);
-        let motion = motion(axes, shift).map_err(fail)?;
-        self.mapped(&motion, self.solid.pitch()).map_err(fail)
+        let motion = motion(axes, shift).map_err(|e| to_python(py, &e))?;
+        run(py, 0, self.size(), |_| {
+            self.mapped(&motion, self.solid.pitch())
+        })
     }
 
     fn refined(&self, py: Python<'_>, pitch: i64) -> PyResult<Self> {
@@ -300,18 +301,18 @@ impl Tree {
             scale,
             ..Motion::IDENTITY
         };
-        self.mapped(&motion, finer).map_err(fail)
+        run(py, 0, self.size(), |_| self.mapped(&motion, finer))
     }
 
     fn dump<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = Snapshot::of(&self.solid).to_bytes();
-        Ok(PyBytes::new(py, &bytes.map_err(|e| to_python(py, &e))?))
+        let bytes = run(py, 0, self.size(), |_| Snapshot::of(&self.solid).to_bytes())?;
+        Ok(PyBytes::new(py, &bytes))
     }
 
     #[classmethod]
     fn load(_cls: &Bound<'_, PyType>, py: Python<'_>, data: &[u8]) -> PyResult<Self> {
-        let solid = Snapshot::from_bytes(data).and_then(|s| s.solid());
-        Ok(Self::of(solid.map_err(|e| to_python(py, &e))?))
+        let solid = |_: &_| Snapshot::from_bytes(data).and_then(|s| s.solid());
+        Ok(Self::of(run(py, 0, data.len(), solid)?))
     }
 
     fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
