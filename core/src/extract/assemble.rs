@@ -28,6 +28,8 @@ pub struct ExactMesh {
     pub triangles: Vec<[u32; 3]>,
     /// For each triangle the source's slot and the number of the face in its input.
     pub origins: Vec<[u32; 2]>,
+    /// For each triangle the face it lies in.
+    pub faces: Vec<TriangleFace>,
     /// The constructed points that [`Corner::Point`] names.
     pub table: VertexTable,
     /// What was noticed on the way.
@@ -64,10 +66,13 @@ pub(super) struct Assembly<'a> {
 
 /// The face a triangle lies in, as the source has it, and whether it is turned around.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TriangleFace {
-    pub(super) slot: u32,
-    pub(super) face: u32,
-    pub(super) flip: bool,
+pub struct TriangleFace {
+    /// The source's slot.
+    pub slot: u32,
+    /// The face.
+    pub face: u32,
+    /// Whether the triangle faces the other way.
+    pub flip: bool,
 }
 
 const NONE: u32 = u32::MAX;
@@ -413,6 +418,7 @@ impl<'a> Assembly<'a> {
             vertices: self.vertices,
             triangles: self.triangles,
             origins,
+            faces: self.faces,
             table: self.table,
             findings,
         }

@@ -11,4 +11,5 @@ pub mod round;
 pub mod seams;
 pub mod snapshot;
 pub mod triangulate;
+pub mod unfold;
 pub mod vertices;

@@ -1,7 +1,11 @@
 //! From exact vertices to doubles: the only rounding, and what it did.
 
+use std::sync::Arc;
+
 use super::assemble::{assemble, Corner, ExactMesh};
+use super::unfold::{unfold, Unfolded};
 use crate::error::Result;
+use crate::merge::list::Sources;
 use crate::mesh::finding::{Finding, Severity};
 use crate::tree::solid::Solid;
 
@@ -33,11 +37,13 @@ pub fn mesh(solid: &Solid) -> Result<Mesh> {
         .collect();
     let mut mesh = Mesh {
         vertices,
-        triangles: exact.triangles,
-        origins: exact.origins,
-        findings: exact.findings,
+        triangles: exact.triangles.clone(),
+        origins: exact.origins.clone(),
+        findings: exact.findings.clone(),
     };
-    report_collapsed(&mut mesh);
+    let sources = Sources::new(Arc::clone(solid.sources()));
+    let unfolded = unfold(&mut mesh, &exact, &sources);
+    report(&mut mesh, &unfolded);
     Ok(mesh)
 }
 
@@ -51,21 +57,28 @@ fn position(solid: &Solid, exact: &ExactMesh, corner: Corner) -> [f64; 3] {
     }
 }
 
-/// Reports triangles two corners of which were rounded to the same place.
-#[allow(clippy::float_cmp)]
-fn report_collapsed(mesh: &mut Mesh) {
-    let same = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|v| mesh.vertices[v as usize]);
-        a == b || b == c || c == a
-    };
-    let places: Vec<u64> = (0u64..)
-        .zip(&mesh.triangles)
-        .filter(|(_, t)| same(t))
-        .map(|(i, _)| i)
-        .collect();
-    if !places.is_empty() {
-        let text = "rounding to doubles put two corners of these triangles in one place";
-        mesh.findings
-            .push(Finding::about("collapsed", Severity::Note, &places, text));
+/// Reports the triangles that rounding changed, by what became of them.
+fn report(mesh: &mut Mesh, unfolded: &Unfolded) {
+    let (collapsed, turned): (Vec<u64>, Vec<u64>) =
+        unfolded.left.iter().partition(|t| is_collapsed(mesh, **t));
+    let repaired = "rounding to doubles turned triangles over; an edge of these was swapped";
+    let together = "rounding to doubles put two corners of these triangles in one place";
+    let over = "rounding to doubles turned these triangles over or left them no area";
+    for (code, severity, places, text) in [
+        ("swapped", Severity::Note, &unfolded.repaired, repaired),
+        ("collapsed", Severity::Note, &collapsed, together),
+        ("turned", Severity::Warning, &turned, over),
+    ] {
+        if !places.is_empty() {
+            let finding = Finding::about(code, severity, places, text);
+            mesh.findings.push(finding);
+        }
     }
+}
+
+/// Whether two corners of a triangle were rounded to the same place.
+#[allow(clippy::float_cmp)]
+fn is_collapsed(mesh: &Mesh, triangle: u64) -> bool {
+    let [a, b, c] = mesh.triangles[triangle as usize].map(|v| mesh.vertices[v as usize]);
+    a == b || b == c || c == a
 }

@@ -1,0 +1,214 @@
+//! Triangles that rounding to doubles turned over, put right by swapping edges.
+//!
+//! A constructed vertex moves by half a unit in its last place at most. A triangle narrower than
+//! that may turn over; together with a neighbour of its plane it mostly has another diagonal with
+//! which both face the right way.
+
+use num_bigint::BigInt;
+use rustc_hash::FxHashMap as HashMap;
+
+use super::assemble::{Corner, ExactMesh};
+use super::round::Mesh;
+use crate::geometry::plane::Plane;
+use crate::merge::list::Sources;
+
+/// Swaps tried per triangle found turned over; each lowers the number of such triangles.
+const TRIES: usize = 8;
+
+/// What rounding did to the triangles of a mesh.
+#[derive(Debug, Default)]
+pub struct Unfolded {
+    /// Triangles made by swapping an edge.
+    pub repaired: Vec<u64>,
+    /// Triangles that still have no area or face the wrong way.
+    pub left: Vec<u64>,
+}
+
+/// Swaps edges inside planes until no triangle, or none that this could help, faces the wrong way.
+///
+/// # Order
+/// Triangles by their numbers, and in each the edges from its first corner on.
+pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded {
+    let planes = Planes { exact, sources };
+    let constructed = |t: &[u32; 3]| {
+        t.iter()
+            .any(|v| matches!(exact.vertices[*v as usize], Corner::Point(_)))
+    };
+    let turned: Vec<usize> = (0..mesh.triangles.len())
+        .filter(|&t| constructed(&mesh.triangles[t]) && planes.is_turned(mesh, t))
+        .collect();
+    if turned.is_empty() {
+        return Unfolded::default();
+    }
+    let mut surface = Surface::new(mesh, planes);
+    let mut tries = TRIES * turned.len();
+    let mut found = Unfolded::default();
+    let mut open: Vec<usize> = turned.iter().rev().copied().collect();
+    while let Some(t) = open.pop() {
+        if tries == 0 || !surface.is_turned(t) {
+            continue;
+        }
+        tries -= 1;
+        if let Some(pair) = (3 * t..3 * t + 3).find_map(|half| surface.swap(half)) {
+            found.repaired.extend(pair.map(|t| t as u64));
+            open.extend(pair);
+        } else {
+            found.left.push(t as u64);
+        }
+    }
+    found.repaired.sort_unstable();
+    found.repaired.dedup();
+    found.left.retain(|&t| surface.is_turned(t as usize));
+    found
+}
+
+/// The exact planes of the triangles.
+struct Planes<'a> {
+    exact: &'a ExactMesh,
+    sources: &'a Sources,
+}
+
+impl Planes<'_> {
+    fn of(&self, triangle: usize) -> Plane {
+        let face = &self.exact.faces[triangle];
+        let plane = self.sources.get(face.slot as usize).plane(face.face);
+        if face.flip {
+            plane.flipped()
+        } else {
+            (*plane).clone()
+        }
+    }
+
+    fn is_turned(&self, mesh: &Mesh, triangle: usize) -> bool {
+        is_turned(mesh, &mesh.triangles[triangle], &self.of(triangle))
+    }
+}
+
+/// Whether a rounded triangle does not face as its plane does, seen along the plane's main axis.
+fn is_turned(mesh: &Mesh, corners: &[u32; 3], plane: &Plane) -> bool {
+    let axis = plane.main_axis();
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    let points = corners
+        .map(|c| mesh.vertices[c as usize])
+        .map(|p| [p[u], p[v]]);
+    let facing = if plane.normal()[axis] > 0 { 1 } else { -1 };
+    turn(points) != facing
+}
+
+/// Sign of the turn a → b → c: +1 left, 0 straight, −1 right; exact.
+fn turn([a, b, c]: [[f64; 2]; 3]) -> i32 {
+    let left = (b[0] - a[0]) * (c[1] - a[1]);
+    let right = (b[1] - a[1]) * (c[0] - a[0]);
+    let value = left - right;
+    // Shewchuk 1997, "Adaptive precision floating-point arithmetic", the bound A of orient2d.
+    if value.abs() > (3.0 + 16.0 * f64::EPSILON) * f64::EPSILON * (left.abs() + right.abs()) {
+        return if value > 0.0 { 1 } else { -1 };
+    }
+    exact_turn([a, b, c])
+}
+
+fn exact_turn(points: [[f64; 2]; 3]) -> i32 {
+    let parts = points.map(|p| p.map(mantissa_and_exponent));
+    let least = parts.iter().flatten().map(|p| p.1).min().unwrap_or(0);
+    let [a, b, c] = parts.map(|p| p.map(|(m, e)| m << (e - least).unsigned_abs()));
+    let left = (&b[0] - &a[0]) * (&c[1] - &a[1]);
+    let right = (&b[1] - &a[1]) * (&c[0] - &a[0]);
+    left.cmp(&right) as i32
+}
+
+/// The integers m and e of a finite double m · 2^e.
+fn mantissa_and_exponent(x: f64) -> (BigInt, i32) {
+    let bits = x.abs().to_bits();
+    let fraction = bits & ((1 << 52) - 1);
+    let exponent = i32::try_from(bits >> 52).unwrap_or(0);
+    let (m, e) = match (exponent, fraction) {
+        (0, 0) => (0, 0),
+        (0, _) => (fraction, -1074),
+        _ => (fraction | 1 << 52, exponent - 1075),
+    };
+    let magnitude = BigInt::from(m);
+    (if x < 0.0 { -magnitude } else { magnitude }, e)
+}
+
+/// A mesh whose edges can be swapped; half-edge 3t + i runs from corner i of triangle t.
+struct Surface<'a> {
+    mesh: &'a mut Mesh,
+    planes: Planes<'a>,
+    halves: HashMap<(u32, u32), usize>,
+}
+
+impl<'a> Surface<'a> {
+    fn new(mesh: &'a mut Mesh, planes: Planes<'a>) -> Self {
+        let ends = |(t, c): (usize, &[u32; 3])| {
+            let c = *c;
+            (0..3).map(move |i| ((c[i], c[(i + 1) % 3]), 3 * t + i))
+        };
+        let halves = mesh.triangles.iter().enumerate().flat_map(ends).collect();
+        Self {
+            mesh,
+            planes,
+            halves,
+        }
+    }
+
+    fn is_turned(&self, triangle: usize) -> bool {
+        self.planes.is_turned(self.mesh, triangle)
+    }
+
+    /// Puts the other diagonal into the two triangles beside an edge, if fewer are turned then.
+    fn swap(&mut self, half: usize) -> Option<[usize; 2]> {
+        let corner = |h: usize| self.mesh.triangles[h / 3][h % 3];
+        let next = |h: usize| h - h % 3 + (h % 3 + 1) % 3;
+        let (a, b, c) = (corner(half), corner(next(half)), corner(next(next(half))));
+        let mate = *self.halves.get(&(b, a))?;
+        let d = corner(next(next(mate)));
+        let pair = [half / 3, mate / 3];
+        let plane = self.planes.of(pair[0]);
+        let taken = [(c, d), (d, c)].iter().any(|e| self.halves.contains_key(e));
+        if c == d || taken || plane != self.planes.of(pair[1]) {
+            return None;
+        }
+        let made = [[a, d, c], [d, b, c]];
+        let before = pair.iter().filter(|t| self.is_turned(**t)).count();
+        let after = made
+            .iter()
+            .filter(|t| is_turned(self.mesh, t, &plane))
+            .count();
+        (after < before).then(|| self.replace(pair, made))
+    }
+
+    fn replace(&mut self, pair: [usize; 2], made: [[u32; 3]; 2]) -> [usize; 2] {
+        for t in pair {
+            for edge in edges(&self.mesh.triangles[t]) {
+                self.halves.remove(&edge);
+            }
+        }
+        for (t, corners) in pair.into_iter().zip(made) {
+            for (i, edge) in edges(&corners).into_iter().enumerate() {
+                self.halves.insert(edge, 3 * t + i);
+            }
+            self.mesh.triangles[t] = corners;
+        }
+        pair
+    }
+}
+
+fn edges(corners: &[u32; 3]) -> [(u32, u32); 3] {
+    [0, 1, 2].map(|i| (corners[i], corners[(i + 1) % 3]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::turn;
+
+    #[test]
+    fn turns_are_exact_in_the_last_place() {
+        let step = f64::EPSILON;
+        let (a, b) = ([0.0, 0.0], [1.0 + step, 1.0 + step]);
+        assert_eq!(turn([a, b, [2.0, 2.0]]), 0);
+        assert_eq!(turn([a, b, [2.0, 2.0 + 2.0 * step]]), 1);
+        assert_eq!(turn([a, b, [2.0, 2.0 - step]]), -1);
+        assert_eq!(turn([a, [1e-300, 1e-300], [1e300, 1e300]]), 0);
+        assert_eq!(turn([[-1.0, 0.5], [0.0, 0.5], [0.5, 0.5 + step]]), 1);
+    }
+}
