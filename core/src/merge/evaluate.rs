@@ -40,7 +40,9 @@ pub fn evaluate(
         if overlaps.is_empty() {
             let reduced = operands.iter().all(Solid::is_reduced);
             let table = Arc::clone(sources.table());
-            return Ok((Solid::new(root, pitch, table, reduced), descent.counters));
+            let named = operands.iter().map(Solid::named).max().unwrap_or(0);
+            let solid = Solid::new(root, pitch, table, reduced).outgrowing(named);
+            return Ok((solid, descent.counters));
         }
         for k in overlaps {
             if operands[k].is_reduced() {

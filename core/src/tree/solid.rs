@@ -3,10 +3,16 @@
 
 use std::sync::{Arc, OnceLock};
 
+use rustc_hash::FxHashSet as HashSet;
+
 use super::node::{Branch, Deferred, Group, Node};
 use crate::geometry::cell::Cell;
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::{Shape, Source};
+
+/// Sources a table may hold beyond twice those that are named, so that operands of short
+/// expressions keep their numbers.
+const SPARE: usize = 64;
 
 /// A set of points as a partition tree. Immutable; clones share everything.
 #[derive(Clone, Debug)]
@@ -14,6 +20,8 @@ pub struct Solid {
     root: Branch,
     pitch: Pitch,
     sources: Arc<[Arc<Source>]>,
+    /// How many sources the tree named when that was last counted.
+    named: usize,
     reduced: bool,
     united: Arc<OnceLock<Solid>>,
 }
@@ -21,13 +29,37 @@ pub struct Solid {
 impl Solid {
     /// A solid from its parts; `reduced` says that its elements are the reduced boundary.
     pub fn new(root: Branch, pitch: Pitch, sources: Arc<[Arc<Source>]>, reduced: bool) -> Self {
+        let named = sources.len();
         Self {
             root,
             pitch,
             sources,
+            named,
             reduced,
             united: Arc::default(),
         }
+    }
+
+    /// A solid made of operands of which none named more than `named` sources.
+    ///
+    /// Once the table has outgrown that by far, the sources that the tree does not name are left
+    /// out; the others keep their order. So chains of operations do not collect what they cut away,
+    /// and counting costs little per operation.
+    #[must_use]
+    pub fn outgrowing(mut self, named: usize) -> Self {
+        self.named = named;
+        if self.sources.len() > 2 * named + SPARE {
+            let names = names(&self.root);
+            let kept = |s: &&Arc<Source>| names.contains(&s.id());
+            self.sources = self.sources.iter().filter(kept).cloned().collect();
+            self.named = self.sources.len();
+        }
+        self
+    }
+
+    /// How many sources the tree named when that was last counted.
+    pub fn named(&self) -> usize {
+        self.named
     }
 
     /// The empty set, or all of space.
@@ -100,4 +132,21 @@ impl Solid {
     pub fn united(&self) -> &OnceLock<Self> {
         &self.united
     }
+}
+
+/// The ids of the sources that a tree names.
+fn names(root: &Branch) -> HashSet<u64> {
+    let mut names = HashSet::default();
+    let mut open = vec![root];
+    while let Some(branch) = open.pop() {
+        match &*branch.node {
+            Node::Leaf(_) => {}
+            Node::Deferred(leaf) => {
+                names.extend(leaf.groups.iter().map(|g| g.source.id()));
+                names.extend(leaf.parts.iter().map(|p| p.part.source.id()));
+            }
+            Node::Cut(children) => open.extend(children),
+        }
+    }
+    names
 }
