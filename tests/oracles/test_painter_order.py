@@ -206,7 +206,7 @@ def test_a_cyclic_overlap_is_cut() -> None:
         tree = bsp.PartitionTree(scene, policy)
         assert len(tree.splits) > 0
         order = tree.back_to_front(direction=[0, 0, -1])
-        flat = (random.dirichlet(np.ones(3), (150, 3))[..., None] * scene).sum(axis=2)
+        flat = (random.dirichlet(np.ones(3), (60, 3))[..., None] * scene).sum(axis=2)
         rays = [(exact([x, y, 50.0]), exact([0, 0, -1])) for x, y, _ in flat.reshape(-1, 3)]
         assert judge(scene, order, rays, ahead=True) > 5
 
