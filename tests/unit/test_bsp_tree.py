@@ -383,7 +383,7 @@ def has_perfect(segments: list[Any]) -> bool:
     def side(pivot: Any, point: Any) -> int:
         (x, y), (u, v) = pivot
         value = (u - x) * (point[1] - y) - (v - y) * (point[0] - x)
-        return (value > 0) - (value < 0)
+        return int(value > 0) - int(value < 0)
 
     if not segments:
         return True
