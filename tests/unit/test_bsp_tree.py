@@ -89,6 +89,7 @@ class TestInput:
             {"top": -1},
             {"top": 0.5},
             {"non_planar": "ignore"},
+            {"degenerate": "ignore"},
             {"margin": np.nan},
         ],
     )
@@ -116,6 +117,15 @@ class TestInput:
         assert len(closed.fragments) == 12
         assert len(open_.fragments) == 11
         assert bsp.PartitionTree.from_mesh(b.cube(1)) == closed
+
+    def test_flat_triangles_of_a_mesh_are_left_out(self) -> None:
+        points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0]], dtype=float)
+        faces = [[0, 1, 2], [0, 1, 3], [1, 1, 2]]
+        tree = bsp.PartitionTree.from_mesh((points, faces))
+        assert tree.fragments.source.tolist() == [1]
+        assert bsp.PartitionTree.from_json(tree.to_json()) == tree
+        with pytest.raises(b.InvalidMeshError):
+            bsp.PartitionTree.from_mesh((points, faces), degenerate="error")
 
     def test_a_mesh_with_wrong_indices_is_refused(self) -> None:
         with pytest.raises(b.InvalidMeshError, match="does not exist"):

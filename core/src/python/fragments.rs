@@ -16,7 +16,7 @@ use crate::geometry::dim2::Dim2;
 use crate::geometry::dim3::Dim3;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::{Half, Side};
-use crate::mesh::facets::{check_reach, facets, snap_corners, suited_pitch, Facet};
+use crate::mesh::facets::{check_reach, facets, snap_corners, suited_pitch, Facet, Lenience};
 use crate::mesh::grid::Pitch;
 use crate::tree::fragments::{
     back_to_front, build, measures, perfect, sides, FragmentTree, NodeCut, Piece, Plan, Policy,
@@ -77,7 +77,7 @@ enum Wish {
 #[pymethods]
 impl PyFragmentTree {
     #[classmethod]
-    #[pyo3(signature = (corners, offsets, policy, seed=0, sample=8, alpha=0.5, top=0, pitch=None, lenient=false))]
+    #[pyo3(signature = (corners, offsets, policy, seed=0, sample=8, alpha=0.5, top=0, pitch=None, lenience=(false, false)))]
     #[allow(clippy::too_many_arguments)]
     fn build(
         _cls: &Bound<'_, PyType>,
@@ -90,7 +90,7 @@ impl PyFragmentTree {
         alpha: f64,
         top: usize,
         pitch: Option<i64>,
-        lenient: bool,
+        lenience: (bool, bool),
     ) -> PyResult<Self> {
         let fail = |e: Error| to_python(py, &e);
         let policy = named_policy(policy, seed, Sample(sample), alpha).map_err(fail)?;
@@ -105,7 +105,7 @@ impl PyFragmentTree {
                 None => suited_pitch(dimension, &rows)?,
             };
             let lattice = snap_corners(dimension, &rows, pitch)?;
-            let facets = facets(dimension, &lattice, &offsets, lenient)?;
+            let facets = facets(dimension, &lattice, &offsets, lenience_of(lenience))?;
             let inner = built(dimension, facets, pitch, wish, cancel)?;
             Ok((inner, lattice))
         })?;
@@ -125,7 +125,7 @@ impl PyFragmentTree {
         offsets: PyReadonlyArray1<'_, i64>,
         pitch: i64,
         cuts: PyReadonlyArray2<'_, i64>,
-        lenient: bool,
+        lenience: (bool, bool),
     ) -> PyResult<Self> {
         let fail = |e: Error| to_python(py, &e);
         let pitch = Pitch::new(pitch).map_err(fail)?;
@@ -135,7 +135,7 @@ impl PyFragmentTree {
         let cuts = node_cuts(&cuts).map_err(fail)?;
         let inner = run(py, 0, rows.len(), |cancel| {
             check_reach(dimension, &rows)?;
-            let facets = facets(dimension, &rows, &offsets, lenient)?;
+            let facets = facets(dimension, &rows, &offsets, lenience_of(lenience))?;
             built(dimension, facets, pitch, Wish::Given(cuts), cancel)
         })?;
         Ok(Self {
@@ -565,6 +565,13 @@ fn held<S: Affine>(
         tree,
         pitch,
     })
+}
+
+fn lenience_of((triangulate_bent, drop_flat): (bool, bool)) -> Lenience {
+    Lenience {
+        triangulate_bent,
+        drop_flat,
+    }
 }
 
 fn named_policy(name: &str, seed: u64, sample: Sample, alpha: f64) -> Result<Policy> {
