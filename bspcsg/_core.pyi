@@ -103,7 +103,7 @@ class FragmentTree:
         alpha: float = 0.5,
         top: int = 0,
         pitch: int | None = None,
-        lenience: tuple[bool, bool] = (False, False),
+        lenience: tuple[bool, bool] = ...,
     ) -> FragmentTree: ...
     @classmethod
     def rebuild(
