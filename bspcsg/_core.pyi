@@ -5,7 +5,7 @@ from typing import TypedDict, final, type_check_only
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["CoreError", "Tree", "__version__", "set_threads"]
+__all__ = ["CoreError", "FragmentTree", "Tree", "__version__", "set_threads"]
 
 __version__: str
 
@@ -77,3 +77,72 @@ class Tree:
     def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None: ...
     @property
     def pitch(self) -> int: ...
+
+@type_check_only
+class NodeArrays(TypedDict):
+    normal: npt.NDArray[np.float64]
+    offset: npt.NDArray[np.float64]
+    minus: npt.NDArray[np.int64]
+    plus: npt.NDArray[np.int64]
+    parent: npt.NDArray[np.int64]
+    depth: npt.NDArray[np.int64]
+    start: npt.NDArray[np.int64]
+    end: npt.NDArray[np.int64]
+    cut: npt.NDArray[np.int64]
+
+@final
+class FragmentTree:
+    @classmethod
+    def build(
+        cls,
+        corners: npt.NDArray[np.float64],
+        offsets: npt.NDArray[np.int64],
+        policy: str,
+        seed: int = 0,
+        sample: int = 8,
+        alpha: float = 0.5,
+        top: int = 0,
+        pitch: int | None = None,
+        lenience: tuple[bool, bool] = ...,
+    ) -> FragmentTree: ...
+    @classmethod
+    def rebuild(
+        cls,
+        corners: npt.NDArray[np.int64],
+        offsets: npt.NDArray[np.int64],
+        pitch: int,
+        cuts: npt.NDArray[np.int64],
+        lenience: tuple[bool, bool],
+    ) -> FragmentTree: ...
+    def __len__(self) -> int: ...
+    def perfect_cuts(self) -> npt.NDArray[np.int64] | None: ...
+    def nodes(self) -> NodeArrays: ...
+    def coefficients(self, node: int) -> list[int] | None: ...
+    def fragments(
+        self,
+    ) -> tuple[
+        npt.NDArray[np.float64],
+        npt.NDArray[np.int64],
+        npt.NDArray[np.int64],
+        npt.NDArray[np.int64],
+        npt.NDArray[np.bool_],
+        npt.NDArray[np.bool_],
+    ]: ...
+    def splits(self) -> npt.NDArray[np.int64]: ...
+    def order(self, eye: list[float], at_infinity: bool) -> npt.NDArray[np.int64]: ...
+    def sides(self, eye: list[float], at_infinity: bool) -> npt.NDArray[np.int8]: ...
+    def measures(
+        self, margin: float
+    ) -> tuple[float, float, npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+    def region(
+        self, node: int | None, side: int, margin: float
+    ) -> list[npt.NDArray[np.float64]]: ...
+    def span(self, node: int, margin: float) -> npt.NDArray[np.float64]: ...
+    def lattice(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]: ...
+    def piece_sources(self) -> npt.NDArray[np.int64]: ...
+    @property
+    def dimension(self) -> int: ...
+    @property
+    def pitch(self) -> int: ...
+    @property
+    def piece_count(self) -> int: ...

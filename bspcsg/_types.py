@@ -29,3 +29,6 @@ SetOp: TypeAlias = Literal["union", "intersection", "difference", "xor"]
 
 #: One line of the program that the core evaluates: what to do, and with which earlier lines.
 ProgramLine: TypeAlias = tuple[str, list[int]]
+
+#: Answers for each element: bool.
+BoolArray: TypeAlias = npt.NDArray[np.bool_]

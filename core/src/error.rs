@@ -26,7 +26,13 @@ pub enum ErrorKind {
     BadNormal,
     /// Operands live on lattices of different pitch.
     PitchMismatch,
-    /// Stored bytes are not a snapshot of a solid.
+    /// A facet without extent: a segment of zero length, a polygon of zero area.
+    Degenerate,
+    /// The corners of a polygon do not lie in one plane.
+    NonPlanar,
+    /// The outline of a polygon crosses or touches itself.
+    NotSimple,
+    /// Stored data is not what it claims to be.
     BadSnapshot,
     /// A broken invariant: a defect of this library.
     Internal,
@@ -47,6 +53,9 @@ impl ErrorKind {
             Self::Cancelled => "cancelled",
             Self::BadNormal => "bad_normal",
             Self::PitchMismatch => "pitch_mismatch",
+            Self::Degenerate => "degenerate",
+            Self::NonPlanar => "non_planar",
+            Self::NotSimple => "not_simple",
             Self::BadSnapshot => "bad_snapshot",
             Self::Internal => "internal",
         }

@@ -111,10 +111,15 @@ pub enum PolygonSplit {
 impl Polygon {
     /// The triangle of three lattice points with this supporting plane.
     pub fn triangle(points: &[Lattice; 3], support: Arc<Plane>) -> Self {
-        let corners = (0..3)
+        Self::convex(points, support)
+    }
+
+    /// The convex polygon of lattice points in this supporting plane, counterclockwise.
+    pub fn convex(points: &[Lattice], support: Arc<Plane>) -> Self {
+        let corners = (0..points.len())
             .map(|i| Corner {
                 at: Arc::new(Vertex::lattice(points[i])),
-                edge: Carrier::Edge(points[i], points[(i + 1) % 3]),
+                edge: Carrier::Edge(points[i], points[(i + 1) % points.len()]),
             })
             .collect();
         Self { support, corners }

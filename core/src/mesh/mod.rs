@@ -5,6 +5,8 @@
     clippy::cast_sign_loss
 )]
 
+mod ears;
+pub mod facets;
 pub mod finding;
 pub mod grid;
 pub mod import;

@@ -4,11 +4,13 @@
     clippy::needless_pass_by_value,
     clippy::cast_possible_truncation,
     clippy::cast_possible_wrap,
+    clippy::cast_precision_loss,
     clippy::cast_sign_loss
 )]
 
 mod arrays;
 mod errors;
+mod fragments;
 mod run;
 mod tree;
 
@@ -25,6 +27,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("CoreError", module.py().get_type::<errors::CoreError>())?;
     module.add_class::<tree::Tree>()?;
+    module.add_class::<fragments::PyFragmentTree>()?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
     Ok(())
 }

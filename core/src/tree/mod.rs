@@ -1,5 +1,6 @@
 //! Partition trees: the nodes of solids, and generic trees in one, two and three dimensions.
 
+pub mod fragments;
 pub mod node;
 pub mod partition;
 pub mod solid;

@@ -20,5 +20,6 @@ pub use boundary::{boundary, owned_boundary};
 pub use build::{autopartition, Built, PivotPolicy};
 pub use classify::{classify, Location};
 pub use node::{Cut, Facet, Label, PartitionTree, Sheet};
+pub use random::SplitMix;
 pub use stats::{check, stats, TreeStats};
 pub use winding::{winding_tree, Winding};

@@ -1,0 +1,86 @@
+//! The plane as numbers.
+
+use num_bigint::BigInt;
+
+use super::Affine;
+use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2, Square, REACH};
+use crate::geometry::plane::Lattice;
+use crate::geometry::side::{Side, Split};
+use crate::geometry::space::Space;
+
+fn position(point: &Point2) -> [f64; 3] {
+    let [x, y, w] = point.coordinates().map(|c| c as f64);
+    [x / w, y / w, 0.0]
+}
+
+fn is_lattice(point: &Point2, lattice: &Lattice) -> bool {
+    let [x, y, w] = point.coordinates();
+    // Coordinates below 2^30 times w below 2^63.
+    x == i128::from(lattice[0]) * w && y == i128::from(lattice[1]) * w
+}
+
+fn turn(a: &[f64; 3], b: &[f64; 3], apex: &[f64; 3]) -> f64 {
+    (a[0] - apex[0]) * (b[1] - apex[1]) - (b[0] - apex[0]) * (a[1] - apex[1])
+}
+
+impl Affine for Dim2 {
+    const EVERYTHING: Square = Square;
+    const REACH: i64 = REACH;
+
+    fn fragment(corners: &[Lattice]) -> Option<Segment2> {
+        match corners {
+            [a, b] => Segment2::between([a[0], a[1]], [b[0], b[1]]),
+            _ => None,
+        }
+    }
+
+    fn approx(cut: &Line2) -> [f64; 4] {
+        let [a, b, c] = cut.coefficients().map(|k| k as f64);
+        [a, b, 0.0, c]
+    }
+
+    fn exact(cut: &Line2) -> [BigInt; 4] {
+        let [a, b, c] = cut.coefficients();
+        [a, b, 0, c].map(BigInt::from)
+    }
+
+    fn axis_cut(axis: usize, at: i64) -> Option<Line2> {
+        match axis {
+            0 => Line2::through([at, 0], [at, 1]),
+            1 => Line2::through([1, at], [0, at]),
+            _ => None,
+        }
+    }
+
+    fn corners(piece: &Segment2) -> Vec<[f64; 3]> {
+        piece.points().iter().map(position).collect()
+    }
+
+    fn original(piece: &Segment2, facet: &[Lattice], _: &[bool]) -> Vec<bool> {
+        let is_end = |p: &Point2| facet.iter().any(|end| is_lattice(p, end));
+        piece.points().iter().map(is_end).collect()
+    }
+
+    fn relation(piece: &Segment2, cut: &Line2) -> Split<()> {
+        if let Some(orientation) = Self::coincide(piece.line(), cut) {
+            return Split::Coplanar(orientation);
+        }
+        let sign = |p: &Point2| match Self::side(cut, p) {
+            Side::Minus => -1,
+            Side::On => 0,
+            Side::Plus => 1,
+        };
+        super::relation_of(piece.points().iter().map(sign))
+    }
+
+    fn size(piece: &Segment2) -> f64 {
+        let [a, b] = [0, 1].map(|i| position(&piece.points()[i]));
+        let (x, y) = (b[0] - a[0], b[1] - a[1]);
+        (x * x + y * y).sqrt()
+    }
+
+    fn cone(piece: &Segment2, apex: &[f64; 3]) -> f64 {
+        let [a, b] = [0, 1].map(|i| position(&piece.points()[i]));
+        turn(&a, &b, apex) / 2.0
+    }
+}

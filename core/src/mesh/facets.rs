@@ -1,0 +1,330 @@
+//! Facets of any kind onto the lattice: points, segments, planar polygons.
+
+use super::ears::{is_convex, triangles};
+use super::grid::Pitch;
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::plane::{normal, Lattice, Plane};
+
+/// A convex facet, or a convex part of one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Facet {
+    /// One corner, two, or those of a convex polygon; unused coordinates are zero.
+    pub corners: Vec<Lattice>,
+    /// Whether the edge that leaves each corner is a diagonal of the input facet.
+    pub seams: Vec<bool>,
+    /// The number of the input facet.
+    pub source: u32,
+}
+
+/// Coordinates in the plane stay below 2^29 steps: half of what its arithmetic allows, so that a
+/// margin around them fits as well.
+const PLANE_REACH: i64 = 1 << 29;
+
+/// Facets may have at most this many corners: outlines are examined in quadratic time.
+const MOST_CORNERS: usize = 1 << 14;
+
+/// The pitch for coordinates of this size and extent in a space of `dimension`.
+///
+/// In the plane, coordinates have 29 bits: about nine decimal digits. The finest power of ten from
+/// 10^-9 on that fits is taken there, a finer one for scenes less than 10^6 steps across.
+///
+/// # Errors
+/// `NonFinite`, `TooLarge`.
+pub fn suited_pitch(dimension: usize, rows: &[[f64; 3]]) -> Result<Pitch> {
+    let (mut largest, mut extent) = (0.0f64, 0.0f64);
+    for axis in 0..3 {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (row, p) in rows.iter().enumerate() {
+            if !p[axis].is_finite() {
+                let text = format!("corner {row} has the coordinate {}", p[axis]);
+                return Err(Error::at(ErrorKind::NonFinite, vec![row as u64], text));
+            }
+            low = low.min(p[axis]);
+            high = high.max(p[axis]);
+        }
+        if low <= high {
+            largest = largest.max(low.abs()).max(high.abs());
+            extent = extent.max(high - low);
+        }
+    }
+    match dimension {
+        2 => suited_in_plane(largest, extent),
+        _ => Pitch::suited(largest, extent),
+    }
+}
+
+fn suited_in_plane(largest: f64, extent: f64) -> Result<Pitch> {
+    let step = |pitch: Pitch| 10f64.powi(pitch.exponent() as i32);
+    let fits = |pitch: Pitch| largest / step(pitch) < PLANE_REACH as f64 - 1.0;
+    let mut pitch = Pitch::DEFAULT;
+    while !fits(pitch) {
+        pitch = Pitch::new(pitch.exponent() + 1)?;
+    }
+    while extent > 0.0 && extent / step(pitch) < 1e6 {
+        match Pitch::new(pitch.exponent() - 1) {
+            Ok(finer) if fits(finer) => pitch = finer,
+            _ => break,
+        }
+    }
+    Ok(pitch)
+}
+
+/// Snaps the corners of facets, corner by corner.
+///
+/// # Errors
+/// `NonFinite`, `TooLarge`, with the row.
+pub fn snap_corners(dimension: usize, rows: &[[f64; 3]], pitch: Pitch) -> Result<Vec<Lattice>> {
+    let snap = |(row, p): (usize, &[f64; 3])| {
+        let place = |e: Error| Error::at(e.kind(), vec![row as u64], e.message());
+        let mut lattice = [0; 3];
+        for axis in 0..dimension.min(3) {
+            lattice[axis] = pitch.snap(p[axis]).map_err(place)?;
+        }
+        Ok(lattice)
+    };
+    let snapped: Vec<Lattice> = rows.iter().enumerate().map(snap).collect::<Result<_>>()?;
+    check_reach(dimension, &snapped)?;
+    Ok(snapped)
+}
+
+/// Verifies that lattice coordinates lie where the arithmetic of the dimension is exact.
+///
+/// # Errors
+/// `TooLarge`, with the row.
+pub fn check_reach(dimension: usize, rows: &[Lattice]) -> Result<()> {
+    let limit = if dimension == 2 {
+        PLANE_REACH
+    } else {
+        (1 << crate::geometry::cell::REACH) - 1
+    };
+    let beyond = |p: &Lattice| p.iter().any(|k| k.unsigned_abs() > limit.unsigned_abs());
+    match rows.iter().position(beyond) {
+        None => Ok(()),
+        Some(row) => {
+            let text = format!("corner {row} is more than {limit} lattice steps from the origin");
+            Err(Error::at(ErrorKind::TooLarge, vec![row as u64], text))
+        }
+    }
+}
+
+/// What to do with facets that are not what they should be, instead of refusing them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Lenience {
+    /// Make triangles of polygons that are not planar.
+    pub triangulate_bent: bool,
+    /// Leave out segments without length and polygons without area.
+    pub drop_flat: bool,
+}
+
+/// The convex pieces of facets; facet i owns corners `offsets[i]..offsets[i + 1]`.
+///
+/// # Errors
+/// `Shape` if the offsets do not count up to the corners or a facet has too few or too many of
+/// them; `Degenerate`, `NonPlanar`, `NotSimple`; with the facet.
+pub fn facets(
+    dimension: usize,
+    corners: &[Lattice],
+    offsets: &[i64],
+    lenience: Lenience,
+) -> Result<Vec<Facet>> {
+    check_offsets(offsets, corners.len())?;
+    let mut found = Vec::with_capacity(offsets.len());
+    for (number, pair) in offsets.windows(2).enumerate() {
+        // Checked above: they count upwards from zero to the number of corners.
+        let own = &corners[pair[0] as usize..pair[1] as usize];
+        let source = u32::try_from(number)
+            .map_err(|_| Error::new(ErrorKind::TooLarge, "there are at most 2^32 facets"))?;
+        let pieces = match dimension {
+            3 => polygon(own, source, lenience.triangulate_bent),
+            _ => point_or_segment(dimension, own, source).map(|facet| vec![facet]),
+        };
+        match pieces {
+            Ok(pieces) => found.extend(pieces),
+            Err(e) if e.kind() == ErrorKind::Degenerate && lenience.drop_flat => {}
+            Err(e) => return Err(e),
+        }
+    }
+    Ok(found)
+}
+
+fn check_offsets(offsets: &[i64], count: usize) -> Result<()> {
+    let ends = offsets.first() == Some(&0) && offsets.last().copied() == i64::try_from(count).ok();
+    if ends && offsets.windows(2).all(|pair| pair[0] <= pair[1]) {
+        return Ok(());
+    }
+    let text = format!("offsets must count upwards from 0 to the number of corners, {count}");
+    Err(Error::new(ErrorKind::Shape, text))
+}
+
+fn fault(kind: ErrorKind, source: u32, text: &str) -> Error {
+    Error::at(kind, vec![source.into()], format!("facet {source} {text}"))
+}
+
+fn point_or_segment(dimension: usize, corners: &[Lattice], source: u32) -> Result<Facet> {
+    match corners {
+        [_] if dimension == 1 => {}
+        [a, b] if dimension == 2 && a != b => {}
+        [_, _] if dimension == 2 => {
+            let text = "is a segment of zero length on the lattice";
+            return Err(fault(ErrorKind::Degenerate, source, text));
+        }
+        _ => {
+            return Err(fault(
+                ErrorKind::Shape,
+                source,
+                "has too few or many corners",
+            ))
+        }
+    }
+    Ok(Facet {
+        corners: corners.to_vec(),
+        seams: vec![false; corners.len()],
+        source,
+    })
+}
+
+fn polygon(given: &[Lattice], source: u32, lenient: bool) -> Result<Vec<Facet>> {
+    if given.len() < 3 || given.len() > MOST_CORNERS {
+        let text = "needs from 3 to 16384 corners";
+        return Err(fault(ErrorKind::Shape, source, text));
+    }
+    let corners = without_flat_corners(given);
+    let flat = || fault(ErrorKind::Degenerate, source, "has no area on the lattice");
+    let plane = newell_plane(&corners).ok_or_else(flat)?;
+    let planar = corners.iter().all(|p| plane.side_of_lattice(p) == 0);
+    if !planar && !lenient {
+        let text = "is not planar on the lattice";
+        return Err(fault(ErrorKind::NonPlanar, source, text));
+    }
+    let axes = projection(&plane);
+    if planar && is_convex(&corners, axes) {
+        let seams = vec![false; corners.len()];
+        return Ok(vec![Facet {
+            corners,
+            seams,
+            source,
+        }]);
+    }
+    let crossed = || fault(ErrorKind::NotSimple, source, "crosses or touches itself");
+    let parts = triangles(&corners, axes).ok_or_else(crossed)?;
+    Ok(parts.iter().map(|t| part(&corners, t, source)).collect())
+}
+
+fn part(corners: &[Lattice], triangle: &[usize; 3], source: u32) -> Facet {
+    let is_seam = |i: usize| triangle[(i + 1) % 3] != (triangle[i] + 1) % corners.len();
+    Facet {
+        corners: triangle.map(|k| corners[k]).to_vec(),
+        seams: (0..3).map(is_seam).collect(),
+        source,
+    }
+}
+
+/// The corners without repeated ones and without those between their neighbours on one line.
+fn without_flat_corners(given: &[Lattice]) -> Vec<Lattice> {
+    let mut corners = given.to_vec();
+    loop {
+        let n = corners.len();
+        let is_flat = |&i: &usize| {
+            let [a, b, c] = [corners[(i + n - 1) % n], corners[i], corners[(i + 1) % n]];
+            normal(&a, &b, &c) == [0; 3]
+        };
+        match (0..n).find(is_flat) {
+            Some(flat) if n > 3 => {
+                corners.remove(flat);
+            }
+            _ => return corners,
+        }
+    }
+}
+
+/// The plane through the corner where the sum of cross products is the normal, for the polygon's
+/// own turning sense; with planar corners, their plane.
+///
+/// # Bits
+/// A product of differences is below 2^108, two of them for each of 2^14 corners below 2^123.
+fn newell_plane(corners: &[Lattice]) -> Option<Plane> {
+    let first = corners.first()?;
+    let mut sum = [0i128; 3];
+    for pair in corners.windows(2) {
+        let n = normal(first, &pair[0], &pair[1]);
+        for i in 0..3 {
+            sum[i] += n[i];
+        }
+    }
+    Plane::through_point(sum, first)
+}
+
+/// Two axes in which a polygon of this plane is counterclockwise.
+fn projection(plane: &Plane) -> (usize, usize) {
+    let axis = plane.main_axis();
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    if plane.normal()[axis] > 0 {
+        (u, v)
+    } else {
+        (v, u)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kind(corners: &[Lattice]) -> Option<ErrorKind> {
+        let offsets = [0, i64::try_from(corners.len()).unwrap()];
+        facets(3, corners, &offsets, Lenience::default())
+            .err()
+            .map(|e| e.kind())
+    }
+
+    #[test]
+    fn a_square_stays_whole_and_loses_flat_corners() {
+        let square = [
+            [0, 0, 7],
+            [2, 0, 7],
+            [4, 0, 7],
+            [4, 4, 7],
+            [4, 4, 7],
+            [0, 4, 7],
+        ];
+        let found = facets(3, &square, &[0, 6], Lenience::default()).unwrap();
+        assert_eq!(found.len(), 1);
+        assert_eq!(
+            found[0].corners,
+            [[0, 0, 7], [4, 0, 7], [4, 4, 7], [0, 4, 7]]
+        );
+    }
+
+    #[test]
+    fn a_concave_polygon_keeps_its_source_and_marks_its_diagonal() {
+        let arrow = [[0, 0, 0], [4, 2, 0], [0, 4, 0], [1, 2, 0]];
+        let found = facets(3, &arrow, &[0, 4], Lenience::default()).unwrap();
+        assert_eq!(found.len(), 2);
+        for piece in &found {
+            assert_eq!(piece.source, 0);
+            assert_eq!(piece.seams.iter().filter(|s| **s).count(), 1);
+        }
+    }
+
+    #[test]
+    fn faults_are_named() {
+        let line = [[0, 0, 0], [1, 1, 1], [2, 2, 2]];
+        assert_eq!(kind(&line), Some(ErrorKind::Degenerate));
+        let bent = [[0, 0, 0], [4, 0, 0], [4, 4, 1], [0, 4, 0]];
+        assert_eq!(kind(&bent), Some(ErrorKind::NonPlanar));
+        let bow = [[0, 0, 0], [4, 4, 0], [5, 1, 0], [0, 4, 0]];
+        assert_eq!(kind(&bow), Some(ErrorKind::NotSimple));
+        assert_eq!(kind(&[[0, 0, 0], [1, 0, 0]]), Some(ErrorKind::Shape));
+        let lenience = Lenience {
+            triangulate_bent: true,
+            drop_flat: true,
+        };
+        assert_eq!(facets(3, &bent, &[0, 4], lenience).unwrap().len(), 2);
+        assert!(facets(3, &line, &[0, 3], lenience).unwrap().is_empty());
+    }
+
+    #[test]
+    fn the_plane_has_a_pitch_of_its_own() {
+        let exponent = |x: f64| suited_pitch(2, &[[x, 0.0, 0.0]; 2]).unwrap().exponent();
+        assert_eq!([0.5, 5.0, 500.0, 1e9].map(exponent), [-9, -8, -6, 1]);
+    }
+}

@@ -1,0 +1,52 @@
+//! Axis-parallel cuts for the top of a tree.
+//!
+//! # Source
+//! The notes' general partition. A convex body, which autopartition makes a chain, becomes a tree
+//! of logarithmic depth; surface meshes are cut a constant number of times per facet in practice.
+
+use super::choice::Tally;
+use super::node::{NodeCut, Piece};
+use crate::geometry::affine::Affine;
+
+/// The cut at the median of the ends of the pieces' boxes, across the axis of the widest spread.
+///
+/// Ends are corners, which cuts pass through: facets that meet there are not cut, and those that
+/// lie in the cut are done with.
+///
+/// `None` if no axis divides them well: each side must have at most three quarters of the pieces.
+/// This bounds the depth by log(n)/log(4/3), and with it the number of fragments.
+pub fn median_cut<S: Affine>(pieces: &[Piece<S>]) -> Option<(NodeCut, S::Hyperplane)> {
+    let boxes: Vec<_> = pieces.iter().map(|p| S::bounds(&p.fragment)).collect();
+    axes_by_spread::<S>(&boxes).into_iter().find_map(|axis| {
+        let at = median(boxes.iter().flatten().map(|end| end[axis]))?;
+        let cut = S::axis_cut(axis, at)?;
+        let tally = Tally::of(pieces, &cut);
+        (4 * tally.larger() <= 3 * pieces.len()).then_some((NodeCut::Axis { axis, at }, cut))
+    })
+}
+
+fn axes_by_spread<S: Affine>(boxes: &[[[f64; 3]; 2]]) -> Vec<usize> {
+    let spread = |axis: usize| {
+        let low = boxes.iter().fold(f64::INFINITY, |m, b| m.min(b[0][axis]));
+        let high = boxes
+            .iter()
+            .fold(f64::NEG_INFINITY, |m, b| m.max(b[1][axis]));
+        high - low
+    };
+    let spreads = [0, 1, 2].map(spread);
+    let mut axes: Vec<usize> = (0..S::DIM).collect();
+    axes.sort_by(|a, b| spreads[*b].total_cmp(&spreads[*a]));
+    axes
+}
+
+/// The median, rounded to the lattice.
+fn median(values: impl Iterator<Item = f64>) -> Option<i64> {
+    let mut values: Vec<f64> = values.collect();
+    if values.is_empty() {
+        return None;
+    }
+    let middle = values.len() / 2;
+    let (_, median, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
+    // Within the lattice, hence far below 2^63.
+    Some(median.round() as i64)
+}

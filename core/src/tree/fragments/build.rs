@@ -1,0 +1,247 @@
+//! Pieces → tree, one node at a time from the root down.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::axis::median_cut;
+use super::choice::Policy;
+use super::node::{Crossing, Fragment, FragmentTree, Node, NodeCut, Piece};
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::affine::{Affine, Polytope};
+use crate::geometry::side::{Half, Orientation, Split};
+use crate::tree::partition::SplitMix;
+
+/// How a tree is to be built.
+#[derive(Clone, Debug)]
+pub enum Plan<S: Affine> {
+    /// By a policy.
+    Policy {
+        /// Who becomes the pivot.
+        policy: Policy,
+        /// Regions with more pieces than this are divided by axis-parallel cuts where that helps;
+        /// `None` for autopartition alone.
+        top: Option<usize>,
+        /// The root's region, for policies that ask for it.
+        region: Option<Polytope<S>>,
+    },
+    /// By these cuts, one for each node in preorder.
+    Given(Vec<NodeCut>),
+}
+
+/// Builds a tree.
+///
+/// # Order
+/// The tree is a function of the list of pieces and the plan.
+///
+/// # Cost
+/// Worst case quadratic for autopartition: a convex body becomes a chain.
+///
+/// # Errors
+/// `BadSnapshot` if given cuts do not suit the pieces, `Cancelled`.
+pub fn build<S: Affine>(
+    mut pieces: Vec<Piece<S>>,
+    plan: Plan<S>,
+    cancel: &AtomicBool,
+) -> Result<FragmentTree<S>> {
+    let (chooser, region) = match plan {
+        Plan::Policy {
+            policy,
+            top,
+            region,
+        } => {
+            if let Policy::Random(seed) = policy {
+                shuffle(&mut pieces, seed);
+            }
+            let region = region.filter(|_| policy.needs_region());
+            (Chooser::Policy { policy, top }, region)
+        }
+        Plan::Given(cuts) => (Chooser::Given(cuts.into_iter()), None),
+    };
+    let mut builder = Builder {
+        tree: FragmentTree::empty(),
+        open: Vec::new(),
+        chooser,
+    };
+    builder.push(Open {
+        pieces,
+        place: None,
+        depth: 0,
+        region,
+    });
+    while let Some(open) = builder.open.pop() {
+        if cancel.load(Ordering::Relaxed) {
+            return Err(Error::new(
+                ErrorKind::Cancelled,
+                "the tree was not finished",
+            ));
+        }
+        builder.divide(open)?;
+    }
+    builder.chooser.finish()?;
+    Ok(builder.tree)
+}
+
+/// A random order by Fisher and Yates.
+fn shuffle<T>(list: &mut [T], seed: u64) {
+    let mut random = SplitMix::new(seed);
+    for end in (1..list.len()).rev() {
+        list.swap(end, random.below(end + 1));
+    }
+}
+
+enum Chooser {
+    Policy { policy: Policy, top: Option<usize> },
+    Given(std::vec::IntoIter<NodeCut>),
+}
+
+impl Chooser {
+    fn choose<S: Affine>(&mut self, open: &Open<S>) -> Result<(NodeCut, S::Hyperplane)> {
+        let pieces = &open.pieces;
+        let (policy, top) = match self {
+            Self::Given(cuts) => return given(cuts.next(), pieces),
+            Self::Policy { policy, top } => (policy, *top),
+        };
+        if top.is_some_and(|leaf| pieces.len() > leaf) {
+            if let Some(found) = median_cut(pieces) {
+                return Ok(found);
+            }
+        }
+        let pivot = &pieces[policy.pivot(pieces, open.region.as_ref())];
+        let cut = S::hyperplane(&pivot.fragment).clone();
+        Ok((NodeCut::Pivot(pivot.number), cut))
+    }
+
+    fn finish(self) -> Result<()> {
+        match self {
+            Self::Given(rest) if rest.len() > 0 => {
+                Err(unsuited("there are more cuts than regions with facets"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+fn given<S: Affine>(cut: Option<NodeCut>, pieces: &[Piece<S>]) -> Result<(NodeCut, S::Hyperplane)> {
+    let cut = cut.ok_or_else(|| unsuited("there are fewer cuts than regions with facets"))?;
+    let hyperplane = match cut {
+        NodeCut::Pivot(number) => pieces
+            .iter()
+            .find(|p| p.number == number)
+            .map(|p| S::hyperplane(&p.fragment).clone()),
+        NodeCut::Axis { axis, at } => S::axis_cut(axis, at),
+    };
+    let hyperplane = hyperplane.ok_or_else(|| unsuited("a cut's facet is not in its region"))?;
+    Ok((cut, hyperplane))
+}
+
+fn unsuited(why: &str) -> Error {
+    let text = format!("the stored cuts do not suit the facets: {why}");
+    Error::new(ErrorKind::BadSnapshot, text)
+}
+
+/// A region that is still to be divided, if there are pieces in it.
+struct Open<S: Affine> {
+    pieces: Vec<Piece<S>>,
+    place: Option<(u32, Half)>,
+    depth: u32,
+    region: Option<Polytope<S>>,
+}
+
+struct Builder<S: Affine> {
+    tree: FragmentTree<S>,
+    open: Vec<Open<S>>,
+    chooser: Chooser,
+}
+
+impl<S: Affine> Builder<S> {
+    fn push(&mut self, open: Open<S>) {
+        if !open.pieces.is_empty() {
+            self.open.push(open);
+        }
+    }
+
+    fn divide(&mut self, open: Open<S>) -> Result<()> {
+        let node = self.next_number()?;
+        let (cut, hyperplane) = self.chooser.choose(&open)?;
+        let [minus_region, plus_region] = match &open.region {
+            Some(region) => region.divided(&hyperplane),
+            None => [None, None],
+        };
+        let start = narrow(self.tree.fragments.len())?;
+        let [minus, plus] = self.distribute(open.pieces, &hyperplane, node);
+        let end = narrow(self.tree.fragments.len())?;
+        self.hang(open.place, node);
+        self.tree.nodes.push(Node {
+            hyperplane,
+            cut,
+            coplanar: start..end,
+            minus: None,
+            plus: None,
+            parent: open.place,
+            depth: open.depth,
+        });
+        let side = |half, pieces, region| Open {
+            pieces,
+            place: Some((node, half)),
+            depth: open.depth + 1,
+            region,
+        };
+        self.push(side(Half::Plus, plus, plus_region));
+        self.push(side(Half::Minus, minus, minus_region));
+        Ok(())
+    }
+
+    fn next_number(&self) -> Result<u32> {
+        narrow(self.tree.nodes.len())
+    }
+
+    /// Links a node to the one above.
+    fn hang(&mut self, place: Option<(u32, Half)>, node: u32) {
+        let Some((above, half)) = place else {
+            return;
+        };
+        let above = &mut self.tree.nodes[above as usize];
+        match half {
+            Half::Minus => above.minus = Some(node),
+            Half::Plus => above.plus = Some(node),
+        }
+    }
+
+    /// Sends pieces to the two sides of a cut and into its coplanar set, their order kept.
+    fn distribute(
+        &mut self,
+        pieces: Vec<Piece<S>>,
+        cut: &S::Hyperplane,
+        node: u32,
+    ) -> [Vec<Piece<S>>; 2] {
+        let (mut minus, mut plus) = (Vec::new(), Vec::new());
+        for piece in pieces {
+            let number = piece.number;
+            let part = |fragment| Piece { fragment, number };
+            match S::split(&piece.fragment, cut) {
+                Split::Minus => minus.push(piece),
+                Split::Plus => plus.push(piece),
+                Split::Coplanar(orientation) => self.tree.fragments.push(Fragment {
+                    piece,
+                    flipped: orientation == Orientation::Opposite,
+                }),
+                Split::Both { minus: m, plus: p } => {
+                    self.tree.crossings.push(Crossing {
+                        node,
+                        piece: number,
+                    });
+                    minus.push(part(m));
+                    plus.push(part(p));
+                }
+            }
+        }
+        [minus, plus]
+    }
+}
+
+fn narrow(count: usize) -> Result<u32> {
+    u32::try_from(count)
+        .map_err(|_| Error::new(ErrorKind::TooLarge, "a tree holds at most 2^32 fragments"))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,133 @@
+//! The arena: nodes in preorder, and the fragments of their coplanar sets.
+
+use std::ops::Range;
+
+use crate::geometry::affine::{Affine, Polytope};
+use crate::geometry::side::Half;
+
+/// What goes into a tree: a convex piece and its number.
+#[derive(Clone, Debug)]
+pub struct Piece<S: Affine> {
+    /// The convex piece.
+    pub fragment: S::Fragment,
+    /// The number of the piece it is a part of.
+    pub number: u32,
+}
+
+/// What lies in a node's coplanar set.
+#[derive(Clone, Debug)]
+pub struct Fragment<S: Affine> {
+    /// The part of an input piece.
+    pub piece: Piece<S>,
+    /// Whether it faces against its node's hyperplane.
+    pub flipped: bool,
+}
+
+/// Where a node's hyperplane comes from: enough to build the same tree again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum NodeCut {
+    /// The supporting hyperplane of the input piece with this number.
+    Pivot(u32),
+    /// x[axis] = at, in lattice steps: a free cut.
+    Axis {
+        /// The axis the cut is perpendicular to.
+        axis: usize,
+        /// Where.
+        at: i64,
+    },
+}
+
+/// A region that is divided.
+#[derive(Clone, Debug)]
+pub struct Node<S: Affine> {
+    /// H(v).
+    pub hyperplane: S::Hyperplane,
+    /// Where the hyperplane comes from.
+    pub cut: NodeCut,
+    /// The coplanar set S(v), as a range of the tree's fragments.
+    pub coplanar: Range<u32>,
+    /// The subtree on the minus side, unless no facet lies there.
+    pub minus: Option<u32>,
+    /// The subtree on the plus side, unless no facet lies there.
+    pub plus: Option<u32>,
+    /// The node above and the side of it on which this one lies.
+    pub parent: Option<(u32, Half)>,
+    /// The number of cuts above.
+    pub depth: u32,
+}
+
+/// A node's hyperplane cut a fragment of this piece in two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crossing {
+    /// The node.
+    pub node: u32,
+    /// The number of the piece.
+    pub piece: u32,
+}
+
+/// A partition tree over facets.
+#[derive(Clone, Debug)]
+pub struct FragmentTree<S: Affine> {
+    pub(super) nodes: Vec<Node<S>>,
+    pub(super) fragments: Vec<Fragment<S>>,
+    pub(super) crossings: Vec<Crossing>,
+}
+
+impl<S: Affine> FragmentTree<S> {
+    /// The tree without facets: one empty region.
+    pub(super) fn empty() -> Self {
+        Self {
+            nodes: Vec::new(),
+            fragments: Vec::new(),
+            crossings: Vec::new(),
+        }
+    }
+
+    /// The nodes in preorder, minus before plus; the root first.
+    pub fn nodes(&self) -> &[Node<S>] {
+        &self.nodes
+    }
+
+    /// The fragments of all coplanar sets, node by node.
+    pub fn fragments(&self) -> &[Fragment<S>] {
+        &self.fragments
+    }
+
+    /// Every cut of a fragment, node by node.
+    pub fn crossings(&self) -> &[Crossing] {
+        &self.crossings
+    }
+
+    /// The subtree on one side of a node.
+    pub fn child(&self, node: u32, half: Half) -> Option<u32> {
+        let node = self.nodes.get(node as usize)?;
+        match half {
+            Half::Minus => node.minus,
+            Half::Plus => node.plus,
+        }
+    }
+
+    /// R(v): the part of `whole` on a node's sides of all cuts above it.
+    ///
+    /// `None` if there is no such node or nothing is left.
+    ///
+    /// # Cost
+    /// One division for each cut above.
+    pub fn region(&self, node: u32, whole: &Polytope<S>) -> Option<Polytope<S>> {
+        let mut way = Vec::new();
+        let mut next = self.nodes.get(node as usize)?.parent;
+        while let Some((above, half)) = next {
+            let above = self.nodes.get(above as usize)?;
+            way.push((&above.hyperplane, half));
+            next = above.parent;
+        }
+        let step = |region: Polytope<S>, (cut, half): &(&S::Hyperplane, Half)| {
+            let [minus, plus] = region.divided(cut);
+            match half {
+                Half::Minus => minus,
+                Half::Plus => plus,
+            }
+        };
+        way.iter().rev().try_fold(whole.clone(), step)
+    }
+}

@@ -1,0 +1,52 @@
+//! The painter's order: no fragment hides one that comes after it.
+
+use super::node::FragmentTree;
+use crate::geometry::affine::{Affine, Viewpoint};
+use crate::geometry::side::Side;
+
+/// The side of each node's hyperplane on which the viewpoint lies.
+pub fn sides<S: Affine>(tree: &FragmentTree<S>, eye: &Viewpoint) -> Vec<Side> {
+    tree.nodes()
+        .iter()
+        .map(|node| eye.side::<S>(&node.hyperplane))
+        .collect()
+}
+
+/// The nodes from the farthest to the nearest.
+///
+/// What lies beyond a node's hyperplane comes first, then what lies in it, then what lies on the
+/// viewpoint's own side. If the viewpoint is in the hyperplane neither side hides the other; the
+/// plus side comes first. The reverse of this order is a front-to-back order.
+///
+/// # Source
+/// Fuchs, Kedem, Naylor 1980.
+pub fn back_to_front<S: Affine>(tree: &FragmentTree<S>, eye: &Viewpoint) -> Vec<u32> {
+    let mut order = Vec::with_capacity(tree.nodes().len());
+    let mut pending = Vec::new();
+    if !tree.nodes().is_empty() {
+        pending.push(Step::Enter(0));
+    }
+    while let Some(step) = pending.pop() {
+        let number = match step {
+            Step::Emit(number) => {
+                order.push(number);
+                continue;
+            }
+            Step::Enter(number) => number,
+        };
+        let node = &tree.nodes()[number as usize];
+        let (far, near) = match eye.side::<S>(&node.hyperplane) {
+            Side::Plus => (node.minus, node.plus),
+            Side::Minus | Side::On => (node.plus, node.minus),
+        };
+        pending.extend(near.map(Step::Enter));
+        pending.push(Step::Emit(number));
+        pending.extend(far.map(Step::Enter));
+    }
+    order
+}
+
+enum Step {
+    Enter(u32),
+    Emit(u32),
+}

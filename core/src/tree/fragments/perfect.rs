@@ -1,0 +1,145 @@
+//! Perfect autopartitions: trees by supporting hyperplanes alone that cut nothing.
+//!
+//! Deciding whether there is one is NP-hard, so that this is an exhaustive search with a limit. A
+//! hyperplane that cuts nothing is not always a good choice: its piece may be the only one that
+//! separates others later. Hence every such pivot is tried, and sets already decided are looked up.
+//!
+//! # Source
+//! de Berg, Khosravi, "Finding perfect auto-partitions is NP-hard", 2008.
+
+use rustc_hash::FxHashMap;
+
+use super::node::{NodeCut, Piece};
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::affine::Affine;
+use crate::geometry::side::Split;
+
+/// The largest number of pieces for which the search is allowed: 2^24 sets at most.
+pub const PERFECT_LIMIT: usize = 24;
+
+/// Pieces on the two sides of one piece's hyperplane, and those that it cuts, as sets of bits.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sides {
+    minus: u32,
+    plus: u32,
+    split: u32,
+}
+
+/// The cuts, in preorder, of a tree that cuts no piece; `None` if there is no such tree.
+///
+/// # Errors
+/// `TooLarge` above [`PERFECT_LIMIT`] pieces.
+pub fn perfect<S: Affine>(pieces: &[Piece<S>]) -> Result<Option<Vec<NodeCut>>> {
+    if pieces.len() > PERFECT_LIMIT {
+        let text = format!(
+            "the search for a perfect autopartition takes at most {PERFECT_LIMIT} facets, not {}",
+            pieces.len()
+        );
+        return Err(Error::new(ErrorKind::TooLarge, text));
+    }
+    let mut search = Search {
+        sides: pieces.iter().map(|p| sides_of(p, pieces)).collect(),
+        pivots: FxHashMap::default(),
+    };
+    let all = (0..pieces.len()).fold(0, |set, i| set | 1 << i);
+    if !search.decide(all) {
+        return Ok(None);
+    }
+    let cut = |bit: usize| NodeCut::Pivot(pieces[bit].number);
+    Ok(Some(search.preorder(all).into_iter().map(cut).collect()))
+}
+
+fn sides_of<S: Affine>(pivot: &Piece<S>, pieces: &[Piece<S>]) -> Sides {
+    let cut = S::hyperplane(&pivot.fragment);
+    let mut sides = Sides::default();
+    for (i, piece) in pieces.iter().enumerate() {
+        match S::relation(&piece.fragment, cut) {
+            Split::Minus => sides.minus |= 1 << i,
+            Split::Plus => sides.plus |= 1 << i,
+            Split::Both { .. } => sides.split |= 1 << i,
+            Split::Coplanar(_) => {}
+        }
+    }
+    sides
+}
+
+struct Search {
+    sides: Vec<Sides>,
+    /// For each set decided, a pivot that leads to a perfect tree, if there is one.
+    pivots: FxHashMap<u32, Option<usize>>,
+}
+
+impl Search {
+    /// Whether a set has a perfect tree; the recursion is as deep as the set is large.
+    fn decide(&mut self, set: u32) -> bool {
+        if set == 0 {
+            return true;
+        }
+        if let Some(known) = self.pivots.get(&set) {
+            return known.is_some();
+        }
+        let pivot = members(set).find(|&bit| {
+            let Sides { minus, plus, split } = self.sides[bit];
+            set & split == 0 && self.decide(set & minus) && self.decide(set & plus)
+        });
+        self.pivots.insert(set, pivot);
+        pivot.is_some()
+    }
+
+    fn preorder(&self, all: u32) -> Vec<usize> {
+        let mut order = Vec::new();
+        let mut pending = vec![all];
+        while let Some(set) = pending.pop() {
+            if let Some(&Some(pivot)) = self.pivots.get(&set) {
+                order.push(pivot);
+                pending.extend([set & self.sides[pivot].plus, set & self.sides[pivot].minus]);
+            }
+        }
+        order
+    }
+}
+
+fn members(set: u32) -> impl Iterator<Item = usize> {
+    (0..PERFECT_LIMIT).filter(move |bit| set >> bit & 1 == 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::dim2::Dim2;
+
+    fn segments(ends: &[[i64; 4]]) -> Vec<Piece<Dim2>> {
+        let piece = |(number, [a, b, c, d]): (u32, &[i64; 4])| Piece {
+            fragment: Dim2::fragment(&[[*a, *b, 0], [*c, *d, 0]]).unwrap(),
+            number,
+        };
+        (0..).zip(ends).map(piece).collect()
+    }
+
+    #[test]
+    fn a_pinwheel_has_none() {
+        // Each segment's line cuts the next one.
+        let wheel = [
+            [-1, -3, -1, 1],
+            [-3, 1, 1, 1],
+            [1, 3, 1, -1],
+            [3, -1, -1, -1],
+        ];
+        assert!(perfect(&segments(&wheel)).unwrap().is_none());
+        assert!(perfect(&segments(&wheel[..3])).unwrap().is_some());
+    }
+
+    #[test]
+    fn parallel_segments_have_one_and_too_many_are_refused() {
+        let rows: Vec<[i64; 4]> = (0..25).map(|y| [0, y, 9, y]).collect();
+        let found = perfect(&segments(&rows[..24])).unwrap().unwrap();
+        assert_eq!(found.len(), 24);
+        let refused = perfect(&segments(&rows)).unwrap_err();
+        assert_eq!(refused.kind(), ErrorKind::TooLarge);
+    }
+
+    #[test]
+    fn no_pieces_have_an_empty_one() {
+        assert_eq!(perfect(&segments(&[])).unwrap(), Some(Vec::new()));
+    }
+}
