@@ -3,13 +3,20 @@
     missing_docs,
     clippy::needless_pass_by_value,
     clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
     clippy::cast_possible_wrap,
     clippy::cast_sign_loss
 )]
 
 mod arrays;
+mod each;
 mod errors;
+mod objects;
+mod pieces;
 mod run;
+mod set_queries;
+mod set_store;
+mod sets;
 mod tree;
 
 use pyo3::prelude::*;
@@ -25,6 +32,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("CoreError", module.py().get_type::<errors::CoreError>())?;
     module.add_class::<tree::Tree>()?;
+    module.add_class::<objects::ObjectTree>()?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
     Ok(())
 }
