@@ -361,7 +361,7 @@ fn square_walls() -> [Line2; 4] {
 pub fn border() -> Vec<Segment2> {
     let walls = square_walls();
     let side = |i: usize| {
-        let [p, q] = [walls[(i + 2) % 4], walls[(i + 2) % 4 ^ 1]];
+        let [p, q] = [walls[(i + 2) % 4], walls[((i + 2) % 4) ^ 1]];
         between_walls(&walls[i], &p, &q)
     };
     (0..4).filter_map(side).collect()

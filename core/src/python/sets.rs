@@ -319,7 +319,7 @@ fn set<S: AxisSpace>(
         axis_cuts,
         policy,
     };
-    enclosed(facets, 0, input.rule, plan)
+    enclosed(facets, 0, input.rule, &plan)
 }
 
 /// Facets with the numbers of their rows; rows without a facet are left out.

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2, Square};
 use crate::geometry::side::{Half, Split};
 use crate::geometry::space::Space;
-use crate::tree::partition::{Cut, Label, PartitionTree};
+use crate::tree::partition::{classify, Cut, Label, Location, PartitionTree};
 
 /// The maximal stretches of a line in the region's interior, in the order of its direction (−b, a).
 ///
@@ -35,16 +35,16 @@ pub fn cast(tree: &PartitionTree<Dim2>, line: &Line2) -> Result<Vec<[Point2; 2]>
                 pending.push((cut.child(Half::Minus), minus));
                 pending.push((cut.child(Half::Plus), plus));
             }
-            Split::Coplanar(_) => found.extend(inside_of_both(&cut, piece)?),
+            Split::Coplanar(_) => found.extend(inside_of_both(&cut, &piece)?),
         }
     }
-    Ok(connected(tree, whole, found))
+    Ok(connected(tree, &whole, found))
 }
 
 /// The parts of a piece in a cut that have the set on both sides.
-fn inside_of_both(cut: &Cut<Dim2>, piece: Segment2) -> Result<Vec<Segment2>> {
+fn inside_of_both(cut: &Cut<Dim2>, piece: &Segment2) -> Result<Vec<Segment2>> {
     let mut found = Vec::new();
-    for (part, minus) in cut.child(Half::Minus).beside(piece)? {
+    for (part, minus) in cut.child(Half::Minus).beside(*piece)? {
         if minus == Label::In {
             let beyond = cut.child(Half::Plus).beside(part)?;
             let inside = beyond.into_iter().filter(|(_, plus)| *plus == Label::In);
@@ -57,10 +57,9 @@ fn inside_of_both(cut: &Cut<Dim2>, piece: Segment2) -> Result<Vec<Segment2>> {
 /// Pieces in order, joined where the point between them is inside too.
 fn connected(
     tree: &PartitionTree<Dim2>,
-    whole: Segment2,
+    whole: &Segment2,
     mut pieces: Vec<Segment2>,
 ) -> Vec<[Point2; 2]> {
-    use crate::tree::partition::{classify, Location};
     pieces.sort_by(|a, b| whole.along(&a.points()[0], &b.points()[0]));
     let mut stretches: Vec<[Point2; 2]> = Vec::new();
     for piece in pieces {

@@ -33,5 +33,5 @@ fn rebuilt<S: AxisSpace>(
     let base = i32::from(classify_corner(tree) == Label::In);
     let facet = |(source, fragment)| Facet { fragment, source };
     let facets = (0..).zip(pieces).map(facet).collect();
-    enclosed(facets, base, |number| number > 0, Plan::BALANCED)
+    enclosed(facets, base, |number| number > 0, &Plan::BALANCED)
 }

@@ -37,7 +37,7 @@ impl Boundary {
     /// `Internal` for a broken tree.
     pub fn of(tree: &PartitionTree<Dim2>) -> Result<Self> {
         let pieces = numbered(walls(tree)?);
-        let edges = joined(pieces);
+        let edges = joined(&pieces);
         let points = edges.iter().flat_map(|e| *e.segment.points());
         let vertices = distinct(points.collect());
         let edges = edges.into_iter().map(|mut edge| {
@@ -80,8 +80,8 @@ fn number(vertices: &[Point2], point: &Point2) -> usize {
 }
 
 /// Pieces joined wherever one ends, the next begins on the same line, and nothing else is.
-fn joined(pieces: Vec<Edge>) -> Vec<Edge> {
-    let next = successors(&pieces);
+fn joined(pieces: &[Edge]) -> Vec<Edge> {
+    let next = successors(pieces);
     let mut follows = vec![false; pieces.len()];
     next.iter().flatten().for_each(|&i| follows[i] = true);
     let heads = (0..pieces.len()).filter(|&i| !follows[i]);

@@ -40,7 +40,9 @@ pub fn outlines(tree: &PartitionTree<Dim2>) -> Result<Vec<Outline>> {
     for closed in traced(&boundary)? {
         loops.extend(simple(&boundary, &closed));
     }
-    loops.iter_mut().for_each(|l| rotate_to_first(&boundary, l));
+    for edges in &mut loops {
+        rotate_to_first(&boundary, edges);
+    }
     loops.sort_by_key(|l| (boundary.edges[l[0]].ends, boundary.edges[l[0]].inside));
     Ok(nested(&boundary, &loops))
 }

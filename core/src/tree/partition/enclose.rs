@@ -53,14 +53,14 @@ pub fn enclosed<S: AxisSpace>(
     facets: Vec<Facet<S>>,
     base: i32,
     inside: impl Fn(i32) -> bool,
-    plan: Plan<'_, S>,
+    plan: &Plan<'_, S>,
 ) -> Result<PartitionTree<S>> {
     if facets.is_empty() {
         return Ok(PartitionTree::Leaf(Label::from_inside(inside(base))));
     }
     let mut choice = Choice::new(plan.policy);
     let built = partition(facets, S::universe(), Label::Out, |region, facets| {
-        planned_cut(&plan, region, facets).unwrap_or_else(|| choice.cut(facets))
+        planned_cut(plan, region, facets).unwrap_or_else(|| choice.cut(facets))
     })?;
     let wound = winding_tree(&built.tree, S::side_of_corner, base, inside)?;
     Ok(wound.tree)

@@ -128,7 +128,7 @@ impl<S: Space> Maker<'_, S> {
             self.region.push(S::hyperplane(&sheet.span).clone(), *half);
         }
         let Some(span) = self.region.span(cut) else {
-            let only = match side_of_region::<S>(cut, &above)? {
+            let only = match side_of_region::<S>(cut, above.as_ref())? {
                 Half::Minus => at + 1,
                 Half::Plus => self.plus[at],
             };
@@ -150,7 +150,10 @@ impl<S: Space> Maker<'_, S> {
 /// The side of a cut that misses a region on which the region lies.
 ///
 /// The sub-hyperplane above bounds the region, so that it lies on that side as well.
-fn side_of_region<S: Space>(cut: &S::Hyperplane, above: &Above<S>) -> Result<Half> {
+fn side_of_region<S: Space>(
+    cut: &S::Hyperplane,
+    above: Option<&(Arc<Sheet<S>>, Half, usize)>,
+) -> Result<Half> {
     let Some((sheet, ..)) = above else {
         let text = "a moved or refined hyperplane misses the lattice of 2^53 steps";
         return Err(Error::new(ErrorKind::TooLarge, text));
