@@ -5,6 +5,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 from xml.parsers import expat
 
 import numpy as np
@@ -40,9 +41,9 @@ def load_svg(
     Returns
     -------
     Region
-        In user units, y upwards: the point (x, y) of the drawing becomes (x, -y). Strokes, text,
-        images and what is not filled are left out; an open subpath counts as closed, as when it is
-        filled.
+        In the user units of the outermost element (its size on paper and its view box do not
+        matter), y upwards: the point (x, y) of the drawing becomes (x, -y). Strokes, text, images
+        and what is not filled are left out; an open subpath counts as closed, as when it is filled.
 
     Raises
     ------
@@ -53,7 +54,7 @@ def load_svg(
     data = _checked(path)
     elements = optional("svgelements", "2d")
     try:
-        drawing = elements.SVG.parse(io.BytesIO(data), reify=True, ppi=96.0)
+        drawing = elements.SVG.parse(io.BytesIO(_in_user_units(data)), reify=True, ppi=96.0)
     except (ValueError, TypeError, AttributeError, ArithmeticError, LookupError) as error:
         raise FormatError(f"{os.fspath(path)}: this is no valid SVG: {error}.", "syntax") from error
     region = Region(pitch=pitch)
@@ -139,6 +140,16 @@ def _checked(path: str | os.PathLike[str]) -> bytes:
     return data
 
 
+def _in_user_units(data: bytes) -> bytes:
+    """Return the drawing without the window that would scale and shift its coordinates."""
+    root = ElementTree.fromstring(data)
+    if root.tag.rpartition("}")[2] != "svg":
+        raise ValueError("the outermost element is not svg")
+    for name in ("viewBox", "width", "height", "x", "y", "preserveAspectRatio"):
+        root.attrib.pop(name, None)
+    return ElementTree.tostring(root)
+
+
 def _is_filled(shape: Any) -> bool:
     values = shape.values
     hidden = values.get("display") == "none" or values.get("visibility") == "hidden"
@@ -152,7 +163,8 @@ def _rule(shape: Any) -> WindingRule:
 
 
 def _loops(elements: Any, shape: Any, chord: float) -> Iterator[FloatArray]:
-    for subpath in elements.Path(shape).as_subpaths():
+    # A rotated rectangle keeps its transform until its path is asked for absolute coordinates.
+    for subpath in abs(elements.Path(shape)).as_subpaths():
         points: list[complex] = []
         for segment in elements.Path(subpath):
             points.extend(_points_of(elements, segment, chord))

@@ -2,17 +2,26 @@
 
 import os
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any, Self
 
 import numpy as np
 
 from .. import _core, interop, transform
 from .._types import FloatArray, Scalar, Vector, WindingRule
-from ..errors import UnboundedError, at_least, core_errors, invalid_parameter, number, positive
+from ..errors import (
+    LimitError,
+    UnboundedError,
+    at_least,
+    core_errors,
+    invalid_parameter,
+    number,
+    positive,
+)
 from ..primitives import extrude, revolve
 from ..solid import Solid
 from ..sweep import unit_circle
-from ..transform import Factor, LatticeMotion
+from ..transform import Factor
 from .boundary import segment_rows, suited_pitch
 from .loops import closed_loops, loop_segments, moved_points
 from .plane_queries import PlaneQueries, vector2
@@ -186,13 +195,14 @@ class Region(PlaneQueries, Settled):
 
     def _placed(self, factor: Factor) -> "Region":
         motion = transform.lattice_motion((factor,), self.pitch)
-        if motion is not None and self._fits(motion):
-            with core_errors():
+        if motion is not None:
+            # What leaves this lattice goes by its coordinates to a coarser one.
+            with suppress(LimitError), core_errors():
                 axes, shift = list(motion.axes[:2]), list(motion.shift[:2])
                 return self._of(self._moved(axes, shift, 1, self.pitch))
         if self.is_bounded:
             loops = [moved_points(factor, loop) for loop in self.to_polygons()]
-            return Region(loops, pitch=None if motion else self.pitch)
+            return Region(loops, pitch=self._pitch_for(loops))
         outside = ~self
         if not outside.is_bounded:
             raise UnboundedError(
@@ -202,13 +212,10 @@ class Region(PlaneQueries, Settled):
             )
         return ~outside._placed(factor)
 
-    def _fits(self, motion: LatticeMotion) -> bool:
-        """Whether no corner leaves the lattice."""
-        if not self.is_bounded:
-            return True
-        largest = max((float(np.abs(p).max()) for p in self.to_polygons()), default=0.0)
-        reach: float = largest / 10.0**self.pitch + max(map(abs, motion.shift))
-        return reach < 2**53 - 2
+    def _pitch_for(self, loops: Sequence[FloatArray]) -> int | None:
+        """Return the region's own pitch if it holds these points."""
+        largest = max((float(np.abs(loop).max()) for loop in loops), default=0.0)
+        return self.pitch if largest < (2**53 - 1) * 10.0**self.pitch else None
 
     # To space
 

@@ -177,7 +177,7 @@ fn scaled(normal: &[f64], constant: f64, unit: f64) -> Vec<f64> {
         .sqrt()
         * largest;
     let mut row: Vec<f64> = normal.iter().map(|c| c / length).collect();
-    row.push(-constant / length * unit);
+    row.push(0.0 - constant / length * unit);
     row
 }
 

@@ -402,5 +402,11 @@ fn mapped<S: AxisSpace>(
             Entry::Cut(cut) => Entry::Cut(map(&cut)?),
         })
     });
-    from_preorder(&moved.collect::<Result<Vec<_>>>()?, S::universe())
+    let image = from_preorder(&moved.collect::<Result<Vec<_>>>()?, S::universe())?;
+    // Inside the frame the image is right; a bounded set must not lose what lies beyond.
+    if is_bounded(tree) && stats(&image).cuts != stats(tree).cuts {
+        let text = "the moved or refined set does not fit the lattice of 2^53 steps";
+        return Err(Error::new(ErrorKind::TooLarge, text));
+    }
+    Ok(image)
 }

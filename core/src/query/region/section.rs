@@ -2,6 +2,7 @@
 
 use num_bigint::BigInt;
 use num_integer::Integer;
+use rustc_hash::FxHashMap as HashMap;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::assemble::assemble;
@@ -26,34 +27,100 @@ pub fn section(solid: &Solid, plane: &Plane) -> Result<Vec<[Lattice; 2]>> {
         .map(|(i, _)| homogeneous(solid, &mesh, i))
         .collect();
     let below: Vec<bool> = points.iter().map(|p| is_below(p, plane)).collect();
+    let crossings: Vec<Crossing> = mesh
+        .triangles
+        .iter()
+        .filter_map(|triangle| Crossing::of(triangle.map(|v| v as usize), &below))
+        .collect();
     let mut edges = Vec::new();
-    for triangle in &mesh.triangles {
-        let corners = triangle.map(|v| v as usize);
-        if let Some([leave, enter]) = crossed(&corners, &below) {
-            let ends = [meet(&points, enter, plane)?, meet(&points, leave, plane)?];
-            if ends[0] != ends[1] {
-                edges.push(ends);
-            }
+    for [enter, leave] in straight(&points, &crossings) {
+        let ends = [meet(&points, enter, plane)?, meet(&points, leave, plane)?];
+        if ends[0] != ends[1] {
+            edges.push(ends);
         }
     }
     Ok(edges)
+}
+
+/// An edge of the mesh that the plane crosses, its lower end first.
+type Rung = [usize; 2];
+
+/// A triangle that the plane crosses.
+struct Crossing {
+    /// The edges by which its outline comes back below the plane, and by which it leaves.
+    enter: Rung,
+    leave: Rung,
+    corners: [usize; 3],
+}
+
+impl Crossing {
+    fn of(corners: [usize; 3], below: &[bool]) -> Option<Self> {
+        let edges = [0, 1, 2].map(|i| [corners[i], corners[(i + 1) % 3]]);
+        let leave = edges.iter().find(|[a, b]| below[*a] && !below[*b])?;
+        let [high, low] = edges.iter().find(|[a, b]| !below[*a] && below[*b])?;
+        Some(Self {
+            enter: [*low, *high],
+            leave: *leave,
+            corners,
+        })
+    }
+
+    /// The corner that is not on an edge of the triangle.
+    fn apex(&self, rung: Rung) -> Option<usize> {
+        self.corners.into_iter().find(|c| !rung.contains(c))
+    }
+}
+
+/// The first and last edges of runs of coplanar triangles: between them the section is straight.
+fn straight(points: &[Homogeneous], crossings: &[Crossing]) -> Vec<[Rung; 2]> {
+    let next = successors(points, crossings);
+    let mut follows = vec![false; crossings.len()];
+    for &i in next.iter().flatten() {
+        follows[i] = true;
+    }
+    let heads = (0..crossings.len()).filter(|&i| !follows[i]);
+    let run = |head: usize| {
+        let last = std::iter::successors(Some(head), |&i| next[i]).last();
+        [crossings[head].enter, crossings[last.unwrap_or(head)].leave]
+    };
+    heads.map(run).collect()
+}
+
+/// For each triangle the one beyond its last edge, if that lies in the same plane.
+fn successors(points: &[Homogeneous], crossings: &[Crossing]) -> Vec<Option<usize>> {
+    let mut entered: HashMap<Rung, Vec<usize>> = HashMap::default();
+    for (i, crossing) in crossings.iter().enumerate() {
+        entered.entry(crossing.enter).or_default().push(i);
+    }
+    let beyond = |crossing: &Crossing| match entered.get(&crossing.leave)?.as_slice() {
+        [only] => {
+            let apexes = [crossing, &crossings[*only]].map(|c| c.apex(crossing.leave));
+            let [a, b] = [apexes[0]?, apexes[1]?];
+            let [p, q] = crossing.leave;
+            coplanar([p, q, a, b].map(|i| &points[i])).then_some(*only)
+        }
+        _ => None,
+    };
+    crossings.iter().map(beyond).collect()
+}
+
+/// Whether four points lie in one plane.
+fn coplanar(points: [&Homogeneous; 4]) -> bool {
+    let [p, q, r, s] = points.map(Wide::of);
+    // Differences to p, times both denominators.
+    let [u, v, w] = [&q, &r, &s]
+        .map(|other| [0, 1, 2].map(|i| -> BigInt { &other.x[i] * &p.w - &p.x[i] * &other.w }));
+    let minor = |i: usize, j: usize| -> BigInt { &v[i] * &w[j] - &v[j] * &w[i] };
+    let sum: BigInt = &u[0] * minor(1, 2) + &u[1] * minor(2, 0) + &u[2] * minor(0, 1);
+    sum == BigInt::ZERO
 }
 
 fn is_below(point: &Homogeneous, plane: &Plane) -> bool {
     Vertex::homogeneous(point.x, point.w).side_of(plane) < 0
 }
 
-/// The edges of a triangle by which its outline leaves the half below and comes back to it, each
-/// with its lower end first.
-fn crossed(corners: &[usize; 3], below: &[bool]) -> Option<[[usize; 2]; 2]> {
-    let edges = [0, 1, 2].map(|i| [corners[i], corners[(i + 1) % 3]]);
-    let leave = edges.iter().find(|[a, b]| below[*a] && !below[*b])?;
-    let [high, low] = edges.iter().find(|[a, b]| !below[*a] && below[*b])?;
-    Some([*leave, [*low, *high]])
-}
-
 /// The lattice point nearest to where an edge meets a plane.
-fn meet(points: &[Homogeneous], edge: [usize; 2], plane: &Plane) -> Result<Lattice> {
+fn meet(points: &[Homogeneous], edge: Rung, plane: &Plane) -> Result<Lattice> {
     let [p, q] = edge.map(|i| Wide::of(&points[i]));
     let (s, t) = (p.value(plane), q.value(plane));
     // With the values s/v < 0 ≤ t/w at p and q: the point is (t·p − s·q) / (t·v − s·w).
