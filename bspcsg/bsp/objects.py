@@ -159,7 +159,9 @@ class ObjectTree(TreeQueries):
                 f"A set of dimension {self.dimension} cannot be combined with one of dimension"
                 f" {other.dimension}."
             )
-        pitch = min(self.pitch, other.pitch)
+        # Nothing and everything live on any lattice.
+        pitches = [s.pitch for s in (self, other) if not (s.is_empty or s.is_full)]
+        pitch = min(pitches, default=self.pitch)
         return self._refined(pitch), other._refined(pitch)
 
     def _settled_nodes(self) -> int:
@@ -169,6 +171,8 @@ class ObjectTree(TreeQueries):
     def _refined(self, pitch: int) -> _core.ObjectTree:
         if pitch == self.pitch:
             return self._tree
+        if self.is_empty or self.is_full:
+            return _core.ObjectTree.uniform(self.dimension, self.is_full, pitch)
         axes = list(range(1, self.dimension + 1))
         scale = 10 ** (self.pitch - pitch)
         with core_errors():

@@ -233,6 +233,15 @@ def test_pitch_is_refined_exactly() -> None:
     assert (coarse - fine).pitch == -3
 
 
+@pytest.mark.parametrize("dimension", DIMENSIONS)
+def test_empty_and_full_sets_fit_every_lattice(dimension: int) -> None:
+    far = bsp.ObjectTree(box_facets(np.zeros(dimension), np.full(dimension, 1e12)))
+    assert far.pitch > -9
+    for uniform in (bsp.ObjectTree.uniform(dimension, full=full) for full in (True, False)):
+        assert (uniform & far).equals(far if uniform.is_full else uniform)
+        assert (far ^ uniform).equals(~far if uniform.is_full else far)
+
+
 @pytest.mark.parametrize(
     ("facets", "code"),
     [
