@@ -1,0 +1,236 @@
+//! A set of any dimension: what Python's one class `ObjectTree` holds.
+
+use std::sync::Arc;
+
+use super::each::{each, map_each};
+use super::set_input::{
+    all, in_plane, in_space, inside_of, on_line, points, segments, shape, triangles, Input,
+};
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::axis::AxisSpace;
+use crate::geometry::dim1::Dim1;
+use crate::geometry::dim2::Dim2;
+use crate::geometry::dim3::Dim3;
+use crate::geometry::side::Half;
+use crate::merge::{merge, partition_tree, split_case, split_tree, SetOp, SplitCase};
+use crate::mesh::grid::Pitch;
+use crate::query::region::condense::{condensed_line, condensed_plane};
+use crate::query::region::hyperplane::LatticeMap;
+use crate::tree::partition::{
+    from_preorder, is_bounded, preorder, stats, Entry, Label, PartitionTree, Sheet, TreeStats,
+};
+
+/// A set of points as a partition tree.
+#[derive(Clone, Debug)]
+pub enum Set {
+    /// On the line.
+    Line(PartitionTree<Dim1>),
+    /// In the plane.
+    Plane(PartitionTree<Dim2>),
+    /// In space.
+    Space(PartitionTree<Dim3>),
+}
+
+impl Set {
+    /// The set inside a boundary.
+    pub fn build(dimension: usize, input: &Input, pitch: Pitch) -> Result<Self> {
+        match dimension {
+            1 => {
+                let cuts = all(&input.cuts, |cut| on_line(cut, pitch))?;
+                Ok(Self::Line(inside_of(points(input, pitch)?, input, &cuts)?))
+            }
+            2 => {
+                let cuts = all(&input.cuts, |cut| in_plane(cut, pitch))?;
+                Ok(Self::Plane(inside_of(
+                    segments(input, pitch)?,
+                    input,
+                    &cuts,
+                )?))
+            }
+            3 => {
+                let cuts = all(&input.cuts, |cut| in_space(cut, pitch))?;
+                Ok(Self::Space(inside_of(
+                    triangles(input, pitch)?,
+                    input,
+                    &cuts,
+                )?))
+            }
+            _ => Err(bad_dimension(dimension)),
+        }
+    }
+
+    /// Everything, or nothing.
+    pub fn uniform(dimension: usize, full: bool) -> Result<Self> {
+        let label = Label::from_inside(full);
+        match dimension {
+            1 => Ok(Self::Line(PartitionTree::Leaf(label))),
+            2 => Ok(Self::Plane(PartitionTree::Leaf(label))),
+            3 => Ok(Self::Space(PartitionTree::Leaf(label))),
+            _ => Err(bad_dimension(dimension)),
+        }
+    }
+
+    /// The minus side of a hyperplane.
+    pub fn half_space(hyperplane: &[f64], pitch: Pitch) -> Result<Self> {
+        let [minus, _] =
+            Self::uniform(hyperplane.len().saturating_sub(1), true)?.split(hyperplane, pitch)?;
+        Ok(minus)
+    }
+
+    /// The dimension.
+    pub fn dimension(&self) -> usize {
+        match self {
+            Self::Line(_) => 1,
+            Self::Plane(_) => 2,
+            Self::Space(_) => 3,
+        }
+    }
+
+    /// The number of nodes.
+    pub fn size(&self) -> usize {
+        self.stats().cuts
+    }
+
+    /// Size figures.
+    pub fn stats(&self) -> TreeStats {
+        each!(self, tree => stats(tree))
+    }
+
+    /// Whether everything (true) or nothing (false) is inside, if either.
+    pub fn uniform_label(&self) -> Option<bool> {
+        each!(self, tree => tree.label()).map(|label| label == Label::In)
+    }
+
+    /// Whether the set fits into some box.
+    pub fn is_bounded(&self) -> bool {
+        each!(self, tree => is_bounded(tree))
+    }
+
+    /// Everything else.
+    pub fn complement(&self) -> Self {
+        map_each!(self, tree => tree.complement())
+    }
+
+    /// The set operation by merging trees.
+    pub fn merge(&self, other: &Self, op: SetOp) -> Result<Self> {
+        match (self, other) {
+            (Self::Line(a), Self::Line(b)) => Ok(Self::Line(merge(a, b, op)?)),
+            (Self::Plane(a), Self::Plane(b)) => Ok(Self::Plane(merge(a, b, op)?)),
+            (Self::Space(a), Self::Space(b)) => Ok(Self::Space(merge(a, b, op)?)),
+            _ => Err(shape("the sets have different dimensions")),
+        }
+    }
+
+    /// The same set with a hyperplane in its root.
+    pub fn partitioned(&self, cut: &[f64], pitch: Pitch) -> Result<Self> {
+        Ok(match self {
+            Self::Line(tree) => Self::Line(rooted(tree, &on_line(cut, pitch)?)?),
+            Self::Plane(tree) => Self::Plane(rooted(tree, &in_plane(cut, pitch)?)?),
+            Self::Space(tree) => Self::Space(rooted(tree, &in_space(cut, pitch)?)?),
+        })
+    }
+
+    /// The parts of the set on the minus and the plus side of a hyperplane.
+    pub fn split(&self, cut: &[f64], pitch: Pitch) -> Result<[Self; 2]> {
+        Ok(match self {
+            Self::Line(tree) => halves(tree, &on_line(cut, pitch)?)?.map(Self::Line),
+            Self::Plane(tree) => halves(tree, &in_plane(cut, pitch)?)?.map(Self::Plane),
+            Self::Space(tree) => halves(tree, &in_space(cut, pitch)?)?.map(Self::Space),
+        })
+    }
+
+    /// The name of the case that the root and a hyperplane are.
+    pub fn split_case(&self, cut: &[f64], pitch: Pitch) -> Result<&'static str> {
+        let case = match self {
+            Self::Line(tree) => split_case(tree, &span::<Dim1>(&on_line(cut, pitch)?)?),
+            Self::Plane(tree) => split_case(tree, &span::<Dim2>(&in_plane(cut, pitch)?)?),
+            Self::Space(tree) => split_case(tree, &span::<Dim3>(&in_space(cut, pitch)?)?),
+        };
+        case.map(case_name)
+    }
+
+    /// The same set as a tree of a size that its boundary asks for; in space the tree itself.
+    pub fn condensed(&self) -> Result<Self> {
+        match self {
+            Self::Line(tree) => condensed_line(tree).map(Self::Line),
+            Self::Plane(tree) => condensed_plane(tree).map(Self::Plane),
+            Self::Space(_) => Ok(self.clone()),
+        }
+    }
+
+    /// The image under a map of the lattice.
+    pub fn moved(&self, map: &LatticeMap) -> Result<Self> {
+        Ok(match self {
+            Self::Line(tree) => Self::Line(mapped(tree, |h| map.point(h))?),
+            Self::Plane(tree) => Self::Plane(mapped(tree, |h| map.line(h))?),
+            Self::Space(tree) => Self::Space(mapped(tree, |h| map.plane(h))?),
+        })
+    }
+}
+
+fn bad_dimension(dimension: usize) -> Error {
+    shape(format!("sets have dimension 1, 2 or 3, not {dimension}"))
+}
+
+fn case_name(case: SplitCase) -> &'static str {
+    match case {
+        SplitCase::Leaf => "leaf",
+        SplitCase::Same => "same",
+        SplitCase::Opposite => "opposite",
+        SplitCase::Crossing => "crossing",
+        SplitCase::OneSided { deep, home } => match (deep, home) {
+            (Half::Minus, Half::Minus) => "minus-minus",
+            (Half::Minus, Half::Plus) => "minus-plus",
+            (Half::Plus, Half::Minus) => "plus-minus",
+            (Half::Plus, Half::Plus) => "plus-plus",
+        },
+    }
+}
+
+fn span<S: AxisSpace>(cut: &S::Hyperplane) -> Result<S::Fragment> {
+    S::span(cut, &S::universe()).ok_or_else(|| {
+        let text = "the hyperplane misses the lattice of 2^53 steps";
+        Error::new(ErrorKind::TooLarge, text)
+    })
+}
+
+fn rooted<S: AxisSpace>(tree: &PartitionTree<S>, cut: &S::Hyperplane) -> Result<PartitionTree<S>> {
+    partition_tree(tree, span::<S>(cut)?)
+}
+
+/// Both halves as sets of the whole space: the hyperplane in the root, the other side empty.
+fn halves<S: AxisSpace>(
+    tree: &PartitionTree<S>,
+    cut: &S::Hyperplane,
+) -> Result<[PartitionTree<S>; 2]> {
+    let span = span::<S>(cut)?;
+    let halves = split_tree(tree, &span)?;
+    let sheet = Arc::new(Sheet {
+        span,
+        facets: halves.coplanar,
+    });
+    let other = Arc::clone(&sheet);
+    Ok([
+        PartitionTree::cut(sheet, halves.minus, PartitionTree::EMPTY),
+        PartitionTree::cut(other, PartitionTree::EMPTY, halves.plus),
+    ])
+}
+
+fn mapped<S: AxisSpace>(
+    tree: &PartitionTree<S>,
+    map: impl Fn(&S::Hyperplane) -> Result<S::Hyperplane>,
+) -> Result<PartitionTree<S>> {
+    let moved = preorder(tree).into_iter().map(|entry| {
+        Ok(match entry {
+            Entry::Leaf(label) => Entry::Leaf(label),
+            Entry::Cut(cut) => Entry::Cut(map(&cut)?),
+        })
+    });
+    let image = from_preorder(&moved.collect::<Result<Vec<_>>>()?, S::universe())?;
+    // Inside the frame the image is right; a bounded set must not lose what lies beyond.
+    if is_bounded(tree) && stats(&image).cuts != stats(tree).cuts {
+        let text = "the moved or refined set does not fit the lattice of 2^53 steps";
+        return Err(Error::new(ErrorKind::TooLarge, text));
+    }
+    Ok(image)
+}
