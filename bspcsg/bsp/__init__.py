@@ -1,7 +1,9 @@
-"""Binary space partition trees over points, segments and polygons, in one to three dimensions.
+"""Binary space partition trees and the sets they stand for, in one, two and three dimensions.
 
-The minus side of a hyperplane is its inside. Everything is decided exactly on a decimal lattice
-that coordinates are snapped to first; `PartitionTree.pitch` says which.
+The same definitions hold on the line, in the plane and in space: a hyperplane has a minus side,
+which is inside, and a plus side; a tree divides space by hyperplanes into convex regions; its
+leaves are in or out of a set. Everything is decided exactly on a decimal lattice that coordinates
+are snapped to first.
 """
 
 from .cost import Comparison, PolicyRow, Query, Stats, compare_policies

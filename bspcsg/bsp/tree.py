@@ -48,8 +48,7 @@ class PartitionTree(Ordered):
     alpha : float
         From 0 (least splits) to 1 (balance), for the policy "weighted".
     pitch : int, optional
-        The lattice step is ``10**pitch`` units. By default -9 or what the size asks for. In 2D the
-        lattice has 2^30 steps from the origin only: coordinates keep about nine digits.
+        The lattice step is ``10**pitch`` units. By default -9 or what the size asks for.
     non_planar : {"error", "triangulate"}
         What to do with polygons whose corners are not in one plane after snapping.
     degenerate : {"error", "drop"}

@@ -3,6 +3,7 @@
 use super::ears::{is_convex, triangles};
 use super::grid::Pitch;
 use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::cell::REACH;
 use crate::geometry::plane::{normal, Lattice, Plane};
 
 /// A convex facet, or a convex part of one.
@@ -16,21 +17,14 @@ pub struct Facet {
     pub source: u32,
 }
 
-/// Coordinates in the plane stay below 2^29 steps: half of what its arithmetic allows, so that a
-/// margin around them fits as well.
-const PLANE_REACH: i64 = 1 << 29;
-
 /// Facets may have at most this many corners: outlines are examined in quadratic time.
 const MOST_CORNERS: usize = 1 << 14;
 
-/// The pitch for coordinates of this size and extent in a space of `dimension`.
-///
-/// In the plane, coordinates have 29 bits: about nine decimal digits. The finest power of ten from
-/// 10^-9 on that fits is taken there, a finer one for scenes less than 10^6 steps across.
+/// The pitch for coordinates of this size and extent.
 ///
 /// # Errors
 /// `NonFinite`, `TooLarge`.
-pub fn suited_pitch(dimension: usize, rows: &[[f64; 3]]) -> Result<Pitch> {
+pub fn suited_pitch(rows: &[[f64; 3]]) -> Result<Pitch> {
     let (mut largest, mut extent) = (0.0f64, 0.0f64);
     for axis in 0..3 {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -47,26 +41,7 @@ pub fn suited_pitch(dimension: usize, rows: &[[f64; 3]]) -> Result<Pitch> {
             extent = extent.max(high - low);
         }
     }
-    match dimension {
-        2 => suited_in_plane(largest, extent),
-        _ => Pitch::suited(largest, extent),
-    }
-}
-
-fn suited_in_plane(largest: f64, extent: f64) -> Result<Pitch> {
-    let step = |pitch: Pitch| 10f64.powi(pitch.exponent() as i32);
-    let fits = |pitch: Pitch| largest / step(pitch) < PLANE_REACH as f64 - 1.0;
-    let mut pitch = Pitch::DEFAULT;
-    while !fits(pitch) {
-        pitch = Pitch::new(pitch.exponent() + 1)?;
-    }
-    while extent > 0.0 && extent / step(pitch) < 1e6 {
-        match Pitch::new(pitch.exponent() - 1) {
-            Ok(finer) if fits(finer) => pitch = finer,
-            _ => break,
-        }
-    }
-    Ok(pitch)
+    Pitch::suited(largest, extent)
 }
 
 /// Snaps the corners of facets, corner by corner.
@@ -83,21 +58,17 @@ pub fn snap_corners(dimension: usize, rows: &[[f64; 3]], pitch: Pitch) -> Result
         Ok(lattice)
     };
     let snapped: Vec<Lattice> = rows.iter().enumerate().map(snap).collect::<Result<_>>()?;
-    check_reach(dimension, &snapped)?;
+    check_reach(&snapped)?;
     Ok(snapped)
 }
 
-/// Verifies that lattice coordinates lie where the arithmetic of the dimension is exact.
+/// Verifies that lattice coordinates lie where the arithmetic is exact.
 ///
 /// # Errors
 /// `TooLarge`, with the row.
-pub fn check_reach(dimension: usize, rows: &[Lattice]) -> Result<()> {
-    let limit = if dimension == 2 {
-        PLANE_REACH
-    } else {
-        (1 << crate::geometry::cell::REACH) - 1
-    };
-    let beyond = |p: &Lattice| p.iter().any(|k| k.unsigned_abs() > limit.unsigned_abs());
+pub fn check_reach(rows: &[Lattice]) -> Result<()> {
+    let limit = (1u64 << REACH) - 1;
+    let beyond = |p: &Lattice| p.iter().any(|k| k.unsigned_abs() > limit);
     match rows.iter().position(beyond) {
         None => Ok(()),
         Some(row) => {

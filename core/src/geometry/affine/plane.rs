@@ -9,14 +9,13 @@ use crate::geometry::side::{Side, Split};
 use crate::geometry::space::Space;
 
 fn position(point: &Point2) -> [f64; 3] {
-    let [x, y, w] = point.coordinates().map(|c| c as f64);
-    [x / w, y / w, 0.0]
+    let [x, y] = point.approx();
+    [x, y, 0.0]
 }
 
 fn is_lattice(point: &Point2, lattice: &Lattice) -> bool {
-    let [x, y, w] = point.coordinates();
-    // Coordinates below 2^30 times w below 2^63.
-    x == i128::from(lattice[0]) * w && y == i128::from(lattice[1]) * w
+    let corner = Point2::lattice([lattice[0], lattice[1]]);
+    corner.order(point).is_eq()
 }
 
 fn turn(a: &[f64; 3], b: &[f64; 3], apex: &[f64; 3]) -> f64 {
@@ -35,21 +34,17 @@ impl Affine for Dim2 {
     }
 
     fn approx(cut: &Line2) -> [f64; 4] {
-        let [a, b, c] = cut.coefficients().map(|k| k as f64);
-        [a, b, 0.0, c]
+        let ([a, b], c) = cut.coefficients();
+        [a as f64, b as f64, 0.0, c as f64]
     }
 
     fn exact(cut: &Line2) -> [BigInt; 4] {
-        let [a, b, c] = cut.coefficients();
-        [a, b, 0, c].map(BigInt::from)
+        let ([a, b], c) = cut.coefficients();
+        [a.into(), b.into(), BigInt::ZERO, c.into()]
     }
 
     fn axis_cut(axis: usize, at: i64) -> Option<Line2> {
-        match axis {
-            0 => Line2::through([at, 0], [at, 1]),
-            1 => Line2::through([1, at], [0, at]),
-            _ => None,
-        }
+        (axis < 2 && at.abs() <= Self::REACH).then(|| Line2::axis_cut(axis, at))
     }
 
     fn corners(piece: &Segment2) -> Vec<[f64; 3]> {

@@ -81,7 +81,7 @@ impl PyFragmentTree {
         let (inner, corners) = run(py, 0, rows.len(), |cancel| {
             let pitch = match pitch {
                 Some(pitch) => pitch,
-                None => suited_pitch(dimension, &rows)?,
+                None => suited_pitch(&rows)?,
             };
             let lattice = snap_corners(dimension, &rows, pitch)?;
             let facets = facets(dimension, &lattice, &offsets, lenience_of(lenience))?;
@@ -113,7 +113,7 @@ impl PyFragmentTree {
         let offsets = offsets.as_array().to_vec();
         let cuts = node_cuts(&cuts).map_err(fail)?;
         let inner = run(py, 0, rows.len(), |cancel| {
-            check_reach(dimension, &rows)?;
+            check_reach(&rows)?;
             let facets = facets(dimension, &rows, &offsets, lenience_of(lenience))?;
             built(dimension, facets, pitch, Wish::Given(cuts), cancel)
         })?;
