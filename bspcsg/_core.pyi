@@ -5,7 +5,7 @@ from typing import TypeAlias, TypedDict, final, type_check_only
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["CoreError", "RayScene", "Tree", "__version__", "set_threads"]
+__all__ = ["CoreError", "RayScene", "RayTree", "Tree", "__version__", "set_threads"]
 
 __version__: str
 
@@ -103,3 +103,21 @@ class RayScene:
     def blocked(
         self, origins: _Floats, directions: _Floats, limits: _Floats, threads: int = 0
     ) -> npt.NDArray[np.bool_]: ...
+
+@final
+class RayTree:
+    def __new__(
+        cls,
+        dimension: int,
+        corners: _Floats,
+        pitch: int | None = None,
+        threshold: int | None = None,
+        hits: list[int] | None = None,
+        limit: int | None = None,
+    ) -> RayTree: ...
+    @property
+    def pitch(self) -> int: ...
+    def test(
+        self, origins: _Floats, directions: _Floats
+    ) -> tuple[tuple[_Indices, _Floats, npt.NDArray[np.int8], _Floats, _Floats], _Indices]: ...
+    def stats(self) -> dict[str, int]: ...

@@ -9,7 +9,7 @@ import numpy as np
 from .._core import RayScene
 from .._types import FloatArray, IndexArray, SideArray, WindingRule
 from ..errors import core_errors, invalid_parameter
-from .facets import facets_from, ray_arrays
+from .facets import Facets, facets_from, ray_arrays
 
 #: Values of `Hits.kind`.
 MISS, INTERIOR, EDGE, VERTEX = -1, 0, 1, 2
@@ -57,7 +57,9 @@ class Hits:
     def __getitem__(self, rows: Any) -> "Hits":
         """Return some of the rows, by a slice, a mask or an index array."""
         columns = {field.name: getattr(self, field.name) for field in fields(self)}
-        taken = {name: None if c is None else c[rows] for name, c in columns.items()}
+        taken: dict[str, Any] = {
+            name: None if c is None else c[rows] for name, c in columns.items()
+        }
         return Hits(**taken)
 
 
@@ -313,23 +315,21 @@ class RayCaster:
         with core_errors():
             return self._scene.blocked(first.ravel(), second.ravel(), limits, threads)
 
-    def _hits(
-        self,
-        facet: IndexArray,
-        t: FloatArray,
-        kind: SideArray,
-        weights: FloatArray,
-        point: FloatArray,
-    ) -> Hits:
-        d = self.dimension
-        missed = facet < 0
-        normal = _taken(self._normals, facet)
-        normal[missed] = np.nan
-        source = self._facets.source
-        if source is not None:
-            source = _taken(source, facet)
-            source[missed] = -1
-        return Hits(facet, t, kind, weights.reshape(-1, d), point.reshape(-1, d), normal, source)
+    def _hits(self, *columns: Any) -> Hits:
+        return hits_of(self._facets, columns, self._normals)
+
+
+def hits_of(facets: Facets, columns: Any, normals: FloatArray | None = None) -> Hits:
+    """Return the core's columns as hits of these facets (for the modules of this package)."""
+    facet, t, kind, weights, point = columns
+    d, missed = facets.dimension, facet < 0
+    normal = _taken(facets.normals() if normals is None else normals, facet)
+    normal[missed] = np.nan
+    source = facets.source
+    if source is not None:
+        source = _taken(source, facet)
+        source[missed] = -1
+    return Hits(facet, t, kind, weights.reshape(-1, d), point.reshape(-1, d), normal, source)
 
 
 def _taken(rows: Any, index: IndexArray) -> Any:

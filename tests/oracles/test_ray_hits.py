@@ -37,7 +37,7 @@ def lattice_rays(scene: Integers, count: int) -> tuple[Integers, Integers]:
     origins = rng.integers(-90, 91, (count, 3))
     facets = scene[rng.integers(0, len(scene), count)]
     aims = facets[:, 0].copy()
-    kind = rng.integers(0, 7, count)
+    kind = rng.choice(7, count, p=[0.1, 0.1, 0.4, 0.2, 0.02, 0.01, 0.17])
     aims[kind == 1] = rng.integers(-60, 61, ((kind == 1).sum(), 3))
     directions = aims - origins
     edges = kind == 2
@@ -169,7 +169,7 @@ def test_first_hits_of_a_hundred_thousand_rays(scene: Integers) -> None:
         expected = [np.inf if s is None else float(s) for s in at]
         np.testing.assert_array_equal(hits.t[rows], expected)
     # The rays are of all kinds.
-    assert (np.bincount(hits.kind + 1) > 5000).all()
+    assert (np.bincount(hits.kind + 1) > 4000).all()
 
 
 def test_all_hits_and_kinds(scene: Integers) -> None:
@@ -210,8 +210,8 @@ def test_shadows_are_all_hits_between_the_ends(scene: Integers) -> None:
     origins, directions = lattice_rays(scene, 4000)
     caster = bsp.RayCaster(scene.astype(float), pitch=0)
     above, below, hit, within = crossings(origins, directions, scene)
-    plain = ~within.any(axis=1)
-    expected = (hit & (above > 0) & (above < below)).any(axis=1)
+    plain: Flags = np.asarray(~within.any(axis=1))
+    expected: Flags = np.asarray((hit & (above > 0) & (above < below)).any(axis=1))
     np.testing.assert_array_equal(
         caster.occluded(origins, origins + directions)[plain], expected[plain]
     )

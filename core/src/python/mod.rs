@@ -9,6 +9,7 @@
 
 mod arrays;
 mod errors;
+mod ray_tree;
 mod rays;
 mod run;
 mod tree;
@@ -26,6 +27,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("CoreError", module.py().get_type::<errors::CoreError>())?;
     module.add_class::<tree::Tree>()?;
+    module.add_class::<ray_tree::RayTree>()?;
     module.add_class::<rays::RayScene>()?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
     Ok(())

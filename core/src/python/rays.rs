@@ -13,7 +13,7 @@ use crate::query::ray::batch::{Inside, Rays};
 use crate::query::ray::Scene;
 
 /// Casting a ray costs about as much as a hundred elements of other work.
-const WEIGHT: usize = 100;
+pub(super) const WEIGHT: usize = 100;
 
 enum Facets {
     Points(Scene<1>),
@@ -36,7 +36,7 @@ type Floats<'py> = Bound<'py, PyArray1<f64>>;
 type Indices<'py> = Bound<'py, PyArray1<i64>>;
 
 /// Facet, t, kind, weights and points, the last two flat.
-type HitArrays<'py> = (
+pub(super) type HitArrays<'py> = (
     Indices<'py>,
     Floats<'py>,
     Bound<'py, PyArray1<i8>>,
@@ -45,7 +45,7 @@ type HitArrays<'py> = (
 );
 
 #[derive(Default)]
-struct Columns {
+pub(super) struct Columns {
     facet: Vec<i64>,
     t: Vec<f64>,
     kind: Vec<i8>,
@@ -74,7 +74,7 @@ impl Columns {
         self.points.extend([f64::NAN; D]);
     }
 
-    fn of_first<const D: usize>(hits: &[Option<Hit<D>>]) -> Self {
+    pub(super) fn of_first<const D: usize>(hits: &[Option<Hit<D>>]) -> Self {
         let mut columns = Self::default();
         for hit in hits {
             match hit {
@@ -91,7 +91,7 @@ impl Columns {
         columns
     }
 
-    fn arrays(self, py: Python<'_>) -> HitArrays<'_> {
+    pub(super) fn arrays(self, py: Python<'_>) -> HitArrays<'_> {
         (
             PyArray1::from_vec(py, self.facet),
             PyArray1::from_vec(py, self.t),
@@ -154,7 +154,11 @@ impl RayScene {
     ) -> PyResult<HitArrays<'py>> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
         let columns = run(py, threads, origins.len() * WEIGHT, |cancel| {
-            let rays = Rays { origins, heads, cancel };
+            let rays = Rays {
+                origins,
+                heads,
+                cancel,
+            };
             with_scene!(&self.facets, scene => Ok(Columns::of_first(&rays.first(scene)?)))
         })?;
         Ok(columns.arrays(py))
@@ -171,7 +175,11 @@ impl RayScene {
     ) -> PyResult<(Indices<'py>, HitArrays<'py>)> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
         let (offsets, columns) = run(py, threads, origins.len() * WEIGHT, |cancel| {
-            let rays = Rays { origins, heads, cancel };
+            let rays = Rays {
+                origins,
+                heads,
+                cancel,
+            };
             with_scene!(&self.facets, scene => {
                 let hits = rays.all(scene)?;
                 Ok((offsets(&hits), Columns::of_all(&hits)))
@@ -193,7 +201,11 @@ impl RayScene {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
         let rule = winding_rule(rule).map_err(|e| to_python(py, &e))?;
         let found = run(py, threads, origins.len() * WEIGHT, |cancel| {
-            let rays = Rays { origins, heads, cancel };
+            let rays = Rays {
+                origins,
+                heads,
+                cancel,
+            };
             with_scene!(&self.facets, scene => rays.inside(scene, rule))
         })?;
         let ends = |i: &Inside| i.t;
@@ -216,7 +228,11 @@ impl RayScene {
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let (origins, heads) = (origins.as_slice()?, targets.as_slice()?);
         let found = run(py, threads, origins.len() * WEIGHT, |cancel| {
-            let rays = Rays { origins, heads, cancel };
+            let rays = Rays {
+                origins,
+                heads,
+                cancel,
+            };
             with_scene!(&self.facets, scene => rays.hidden(scene))
         })?;
         Ok(PyArray1::from_vec(py, found))
@@ -234,7 +250,11 @@ impl RayScene {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
         let limits = limits.as_slice()?;
         let found = run(py, threads, origins.len() * WEIGHT, |cancel| {
-            let rays = Rays { origins, heads, cancel };
+            let rays = Rays {
+                origins,
+                heads,
+                cancel,
+            };
             with_scene!(&self.facets, scene => rays.blocked(scene, limits))
         })?;
         Ok(PyArray1::from_vec(py, found))
@@ -253,7 +273,7 @@ fn build(dimension: usize, flat: &[f64], pitch: Option<Pitch>) -> Result<Facets>
     }
 }
 
-fn facets<const D: usize>(flat: &[f64]) -> Result<Vec<[[f64; D]; D]>> {
+pub(super) fn facets<const D: usize>(flat: &[f64]) -> Result<Vec<[[f64; D]; D]>> {
     if flat.len() % (D * D) != 0 {
         let text = format!("facets must have shape (n, {D}, {D})");
         return Err(Error::new(ErrorKind::Shape, text));

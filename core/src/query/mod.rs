@@ -9,3 +9,4 @@
 pub mod classify;
 pub mod measure;
 pub mod ray;
+pub mod stab;

@@ -60,7 +60,9 @@ impl Rays<'_> {
             .collect();
         // The first error in the order of the rays, whatever the threads did.
         let numbered = answers.into_iter().enumerate();
-        numbered.map(|(i, a)| a.map_err(|e| at_ray(&e, i))).collect()
+        numbered
+            .map(|(i, a)| a.map_err(|e| at_ray(&e, i)))
+            .collect()
     }
 
     fn cast<const D: usize, T: Send>(

@@ -40,7 +40,12 @@ pub fn meet<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> Option<Meeti
     let sum = total(&weights);
     match sum.signum() {
         0 => meet_within(&v, ray.direction()),
-        sign => meet_across(&v, weights.map(|w| signed(w, sign)), signed(sum, sign), sign),
+        sign => meet_across(
+            &v,
+            weights.map(|w| signed(w, sign)),
+            signed(sum, sign),
+            sign,
+        ),
     }
 }
 

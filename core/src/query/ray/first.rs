@@ -17,10 +17,18 @@ pub struct Found<const D: usize> {
     pub meeting: Meeting<D>,
 }
 
-#[derive(Clone, Copy)]
-struct Candidate {
+/// The nearest facet so far, its depth in doubles.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidate {
     facet: u32,
     depth: Depth,
+}
+
+impl Candidate {
+    /// The most that the exact depth can be.
+    pub fn high(&self) -> f64 {
+        self.depth.high()
+    }
 }
 
 /// Where on the ray a shadow test ends.
@@ -52,20 +60,31 @@ impl<'a, const D: usize> Query<'a, D> {
         let mut best: Option<Candidate> = None;
         walk(self.scene, self.ray, f64::INFINITY, |facets| {
             for facet in facets {
-                if let Some(found) = self.candidate(*facet) {
-                    best = Some(best.map_or(found, |old| self.nearer(old, found)));
-                }
+                self.offer(&mut best, *facet);
             }
-            best.map_or(f64::INFINITY, |b| b.depth.high())
+            best.map_or(f64::INFINITY, |b| b.high())
         });
-        self.found(best?.facet)
+        self.found(&best?)
+    }
+
+    /// Tests a facet and keeps it if it is nearer than the best; the depth of its hit, if any.
+    #[inline]
+    pub fn offer(&self, best: &mut Option<Candidate>, facet: u32) -> Option<Depth> {
+        let found = self.candidate(facet)?;
+        *best = Some(best.map_or(found, |old| self.nearer(old, found)));
+        Some(found.depth)
+    }
+
+    /// The exact meeting with the nearest facet.
+    pub fn found(&self, nearest: &Candidate) -> Option<Found<D>> {
+        self.exact(nearest.facet)
     }
 
     /// All facets on the ray in the order of their first points, then of the input.
     pub fn all(&self) -> Vec<Found<D>> {
         let mut facets = self.touched();
         facets.retain(|f| !matches!(self.probe(*f), Probe::Miss));
-        let mut found: Vec<_> = facets.into_iter().filter_map(|f| self.found(f)).collect();
+        let mut found: Vec<_> = facets.into_iter().filter_map(|f| self.exact(f)).collect();
         found.sort_by(|a, b| {
             let order = a.meeting.at.cmp(&b.meeting.at);
             order.then_with(|| self.scene.order(a.facet, b.facet))
@@ -105,7 +124,7 @@ impl<'a, const D: usize> Query<'a, D> {
         self.filter.probe(&self.scene.facets()[facet as usize])
     }
 
-    fn found(&self, facet: u32) -> Option<Found<D>> {
+    fn exact(&self, facet: u32) -> Option<Found<D>> {
         let meeting = self.meeting(facet)?;
         Some(Found { facet, meeting })
     }

@@ -12,12 +12,12 @@ pub struct Ray<const D: usize> {
     origin: [i64; D],
     direction: [i128; D],
     exponent: i32,
-    pub(super) near: Near<D>,
+    pub(in crate::query) near: Near<D>,
 }
 
 /// The ray in doubles: origin and direction are exact, the quotients carry one rounding each.
 #[derive(Clone, Debug)]
-pub(super) struct Near<const D: usize> {
+pub(in crate::query) struct Near<const D: usize> {
     pub origin: [f64; D],
     /// The axis of the largest component of the direction.
     pub main: usize,

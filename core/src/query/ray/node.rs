@@ -5,7 +5,7 @@
 //!
 //! # Source
 //! Deferred leaves: Ar, Montag, Tal 2002, "Deferred, self-organizing BSP trees". Cuts by the
-//! surface area heuristic with bins: MacDonald, Booth 1990; Wald, Havran 2006.
+//! surface area heuristic with bins: `MacDonald`, Booth 1990; Wald, Havran 2006.
 
 use std::sync::{Mutex, OnceLock, PoisonError};
 

@@ -126,7 +126,13 @@ fn power_of_two(exponent: i32) -> f64 {
 fn suited<const D: usize>(facets: &[Facet<D>]) -> Result<Pitch> {
     let (mut largest, mut extent) = (0.0f64, 0.0f64);
     for k in 0..D {
-        let all = || facets.iter().flatten().map(|c| c[k]).filter(|x| x.is_finite());
+        let all = || {
+            facets
+                .iter()
+                .flatten()
+                .map(|c| c[k])
+                .filter(|x| x.is_finite())
+        };
         let low = all().fold(f64::INFINITY, f64::min);
         let high = all().fold(f64::NEG_INFINITY, f64::max);
         if low <= high {

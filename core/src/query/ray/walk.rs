@@ -83,7 +83,7 @@ fn descend<'a, const D: usize>(
 }
 
 /// The depths between which the ray may be in a box.
-fn clip<const D: usize>(ray: &Ray<D>, cell: &Cell<D>) -> Option<(f64, f64)> {
+pub fn clip<const D: usize>(ray: &Ray<D>, cell: &Cell<D>) -> Option<(f64, f64)> {
     let (mut from, mut to) = (0.0f64, f64::INFINITY);
     for k in 0..D {
         let gaps = [cell.low[k], cell.high[k]].map(|c| c - ray.near.origin[k]);
