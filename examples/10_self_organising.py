@@ -18,12 +18,7 @@ rng = np.random.default_rng(1)
 sizes = 0.3 * np.exp(rng.normal(size=(count, 1, 1)))
 facets = rng.uniform(-10, 10, (count, 1, 3)) + rng.normal(size=(count, 3, 3)) * sizes
 batch, rounds = 1000, 12
-colours = {
-    "one leaf": "#999999",
-    "random": "#d08770",
-    "by score": "#5e81ac",
-    "self-organising": "#2e7d32",
-}
+colours = ["#999999", "#d08770", "#5e81ac", "#2e7d32"]
 
 
 def skewed(n):
@@ -46,9 +41,9 @@ def grown(make):
 
 plot = Image.new("RGB", (1240, 460), "white")
 draw = ImageDraw.Draw(plot)
-draw.text(
-    (30, 430), f"triangles tested per ray (logarithmic), {rounds} batches of {batch} rays", "black"
-)
+title = f"triangles tested per ray (logarithmic), {rounds} batches of {batch} rays"
+draw.text((30, 430), title, "black")
+heading = "build s  rays s    tree   per ray: visited  stabbed  tested"
 for panel, rays in enumerate((skewed, uniform)):
     sample = rays(2000)
     trees = {
@@ -58,9 +53,7 @@ for panel, rays in enumerate((skewed, uniform)):
         "self-organising": grown(lambda: bsp.AdaptiveTree(facets, threshold=40)),
     }
     batches = [rays(batch) for _ in range(rounds)]
-    print(
-        f"{rays.__name__ + ' rays':18} build s  rays s    tree   per ray: visited  stabbed  tested"
-    )
+    print(f"{rays.__name__ + ' rays':18} {heading}")
     left, answers = 60 + 620 * panel, []
     draw.text((left, 12), f"{rays.__name__} rays", "black")
     for row, (name, (tree, build)) in enumerate(trees.items()):
@@ -74,8 +67,8 @@ for panel, rays in enumerate((skewed, uniform)):
         )
         answers.append(np.concatenate([t.hits.facet for t in tests]))
         heights = [400 - 100 * np.log10(max(t.tests.mean(), 1)) for t in tests]
-        draw.line([(left + 45 * k, y) for k, y in enumerate(heights)], colours[name], 3)
-        draw.text((left + 380, 12 + 14 * row), f"{name}: {last[2]:.0f}", colours[name])
+        draw.line([(left + 45 * k, y) for k, y in enumerate(heights)], colours[row], 3)
+        draw.text((left + 380, 12 + 14 * row), f"{name}: {last[2]:.0f}", colours[row])
     assert all((answer == answers[0]).all() for answer in answers)
     for power in range(4):
         draw.text((left - 40, 394 - 100 * power), f"{10**power}", "black")
