@@ -6,6 +6,11 @@
 //! ray in a cut, a start in a cut, a cut at an interval's end) need no case of their own here:
 //! every depth is taken with its error, and where the error leaves both children possible, both
 //! are visited.
+//!
+//! # Bundles
+//! Rays go one by one. On a sphere of 330 000 triangles a camera ray spends about half of its time
+//! on the way to its leaf, a quarter on tests, a quarter on exact numbers: sharing the way within a
+//! bundle could save no more than that half, less what mixed leaves cost.
 
 use smallvec::SmallVec;
 

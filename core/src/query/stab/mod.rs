@@ -11,6 +11,7 @@ pub mod tree;
 
 mod cut;
 mod trace;
+mod walk;
 
 pub use cast::Cast;
 pub use trace::Trace;

@@ -9,13 +9,13 @@
 use smallvec::SmallVec;
 
 use super::cast::Cast;
-use super::cut::{Cut, Stab};
+use super::cut::Cut;
 use super::heap::{Entry, Heap};
 use super::trace::Trace;
+use super::walk::Walk;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::Split;
-use crate::query::ray::filter::Probe;
-use crate::query::ray::first::{Candidate, Found, Query};
+use crate::query::ray::first::{Found, Query};
 use crate::query::ray::walk::clip;
 use crate::query::ray::{Ray, Scene};
 
@@ -39,25 +39,25 @@ pub struct StabTree<S: Cast<D>, const D: usize> {
 }
 
 #[derive(Debug)]
-struct Node<S: Cast<D>, const D: usize> {
-    visits: u64,
-    depth: u32,
-    content: Content<S, D>,
+pub(super) struct Node<S: Cast<D>, const D: usize> {
+    pub(super) visits: u64,
+    pub(super) depth: u32,
+    pub(super) content: Content<S, D>,
 }
 
 #[derive(Debug)]
-enum Content<S: Cast<D>, const D: usize> {
+pub(super) enum Content<S: Cast<D>, const D: usize> {
     Leaf(Heap<S::Fragment>),
     Inner(Box<Inner<D>>),
 }
 
 #[derive(Debug)]
-struct Inner<const D: usize> {
-    cut: Cut<D>,
-    coplanar: Vec<u32>,
-    children: [u32; 2],
+pub(super) struct Inner<const D: usize> {
+    pub(super) cut: Cut<D>,
+    pub(super) coplanar: Vec<u32>,
+    pub(super) children: [u32; 2],
     /// Whether a facet of each child may have a point in the interior of a facet in the cut.
-    touched: [bool; 2],
+    pub(super) touched: [bool; 2],
 }
 
 /// The size and the past of a tree.
@@ -78,23 +78,6 @@ pub struct Shape {
     /// Visits of all nodes that are now in the tree.
     pub visits: u64,
 }
-
-#[derive(Clone, Copy)]
-enum Open {
-    Node { node: u32, from: f64, to: f64 },
-    Cut { node: u32, from: f64, far: Far },
-}
-
-/// What lies below a cut on the stack.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Far {
-    /// Something else.
-    No,
-    /// The child beyond the cut, of this number.
-    Child(usize),
-}
-
-type Stack = SmallVec<[Open; 64]>;
 
 impl<S: Cast<D>, const D: usize> StabTree<S, D> {
     /// One leaf with all facets; `hits` are the counters to begin with, by place in the input.
@@ -260,125 +243,6 @@ impl<S: Cast<D>, const D: usize> Node<S, D> {
             visits,
             depth,
             content,
-        }
-    }
-}
-
-/// One ray on its way.
-struct Walk<'a, S: Cast<D>, const D: usize> {
-    query: &'a Query<'a, D>,
-    ray: &'a Ray<D>,
-    nodes: &'a mut [Node<S, D>],
-    growth: Growth,
-    best: Option<Candidate>,
-    trace: &'a mut Trace,
-    due: &'a mut SmallVec<[u32; 16]>,
-}
-
-impl<S: Cast<D>, const D: usize> Walk<'_, S, D> {
-    fn run(&mut self, span: Option<(f64, f64)>) {
-        let mut open = Stack::new();
-        open.extend(span.map(|(from, to)| Open::Node { node: 0, from, to }));
-        while let Some(next) = open.pop() {
-            let limit = self.best.map_or(f64::INFINITY, |best| best.high());
-            match next {
-                Open::Node { node, from, to } if from <= limit => {
-                    self.visit(node, (from, to), &mut open);
-                }
-                Open::Cut { node, from, far } if from <= limit && self.test_cut(node, far) => {
-                    open.pop();
-                }
-                _ => {}
-            }
-        }
-    }
-
-    fn visit(&mut self, node: u32, span: (f64, f64), open: &mut Stack) {
-        self.nodes[node as usize].visits += 1;
-        self.trace.nodes += 1;
-        match &self.nodes[node as usize].content {
-            Content::Leaf(_) => self.test_leaf(node, span.1),
-            Content::Inner(inner) => push_parts(inner, self.ray, node, span, open),
-        }
-    }
-
-    /// Tests the facets in a cut; whether what lies beyond the cut cannot matter any more.
-    fn test_cut(&mut self, node: u32, far: Far) -> bool {
-        let Content::Inner(inner) = &self.nodes[node as usize].content else {
-            return false;
-        };
-        for facet in &inner.coplanar {
-            self.trace.tests += 1;
-            self.query.offer(&mut self.best, *facet);
-        }
-        let Far::Child(child) = far else {
-            return false;
-        };
-        // A hit in the interior of the only facet, with nothing beyond that touches it there.
-        let inside = |facet| matches!(self.query.probe(facet), Probe::Hit(_));
-        !inner.touched[child] && inner.coplanar.len() == 1 && inside(inner.coplanar[0])
-    }
-
-    /// Tests all of L(v); hits within the leaf count for its heap.
-    fn test_leaf(&mut self, node: u32, to: f64) {
-        self.trace.leaves += 1;
-        let visits = self.nodes[node as usize].visits;
-        let Content::Leaf(list) = &mut self.nodes[node as usize].content else {
-            return;
-        };
-        let mut hit: SmallVec<[usize; 16]> = SmallVec::new();
-        for (place, entry) in list.entries().iter().enumerate() {
-            self.trace.tests += 1;
-            let depth = self.query.offer(&mut self.best, entry.facet);
-            if depth.is_some_and(|d| d.low() <= to) {
-                hit.push(place);
-            }
-        }
-        if let Growth::Visits(threshold) = self.growth {
-            // Ascending, because a count changes no later place.
-            for place in hit {
-                list.count_hit(place);
-            }
-            if visits > threshold && list.len() > 1 {
-                self.due.push(node);
-            }
-        }
-    }
-}
-
-/// Puts the parts of an inner node that the ray meets on the stack, the nearest on top.
-#[inline]
-fn push_parts<const D: usize>(
-    inner: &Inner<D>,
-    ray: &Ray<D>,
-    node: u32,
-    (from, to): (f64, f64),
-    open: &mut Stack,
-) {
-    let [minus, plus] = inner.children;
-    let child = |node, from, to| Open::Node { node, from, to };
-    match inner.cut.stab(ray) {
-        Stab::Beside(-1) => open.push(child(minus, from, to)),
-        Stab::Beside(1) => open.push(child(plus, from, to)),
-        Stab::Beside(_) => {
-            open.extend([child(plus, from, to), child(minus, from, to)]);
-            let far = Far::No;
-            open.push(Open::Cut { node, from, far });
-        }
-        Stab::Through { depth, rising } => {
-            let beyond = usize::from(rising);
-            let (near, far) = if rising { (minus, plus) } else { (plus, minus) };
-            let (low, high) = (depth.low(), depth.high());
-            if low <= to {
-                open.push(child(far, from.max(low), to));
-            }
-            if low <= to && high >= from {
-                let (from, far) = (from.max(low), Far::Child(beyond));
-                open.push(Open::Cut { node, from, far });
-            }
-            if high >= from {
-                open.push(child(near, from, to.min(high)));
-            }
         }
     }
 }
