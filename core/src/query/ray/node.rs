@@ -14,8 +14,8 @@ use super::scene::Facet;
 /// Candidate cuts on each axis.
 const BINS: usize = 32;
 
-/// The cost of a step down, in tests of one facet; below 1 the tree of a sphere grows seven times
-/// as many nodes and rays gain nothing.
+/// The cost of a step down, in tests of one facet. With 0.7 the tree of a sphere of 330 000
+/// triangles has four times as many nodes, and rays are no faster.
 const STEP: f64 = 2.0;
 
 /// The share of the cost that remains of a cut with nothing on one side.
