@@ -15,6 +15,8 @@ __all__ = [
     "CoreError",
     "FragmentTree",
     "ObjectTree",
+    "RayScene",
+    "RayTree",
     "Tree",
     "__version__",
     "set_threads",
@@ -102,6 +104,50 @@ class Tree:
     def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None: ...
     @property
     def pitch(self) -> int: ...
+
+_Floats: TypeAlias = npt.NDArray[np.float64]
+_Indices: TypeAlias = npt.NDArray[np.int64]
+
+@final
+class RayScene:
+    def __new__(cls, dimension: int, corners: _Floats, pitch: int | None = None) -> RayScene: ...
+    def __len__(self) -> int: ...
+    @property
+    def pitch(self) -> int: ...
+    def complete(self, threads: int = 0) -> None: ...
+    def first(
+        self, origins: _Floats, directions: _Floats, threads: int = 0
+    ) -> tuple[_Indices, _Floats, npt.NDArray[np.int8], _Floats, _Floats]: ...
+    def all(
+        self, origins: _Floats, directions: _Floats, threads: int = 0
+    ) -> tuple[_Indices, tuple[_Indices, _Floats, npt.NDArray[np.int8], _Floats, _Floats]]: ...
+    def intervals(
+        self, origins: _Floats, directions: _Floats, rule: str = "positive", threads: int = 0
+    ) -> tuple[_Indices, _Floats, _Indices]: ...
+    def hidden(
+        self, origins: _Floats, targets: _Floats, threads: int = 0
+    ) -> npt.NDArray[np.bool_]: ...
+    def blocked(
+        self, origins: _Floats, directions: _Floats, limits: _Floats, threads: int = 0
+    ) -> npt.NDArray[np.bool_]: ...
+
+@final
+class RayTree:
+    def __new__(
+        cls,
+        dimension: int,
+        corners: _Floats,
+        pitch: int | None = None,
+        threshold: int | None = None,
+        hits: list[int] | None = None,
+        limit: int | None = None,
+    ) -> RayTree: ...
+    @property
+    def pitch(self) -> int: ...
+    def test(
+        self, origins: _Floats, directions: _Floats
+    ) -> tuple[tuple[_Indices, _Floats, npt.NDArray[np.int8], _Floats, _Floats], _Indices]: ...
+    def stats(self) -> dict[str, int]: ...
 
 @final
 class ObjectTree:

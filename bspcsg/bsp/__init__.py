@@ -6,7 +6,9 @@ leaves are in or out of a set. Everything is decided exactly on a decimal lattic
 are snapped to first.
 """
 
+from .adaptive import AdaptiveTree, StabStats, StabTree, StaticTree, Tests
 from .cost import Comparison, PolicyRow, Query, Stats, compare_policies
+from .distribution import optimised_tree, scores
 from .drawing_dxf import load_dxf, save_dxf
 from .drawing_svg import load_svg, save_svg
 from .fragments import Fragments
@@ -16,14 +18,23 @@ from .node import Leaf, Node
 from .objects import ObjectTree, merge, partition_tree, split_tree
 from .pieces import NodeTable, Pieces
 from .policy import POLICIES, Policy
+from .rays import EDGE, INTERIOR, MISS, VERTEX, HitLists, Hits, InsideSpans, RayCaster
 from .region import Region
 from .slicing import plane_frame, slice_solid
 from .tree import PartitionTree
 
 __all__ = [
+    "EDGE",
+    "INTERIOR",
+    "MISS",
     "POLICIES",
+    "VERTEX",
+    "AdaptiveTree",
     "Comparison",
     "Fragments",
+    "HitLists",
+    "Hits",
+    "InsideSpans",
     "Intervals",
     "Leaf",
     "Node",
@@ -35,16 +46,23 @@ __all__ = [
     "Policy",
     "PolicyRow",
     "Query",
+    "RayCaster",
     "Region",
+    "StabStats",
+    "StabTree",
+    "StaticTree",
     "Stats",
+    "Tests",
     "compare_policies",
     "load_dxf",
     "load_svg",
     "merge",
+    "optimised_tree",
     "partition_tree",
     "plane_frame",
     "save_dxf",
     "save_svg",
+    "scores",
     "slice_solid",
     "split_tree",
 ]

@@ -30,6 +30,12 @@ def test_example(example: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip()
     assert not done.stderr
-    pictures = ("goat_and_ball.png", "autopartition.svg", "least_cost.svg")
+    pictures = (
+        "goat_and_ball.png",
+        "autopartition.svg",
+        "least_cost.svg",
+        "rays.png",
+        "self_organising.png",
+    )
     for name in ("plate.stl", "rest.stl", *pictures):
         assert (tmp_path / name).exists() == (name in example.read_text())

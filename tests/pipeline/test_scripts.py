@@ -47,6 +47,12 @@ def test_bench_checks_its_answers() -> None:
     assert "spheres" in done.stdout
 
 
+def test_rays_are_compared() -> None:
+    done = run("bench_rays", "--quick")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.count("bspcsg ") >= 3
+
+
 def test_probes_print_their_counts() -> None:
     done = run("probes", "--rounds", "0.001")
     assert done.returncode == 0, done.stdout + done.stderr

@@ -59,7 +59,8 @@ impl Pitch {
         Ok(pitch)
     }
 
-    fn steps(self, x: f64) -> f64 {
+    /// A length in steps, within three units in the last place.
+    pub fn steps(self, x: f64) -> f64 {
         let power = power_of_ten(self.0.abs());
         if self.0 < 0 {
             x * power

@@ -14,6 +14,8 @@ mod errors;
 mod fragments;
 mod objects;
 mod pieces;
+mod ray_tree;
+mod rays;
 mod run;
 mod set_input;
 mod set_queries;
@@ -44,6 +46,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<tree::Tree>()?;
     module.add_class::<fragments::PyFragmentTree>()?;
     module.add_class::<objects::ObjectTree>()?;
+    module.add_class::<ray_tree::RayTree>()?;
+    module.add_class::<rays::RayScene>()?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
     module.add_function(wrap_pyfunction!(suited_pitch, module)?)?;
     Ok(())

@@ -1,0 +1,164 @@
+//! The class `RayTree`: a tree of supporting hyperplanes that rays grow.
+
+use std::sync::{Mutex, PoisonError};
+
+use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::errors::to_python;
+use super::rays::{facets, Columns, HitArrays, WEIGHT};
+use super::run::run;
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::dim1::Dim1;
+use crate::geometry::dim2::Dim2;
+use crate::geometry::dim3::Dim3;
+use crate::mesh::grid::Pitch;
+use crate::query::ray::Scene;
+use crate::query::stab::batch::test_rays;
+use crate::query::stab::tree::{Growth, Shape};
+use crate::query::stab::{Cast, StabTree, Trace};
+
+enum Stabbed {
+    Points(StabTree<Dim1, 1>),
+    Segments(StabTree<Dim2, 2>),
+    Triangles(StabTree<Dim3, 3>),
+}
+
+/// Calls a generic expression with the tree of the right dimension.
+macro_rules! with_tree {
+    ($stabbed:expr, $tree:ident => $body:expr) => {
+        match $stabbed {
+            Stabbed::Points($tree) => $body,
+            Stabbed::Segments($tree) => $body,
+            Stabbed::Triangles($tree) => $body,
+        }
+    };
+}
+
+/// Nodes, leaves and tests of each ray, one row after the other.
+type Counts<'py> = Bound<'py, PyArray1<i64>>;
+
+/// A tree that rays grow; calls take turns. See `_core.pyi`.
+#[pyclass(frozen, module = "bspcsg._core")]
+pub struct RayTree {
+    tree: Mutex<Stabbed>,
+}
+
+#[pymethods]
+impl RayTree {
+    /// `hits` are counters to begin with; `threshold` is None for a tree that rays do not change;
+    /// `limit` is the most nodes of a tree that is completed at once, None to leave one leaf.
+    #[new]
+    #[pyo3(signature = (dimension, corners, pitch=None, threshold=None, hits=None, limit=None))]
+    fn new(
+        py: Python<'_>,
+        dimension: usize,
+        corners: PyReadonlyArray1<'_, f64>,
+        pitch: Option<i64>,
+        threshold: Option<u64>,
+        hits: Option<Vec<u64>>,
+        limit: Option<usize>,
+    ) -> PyResult<Self> {
+        let fail = |e: Error| to_python(py, &e);
+        let pitch = pitch.map(Pitch::new).transpose().map_err(fail)?;
+        let growth = threshold.map_or(Growth::Never, Growth::Visits);
+        let flat = corners.as_slice()?;
+        let plan = Plan {
+            flat,
+            pitch,
+            growth,
+            hits,
+            limit,
+        };
+        let tree = run(py, 0, flat.len(), |_| match dimension {
+            1 => Ok(Stabbed::Points(plan.tree()?)),
+            2 => Ok(Stabbed::Segments(plan.tree()?)),
+            3 => Ok(Stabbed::Triangles(plan.tree()?)),
+            _ => {
+                let text = format!("rays are cast in 1, 2 or 3 dimensions, not in {dimension}");
+                Err(Error::new(ErrorKind::Shape, text))
+            }
+        })?;
+        let tree = Mutex::new(tree);
+        Ok(Self { tree })
+    }
+
+    #[getter]
+    fn pitch(&self, py: Python<'_>) -> i64 {
+        self.read(
+            py,
+            |tree| with_tree!(tree, tree => tree.scene().pitch().exponent()),
+        )
+    }
+
+    /// The first hit of each ray, and what it cost.
+    fn test<'py>(
+        &self,
+        py: Python<'py>,
+        origins: PyReadonlyArray1<'py, f64>,
+        directions: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<(HitArrays<'py>, Counts<'py>)> {
+        let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
+        let (columns, counts) = run(py, 0, origins.len() * WEIGHT, |cancel| {
+            let mut tree = self.tree.lock().unwrap_or_else(PoisonError::into_inner);
+            with_tree!(&mut *tree, tree => {
+                let (hits, traces) = test_rays(tree, origins, heads, cancel)?;
+                Ok((Columns::of_first(&hits), counts(&traces)))
+            })
+        })?;
+        Ok((columns.arrays(py), PyArray1::from_vec(py, counts)))
+    }
+
+    fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let shape = self.read(py, |tree| with_tree!(tree, tree => tree.shape()));
+        let dict = PyDict::new(py);
+        for (name, value) in named(&shape) {
+            dict.set_item(name, value)?;
+        }
+        Ok(dict)
+    }
+}
+
+impl RayTree {
+    /// Looks at the tree with the GIL released, which the thread that holds the tree may need.
+    fn read<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&Stabbed) -> T + Send) -> T {
+        py.detach(|| look(&self.tree.lock().unwrap_or_else(PoisonError::into_inner)))
+    }
+}
+
+struct Plan<'a> {
+    flat: &'a [f64],
+    pitch: Option<Pitch>,
+    growth: Growth,
+    hits: Option<Vec<u64>>,
+    limit: Option<usize>,
+}
+
+impl Plan<'_> {
+    fn tree<S: Cast<D>, const D: usize>(&self) -> Result<StabTree<S, D>> {
+        let scene = Scene::new(&facets(self.flat)?, self.pitch)?;
+        let mut tree = StabTree::new(scene, self.growth, self.hits.as_deref())?;
+        if let Some(limit) = self.limit {
+            tree.complete(limit)?;
+        }
+        Ok(tree)
+    }
+}
+
+fn counts(traces: &[Trace]) -> Vec<i64> {
+    let row = |t: &Trace| [t.nodes, t.leaves, t.tests].map(i64::from);
+    traces.iter().flat_map(row).collect()
+}
+
+fn named(shape: &Shape) -> [(&'static str, u64); 7] {
+    [
+        ("nodes", shape.nodes),
+        ("leaves", shape.leaves),
+        ("depth", shape.depth),
+        ("fragments", shape.fragments),
+        ("subdivisions", shape.subdivisions),
+        ("rays", shape.rays),
+        ("visits", shape.visits),
+    ]
+}

@@ -1,0 +1,248 @@
+//! Where a ray meets a facet, in integers.
+//!
+//! Notation: v₀ … are the facet's corners relative to the ray's origin, d the direction. By
+//! Cramer's rule the ray meets the facet's hyperplane at s = det(v) / Σ wᵢ, where wᵢ = det(v with
+//! vᵢ replaced by d), and the wᵢ are the barycentric weights of that point. Facets are closed: the
+//! ray meets them where no two weights have opposite signs. Σ wᵢ is d times the facet's normal,
+//! which points to the right of a segment and by the right-hand rule from a triangle.
+
+use super::bounds::{DENOMINATOR_LIMBS, NUMERATOR_LIMBS, WEIGHT_LIMBS};
+use super::line::Ray;
+use super::ratio::Ratio;
+use crate::arith::Int;
+
+/// Corners relative to a ray's origin.
+pub type Corners<const D: usize> = [[i64; D]; D];
+
+type Weight = Int<DENOMINATOR_LIMBS>;
+
+/// The first point of a facet on a ray.
+#[derive(Clone, Debug)]
+pub struct Meeting<const D: usize> {
+    /// The parameter along the ray, not negative.
+    pub at: Ratio,
+    /// The last parameter at which the ray is on the facet: `at` unless it runs within it.
+    pub until: Ratio,
+    /// The barycentric weights, not negative; their sum is positive.
+    pub weights: [Int<WEIGHT_LIMBS>; D],
+}
+
+/// The facet's corners relative to the ray's origin.
+pub fn relative<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> Corners<D> {
+    // Corners are lattice points, which doubles hold exactly.
+    facet.map(|corner| std::array::from_fn(|i| corner[i] as i64 - ray.origin()[i]))
+}
+
+/// The first point where a ray meets a closed facet.
+pub fn meet<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> Option<Meeting<D>> {
+    let v = relative(ray, facet);
+    let weights = weights(&v, ray.direction());
+    let sum = total(&weights);
+    match sum.signum() {
+        0 => meet_within(&v, ray.direction()),
+        sign => meet_across(
+            &v,
+            weights.map(|w| signed(w, sign)),
+            signed(sum, sign),
+            sign,
+        ),
+    }
+}
+
+fn meet_across<const D: usize>(
+    v: &Corners<D>,
+    weights: [Weight; D],
+    sum: Weight,
+    sign: i32,
+) -> Option<Meeting<D>> {
+    let height = signed(determinant(v), sign);
+    if height.is_negative() || weights.iter().any(Int::is_negative) {
+        return None;
+    }
+    let at = Ratio::new(height, sum);
+    let weights = weights.map(|w| w.widen());
+    Some(Meeting {
+        at,
+        until: at,
+        weights,
+    })
+}
+
+/// The sign of the direction against the facet's normal: 1 where the ray leaves through it.
+pub fn heading<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> i32 {
+    total(&weights(&relative(ray, facet), ray.direction())).signum()
+}
+
+/// Where the line of the ray, shifted by (ε, ε², ε³), crosses the facet, and in which direction.
+///
+/// Shifted so, the line meets no edge, no vertex and no facet lengthwise, so that the signs along
+/// it add up to winding numbers. The parameter is the limit for ε → 0 and can be negative.
+pub fn cross<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> Option<(Ratio, i32)> {
+    let v = relative(ray, facet);
+    let weights = weights(&v, ray.direction());
+    let sum = total(&weights);
+    let sign = sum.signum();
+    let inside = |i: usize| match weights[i].signum() {
+        0 => shifted_sign(&v, ray.direction(), i) == sign,
+        other => other == sign,
+    };
+    (sign != 0 && (0..D).all(inside)).then(|| (Ratio::new(determinant(&v), sum), sign))
+}
+
+fn signed<const N: usize>(x: Int<N>, sign: i32) -> Int<N> {
+    if sign < 0 {
+        -x
+    } else {
+        x
+    }
+}
+
+fn total<const D: usize>(weights: &[Weight; D]) -> Weight {
+    weights.iter().fold(Int::ZERO, |sum, w| sum + *w)
+}
+
+fn weights<const D: usize>(v: &Corners<D>, d: &[i128; D]) -> [Weight; D] {
+    std::array::from_fn(|i| match D {
+        1 => Int::from_i128(d[0]),
+        2 if i == 0 => planar(d[0], d[1], v[1][0], v[1][1]).widen(),
+        2 => -planar(d[0], d[1], v[0][0], v[0][1]).widen(),
+        _ => {
+            let n = normal(&v[(i + 1) % D], &v[(i + 2) % D]);
+            (0..3).fold(Int::ZERO, |sum, k| sum + product(d[k], n[k]))
+        }
+    })
+}
+
+/// d × v in the plane.
+fn planar(dx: i128, dy: i128, x: i64, y: i64) -> Int<NUMERATOR_LIMBS> {
+    let product = |a: i128, b: i64| Int::<2>::from_i128(a).mul_i64::<NUMERATOR_LIMBS>(b);
+    product(dx, y) - product(dy, x)
+}
+
+fn product(a: i128, b: i128) -> Weight {
+    Int::<2>::from_i128(a).mul_i128(b)
+}
+
+/// The cross product of two relative corners.
+fn normal<const D: usize>(a: &[i64; D], b: &[i64; D]) -> [i128; 3] {
+    [0, 1, 2].map(|k| minor(a, b, (k + 1) % 3, (k + 2) % 3))
+}
+
+fn minor<const D: usize>(a: &[i64; D], b: &[i64; D], i: usize, j: usize) -> i128 {
+    i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i])
+}
+
+fn determinant<const D: usize>(v: &Corners<D>) -> Int<NUMERATOR_LIMBS> {
+    match D {
+        1 => Int::from_i64(v[0][0]),
+        2 => Int::from_i128(minor(&v[0], &v[1], 0, 1)),
+        _ => {
+            let n = normal(&v[1], &v[2]);
+            let term = |k: usize| Int::<2>::from_i128(n[k]).mul_i64(v[0][k]);
+            (0..3).fold(Int::ZERO, |sum, k| sum + term(k))
+        }
+    }
+}
+
+/// The sign of a corner's weight, which is zero, after the origin has moved by (ε, ε², ε³).
+///
+/// In space w = d · (a × b) with the opposite edge from a to b, which grows by ε⃗ · ((a − b) × d);
+/// in the plane w₀ = d × b and w₁ = a × d, which grow by ∓ d × ε⃗.
+fn shifted_sign<const D: usize>(v: &Corners<D>, d: &[i128; D], i: usize) -> i32 {
+    match D {
+        1 => 1,
+        2 => {
+            let first = if d[1] == 0 { -d[0] } else { d[1] };
+            (if i == 0 { first } else { -first }).signum() as i32
+        }
+        _ => {
+            let (a, b) = (&v[(i + 1) % D], &v[(i + 2) % D]);
+            let edge: [i64; 3] = [0, 1, 2].map(|k| a[k] - b[k]);
+            let part = |k: usize| {
+                let (p, q) = ((k + 1) % 3, (k + 2) % 3);
+                -planar(d[p], d[q], edge[p], edge[q]).signum()
+            };
+            (0..3).map(part).find(|s| *s != 0).unwrap_or(0)
+        }
+    }
+}
+
+/// A corner's weight along a ray within the facet's hyperplane: value + s · slope, inside where ≥ 0.
+struct Rim {
+    value: Int<NUMERATOR_LIMBS>,
+    slope: Int<NUMERATOR_LIMBS>,
+}
+
+impl Rim {
+    fn zero(&self) -> Ratio {
+        Ratio::new(-self.value, self.slope.widen())
+    }
+
+    fn weight(&self, at: &Ratio) -> Int<WEIGHT_LIMBS> {
+        let still: Int<WEIGHT_LIMBS> = self.value.mul(at.denominator());
+        let moved: Int<WEIGHT_LIMBS> = self.slope.mul(at.numerator());
+        still + moved
+    }
+}
+
+/// The first point of a facet on a ray parallel to it: none unless the ray is in its hyperplane.
+fn meet_within<const D: usize>(v: &Corners<D>, d: &[i128; D]) -> Option<Meeting<D>> {
+    if !determinant(v).is_zero() {
+        return None;
+    }
+    let rims = match D {
+        2 => segment_rims(v, d),
+        _ => triangle_rims(v, d),
+    };
+    let (at, until) = stretch(&rims)?;
+    let weights = std::array::from_fn(|i| rims[i].weight(&at));
+    Some(Meeting { at, until, weights })
+}
+
+/// The parameters from which and up to which all weights are non-negative, from 0 on.
+fn stretch<const D: usize>(rims: &[Rim; D]) -> Option<(Ratio, Ratio)> {
+    let (mut from, mut until) = (Ratio::ZERO, None::<Ratio>);
+    for rim in rims {
+        match rim.slope.signum() {
+            0 if rim.value.is_negative() => return None,
+            0 => {}
+            1 => from = from.max(rim.zero()),
+            _ => until = Some(until.map_or(rim.zero(), |u| u.min(rim.zero()))),
+        }
+    }
+    // The weights add up to a constant, so that one of them falls along the ray.
+    until.filter(|u| from <= *u).map(|u| (from, u))
+}
+
+/// The weights of a segment's ends along an axis to which the ray is not perpendicular.
+fn segment_rims<const D: usize>(v: &Corners<D>, d: &[i128; D]) -> [Rim; D] {
+    let k = usize::from(d[0] == 0) % D;
+    let (from, to) = (v[0][k], v[1 % D][k]);
+    let sign = if to > from { 1 } else { -1 };
+    std::array::from_fn(|i| {
+        let (value, slope) = if i == 0 { (to, -d[k]) } else { (-from, d[k]) };
+        Rim {
+            value: signed(Int::from_i64(value), sign),
+            slope: signed(Int::from_i128(slope), sign),
+        }
+    })
+}
+
+/// The weights of a triangle's corners in the projection along the main axis of its normal.
+fn triangle_rims<const D: usize>(v: &Corners<D>, d: &[i128; D]) -> [Rim; D] {
+    let [a, b, c]: [[i64; 3]; 3] =
+        std::array::from_fn(|i| std::array::from_fn(|k| v[i % D][k % D]));
+    let edge = |p: [i64; 3]| [0, 1, 2].map(|k| p[k] - a[k]);
+    let n = normal(&edge(b), &edge(c));
+    let axis = (0..3).max_by_key(|k| n[*k].unsigned_abs()).unwrap_or(0);
+    let (p, q) = ((axis + 1) % 3 % D, (axis + 2) % 3 % D);
+    let sign = n[axis].signum() as i32;
+    std::array::from_fn(|i| {
+        let (a, b) = (&v[(i + 1) % D], &v[(i + 2) % D]);
+        let slope = planar(d[p], d[q], a[p] - b[p], a[q] - b[q]);
+        Rim {
+            value: signed(Int::from_i128(minor(a, b, p, q)), sign),
+            slope: signed(slope, sign),
+        }
+    })
+}

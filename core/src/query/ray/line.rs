@@ -1,0 +1,178 @@
+//! Rays: a lattice point and an integer direction, with what the double filter needs of them.
+
+use super::bounds::DIRECTION_BITS;
+use crate::error::{Error, ErrorKind, Result};
+
+/// A ray from a lattice point, exact, in `D` dimensions.
+///
+/// The direction is the given one times 2^`exponent`, in integers: scale-free and exact, except
+/// that components more than 2^60 times smaller than the largest are rounded to 2^-113 of it.
+#[derive(Clone, Debug)]
+pub struct Ray<const D: usize> {
+    origin: [i64; D],
+    direction: [i128; D],
+    exponent: i32,
+    pub(in crate::query) near: Near<D>,
+}
+
+/// The ray in doubles: origin and direction are exact, the quotients carry one rounding each.
+#[derive(Clone, Debug)]
+pub(in crate::query) struct Near<const D: usize> {
+    pub origin: [f64; D],
+    /// The axis of the largest component of the direction.
+    pub main: usize,
+    /// The sign of that component.
+    pub heading: f64,
+    /// Each component over the largest one.
+    pub shear: [f64; D],
+    /// The magnitude of the largest component over each one; infinite where that is zero.
+    pub inverse: [f64; D],
+}
+
+impl<const D: usize> Ray<D> {
+    /// The ray from a lattice point along a direction in doubles.
+    ///
+    /// # Errors
+    /// `NonFinite` for a direction that is not finite, `BadNormal` for one of length zero.
+    pub fn new(origin: [i64; D], direction: &[f64; D]) -> Result<Self> {
+        if let Some(bad) = direction.iter().find(|c| !c.is_finite()) {
+            let text = format!("a ray's direction has the component {bad}; it must be finite");
+            return Err(Error::new(ErrorKind::NonFinite, text));
+        }
+        let (direction, exponent) = integers(direction).ok_or_else(zero_direction)?;
+        Ok(Self::of(origin, direction, exponent))
+    }
+
+    /// The ray from one lattice point to another, which it reaches at parameter 1.
+    ///
+    /// # Errors
+    /// `BadNormal` if the two points are the same.
+    pub fn between(origin: [i64; D], target: &[i64; D]) -> Result<Self> {
+        let direction = std::array::from_fn(|i| i128::from(target[i]) - i128::from(origin[i]));
+        if direction == [0; D] {
+            return Err(zero_direction());
+        }
+        Ok(Self::of(origin, direction, 0))
+    }
+
+    fn of(origin: [i64; D], direction: [i128; D], exponent: i32) -> Self {
+        let near = Near::of(&origin, &direction);
+        Self {
+            origin,
+            direction,
+            exponent,
+            near,
+        }
+    }
+
+    /// The lattice point where the ray starts.
+    pub fn origin(&self) -> &[i64; D] {
+        &self.origin
+    }
+
+    /// The direction, not zero, components below 2^113.
+    pub fn direction(&self) -> &[i128; D] {
+        &self.direction
+    }
+
+    /// The power of two by which the given direction was multiplied.
+    pub fn exponent(&self) -> i32 {
+        self.exponent
+    }
+}
+
+impl<const D: usize> Near<D> {
+    fn of(origin: &[i64; D], direction: &[i128; D]) -> Self {
+        let size = |i: &usize| direction[*i].unsigned_abs();
+        // The first of the largest, so that equal rays take equal ways.
+        let main = (0..D).rev().max_by_key(size).unwrap_or(0);
+        let lead = direction[main] as f64;
+        Self {
+            origin: origin.map(|c| c as f64),
+            main,
+            heading: lead.signum(),
+            shear: direction.map(|c| c as f64 / lead),
+            inverse: direction.map(|c| lead.abs() / c as f64),
+        }
+    }
+}
+
+fn zero_direction() -> Error {
+    let text = "a ray's direction is zero; it must have a length";
+    Error::new(ErrorKind::BadNormal, text)
+}
+
+/// The integers nearest to the components times a common power of two, and its exponent.
+fn integers<const D: usize>(direction: &[f64; D]) -> Option<([i128; D], i32)> {
+    let parts = direction.map(decoded);
+    let top = |(m, e): &(i64, i32)| (*m != 0).then(|| e + bits(*m));
+    let highest = parts.iter().filter_map(top).max()?;
+    let exponent = DIRECTION_BITS as i32 - highest;
+    let wide = parts.map(|(m, e)| shifted(m, e + exponent));
+    let spare = wide.iter().fold(0, |all, c| all | c).trailing_zeros();
+    Some((wide.map(|c| c >> spare), exponent - spare as i32))
+}
+
+fn bits(m: i64) -> i32 {
+    64 - m.unsigned_abs().leading_zeros() as i32
+}
+
+/// A double as mantissa times a power of two.
+fn decoded(x: f64) -> (i64, i32) {
+    let raw = x.to_bits();
+    let field = (raw >> 52 & 0x7ff) as i32;
+    let fraction = (raw & ((1 << 52) - 1)) as i64;
+    let mantissa = if field == 0 {
+        fraction
+    } else {
+        fraction | 1 << 52
+    };
+    let signed = if x < 0.0 { -mantissa } else { mantissa };
+    (signed, field.max(1) - 1075)
+}
+
+/// The integer nearest to `m`·2^`shift`, halves upwards.
+fn shifted(m: i64, shift: i32) -> i128 {
+    let wide = i128::from(m);
+    match shift {
+        0.. => wide << shift,
+        -64..=-1 => (wide + (1i128 << (-shift - 1))) >> -shift,
+        _ => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn direction<const D: usize>(d: [f64; D]) -> ([i128; D], i32) {
+        let ray = Ray::new([0; D], &d).expect("the direction is fine");
+        (*ray.direction(), ray.exponent())
+    }
+
+    #[test]
+    fn directions_are_taken_as_they_are() {
+        assert_eq!(direction([0.0, 0.0, -3.0]), ([0, 0, -3], 0));
+        assert_eq!(direction([0.5, 0.75, 0.0]), ([2, 3, 0], 2));
+        assert_eq!(direction([f64::MAX, 0.0]).0, [(1 << 53) - 1, 0]);
+        assert_eq!(direction([5e-324]), ([1], 1074));
+        let (d, e) = direction([1.0, 2f64.powi(-60), -(2f64.powi(-60))]);
+        assert_eq!((d, e), ([1 << 60, 1, -1], 60));
+    }
+
+    #[test]
+    fn components_that_are_far_smaller_are_rounded() {
+        assert_eq!(direction([1.0, 1e-300]), ([1, 0], 0));
+        let (d, _) = direction([1.0, 2f64.powi(-90) * 1.000_000_000_000_1]);
+        assert!(d[0] <= 1 << 113 && d[1] > 0);
+    }
+
+    #[test]
+    fn no_direction_is_refused() {
+        let code = |d: [f64; 2]| Ray::new([0; 2], &d).expect_err("refused").kind();
+        assert_eq!(code([0.0, -0.0]), ErrorKind::BadNormal);
+        assert_eq!(code([0.0, f64::NAN]), ErrorKind::NonFinite);
+        assert_eq!(code([f64::INFINITY, 0.0]), ErrorKind::NonFinite);
+        assert!(Ray::between([3, 4], &[3, 4]).is_err());
+    }
+}

@@ -1,0 +1,186 @@
+//! The facets that rays are cast at, snapped to a lattice, with their tree.
+
+use std::cmp::Ordering;
+
+use super::node::{Cell, Node};
+use super::ratio::Ratio;
+use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::grid::Pitch;
+
+/// The corners of a facet: a point in 1D, a segment in 2D, a triangle in 3D.
+pub type Facet<const D: usize> = [[f64; D]; D];
+
+/// Facets on a lattice, and a tree of axis cuts over them that grows where rays go.
+///
+/// Facets without extent (corners on one line, or equal) are left out: they are never hit.
+#[derive(Debug)]
+pub struct Scene<const D: usize> {
+    pitch: Pitch,
+    /// In lattice steps, which doubles hold exactly.
+    facets: Vec<Facet<D>>,
+    /// The place of each facet in the input; ascending.
+    numbers: Vec<u32>,
+    cell: Cell<D>,
+    root: Node<D>,
+}
+
+impl<const D: usize> Scene<D> {
+    /// Snaps facets, given in model units, to a lattice: the given one, or one that suits them.
+    ///
+    /// # Errors
+    /// `NonFinite` and `TooLarge` with the facet's number.
+    pub fn new(facets: &[Facet<D>], pitch: Option<Pitch>) -> Result<Self> {
+        if u32::try_from(facets.len()).is_err() {
+            let text = "a scene holds fewer than 2^32 facets";
+            return Err(Error::new(ErrorKind::TooLarge, text));
+        }
+        let pitch = match pitch {
+            Some(pitch) => pitch,
+            None => suited(facets)?,
+        };
+        let mut kept = Vec::with_capacity(facets.len());
+        let mut numbers = Vec::with_capacity(facets.len());
+        for (number, facet) in facets.iter().enumerate() {
+            let snapped = snap_facet(pitch, facet).map_err(|e| at_facet(&e, number))?;
+            if has_extent(&snapped) {
+                kept.push(snapped.map(|corner| corner.map(|c| c as f64)));
+                numbers.push(number as u32);
+            }
+        }
+        let cell = Cell::around(&kept);
+        let root = Node::deferred(cell, (0..kept.len() as u32).collect());
+        Ok(Self {
+            pitch,
+            facets: kept,
+            numbers,
+            cell,
+            root,
+        })
+    }
+
+    /// The lattice's step.
+    pub fn pitch(&self) -> Pitch {
+        self.pitch
+    }
+
+    /// The facets that can be hit, in lattice steps.
+    pub fn facets(&self) -> &[Facet<D>] {
+        &self.facets
+    }
+
+    /// The place in the input of a facet.
+    pub fn number(&self, facet: u32) -> u32 {
+        self.numbers[facet as usize]
+    }
+
+    /// A box around all facets.
+    pub fn cell(&self) -> &Cell<D> {
+        &self.cell
+    }
+
+    /// The tree's root.
+    pub fn root(&self) -> &Node<D> {
+        &self.root
+    }
+
+    /// Divides all deferred leaves now, on all threads of the pool.
+    pub fn complete(&self) {
+        self.root.complete(&self.facets);
+    }
+
+    /// The lattice point nearest to a point in model units.
+    ///
+    /// # Errors
+    /// `NonFinite`, and `TooLarge` beyond 2^53 steps.
+    pub fn snap(&self, point: &[f64; D]) -> Result<[i64; D]> {
+        snap(self.pitch, point)
+    }
+
+    /// A ray's parameter in model units per length of the given direction: correctly rounded.
+    pub fn parameter(&self, at: &Ratio, exponent: i32) -> f64 {
+        let half = exponent / 2;
+        let steps = at.scaled_to_f64(self.pitch.exponent());
+        steps * power_of_two(half) * power_of_two(exponent - half)
+    }
+
+    /// The point with barycentric coordinates in a facet, in model units.
+    pub fn position(&self, facet: u32, weights: &[f64; D]) -> [f64; D] {
+        let corners = &self.facets[facet as usize];
+        std::array::from_fn(|k| {
+            let term = |i: usize| weights[i] * self.pitch.coordinate(corners[i][k] as i64);
+            (0..D).map(term).sum()
+        })
+    }
+
+    /// Order of two facets by their places in the input.
+    pub fn order(&self, a: u32, b: u32) -> Ordering {
+        self.numbers[a as usize].cmp(&self.numbers[b as usize])
+    }
+}
+
+fn power_of_two(exponent: i32) -> f64 {
+    2f64.powi(exponent)
+}
+
+/// The lattice that suits the facets' size, as for a mesh.
+fn suited<const D: usize>(facets: &[Facet<D>]) -> Result<Pitch> {
+    let (mut largest, mut extent) = (0.0f64, 0.0f64);
+    for k in 0..D {
+        let all = || {
+            facets
+                .iter()
+                .flatten()
+                .map(|c| c[k])
+                .filter(|x| x.is_finite())
+        };
+        let low = all().fold(f64::INFINITY, f64::min);
+        let high = all().fold(f64::NEG_INFINITY, f64::max);
+        if low <= high {
+            largest = largest.max(low.abs()).max(high.abs());
+            extent = extent.max(high - low);
+        }
+    }
+    Pitch::suited(largest, extent)
+}
+
+/// The nearest lattice point.
+///
+/// # Errors
+/// `NonFinite`, and `TooLarge` beyond 2^53 steps.
+pub fn snap<const D: usize>(pitch: Pitch, point: &[f64; D]) -> Result<[i64; D]> {
+    let mut snapped = [0; D];
+    for (k, c) in point.iter().enumerate() {
+        snapped[k] = pitch.snap(*c)?;
+    }
+    Ok(snapped)
+}
+
+fn snap_facet<const D: usize>(pitch: Pitch, facet: &Facet<D>) -> Result<[[i64; D]; D]> {
+    let mut snapped = [[0; D]; D];
+    for (i, corner) in facet.iter().enumerate() {
+        snapped[i] = snap(pitch, corner)?;
+    }
+    Ok(snapped)
+}
+
+fn at_facet(error: &Error, number: usize) -> Error {
+    let text = format!("facet {number}: {}", error.message());
+    Error::at(error.kind(), vec![number as u64], text)
+}
+
+/// Whether the corners do not lie on one flat of two dimensions less.
+fn has_extent<const D: usize>(corners: &[[i64; D]; D]) -> bool {
+    let edge = |i: usize| -> [i128; D] {
+        std::array::from_fn(|k| i128::from(corners[i][k]) - i128::from(corners[0][k]))
+    };
+    match D {
+        1 => true,
+        2 => edge(1) != [0; D],
+        _ => {
+            let (a, b) = (edge(1), edge(2));
+            [(0, 1), (1, 2), (2, 0)]
+                .iter()
+                .any(|(i, j)| a[*i] * b[*j] != a[*j] * b[*i])
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! Rays tested one after the other, because each may change the tree for the next.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::cast::Cast;
+use super::trace::Trace;
+use super::tree::StabTree;
+use crate::error::{Error, ErrorKind, Result};
+use crate::query::ray::answer::{hit, Hit};
+use crate::query::ray::Ray;
+
+/// The hits of rays and what they cost, in the order of the rays.
+pub type Tested<const D: usize> = (Vec<Option<Hit<D>>>, Vec<Trace>);
+
+/// Tests rays given by flat arrays of origins and directions.
+///
+/// # Errors
+/// `Shape`; `NonFinite`, `TooLarge`, `BadNormal` with the ray's number, before any ray is tested;
+/// `Cancelled` between two rays.
+pub fn test_rays<S: Cast<D>, const D: usize>(
+    tree: &mut StabTree<S, D>,
+    origins: &[f64],
+    directions: &[f64],
+    cancel: &AtomicBool,
+) -> Result<Tested<D>> {
+    let rays = rays(tree, origins, directions)?;
+    let mut hits = Vec::with_capacity(rays.len());
+    let mut traces = Vec::with_capacity(rays.len());
+    for ray in rays {
+        if cancel.load(Ordering::Relaxed) {
+            return Err(Error::new(ErrorKind::Cancelled, "interrupted"));
+        }
+        let (found, trace) = tree.test_ray(&ray);
+        hits.push(found.map(|f| hit(tree.scene(), &ray, &f)));
+        traces.push(trace);
+    }
+    Ok((hits, traces))
+}
+
+fn rays<S: Cast<D>, const D: usize>(
+    tree: &StabTree<S, D>,
+    origins: &[f64],
+    directions: &[f64],
+) -> Result<Vec<Ray<D>>> {
+    if origins.len() != directions.len() || origins.len() % D != 0 {
+        let text = format!("origins and directions must both have shape (n, {D})");
+        return Err(Error::new(ErrorKind::Shape, text));
+    }
+    let point = |flat: &[f64]| -> [f64; D] { std::array::from_fn(|k| flat[k]) };
+    let pairs = origins.chunks_exact(D).zip(directions.chunks_exact(D));
+    let numbered = pairs.enumerate().map(|(i, (o, d))| {
+        let origin = tree.scene().snap(&point(o));
+        let ray = origin.and_then(|origin| Ray::new(origin, &point(d)));
+        ray.map_err(|e| {
+            let text = format!("ray {i}: {}", e.message());
+            Error::at(e.kind(), vec![i as u64], text)
+        })
+    });
+    numbered.collect()
+}

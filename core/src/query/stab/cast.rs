@@ -1,0 +1,105 @@
+//! What a space must tell of its hyperplanes for rays to stab them.
+
+use crate::arith::Int;
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::dim1::{Dim1, Direction, Point1};
+use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2, REACH};
+use crate::geometry::dim3::Dim3;
+use crate::geometry::plane::Plane;
+use crate::geometry::polygon::Polygon;
+use crate::geometry::side::Side;
+use crate::geometry::space::Space;
+use std::sync::Arc;
+
+/// A space of `D` dimensions whose facets have `D` lattice corners.
+pub trait Cast<const D: usize>: Space {
+    /// Lattice coordinates are at most this large in magnitude.
+    const REACH: i64;
+
+    /// The whole facet as a fragment.
+    ///
+    /// # Errors
+    /// `TooLarge` beyond [`Self::REACH`]; `Internal` for a facet without extent.
+    fn fragment(corners: &[[i64; D]; D]) -> Result<Self::Fragment>;
+
+    /// Normal n and offset c of n·x + c = 0, positive on the plus side.
+    fn coefficients(cut: &Self::Hyperplane) -> ([i128; D], Int<3>);
+
+    /// Whether a fragment beside `cut` can have a point in the interior of a facet in `cut`.
+    ///
+    /// It cannot if at most two of its corners are in the cut, and those are the facet's.
+    fn touches(piece: &Self::Fragment, cut: &Self::Hyperplane, facet: &[[i64; D]; D]) -> bool;
+}
+
+fn without_extent() -> Error {
+    Error::internal("a facet without extent got into a tree")
+}
+
+impl Cast<1> for Dim1 {
+    const REACH: i64 = (1 << 53) - 1;
+
+    fn fragment(corners: &[[i64; 1]; 1]) -> Result<Point1> {
+        Ok(Point1::new(corners[0][0], Direction::Below))
+    }
+
+    fn coefficients(cut: &Point1) -> ([i128; 1], Int<3>) {
+        match cut.inside() {
+            Direction::Below => ([1], Int::from_i64(-cut.at())),
+            Direction::Above => ([-1], Int::from_i64(cut.at())),
+        }
+    }
+
+    fn touches(_: &Point1, _: &Point1, _: &[[i64; 1]; 1]) -> bool {
+        false
+    }
+}
+
+impl Cast<2> for Dim2 {
+    const REACH: i64 = REACH;
+
+    fn fragment(corners: &[[i64; 2]; 2]) -> Result<Segment2> {
+        let [from, to] = *corners;
+        Segment2::between(from, to).ok_or_else(|| {
+            if from == to {
+                return without_extent();
+            }
+            let text = "a segment is beyond 2^53 lattice steps; use a coarser pitch";
+            Error::new(ErrorKind::TooLarge, text)
+        })
+    }
+
+    fn coefficients(cut: &Line2) -> ([i128; 2], Int<3>) {
+        let (normal, c) = cut.coefficients();
+        (normal.map(i128::from), Int::from_i128(c))
+    }
+
+    fn touches(piece: &Segment2, cut: &Line2, facet: &[[i64; 2]; 2]) -> bool {
+        let ends = facet.map(Point2::lattice);
+        let is_end = |p: &Point2| ends.iter().any(|end| end.order(p).is_eq());
+        piece
+            .points()
+            .iter()
+            .any(|p| Self::side(cut, p) == Side::On && !is_end(p))
+    }
+}
+
+impl Cast<3> for Dim3 {
+    const REACH: i64 = (1 << 53) - 1;
+
+    fn fragment(corners: &[[i64; 3]; 3]) -> Result<Polygon> {
+        let [a, b, c] = corners;
+        let plane = Plane::through(a, b, c).ok_or_else(without_extent)?;
+        Ok(Polygon::triangle(corners, Arc::new(plane)))
+    }
+
+    fn coefficients(cut: &Arc<Plane>) -> ([i128; 3], Int<3>) {
+        (*cut.normal(), *cut.offset())
+    }
+
+    fn touches(piece: &Polygon, cut: &Arc<Plane>, facet: &[[i64; 3]; 3]) -> bool {
+        let corners = piece.corners().iter();
+        let on = corners.filter(|c| c.at.side_of(cut) == 0);
+        on.into_iter()
+            .any(|c| c.at.as_lattice().is_none_or(|p| !facet.contains(p)))
+    }
+}

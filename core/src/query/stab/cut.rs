@@ -1,0 +1,84 @@
+//! Where a ray crosses a hyperplane: certain enough to choose children, exact where it matters.
+
+use super::cast::Cast;
+use crate::arith::Int;
+use crate::query::ray::filter::{Depth, ROUNDING};
+use crate::query::ray::Ray;
+
+/// Relative error of a sum of four products of factors with two roundings each.
+const FILTER: f64 = 12.0 * ROUNDING;
+
+/// A hyperplane, exact and in doubles.
+#[derive(Clone, Debug)]
+pub struct Cut<const D: usize> {
+    normal: [i128; D],
+    offset: Int<3>,
+    near: [f64; D],
+    near_offset: f64,
+}
+
+/// A ray against a hyperplane.
+#[derive(Clone, Copy, Debug)]
+pub enum Stab {
+    /// The ray keeps to one side (−1 or 1) or runs within (0).
+    Beside(i32),
+    /// The ray's line crosses at this depth, towards the plus side if `rising`.
+    Through {
+        /// Along the ray's main axis, in lattice steps.
+        depth: Depth,
+        /// Whether the minus side comes first.
+        rising: bool,
+    },
+}
+
+impl<const D: usize> Cut<D> {
+    /// The hyperplane of a space.
+    pub fn of<S: Cast<D>>(cut: &S::Hyperplane) -> Self {
+        let (normal, offset) = S::coefficients(cut);
+        Self {
+            normal,
+            offset,
+            near: normal.map(|c| c as f64),
+            near_offset: offset.to_f64(),
+        }
+    }
+
+    /// Where a ray crosses.
+    #[inline]
+    pub fn stab(&self, ray: &Ray<D>) -> Stab {
+        let near = &ray.near;
+        let rise = |k: usize| self.near[k] * near.shear[k] * near.heading;
+        let term = |k: usize| self.near[k] * near.origin[k];
+        let slope: f64 = (0..D).map(rise).sum();
+        let slack: f64 = (0..D).map(|k| rise(k).abs()).sum::<f64>() * FILTER;
+        if slope.abs() <= 4.0 * slack {
+            return self.exact_stab(ray);
+        }
+        let value: f64 = (0..D).map(term).sum::<f64>() + self.near_offset;
+        let size = (0..D).map(|k| term(k).abs()).sum::<f64>() + self.near_offset.abs();
+        let z = -value / slope;
+        // |slope| is off by less than a quarter of itself.
+        let error = (size * FILTER + z.abs() * slack) / slope.abs() * 2.0 + z.abs() * FILTER;
+        let depth = Depth { z, error };
+        let rising = slope > 0.0;
+        Stab::Through { depth, rising }
+    }
+
+    #[cold]
+    fn exact_stab(&self, ray: &Ray<D>) -> Stab {
+        let rise = |k: usize| Int::<2>::from_i128(self.normal[k]).mul_i128(ray.direction()[k]);
+        let term = |k: usize| Int::<2>::from_i128(self.normal[k]).mul_i64(ray.origin()[k]);
+        let slope: Int<4> = (0..D).fold(Int::ZERO, |sum, k| sum + rise(k));
+        let value: Int<3> = (0..D).fold(self.offset, |sum, k| sum + term(k));
+        if slope.is_zero() {
+            return Stab::Beside(value.signum());
+        }
+        let lead = ray.direction()[ray.near.main].unsigned_abs() as f64;
+        let z = -value.to_f64() / slope.to_f64() * lead;
+        let error = z.abs() * FILTER;
+        Stab::Through {
+            depth: Depth { z, error },
+            rising: slope.signum() > 0,
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! The list L(v) of a preliminary leaf: fragments as a heap by their hit counters T(p).
+
+/// A fragment in a leaf.
+#[derive(Clone, Debug)]
+pub struct Entry<F> {
+    /// The facet it is a part of.
+    pub facet: u32,
+    /// How often a ray has hit the facet in this leaf; parts inherit the count of the whole.
+    pub hits: u64,
+    /// The part of the facet in the leaf's region.
+    pub fragment: F,
+}
+
+impl<F> Entry<F> {
+    fn precedes(&self, other: &Self) -> bool {
+        (self.hits, other.facet) > (other.hits, self.facet)
+    }
+}
+
+/// A binary heap, most hits first, of equal ones the first of the input.
+#[derive(Clone, Debug)]
+pub struct Heap<F> {
+    entries: Vec<Entry<F>>,
+}
+
+impl<F> Default for Heap<F> {
+    fn default() -> Self {
+        let entries = Vec::new();
+        Self { entries }
+    }
+}
+
+impl<F> Heap<F> {
+    /// The number of fragments.
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// The fragments in the heap's order: a parent before its children.
+    pub fn entries(&self) -> &[Entry<F>] {
+        &self.entries
+    }
+
+    /// Adds a fragment.
+    pub fn push(&mut self, entry: Entry<F>) {
+        self.entries.push(entry);
+        self.rise(self.entries.len() - 1);
+    }
+
+    /// Counts a hit of the fragment at a place; places after it stay as they are.
+    pub fn count_hit(&mut self, place: usize) {
+        self.entries[place].hits += 1;
+        self.rise(place);
+    }
+
+    fn rise(&mut self, mut place: usize) {
+        while place > 0 {
+            let parent = (place - 1) / 2;
+            if !self.entries[place].precedes(&self.entries[parent]) {
+                return;
+            }
+            self.entries.swap(place, parent);
+            place = parent;
+        }
+    }
+
+    /// The fragment with most hits, and the others.
+    pub fn into_top_and_rest(self) -> Option<(Entry<F>, impl Iterator<Item = Entry<F>>)> {
+        let mut entries = self.entries.into_iter();
+        entries.next().map(|top| (top, entries))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn heap(hits: &[u64]) -> Heap<()> {
+        let mut heap = Heap::default();
+        for (facet, hits) in hits.iter().enumerate() {
+            let (facet, hits, fragment) = (facet as u32, *hits, ());
+            heap.push(Entry {
+                facet,
+                hits,
+                fragment,
+            });
+        }
+        heap
+    }
+
+    fn top(heap: &Heap<()>) -> u32 {
+        heap.entries()[0].facet
+    }
+
+    fn assert_heap(heap: &Heap<()>) {
+        for (place, entry) in heap.entries().iter().enumerate().skip(1) {
+            assert!(!entry.precedes(&heap.entries()[(place - 1) / 2]));
+        }
+    }
+
+    #[test]
+    fn the_most_hit_is_on_top_and_of_equal_ones_the_first() {
+        assert_eq!(top(&heap(&[1, 3, 2, 3])), 1);
+        assert_eq!(top(&heap(&[0, 0, 0])), 0);
+    }
+
+    #[test]
+    fn hits_move_up_and_leave_later_places_alone() {
+        let mut heap = heap(&[5, 4, 4, 1, 0, 2, 3]);
+        for place in [2, 5, 5, 6, 6, 6] {
+            let later: Vec<u32> = heap.entries()[place + 1..]
+                .iter()
+                .map(|e| e.facet)
+                .collect();
+            heap.count_hit(place);
+            assert_heap(&heap);
+            let after: Vec<u32> = heap.entries()[place + 1..]
+                .iter()
+                .map(|e| e.facet)
+                .collect();
+            assert_eq!(after, later);
+        }
+        let total: u64 = heap.entries().iter().map(|e| e.hits).sum();
+        assert_eq!(total, 19 + 6);
+    }
+}

@@ -1,0 +1,248 @@
+//! The augmented tree: it starts as one preliminary leaf and divides where rays go.
+//!
+//! Each inner node stores its cut H(v) and the facets in it, S(v); a preliminary leaf stores its
+//! list L(v) as a heap by hits, and its visits T(v). A leaf visited more than a threshold is divided
+//! at the hyperplane of its most hit fragment; the others are split exactly. Which facets a leaf
+//! lists decides how long an answer takes, never what it is: facets are tested whole, and whatever
+//! may be nearer than the best is visited.
+
+use smallvec::SmallVec;
+
+use super::cast::Cast;
+use super::cut::Cut;
+use super::heap::{Entry, Heap};
+use super::trace::Trace;
+use super::walk::Walk;
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::side::Split;
+use crate::query::ray::first::{Found, Query};
+use crate::query::ray::walk::clip;
+use crate::query::ray::{Ray, Scene};
+
+/// When leaves are divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Growth {
+    /// After more visits than this.
+    Visits(u64),
+    /// Not by rays.
+    Never,
+}
+
+/// A tree of supporting hyperplanes over the facets of a scene.
+#[derive(Debug)]
+pub struct StabTree<S: Cast<D>, const D: usize> {
+    scene: Scene<D>,
+    nodes: Vec<Node<S, D>>,
+    growth: Growth,
+    subdivisions: u64,
+    rays: u64,
+}
+
+#[derive(Debug)]
+pub(super) struct Node<S: Cast<D>, const D: usize> {
+    pub(super) visits: u64,
+    pub(super) depth: u32,
+    pub(super) content: Content<S, D>,
+}
+
+#[derive(Debug)]
+pub(super) enum Content<S: Cast<D>, const D: usize> {
+    Leaf(Heap<S::Fragment>),
+    Inner(Box<Inner<D>>),
+}
+
+#[derive(Debug)]
+pub(super) struct Inner<const D: usize> {
+    pub(super) cut: Cut<D>,
+    pub(super) coplanar: Vec<u32>,
+    pub(super) children: [u32; 2],
+    /// Whether a facet of each child may have a point in the interior of a facet in the cut.
+    pub(super) touched: [bool; 2],
+}
+
+/// The size and the past of a tree.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Shape {
+    /// Inner nodes and leaves.
+    pub nodes: u64,
+    /// Leaves.
+    pub leaves: u64,
+    /// The most cuts above a leaf.
+    pub depth: u64,
+    /// Fragments in leaves and cuts.
+    pub fragments: u64,
+    /// Leaves divided so far.
+    pub subdivisions: u64,
+    /// Rays tested so far.
+    pub rays: u64,
+    /// Visits of all nodes that are now in the tree.
+    pub visits: u64,
+}
+
+impl<S: Cast<D>, const D: usize> StabTree<S, D> {
+    /// One leaf with all facets; `hits` are the counters to begin with, by place in the input.
+    ///
+    /// # Errors
+    /// `TooLarge` for facets beyond the reach of the space.
+    pub fn new(scene: Scene<D>, growth: Growth, hits: Option<&[u64]>) -> Result<Self> {
+        let mut list = Heap::default();
+        for (facet, corners) in scene.facets().iter().enumerate() {
+            let facet = facet as u32;
+            let number = scene.number(facet) as usize;
+            list.push(Entry {
+                facet,
+                hits: hits.and_then(|h| h.get(number)).copied().unwrap_or(0),
+                fragment: S::fragment(&corners.map(|c| c.map(|x| x as i64)))?,
+            });
+        }
+        Ok(Self {
+            scene,
+            nodes: vec![Node::leaf(list, 0)],
+            growth,
+            subdivisions: 0,
+            rays: 0,
+        })
+    }
+
+    /// The facets.
+    pub fn scene(&self) -> &Scene<D> {
+        &self.scene
+    }
+
+    /// Divides leaves until none has more than one fragment.
+    ///
+    /// # Errors
+    /// `TooLarge` if that takes more than `limit` nodes.
+    pub fn complete(&mut self, limit: usize) -> Result<()> {
+        let mut next = 0;
+        while next < self.nodes.len() {
+            if self.nodes.len() > limit {
+                let text = format!(
+                    "the tree has more than {limit} nodes; allow more, or let rays grow a tree"
+                );
+                return Err(Error::new(ErrorKind::TooLarge, text));
+            }
+            self.divide(next);
+            next += 1;
+        }
+        Ok(())
+    }
+
+    /// The first facet on a ray; counts visits and hits, and divides the leaves that are due.
+    pub fn test_ray(&mut self, ray: &Ray<D>) -> (Option<Found<D>>, Trace) {
+        self.rays += 1;
+        let mut trace = Trace::default();
+        let mut due: SmallVec<[u32; 16]> = SmallVec::new();
+        let found = {
+            let query = Query::new(&self.scene, ray);
+            let mut walk = Walk {
+                query: &query,
+                ray,
+                nodes: &mut self.nodes,
+                growth: self.growth,
+                best: None,
+                trace: &mut trace,
+                due: &mut due,
+            };
+            walk.run(clip(ray, self.scene.cell()));
+            walk.best.and_then(|best| query.found(&best))
+        };
+        for leaf in due {
+            self.divide(leaf as usize);
+        }
+        (found, trace)
+    }
+
+    /// Divides a leaf at its most hit fragment; one with a single fragment stays.
+    fn divide(&mut self, at: usize) {
+        let (first, depth) = (self.nodes.len() as u32, self.nodes[at].depth + 1);
+        let Content::Leaf(list) = &mut self.nodes[at].content else {
+            return;
+        };
+        if list.len() < 2 {
+            return;
+        }
+        let Some((inner, halves)) = parts::<S, D>(std::mem::take(list), &self.scene, first) else {
+            return;
+        };
+        self.nodes[at].content = Content::Inner(Box::new(inner));
+        self.nodes
+            .extend(halves.map(|half| Node::leaf(half, depth)));
+        self.subdivisions += 1;
+    }
+
+    /// Counts what is there.
+    pub fn shape(&self) -> Shape {
+        let mut shape = Shape {
+            nodes: self.nodes.len() as u64,
+            subdivisions: self.subdivisions,
+            rays: self.rays,
+            ..Shape::default()
+        };
+        for node in &self.nodes {
+            shape.depth = shape.depth.max(u64::from(node.depth));
+            shape.visits += node.visits;
+            match &node.content {
+                Content::Leaf(list) => {
+                    shape.leaves += 1;
+                    shape.fragments += list.len() as u64;
+                }
+                Content::Inner(inner) => shape.fragments += inner.coplanar.len() as u64,
+            }
+        }
+        shape
+    }
+}
+
+/// The node that divides a list, and the lists of its children, the first to be at `first`.
+fn parts<S: Cast<D>, const D: usize>(
+    list: Heap<S::Fragment>,
+    scene: &Scene<D>,
+    first: u32,
+) -> Option<(Inner<D>, [Heap<S::Fragment>; 2])> {
+    let (top, rest) = list.into_top_and_rest()?;
+    let plane = S::hyperplane(&top.fragment).clone();
+    let mut coplanar = vec![top.facet];
+    let corners = scene.facets()[top.facet as usize].map(|c| c.map(|x| x as i64));
+    let [mut below, mut above] = [Heap::default(), Heap::default()];
+    let mut touched = [false; 2];
+    for entry in rest {
+        let part = |fragment| Entry { fragment, ..entry };
+        match S::split(&entry.fragment, &plane) {
+            Split::Minus => {
+                touched[0] |= S::touches(&entry.fragment, &plane, &corners);
+                below.push(entry);
+            }
+            Split::Plus => {
+                touched[1] |= S::touches(&entry.fragment, &plane, &corners);
+                above.push(entry);
+            }
+            Split::Coplanar(_) => coplanar.push(entry.facet),
+            // What crosses the cut is met on both sides of it.
+            Split::Both { minus, plus } => {
+                below.push(part(minus));
+                above.push(part(plus));
+            }
+        }
+    }
+    let cut = Cut::of::<S>(&plane);
+    let children = [first, first + 1];
+    let inner = Inner {
+        cut,
+        coplanar,
+        children,
+        touched,
+    };
+    Some((inner, [below, above]))
+}
+
+impl<S: Cast<D>, const D: usize> Node<S, D> {
+    fn leaf(list: Heap<S::Fragment>, depth: u32) -> Self {
+        let (visits, content) = (0, Content::Leaf(list));
+        Self {
+            visits,
+            depth,
+            content,
+        }
+    }
+}

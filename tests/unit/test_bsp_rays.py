@@ -1,0 +1,205 @@
+"""The ray caster's face to Python: shapes, errors, defined answers, one and two dimensions."""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg import bsp
+from support.shapes import icosphere
+
+SQUARE = [[[0, 0], [4, 0]], [[4, 0], [4, 4]], [[4, 4], [0, 4]], [[0, 4], [0, 0]]]
+
+
+def test_a_solid_names_its_sources() -> None:
+    caster = bsp.RayCaster(b.cube(2) - b.cube(1))
+    hits = caster.first_hit([[0.5, 0.25, 5], [1.5, 0.25, 5], [9, 9, 9]], [0, 0, -1])
+    assert hits.t.tolist() == [3, 3, np.inf]
+    assert hits.hit.tolist() == [True, True, False]
+    assert hits.source is not None
+    assert hits.source[:, 0].tolist() == [0, 0, -1]
+    inner = caster.first_hit([0.5, 0.25, 0.5], [0, 0, 1])
+    assert inner.source is not None
+    assert inner.source[0, 0] == 1
+    np.testing.assert_array_equal(inner.normal, [[0, 0, -1]])
+    assert np.isnan(hits.normal[2]).all()
+    assert repr(caster).startswith("RayCaster(")
+
+
+def test_no_ray_slips_through_a_closed_mesh() -> None:
+    vertices, faces = icosphere(4)
+    caster = bsp.RayCaster((vertices, faces))
+    corners = vertices[faces]
+    aims = np.concatenate([vertices, (corners + np.roll(corners, 1, axis=1)).reshape(-1, 3) / 2])
+    rng = np.random.default_rng(5)
+    inside = rng.normal(size=aims.shape) * 0.2
+    assert caster.first_hit(inside, aims - inside).hit.all()
+    assert caster.first_hit([0, 0, 0], aims).hit.all()
+    assert (np.diff(caster.intervals(inside, aims - inside).offsets) == 1).all()
+    # From outside, through vertices: in and out again.
+    found = caster.intervals(aims * 3, -aims)
+    assert (np.diff(found.offsets) == 1).all()
+    np.testing.assert_allclose(found.lengths() * np.linalg.norm(aims, axis=1), 2, atol=0.02)
+
+
+def test_bytes_are_the_same_for_any_number_of_threads() -> None:
+    vertices, faces = icosphere(4)
+    rng = np.random.default_rng(2)
+    origins = rng.normal(size=(20_000, 3)) * 2
+    directions = vertices[rng.integers(0, len(vertices), 20_000)] - origins
+    answers = set()
+    for threads in (1, 2, 3):
+        for deferred in (True, False):
+            caster = bsp.RayCaster((vertices, faces), deferred=deferred)
+            hits = caster.first_hit(origins, directions, threads=threads)
+            found = caster.intervals(origins, directions, threads=threads)
+            lists = caster.all_hits(origins, directions, threads=threads)
+            columns = (hits.facet, hits.t, hits.weights, found.t, lists.offsets, lists.hits.t)
+            answers.add(b"".join(column.tobytes() for column in columns))
+    assert len(answers) == 1
+
+
+def test_threads_share_a_caster_that_grows() -> None:
+    vertices, faces = icosphere(4)
+    shared, alone = bsp.RayCaster((vertices, faces)), bsp.RayCaster((vertices, faces))
+    rng = np.random.default_rng(6)
+    batches = [rng.normal(size=(500, 3)) for _ in range(16)]
+    with ThreadPoolExecutor(4) as pool:
+        answers = list(pool.map(lambda d: shared.first_hit([0.1, 0, 0], d).t, batches))
+    for batch, answer in zip(batches, answers, strict=True):
+        np.testing.assert_array_equal(answer, alone.first_hit([0.1, 0, 0], batch).t)
+
+
+def test_the_plane() -> None:
+    caster = bsp.RayCaster(SQUARE)
+    hits = caster.first_hit(
+        [[-1, 1], [-1, 0], [2, 2], [5, 4], [9, 9]], [[2, 0], [1, 0], [1, 1], [-1, 0], [1, 0]]
+    )
+    assert hits.t.tolist() == [0.5, 1, 2, 1, np.inf]
+    assert hits.facet.tolist() == [3, 0, 1, 1, -1]
+    assert hits.kind.tolist() == [bsp.INTERIOR, bsp.VERTEX, bsp.VERTEX, bsp.VERTEX, bsp.MISS]
+    assert hits.normal[0].tolist() == [-1, 0]
+    assert hits.point[0].tolist() == [0, 1]
+    found = caster.intervals(
+        [[-1, 1], [2, 2], [-1, 0], [-1, 4], [-1, -1]], [[1, 0], [1, 1], [1, 0], [1, 0], [1, 1]]
+    )
+    # Along the lower side the points above it count, along the upper side those above it too.
+    assert [s.tolist() for s in found] == [[[1, 5]], [[0, 2]], [[1, 5]], [], [[1, 5]]]
+    assert caster.occluded([2, 2], [[5, 2], [4, 2], [3, 3]]).tolist() == [True, False, False]
+
+
+def test_the_line() -> None:
+    caster = bsp.RayCaster([1.0, 3.0, 5.0, 9.0])
+    hits = caster.first_hit([[0.0], [6.0], [6.0], [10.0]], [[2.0], [1.0], [-0.5], [1.0]])
+    assert hits.t.tolist() == [0.5, 3, 2, np.inf]
+    assert hits.facet.tolist() == [0, 3, 2, -1]
+    found = caster.intervals([0.0, 2.0, 4.0], [2.0, 1.0, -1.0])
+    assert [s.tolist() for s in found] == [[[0.5, 1.5], [2.5, 4.5]], [[0, 1], [3, 7]], [[1, 3]]]
+    assert caster.occluded([2.0], [2.5]).tolist() == [False]
+    assert caster.all_hits([0.0], [1.0]).hits.t.tolist() == [1, 3, 5, 9]
+
+
+def test_winding_rules() -> None:
+    nested = np.concatenate([np.array(SQUARE), np.array(SQUARE) * 0.5 + 1])
+    reverse = nested[:, ::-1].copy()
+    start, along = [-1.0, 1.5], [1.0, 0.0]
+
+    def stretches(facets: Any, rule: Any) -> Any:
+        return bsp.RayCaster(facets).intervals(start, along, winding=rule).t.tolist()
+
+    assert stretches(nested, "positive") == [[1, 5]]
+    assert stretches(nested, "even-odd") == [[1, 2], [4, 5]]
+    assert stretches(reverse, "positive") == []
+    assert stretches(reverse, "nonzero") == [[1, 5]]
+
+
+def test_rays_in_a_face() -> None:
+    caster = bsp.RayCaster(b.cube(2))
+    on_top = caster.first_hit([[1.5, 0.25, 2], [-1, 0.25, 2], [1, 1, 2]], [1, 0, 0])
+    assert on_top.t.tolist() == [0, 1, 0]
+    assert on_top.kind.tolist() == [bsp.INTERIOR, bsp.EDGE, bsp.EDGE]
+    # A shift by (ε, ε², ε³) leaves the cube through its top and enters it through its bottom.
+    found = caster.intervals([[-1, 0.25, 2], [-1, 0.25, 0]], [1, 0, 0])
+    assert [s.tolist() for s in found] == [[], [[1, 3]]]
+    assert caster.occluded([-1, 1, 2], [5, 1, 2]).tolist() == [True]
+
+
+def test_a_facet_at_the_start_is_hit_and_hides_nothing() -> None:
+    caster = bsp.RayCaster(b.cube(2))
+    assert caster.first_hit([1, 0.5, 2], [0, 0, 1]).t.tolist() == [0]
+    assert caster.occluded([1, 0.5, 2], [1, 0.5, 3]).tolist() == [False]
+    assert caster.occluded([1, 0.5, 3], [1, 0.5, 2]).tolist() == [False]
+    assert caster.occluded([1, 0.5, 3], directions=[0, 0, -2], max_t=0.5).tolist() == [False]
+    assert caster.occluded([1, 0.5, 3], directions=[0, 0, -2], max_t=0.51).tolist() == [True]
+    assert caster.occluded([1, 0.5, 3], directions=[0, 0, -2]).tolist() == [True]
+
+
+def test_nothing_to_hit() -> None:
+    for empty in (np.zeros((0, 3, 3)), np.zeros((1, 3, 3)), b.Solid.empty()):
+        caster = bsp.RayCaster(empty)
+        hits = caster.first_hit([[0, 0, 0], [1, 2, 3]], [1, 0, 0])
+        assert hits.facet.tolist() == [-1, -1]
+        assert len(caster.intervals([0, 0, 0], [1, 0, 0]).t) == 0
+    assert len(bsp.RayCaster(b.cube(1)).first_hit(np.zeros((0, 3)), [1, 0, 0])) == 0
+
+
+def test_extreme_directions_and_far_origins() -> None:
+    caster = bsp.RayCaster(b.cube(2))
+    directions = [[0, 0, -5e-324], [0, 0, -1e308], [1e-300, 0, -1]]
+    hits = caster.first_hit([1, 0.5, 3], directions)
+    assert hits.facet.tolist() == [hits.facet[0]] * 3
+    assert hits.t.tolist() == [np.inf, 1e-308, 1]
+    assert caster.first_hit([1, 0.5, 9e6], [0, 0, -1]).t.tolist() == [9e6 - 2]
+
+
+def test_lists_know_their_rays() -> None:
+    lists = bsp.RayCaster(b.cube(2)).all_hits([[0.5, 0.25, 3], [9, 9, 9]], [0, 0, -1])
+    assert [hits.t.tolist() for hits in lists] == [[1, 3], []]
+    assert len(lists) == 2
+    assert lists[-1].t.tolist() == []
+    with pytest.raises(IndexError):
+        lists[2]
+
+
+CUBE = b.cube(2)
+
+BAD: list[tuple[Callable[[], object], str, list[int]]] = [
+    (lambda: bsp.RayCaster([[0.0, 1.0]]), "shape", []),
+    (lambda: bsp.RayCaster("nonsense"), "invalid_parameter", []),
+    (lambda: bsp.RayCaster([["a"]]), "shape", []),
+    (lambda: bsp.RayCaster((np.zeros((3, 3)), [[0, 1, 3]])), "index_out_of_range", [0]),
+    (lambda: bsp.RayCaster([[[0, 0], [1, 1]], [[0, 0], [np.nan, 1]]]), "non_finite", [1]),
+    (lambda: bsp.RayCaster([0.0, np.inf]), "non_finite", [1]),
+    (lambda: bsp.RayCaster([0.0, 1e300]), "too_large", []),
+    (lambda: bsp.RayCaster([0.0, 1e9], pitch=-9), "too_large", [1]),
+    (lambda: bsp.RayCaster(~CUBE), "unbounded", []),
+    (lambda: bsp.RayCaster(CUBE).first_hit([0, 0], [0, 0, 1]), "shape", []),
+    (lambda: bsp.RayCaster(CUBE).first_hit(np.zeros((2, 3)), np.ones((3, 3))), "shape", []),
+    (lambda: bsp.RayCaster(CUBE).first_hit([0, 0, 0], [[0, 0, 1], [0, 0, 0]]), "bad_normal", [1]),
+    (lambda: bsp.RayCaster(CUBE).all_hits([0, 0, 0], [0, 0, np.nan]), "non_finite", [0]),
+    (lambda: bsp.RayCaster(CUBE).intervals([0, 0, np.inf], [0, 0, 1]), "non_finite", [0]),
+    (lambda: bsp.RayCaster(CUBE).first_hit([0, 0, 1e9], [0, 0, 1]), "too_large", [0]),
+    (
+        lambda: bsp.RayCaster(CUBE).intervals([0, 0, 0], [0, 0, 1], winding="odd"),  # type: ignore[arg-type]
+        "invalid_parameter",
+        [],
+    ),
+    (lambda: bsp.RayCaster(CUBE).occluded([0, 0, 0]), "invalid_parameter", []),
+    (lambda: bsp.RayCaster(CUBE).occluded([0, 0, 0], [0, 0, 0]), "bad_normal", [0]),
+    (
+        lambda: bsp.RayCaster(CUBE).occluded([0, 0, 0], directions=[0, 0, 1], max_t=np.nan),
+        "invalid_parameter",
+        [],
+    ),
+]
+
+
+@pytest.mark.parametrize(("call", "code", "where"), BAD)
+def test_bad_input_is_refused(call: Callable[[], object], code: str, where: list[int]) -> None:
+    with pytest.raises(b.BspcsgError) as caught:
+        call()
+    assert caught.value.code == code
+    assert list(caught.value.where) == where
