@@ -294,8 +294,8 @@ mod tests {
     }
 
     #[test]
-    fn the_plane_has_a_pitch_of_its_own() {
-        let exponent = |x: f64| suited_pitch(2, &[[x, 0.0, 0.0]; 2]).unwrap().exponent();
-        assert_eq!([0.5, 5.0, 500.0, 1e9].map(exponent), [-9, -8, -6, 1]);
+    fn the_pitch_suits_the_largest_coordinate() {
+        let exponent = |x: f64| suited_pitch(&[[x, 0.0, 0.0]; 2]).unwrap().exponent();
+        assert_eq!([5.0, 500.0, 1e9].map(exponent), [-9, -9, -6]);
     }
 }
