@@ -216,7 +216,8 @@ class Camera:
         """
         if not self.is_perspective:
             return -normals @ self.direction
-        return np.einsum("ij,ij->i", self.origin - corners, normals)
+        heights: FloatArray = np.einsum("ij,ij->i", self.origin - corners, normals)
+        return heights
 
     def __repr__(self) -> str:
         """Say from where the camera looks."""

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from .._types import FloatArray, IndexArray
-from ..errors import invalid_parameter, positive
+from ..errors import at_least, invalid_parameter
 from .clip import Polygons, clip
 from .colours import ColourArray, colour, colours
 from .fragments import Fragments
@@ -82,9 +82,9 @@ def panorama(
     source = np.concatenate([flat_source, strip_source])
     fills = _fills(source, len(tree.core.lattice()[1]) - 1, colors)
     polygons = _joined(flat, strip)
-    painting = Painting(frame, polygons, np.zeros((0, 2, 2)), fills, source, np.arange(len(source)))
+    painting = Painting(frame, polygons, _border(frame), fills, source, np.arange(len(source)))
     back = None if background is None else colour(background, "background")
-    return Picture(painting, back, 1.0, int(positive(samples, "samples")))
+    return Picture(painting, back, 1.0, at_least(1, samples, "samples"))
 
 
 def _fills(source: IndexArray, count: int, colors: Any) -> ColourArray:
@@ -122,6 +122,14 @@ def _strip(
     quads, inner = clip(quads, -right_side, _SPACE)
     quads, left_over = clip(quads, right_side, _SPACE - width)
     return quads, fragments.source[of[inner[left_over]]]
+
+
+def _border(frame: tuple[int, int]) -> FloatArray:
+    """Return the four sides of the strip."""
+    left, right = _SPACE, frame[0] - _SPACE
+    top, bottom = frame[1] * (1 - _STRIP), frame[1] - _SPACE
+    around = np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
+    return np.stack([around, np.roll(around, -1, axis=0)], axis=1)
 
 
 def _across(ends: FloatArray, direction: FloatArray) -> tuple[FloatArray, IndexArray]:

@@ -8,7 +8,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from .._types import BoolArray
+from .._types import BoolArray, FloatArray
 from ..errors import FormatError, at_least, invalid_parameter, number, positive
 from .camera import Camera, View
 from .colours import DEFAULT, ColourArray, colour, colours
@@ -185,8 +185,8 @@ def _facets_of(scene: Any) -> tuple[Facets, BoolArray, PartitionTree | None]:
             message = "Pictures show facets in space; `panorama` shows segments in the plane."
             raise invalid_parameter(message)
         corners, offsets = scene.core.lattice()
-        step: float = 10.0**scene.pitch
-        facets = Facets(corners * step, offsets)
+        units: FloatArray = np.asarray(corners * 10.0**scene.pitch, dtype=np.float64)
+        facets = Facets(units, offsets)
         return facets, np.ones(len(facets), dtype=bool), scene
     triangles = mesh_triangles(scene)
     a, b, c = triangles.transpose(1, 0, 2)
@@ -206,7 +206,7 @@ def _tree(facets: Facets) -> PartitionTree:
 def _drawn(
     facets: Facets, front: BoolArray, style: Style, edges: Edges, crease: float
 ) -> BoolArray:
-    if edges == "none" and style == "shaded":
+    if edges == "none":
         return np.zeros(len(facets.corners), dtype=bool)
     if edges == "all" or not len(facets):
         return np.ones(len(facets.corners), dtype=bool)

@@ -7,13 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._types import FloatArray
-from ..errors import BspcsgError
+from ..errors import BspcsgError, LimitError
 from .clip import following, owners
 from .colours import ColourArray
 from .painting import Painting
 
 if TYPE_CHECKING:
     from PIL import Image, ImageDraw
+
+#: Pixels before the mean of samples is taken: about a gigabyte.
+_MOST = 300_000_000
 
 _INK = (26, 28, 32)
 
@@ -45,6 +48,9 @@ def _image(
         message = "PNG pictures need Pillow: pip install 'bspcsg[pictures]'."
         raise BspcsgError(message, "missing_dependency") from error
     width, height = painting.size
+    if width * height * samples**2 > _MOST:
+        message = f"A picture is painted on at most {_MOST} pixels; choose fewer samples."
+        raise LimitError(message, "too_large")
     large = samples * width, samples * height
     back = (0, 0, 0, 0) if background is None else tuple(background.tolist())
     canvas = Image.new("RGBA" if background is None else "RGB", large, back)
