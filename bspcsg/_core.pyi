@@ -103,7 +103,7 @@ class FragmentTree:
         alpha: float = 0.5,
         top: int = 0,
         pitch: int | None = None,
-        lenient: bool = False,
+        lenience: tuple[bool, bool] = ...,
     ) -> FragmentTree: ...
     @classmethod
     def rebuild(
@@ -112,7 +112,7 @@ class FragmentTree:
         offsets: npt.NDArray[np.int64],
         pitch: int,
         cuts: npt.NDArray[np.int64],
-        lenient: bool,
+        lenience: tuple[bool, bool],
     ) -> FragmentTree: ...
     def __len__(self) -> int: ...
     def perfect_cuts(self) -> npt.NDArray[np.int64] | None: ...

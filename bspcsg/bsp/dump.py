@@ -22,7 +22,8 @@ def to_json(tree: PartitionTree) -> str:
         "version": _VERSION,
         "dimension": tree.dimension,
         "pitch": tree.pitch,
-        "non_planar": "triangulate" if tree.lenient else "error",
+        "non_planar": "triangulate" if tree.lenience[0] else "error",
+        "degenerate": "drop" if tree.lenience[1] else "error",
         "margin": tree.margin,
         "corners": corners.tolist(),
         "offsets": offsets.tolist(),
@@ -51,16 +52,16 @@ def from_json(text: str) -> PartitionTree:
 
 
 def _rebuilt(content: dict[str, Any]) -> PartitionTree:
-    lenient = content["non_planar"] == "triangulate"
+    lenience = content["non_planar"] == "triangulate", content["degenerate"] == "drop"
     with core_errors():
         core = _core.FragmentTree.rebuild(
             _whole(content["corners"], int(content["dimension"])),
             _whole(content["offsets"], 0),
             int(content["pitch"]),
             _whole(content["cuts"], 2),
-            lenient,
+            lenience,
         )
-    return PartitionTree.from_core(core, lenient, float(content["margin"]))
+    return PartitionTree.from_core(core, lenience, float(content["margin"]))
 
 
 def _whole(values: Any, columns: int) -> IndexArray:

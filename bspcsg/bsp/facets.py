@@ -65,11 +65,3 @@ def mesh_triangles(mesh: Any) -> FloatArray:
         raise InvalidMeshError(message, "index_out_of_range")
     triangles: FloatArray = vertices[faces]
     return triangles
-
-
-def with_area(triangles: FloatArray) -> FloatArray:
-    """Return the triangles without those that repeat a corner, which bound nothing."""
-    a, b, c = triangles.transpose(1, 0, 2)
-    same = (a == b).all(axis=1) | (b == c).all(axis=1) | (c == a).all(axis=1)
-    kept: FloatArray = triangles[~same]
-    return kept

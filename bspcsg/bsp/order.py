@@ -124,7 +124,7 @@ class Ordered:
             pending += reversed(steps)
 
     def visit(self, visitor: Visitor, order: Literal["pre", "in", "post"] = "pre") -> None:
-        """Call ``visitor.node(node)`` or ``visitor.leaf(leaf)`` for each, in the order of `walk`."""
+        """Call ``visitor.node(node)`` or ``visitor.leaf(leaf)`` for each, in an order of `walk`."""
         for place in self.walk(order):
             if isinstance(place, Leaf):
                 visitor.leaf(place)

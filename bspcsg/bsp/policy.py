@@ -9,9 +9,10 @@ random
 least-splits
     Of `sample` candidates, evenly spaced in the region's list, the one that cuts the fewest facets.
 balanced
-    The candidate whose larger side has the fewest facets.
+    The candidate with the least ``|n⁻ - n⁺|``.
 weighted
-    The least ``alpha * |n⁻ - n⁺| + (1 - alpha) * splits``.
+    The least ``alpha * |n⁻ - n⁺| + (1 - alpha) * splits``; with ``alpha=0.5`` this is the candidate
+    whose larger side has the fewest facets.
 least-cost
     The least P⁻n⁻ + P⁺n⁺, with P the shares of the region's volume: the expected number of facets
     that a point query still has to do with after one step (after Naylor 1993, section 4, who has

@@ -9,7 +9,7 @@ import numpy as np
 from .. import _core
 from .._types import FloatArray, IndexArray
 from ..errors import core_errors, invalid_parameter, number
-from .facets import corners_of, mesh_triangles, with_area
+from .facets import corners_of, mesh_triangles
 from .fragments import Fragments
 from .node import Leaf, Node, RegionShape, Side
 from .order import Ordered
@@ -52,6 +52,8 @@ class PartitionTree(Ordered):
         lattice has 2^30 steps from the origin only: coordinates keep about nine digits.
     non_planar : {"error", "triangulate"}
         What to do with polygons whose corners are not in one plane after snapping.
+    degenerate : {"error", "drop"}
+        What to do with segments without length and polygons without area after snapping.
     margin : float, optional
         How far regions reach beyond the box of the facets, in model units; by default a twentieth
         of the largest extent. Never less than one lattice step.
@@ -90,30 +92,35 @@ class PartitionTree(Ordered):
         alpha: float = 0.5,
         pitch: int | None = None,
         non_planar: Literal["error", "triangulate"] = "error",
+        degenerate: Literal["error", "drop"] = "error",
         margin: float | None = None,
     ) -> None:
         name = checked_policy(policy)
         options = core_options(seed, sample, alpha, top, pitch)
         if non_planar not in ("error", "triangulate"):
             raise invalid_parameter(f"non_planar is 'error' or 'triangulate', not {non_planar!r}.")
+        if degenerate not in ("error", "drop"):
+            raise invalid_parameter(f"degenerate is 'error' or 'drop', not {degenerate!r}.")
         corners, offsets = corners_of(facets)
-        lenient = non_planar == "triangulate"
+        lenience = non_planar == "triangulate", degenerate == "drop"
         with core_errors():
-            core = _core.FragmentTree.build(corners, offsets, name, lenient=lenient, **options)
-        self._set(core, lenient, margin)
+            core = _core.FragmentTree.build(corners, offsets, name, lenience=lenience, **options)
+        self._set(core, lenience, margin)
 
-    def _set(self, core: _core.FragmentTree, lenient: bool, margin: float | None) -> None:
+    def _set(
+        self, core: _core.FragmentTree, lenience: tuple[bool, bool], margin: float | None
+    ) -> None:
         self.core = core
-        self.lenient = lenient
+        self.lenience = lenience
         self._margin = None if margin is None else max(number(margin, "margin"), 0.0)
 
     @classmethod
     def from_core(
-        cls, core: _core.FragmentTree, lenient: bool = False, margin: float | None = None
+        cls, core: _core.FragmentTree, lenience: tuple[bool, bool], margin: float | None = None
     ) -> "PartitionTree":
         """Return the tree of a core object (for the modules of this package)."""
         tree = cls.__new__(cls)
-        tree._set(core, lenient, margin)
+        tree._set(core, lenience, margin)
         return tree
 
     @classmethod
@@ -122,7 +129,7 @@ class PartitionTree(Ordered):
     ) -> "PartitionTree":
         """Return the tree over the triangles of whatever holds a mesh, closed or not.
 
-        Triangles that repeat a corner are left out; `Fragments.source` counts the others.
+        Triangles without area are left out unless ``degenerate="error"``.
 
         Parameters
         ----------
@@ -131,7 +138,7 @@ class PartitionTree(Ordered):
         policy, top, **options
             As for `PartitionTree`.
         """
-        return cls(with_area(mesh_triangles(mesh)), policy, top=top, **options)
+        return cls(mesh_triangles(mesh), policy, top=top, **{"degenerate": "drop", **options})
 
     @classmethod
     def perfect(cls, facets: Any, **options: Any) -> "PartitionTree | None":
@@ -160,8 +167,8 @@ class PartitionTree(Ordered):
             if cuts is None:
                 return None
             corners, offsets = tree.core.lattice()
-            core = _core.FragmentTree.rebuild(corners, offsets, tree.pitch, cuts, tree.lenient)
-        return cls.from_core(core, tree.lenient, tree._margin)
+            core = _core.FragmentTree.rebuild(corners, offsets, tree.pitch, cuts, tree.lenience)
+        return cls.from_core(core, tree.lenience, tree._margin)
 
     # Parts
 

@@ -30,5 +30,6 @@ def test_example(example: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip()
     assert not done.stderr
-    for name in ("plate.stl", "rest.stl", "goat_and_ball.png"):
+    pictures = ("goat_and_ball.png", "autopartition.svg", "least_cost.svg")
+    for name in ("plate.stl", "rest.stl", *pictures):
         assert (tmp_path / name).exists() == (name in example.read_text())

@@ -107,9 +107,16 @@ pub fn check_reach(dimension: usize, rows: &[Lattice]) -> Result<()> {
     }
 }
 
+/// What to do with facets that are not what they should be, instead of refusing them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Lenience {
+    /// Make triangles of polygons that are not planar.
+    pub triangulate_bent: bool,
+    /// Leave out segments without length and polygons without area.
+    pub drop_flat: bool,
+}
+
 /// The convex pieces of facets; facet i owns corners `offsets[i]..offsets[i + 1]`.
-///
-/// `lenient` makes triangles of polygons that are not planar instead of refusing them.
 ///
 /// # Errors
 /// `Shape` if the offsets do not count up to the corners or a facet has too few or too many of
@@ -118,7 +125,7 @@ pub fn facets(
     dimension: usize,
     corners: &[Lattice],
     offsets: &[i64],
-    lenient: bool,
+    lenience: Lenience,
 ) -> Result<Vec<Facet>> {
     check_offsets(offsets, corners.len())?;
     let mut found = Vec::with_capacity(offsets.len());
@@ -127,9 +134,14 @@ pub fn facets(
         let own = &corners[pair[0] as usize..pair[1] as usize];
         let source = u32::try_from(number)
             .map_err(|_| Error::new(ErrorKind::TooLarge, "there are at most 2^32 facets"))?;
-        match dimension {
-            3 => found.extend(polygon(own, source, lenient)?),
-            _ => found.push(point_or_segment(dimension, own, source)?),
+        let pieces = match dimension {
+            3 => polygon(own, source, lenience.triangulate_bent),
+            _ => point_or_segment(dimension, own, source).map(|facet| vec![facet]),
+        };
+        match pieces {
+            Ok(pieces) => found.extend(pieces),
+            Err(e) if e.kind() == ErrorKind::Degenerate && lenience.drop_flat => {}
+            Err(e) => return Err(e),
         }
     }
     Ok(found)
@@ -259,7 +271,9 @@ mod tests {
 
     fn kind(corners: &[Lattice]) -> Option<ErrorKind> {
         let offsets = [0, i64::try_from(corners.len()).unwrap()];
-        facets(3, corners, &offsets, false).err().map(|e| e.kind())
+        facets(3, corners, &offsets, Lenience::default())
+            .err()
+            .map(|e| e.kind())
     }
 
     #[test]
@@ -272,7 +286,7 @@ mod tests {
             [4, 4, 7],
             [0, 4, 7],
         ];
-        let found = facets(3, &square, &[0, 6], false).unwrap();
+        let found = facets(3, &square, &[0, 6], Lenience::default()).unwrap();
         assert_eq!(found.len(), 1);
         assert_eq!(
             found[0].corners,
@@ -283,7 +297,7 @@ mod tests {
     #[test]
     fn a_concave_polygon_keeps_its_source_and_marks_its_diagonal() {
         let arrow = [[0, 0, 0], [4, 2, 0], [0, 4, 0], [1, 2, 0]];
-        let found = facets(3, &arrow, &[0, 4], false).unwrap();
+        let found = facets(3, &arrow, &[0, 4], Lenience::default()).unwrap();
         assert_eq!(found.len(), 2);
         for piece in &found {
             assert_eq!(piece.source, 0);
@@ -300,7 +314,12 @@ mod tests {
         let bow = [[0, 0, 0], [4, 4, 0], [5, 1, 0], [0, 4, 0]];
         assert_eq!(kind(&bow), Some(ErrorKind::NotSimple));
         assert_eq!(kind(&[[0, 0, 0], [1, 0, 0]]), Some(ErrorKind::Shape));
-        assert_eq!(facets(3, &bent, &[0, 4], true).unwrap().len(), 2);
+        let lenience = Lenience {
+            triangulate_bent: true,
+            drop_flat: true,
+        };
+        assert_eq!(facets(3, &bent, &[0, 4], lenience).unwrap().len(), 2);
+        assert!(facets(3, &line, &[0, 3], lenience).unwrap().is_empty());
     }
 
     #[test]

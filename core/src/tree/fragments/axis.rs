@@ -8,18 +8,17 @@ use super::choice::Tally;
 use super::node::{NodeCut, Piece};
 use crate::geometry::affine::Affine;
 
-/// The cut at the median of the pieces' boxes, across the axis along which they spread furthest.
+/// The cut at the median of the ends of the pieces' boxes, across the axis of the widest spread.
+///
+/// Ends are corners, which cuts pass through: facets that meet there are not cut, and those that
+/// lie in the cut are done with.
 ///
 /// `None` if no axis divides them well: each side must have at most three quarters of the pieces.
 /// This bounds the depth by log(n)/log(4/3), and with it the number of fragments.
 pub fn median_cut<S: Affine>(pieces: &[Piece<S>]) -> Option<(NodeCut, S::Hyperplane)> {
     let boxes: Vec<_> = pieces.iter().map(|p| S::bounds(&p.fragment)).collect();
     axes_by_spread::<S>(&boxes).into_iter().find_map(|axis| {
-        let at = median(
-            boxes
-                .iter()
-                .map(|[low, high]| f64::midpoint(low[axis], high[axis])),
-        )?;
+        let at = median(boxes.iter().flatten().map(|end| end[axis]))?;
         let cut = S::axis_cut(axis, at)?;
         let tally = Tally::of(pieces, &cut);
         (4 * tally.larger() <= 3 * pieces.len()).then_some((NodeCut::Axis { axis, at }, cut))

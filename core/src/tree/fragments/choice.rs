@@ -19,9 +19,11 @@ pub enum Policy {
     Random(u64),
     /// The candidate that cuts the fewest pieces.
     LeastSplits(Sample),
-    /// The candidate whose larger side has the fewest pieces.
+    /// The least |n⁻ − n⁺|.
     Balanced(Sample),
-    /// The least alpha·|n⁻ − n⁺|/n + (1 − alpha)·splits/n.
+    /// The least alpha·|n⁻ − n⁺| + (1 − alpha)·splits.
+    ///
+    /// With alpha one half this is the candidate whose larger side has the fewest pieces.
     Weighted(Sample, f64),
     /// The least expected number of pieces left after one step, P⁻·n⁻ + P⁺·n⁺.
     ///
@@ -56,6 +58,11 @@ impl Tally {
         tally
     }
 
+    /// By how many fragments the sides differ.
+    fn skew(&self) -> f64 {
+        self.minus.abs_diff(self.plus) as f64
+    }
+
     /// The fragments on the side that has more.
     pub fn larger(&self) -> usize {
         self.minus.max(self.plus)
@@ -77,10 +84,9 @@ impl Policy {
         match *self {
             Self::First | Self::Random(_) => 0,
             Self::LeastSplits(sample) => best(pieces, sample, |tally, _| tally.splits as f64),
-            Self::Balanced(sample) => best(pieces, sample, |tally, _| tally.larger() as f64),
+            Self::Balanced(sample) => best(pieces, sample, |tally, _| tally.skew()),
             Self::Weighted(sample, alpha) => best(pieces, sample, |tally, _| {
-                let skew = tally.minus.abs_diff(tally.plus) as f64;
-                alpha * skew + (1.0 - alpha) * tally.splits as f64
+                alpha * tally.skew() + (1.0 - alpha) * tally.splits as f64
             }),
             Self::LeastCost(sample) => best(pieces, sample, |tally, cut| {
                 let [minus, plus] = shares(region, cut);

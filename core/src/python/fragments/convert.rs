@@ -1,0 +1,82 @@
+//! Numpy arrays and names to the core's own types, and back.
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::facets::Lenience;
+use crate::python::arrays::array;
+use crate::tree::fragments::{NodeCut, Policy, Sample};
+
+/// What a caller says about how to build, before the dimension is known.
+#[derive(Clone, Debug)]
+pub enum Wish {
+    Policy(Policy, Option<usize>, i64),
+    Given(Vec<NodeCut>),
+}
+
+pub fn lenience_of((triangulate_bent, drop_flat): (bool, bool)) -> Lenience {
+    Lenience {
+        triangulate_bent,
+        drop_flat,
+    }
+}
+
+pub fn named_policy(name: &str, seed: u64, sample: Sample, alpha: f64) -> Result<Policy> {
+    Ok(match name {
+        "first" => Policy::First,
+        "random" => Policy::Random(seed),
+        "least-splits" => Policy::LeastSplits(sample),
+        "balanced" => Policy::Balanced(sample),
+        "weighted" => Policy::Weighted(sample, alpha),
+        "least-cost" => Policy::LeastCost(sample),
+        _ => {
+            let text = format!("there is no policy '{name}'");
+            return Err(Error::new(ErrorKind::Shape, text));
+        }
+    })
+}
+
+/// Rows of up to three numbers, filled up.
+pub fn padded<T: numpy::Element + Copy>(array: &PyReadonlyArray2<'_, T>, fill: T) -> Vec<[T; 3]> {
+    let view = array.as_array();
+    let row =
+        |r: numpy::ndarray::ArrayView1<'_, T>| [0, 1, 2].map(|i| r.get(i).copied().unwrap_or(fill));
+    view.rows().into_iter().map(row).collect()
+}
+
+pub fn rows<T: numpy::Element + Copy>(
+    py: Python<'_>,
+    points: Vec<[T; 3]>,
+    dimension: usize,
+) -> PyResult<Bound<'_, PyArray2<T>>> {
+    let count = points.len();
+    let flat = points
+        .iter()
+        .flat_map(|p| p.iter().copied().take(dimension));
+    PyArray1::from_vec(py, flat.collect()).reshape([count, dimension])
+}
+
+/// Cuts as rows: (-1, piece) for a pivot, (axis, coordinate) for an axis-parallel cut.
+pub fn cut_rows(
+    py: Python<'_>,
+    cuts: impl Iterator<Item = NodeCut>,
+) -> PyResult<Bound<'_, PyArray2<i64>>> {
+    let row = |cut| match cut {
+        NodeCut::Pivot(piece) => [-1, i64::from(piece)],
+        NodeCut::Axis { axis, at } => [axis as i64, at],
+    };
+    array(py, cuts.map(row).collect())
+}
+
+pub fn node_cuts(array: &PyReadonlyArray2<'_, i64>) -> Result<Vec<NodeCut>> {
+    let wrong = |_| Error::new(ErrorKind::BadSnapshot, "a stored cut is not one");
+    let cut = |row: [i64; 3]| match row {
+        [-1, piece, _] => u32::try_from(piece).map(NodeCut::Pivot).map_err(wrong),
+        [axis, at, _] => {
+            let axis = usize::try_from(axis).map_err(wrong)?;
+            Ok(NodeCut::Axis { axis, at })
+        }
+    };
+    padded(array, 0).into_iter().map(cut).collect()
+}

@@ -1,0 +1,261 @@
+//! A tree of one dimension with the facets it was made of.
+
+use std::sync::atomic::AtomicBool;
+
+use num_bigint::BigInt;
+
+use super::convert::Wish;
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::affine::{Affine, Polytope};
+use crate::geometry::dim1::Dim1;
+use crate::geometry::dim2::Dim2;
+use crate::geometry::dim3::Dim3;
+use crate::geometry::side::Half;
+use crate::mesh::facets::Facet;
+use crate::mesh::grid::Pitch;
+use crate::tree::fragments::{build, perfect, FragmentTree, NodeCut, Piece, Plan};
+
+/// A tree of one of the three dimensions.
+pub enum Inner {
+    Line(Held<Dim1>),
+    Plane(Held<Dim2>),
+    Space(Held<Dim3>),
+}
+
+/// The tree over facets in a space of `dimension`.
+pub fn built(
+    dimension: usize,
+    facets: Vec<Facet>,
+    pitch: Pitch,
+    wish: Wish,
+    cancel: &AtomicBool,
+) -> Result<Inner> {
+    Ok(match dimension {
+        1 => Inner::Line(held(facets, pitch, wish, cancel)?),
+        2 => Inner::Plane(held(facets, pitch, wish, cancel)?),
+        3 => Inner::Space(held(facets, pitch, wish, cancel)?),
+        _ => {
+            let text = format!("corners must have 1, 2 or 3 coordinates, not {dimension}");
+            return Err(Error::new(ErrorKind::Shape, text));
+        }
+    })
+}
+
+/// Facets, their tree, and the lattice they lie on.
+pub struct Held<S: Affine> {
+    pub facets: Vec<Facet>,
+    pub tree: FragmentTree<S>,
+    pub pitch: Pitch,
+}
+
+fn held<S: Affine>(
+    facets: Vec<Facet>,
+    pitch: Pitch,
+    wish: Wish,
+    cancel: &AtomicBool,
+) -> Result<Held<S>> {
+    let pieces = pieces::<S>(&facets)?;
+    let plan = match wish {
+        Wish::Given(cuts) => Plan::Given(cuts),
+        Wish::Policy(policy, top, margin) => Plan::Policy {
+            policy,
+            top,
+            region: if policy.needs_region() {
+                Some(grown_box(&facets, margin)?)
+            } else {
+                None
+            },
+        },
+    };
+    let tree = build(pieces, plan, cancel)?;
+    Ok(Held {
+        facets,
+        tree,
+        pitch,
+    })
+}
+
+/// All fragments as flat lists.
+pub struct Export {
+    pub vertices: Vec<[f64; 3]>,
+    pub offsets: Vec<i64>,
+    pub source: Vec<i64>,
+    pub node: Vec<i64>,
+    pub original: Vec<bool>,
+    pub flipped: Vec<bool>,
+}
+
+impl<S: Affine> Held<S> {
+    pub fn perfect(&self) -> Result<Option<Vec<NodeCut>>> {
+        perfect(&pieces::<S>(&self.facets)?)
+    }
+
+    pub fn source(&self, piece: u32) -> i64 {
+        i64::from(self.facets[piece as usize].source)
+    }
+
+    pub fn coefficients(&self, node: usize) -> Option<Vec<BigInt>> {
+        let [a, b, c, d] = S::exact(&self.tree.nodes().get(node)?.hyperplane);
+        let mut all: Vec<BigInt> = [a, b, c].into_iter().take(S::DIM).collect();
+        all.push(d);
+        Some(all)
+    }
+
+    /// Lattice steps to model units.
+    pub fn units(&self, steps: [f64; 3]) -> [f64; 3] {
+        let power = 10f64.powi(self.pitch.exponent().unsigned_abs() as i32);
+        steps.map(|k| {
+            if self.pitch.exponent() <= 0 {
+                k / power
+            } else {
+                k * power
+            }
+        })
+    }
+
+    pub fn positions(&self, piece: &S::Fragment) -> Vec<[f64; 3]> {
+        S::corners(piece)
+            .into_iter()
+            .map(|p| self.units(p))
+            .collect()
+    }
+
+    /// Unit normals, and offsets in model units: n·x = offset.
+    pub fn hyperplanes(&self) -> (Vec<[f64; 3]>, Vec<f64>) {
+        let unit = |cut: &S::Hyperplane| {
+            let [a, b, c, d] = S::approx(cut);
+            let length = (a * a + b * b + c * c).sqrt();
+            let [offset, ..] = self.units([-d / length; 3]);
+            ([a / length, b / length, c / length], offset)
+        };
+        self.tree
+            .nodes()
+            .iter()
+            .map(|n| unit(&n.hyperplane))
+            .unzip()
+    }
+
+    pub fn links(&self) -> [Vec<i64>; 6] {
+        let number = |link: Option<u32>| link.map_or(-1, i64::from);
+        let nodes = self.tree.nodes();
+        [
+            nodes.iter().map(|n| number(n.minus)).collect(),
+            nodes.iter().map(|n| number(n.plus)).collect(),
+            nodes
+                .iter()
+                .map(|n| number(n.parent.map(|p| p.0)))
+                .collect(),
+            nodes.iter().map(|n| i64::from(n.depth)).collect(),
+            nodes.iter().map(|n| i64::from(n.coplanar.start)).collect(),
+            nodes.iter().map(|n| i64::from(n.coplanar.end)).collect(),
+        ]
+    }
+
+    pub fn cuts(&self) -> Vec<NodeCut> {
+        self.tree.nodes().iter().map(|n| n.cut).collect()
+    }
+
+    pub fn export(&self) -> Export {
+        let count = self.tree.fragments().len();
+        let mut export = Export {
+            vertices: Vec::with_capacity(S::DIM * count),
+            offsets: Vec::with_capacity(count + 1),
+            source: Vec::with_capacity(count),
+            node: Vec::with_capacity(count),
+            original: Vec::with_capacity(S::DIM * count),
+            flipped: Vec::with_capacity(count),
+        };
+        export.offsets.push(0);
+        for (number, node) in (0i64..).zip(self.tree.nodes()) {
+            for fragment in &self.tree.fragments()[as_range(&node.coplanar)] {
+                let facet = &self.facets[fragment.piece.number as usize];
+                let shape = &fragment.piece.fragment;
+                export.vertices.extend(self.positions(shape));
+                export
+                    .original
+                    .extend(S::original(shape, &facet.corners, &facet.seams));
+                export.offsets.push(export.vertices.len() as i64);
+                export.source.push(i64::from(facet.source));
+                export.node.push(number);
+                export.flipped.push(fragment.flipped);
+            }
+        }
+        export
+    }
+
+    /// The box of the facets grown by a margin in model units, at least one step.
+    pub fn whole(&self, margin: f64) -> Result<Polytope<S>> {
+        let steps = (margin / self.units([1.0; 3])[0])
+            .round()
+            .clamp(1.0, S::REACH as f64) as i64;
+        grown_box(&self.facets, steps)
+    }
+
+    pub fn region(&self, node: Option<u32>, side: i8, margin: f64) -> Result<Vec<Vec<[f64; 3]>>> {
+        let whole = self.whole(margin)?;
+        let region = match node {
+            None => Some(whole),
+            Some(node) => {
+                let region = self.tree.region(node, &whole);
+                match (region, half_of(side)) {
+                    (Some(region), Some(half)) => {
+                        let cut = &self.tree.nodes()[node as usize].hyperplane;
+                        let [minus, plus] = region.divided(cut);
+                        if half == Half::Minus {
+                            minus
+                        } else {
+                            plus
+                        }
+                    }
+                    (region, _) => region,
+                }
+            }
+        };
+        let walls = region.as_ref().map_or(&[][..], |r| r.walls());
+        Ok(walls.iter().map(|w| self.positions(w)).collect())
+    }
+
+    pub fn span(&self, node: u32, margin: f64) -> Result<Vec<[f64; 3]>> {
+        let whole = self.whole(margin)?;
+        let span = self
+            .tree
+            .region(node, &whole)
+            .and_then(|r| r.span(&self.tree.nodes()[node as usize].hyperplane));
+        Ok(span.map_or_else(Vec::new, |s| self.positions(&s)))
+    }
+}
+
+fn as_range(range: &std::ops::Range<u32>) -> std::ops::Range<usize> {
+    range.start as usize..range.end as usize
+}
+
+fn half_of(side: i8) -> Option<Half> {
+    match side {
+        0 => None,
+        ..=-1 => Some(Half::Minus),
+        1.. => Some(Half::Plus),
+    }
+}
+
+/// The box of facets grown by a number of steps; the unit box if there are none.
+fn grown_box<S: Affine>(facets: &[Facet], margin: i64) -> Result<Polytope<S>> {
+    let corners = || facets.iter().flat_map(|f| &f.corners);
+    let reach = |k: i64| k.clamp(-S::REACH, S::REACH);
+    let low = [0, 1, 2].map(|i| reach(corners().map(|c| c[i]).min().unwrap_or(0) - margin));
+    let high = [0, 1, 2].map(|i| reach(corners().map(|c| c[i]).max().unwrap_or(0) + margin));
+    Polytope::cuboid(&low, &high).ok_or_else(|| {
+        let text = "the facets fill the lattice, so that there is no room around them";
+        Error::new(ErrorKind::TooLarge, text)
+    })
+}
+
+fn pieces<S: Affine>(facets: &[Facet]) -> Result<Vec<Piece<S>>> {
+    let piece = |(number, facet): (usize, &Facet)| {
+        let flat = || Error::internal(format!("piece {number} has no extent"));
+        let fragment = S::fragment(&facet.corners).ok_or_else(flat)?;
+        let number = u32::try_from(number)
+            .map_err(|_| Error::new(ErrorKind::TooLarge, "there are at most 2^32 pieces"))?;
+        Ok(Piece { fragment, number })
+    };
+    facets.iter().enumerate().map(piece).collect()
+}

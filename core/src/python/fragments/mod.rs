@@ -1,0 +1,319 @@
+//! The class `FragmentTree`: a partition tree over points, segments or polygons.
+
+mod convert;
+mod held;
+
+use num_bigint::BigInt;
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyType};
+
+use self::convert::{cut_rows, lenience_of, named_policy, node_cuts, padded, rows, Wish};
+use self::held::{built, Inner};
+use super::arrays::array;
+use super::errors::to_python;
+use super::run::run;
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::affine::Viewpoint;
+use crate::geometry::plane::Lattice;
+use crate::geometry::side::Side;
+use crate::mesh::facets::{check_reach, facets, snap_corners, suited_pitch};
+use crate::mesh::grid::Pitch;
+use crate::tree::fragments::{back_to_front, measures, sides, Sample};
+
+type Ints<'py> = Bound<'py, PyArray1<i64>>;
+type Floats<'py> = Bound<'py, PyArray1<f64>>;
+type Rows<'py> = Bound<'py, PyArray2<f64>>;
+type Bools<'py> = Bound<'py, PyArray1<bool>>;
+type FragmentArrays<'py> = (
+    Rows<'py>,
+    Ints<'py>,
+    Ints<'py>,
+    Ints<'py>,
+    Bools<'py>,
+    Bools<'py>,
+);
+
+/// Runs the same code on the tree of whichever dimension it is.
+macro_rules! each {
+    ($inner:expr, $held:ident => $body:expr) => {
+        match $inner {
+            Inner::Line($held) => $body,
+            Inner::Plane($held) => $body,
+            Inner::Space($held) => $body,
+        }
+    };
+}
+
+/// A partition tree over facets. See `_core.pyi`.
+#[pyclass(frozen, name = "FragmentTree", module = "bspcsg._core")]
+pub struct PyFragmentTree {
+    inner: Inner,
+    corners: Vec<Lattice>,
+    offsets: Vec<i64>,
+}
+
+#[pymethods]
+impl PyFragmentTree {
+    #[classmethod]
+    #[pyo3(signature = (corners, offsets, policy, seed=0, sample=8, alpha=0.5, top=0, pitch=None, lenience=(false, false)))]
+    #[allow(clippy::too_many_arguments)]
+    fn build(
+        _cls: &Bound<'_, PyType>,
+        py: Python<'_>,
+        corners: PyReadonlyArray2<'_, f64>,
+        offsets: PyReadonlyArray1<'_, i64>,
+        policy: &str,
+        seed: u64,
+        sample: usize,
+        alpha: f64,
+        top: usize,
+        pitch: Option<i64>,
+        lenience: (bool, bool),
+    ) -> PyResult<Self> {
+        let fail = |e: Error| to_python(py, &e);
+        let policy = named_policy(policy, seed, Sample(sample), alpha).map_err(fail)?;
+        let pitch = pitch.map(Pitch::new).transpose().map_err(fail)?;
+        let dimension = corners.as_array().ncols();
+        let rows: Vec<[f64; 3]> = padded(&corners, 0.0);
+        let offsets = offsets.as_array().to_vec();
+        let wish = Wish::Policy(policy, (top > 0).then_some(top), 1);
+        let (inner, corners) = run(py, 0, rows.len(), |cancel| {
+            let pitch = match pitch {
+                Some(pitch) => pitch,
+                None => suited_pitch(dimension, &rows)?,
+            };
+            let lattice = snap_corners(dimension, &rows, pitch)?;
+            let facets = facets(dimension, &lattice, &offsets, lenience_of(lenience))?;
+            let inner = built(dimension, facets, pitch, wish, cancel)?;
+            Ok((inner, lattice))
+        })?;
+        Ok(Self {
+            inner,
+            corners,
+            offsets,
+        })
+    }
+
+    #[classmethod]
+    #[allow(clippy::too_many_arguments)]
+    fn rebuild(
+        _cls: &Bound<'_, PyType>,
+        py: Python<'_>,
+        corners: PyReadonlyArray2<'_, i64>,
+        offsets: PyReadonlyArray1<'_, i64>,
+        pitch: i64,
+        cuts: PyReadonlyArray2<'_, i64>,
+        lenience: (bool, bool),
+    ) -> PyResult<Self> {
+        let fail = |e: Error| to_python(py, &e);
+        let pitch = Pitch::new(pitch).map_err(fail)?;
+        let dimension = corners.as_array().ncols();
+        let rows: Vec<Lattice> = padded(&corners, 0);
+        let offsets = offsets.as_array().to_vec();
+        let cuts = node_cuts(&cuts).map_err(fail)?;
+        let inner = run(py, 0, rows.len(), |cancel| {
+            check_reach(dimension, &rows)?;
+            let facets = facets(dimension, &rows, &offsets, lenience_of(lenience))?;
+            built(dimension, facets, pitch, Wish::Given(cuts), cancel)
+        })?;
+        Ok(Self {
+            inner,
+            corners: rows,
+            offsets,
+        })
+    }
+
+    /// The cuts of a tree over the same facets that cuts none of them.
+    fn perfect_cuts<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<i64>>>> {
+        let found = run(py, 0, 0, |_| each!(&self.inner, held => held.perfect()))?;
+        found.map(|cuts| cut_rows(py, cuts.into_iter())).transpose()
+    }
+
+    #[getter]
+    fn dimension(&self) -> usize {
+        match self.inner {
+            Inner::Line(_) => 1,
+            Inner::Plane(_) => 2,
+            Inner::Space(_) => 3,
+        }
+    }
+
+    #[getter]
+    fn pitch(&self) -> i64 {
+        each!(&self.inner, held => held.pitch.exponent())
+    }
+
+    fn __len__(&self) -> usize {
+        each!(&self.inner, held => held.tree.nodes().len())
+    }
+
+    fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        let (normals, offsets) = each!(&self.inner, held => held.hyperplanes());
+        dict.set_item("normal", rows(py, normals, self.dimension())?)?;
+        dict.set_item("offset", PyArray1::from_vec(py, offsets))?;
+        let links = each!(&self.inner, held => held.links());
+        for (name, list) in ["minus", "plus", "parent", "depth", "start", "end"]
+            .iter()
+            .zip(links)
+        {
+            dict.set_item(name, PyArray1::from_vec(py, list))?;
+        }
+        let cuts = each!(&self.inner, held => held.cuts());
+        dict.set_item("cut", cut_rows(py, cuts.into_iter())?)?;
+        Ok(dict)
+    }
+
+    /// The exact coefficients n, d of a node's hyperplane n·x + d = 0, in lattice steps.
+    fn coefficients(&self, node: usize) -> Option<Vec<BigInt>> {
+        each!(&self.inner, held => held.coefficients(node))
+    }
+
+    fn fragments<'py>(&self, py: Python<'py>) -> PyResult<FragmentArrays<'py>> {
+        let size = each!(&self.inner, held => held.tree.fragments().len());
+        let export = run(py, 0, size, |_| {
+            Ok(each!(&self.inner, held => held.export()))
+        })?;
+        Ok((
+            rows(py, export.vertices, self.dimension())?,
+            PyArray1::from_vec(py, export.offsets),
+            PyArray1::from_vec(py, export.source),
+            PyArray1::from_vec(py, export.node),
+            PyArray1::from_vec(py, export.original),
+            PyArray1::from_vec(py, export.flipped),
+        ))
+    }
+
+    /// Each cut of a fragment as node and input facet.
+    fn splits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        let pairs = each!(&self.inner, held => held
+            .tree
+            .crossings()
+            .iter()
+            .map(|c| [i64::from(c.node), held.source(c.piece)])
+            .collect());
+        array(py, pairs)
+    }
+
+    /// The nodes from the farthest to the nearest.
+    fn order<'py>(&self, py: Python<'py>, eye: [f64; 3], at_infinity: bool) -> PyResult<Ints<'py>> {
+        let order = run(py, 0, self.__len__(), |_| {
+            let eye = self.viewpoint(eye, at_infinity)?;
+            Ok(each!(&self.inner, held => back_to_front(&held.tree, &eye)))
+        })?;
+        Ok(PyArray1::from_vec(
+            py,
+            order.into_iter().map(i64::from).collect(),
+        ))
+    }
+
+    /// The side of each node's hyperplane on which the eye lies: -1, 0 or 1.
+    fn sides<'py>(
+        &self,
+        py: Python<'py>,
+        eye: [f64; 3],
+        at_infinity: bool,
+    ) -> PyResult<Bound<'py, PyArray1<i8>>> {
+        let found = run(py, 0, self.__len__(), |_| {
+            let eye = self.viewpoint(eye, at_infinity)?;
+            Ok(each!(&self.inner, held => sides(&held.tree, &eye)))
+        })?;
+        let sign = |side: &Side| match side {
+            Side::Minus => -1,
+            Side::On => 0,
+            Side::Plus => 1,
+        };
+        Ok(PyArray1::from_vec(py, found.iter().map(sign).collect()))
+    }
+
+    /// Volume and surface of the root's region and of all nodes' regions, in lattice steps.
+    fn measures<'py>(
+        &self,
+        py: Python<'py>,
+        margin: f64,
+    ) -> PyResult<(f64, f64, Floats<'py>, Floats<'py>)> {
+        let (whole, all) = run(py, 0, self.__len__(), |_| {
+            each!(&self.inner, held => {
+                let whole = held.whole(margin)?;
+                Ok(((whole.volume(), whole.surface()), measures(&held.tree, &whole)))
+            })
+        })?;
+        let volumes = all.iter().map(|m| m.volume).collect();
+        let surfaces = all.iter().map(|m| m.surface).collect();
+        Ok((
+            whole.0,
+            whole.1,
+            PyArray1::from_vec(py, volumes),
+            PyArray1::from_vec(py, surfaces),
+        ))
+    }
+
+    /// The corners of a region's walls; `node` None is the root's region, `side` -1 or 1 the part
+    /// of a node's region on that side of its hyperplane.
+    #[pyo3(signature = (node, side, margin))]
+    fn region<'py>(
+        &self,
+        py: Python<'py>,
+        node: Option<u32>,
+        side: i8,
+        margin: f64,
+    ) -> PyResult<Vec<Rows<'py>>> {
+        let walls = run(
+            py,
+            0,
+            0,
+            |_| each!(&self.inner, held => held.region(node, side, margin)),
+        )?;
+        let dimension = self.dimension();
+        walls.into_iter().map(|w| rows(py, w, dimension)).collect()
+    }
+
+    /// The corners of the part of a node's hyperplane inside its region.
+    fn span<'py>(&self, py: Python<'py>, node: u32, margin: f64) -> PyResult<Rows<'py>> {
+        let corners = run(
+            py,
+            0,
+            0,
+            |_| each!(&self.inner, held => held.span(node, margin)),
+        )?;
+        rows(py, corners, self.dimension())
+    }
+
+    /// The facets as they came onto the lattice: corners in steps, and offsets.
+    fn lattice<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray2<i64>>, Ints<'py>)> {
+        let corners = rows(py, self.corners.clone(), self.dimension())?;
+        Ok((corners, PyArray1::from_vec(py, self.offsets.clone())))
+    }
+
+    /// How many convex pieces the facets were taken apart into.
+    #[getter]
+    fn piece_count(&self) -> usize {
+        each!(&self.inner, held => held.facets.len())
+    }
+
+    /// The facet that each convex piece is a part of.
+    fn piece_sources<'py>(&self, py: Python<'py>) -> Ints<'py> {
+        let facets = each!(&self.inner, held => &held.facets);
+        let sources = facets.iter().map(|f| i64::from(f.source)).collect();
+        PyArray1::from_vec(py, sources)
+    }
+}
+
+impl PyFragmentTree {
+    fn viewpoint(&self, eye: [f64; 3], at_infinity: bool) -> Result<Viewpoint> {
+        if eye.iter().any(|c| !c.is_finite()) {
+            return Err(Error::new(
+                ErrorKind::NonFinite,
+                "the viewpoint is not finite",
+            ));
+        }
+        if !at_infinity {
+            return Ok(Viewpoint::point(&eye, -self.pitch()));
+        }
+        if eye.iter().all(|c| *c == 0.0) {
+            return Err(Error::new(ErrorKind::BadNormal, "the direction is zero"));
+        }
+        Ok(Viewpoint::direction(&eye))
+    }
+}
