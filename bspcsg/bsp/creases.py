@@ -100,7 +100,9 @@ class Facets:
         cosines = np.einsum("ij,ij->i", self.normals[owner], self.normals[other])
         bent = cosines < np.cos(np.radians(crease))
         contour = facing[owner] != facing[other]
-        drawn: BoolArray = (other < 0) | bent | contour
+        # Facets without area have no direction that could differ.
+        wide: BoolArray = (self.normals != 0).any(axis=1)
+        drawn: BoolArray = (other < 0) | ((bent | contour) & wide[owner] & wide[other])
         return drawn
 
     def drawn_edges(self, fragments: Fragments, drawn: BoolArray) -> BoolArray:

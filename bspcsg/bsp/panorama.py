@@ -166,7 +166,9 @@ def _map(
     points = points if len(points) else np.zeros((1, 2))
     low, high = points.min(axis=0), points.max(axis=0)
     width, height = frame[0] - 4 * _SPACE, frame[1] * (1 - _STRIP) - 4 * _SPACE
-    extent = np.maximum(high - low, max(float((high - low).max()), 1e-300) * 1e-9)
+    extent = high - low
+    # A flat scene is as wide as the picture, a single point as large as you like.
+    extent = np.maximum(extent, 1e-9 * float(extent.max())) if extent.any() else np.ones(2)
     scale = float((np.array([width, height]) / extent).min())
     middle = np.array([frame[0] / 2, frame[1] * (1 - _STRIP) / 2])
 

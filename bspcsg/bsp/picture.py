@@ -13,7 +13,7 @@ from ..errors import FormatError, at_least, invalid_parameter, number, positive
 from .camera import Camera, View
 from .colours import DEFAULT, ColourArray, colour, colours
 from .creases import Facets
-from .facets import mesh_triangles, with_area
+from .facets import mesh_triangles
 from .painting import Edges, Painting, Scene, Style, facing, painted
 from .png import png
 from .svg import svg
@@ -157,10 +157,10 @@ def picture(
     frame = checked_size(size)
     _checked("style", style, Style)
     _checked("edges", edges, Edges)
-    facets, kept, tree = _facets_of(scene)
+    facets, tree = _facets_of(scene)
     if camera is None:
         camera = Camera.named(view, facets.corners, frame[0] / frame[1])
-    base = colours(DEFAULT if colors is None else colors, len(kept), "colors")[kept]
+    base = colours(DEFAULT if colors is None else colors, len(facets), "colors")
     front = facing(facets, camera)
     drawn = _drawn(facets, front, style, edges, number(crease, "crease"))
     looks = Scene(facets, base, drawn)
@@ -178,29 +178,24 @@ def picture(
     )
 
 
-def _facets_of(scene: Any) -> tuple[Facets, BoolArray, PartitionTree | None]:
-    """Return facets, which of the scene's they are, and the tree if the scene is one."""
+def _facets_of(scene: Any) -> tuple[Facets, PartitionTree | None]:
+    """Return the scene's facets, and the tree if the scene is one."""
     if isinstance(scene, PartitionTree):
         if scene.dimension != 3:
             message = "Pictures show facets in space; `panorama` shows segments in the plane."
             raise invalid_parameter(message)
         corners, offsets = scene.core.lattice()
         units: FloatArray = np.asarray(corners * 10.0**scene.pitch, dtype=np.float64)
-        facets = Facets(units, offsets)
-        return facets, np.ones(len(facets), dtype=bool), scene
+        return Facets(units, offsets), scene
     triangles = mesh_triangles(scene)
-    a, b, c = triangles.transpose(1, 0, 2)
-    kept = ~((a == b).all(axis=1) | (b == c).all(axis=1) | (c == a).all(axis=1))
-    triangles = with_area(triangles)
-    offsets = 3 * np.arange(len(triangles) + 1)
-    return Facets(triangles.reshape(-1, 3), offsets), kept, None
+    return Facets(triangles.reshape(-1, 3), 3 * np.arange(len(triangles) + 1)), None
 
 
 def _tree(facets: Facets) -> PartitionTree:
     triangles = facets.corners.reshape(-1, 3, 3)
     if len(facets) <= _FEW:
-        return PartitionTree(triangles, "least-splits")
-    return PartitionTree(triangles, "random", top=16)
+        return PartitionTree(triangles, "least-splits", degenerate="drop")
+    return PartitionTree(triangles, "random", top=16, degenerate="drop")
 
 
 def _drawn(
