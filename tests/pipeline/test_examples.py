@@ -9,6 +9,10 @@ import pytest
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("[0-9][0-9]_*.py"))
 
+PAINTED = [
+    f"painter_{name}" for name in ("part.svg", "lines.svg", "cycle.svg", "scan.png", "plane.svg")
+]
+
 
 def test_there_are_examples() -> None:
     assert len(EXAMPLES) >= 4
@@ -30,6 +34,6 @@ def test_example(example: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip()
     assert not done.stderr
-    pictures = ("goat_and_ball.png", "autopartition.svg", "least_cost.svg")
+    pictures = ("goat_and_ball.png", "autopartition.svg", "least_cost.svg", *PAINTED)
     for name in ("plate.stl", "rest.stl", *pictures):
         assert (tmp_path / name).exists() == (name in example.read_text())
