@@ -13,6 +13,7 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -297,8 +298,6 @@ def shielding_distance(segments: Any, i: int) -> IndexArray:
 
 def _counted(count: int, places: list[tuple[int, tuple[int, int]]], length: int) -> IndexArray:
     """Return for each crossed segment how many are crossed between it and the cutter."""
-    from fractions import Fraction
-
     distances: IndexArray = np.full(count, -1, dtype=np.int64)
     along = [(Fraction(top, bottom), j) for j, (top, bottom) in places]
     for ahead in (True, False):
