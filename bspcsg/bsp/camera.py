@@ -207,7 +207,7 @@ class Camera:
         return image
 
     def facing(self, corners: FloatArray, normals: FloatArray) -> FloatArray:
-        """Return, above 0 where the viewer is on the plus side, (n,) signed distances.
+        """Return (n,) cosines between normals and the directions towards the viewer.
 
         Parameters
         ----------
@@ -216,8 +216,12 @@ class Camera:
         """
         if not self.is_perspective:
             return -normals @ self.direction
-        heights: FloatArray = np.einsum("ij,ij->i", self.origin - corners, normals)
-        return heights
+        arms = self.origin - corners
+        lengths = np.linalg.norm(arms, axis=1)
+        cosines: FloatArray = np.einsum("ij,ij->i", arms, normals) / np.where(
+            lengths > 0, lengths, 1
+        )
+        return cosines
 
     def __repr__(self) -> str:
         """Say from where the camera looks."""

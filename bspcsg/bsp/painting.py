@@ -23,6 +23,9 @@ Edges: TypeAlias = Literal["feature", "all", "none"]
 #: Nearest distance from the eye that is painted, as a share of the scene's largest distance.
 _NEAR = 1e-6
 
+#: Cosine between normal and view up to which a facet is seen edge-on: its sign is rounding.
+_EDGE_ON = 1e-9
+
 #: How far beyond its frame a picture is painted, in pixels.
 _BLEED = 8.0
 
@@ -79,8 +82,8 @@ class Scene:
 
 
 def facing(facets: Facets, camera: Camera) -> BoolArray:
-    """Return which facets turn their plus side to the viewer, (k,)."""
-    return camera.facing(facets.firsts, facets.normals) > 0
+    """Return which facets turn their plus side to the viewer, (k,); none that are seen edge-on."""
+    return camera.facing(facets.firsts, facets.normals) > _EDGE_ON
 
 
 def painted(

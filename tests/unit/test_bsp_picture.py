@@ -3,6 +3,7 @@
 import builtins
 import io
 import re
+import time
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -406,3 +407,16 @@ def test_polylines_take_each_step_once() -> None:
     (line,) = polylines([*ring, ((0, 0), (1, 0))])
     assert line[0] == line[-1] and len(line) == 4
     assert sorted(map(len, polylines([*ring, ((1, 1), (2, 2))]))) in ([2, 4], [5])
+
+
+@pytest.mark.slow
+def test_a_hundred_thousand_triangles_take_less_than_five_seconds() -> None:
+    vertices, faces = shapes.icosphere(6)
+    x, y, z = vertices.T
+    bumpy = vertices * (1 + 0.15 * np.sin(5 * x) * np.cos(7 * y) + 0.1 * np.sin(9 * z))[:, None]
+    ball = shapes.icosphere(5)
+    both = np.vstack([bumpy, ball[0] + [2, 0, 0]]), np.vstack([faces, ball[1] + len(bumpy)])
+    assert len(both[1]) > 100_000
+    start = time.process_time()
+    assert len(bsp.picture(both).png) > 10_000
+    assert time.process_time() - start < 5
