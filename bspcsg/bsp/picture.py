@@ -9,7 +9,15 @@ from typing import Any, get_args
 import numpy as np
 
 from .._types import BoolArray, FloatArray
-from ..errors import FormatError, at_least, invalid_parameter, number, positive
+from ..errors import (
+    FormatError,
+    InvalidMeshError,
+    LimitError,
+    at_least,
+    invalid_parameter,
+    number,
+    positive,
+)
 from .camera import Camera, View
 from .colours import DEFAULT, ColourArray, colour, colours
 from .creases import Facets
@@ -22,13 +30,19 @@ from .tree import PartitionTree
 #: Facets up to which the tree of a picture cuts as few as it can.
 _FEW = 3000
 
+#: Polygons up to which a notebook shows a picture as SVG, above as PNG.
+_MOST_IN_SVG = 5000
+
+#: The largest lattice of a tree ends well below this coordinate.
+_FARTHEST = 1e60
+
 #: Pixels along a side above which a picture is refused.
 _LARGEST = 16384
 
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """A picture as SVG and as PNG; notebooks show it.
+    """A picture as SVG and as PNG; notebooks show the one that is smaller.
 
     Parameters
     ----------
@@ -74,11 +88,17 @@ class Picture:
             raise FormatError(message, "unknown_format")
         target.write_bytes(self.svg.encode() if ending == ".svg" else self.png)
 
-    def _repr_svg_(self) -> str:
-        return self.svg
+    # Notebooks ask for all forms at once; one is enough.
 
-    def _repr_png_(self) -> bytes:
-        return self.png
+    def _repr_svg_(self) -> str | None:
+        return None if self._is_large else self.svg
+
+    def _repr_png_(self) -> bytes | None:
+        return self.png if self._is_large else None
+
+    @property
+    def _is_large(self) -> bool:
+        return len(self.painting.source) > _MOST_IN_SVG
 
     def __repr__(self) -> str:
         """Say how large the picture is."""
@@ -148,7 +168,10 @@ def picture(
     Raises
     ------
     InvalidMeshError
-        If the scene is not in space, or a parameter is not one of those above.
+        If the scene is not in space, a coordinate is not finite (`where` lists faces), or a
+        parameter is not one of those above.
+    LimitError
+        If coordinates do not fit the lattice of a tree.
 
     Notes
     -----
@@ -158,8 +181,7 @@ def picture(
     _checked("style", style, Style)
     _checked("edges", edges, Edges)
     facets, tree = _facets_of(scene)
-    if camera is None:
-        camera = Camera.named(view, facets.corners, frame[0] / frame[1])
+    camera = _camera(camera, view, facets, frame)
     base = colours(DEFAULT if colors is None else colors, len(facets), "colors")
     front = facing(facets, camera)
     drawn = _drawn(facets, front, style, edges, number(crease, "crease"))
@@ -178,6 +200,14 @@ def picture(
     )
 
 
+def _camera(camera: Camera | None, view: View, facets: Facets, frame: tuple[int, int]) -> Camera:
+    if camera is None:
+        return Camera.named(view, facets.corners, frame[0] / frame[1])
+    if not isinstance(camera, Camera):
+        raise invalid_parameter(f"The camera must be a bsp.Camera, not {camera!r}.")
+    return camera
+
+
 def _facets_of(scene: Any) -> tuple[Facets, PartitionTree | None]:
     """Return the scene's facets, and the tree if the scene is one."""
     if isinstance(scene, PartitionTree):
@@ -188,7 +218,20 @@ def _facets_of(scene: Any) -> tuple[Facets, PartitionTree | None]:
         units: FloatArray = np.asarray(corners * 10.0**scene.pitch, dtype=np.float64)
         return Facets(units, offsets), scene
     triangles = mesh_triangles(scene)
+    _check_coordinates(triangles)
     return Facets(triangles.reshape(-1, 3), 3 * np.arange(len(triangles) + 1)), None
+
+
+def _check_coordinates(triangles: FloatArray) -> None:
+    """Raise an error for coordinates whose products are no doubles, before any are taken."""
+    finite = np.isfinite(triangles).all(axis=(1, 2))
+    if not finite.all():
+        where = np.flatnonzero(~finite)[:10].tolist()
+        message = f"Face {where[0]} has a coordinate that is not a finite number."
+        raise InvalidMeshError(message, "non_finite", where)
+    if len(triangles) and np.abs(triangles).max() > _FARTHEST:
+        message = f"Coordinates beyond {_FARTHEST:g} do not fit any lattice; scale the mesh."
+        raise LimitError(message, "too_large")
 
 
 def _tree(facets: Facets) -> PartitionTree:

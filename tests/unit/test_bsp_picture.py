@@ -231,8 +231,9 @@ def test_files(tmp_path: Path) -> None:
     assert (root.get("width"), root.get("height")) == ("64", "48")
     with Image.open(tmp_path / "a.PNG") as image:
         assert image.size == (64, 48)
-    assert picture._repr_svg_() == picture.svg
-    assert picture._repr_png_() == picture.png
+    assert picture._repr_svg_() == picture.svg and picture._repr_png_() is None
+    large = bsp.picture(shapes.icosphere(5), size=(64, 48))
+    assert large._repr_png_() == large.png and large._repr_svg_() is None
     assert repr(picture).startswith("Picture(64 x 48, ")
 
 
@@ -277,6 +278,7 @@ def test_svg_needs_no_pillow(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"style": "wire"}, "style"),
         ({"edges": "some"}, "edges"),
         ({"view": "above"}, "view"),
+        ({"camera": "above"}, "camera"),
         ({"crease": float("nan")}, "crease"),
         ({"colors": "blue-ish"}, "colors"),
         ({"colors": [(1, 0, 0)] * 3}, "shape"),
@@ -290,6 +292,26 @@ def test_svg_needs_no_pillow(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_refused(change: dict[str, Any], text: str) -> None:
     with pytest.raises(InvalidMeshError, match=text):
         bsp.picture(shapes.cube(), **change)
+
+
+@pytest.mark.parametrize("camera", [None, TOP, bsp.Camera.perspective((5, 5, 5), (0, 0, 0))])
+def test_coordinates_that_are_no_places(camera: bsp.Camera | None) -> None:
+    vertices, faces = shapes.cube()
+    for bad in (float("nan"), float("inf")):
+        broken = vertices.copy()
+        broken[faces[3, 0]] = bad
+        with pytest.raises(InvalidMeshError, match="finite") as caught:
+            bsp.picture((broken, faces), camera=camera)
+        assert 3 in caught.value.where
+    with pytest.raises(LimitError, match="scale"):
+        bsp.picture((vertices * 1e200, faces), camera=camera)
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1e-6, 1e9, 1e20])
+def test_the_size_of_a_scene_makes_no_difference(scale: float) -> None:
+    vertices, faces = shapes.octahedron()
+    unit, scaled = (bsp.picture((vertices * s, faces), size=(60, 50)) for s in (1, scale))
+    assert np.abs(pixels(unit).astype(int) - pixels(scaled)).mean() < 1
 
 
 def test_only_facets_in_space() -> None:
