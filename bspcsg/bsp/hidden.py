@@ -167,7 +167,7 @@ def _common(first: list[Part], second: list[Part]) -> list[Part]:
 
 
 def _gaps(parts: list[Part], shortest: float) -> list[Part]:
-    """Return what sorted parts leave of a segment; short gaps only between its ends' own."""
+    """Return what sorted disjoint parts leave of a segment, without gaps up to `shortest`."""
     if not parts:
         return [(0.0, 1.0)]
     borders = [0.0, *(border for part in parts for border in part), 1.0]

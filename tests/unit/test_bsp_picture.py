@@ -15,8 +15,6 @@ from PIL import Image
 
 import bspcsg as b
 from bspcsg import BspcsgError, FormatError, InvalidMeshError, LimitError, bsp
-from bspcsg.bsp.clip import Polygons, clip
-from bspcsg.bsp.outline import outlines, polylines, straightened
 from support import shapes
 
 SQUARE = [[[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]]]
@@ -323,112 +321,6 @@ def test_too_many_samples_are_refused() -> None:
     picture = bsp.picture(shapes.cube(), size=(16000, 16000), samples=4)
     with pytest.raises(LimitError, match="samples"):
         _ = picture.png
-
-
-# Segments in the plane
-
-
-SEGMENTS = [[[-2, 3], [2, 3]], [[-1, 1], [1, 1]], [[-1, -2], [1, -2]]]
-
-
-def strip(picture: bsp.Picture) -> npt.NDArray[np.uint8]:
-    row: npt.NDArray[np.uint8] = pixels(picture)[-30]
-    return row
-
-
-def test_panorama_around_an_eye() -> None:
-    colors = ["#ff0000", "#00ff00", "#0000ff"]
-    seen = strip(bsp.panorama(SEGMENTS, eye=(0, 0), size=(384, 300), colors=colors))
-    # 360 pixels all around, a degree each, with +y in the middle and an empty border of 12.
-    assert seen[192].tolist() == [0, 255, 0]
-    assert [seen[192 + k].tolist() for k in (-42, 42)] == [[0, 255, 0]] * 2
-    # The red segment reaches to 33.7 degrees: all of it is behind the green one.
-    assert [255, 0, 0] not in seen.tolist()
-    assert [seen[k].tolist() for k in (20, 364)] == [[0, 0, 255]] * 2
-    assert seen[100].tolist() == [255, 255, 255]
-
-
-def test_panorama_along_a_direction() -> None:
-    colors = ["#ff0000", "#00ff00", "#0000ff"]
-    seen = strip(bsp.panorama(SEGMENTS, direction=(0, 1), size=(384, 300), colors=colors))
-    assert seen[20].tolist() == [255, 0, 0] == seen[360].tolist()
-    assert seen[192].tolist() == [0, 0, 255]
-    back = strip(bsp.panorama(SEGMENTS, direction=(0, -1), size=(384, 300), colors=colors))
-    assert back[192].tolist() == [255, 0, 0]
-
-
-def test_a_segment_in_line_with_the_eye_is_not_seen() -> None:
-    seen = strip(bsp.panorama([[[1, 0], [2, 0]]], eye=(0, 0), size=(384, 300)))
-    assert (seen[14:370] == 255).all()
-
-
-def test_an_empty_panorama() -> None:
-    viewpoints: list[dict[str, Any]] = [{"eye": (1, 2)}, {"direction": (1, 2)}]
-    for viewpoint in viewpoints:
-        picture = bsp.panorama(np.zeros((0, 2, 2)), **viewpoint)
-        assert picture.painting.source.tolist() == [-1]
-
-
-@pytest.mark.parametrize(
-    ("change", "text"),
-    [
-        ({"eye": (0, 0), "direction": (0, 1)}, "either"),
-        ({}, "either"),
-        ({"direction": (0, 0)}, "direction"),
-        ({"eye": (0, 0, 0)}, "eye"),
-        ({"eye": (0, 0), "size": (63, 100)}, "64"),
-        ({"eye": (0, 0), "samples": 0.5}, "samples"),
-    ],
-)
-def test_refused_panoramas(change: dict[str, Any], text: str) -> None:
-    with pytest.raises(InvalidMeshError, match=text):
-        bsp.panorama(SEGMENTS, **change)
-    with pytest.raises(InvalidMeshError, match="picture"):
-        bsp.panorama(bsp.PartitionTree(SQUARE), eye=(0, 0))
-
-
-# Parts
-
-
-def test_clipping_keeps_marks_of_old_edges_only() -> None:
-    square = np.array([(0.0, 0), (4, 0), (4, 4), (0, 4)])
-    marks = np.array([True, False, True, False])
-    polygons = Polygons(square, np.array([0, 4]), marks)
-    left, kept = clip(polygons, np.array([-1.0, 0.0]), -3.0)
-    assert left.corners.tolist() == [[0, 0], [3, 0], [3, 4], [0, 4]]
-    assert left.marked.tolist() == [True, False, True, False]
-    assert kept.tolist() == [0]
-
-
-def test_clipping_many_at_once() -> None:
-    random = np.random.default_rng(0)
-    triangles = random.normal(size=(500, 3, 3))
-    polygons = Polygons(triangles.reshape(-1, 3), 3 * np.arange(501), np.ones(1500, dtype=bool))
-    normal = np.array([0.3, -0.5, 0.8])
-    parts = [clip(polygons, sign * normal, sign * 0.1) for sign in (1.0, -1.0)]
-    areas = np.zeros(500)
-    for part, kept in parts:
-        assert len(part.corners) == part.offsets[-1]
-        for owner, start, end in zip(kept, part.offsets, part.offsets[1:], strict=False):
-            arms = part.corners[start:end] - part.corners[start]
-            fan = np.cross(arms[1:-1], arms[2:]).sum(axis=0)
-            areas[owner] += np.linalg.norm(fan) / 2
-    whole = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    assert np.allclose(areas, np.linalg.norm(whole, axis=1) / 2)
-
-
-def test_outlines_cancel_what_occurs_both_ways() -> None:
-    left, right = [(0, 0), (2, 0), (2, 2), (0, 2)], [(2, 0), (5, 0), (5, 2), (2, 2)]
-    (loop,) = outlines([left, right])
-    assert sorted(straightened(loop)) == [(0, 0), (0, 2), (5, 0), (5, 2)]
-    assert len(outlines([left, left])) == 2
-
-
-def test_polylines_take_each_step_once() -> None:
-    ring = [((0, 0), (1, 0)), ((1, 0), (1, 1)), ((1, 1), (0, 0))]
-    (line,) = polylines([*ring, ((0, 0), (1, 0))])
-    assert line[0] == line[-1] and len(line) == 4
-    assert sorted(map(len, polylines([*ring, ((1, 1), (2, 2))]))) in ([2, 4], [5])
 
 
 @pytest.mark.slow
