@@ -1,4 +1,4 @@
-"""Trees that learn from rays: what they save on skewed rays, and where it does not pay."""
+"""Trees that learn from rays: what they save, and where it does not pay."""
 
 import sys
 import time
@@ -14,9 +14,13 @@ count = int(sys.argv[2]) if len(sys.argv) > 2 else 1500
 out.mkdir(exist_ok=True)
 rng = np.random.default_rng(1)
 
-# A cloud of triangles of many sizes, crossing here and there.
-sizes = 0.3 * np.exp(rng.normal(size=(count, 1, 1)))
-facets = rng.uniform(-10, 10, (count, 1, 3)) + rng.normal(size=(count, 3, 3)) * sizes
+
+def cloud(spread):
+    """Triangles here and there, some of them crossing; their sizes differ if spread is not 0."""
+    sizes = 0.3 * np.exp(spread * rng.normal(size=(count, 1, 1)))
+    return rng.uniform(-10, 10, (count, 1, 3)) + rng.normal(size=(count, 3, 3)) * sizes
+
+
 batch, rounds = 1000, 12
 colours = ["#999999", "#d08770", "#5e81ac", "#2e7d32"]
 
@@ -39,39 +43,44 @@ def grown(make):
     return make(), time.perf_counter() - begun
 
 
-plot = Image.new("RGB", (1240, 460), "white")
+panels = [
+    ("skewed rays, many sizes", skewed, cloud(1)),
+    ("skewed rays, like sizes", skewed, cloud(0)),
+    ("uniform rays, many sizes", uniform, cloud(1)),
+]
+plot = Image.new("RGB", (1260, 460), "white")
 draw = ImageDraw.Draw(plot)
 title = f"triangles tested per ray (logarithmic), {rounds} batches of {batch} rays"
 draw.text((30, 430), title, "black")
 heading = "build s  rays s    tree   per ray: visited  stabbed  tested"
-for panel, rays in enumerate((skewed, uniform)):
+for panel, (name_of_panel, rays, facets) in enumerate(panels):
     sample = rays(2000)
     trees = {
-        "one leaf": grown(lambda: bsp.AdaptiveTree(facets, threshold=10**9)),
-        "random": grown(lambda: bsp.StaticTree(facets, order="random")),
-        "by score": grown(lambda sample=sample: bsp.optimised_tree(facets, *sample)),
-        "self-organising": grown(lambda: bsp.AdaptiveTree(facets, threshold=40)),
+        "one leaf": grown(lambda facets=facets: bsp.AdaptiveTree(facets, threshold=10**9)),
+        "random": grown(lambda facets=facets: bsp.StaticTree(facets, order="random")),
+        "by score": grown(lambda given=(facets, *sample): bsp.optimised_tree(*given)),
+        "self-organising": grown(lambda facets=facets: bsp.AdaptiveTree(facets, threshold=40)),
     }
     batches = [rays(batch) for _ in range(rounds)]
-    print(f"{rays.__name__ + ' rays':18} {heading}")
-    left, answers = 60 + 620 * panel, []
-    draw.text((left, 12), f"{rays.__name__} rays", "black")
+    print(f"{name_of_panel:24} {heading}")
+    left, answers = 60 + 415 * panel, []
+    draw.text((left, 12), name_of_panel, "black")
     for row, (name, (tree, build)) in enumerate(trees.items()):
         begun = time.perf_counter()
         tests = [tree.test_ray(*given) for given in batches]
         took = time.perf_counter() - begun
         last = [getattr(tests[-1], column).mean() for column in ("nodes", "leaves", "tests")]
         print(
-            f"  {name:16} {build:7.2f} {took:7.2f} {len(tree):7d}"
+            f"  {name:22} {build:7.2f} {took:7.2f} {len(tree):7d}"
             f" {last[0]:18.1f} {last[1]:8.1f} {last[2]:7.1f}"
         )
         answers.append(np.concatenate([t.hits.facet for t in tests]))
         heights = [400 - 100 * np.log10(max(t.tests.mean(), 1)) for t in tests]
-        draw.line([(left + 45 * k, y) for k, y in enumerate(heights)], colours[row], 3)
-        draw.text((left + 380, 12 + 14 * row), f"{name}: {last[2]:.0f}", colours[row])
+        draw.line([(left + 28 * k, y) for k, y in enumerate(heights)], colours[row], 3)
+        draw.text((left + 220, 12 + 14 * row), f"{name}: {last[2]:.0f}", colours[row])
     assert all((answer == answers[0]).all() for answer in answers)
     for power in range(4):
         draw.text((left - 40, 394 - 100 * power), f"{10**power}", "black")
-    draw.line([(left - 8, 70), (left - 8, 400), (left + 45 * rounds, 400)], "black")
+    draw.line([(left - 8, 70), (left - 8, 400), (left + 28 * rounds, 400)], "black")
 print("All trees gave the same answer to every ray.")
 plot.save(out / "self_organising.png")

@@ -15,7 +15,7 @@ def show(tree: bsp.ObjectTree, node: int = 0, depth: int = 0) -> None:
     if node < 0:
         print("  " * depth + names[node])
         return
-    *normal, offset = tree.nodes.hyperplanes[node]
+    *normal, offset = tree.nodes.hyperplanes[node] + 0.0
     terms = " ".join(f"{n:+.3g}{axis}" for n, axis in zip(normal, "xyz", strict=False) if n)
     print("  " * depth + f"{terms} = {offset:.3g}")
     show(tree, int(tree.nodes.minus[node]), depth + 1)

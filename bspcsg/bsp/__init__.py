@@ -7,6 +7,7 @@ are snapped to first.
 """
 
 from .adaptive import AdaptiveTree, StabStats, StabTree, StaticTree, Tests
+from .camera import Camera
 from .cost import Comparison, PolicyRow, Query, Stats, compare_policies
 from .distribution import optimised_tree, scores
 from .drawing_dxf import load_dxf, save_dxf
@@ -16,6 +17,8 @@ from .interval import Intervals
 from .loops import Outline
 from .node import Leaf, Node
 from .objects import ObjectTree, merge, partition_tree, split_tree
+from .panorama import panorama
+from .picture import Picture, picture
 from .pieces import NodeTable, Pieces
 from .policy import POLICIES, Policy
 from .rays import EDGE, INTERIOR, MISS, VERTEX, HitLists, Hits, InsideSpans, RayCaster
@@ -30,6 +33,7 @@ __all__ = [
     "POLICIES",
     "VERTEX",
     "AdaptiveTree",
+    "Camera",
     "Comparison",
     "Fragments",
     "HitLists",
@@ -42,6 +46,7 @@ __all__ = [
     "ObjectTree",
     "Outline",
     "PartitionTree",
+    "Picture",
     "Pieces",
     "Policy",
     "PolicyRow",
@@ -58,7 +63,9 @@ __all__ = [
     "load_svg",
     "merge",
     "optimised_tree",
+    "panorama",
     "partition_tree",
+    "picture",
     "plane_frame",
     "save_dxf",
     "save_svg",
