@@ -15,5 +15,6 @@ WRITES = {
     "09_rays": {"rays.png"},
     "10_self_organising": {"self_organising.png"},
     "11_objects": {f"merge_{name}.svg" for name in _OPERATIONS},
+    "13_growth": {"growth.png"},
     "12_region": {"profile.svg", *(f"section_{name}.svg" for name in _SECTIONS)},
 }
