@@ -82,6 +82,7 @@ _CLASSES: dict[str, type[BspcsgError]] = {
     "not_simple": InvalidMeshError,
     "bad_snapshot": FormatError,
     "too_large": LimitError,
+    "too_many": LimitError,
     "too_small": LimitError,
     "unbounded": UnboundedError,
 }

@@ -16,6 +16,8 @@ pub enum ErrorKind {
     Shape,
     /// Coordinates do not fit the lattice.
     TooLarge,
+    /// More facets than an exhaustive search takes.
+    TooMany,
     /// A mesh without faces of positive area.
     EmptyMesh,
     /// A mesh or a measure of an unbounded solid was asked for.
@@ -48,6 +50,7 @@ impl ErrorKind {
             Self::IndexOutOfRange => "index_out_of_range",
             Self::Shape => "shape",
             Self::TooLarge => "too_large",
+            Self::TooMany => "too_many",
             Self::EmptyMesh => "empty_mesh",
             Self::Unbounded => "unbounded",
             Self::Cancelled => "cancelled",

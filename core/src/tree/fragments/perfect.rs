@@ -28,14 +28,14 @@ struct Sides {
 /// The cuts, in preorder, of a tree that cuts no piece; `None` if there is no such tree.
 ///
 /// # Errors
-/// `TooLarge` above [`PERFECT_LIMIT`] pieces.
+/// `TooMany` above [`PERFECT_LIMIT`] pieces.
 pub fn perfect<S: Affine>(pieces: &[Piece<S>]) -> Result<Option<Vec<NodeCut>>> {
     if pieces.len() > PERFECT_LIMIT {
         let text = format!(
             "the search for a perfect autopartition takes at most {PERFECT_LIMIT} facets, not {}",
             pieces.len()
         );
-        return Err(Error::new(ErrorKind::TooLarge, text));
+        return Err(Error::new(ErrorKind::TooMany, text));
     }
     let mut search = Search {
         sides: pieces.iter().map(|p| sides_of(p, pieces)).collect(),
@@ -135,7 +135,7 @@ mod tests {
         let found = perfect(&segments(&rows[..24])).unwrap().unwrap();
         assert_eq!(found.len(), 24);
         let refused = perfect(&segments(&rows)).unwrap_err();
-        assert_eq!(refused.kind(), ErrorKind::TooLarge);
+        assert_eq!(refused.kind(), ErrorKind::TooMany);
     }
 
     #[test]
