@@ -376,8 +376,8 @@ def test_interruption_is_quiet_and_leaves_nothing(folder: Path) -> None:
     sphere = icosphere(6)
     put("s.ply", sphere)
     put("t.ply", moved(sphere, (0.001, 0.002, 0.003)))
-    files = ["s.ply", "t.ply"] * 2
-    running = process("xor", *files, "-o", "x.ply", "-v", stderr=subprocess.PIPE)
+    files = ["s.ply", "t.ply"] * 20
+    running = process("union", *files, "-o", "x.ply", "-v", stderr=subprocess.PIPE)
     assert running.stderr is not None
     assert b"s.ply" in running.stderr.readline()
     time.sleep(0.1)

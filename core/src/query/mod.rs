@@ -1,4 +1,4 @@
-//! Questions to a solid: where a point lies, how large the solid is, what a ray meets.
+//! Questions: where a point lies, how large a set is, what a ray meets, what a plane cuts.
 #![allow(
     clippy::cast_precision_loss,
     clippy::cast_possible_truncation,

@@ -7,13 +7,14 @@
 //!
 //! # Error
 //! u = 2^-53; M bounds every coordinate relative to the origin; all inputs are integers below
-//! 2^53. A relative coordinate x carries one rounding, a shear factor one, |shear| ≤ 1:
+//! 2^54, so that each carries one rounding (a direction is the difference of two points at most).
+//! A relative coordinate x carries one rounding, a shear factor three, |shear| ≤ 1:
 //!
-//! * a sheared coordinate x − shear·z is off by at most 2uM + 4uM and terms of u², below 6.1 uM;
+//! * a sheared coordinate x − shear·z is off by at most 2uM + 6uM and terms of u², below 8.1 uM;
 //!   its magnitude is below 2.1 M;
 //! * a weight in space is the difference of two products of such: off by at most
-//!   2·(2·2.1·6.1 + 4.5) uM² + 9 uM² < 70 uM²; in the plane it is a sheared coordinate;
-//! * so a weight beyond `doubt` = 72 uM² (space), 8 uM (plane) has the sign of the exact one;
+//!   2·(2·2.1·8.1 + 4.5) uM² + 9 uM² < 87 uM²; in the plane it is a sheared coordinate;
+//! * so a weight beyond `doubt` = 96 uM² (space), 12 uM (plane) has the sign of the exact one;
 //! * depth z = Σ wᵢzᵢ / Σ wᵢ with all weights of one sign and |Σ wᵢ| ≥ 8·doubt: numerator and
 //!   denominator are off by at most 3·doubt·M (plus 8u relative) and 3·doubt, and the denominator
 //!   keeps more than half of its size, so that z is off by less than
@@ -83,8 +84,8 @@ impl<const D: usize> Filter<D> {
             reach,
             doubt: match D {
                 1 => 0.0,
-                2 => 8.0 * ROUNDING * reach,
-                _ => 72.0 * ROUNDING * reach * reach,
+                2 => 12.0 * ROUNDING * reach,
+                _ => 96.0 * ROUNDING * reach * reach,
             },
         }
     }

@@ -19,8 +19,9 @@ use super::line::Ray;
 use super::node::{Cell, Content, Node};
 use super::scene::Scene;
 
-/// Relative error of the depth of a cut: a difference, a quotient and a product, rounded.
-const SLACK: f64 = 4.0 * ROUNDING;
+/// Relative error of the depth of a cut: a difference, a quotient of two rounded numbers and a
+/// product, rounded.
+const SLACK: f64 = 6.0 * ROUNDING;
 
 type Open<'a, const D: usize> = (&'a Node<D>, f64, f64);
 
