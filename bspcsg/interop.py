@@ -3,6 +3,7 @@
 Reading asks an object what it has, never where it comes from, so no library is imported for it.
 """
 
+import importlib
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
@@ -196,6 +197,22 @@ _READERS: tuple[tuple[tuple[str, ...], Callable[[Any], Arrays]], ...] = (
     (("vertices", "faces"), lambda mesh: (mesh.vertices, mesh.faces)),
     (("vertices", "triangles"), lambda mesh: (mesh.vertices, mesh.triangles)),
 )
+
+
+def optional(name: str, extra: str) -> Any:
+    """Return a module that comes with one of this package's extras.
+
+    Raises
+    ------
+    InvalidMeshError
+        If it is not installed; code ``"missing_package"``.
+    """
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise InvalidMeshError(
+            f"This needs the package {name}: pip install 'bspcsg[{extra}]'.", "missing_package"
+        ) from error
 
 
 def to_trimesh(mesh: Mesh) -> "trimesh.Trimesh":

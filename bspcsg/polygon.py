@@ -30,6 +30,9 @@ def contours_of(polygon: Any) -> list[FloatArray]:
         If there is no contour, one has fewer than 3 points, or a coordinate is not finite.
     """
     contours = [_cleaned(contour) for contour in _raw_contours(polygon)]
+    if contours and hasattr(polygon, "outlines"):
+        # Outlines of a region are oriented already.
+        return contours
     if not contours:
         raise invalid_parameter("The polygon has no contour.")
     return [_oriented(number, contours) for number in range(len(contours))]

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     import manifold3d
     import trimesh
 
+    from .bsp import Region
+
 
 class Solid(Measured):
     """A closed triangle mesh as a set of points.
@@ -315,6 +317,41 @@ class Solid(Measured):
         record = content.record
         operands = tuple(Solid.from_leaf(leaf) for leaf in record.leaves)
         return LastOperation(record.program, operands, Solid.from_node(self._node))
+
+    def slice(
+        self, offset: Scalar = 0.0, normal: Vector = (0, 0, 1), *, origin: Vector | None = None
+    ) -> "Region":
+        """Return the section by a plane as a region of the plane (`bspcsg.bsp.Region`).
+
+        The boundary is cut exactly; each corner of the section is rounded to the lattice point
+        nearest to it, so that corners with lattice coordinates are exact.
+
+        Parameters
+        ----------
+        offset : float
+            The plane holds the points x with ``normal . x == offset``: by default a height z.
+        normal : (3,) float
+            Need not have unit length. The region is seen from where it points: z gives coordinates
+            (x, y), x gives (y, z), y gives (z, x), negative axes exchange the two; for others see
+            `bspcsg.bsp.plane_frame`, whose coordinates are rounded once more.
+        origin : (3,) float, optional
+            A point of the plane, instead of `offset`.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the normal is zero or a number is not finite.
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Notes
+        -----
+        A face in the plane lies above it: the section is the limit from the minus side, that of a
+        box standing on z = 0 is empty at 0 and full at its top.
+        """
+        from .bsp import slice_solid
+
+        return slice_solid(self, offset, normal, origin=origin)
 
     def check(self, **options: Any) -> Any:
         """Compare the operation that made this solid with manifold3d (see `bspcsg.check`)."""

@@ -4,6 +4,7 @@ use bspcsg::geometry::dim2::{Dim2, Point2, Segment2, Square};
 use bspcsg::geometry::side::{Half, Side};
 use bspcsg::geometry::space::Space;
 use bspcsg::merge::{merge, SetOp};
+use bspcsg::query::measure::big;
 use bspcsg::tree::partition::{
     autopartition, boundary, check, classify, owned_boundary, winding_tree, Facet, Label, Location,
     PartitionTree, PivotPolicy,
@@ -31,7 +32,10 @@ impl Ratio {
 fn doubled_area<'a>(walls: impl IntoIterator<Item = &'a Segment2>) -> Ratio {
     let zero = Ratio(BigInt::from(0), BigInt::from(1));
     walls.into_iter().fold(zero, |sum, wall| {
-        let [[x1, y1, w1], [x2, y2, w2]] = wall.points().map(|p| p.coordinates().map(BigInt::from));
+        let [[x1, y1, w1], [x2, y2, w2]] = wall.points().map(|p| {
+            let ([x, y], w) = p.coordinates();
+            [big(x), big(y), big(w)]
+        });
         sum.plus(&Ratio(x1 * y2 - x2 * y1, w1 * w2))
     })
 }

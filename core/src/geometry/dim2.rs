@@ -4,14 +4,19 @@
 //! lattice points or the frame, never from constructed points, so that widths do not grow.
 //!
 //! # Bits
-//! Lattice coordinates |k| ≤ 2^30: a, b ≤ 2^31, c ≤ 2^62, w ≤ 2^63, x and y ≤ 2^94, the side of a
-//! meet ≤ 2^127 (each product of two lines' coefficients is bounded by the edge they come from).
+//! Lattice coordinates |k| ≤ 2^53, as in space: a, b ≤ 2^54, c ≤ 2^108, w ≤ 2^109, x and y ≤ 2^163,
+//! the side of a meet ≤ 2^219, the product of a coordinate and a denominator ≤ 2^272.
 
+use std::cmp::Ordering;
+
+use super::cell;
+use super::plane::FILTER;
 use super::side::{Orientation, Side, Split};
 use super::space::Space;
+use crate::arith::{gcd_u128, Int};
 
 /// Lattice coordinates are at most this large in magnitude.
-pub const REACH: i64 = 1 << 30;
+pub const REACH: i64 = 1 << cell::REACH;
 
 /// The plane with integer lattice coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +25,7 @@ pub struct Dim2;
 /// A lattice point of the plane.
 pub type Lattice2 = [i64; 2];
 
-/// The square |x|, |y| ≤ [`REACH`].
+/// The square |x|, |y| ≤ [`REACH`] + 1/2, whose walls no lattice point lies in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Square;
 
@@ -29,15 +34,15 @@ pub struct Square;
 pub struct Line2 {
     a: i64,
     b: i64,
-    c: i64,
+    c: i128,
 }
 
 /// An exact point: a lattice point, or where two lines meet.
 #[derive(Clone, Copy, Debug)]
 pub struct Point2 {
-    x: i128,
-    y: i128,
-    w: i128,
+    x: [Int<3>; 2],
+    w: Int<2>,
+    approx: [f64; 3],
 }
 
 /// A segment of a line, from its first to its last point along the line's direction.
@@ -55,20 +60,55 @@ impl Line2 {
     ///
     /// Returns `None` if the points are equal or beyond [`REACH`].
     pub fn through(from: Lattice2, to: Lattice2) -> Option<Self> {
-        let inside = |p: Lattice2| p.iter().all(|k| k.abs() <= REACH);
-        if from == to || !inside(from) || !inside(to) {
+        if from == to || !is_near(from) || !is_near(to) {
             return None;
         }
         Some(Self::normalized(to[1] - from[1], from[0] - to[0], from))
     }
 
+    /// The line with the outward normal (a, b) through a lattice point.
+    ///
+    /// Returns `None` if the normal is zero or wider than 54 bits, or the point beyond [`REACH`].
+    pub fn with_normal(normal: [i64; 2], point: Lattice2) -> Option<Self> {
+        let wide = normal.iter().any(|n| n.unsigned_abs() > 1 << 54);
+        if normal == [0; 2] || wide || !is_near(point) {
+            return None;
+        }
+        Some(Self::normalized(normal[0], normal[1], point))
+    }
+
+    /// The line with these coefficients, divided by their greatest common divisor.
+    ///
+    /// Returns `None` if the normal is zero or a coefficient is wider than those of lines that meet
+    /// the frame.
+    pub fn new(a: i64, b: i64, c: i128) -> Option<Self> {
+        let widest = a.unsigned_abs().max(b.unsigned_abs());
+        if widest == 0 || widest > 1 << 54 || c.unsigned_abs() > 1 << 109 {
+            return None;
+        }
+        let g = gcd_u128(u128::from(a.unsigned_abs()), u128::from(b.unsigned_abs()));
+        let g = gcd_u128(g, c.unsigned_abs());
+        // The divisor of coefficients below 2^55 fits.
+        let short = i64::try_from(g).unwrap_or(1).max(1);
+        let (a, b, c) = (a / short, b / short, c / i128::from(short));
+        Some(Self { a, b, c })
+    }
+
+    /// The line across an axis at a lattice coordinate, smaller coordinates on its minus side.
+    pub fn axis_cut(axis: usize, at: i64) -> Self {
+        let [a, b] = [[1, 0], [0, 1]][axis.min(1)];
+        let c = -i128::from(at);
+        Self { a, b, c }
+    }
+
     /// The line through a lattice point with normal (a, b).
     fn normalized(a: i64, b: i64, point: Lattice2) -> Self {
         let g = gcd(a.unsigned_abs(), b.unsigned_abs());
-        // Both coefficients are below 2^32, so their divisor fits.
+        // Both coefficients are below 2^55, so their divisor fits.
         let g = i64::try_from(g).unwrap_or(1).max(1);
         let (a, b) = (a / g, b / g);
-        let c = -(a * point[0] + b * point[1]);
+        let [x, y] = point.map(i128::from);
+        let c = -(i128::from(a) * x + i128::from(b) * y);
         Self { a, b, c }
     }
 
@@ -80,15 +120,21 @@ impl Line2 {
         Self { a, b, c }
     }
 
-    /// The coefficients a, b, c.
-    pub fn coefficients(&self) -> [i64; 3] {
-        [self.a, self.b, self.c]
+    /// The coefficients a, b of the normal, and c.
+    pub fn coefficients(&self) -> ([i64; 2], i128) {
+        ([self.a, self.b], self.c)
     }
 
     fn side_of(&self, p: &Point2) -> Side {
-        let [a, b, c] = [self.a, self.b, self.c].map(i128::from);
-        let value = a * p.x + b * p.y + c * p.w;
-        Side::from_sign(sign(value))
+        let [a, b, c] = [self.a as f64, self.b as f64, self.c as f64];
+        let t = [a * p.approx[0], b * p.approx[1], c * p.approx[2]];
+        let sum = t[0] + t[1] + t[2];
+        if sum.abs() > (t[0].abs() + t[1].abs() + t[2].abs()) * FILTER {
+            return if sum > 0.0 { Side::Plus } else { Side::Minus };
+        }
+        let along: Int<4> = p.x[0].mul_i64::<4>(self.a) + p.x[1].mul_i64::<4>(self.b);
+        let last: Int<4> = p.w.mul(&Int::<2>::from_i128(self.c));
+        Side::from_sign((along + last).signum())
     }
 
     /// The line across this one at a lattice point on it, parallel to the axis this line is less
@@ -106,29 +152,56 @@ impl Line2 {
 impl Point2 {
     /// The lattice point (x, y).
     pub fn lattice(p: Lattice2) -> Self {
-        let [x, y] = p.map(i128::from);
-        Self { x, y, w: 1 }
+        Self::homogeneous(p.map(Int::from_i64), Int::ONE)
     }
 
     /// The point where two lines meet, `None` if they are parallel.
     pub fn meet(p: &Line2, q: &Line2) -> Option<Self> {
-        let [a, b, c] = p.coefficients().map(i128::from);
-        let [d, e, f] = q.coefficients().map(i128::from);
-        let [x, y, w] = [b * f - e * c, c * d - f * a, a * e - d * b];
-        match sign(w) {
+        let wide = |k: i64| i128::from(k);
+        let w = wide(p.a) * wide(q.b) - wide(q.a) * wide(p.b);
+        let times = |k: i64, c: i128| Int::<2>::from_i128(c).mul_i64::<3>(k);
+        let x = times(p.b, q.c) - times(q.b, p.c);
+        let y = times(q.a, p.c) - times(p.a, q.c);
+        match w.signum() {
             0 => None,
-            1 => Some(Self { x, y, w }),
-            _ => Some(Self {
-                x: -x,
-                y: -y,
-                w: -w,
-            }),
+            1 => Some(Self::homogeneous([x, y], Int::from_i128(w))),
+            _ => Some(Self::homogeneous([-x, -y], Int::from_i128(-w))),
         }
     }
 
-    /// The homogeneous coordinates (x, y, w), w > 0.
-    pub fn coordinates(&self) -> [i128; 3] {
-        [self.x, self.y, self.w]
+    fn homogeneous(x: [Int<3>; 2], w: Int<2>) -> Self {
+        let approx = [x[0].to_f64(), x[1].to_f64(), w.to_f64()];
+        Self { x, w, approx }
+    }
+
+    /// The homogeneous coordinates: x and y times w, and w > 0.
+    pub fn coordinates(&self) -> (&[Int<3>; 2], &Int<2>) {
+        (&self.x, &self.w)
+    }
+
+    /// The coordinates in doubles, each within two units in the last place.
+    pub fn approx(&self) -> [f64; 2] {
+        [
+            self.approx[0] / self.approx[2],
+            self.approx[1] / self.approx[2],
+        ]
+    }
+
+    /// Order of two points by one coordinate.
+    pub fn compare(&self, other: &Self, axis: usize) -> Ordering {
+        let left = self.approx[axis] * other.approx[2];
+        let right = other.approx[axis] * self.approx[2];
+        if (left - right).abs() > (left.abs() + right.abs()) * FILTER {
+            return left.partial_cmp(&right).unwrap_or(Ordering::Equal);
+        }
+        let left: Int<5> = self.x[axis].mul(&other.w);
+        let right: Int<5> = other.x[axis].mul(&self.w);
+        left.cmp(&right)
+    }
+
+    /// Order of two points by x, then y.
+    pub fn order(&self, other: &Self) -> Ordering {
+        self.compare(other, 0).then_with(|| self.compare(other, 1))
     }
 }
 
@@ -153,6 +226,25 @@ impl Segment2 {
     /// The first and the last point along the line's direction.
     pub fn points(&self) -> &[Point2; 2] {
         &self.points
+    }
+
+    /// Order of two points of the segment's line along its direction.
+    pub fn along(&self, p: &Point2, q: &Point2) -> Ordering {
+        let direction = [-self.line.b, self.line.a];
+        let axis = usize::from(direction[0].unsigned_abs() < direction[1].unsigned_abs());
+        match direction[axis] {
+            ..=-1 => q.compare(p, axis),
+            _ => p.compare(q, axis),
+        }
+    }
+
+    /// The segment that ends where a later one of its line ends.
+    #[must_use]
+    pub fn joined(&self, last: &Self) -> Self {
+        let mut longer = *self;
+        longer.points[1] = last.points[1];
+        longer.ends[1] = last.ends[1];
+        longer
     }
 
     /// The segment with one end moved to where `cut` crosses it.
@@ -247,7 +339,8 @@ fn between_walls(line: &Line2, p: &Line2, q: &Line2) -> Option<Segment2> {
         points,
     };
     // The wall at the first point faces against the line's direction (−b, a).
-    let along = p.b * line.a - p.a * line.b;
+    let product = |m: i64, n: i64| i128::from(m) * i128::from(n);
+    let along = product(p.b, line.a) - product(p.a, line.b);
     if along < 0 {
         return Some(whole);
     }
@@ -260,11 +353,24 @@ fn between_walls(line: &Line2, p: &Line2, q: &Line2) -> Option<Segment2> {
 
 /// The lines that bound the frame, opposite ones together, the frame on their minus sides.
 fn square_walls() -> [Line2; 4] {
-    [(1, 0), (-1, 0), (0, 1), (0, -1)].map(|(a, b)| Line2 { a, b, c: -REACH })
+    let c = -(2 * i128::from(REACH) + 1);
+    [(2, 0), (-2, 0), (0, 2), (0, -2)].map(|(a, b)| Line2 { a, b, c })
 }
 
-fn sign(value: i128) -> i32 {
-    i32::from(value > 0) - i32::from(value < 0)
+/// The border of the frame, the frame on the minus sides.
+pub fn border() -> Vec<Segment2> {
+    let walls = square_walls();
+    let side = |i: usize| {
+        let [p, q] = [walls[(i + 2) % 4], walls[((i + 2) % 4) ^ 1]];
+        between_walls(&walls[i], &p, &q)
+    };
+    (0..4).filter_map(side).collect()
+}
+
+fn is_near(point: Lattice2) -> bool {
+    point
+        .iter()
+        .all(|k| k.unsigned_abs() <= REACH.unsigned_abs())
 }
 
 fn gcd(mut a: u64, mut b: u64) -> u64 {

@@ -1,6 +1,7 @@
 //! Exact predicates, planes, points and convex pieces.
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
+pub mod axis;
 pub mod cell;
 pub mod crossing;
 pub mod dim1;

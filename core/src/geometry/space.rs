@@ -130,6 +130,22 @@ impl<S: Space> Region<S> {
         self.clip(S::span(cut, &self.frame)?)
     }
 
+    /// The faces of this region, itself on their minus sides; the frame's border is none.
+    pub fn faces(&self) -> Vec<S::Fragment> {
+        let face = |i: usize| {
+            let (cut, half) = &self.bounds[i];
+            let others = self.bounds.iter().enumerate().filter(|(j, _)| *j != i);
+            let whole = S::span(cut, &self.frame)?;
+            let mut sides = others.map(|(_, (other, side))| (other, *side));
+            let face = sides.try_fold(whole, |rest, (other, side)| clip::<S>(rest, other, side))?;
+            Some(match half {
+                Half::Minus => face,
+                Half::Plus => S::reversed(&face),
+            })
+        };
+        (0..self.bounds.len()).filter_map(face).collect()
+    }
+
     /// The part of a fragment inside this region's half-spaces.
     pub fn clip(&self, piece: S::Fragment) -> Option<S::Fragment> {
         self.bounds

@@ -18,4 +18,4 @@ pub mod split_tree;
 pub use merge_trees::merge;
 pub use op::{Outcome, SetOp};
 pub use partition_tree::partition_tree;
-pub use split_tree::{split_tree, Halves};
+pub use split_tree::{split_case, split_tree, Halves, SplitCase};

@@ -45,6 +45,43 @@ enum Case<S: Space> {
     },
 }
 
+/// The name of a [`Case`], and of what happens at a leaf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SplitCase {
+    /// The tree is a leaf: both halves are.
+    Leaf,
+    /// The hyperplane is the root's own.
+    Same,
+    /// The hyperplane is the root's own with its sides exchanged.
+    Opposite,
+    /// One-sided: the hyperplane's part lies on the side `deep` of the root's cut, the root's
+    /// sub-hyperplane on the side `home` of the hyperplane.
+    OneSided {
+        /// The subtree that is split.
+        deep: Half,
+        /// The half in which the root lives on.
+        home: Half,
+    },
+    /// The two cross.
+    Crossing,
+}
+
+/// Which case the root of a tree and a splitting hyperplane are.
+///
+/// # Errors
+/// As for [`split_tree`].
+pub fn split_case<S: Space>(tree: &PartitionTree<S>, span: &S::Fragment) -> Result<SplitCase> {
+    let PartitionTree::Cut(node) = tree else {
+        return Ok(SplitCase::Leaf);
+    };
+    Ok(match case_of(node, span)? {
+        Case::Same => SplitCase::Same,
+        Case::Opposite => SplitCase::Opposite,
+        Case::OneSided { deep, home } => SplitCase::OneSided { deep, home },
+        Case::Crossing { .. } => SplitCase::Crossing,
+    })
+}
+
 /// Splits a tree by a hyperplane into its parts on the minus and plus sides.
 ///
 /// `span` is P = H ∩ region(T), the part of the hyperplane inside the region of the tree's root; H

@@ -3,6 +3,7 @@
 use crate::arith::{ratio_to_f64, Int};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::REACH;
+use crate::geometry::dim2::Point2;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
 
@@ -108,18 +109,33 @@ impl Pitch {
             return p.map(|k| self.coordinate(k));
         }
         let h = vertex.coordinates();
-        let power = Int::<2>::from_i128(10i128.pow(u32::from(self.0.unsigned_abs())));
-        let one = Int::<2>::ONE;
-        let (up, down) = if self.0 <= 0 {
-            (one, power)
-        } else {
-            (power, one)
-        };
+        let (up, down) = self.units();
         let den: Int<8> = h.w.mul(&down);
         h.x.map(|x| {
             let num: Int<8> = x.mul(&up);
             ratio_to_f64(&num, &den)
         })
+    }
+
+    /// The doubles nearest to the coordinates of a point of the plane.
+    pub fn position_in_plane(self, point: &Point2) -> [f64; 2] {
+        let (x, w) = point.coordinates();
+        let (up, down) = self.units();
+        let den: Int<4> = w.mul(&down);
+        x.map(|x| {
+            let num: Int<5> = x.mul(&up);
+            ratio_to_f64(&num, &den)
+        })
+    }
+
+    /// The lattice step as a ratio of integers.
+    fn units(self) -> (Int<2>, Int<2>) {
+        let power = Int::from_i128(10i128.pow(u32::from(self.0.unsigned_abs())));
+        if self.0 <= 0 {
+            (Int::ONE, power)
+        } else {
+            (power, Int::ONE)
+        }
     }
 
     /// The integer by which this pitch divides a coarser one.

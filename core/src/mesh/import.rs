@@ -82,6 +82,36 @@ fn signed_volume(mesh: &TriangleMesh) -> f64 {
 /// # Errors
 /// `BadNormal` if the normal is zero or not finite, `TooLarge` if the offset leaves the lattice.
 pub fn half_space(normal: [f64; 3], offset: f64, pitch: Pitch) -> Result<Source> {
+    let (n, p, exact) = oriented_foot(normal, offset, pitch)?;
+    let plane = Plane::through_point(n, &p)
+        .ok_or_else(|| Error::new(ErrorKind::BadNormal, "the normal is too small"))?;
+    let mut findings = Vec::new();
+    if !exact {
+        findings.push(Finding::about(
+            "half_space_rounded",
+            Severity::Note,
+            &[0],
+            "the half-space's normal was rounded to 53 bits relative to its largest component",
+        ));
+    }
+    Ok(Source::new(
+        pitch,
+        Shape::HalfSpace(Arc::new(plane)),
+        findings,
+    ))
+}
+
+/// An integer normal, a lattice point of the hyperplane n·x = offset, and whether the normal is exact.
+///
+/// The point is the foot of the origin, snapped to the lattice.
+///
+/// # Errors
+/// `BadNormal`, `NonFinite`, `TooLarge`.
+pub fn oriented_foot(
+    normal: [f64; 3],
+    offset: f64,
+    pitch: Pitch,
+) -> Result<([i128; 3], Lattice, bool)> {
     let size = normal.iter().fold(0.0f64, |m, c| m.max(c.abs()));
     let square: f64 = normal.iter().map(|c| (c / size) * (c / size)).sum();
     if !(size > 0.0 && size.is_finite() && square.is_finite() && offset.is_finite()) {
@@ -99,22 +129,7 @@ pub fn half_space(normal: [f64; 3], offset: f64, pitch: Pitch) -> Result<Source>
         foot[axis] = offset / normal[axis];
     }
     let p = snap_point(pitch, &foot)?;
-    let plane = Plane::through_point(n, &p)
-        .ok_or_else(|| Error::new(ErrorKind::BadNormal, "the normal is too small"))?;
-    let mut findings = Vec::new();
-    if !exact {
-        findings.push(Finding::about(
-            "half_space_rounded",
-            Severity::Note,
-            &[0],
-            "the half-space's normal was rounded to 53 bits relative to its largest component",
-        ));
-    }
-    Ok(Source::new(
-        pitch,
-        Shape::HalfSpace(Arc::new(plane)),
-        findings,
-    ))
+    Ok((n, p, exact))
 }
 
 /// The normal as integers of at most 53 bits, and whether nothing was lost.

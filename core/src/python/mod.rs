@@ -3,13 +3,20 @@
     missing_docs,
     clippy::needless_pass_by_value,
     clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
     clippy::cast_possible_wrap,
     clippy::cast_sign_loss
 )]
 
 mod arrays;
+mod each;
 mod errors;
+mod objects;
+mod pieces;
 mod run;
+mod set_queries;
+mod set_store;
+mod sets;
 mod tree;
 
 use pyo3::prelude::*;
@@ -20,11 +27,21 @@ fn set_threads(n: usize) {
     run::set_default_threads(n);
 }
 
+/// The pitch for coordinates of this size and extent.
+#[pyfunction]
+fn suited_pitch(py: Python<'_>, largest: f64, extent: f64) -> PyResult<i64> {
+    let pitch = crate::mesh::grid::Pitch::suited(largest, extent);
+    let pitch = pitch.map_err(|e| errors::to_python(py, &e))?;
+    Ok(pitch.exponent())
+}
+
 #[pymodule(gil_used = true)]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("CoreError", module.py().get_type::<errors::CoreError>())?;
     module.add_class::<tree::Tree>()?;
+    module.add_class::<objects::ObjectTree>()?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
+    module.add_function(wrap_pyfunction!(suited_pitch, module)?)?;
     Ok(())
 }

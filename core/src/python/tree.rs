@@ -23,6 +23,8 @@ use crate::mesh::grid::{snap_point, Pitch};
 use crate::mesh::import::{half_space, import};
 use crate::query::classify::{classify, Location};
 use crate::query::measure::{volume, volume_near, volume_residues};
+use crate::query::region::hyperplane::plane;
+use crate::query::region::section::section;
 use crate::tree::solid::Solid;
 use crate::tree::stats::{stats, Stats};
 
@@ -234,6 +236,21 @@ impl Tree {
             Location::Outside => -1,
         };
         Ok(PyArray1::from_vec(py, found.iter().map(sign).collect()))
+    }
+
+    fn section<'py>(
+        &self,
+        py: Python<'py>,
+        normal: (f64, f64, f64),
+        offset: f64,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let pitch = self.solid.pitch();
+        let edges = run(py, 0, self.size(), |_| {
+            section(&self.solid, &*plane(normal.into(), offset, pitch)?)
+        })?;
+        let row =
+            |[[a, b, c], [d, e, f]]: [[i64; 3]; 2]| [a, b, c, d, e, f].map(|k| pitch.coordinate(k));
+        array(py, edges.into_iter().map(row).collect())
     }
 
     #[getter]

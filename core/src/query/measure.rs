@@ -113,7 +113,7 @@ fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Option<Lattice> {
     }
 }
 
-fn homogeneous(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Homogeneous {
+pub(super) fn homogeneous(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Homogeneous {
     if let Some(p) = lattice(solid, mesh, vertex) {
         return Homogeneous {
             x: p.map(Int::from_i64),
@@ -165,7 +165,7 @@ fn lowest(numerator: BigInt, denominator: BigInt) -> (BigInt, BigInt) {
     (numerator / &g, denominator / g)
 }
 
-fn pairwise_sum(mut terms: Vec<(BigInt, BigInt)>) -> (BigInt, BigInt) {
+pub(super) fn pairwise_sum(mut terms: Vec<(BigInt, BigInt)>) -> (BigInt, BigInt) {
     while terms.len() > 1 {
         terms = terms
             .chunks(2)
@@ -181,7 +181,17 @@ fn pairwise_sum(mut terms: Vec<(BigInt, BigInt)>) -> (BigInt, BigInt) {
 
 /// Cubic lattice steps to cubic model units.
 fn in_units(numerator: BigInt, denominator: BigInt, exponent: i64) -> Fraction {
-    let power = BigInt::from(10).pow(3 * exponent.unsigned_abs() as u32);
+    in_powers(numerator, denominator, exponent, 3)
+}
+
+/// A power of lattice steps to that power of model units.
+pub fn in_powers(
+    numerator: BigInt,
+    denominator: BigInt,
+    exponent: i64,
+    dimension: u32,
+) -> Fraction {
+    let power = BigInt::from(10).pow(dimension * exponent.unsigned_abs() as u32);
     let (n, d) = if exponent < 0 {
         (numerator, denominator * power)
     } else {
@@ -194,7 +204,8 @@ fn in_units(numerator: BigInt, denominator: BigInt, exponent: i64) -> Fraction {
     }
 }
 
-fn big<const N: usize>(value: &Int<N>) -> BigInt {
+/// The integer without a bound on its width.
+pub fn big<const N: usize>(value: &Int<N>) -> BigInt {
     let size = value.abs();
     let digits: Vec<u32> = size
         .limbs()

@@ -3,3 +3,4 @@
 
 pub mod classify;
 pub mod measure;
+pub mod region;

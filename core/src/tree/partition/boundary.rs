@@ -23,6 +23,25 @@ pub fn boundary<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<S::Fragment>> {
     Ok(pieces)
 }
 
+/// The boundary in convex pieces, each with the preorder number of the inner node it lies in.
+///
+/// # Order
+/// That of the numbers.
+///
+/// # Errors
+/// `Internal` if a cut lies in the border of its own region.
+pub fn boundary_of<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<(usize, S::Fragment)>> {
+    let mut pieces = Vec::new();
+    let mut node = 0;
+    for_each_cut(tree, |cut| {
+        let found = walls(cut, cut.sheet().span.clone())?;
+        pieces.extend(found.into_iter().map(|piece| (node, piece)));
+        node += 1;
+        Ok(())
+    })?;
+    Ok(pieces)
+}
+
 /// The boundary as parts of the facets in the tree's coplanar sets, each with its source.
 ///
 /// Where facets overlap, the one with the smallest source number owns the place. Boundary on which
@@ -90,8 +109,8 @@ fn uncovered<'a, S: Space>(
 /// The parts of a fragment in a node's cut that separate In from Out, In on the minus side.
 fn walls<S: Space>(cut: &Cut<S>, piece: S::Fragment) -> Result<Vec<S::Fragment>> {
     let mut walls = Vec::new();
-    for (part, minus) in labelled(&cut.child(Half::Minus), piece)? {
-        for (part, plus) in labelled(&cut.child(Half::Plus), part)? {
+    for (part, minus) in cut.child(Half::Minus).beside(piece)? {
+        for (part, plus) in cut.child(Half::Plus).beside(part)? {
             if minus != plus {
                 walls.push(facing::<S>(part, cut.hyperplane(), minus));
             }
@@ -110,30 +129,34 @@ fn facing<S: Space>(part: S::Fragment, cut: &S::Hyperplane, minus: Label) -> S::
     }
 }
 
-/// The parts of a fragment in the border of a tree's region, each with the label next to it.
-fn labelled<S: Space>(
-    tree: &PartitionTree<S>,
-    piece: S::Fragment,
-) -> Result<Vec<(S::Fragment, Label)>> {
-    let mut found = Vec::new();
-    let mut pending = vec![(tree.clone(), piece)];
-    while let Some((tree, piece)) = pending.pop() {
-        let cut = match tree {
-            PartitionTree::Leaf(label) => {
-                found.push((piece, label));
-                continue;
+impl<S: Space> PartitionTree<S> {
+    /// The parts of a fragment in the border of the tree's region, each with the label next to it.
+    ///
+    /// # Errors
+    /// `Internal` if the fragment lies in a cut: the border of a region has none.
+    pub fn beside(&self, piece: S::Fragment) -> Result<Vec<(S::Fragment, Label)>> {
+        let mut found = Vec::new();
+        let mut pending = vec![(self.clone(), piece)];
+        while let Some((tree, piece)) = pending.pop() {
+            let cut = match tree {
+                PartitionTree::Leaf(label) => {
+                    found.push((piece, label));
+                    continue;
+                }
+                PartitionTree::Cut(cut) => cut,
+            };
+            match S::split(&piece, cut.hyperplane()) {
+                Split::Minus => pending.push((cut.child(Half::Minus), piece)),
+                Split::Plus => pending.push((cut.child(Half::Plus), piece)),
+                Split::Both { minus, plus } => {
+                    pending.push((cut.child(Half::Plus), plus));
+                    pending.push((cut.child(Half::Minus), minus));
+                }
+                Split::Coplanar(_) => {
+                    return Err(Error::internal("a cut lies in its region's border"))
+                }
             }
-            PartitionTree::Cut(cut) => cut,
-        };
-        match S::split(&piece, cut.hyperplane()) {
-            Split::Minus => pending.push((cut.child(Half::Minus), piece)),
-            Split::Plus => pending.push((cut.child(Half::Plus), piece)),
-            Split::Both { minus, plus } => {
-                pending.push((cut.child(Half::Plus), plus));
-                pending.push((cut.child(Half::Minus), minus));
-            }
-            Split::Coplanar(_) => return Err(Error::internal("a cut lies in its region's border")),
         }
+        Ok(found)
     }
-    Ok(found)
 }

@@ -54,7 +54,24 @@ pub fn autopartition<S: Space>(
     empty: Label,
     policy: PivotPolicy,
 ) -> Result<Built<S>> {
-    let mut builder = Builder::new(frame, policy);
+    let mut choice = Choice::new(policy);
+    partition(facets, frame, empty, |_, facets| choice.cut(facets))
+}
+
+/// Builds a tree by cuts that `choose` picks for a region and the facets in it, at least one.
+///
+/// As for [`autopartition`], except that cuts need not support a facet. Labels next to a cut in
+/// which no facet lies mean nothing.
+///
+/// # Errors
+/// `Internal` if a cut does not cross its region, or never divides the facets.
+pub fn partition<S: Space>(
+    facets: Vec<Facet<S>>,
+    frame: S::Frame,
+    empty: Label,
+    choose: impl FnMut(&Region<S>, &[Facet<S>]) -> S::Hyperplane,
+) -> Result<Built<S>> {
+    let mut builder = Builder::new(frame, choose);
     if facets.is_empty() {
         builder.done.push(PartitionTree::Leaf(empty));
     } else {
@@ -69,9 +86,9 @@ pub fn autopartition<S: Space>(
         .ok_or_else(|| Error::internal("autopartition ended without a tree"))
 }
 
-struct Builder<S: Space> {
+struct Builder<S: Space, C> {
     region: Region<S>,
-    choice: Choice,
+    choose: C,
     steps: Vec<Step<S>>,
     done: Vec<PartitionTree<S>>,
     simple: bool,
@@ -89,11 +106,11 @@ enum Step<S: Space> {
     Join(Arc<Sheet<S>>),
 }
 
-impl<S: Space> Builder<S> {
-    fn new(frame: S::Frame, policy: PivotPolicy) -> Self {
+impl<S: Space, C: FnMut(&Region<S>, &[Facet<S>]) -> S::Hyperplane> Builder<S, C> {
+    fn new(frame: S::Frame, choose: C) -> Self {
         Self {
             region: Region::new(frame),
-            choice: Choice::new(policy),
+            choose,
             steps: Vec::new(),
             done: Vec::new(),
             simple: true,
@@ -128,8 +145,7 @@ impl<S: Space> Builder<S> {
     /// Chooses a cut for the current region and leaves its two sides to be built.
     fn divide(&mut self, facets: Vec<Facet<S>>) -> Result<()> {
         let depth = self.region.depth();
-        let pivot = self.choice.pivot(&facets);
-        let cut = S::hyperplane(&facets[pivot].fragment).clone();
+        let cut = (self.choose)(&self.region, &facets);
         let span = self
             .region
             .span(&cut)
@@ -195,19 +211,24 @@ fn distribute<S: Space>(facets: Vec<Facet<S>>, cut: &S::Hyperplane) -> [Vec<Face
 }
 
 /// A pivot policy and the state it needs.
-struct Choice {
+pub(super) struct Choice {
     policy: PivotPolicy,
     random: SplitMix,
 }
 
 impl Choice {
-    fn new(policy: PivotPolicy) -> Self {
+    pub(super) fn new(policy: PivotPolicy) -> Self {
         let seed = match policy {
             PivotPolicy::Random(seed) => seed,
             _ => 0,
         };
         let random = SplitMix::new(seed);
         Self { policy, random }
+    }
+
+    /// The hyperplane of the facet that the policy picks; the list is not empty.
+    pub(super) fn cut<S: Space>(&mut self, facets: &[Facet<S>]) -> S::Hyperplane {
+        S::hyperplane(&facets[self.pivot(facets)].fragment).clone()
     }
 
     /// The index of the facet whose hyperplane becomes the cut; the list is not empty.

@@ -1,6 +1,7 @@
 //! Where does a point lie?
 
 use super::node::{Label, PartitionTree};
+use crate::geometry::axis::AxisSpace;
 use crate::geometry::side::{Half, Side};
 use crate::geometry::space::Space;
 
@@ -48,5 +49,16 @@ pub fn classify<S: Space>(tree: &PartitionTree<S>, point: &S::Point) -> Location
     match seen {
         Some(Label::In) => Location::In,
         _ => Location::Out,
+    }
+}
+
+/// The label at the frame's lowest corner.
+pub fn classify_corner<S: AxisSpace>(tree: &PartitionTree<S>) -> Label {
+    let mut at = tree.clone();
+    loop {
+        at = match at {
+            PartitionTree::Leaf(label) => return label,
+            PartitionTree::Cut(cut) => cut.child(S::side_of_corner(cut.hyperplane())),
+        };
     }
 }

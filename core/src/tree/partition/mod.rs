@@ -9,16 +9,27 @@
 //! Fuchs, Kedem, Naylor 1980; Thibault, Naylor 1987.
 
 mod boundary;
+mod bounded;
 mod build;
+mod cells;
 mod classify;
+mod components;
+mod enclose;
+mod flat;
 mod node;
+mod preorder;
 mod random;
 mod stats;
 mod winding;
 
-pub use boundary::{boundary, owned_boundary};
-pub use build::{autopartition, Built, PivotPolicy};
-pub use classify::{classify, Location};
+pub use boundary::{boundary, boundary_of, owned_boundary};
+pub use bounded::is_bounded;
+pub use build::{autopartition, partition, Built, PivotPolicy};
+pub use cells::cells;
+pub use classify::{classify, classify_corner, Location};
+pub use components::{walls, Wall};
+pub use enclose::{enclosed, Plan};
 pub use node::{Cut, Facet, Label, PartitionTree, Sheet};
+pub use preorder::{from_preorder, preorder, Entry};
 pub use stats::{check, stats, TreeStats};
 pub use winding::{winding_tree, Winding};

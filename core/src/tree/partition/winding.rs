@@ -4,11 +4,10 @@
 //! winding number across a piece of a cut is the number of facets that cover it, each counted with
 //! its orientation; from one leaf whose number is known all others follow by adjacency.
 
-use std::collections::VecDeque;
-
+use super::flat::{Flat, FlatCut};
 use super::node::{Cut, Facet, Label, PartitionTree};
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::side::{Half, Orientation, Split};
+use crate::geometry::side::{Half, Orientation};
 use crate::geometry::space::{overlay, Space};
 
 /// A tree labelled by winding numbers.
@@ -41,17 +40,6 @@ pub fn winding_tree<S: Space>(
     Ok(Winding { tree, simple })
 }
 
-/// A tree as a list, parents before children, so that each leaf has a number of its own.
-struct Flat<S: Space> {
-    nodes: Vec<Option<FlatCut<S>>>,
-}
-
-struct FlatCut<S: Space> {
-    cut: Cut<S>,
-    minus: usize,
-    plus: usize,
-}
-
 /// Two leaves on the sides of a piece of a cut, and the number on the minus side minus the other.
 struct Jump {
     minus: usize,
@@ -60,43 +48,11 @@ struct Jump {
 }
 
 impl<S: Space> Flat<S> {
-    fn new(tree: &PartitionTree<S>) -> Self {
-        let mut nodes = Vec::new();
-        let mut pending = VecDeque::from([tree.clone()]);
-        while let Some(next) = pending.pop_front() {
-            nodes.push(match next {
-                PartitionTree::Leaf(_) => None,
-                PartitionTree::Cut(cut) => {
-                    let minus = nodes.len() + 1 + pending.len();
-                    pending.extend([cut.child(Half::Minus), cut.child(Half::Plus)]);
-                    let plus = minus + 1;
-                    Some(FlatCut { cut, minus, plus })
-                }
-            });
-        }
-        Self { nodes }
-    }
-
-    fn leaves(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.nodes.len()).filter(|&i| self.nodes[i].is_none())
-    }
-
-    fn leaf_at(&self, reference: impl Fn(&S::Hyperplane) -> Half) -> usize {
-        let mut at = 0;
-        while let Some(node) = &self.nodes[at] {
-            at = match reference(node.cut.hyperplane()) {
-                Half::Minus => node.minus,
-                Half::Plus => node.plus,
-            };
-        }
-        at
-    }
-
     /// All jumps between neighbouring leaves, and whether no two facets overlap.
     fn jumps(&self) -> Result<(Vec<Jump>, bool)> {
         let mut jumps = Vec::new();
         let mut disjoint = true;
-        for node in self.nodes.iter().flatten() {
+        for node in self.cuts() {
             for piece in covered_pieces(&node.cut) {
                 disjoint &= piece.layers <= 1;
                 self.cross(node, piece, &mut jumps)?;
@@ -115,37 +71,14 @@ impl<S: Space> Flat<S> {
         Ok(())
     }
 
-    /// The leaves next to a fragment in the border of a node's region.
-    fn beside(&self, node: usize, piece: S::Fragment) -> Result<Vec<(S::Fragment, usize)>> {
-        let mut found = Vec::new();
-        let mut pending = vec![(node, piece)];
-        while let Some((at, piece)) = pending.pop() {
-            let Some(node) = &self.nodes[at] else {
-                found.push((piece, at));
-                continue;
-            };
-            match S::split(&piece, node.cut.hyperplane()) {
-                Split::Minus => pending.push((node.minus, piece)),
-                Split::Plus => pending.push((node.plus, piece)),
-                Split::Both { minus, plus } => {
-                    pending.extend([(node.plus, plus), (node.minus, minus)]);
-                }
-                Split::Coplanar(_) => {
-                    return Err(Error::internal("a cut lies in its region's border"));
-                }
-            }
-        }
-        Ok(found)
-    }
-
     /// The winding number of each leaf, by node index; zero for inner nodes.
     fn numbers(&self, jumps: &[Jump], start: usize, number: i32) -> Result<Vec<i32>> {
-        let mut neighbours = vec![Vec::new(); self.nodes.len()];
+        let mut neighbours = vec![Vec::new(); self.len()];
         for jump in jumps {
             neighbours[jump.minus].push((jump.plus, -jump.rise));
             neighbours[jump.plus].push((jump.minus, jump.rise));
         }
-        let mut numbers = vec![None; self.nodes.len()];
+        let mut numbers = vec![None; self.len()];
         numbers[start] = Some(number);
         let mut pending = vec![(start, number)];
         while let Some((leaf, number)) = pending.pop() {
@@ -162,22 +95,6 @@ impl<S: Space> Flat<S> {
             }
         }
         Ok(numbers.into_iter().map(Option::unwrap_or_default).collect())
-    }
-
-    /// The tree with other labels.
-    fn relabelled(&self, label: impl Fn(usize) -> Label) -> PartitionTree<S> {
-        let mut trees: Vec<PartitionTree<S>> = Vec::new();
-        trees.resize(self.nodes.len(), PartitionTree::EMPTY);
-        for (i, node) in self.nodes.iter().enumerate().rev() {
-            trees[i] = match node {
-                None => PartitionTree::Leaf(label(i)),
-                Some(node) => {
-                    let [minus, plus] = [node.minus, node.plus].map(|at| trees[at].clone());
-                    node.cut.with_children(minus, plus)
-                }
-            };
-        }
-        trees.swap_remove(0)
     }
 }
 

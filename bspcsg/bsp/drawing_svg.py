@@ -1,0 +1,205 @@
+"""Regions as SVG drawings: filled shapes in, one path out."""
+
+import io
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+from xml.parsers import expat
+
+import numpy as np
+
+from .._types import FloatArray, Scalar, WindingRule
+from ..errors import FormatError, positive
+from ..interop import optional
+from ..io.atomic import write_file
+from .region import Region
+
+#: Files larger than this are refused, in bytes.
+_LARGEST = 1 << 28
+
+
+def load_svg(
+    path: str | os.PathLike[str],
+    *,
+    tolerance: Scalar = 0.01,
+    winding: WindingRule | None = None,
+    pitch: int | None = None,
+) -> Region:
+    """Read the filled shapes of an SVG file as one region, their union.
+
+    Parameters
+    ----------
+    path : path
+    tolerance : float
+        Largest distance between a curve and the chords that replace it, in user units.
+    winding : {"positive", "nonzero", "even-odd"}, optional
+        By default what each shape's ``fill-rule`` says.
+    pitch : int, optional
+
+    Returns
+    -------
+    Region
+        In the user units of the outermost element (its size on paper and its view box do not
+        matter), y upwards: the point (x, y) of the drawing becomes (x, -y). Strokes, text, images
+        and what is not filled are left out; an open subpath counts as closed, as when it is filled.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be read, is no well-formed SVG, or declares a document type or an entity.
+    """
+    chord = positive(tolerance, "tolerance")
+    data = _checked(path)
+    elements = optional("svgelements", "2d")
+    try:
+        drawing = elements.SVG.parse(io.BytesIO(_in_user_units(data)), reify=True, ppi=96.0)
+    except (ValueError, TypeError, AttributeError, ArithmeticError, LookupError) as error:
+        raise FormatError(f"{os.fspath(path)}: this is no valid SVG: {error}.", "syntax") from error
+    region = Region(pitch=pitch)
+    for shape in drawing.elements():
+        if isinstance(shape, elements.Shape) and _is_filled(shape):
+            loops = [loop for loop in _loops(elements, shape, chord) if len(loop) >= 3]
+            if loops:
+                region = region | Region(loops, winding=winding or _rule(shape), pitch=pitch)
+    return region
+
+
+def save_svg(
+    region: Region, path: str | os.PathLike[str], *, fill: str = "#9db8d9", margin: Scalar = 0.05
+) -> None:
+    """Write a region as an SVG file with one path, y upwards on the page.
+
+    Coordinates are written so that reading them gives the same doubles again.
+
+    Parameters
+    ----------
+    region : Region
+        Bounded.
+    path : path
+    fill : str
+        Colour of the inside; the outline is black.
+    margin : float
+        Space around the region, as a part of its size.
+
+    Raises
+    ------
+    UnboundedError
+        If the region reaches to infinity.
+    FormatError
+        If the file cannot be written.
+    """
+    bounds = region.bounds
+    low, high = (np.zeros(2), np.ones(2)) if bounds is None else bounds
+    space = float((high - low).max()) * float(margin)
+    width, height = (high - low + 2 * space).tolist()
+    x, y = float(low[0]) - space, -float(high[1]) - space
+    outlines = " ".join(_path_of(points) for points in region.to_polygons())
+    text = (
+        '<svg xmlns="http://www.w3.org/2000/svg"'
+        f' viewBox="{x!r} {y!r} {width!r} {height!r}">\n'
+        f'<path fill-rule="nonzero" fill="{fill}" stroke="black"'
+        f' stroke-width="{max(width, height) / 400!r}" d="{outlines}"/>\n</svg>\n'
+    )
+    write_file(path, [text.encode()])
+
+
+def _path_of(points: FloatArray) -> str:
+    corners = (f"{x!r},{-y + 0.0!r}" for x, y in points.tolist())
+    return f"M{' L'.join(corners)} Z"
+
+
+def _checked(path: str | os.PathLike[str]) -> bytes:
+    """Return the file's bytes if they are XML without a document type."""
+    name = os.fspath(path)
+    try:
+        if Path(name).stat().st_size > _LARGEST:
+            raise FormatError(f"{name}: the file is larger than 256 MB.", "too_large")
+        data = Path(name).read_bytes()
+    except OSError as error:
+        raise FormatError(
+            f"{name}: cannot read this file: {error.strerror}.", "unreadable"
+        ) from error
+    parser = expat.ParserCreate()
+
+    def refuse(*_: object) -> None:
+        raise FormatError(f"{name}: document types and entities are not allowed here.", "syntax")
+
+    parser.StartDoctypeDeclHandler = refuse
+    parser.EntityDeclHandler = refuse
+    try:
+        parser.Parse(data, True)
+    except expat.ExpatError as error:
+        reason = expat.ErrorString(error.code)
+        raise FormatError(
+            f"{name}:{error.lineno}: the XML is not well-formed: {reason}.",
+            "syntax",
+            [error.lineno],
+        ) from None
+    return data
+
+
+def _in_user_units(data: bytes) -> bytes:
+    """Return the drawing without the window that would scale and shift its coordinates."""
+    root = ElementTree.fromstring(data)
+    if root.tag.rpartition("}")[2] != "svg":
+        raise ValueError("the outermost element is not svg")
+    for name in ("viewBox", "width", "height", "x", "y", "preserveAspectRatio"):
+        root.attrib.pop(name, None)
+    return ElementTree.tostring(root)
+
+
+def _is_filled(shape: Any) -> bool:
+    values = shape.values
+    hidden = values.get("display") == "none" or values.get("visibility") == "hidden"
+    written = values.get("fill")
+    # What says nothing of its fill is black.
+    return not hidden and (written is None or shape.fill.value is not None)
+
+
+def _rule(shape: Any) -> WindingRule:
+    return "even-odd" if shape.values.get("fill-rule") == "evenodd" else "nonzero"
+
+
+def _loops(elements: Any, shape: Any, chord: float) -> Iterator[FloatArray]:
+    # A rotated rectangle keeps its transform until its path is asked for absolute coordinates.
+    for subpath in abs(elements.Path(shape)).as_subpaths():
+        points: list[complex] = []
+        for segment in elements.Path(subpath):
+            points.extend(_points_of(elements, segment, chord))
+        loop = np.array([(p.real, 0.0 - p.imag) for p in points]).reshape(-1, 2)
+        yield loop[np.any(loop != np.roll(loop, 1, axis=0), axis=1)]
+
+
+def _points_of(elements: Any, segment: Any, chord: float) -> list[complex]:
+    """Return the end of a segment, after points between for a curve."""
+    if segment.end is None:
+        return []
+    if isinstance(segment, (elements.Move, elements.Line, elements.Close)):
+        return [complex(segment.end)]
+    steps = _steps(segment, chord)
+    inner = [complex(segment.point(k / steps)) for k in range(1, steps)]
+    return [*inner, complex(segment.end)]
+
+
+def _steps(segment: Any, chord: float) -> int:
+    """Return how many chords stay within the tolerance, tried at points between."""
+    steps = 2
+    while steps < 1 << 12:
+        t = np.arange(4 * steps + 1) / (4 * steps)
+        curve = np.array([complex(segment.point(float(k))) for k in t])
+        start, end = curve[:-4:4], curve[4::4]
+        if max(_distance(curve[k::4], start, end) for k in (1, 2, 3)) <= chord:
+            break
+        steps *= 2
+    return steps
+
+
+def _distance(points: Any, start: Any, end: Any) -> float:
+    """Return the largest distance of points from the chords below them."""
+    offset, along = points - start, end - start
+    length = np.abs(along)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        height = np.abs((offset * np.conj(along)).imag) / length
+    return float(np.where(length > 0, height, np.abs(offset)).max())

@@ -1,0 +1,289 @@
+//! The class `ObjectTree`: an immutable partition tree with in and out leaves, of any dimension.
+
+use num_bigint::BigInt;
+use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyType};
+
+use super::errors::to_python;
+use super::pieces::{self, Pieces};
+use super::run::run;
+use super::set_store::Nodes;
+use super::sets::{self, Input, Set};
+use crate::error::Result;
+use crate::merge::SetOp;
+use crate::mesh::grid::Pitch;
+use crate::query::measure::Fraction;
+use crate::tree::partition::Location;
+
+type Ratio = (BigInt, BigInt);
+
+/// An immutable partition tree of a set on the line, in the plane or in space. See `_core.pyi`.
+#[pyclass(frozen, module = "bspcsg._core")]
+pub struct ObjectTree {
+    set: Set,
+    pitch: Pitch,
+}
+
+impl ObjectTree {
+    fn work<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Set, Pitch) -> Result<T> + Send,
+    ) -> PyResult<T> {
+        run(py, 0, self.set.size(), |_| work(&self.set, self.pitch))
+    }
+
+    fn with(&self, set: Set) -> Self {
+        let pitch = self.pitch;
+        Self { set, pitch }
+    }
+}
+
+fn ratio(fraction: Fraction) -> Ratio {
+    (fraction.numerator, fraction.denominator)
+}
+
+fn rows(array: &PyReadonlyArray2<'_, f64>) -> Vec<Vec<f64>> {
+    let view = array.as_array();
+    view.rows().into_iter().map(|row| row.to_vec()).collect()
+}
+
+#[pymethods]
+impl ObjectTree {
+    #[classmethod]
+    #[pyo3(signature = (dimension, facets, pitch, *, faces=None, winding="positive", policy="balanced", seed=0, cuts=None))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
+    fn build(
+        _cls: &Bound<'_, PyType>,
+        py: Python<'_>,
+        dimension: usize,
+        facets: PyReadonlyArray2<'_, f64>,
+        pitch: i64,
+        faces: Option<PyReadonlyArray2<'_, i64>>,
+        winding: &str,
+        policy: &str,
+        seed: u64,
+        cuts: Option<PyReadonlyArray2<'_, f64>>,
+    ) -> PyResult<Self> {
+        let fail = |e| to_python(py, &e);
+        let pitch = Pitch::new(pitch).map_err(fail)?;
+        let faces = faces.map(|f| super::arrays::rows(&f, "faces"));
+        let input = Input {
+            facets: rows(&facets),
+            faces: faces.transpose().map_err(fail)?.unwrap_or_default(),
+            cuts: cuts.as_ref().map(rows).unwrap_or_default(),
+            rule: sets::rule(winding).map_err(fail)?,
+            policy: sets::policy(policy, seed).map_err(fail)?,
+        };
+        let size = input.facets.len();
+        let set = run(py, 0, size, |_| Set::build(dimension, &input, pitch))?;
+        Ok(Self { set, pitch })
+    }
+
+    #[classmethod]
+    fn half_space(
+        _cls: &Bound<'_, PyType>,
+        py: Python<'_>,
+        hyperplane: PyReadonlyArray1<'_, f64>,
+        pitch: i64,
+    ) -> PyResult<Self> {
+        let made = Pitch::new(pitch).and_then(|pitch| {
+            let set = Set::half_space(&hyperplane.as_array().to_vec(), pitch)?;
+            Ok(Self { set, pitch })
+        });
+        made.map_err(|e| to_python(py, &e))
+    }
+
+    #[classmethod]
+    fn uniform(
+        _cls: &Bound<'_, PyType>,
+        py: Python<'_>,
+        dimension: usize,
+        full: bool,
+        pitch: i64,
+    ) -> PyResult<Self> {
+        let made = Pitch::new(pitch).and_then(|pitch| {
+            let set = Set::uniform(dimension, full)?;
+            Ok(Self { set, pitch })
+        });
+        made.map_err(|e| to_python(py, &e))
+    }
+
+    fn merge(&self, py: Python<'_>, other: PyRef<'_, Self>, op: &str) -> PyResult<Self> {
+        let op = sets::operation(op).map_err(|e| to_python(py, &e))?;
+        let (a, b) = (&self.set, &other.set);
+        sets::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
+        let set = run(py, 0, a.size() + b.size(), |_| a.merge(b, op))?;
+        Ok(self.with(set))
+    }
+
+    fn equals(&self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<bool> {
+        let (a, b) = (&self.set, &other.set);
+        sets::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
+        let difference = run(py, 0, a.size() + b.size(), |_| {
+            a.merge(b, SetOp::SymmetricDifference)
+        })?;
+        Ok(difference.uniform_label() == Some(false))
+    }
+
+    fn complement(&self) -> Self {
+        self.with(self.set.complement())
+    }
+
+    fn partitioned(&self, py: Python<'_>, hyperplane: PyReadonlyArray1<'_, f64>) -> PyResult<Self> {
+        let cut = hyperplane.as_array().to_vec();
+        let set = self.work(py, |set, pitch| set.partitioned(&cut, pitch))?;
+        Ok(self.with(set))
+    }
+
+    fn split(
+        &self,
+        py: Python<'_>,
+        hyperplane: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<(Self, Self)> {
+        let cut = hyperplane.as_array().to_vec();
+        let [minus, plus] = self.work(py, |set, pitch| set.split(&cut, pitch))?;
+        Ok((self.with(minus), self.with(plus)))
+    }
+
+    fn split_case(
+        &self,
+        py: Python<'_>,
+        hyperplane: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<&'static str> {
+        let cut = hyperplane.as_array().to_vec();
+        self.work(py, |set, pitch| set.split_case(&cut, pitch))
+    }
+
+    fn condensed(&self, py: Python<'_>) -> PyResult<Self> {
+        Ok(self.with(self.work(py, |set, _| set.condensed())?))
+    }
+
+    fn moved(
+        &self,
+        py: Python<'_>,
+        axes: Vec<i64>,
+        shift: Vec<i64>,
+        scale: i64,
+        pitch: i64,
+    ) -> PyResult<Self> {
+        let fail = |e| to_python(py, &e);
+        let map = sets::lattice_map(self.set.dimension(), &axes, shift, scale).map_err(fail)?;
+        let pitch = Pitch::new(pitch).map_err(fail)?;
+        let set = self.work(py, |set, _| set.moved(&map))?;
+        Ok(Self { set, pitch })
+    }
+
+    fn boundary<'py>(&self, py: Python<'py>) -> PyResult<Pieces<'py>> {
+        let found = self.work(py, Set::boundary)?;
+        pieces::arrays(py, found, self.set.dimension())
+    }
+
+    fn edges<'py>(&self, py: Python<'py>) -> PyResult<Pieces<'py>> {
+        let found = self.work(py, Set::edges)?;
+        pieces::arrays(py, found, 2)
+    }
+
+    fn cells<'py>(&self, py: Python<'py>) -> PyResult<Pieces<'py>> {
+        let found = self.work(py, Set::cells)?;
+        pieces::arrays(py, found, self.set.dimension())
+    }
+
+    fn outlines<'py>(&self, py: Python<'py>) -> PyResult<Pieces<'py>> {
+        let found = self.work(py, Set::outlines)?;
+        pieces::arrays(py, found, 2)
+    }
+
+    fn exact_outlines(&self, py: Python<'_>) -> PyResult<Vec<Vec<[Ratio; 2]>>> {
+        let found = self.work(py, Set::exact_outlines)?;
+        let corners = |c: Vec<[Fraction; 2]>| c.into_iter().map(|p| p.map(ratio)).collect();
+        Ok(found.into_iter().map(corners).collect())
+    }
+
+    fn measure(&self, py: Python<'_>) -> PyResult<Ratio> {
+        self.work(py, Set::measure).map(ratio)
+    }
+
+    fn moments(&self, py: Python<'_>) -> PyResult<Vec<Ratio>> {
+        let moments = self.work(py, Set::moments)?;
+        Ok(moments.into_iter().map(ratio).collect())
+    }
+
+    fn cast<'py>(
+        &self,
+        py: Python<'py>,
+        origin: [f64; 2],
+        direction: [f64; 2],
+    ) -> PyResult<Pieces<'py>> {
+        let found = self.work(py, |set, pitch| set.cast(origin, direction, pitch))?;
+        pieces::arrays(py, found, 2)
+    }
+
+    fn classify<'py>(
+        &self,
+        py: Python<'py>,
+        points: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<i8>>> {
+        let points = rows(&points);
+        let size = self.set.size() + points.len();
+        let found = run(py, 0, size, |_| self.set.classify(&points, self.pitch))?;
+        let sign = |location: &Location| match location {
+            Location::In => 1i8,
+            Location::On => 0,
+            Location::Out => -1,
+        };
+        Ok(PyArray1::from_vec(py, found.iter().map(sign).collect()))
+    }
+
+    #[getter]
+    fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Nodes<'py>> {
+        self.set.nodes(py, self.pitch)
+    }
+
+    fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let stats = self.set.stats();
+        let dict = PyDict::new(py);
+        dict.set_item("nodes", stats.cuts)?;
+        dict.set_item("leaves", stats.leaves)?;
+        dict.set_item("depth", stats.depth)?;
+        dict.set_item("fragments", stats.facets)?;
+        Ok(dict)
+    }
+
+    fn dump<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = self.set.to_bytes(self.pitch);
+        Ok(PyBytes::new(py, &bytes.map_err(|e| to_python(py, &e))?))
+    }
+
+    #[classmethod]
+    fn load(_cls: &Bound<'_, PyType>, py: Python<'_>, data: &[u8]) -> PyResult<Self> {
+        let (set, pitch) = Set::from_bytes(data).map_err(|e| to_python(py, &e))?;
+        Ok(Self { set, pitch })
+    }
+
+    #[getter]
+    fn dimension(&self) -> usize {
+        self.set.dimension()
+    }
+
+    #[getter]
+    fn pitch(&self) -> i64 {
+        self.pitch.exponent()
+    }
+
+    #[getter]
+    fn is_empty(&self) -> bool {
+        self.set.uniform_label() == Some(false)
+    }
+
+    #[getter]
+    fn is_full(&self) -> bool {
+        self.set.uniform_label() == Some(true)
+    }
+
+    #[getter]
+    fn is_bounded(&self, py: Python<'_>) -> PyResult<bool> {
+        self.work(py, |set, _| Ok(set.is_bounded()))
+    }
+}

@@ -1,0 +1,184 @@
+//! What a set answers with: pieces, outlines, measures, places.
+
+use super::pieces::PieceList;
+use super::sets::{shape, Set};
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::axis::AxisSpace;
+use crate::geometry::dim1::Point1;
+use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2};
+use crate::geometry::polygon::Polygon;
+use crate::geometry::vertex::Vertex;
+use crate::mesh::grid::Pitch;
+use crate::mesh::import::oriented_foot;
+use crate::query::measure::{big, in_powers, Fraction};
+use crate::query::region::cast::cast;
+use crate::query::region::edges::Boundary;
+use crate::query::region::moments;
+use crate::query::region::outlines::{outlines, Outline};
+use crate::tree::partition::{boundary_of, cells, classify, Location, PartitionTree};
+
+impl Set {
+    /// The boundary in convex pieces, each with the preorder number of its node.
+    pub fn boundary(&self, pitch: Pitch) -> Result<PieceList> {
+        let mut list = PieceList::new();
+        match self {
+            Self::Line(tree) => {
+                for (node, piece) in boundary_of(tree)? {
+                    list.push(point_corners(&piece, pitch), node as i64);
+                }
+            }
+            Self::Plane(tree) => {
+                for (node, piece) in boundary_of(tree)? {
+                    list.push(segment_corners(&piece, pitch), node as i64);
+                }
+            }
+            Self::Space(tree) => {
+                for (node, piece) in boundary_of(tree)? {
+                    list.push(polygon_corners(&piece, pitch), node as i64);
+                }
+            }
+        }
+        Ok(list)
+    }
+
+    /// The faces of the convex cells, each with the number of its cell.
+    pub fn cells(&self, pitch: Pitch) -> Result<PieceList> {
+        if !self.is_bounded() {
+            let text = "a cell of the set reaches to infinity";
+            return Err(Error::new(ErrorKind::Unbounded, text));
+        }
+        let mut list = PieceList::new();
+        match self {
+            Self::Line(tree) => push_cells(tree, &mut list, |p| point_corners(p, pitch)),
+            Self::Plane(tree) => push_cells(tree, &mut list, |p| segment_corners(p, pitch)),
+            Self::Space(tree) => push_cells(tree, &mut list, |p| polygon_corners(p, pitch)),
+        }
+        Ok(list)
+    }
+
+    /// The maximal edges of a plane region's boundary, the region on their left.
+    pub fn edges(&self, pitch: Pitch) -> Result<PieceList> {
+        let mut list = PieceList::new();
+        for edge in Boundary::of(self.plane()?)?.edges {
+            list.push(segment_corners(&edge.segment, pitch), edge.inside as i64);
+        }
+        Ok(list)
+    }
+
+    /// The outlines of a plane region, each with the number of the one around it, or −1.
+    pub fn outlines(&self, pitch: Pitch) -> Result<PieceList> {
+        let mut list = PieceList::new();
+        for outline in outlines(self.plane()?)? {
+            let corners = outline.corners.iter().map(|p| pitch.position_in_plane(p));
+            list.push(corners, outline.parent.map_or(-1, |p| p as i64));
+        }
+        Ok(list)
+    }
+
+    /// The corners of the outlines, exactly.
+    pub fn exact_outlines(&self, pitch: Pitch) -> Result<Vec<Vec<[Fraction; 2]>>> {
+        let exact = |point: &Point2| {
+            let (x, w) = point.coordinates();
+            [0, 1].map(|i| in_powers(big(&x[i]), big(w), pitch.exponent(), 1))
+        };
+        let corners = |outline: Outline| outline.corners.iter().map(exact).collect();
+        Ok(outlines(self.plane()?)?.into_iter().map(corners).collect())
+    }
+
+    /// The exact length, area or volume.
+    pub fn measure(&self, pitch: Pitch) -> Result<Fraction> {
+        match self {
+            Self::Line(tree) => moments::length(tree, pitch),
+            Self::Plane(tree) => Ok(moments::area(&outlines(tree)?, pitch)),
+            Self::Space(tree) => moments::volume(tree, pitch),
+        }
+    }
+
+    /// The exact area and first moments of a plane region.
+    pub fn moments(&self, pitch: Pitch) -> Result<Vec<Fraction>> {
+        let outlines = outlines(self.plane()?)?;
+        let [x, y] = moments::moments(&outlines, pitch);
+        Ok(vec![moments::area(&outlines, pitch), x, y])
+    }
+
+    /// The stretches of a line inside a plane region.
+    pub fn cast(&self, origin: [f64; 2], direction: [f64; 2], pitch: Pitch) -> Result<PieceList> {
+        let line = line_along(origin, direction, pitch)?;
+        let mut list = PieceList::new();
+        for stretch in cast(self.plane()?, &line)? {
+            list.push(stretch.map(|p| pitch.position_in_plane(&p)), 0);
+        }
+        Ok(list)
+    }
+
+    /// Where points lie, snapped to the lattice.
+    pub fn classify(&self, points: &[Vec<f64>], pitch: Pitch) -> Result<Vec<Location>> {
+        let snap = |row: &Vec<f64>| -> Result<Vec<i64>> {
+            if row.len() != self.dimension() {
+                return Err(shape(format!(
+                    "points must have {} numbers",
+                    self.dimension()
+                )));
+            }
+            row.iter().map(|x| pitch.snap(*x)).collect()
+        };
+        let place = |row: &Vec<f64>| {
+            let p = snap(row)?;
+            Ok(match self {
+                Self::Line(tree) => classify(tree, &p[0]),
+                Self::Plane(tree) => classify(tree, &Point2::lattice([p[0], p[1]])),
+                Self::Space(tree) => classify(tree, &Vertex::lattice([p[0], p[1], p[2]])),
+            })
+        };
+        points.iter().map(place).collect()
+    }
+
+    fn plane(&self) -> Result<&PartitionTree<Dim2>> {
+        match self {
+            Self::Plane(tree) => Ok(tree),
+            _ => Err(shape("only sets of the plane have outlines")),
+        }
+    }
+}
+
+fn push_cells<S: AxisSpace, const D: usize>(
+    tree: &PartitionTree<S>,
+    list: &mut PieceList,
+    corners: impl Fn(&S::Fragment) -> Vec<[f64; D]>,
+) {
+    for (cell, faces) in (0..).zip(cells(tree, &S::universe())) {
+        for face in faces {
+            list.push(corners(&face), cell);
+        }
+    }
+}
+
+fn point_corners(piece: &Point1, pitch: Pitch) -> Vec<[f64; 1]> {
+    vec![[pitch.coordinate(piece.at())]]
+}
+
+fn segment_corners(piece: &Segment2, pitch: Pitch) -> Vec<[f64; 2]> {
+    piece
+        .points()
+        .iter()
+        .map(|p| pitch.position_in_plane(p))
+        .collect()
+}
+
+fn polygon_corners(piece: &Polygon, pitch: Pitch) -> Vec<[f64; 3]> {
+    piece
+        .corners()
+        .iter()
+        .map(|c| pitch.position(&c.at))
+        .collect()
+}
+
+/// The line through a point, its own direction (−b, a) the one given.
+fn line_along(origin: [f64; 2], direction: [f64; 2], pitch: Pitch) -> Result<Line2> {
+    let normal = [direction[1], -direction[0], 0.0];
+    let ([a, b, _], ..) = oriented_foot(normal, 0.0, pitch)?;
+    let through = [pitch.snap(origin[0])?, pitch.snap(origin[1])?];
+    let narrow = |n: i128| i64::try_from(n).unwrap_or(0);
+    Line2::with_normal([narrow(a), narrow(b)], through)
+        .ok_or_else(|| Error::new(ErrorKind::BadNormal, "the direction is too short"))
+}

@@ -1,0 +1,75 @@
+//! Where a line runs through the inside of a region.
+
+use crate::error::Result;
+use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2, Square};
+use crate::geometry::side::{Half, Split};
+use crate::geometry::space::Space;
+use crate::tree::partition::{classify, Cut, Label, Location, PartitionTree};
+
+/// The maximal stretches of a line in the region's interior, in the order of its direction (−b, a).
+///
+/// A stretch along the boundary is not inside. Stretches that only a point of the boundary parts
+/// are two. The ends of an unbounded one lie on the frame's border.
+///
+/// # Errors
+/// `Internal` for a broken tree.
+pub fn cast(tree: &PartitionTree<Dim2>, line: &Line2) -> Result<Vec<[Point2; 2]>> {
+    let Some(whole) = Dim2::span(line, &Square) else {
+        return Ok(Vec::new());
+    };
+    let mut found: Vec<Segment2> = Vec::new();
+    let mut pending = vec![(tree.clone(), whole)];
+    while let Some((tree, piece)) = pending.pop() {
+        let cut = match tree {
+            PartitionTree::Leaf(Label::In) => {
+                found.push(piece);
+                continue;
+            }
+            PartitionTree::Leaf(Label::Out) => continue,
+            PartitionTree::Cut(cut) => cut,
+        };
+        match Dim2::split(&piece, cut.hyperplane()) {
+            Split::Minus => pending.push((cut.child(Half::Minus), piece)),
+            Split::Plus => pending.push((cut.child(Half::Plus), piece)),
+            Split::Both { minus, plus } => {
+                pending.push((cut.child(Half::Minus), minus));
+                pending.push((cut.child(Half::Plus), plus));
+            }
+            Split::Coplanar(_) => found.extend(inside_of_both(&cut, &piece)?),
+        }
+    }
+    Ok(connected(tree, &whole, found))
+}
+
+/// The parts of a piece in a cut that have the set on both sides.
+fn inside_of_both(cut: &Cut<Dim2>, piece: &Segment2) -> Result<Vec<Segment2>> {
+    let mut found = Vec::new();
+    for (part, minus) in cut.child(Half::Minus).beside(*piece)? {
+        if minus == Label::In {
+            let beyond = cut.child(Half::Plus).beside(part)?;
+            let inside = beyond.into_iter().filter(|(_, plus)| *plus == Label::In);
+            found.extend(inside.map(|(part, _)| part));
+        }
+    }
+    Ok(found)
+}
+
+/// Pieces in order, joined where the point between them is inside too.
+fn connected(
+    tree: &PartitionTree<Dim2>,
+    whole: &Segment2,
+    mut pieces: Vec<Segment2>,
+) -> Vec<[Point2; 2]> {
+    pieces.sort_by(|a, b| whole.along(&a.points()[0], &b.points()[0]));
+    let mut stretches: Vec<[Point2; 2]> = Vec::new();
+    for piece in pieces {
+        let [from, to] = *piece.points();
+        match stretches.last_mut() {
+            Some(last) if last[1].order(&from).is_eq() && classify(tree, &from) == Location::In => {
+                last[1] = to;
+            }
+            _ => stretches.push([from, to]),
+        }
+    }
+    stretches
+}

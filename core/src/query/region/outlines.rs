@@ -1,0 +1,170 @@
+//! The boundary of a plane region as simple closed loops, with the nesting of holes and islands.
+
+use std::cmp::Ordering;
+
+use rustc_hash::FxHashMap as HashMap;
+
+use super::edges::{Boundary, Edge};
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::dim2::{Dim2, Point2};
+use crate::tree::partition::{is_bounded, PartitionTree};
+
+/// A simple closed loop, the region on its left: outer loops run counterclockwise, holes clockwise.
+#[derive(Clone, Debug)]
+pub struct Outline {
+    /// The corners, from the one smallest in x, then y.
+    pub corners: Vec<Point2>,
+    /// The loop around this one: the outer loop of a hole, the hole of an island.
+    pub parent: Option<usize>,
+    /// Whether it is a hole.
+    pub is_hole: bool,
+}
+
+/// The loops of a bounded region's boundary.
+///
+/// Loops touch each other in corners at most; a loop that would touch itself is taken apart there.
+/// Where a corner of one loop lies on a side of another, both have a corner.
+///
+/// # Order
+/// By first corner; it depends on the set alone.
+///
+/// # Errors
+/// `Unbounded`.
+pub fn outlines(tree: &PartitionTree<Dim2>) -> Result<Vec<Outline>> {
+    if !is_bounded(tree) {
+        let text = "the region reaches to infinity and has no closed outlines";
+        return Err(Error::new(ErrorKind::Unbounded, text));
+    }
+    let boundary = Boundary::of(tree)?;
+    let mut loops: Vec<Vec<usize>> = Vec::new();
+    for closed in traced(&boundary)? {
+        loops.extend(simple(&boundary, &closed));
+    }
+    for edges in &mut loops {
+        rotate_to_first(&boundary, edges);
+    }
+    loops.sort_by_key(|l| (boundary.edges[l[0]].ends, boundary.edges[l[0]].inside));
+    Ok(nested(&boundary, &loops))
+}
+
+/// Closed walks along the boundary that keep to one part of the region.
+fn traced(boundary: &Boundary) -> Result<Vec<Vec<usize>>> {
+    let mut seen = vec![false; boundary.edges.len()];
+    let mut walks = Vec::new();
+    for start in 0..boundary.edges.len() {
+        let mut walk = Vec::new();
+        let mut at = start;
+        while !seen[at] {
+            seen[at] = true;
+            walk.push(at);
+            at = next_edge(boundary, &boundary.edges[at])
+                .ok_or_else(|| Error::internal("a boundary ends in the middle of the plane"))?;
+        }
+        if !walk.is_empty() {
+            walks.push(walk);
+        }
+    }
+    Ok(walks)
+}
+
+/// The edge that leaves an edge's last vertex first in clockwise order from where it came.
+fn next_edge(boundary: &Boundary, edge: &Edge) -> Option<usize> {
+    let back = direction(edge).map(|d| -d);
+    let mut leaving = boundary.leaving(edge.ends[1]);
+    let first = leaving.next()?;
+    Some(leaving.fold(first, |best, i| {
+        let [a, b] = [i, best].map(|k| direction(&boundary.edges[k]));
+        if clockwise(&back, &a, &b) == Ordering::Less {
+            i
+        } else {
+            best
+        }
+    }))
+}
+
+fn direction(edge: &Edge) -> [i128; 2] {
+    let ([a, b], _) = edge.segment.line().coefficients();
+    [-i128::from(b), i128::from(a)]
+}
+
+fn cross(a: &[i128; 2], b: &[i128; 2]) -> i128 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// Order of two directions by the clockwise angle from a third, in (0, 2π].
+fn clockwise(from: &[i128; 2], a: &[i128; 2], b: &[i128; 2]) -> Ordering {
+    let quarter = |d: &[i128; 2]| {
+        let along = from[0] * d[0] + from[1] * d[1];
+        match (cross(from, d).signum(), along.signum()) {
+            (-1, _) => 0,
+            (0, -1) => 1,
+            (1, _) => 2,
+            _ => 3,
+        }
+    };
+    let turn = || cross(a, b).cmp(&0);
+    quarter(a).cmp(&quarter(b)).then_with(turn)
+}
+
+/// A closed walk taken apart where it passes a vertex again.
+fn simple(boundary: &Boundary, walk: &[usize]) -> Vec<Vec<usize>> {
+    let mut loops = Vec::new();
+    let mut open: Vec<usize> = Vec::new();
+    let mut place: HashMap<usize, usize> = HashMap::default();
+    for &edge in walk {
+        place.insert(boundary.edges[edge].ends[0], open.len());
+        open.push(edge);
+        if let Some(&start) = place.get(&boundary.edges[edge].ends[1]) {
+            let closed = open.split_off(start);
+            for e in &closed {
+                place.remove(&boundary.edges[*e].ends[0]);
+            }
+            loops.push(closed);
+        }
+    }
+    loops
+}
+
+fn rotate_to_first(boundary: &Boundary, edges: &mut [usize]) {
+    let first = (0..edges.len()).min_by_key(|&i| boundary.edges[edges[i]].ends[0]);
+    edges.rotate_left(first.unwrap_or(0));
+}
+
+/// Whether a loop that starts at its first corner runs clockwise: that corner is convex.
+fn is_hole(boundary: &Boundary, edges: &[usize]) -> bool {
+    let [first, last] = [edges[0], edges[edges.len() - 1]].map(|i| direction(&boundary.edges[i]));
+    cross(&last, &first) < 0
+}
+
+fn nested(boundary: &Boundary, loops: &[Vec<usize>]) -> Vec<Outline> {
+    let holes: Vec<bool> = loops.iter().map(|l| is_hole(boundary, l)).collect();
+    // A part of the region has one outer loop; a part of the complement at most one hole around it.
+    let mut outer = HashMap::default();
+    let mut around = HashMap::default();
+    for (i, edges) in loops.iter().enumerate() {
+        for edge in edges.iter().map(|e| &boundary.edges[*e]) {
+            if holes[i] {
+                around.insert(edge.outside, i);
+            } else {
+                outer.insert(edge.inside, i);
+            }
+        }
+    }
+    let parent = |i: usize| {
+        let mut edges = loops[i].iter().map(|e| &boundary.edges[*e]);
+        if holes[i] {
+            edges.find_map(|e| outer.get(&e.inside))
+        } else {
+            edges.find_map(|e| around.get(&e.outside))
+        }
+    };
+    let outline = |(i, edges): (usize, &Vec<usize>)| Outline {
+        corners: edges
+            .iter()
+            .map(|e| boundary.vertices[boundary.edges[*e].ends[0]])
+            .collect(),
+        parent: parent(i).copied(),
+        is_hole: holes[i],
+    };
+    loops.iter().enumerate().map(outline).collect()
+}

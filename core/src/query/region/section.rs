@@ -1,0 +1,156 @@
+//! Where a plane cuts a solid.
+
+use num_bigint::BigInt;
+use num_integer::Integer;
+use rustc_hash::FxHashMap as HashMap;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::extract::assemble::assemble;
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::vertex::{Homogeneous, Vertex};
+use crate::query::measure::{big, homogeneous};
+use crate::tree::solid::Solid;
+
+/// The directed edges in which a plane cuts a bounded solid's boundary.
+///
+/// Seen from the plane's plus side the solid lies on the left. Faces and edges in the plane count
+/// as lying above it, so that this is the section just below: the limit from the minus side. Each
+/// end is the lattice point nearest to the exact one, halves rounded up; edges that this shrinks to
+/// a point are left out.
+///
+/// # Errors
+/// `Unbounded`.
+pub fn section(solid: &Solid, plane: &Plane) -> Result<Vec<[Lattice; 2]>> {
+    let mesh = assemble(solid)?;
+    let points: Vec<Homogeneous> = (0u32..)
+        .zip(&mesh.vertices)
+        .map(|(i, _)| homogeneous(solid, &mesh, i))
+        .collect();
+    let below: Vec<bool> = points.iter().map(|p| is_below(p, plane)).collect();
+    let crossings: Vec<Crossing> = mesh
+        .triangles
+        .iter()
+        .filter_map(|triangle| Crossing::of(triangle.map(|v| v as usize), &below))
+        .collect();
+    let mut edges = Vec::new();
+    for [enter, leave] in straight(&points, &crossings) {
+        let ends = [meet(&points, enter, plane)?, meet(&points, leave, plane)?];
+        if ends[0] != ends[1] {
+            edges.push(ends);
+        }
+    }
+    Ok(edges)
+}
+
+/// An edge of the mesh that the plane crosses, its lower end first.
+type Rung = [usize; 2];
+
+/// A triangle that the plane crosses.
+struct Crossing {
+    /// The edges by which its outline comes back below the plane, and by which it leaves.
+    enter: Rung,
+    leave: Rung,
+    corners: [usize; 3],
+}
+
+impl Crossing {
+    fn of(corners: [usize; 3], below: &[bool]) -> Option<Self> {
+        let edges = [0, 1, 2].map(|i| [corners[i], corners[(i + 1) % 3]]);
+        let leave = edges.iter().find(|[a, b]| below[*a] && !below[*b])?;
+        let [high, low] = edges.iter().find(|[a, b]| !below[*a] && below[*b])?;
+        Some(Self {
+            enter: [*low, *high],
+            leave: *leave,
+            corners,
+        })
+    }
+
+    /// The corner that is not on an edge of the triangle.
+    fn apex(&self, rung: Rung) -> Option<usize> {
+        self.corners.into_iter().find(|c| !rung.contains(c))
+    }
+}
+
+/// The first and last edges of runs of coplanar triangles: between them the section is straight.
+fn straight(points: &[Homogeneous], crossings: &[Crossing]) -> Vec<[Rung; 2]> {
+    let next = successors(points, crossings);
+    let mut follows = vec![false; crossings.len()];
+    for &i in next.iter().flatten() {
+        follows[i] = true;
+    }
+    let heads = (0..crossings.len()).filter(|&i| !follows[i]);
+    let run = |head: usize| {
+        let last = std::iter::successors(Some(head), |&i| next[i]).last();
+        [crossings[head].enter, crossings[last.unwrap_or(head)].leave]
+    };
+    heads.map(run).collect()
+}
+
+/// For each triangle the one beyond its last edge, if that lies in the same plane.
+fn successors(points: &[Homogeneous], crossings: &[Crossing]) -> Vec<Option<usize>> {
+    let mut entered: HashMap<Rung, Vec<usize>> = HashMap::default();
+    for (i, crossing) in crossings.iter().enumerate() {
+        entered.entry(crossing.enter).or_default().push(i);
+    }
+    let beyond = |crossing: &Crossing| match entered.get(&crossing.leave)?.as_slice() {
+        [only] => {
+            let apexes = [crossing, &crossings[*only]].map(|c| c.apex(crossing.leave));
+            let [a, b] = [apexes[0]?, apexes[1]?];
+            let [p, q] = crossing.leave;
+            coplanar([p, q, a, b].map(|i| &points[i])).then_some(*only)
+        }
+        _ => None,
+    };
+    crossings.iter().map(beyond).collect()
+}
+
+/// Whether four points lie in one plane.
+fn coplanar(points: [&Homogeneous; 4]) -> bool {
+    let [p, q, r, s] = points.map(Wide::of);
+    // Differences to p, times both denominators.
+    let [u, v, w] = [&q, &r, &s]
+        .map(|other| [0, 1, 2].map(|i| -> BigInt { &other.x[i] * &p.w - &p.x[i] * &other.w }));
+    let minor = |i: usize, j: usize| -> BigInt { &v[i] * &w[j] - &v[j] * &w[i] };
+    let sum: BigInt = &u[0] * minor(1, 2) + &u[1] * minor(2, 0) + &u[2] * minor(0, 1);
+    sum == BigInt::ZERO
+}
+
+fn is_below(point: &Homogeneous, plane: &Plane) -> bool {
+    Vertex::homogeneous(point.x, point.w).side_of(plane) < 0
+}
+
+/// The lattice point nearest to where an edge meets a plane.
+fn meet(points: &[Homogeneous], edge: Rung, plane: &Plane) -> Result<Lattice> {
+    let [p, q] = edge.map(|i| Wide::of(&points[i]));
+    let (s, t) = (p.value(plane), q.value(plane));
+    // With the values s/v < 0 ≤ t/w at p and q: the point is (t·p − s·q) / (t·v − s·w).
+    let w: BigInt = &t * &p.w - &s * &q.w;
+    let twice: BigInt = &w * 2i32;
+    let mut meet = [0; 3];
+    for (i, coordinate) in meet.iter_mut().enumerate() {
+        let x: BigInt = &t * &p.x[i] - &s * &q.x[i];
+        let nearest = Integer::div_floor(&(x * 2i32 + &w), &twice);
+        *coordinate = i64::try_from(nearest)
+            .map_err(|_| Error::new(ErrorKind::TooLarge, "a section leaves the lattice"))?;
+    }
+    Ok(meet)
+}
+
+struct Wide {
+    x: [BigInt; 3],
+    w: BigInt,
+}
+
+impl Wide {
+    fn of(point: &Homogeneous) -> Self {
+        let x = [0, 1, 2].map(|i| big(&point.x[i]));
+        let w = big(&point.w);
+        Self { x, w }
+    }
+
+    /// The plane's value here, times w.
+    fn value(&self, plane: &Plane) -> BigInt {
+        let terms = (0..3).map(|i| BigInt::from(plane.normal()[i]) * &self.x[i]);
+        terms.sum::<BigInt>() + big(plane.offset()) * &self.w
+    }
+}

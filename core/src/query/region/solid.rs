@@ -1,0 +1,23 @@
+//! Sets in space from meshes and to polygons.
+
+use crate::error::Result;
+use crate::geometry::dim3::Dim3;
+use crate::geometry::polygon::Polygon;
+use crate::mesh::source::Source;
+use crate::tree::partition::Facet;
+
+/// The faces of a closed mesh as facets, numbered as in its input.
+///
+/// # Errors
+/// None; reserved for half-spaces, which have none.
+pub fn facets(source: &Source) -> Result<Vec<Facet<Dim3>>> {
+    let Some(mesh) = source.mesh() else {
+        return Ok(Vec::new());
+    };
+    let count = u32::try_from(mesh.faces.len()).unwrap_or(u32::MAX);
+    let facet = |face: u32| Facet {
+        fragment: Polygon::triangle(&mesh.corners(face), source.plane(face)),
+        source: u64::from(source.number(face)),
+    };
+    Ok((0..count).map(facet).collect())
+}

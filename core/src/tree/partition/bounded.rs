@@ -1,0 +1,28 @@
+//! Does a set reach the border of the frame?
+
+use super::node::{Label, PartitionTree};
+use crate::geometry::axis::AxisSpace;
+use crate::geometry::side::{Half, Split};
+
+/// Whether the set stays clear of the frame's border, that is, fits into some box.
+///
+/// # Cost
+/// Proportional to the nodes whose regions reach the border.
+pub fn is_bounded<S: AxisSpace>(tree: &PartitionTree<S>) -> bool {
+    let mut pending: Vec<_> = S::border().into_iter().map(|p| (tree.clone(), p)).collect();
+    while let Some((tree, piece)) = pending.pop() {
+        let cut = match tree {
+            PartitionTree::Leaf(Label::In) => return false,
+            PartitionTree::Leaf(Label::Out) => continue,
+            PartitionTree::Cut(cut) => cut,
+        };
+        let [minus, plus] = [Half::Minus, Half::Plus].map(|half| cut.child(half));
+        match S::split(&piece, cut.hyperplane()) {
+            Split::Minus => pending.push((minus, piece)),
+            Split::Plus => pending.push((plus, piece)),
+            Split::Both { minus: a, plus: b } => pending.extend([(minus, a), (plus, b)]),
+            Split::Coplanar(_) => pending.extend([(minus, piece.clone()), (plus, piece)]),
+        }
+    }
+    true
+}

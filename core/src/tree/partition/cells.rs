@@ -1,0 +1,38 @@
+//! The convex cells of which a set consists.
+
+use super::node::{Label, PartitionTree};
+use crate::geometry::side::Half;
+use crate::geometry::space::{Region, Space};
+
+/// The faces of each In leaf's region, the region on their minus sides.
+///
+/// Together the regions are a convex decomposition of the set. The border of the frame is no face.
+///
+/// # Order
+/// Minus before plus; the faces of a cell from the root's cut down.
+///
+/// # Cost
+/// For each In leaf the square of its depth.
+pub fn cells<S: Space>(tree: &PartitionTree<S>, frame: &S::Frame) -> Vec<Vec<S::Fragment>> {
+    let mut region = Region::<S>::new(frame.clone());
+    let mut cells = Vec::new();
+    let mut pending = vec![(tree.clone(), None)];
+    while let Some((next, from)) = pending.pop() {
+        if let Some((depth, bound, half)) = from {
+            region.truncate(depth);
+            region.push(bound, half);
+        }
+        match next {
+            PartitionTree::Leaf(Label::In) => cells.push(region.faces()),
+            PartitionTree::Leaf(Label::Out) => {}
+            PartitionTree::Cut(cut) => {
+                let depth = region.depth();
+                for half in [Half::Plus, Half::Minus] {
+                    let from = Some((depth, cut.hyperplane().clone(), half));
+                    pending.push((cut.child(half), from));
+                }
+            }
+        }
+    }
+    cells
+}

@@ -1,0 +1,103 @@
+//! Facets → set: axis-parallel cuts on top, supporting hyperplanes below, labels by winding.
+//!
+//! An autopartition of a convex outline is a chain. Cuts through the middle of long lists, which
+//! support no facet (a free partition), keep the depth logarithmic as long as they divide the list.
+
+use super::build::{partition, Choice, PivotPolicy};
+use super::node::{Facet, Label, PartitionTree};
+use super::winding::winding_tree;
+use crate::error::Result;
+use crate::geometry::axis::AxisSpace;
+use crate::geometry::side::Split;
+use crate::geometry::space::Region;
+
+/// Lists of at most this many facets get no axis-parallel cut.
+const FEW: usize = 12;
+
+/// How a tree is divided above the facets' own hyperplanes.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan<'a, S: AxisSpace> {
+    /// Cuts to be made first, in this order, wherever facets lie.
+    pub cuts: &'a [S::Hyperplane],
+    /// Whether axis-parallel cuts divide long lists.
+    pub axis_cuts: bool,
+    /// The choice among the facets' hyperplanes.
+    pub policy: PivotPolicy,
+}
+
+impl<S: AxisSpace> Plan<'_, S> {
+    /// No given cuts, axis-parallel cuts, then the facets in random order.
+    pub const BALANCED: Self = Self {
+        cuts: &[],
+        axis_cuts: true,
+        policy: PivotPolicy::Random(0),
+    };
+}
+
+/// The set of places where the facets' winding number satisfies a rule.
+///
+/// Facets may cross, overlap and repeat. `base` is the winding number in the frame's lowest corner.
+///
+/// # Order
+/// The tree is a function of the list and the plan.
+///
+/// # Cost
+/// O(n log n) splits for outlines whose facets are short against the whole.
+///
+/// # Errors
+/// `NotClosed` if the facets do not give every place one number; `Internal` for a defect.
+///
+/// # Source
+/// Thibault, Naylor 1987; free partitions: de Berg et al., Computational Geometry, chapter 12.
+pub fn enclosed<S: AxisSpace>(
+    facets: Vec<Facet<S>>,
+    base: i32,
+    inside: impl Fn(i32) -> bool,
+    plan: &Plan<'_, S>,
+) -> Result<PartitionTree<S>> {
+    if facets.is_empty() {
+        return Ok(PartitionTree::Leaf(Label::from_inside(inside(base))));
+    }
+    let mut choice = Choice::new(plan.policy);
+    let built = partition(facets, S::universe(), Label::Out, |region, facets| {
+        planned_cut(plan, region, facets).unwrap_or_else(|| choice.cut(facets))
+    })?;
+    let wound = winding_tree(&built.tree, S::side_of_corner, base, inside)?;
+    Ok(wound.tree)
+}
+
+fn planned_cut<S: AxisSpace>(
+    plan: &Plan<'_, S>,
+    region: &Region<S>,
+    facets: &[Facet<S>],
+) -> Option<S::Hyperplane> {
+    let given = plan.cuts.iter().find(|cut| region.span(cut).is_some());
+    if given.is_some() || !plan.axis_cuts || facets.len() <= FEW {
+        return given.cloned();
+    }
+    let middles = (0..S::DIM).map(|axis| middle_cut(facets, axis));
+    let (size, cut) = middles.min_by_key(|(size, _)| *size)?;
+    (4 * size <= 3 * facets.len()).then_some(cut)
+}
+
+/// The cut across an axis at the median corner, and the size of the longer list that it leaves.
+fn middle_cut<S: AxisSpace>(facets: &[Facet<S>], axis: usize) -> (usize, S::Hyperplane) {
+    let corner = |facet: &Facet<S>| S::corner(&facet.fragment, axis);
+    let mut corners: Vec<i64> = facets.iter().map(corner).collect();
+    let middle = corners.len() / 2;
+    let (_, &mut at, _) = corners.select_nth_unstable(middle);
+    let cut = S::axis_cut(axis, at);
+    let (mut minus, mut plus) = (0, 0);
+    for facet in facets {
+        match S::split(&facet.fragment, &cut) {
+            Split::Minus => minus += 1,
+            Split::Plus => plus += 1,
+            Split::Both { .. } => {
+                minus += 1;
+                plus += 1;
+            }
+            Split::Coplanar(_) => {}
+        }
+    }
+    (minus.max(plus), cut)
+}

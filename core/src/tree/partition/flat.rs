@@ -1,0 +1,162 @@
+//! A tree as a list, so that each leaf has a number, and which leaves touch each other where.
+
+use std::collections::VecDeque;
+
+use super::node::{Cut, Label, PartitionTree};
+use crate::error::{Error, Result};
+use crate::geometry::side::{Half, Split};
+use crate::geometry::space::Space;
+
+/// A tree as a list, parents before children.
+pub struct Flat<S: Space> {
+    nodes: Vec<FlatNode<S>>,
+}
+
+enum FlatNode<S: Space> {
+    Leaf(Label),
+    Cut(FlatCut<S>),
+}
+
+/// An inner node and the numbers of its children.
+pub struct FlatCut<S: Space> {
+    /// The node.
+    pub cut: Cut<S>,
+    /// The number of the minus child.
+    pub minus: usize,
+    /// The number of the plus child.
+    pub plus: usize,
+}
+
+/// A piece of a cut between two leaves.
+pub struct Contact<S: Space> {
+    /// The piece, oriented as the cut.
+    pub fragment: S::Fragment,
+    /// The leaf on the cut's minus side.
+    pub minus: usize,
+    /// The leaf on its plus side.
+    pub plus: usize,
+}
+
+impl<S: Space> Flat<S> {
+    /// The list of a tree's nodes, breadth first.
+    pub fn new(tree: &PartitionTree<S>) -> Self {
+        let mut nodes = Vec::new();
+        let mut pending = VecDeque::from([tree.clone()]);
+        while let Some(next) = pending.pop_front() {
+            nodes.push(match next {
+                PartitionTree::Leaf(label) => FlatNode::Leaf(label),
+                PartitionTree::Cut(cut) => {
+                    let minus = nodes.len() + 1 + pending.len();
+                    pending.extend([cut.child(Half::Minus), cut.child(Half::Plus)]);
+                    let plus = minus + 1;
+                    FlatNode::Cut(FlatCut { cut, minus, plus })
+                }
+            });
+        }
+        Self { nodes }
+    }
+
+    /// The number of nodes.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The numbers of the leaves.
+    pub fn leaves(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.len()).filter(|&i| self.label(i).is_some())
+    }
+
+    /// The inner nodes in order.
+    pub fn cuts(&self) -> impl Iterator<Item = &FlatCut<S>> {
+        self.nodes.iter().filter_map(|node| match node {
+            FlatNode::Leaf(_) => None,
+            FlatNode::Cut(cut) => Some(cut),
+        })
+    }
+
+    /// What a leaf says; `None` for an inner node.
+    pub fn label(&self, node: usize) -> Option<Label> {
+        match &self.nodes[node] {
+            FlatNode::Leaf(label) => Some(*label),
+            FlatNode::Cut(_) => None,
+        }
+    }
+
+    /// The leaf that a rule of sides leads to.
+    pub fn leaf_at(&self, reference: impl Fn(&S::Hyperplane) -> Half) -> usize {
+        let mut at = 0;
+        while let FlatNode::Cut(node) = &self.nodes[at] {
+            at = match reference(node.cut.hyperplane()) {
+                Half::Minus => node.minus,
+                Half::Plus => node.plus,
+            };
+        }
+        at
+    }
+
+    /// The leaves next to a fragment in the border of a node's region.
+    ///
+    /// # Errors
+    /// `Internal` if a cut lies in the border of its own region.
+    pub fn beside(&self, node: usize, piece: S::Fragment) -> Result<Vec<(S::Fragment, usize)>> {
+        let mut found = Vec::new();
+        let mut pending = vec![(node, piece)];
+        while let Some((at, piece)) = pending.pop() {
+            let FlatNode::Cut(node) = &self.nodes[at] else {
+                found.push((piece, at));
+                continue;
+            };
+            match S::split(&piece, node.cut.hyperplane()) {
+                Split::Minus => pending.push((node.minus, piece)),
+                Split::Plus => pending.push((node.plus, piece)),
+                Split::Both { minus, plus } => {
+                    pending.extend([(node.plus, plus), (node.minus, minus)]);
+                }
+                Split::Coplanar(_) => {
+                    return Err(Error::internal("a cut lies in its region's border"));
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// All pieces of cuts between two leaves.
+    ///
+    /// # Order
+    /// That of the nodes.
+    ///
+    /// # Errors
+    /// `Internal` if a cut lies in the border of its own region.
+    pub fn contacts(&self) -> Result<Vec<Contact<S>>> {
+        let mut contacts = Vec::new();
+        for node in self.cuts() {
+            let span = node.cut.sheet().span.clone();
+            for (part, minus) in self.beside(node.minus, span)? {
+                for (fragment, plus) in self.beside(node.plus, part)? {
+                    contacts.push(Contact {
+                        fragment,
+                        minus,
+                        plus,
+                    });
+                }
+            }
+        }
+        Ok(contacts)
+    }
+
+    /// The tree with other labels.
+    pub fn relabelled(&self, label: impl Fn(usize) -> Label) -> PartitionTree<S> {
+        let mut trees: Vec<PartitionTree<S>> = Vec::new();
+        trees.resize(self.len(), PartitionTree::EMPTY);
+        for (i, node) in self.nodes.iter().enumerate().rev() {
+            trees[i] = match node {
+                FlatNode::Leaf(_) => PartitionTree::Leaf(label(i)),
+                FlatNode::Cut(node) => {
+                    let [minus, plus] = [node.minus, node.plus].map(|at| trees[at].clone());
+                    node.cut.with_children(minus, plus)
+                }
+            };
+        }
+        trees.swap_remove(0)
+    }
+}

@@ -1,0 +1,166 @@
+//! A tree as a list of hyperplanes and labels, and back.
+
+use std::sync::Arc;
+
+use super::node::{Label, PartitionTree, Sheet};
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::side::{Half, Split};
+use crate::geometry::space::{Region, Space};
+
+/// A node in preorder: what divides its region, or what its region is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Entry<H> {
+    /// An inner node; its minus subtree follows, then its plus subtree.
+    Cut(H),
+    /// A leaf.
+    Leaf(Label),
+}
+
+/// The nodes of a tree, each before its subtrees, minus first.
+pub fn preorder<S: Space>(tree: &PartitionTree<S>) -> Vec<Entry<S::Hyperplane>> {
+    let mut entries = Vec::new();
+    let mut pending = vec![tree.clone()];
+    while let Some(next) = pending.pop() {
+        entries.push(match next {
+            PartitionTree::Leaf(label) => Entry::Leaf(label),
+            PartitionTree::Cut(cut) => {
+                pending.extend(cut.children());
+                Entry::Cut(cut.hyperplane().clone())
+            }
+        });
+    }
+    entries
+}
+
+/// The tree with these nodes; coplanar sets are empty.
+///
+/// A cut that misses its region inside the frame is left out with the side that is not there, so
+/// that hyperplanes may have been moved.
+///
+/// # Errors
+/// `BadSnapshot` if the list is not one tree in preorder or repeats a cut inside itself;
+/// `TooLarge` if the root's hyperplane misses the frame.
+pub fn from_preorder<S: Space>(
+    entries: &[Entry<S::Hyperplane>],
+    frame: S::Frame,
+) -> Result<PartitionTree<S>> {
+    let plus = plus_children(entries)?;
+    let mut maker = Maker {
+        entries,
+        plus: &plus,
+        region: Region::new(frame),
+        steps: vec![Step::Visit(0, None)],
+        done: Vec::new(),
+    };
+    while let Some(step) = maker.steps.pop() {
+        maker.advance(step)?;
+    }
+    maker.done.pop().ok_or_else(bad_list)
+}
+
+fn bad_list() -> Error {
+    Error::new(
+        ErrorKind::BadSnapshot,
+        "the nodes are not a partition tree in preorder",
+    )
+}
+
+/// For each inner node the position of its plus child.
+fn plus_children<H>(entries: &[Entry<H>]) -> Result<Vec<usize>> {
+    let mut plus = vec![0; entries.len()];
+    let mut roots: Vec<usize> = Vec::new();
+    for (i, entry) in entries.iter().enumerate().rev() {
+        if let Entry::Cut(_) = entry {
+            let (minus, other) = (roots.pop(), roots.pop());
+            let (Some(_), Some(other)) = (minus, other) else {
+                return Err(bad_list());
+            };
+            plus[i] = other;
+        }
+        roots.push(i);
+    }
+    if roots.len() == 1 {
+        Ok(plus)
+    } else {
+        Err(bad_list())
+    }
+}
+
+struct Maker<'a, S: Space> {
+    entries: &'a [Entry<S::Hyperplane>],
+    plus: &'a [usize],
+    region: Region<S>,
+    steps: Vec<Step<S>>,
+    done: Vec<PartitionTree<S>>,
+}
+
+/// The cut above a node, the side of it, and the depth of its own region.
+type Above<S> = Option<(Arc<Sheet<S>>, Half, usize)>;
+
+enum Step<S: Space> {
+    Visit(usize, Above<S>),
+    Join(Arc<Sheet<S>>),
+}
+
+impl<S: Space> Maker<'_, S> {
+    fn advance(&mut self, step: Step<S>) -> Result<()> {
+        match step {
+            Step::Join(sheet) => {
+                let (Some(plus), Some(minus)) = (self.done.pop(), self.done.pop()) else {
+                    return Err(bad_list());
+                };
+                self.done.push(PartitionTree::cut(sheet, minus, plus));
+                Ok(())
+            }
+            Step::Visit(at, above) => match &self.entries[at] {
+                Entry::Leaf(label) => {
+                    self.done.push(PartitionTree::Leaf(*label));
+                    Ok(())
+                }
+                Entry::Cut(cut) => self.divide(at, cut, above),
+            },
+        }
+    }
+
+    fn divide(&mut self, at: usize, cut: &S::Hyperplane, above: Above<S>) -> Result<()> {
+        if let Some((sheet, half, depth)) = &above {
+            self.region.truncate(*depth);
+            self.region.push(S::hyperplane(&sheet.span).clone(), *half);
+        }
+        let Some(span) = self.region.span(cut) else {
+            let only = match side_of_region::<S>(cut, above.as_ref())? {
+                Half::Minus => at + 1,
+                Half::Plus => self.plus[at],
+            };
+            self.steps.push(Step::Visit(only, above));
+            return Ok(());
+        };
+        let facets = Vec::new();
+        let sheet = Arc::new(Sheet { span, facets });
+        let depth = self.region.depth();
+        let below = |half| Some((Arc::clone(&sheet), half, depth));
+        self.steps.push(Step::Join(Arc::clone(&sheet)));
+        self.steps
+            .push(Step::Visit(self.plus[at], below(Half::Plus)));
+        self.steps.push(Step::Visit(at + 1, below(Half::Minus)));
+        Ok(())
+    }
+}
+
+/// The side of a cut that misses a region on which the region lies.
+///
+/// The sub-hyperplane above bounds the region, so that it lies on that side as well.
+fn side_of_region<S: Space>(
+    cut: &S::Hyperplane,
+    above: Option<&(Arc<Sheet<S>>, Half, usize)>,
+) -> Result<Half> {
+    let Some((sheet, ..)) = above else {
+        let text = "a moved or refined hyperplane misses the lattice of 2^53 steps";
+        return Err(Error::new(ErrorKind::TooLarge, text));
+    };
+    match S::split(&sheet.span, cut) {
+        Split::Minus => Ok(Half::Minus),
+        Split::Plus => Ok(Half::Plus),
+        _ => Err(bad_list()),
+    }
+}

@@ -1,0 +1,128 @@
+"""Regions in SVG and DXF files."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg import bsp
+
+R = bsp.Region
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9" width="90mm">{}</svg>'
+
+
+def drawn(tmp_path: Path, body: str, **options: float) -> bsp.Region:
+    path = tmp_path / "drawing.svg"
+    path.write_text(SVG.format(body))
+    return R.from_svg(path, **options)
+
+
+def odd_region() -> bsp.Region:
+    """Return a region with corners off the lattice, holes and an island."""
+    ring = R.circle(1 / 3, 7).rotate(10) - R.circle(0.2, 5)
+    return ring.translate(1e3 / 7, -2) | R.circle(0.05, 3).translate(1e3 / 7, -2)
+
+
+@pytest.mark.parametrize("suffix", ["svg", "dxf"])
+def test_round_trips_are_exact(suffix: str, tmp_path: Path) -> None:
+    region = R(odd_region().to_polygons())
+    path = tmp_path / f"region.{suffix}"
+    getattr(region, f"to_{suffix}")(path)
+    again = getattr(R, f"from_{suffix}")(path)
+    assert again.exact_outlines == region.exact_outlines
+    assert len(again.outlines) == 3
+
+
+@pytest.mark.parametrize("suffix", ["svg", "dxf"])
+def test_the_empty_region_is_a_drawing_too(suffix: str, tmp_path: Path) -> None:
+    path = tmp_path / f"empty.{suffix}"
+    getattr(R.empty(), f"to_{suffix}")(path)
+    assert getattr(R, f"from_{suffix}")(path).is_empty
+    with pytest.raises(b.UnboundedError):
+        getattr(R.full(), f"to_{suffix}")(path)
+
+
+def test_svg_shapes(tmp_path: Path) -> None:
+    moved = '<g transform="translate(3 1) rotate(90)"><rect width="4" height="2"/></g>'
+    assert drawn(tmp_path, moved).equals(R.rectangle(2, 4).translate(1, -5))
+    disc = drawn(tmp_path, '<circle cx="2" cy="3" r="2"/>', tolerance=1e-4)
+    assert disc.area == pytest.approx(4 * math.pi, rel=1e-3)
+    assert disc.bounds is not None
+    assert np.allclose(disc.bounds, [[0, -5], [4, -1]])
+    assert disc.area < 4 * math.pi < disc.area + disc.perimeter * 1e-4
+    coarse = drawn(tmp_path, '<circle cx="2" cy="3" r="2"/>', tolerance=0.1)
+    assert len(coarse.outlines[0].points) < len(disc.outlines[0].points)
+    bow = drawn(tmp_path, '<path d="M0 0 C 0 4 4 4 4 0"/>', tolerance=1e-4)
+    assert bow.area == pytest.approx(16 * 0.6, rel=1e-3)
+
+
+def test_svg_fill_rules(tmp_path: Path) -> None:
+    path = '<path {} d="M0 0 h4 v4 h-4z m1 1 h2 v2 h-2z"/>'
+    assert drawn(tmp_path, path.format("")).area == 16
+    assert drawn(tmp_path, path.format('fill-rule="evenodd"')).area == 12
+    styled = f'<g style="fill-rule:evenodd">{path.format("")}</g>'
+    assert drawn(tmp_path, styled).area == 12
+    for hidden in ('fill="none"', 'style="fill:none"', 'display="none"'):
+        assert drawn(tmp_path, path.format(hidden)).is_empty
+    two = '<rect width="2" height="2"/><rect x="1" width="2" height="2"/>'
+    assert drawn(tmp_path, two).area == 6
+    assert drawn(tmp_path, '<line x2="4" y2="4" stroke="black"/><text>hi</text>').is_empty
+
+
+BOMB = '<!DOCTYPE svg [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]><svg>&b;</svg>'
+OUTSIDE = '<!DOCTYPE svg SYSTEM "file:///etc/passwd"><svg/>'
+
+
+@pytest.mark.parametrize("text", [BOMB, OUTSIDE, "", "<svg>", "<html/>", "plain", "<svg>&x;</svg>"])
+def test_bad_svg(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "bad.svg"
+    path.write_text(text)
+    with pytest.raises(b.FormatError) as caught:
+        R.from_svg(path)
+    assert "bad.svg" in caught.value.message
+
+
+def test_missing_files_and_packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for load in (R.from_svg, R.from_dxf):
+        with pytest.raises(b.FormatError):
+            load(tmp_path / "nowhere")
+    R.rectangle(1).to_svg(tmp_path / "a.svg")
+    monkeypatch.setitem(__import__("sys").modules, "svgelements", None)
+    with pytest.raises(b.BspcsgError, match=r"bspcsg\[2d\]"):
+        R.from_svg(tmp_path / "a.svg")
+    with pytest.raises(b.InvalidMeshError):
+        R.from_svg(tmp_path / "a.svg", tolerance=0)
+
+
+def test_dxf_entities(tmp_path: Path) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    document = ezdxf.new()
+    space = document.modelspace()
+    # A slot of two lines and two arcs, in no order and direction, and a hole on another layer.
+    space.add_line((0, 0), (4, 0))
+    space.add_line((0, 2), (4, 2))
+    space.add_arc((4, 1), 1, -90, 90)
+    space.add_arc((0, 1), 1, 90, 270)
+    space.add_circle((2, 1), 0.5, dxfattribs={"layer": "holes"})
+    document.saveas(tmp_path / "slot.dxf")
+    slot = R.from_dxf(tmp_path / "slot.dxf", tolerance=1e-4)
+    assert slot.area == pytest.approx(8 + math.pi - math.pi / 4, rel=1e-3)
+    assert [o.is_hole for o in slot.outlines] == [False, True]
+    hole = R.from_dxf(tmp_path / "slot.dxf", layers=["holes"], tolerance=1e-4)
+    assert hole.area == pytest.approx(math.pi / 4, rel=1e-3)
+
+
+def test_bad_dxf(tmp_path: Path) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    document = ezdxf.new()
+    document.modelspace().add_line((0, 0), (4, 0))
+    document.saveas(tmp_path / "open.dxf")
+    with pytest.raises(b.FormatError, match="open at") as caught:
+        R.from_dxf(tmp_path / "open.dxf")
+    assert caught.value.code == "not_closed"
+    for text in ("", "nonsense", "0\nSECTION\n2\nENTITIES\n0\nLINE\n"):
+        (tmp_path / "bad.dxf").write_text(text)
+        with pytest.raises(b.FormatError):
+            R.from_dxf(tmp_path / "bad.dxf")
