@@ -1,0 +1,1 @@
+"""OpenSCAD's `.csg` scripts: read, evaluated and written."""
