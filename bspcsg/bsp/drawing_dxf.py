@@ -48,7 +48,7 @@ def load_dxf(
         ``"not_closed"``).
     """
     chord = positive(tolerance, "tolerance")
-    document = _document(path)
+    document = read_document(path)
     wanted = None if layers is None else set(layers)
     entities = [
         entity
@@ -56,7 +56,7 @@ def load_dxf(
         if wanted is None or entity.dxf.layer in wanted
     ]
     chains = [chain for entity in entities for chain in _flattened(entity, chord)]
-    return Region(_closed(chains, os.fspath(path)), winding=winding, pitch=pitch)
+    return Region(closed_outlines(chains, os.fspath(path)), winding=winding, pitch=pitch)
 
 
 def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
@@ -81,7 +81,8 @@ def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
     write_file(path, [text.getvalue().encode(document.output_encoding, errors="dxfreplace")])
 
 
-def _document(path: str | os.PathLike[str]) -> Any:
+def read_document(path: str | os.PathLike[str]) -> Any:
+    """Return the ezdxf document of a file; `FormatError` if it is none."""
     ezdxf = optional("ezdxf", "2d")
     name = os.fspath(path)
     try:
@@ -107,7 +108,7 @@ def _flattened(entity: Any, chord: float) -> list[FloatArray]:
     ]
 
 
-def _closed(chains: list[FloatArray], name: str) -> list[FloatArray]:
+def closed_outlines(chains: list[FloatArray], name: str) -> list[FloatArray]:
     """Return closed loops; open chains are joined at their ends."""
     loops = [chain[:-1] for chain in chains if (chain[0] == chain[-1]).all()]
     rest = [chain for chain in chains if (chain[0] != chain[-1]).any()]

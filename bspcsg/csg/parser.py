@@ -101,7 +101,8 @@ class _Parser:
         """Read a node up to its body; one without children is complete."""
         if self._next.kind == "end":
             frame = open_frames[-1]
-            message = f"{frame.name}() is not closed: “}}” is missing at the end of the file."
+            missing = "“}”" if frame.braced else "“;”"
+            message = f"{frame.name}() is not closed: {missing} is missing at the end of the file."
             raise self._script.error(frame.place, message)
         frame = self._head()
         open_frames.append(frame)

@@ -1,0 +1,108 @@
+"""Drawings as OpenSCAD imports them: arcs in as many chords as circles get."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._types import FloatArray
+from ..bsp import Region, load_svg
+from ..bsp.drawing_dxf import closed_outlines, read_document
+from .tessellation import Fineness
+
+#: Blocks in blocks in blocks: deeper ones are left out.
+_DEEPEST_BLOCK = 16
+
+
+def dxf_region(
+    path: Path, layer: str, origin: FloatArray, scale: float, fineness: Fineness
+) -> Region:
+    """Return what the closed outlines of a DXF file surround, by the even-odd rule.
+
+    Lines, light polylines, circles, arcs, ellipses and inserted blocks count, as in OpenSCAD.
+
+    Parameters
+    ----------
+    path : Path
+    layer : str
+        Which layer to read; all if empty.
+    origin : (2,) float64
+        Subtracted first.
+    scale : float
+        Multiplied then.
+    fineness : Fineness
+
+    Raises
+    ------
+    FormatError
+        If the file is no DXF, or an outline is open or branches.
+    """
+    space = read_document(path).modelspace()
+    entities = [e for e in space if not layer or e.dxf.layer == layer]
+    chains = [
+        (np.array(chain, dtype=np.float64) - origin) * scale
+        for entity in entities
+        for chain in _chains(entity, fineness, abs(scale), 0)
+    ]
+    proper = [chain for chain in chains if len(chain) > 1]
+    return Region(closed_outlines(proper, str(path)), winding="even-odd")
+
+
+def _chains(entity: Any, fineness: Fineness, scale: float, depth: int) -> Iterator[Any]:
+    kind = entity.dxftype()
+    if kind == "LINE":
+        yield [entity.dxf.start.vec2, entity.dxf.end.vec2]
+    elif kind == "LWPOLYLINE":
+        corners = [corner[:2] for corner in entity.get_points()]
+        yield corners + corners[:1] if entity.closed else corners
+    elif kind in ("CIRCLE", "ARC"):
+        yield _arc(entity, fineness, scale)
+    elif kind == "ELLIPSE":
+        yield _ellipse(entity, fineness, scale)
+    elif kind == "INSERT" and depth < _DEEPEST_BLOCK:
+        for part in entity.virtual_entities():
+            yield from _chains(part, fineness, scale, depth + 1)
+
+
+def _arc(entity: Any, fineness: Fineness, scale: float) -> FloatArray:
+    center, radius = np.array(entity.dxf.center.vec2), entity.dxf.radius
+    full = entity.dxftype() == "CIRCLE"
+    start = 0.0 if full else entity.dxf.start_angle
+    stop = 360.0 if full else entity.dxf.end_angle
+    sweep = stop - start if stop >= start else (stop - start) % 360
+    count = math.ceil(fineness.fragments(radius * scale) * sweep / 360)
+    angles = np.radians(start + sweep * np.arange(count + 1) / max(count, 1))
+    points = center + radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    return np.concatenate([points[:-1], points[:1]]) if full else points
+
+
+def _ellipse(entity: Any, fineness: Fineness, scale: float) -> FloatArray:
+    center, axis = np.array(entity.dxf.center.vec2), np.array(entity.dxf.major_axis.vec2)
+    start, stop = entity.dxf.start_param, entity.dxf.end_param
+    sweep = stop - start if stop >= start else (stop - start) % math.tau
+    sides = fineness.fragments(float(np.hypot(*axis)) * scale)
+    count = math.ceil(sides * sweep / math.tau - 1e-9)
+    angles = start + sweep * np.arange(count + 1) / max(count, 1)
+    other = np.array([-axis[1], axis[0]]) * entity.dxf.ratio
+    points = center + np.outer(np.cos(angles), axis) + np.outer(np.sin(angles), other)
+    closed = math.isclose(sweep, math.tau)
+    return np.concatenate([points[:-1], points[:1]]) if closed else points
+
+
+def svg_region(path: Path, dpi: float, centered: bool) -> Region:
+    """Return the filled shapes of an SVG file in millimetres.
+
+    Parameters
+    ----------
+    path : Path
+    dpi : float
+        User units per inch.
+    centered : bool
+        Whether the middle of the drawing is at the origin.
+    """
+    region = load_svg(path).scale(25.4 / dpi)
+    if centered and (bounds := region.bounds) is not None:
+        return region.translate(*(-bounds.mean(axis=0)).tolist())
+    return region
