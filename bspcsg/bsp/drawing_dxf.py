@@ -56,7 +56,7 @@ def load_dxf(
         if wanted is None or entity.dxf.layer in wanted
     ]
     chains = [chain for entity in entities for chain in _flattened(entity, chord)]
-    return Region(closed_outlines(chains, os.fspath(path)), winding=winding, pitch=pitch)
+    return Region(_closed(chains, os.fspath(path)), winding=winding, pitch=pitch)
 
 
 def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
@@ -108,7 +108,7 @@ def _flattened(entity: Any, chord: float) -> list[FloatArray]:
     ]
 
 
-def closed_outlines(chains: list[FloatArray], name: str) -> list[FloatArray]:
+def _closed(chains: list[FloatArray], name: str) -> list[FloatArray]:
     """Return closed loops; open chains are joined at their ends."""
     loops = [chain[:-1] for chain in chains if (chain[0] == chain[-1]).all()]
     rest = [chain for chain in chains if (chain[0] != chain[-1]).any()]

@@ -1,7 +1,7 @@
 """Trees as geometry."""
 
 from collections.abc import Hashable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ..bsp import Region
 from ..errors import BspcsgError, FormatError
@@ -9,7 +9,7 @@ from ..solid import Solid
 from . import nodes_file, nodes_hull, nodes_move, nodes_plane, nodes_project, nodes_set
 from . import nodes_solid, nodes_sweep
 from .polish import polished_pitch
-from .registry import RECIPES, Evaluation, Geometry
+from .registry import RECIPES, Evaluation, Geometry, OnInvalid
 from .source import error_at
 from .tree import CsgTree, Node
 
@@ -25,7 +25,9 @@ def node_names() -> tuple[str, ...]:
     return tuple(sorted(RECIPES))
 
 
-def evaluate(tree: CsgTree, *, polish: bool = False) -> Geometry:
+def evaluate(
+    tree: CsgTree, *, polish: bool = False, on_invalid: OnInvalid = "error"
+) -> Geometry:
     """Return what a tree stands for: a solid, a region of the plane, or None if it is nothing.
 
     Parameters
@@ -35,6 +37,9 @@ def evaluate(tree: CsgTree, *, polish: bool = False) -> Geometry:
         Undo what six digits did: matrices within 1e-5 of a rotation become that rotation, and
         coordinates are snapped to a lattice of about 1e-6 of the model's size. The model is
         evaluated once more to know its size.
+    on_invalid : {"error", "warn"}
+        Whether polyhedra and imported meshes that are not closed are errors, or are left out with a
+        warning, as OpenSCAD does.
 
     Raises
     ------
@@ -50,11 +55,11 @@ def evaluate(tree: CsgTree, *, polish: bool = False) -> Geometry:
     CsgWarning
         For what is left out as OpenSCAD leaves it out.
     """
-    result = _run(tree, Evaluation(tree.name, tree.folder, polish))
+    run = Evaluation(tree.name, tree.folder, polish, on_invalid=on_invalid)
+    result = _run(tree, run)
     if not polish or result is None or result.is_empty:
         return result
-    pitch = polished_pitch(_largest(result))
-    return _run(tree, Evaluation(tree.name, tree.folder, polish, pitch))
+    return _run(tree, replace(run, pitch=polished_pitch(_largest(result))))
 
 
 def _largest(body: Solid | Region) -> float:

@@ -13,7 +13,7 @@ from ..solid import Solid
 from .evaluator import evaluate
 from .json_form import from_json
 from .parser import parse
-from .registry import Geometry
+from .registry import Geometry, OnInvalid
 from .tree import Argument, CsgTree, Node
 from .writer import written
 
@@ -21,7 +21,13 @@ from .writer import written
 _LARGEST = 1 << 28
 
 
-def load(path: str | os.PathLike[str], *, polish: bool = False, **options: Any) -> Solid:
+def load(
+    path: str | os.PathLike[str],
+    *,
+    polish: bool = False,
+    on_invalid: OnInvalid = "error",
+    **options: Any,
+) -> Solid:
     """Read a script as a solid.
 
     Parameters
@@ -31,6 +37,8 @@ def load(path: str | os.PathLike[str], *, polish: bool = False, **options: Any) 
         converts first (see `bspcsg.csg.read_tree`).
     polish : bool
         Undo OpenSCAD's rounding to six digits (see `bspcsg.csg.evaluate`).
+    on_invalid : {"error", "warn"}
+        What to do about meshes that are not closed (see `bspcsg.csg.evaluate`).
     **options
         For `.scad`: ``defines``, a dict of variables.
 
@@ -48,11 +56,16 @@ def load(path: str | os.PathLike[str], *, polish: bool = False, **options: Any) 
         For what is left out as OpenSCAD leaves it out.
     """
     tree = read_tree(path, **options)
-    return _solid(evaluate(tree, polish=polish), tree.name)
+    return _solid(evaluate(tree, polish=polish, on_invalid=on_invalid), tree.name)
 
 
 def loads(
-    text: str, *, polish: bool = False, folder: str | Path | None = None, name: str = "<csg>"
+    text: str,
+    *,
+    polish: bool = False,
+    on_invalid: OnInvalid = "error",
+    folder: str | Path | None = None,
+    name: str = "<csg>",
 ) -> Solid:
     """Return the solid of a script's text (see `load`).
 
@@ -63,7 +76,7 @@ def loads(
     7.0
     """
     tree = parse(text, name, folder)
-    return _solid(evaluate(tree, polish=polish), name)
+    return _solid(evaluate(tree, polish=polish, on_invalid=on_invalid), name)
 
 
 def read_tree(path: str | os.PathLike[str], **options: Any) -> CsgTree:

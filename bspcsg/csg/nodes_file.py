@@ -7,7 +7,6 @@ import numpy as np
 from .. import io
 from .._types import FloatArray
 from ..bsp import Region
-from ..solid import Solid
 from .arguments import Arguments
 from .drawings import dxf_region, svg_region
 from .heights import height_map, read_heights
@@ -32,7 +31,7 @@ def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geome
         message = f"“{suffix}” files are not supported; known are {known}."
         raise arguments.error(message, "unsupported")
     raw = io.read(path)
-    return Solid(raw.vertices, raw.faces, winding="nonzero")
+    return run.closed_solid(owner, raw.vertices, raw.faces)
 
 
 def _dxf(path: Path, arguments: Arguments) -> Region:

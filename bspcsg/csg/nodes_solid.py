@@ -83,7 +83,7 @@ def polyhedron(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
     vertices, same = welded(points)
     triangles = same[triangles]
     proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
-    return Solid(vertices, triangles[proper], winding="nonzero") if proper.any() else Solid.empty()
+    return run.closed_solid(owner, vertices, triangles[proper]) if proper.any() else Solid.empty()
 
 
 def _triangles(points: np.ndarray, face: list[int]) -> np.ndarray:

@@ -4,15 +4,19 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from ..bsp import Region
+from ..errors import InvalidMeshError
 from ..solid import Solid
 from .arguments import Arguments
 from .tree import Node
 
 #: What a node stands for; None is nothing at all, which has no dimension.
 Geometry: TypeAlias = Solid | Region | None
+
+
+OnInvalid: TypeAlias = Literal["error", "warn"]
 
 
 class CsgWarning(UserWarning):
@@ -33,12 +37,15 @@ class Evaluation:
         Whether matrices are made exact rotations where they nearly are.
     pitch : int, optional
         The lattice for bodies as they are made, ``10**pitch`` units.
+    on_invalid : {"error", "warn"}
+        Whether polyhedra and imported meshes that are not closed are errors or left out.
     """
 
     script: str = "<csg>"
     folder: Path = field(default_factory=Path)
     polish: bool = False
     pitch: int | None = None
+    on_invalid: OnInvalid = "error"
 
     def arguments(self, node: Node, order: tuple[str, ...] = ()) -> Arguments:
         """Return the arguments of a node."""
@@ -49,6 +56,19 @@ class Evaluation:
         place = node.place
         text = f"{self.script}:{place.line}:{place.column}: {node.name}(): {message}"
         warnings.warn(text, CsgWarning, stacklevel=2)
+
+    def closed_solid(self, node: Node, vertices: Any, faces: Any) -> Solid | None:
+        """Return the solid of a mesh from outside, whichever way round it is oriented.
+
+        One that is not closed is an error, or left out with a warning.
+        """
+        try:
+            return Solid(vertices, faces, winding="nonzero")
+        except InvalidMeshError as error:
+            if self.on_invalid == "error" or error.code != "not_closed":
+                raise
+            self.warn(node, f"{error.message} It is left out")
+            return None
 
     def same_kind(self, node: Node, children: Sequence[Geometry]) -> list[Solid] | list[Region]:
         """Return the children of the first one's dimension; others do not count, as in OpenSCAD."""
