@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .._types import FloatArray
-from ..bsp import Region, load_svg
+from ..bsp import Region
 from ..bsp.drawing_dxf import read_document
 from .tessellation import Fineness
 
@@ -148,20 +148,3 @@ def _ellipse(entity: Any, fineness: Fineness, scale: float) -> FloatArray:
     points = center + np.outer(np.cos(angles), axis) + np.outer(np.sin(angles), other)
     closed = math.isclose(sweep, math.tau)
     return np.concatenate([points[:-1], points[:1]]) if closed else points
-
-
-def svg_region(path: Path, dpi: float, centered: bool) -> Region:
-    """Return the filled shapes of an SVG file in millimetres.
-
-    Parameters
-    ----------
-    path : Path
-    dpi : float
-        User units per inch.
-    centered : bool
-        Whether the middle of the drawing is at the origin.
-    """
-    region = load_svg(path).scale(25.4 / dpi)
-    if centered and (bounds := region.bounds) is not None:
-        return region.translate(*(-bounds.mean(axis=0)).tolist())
-    return region

@@ -6,8 +6,16 @@ from dataclasses import dataclass, field, replace
 from ..bsp import Region
 from ..errors import BspcsgError, FormatError
 from ..solid import Solid
-from . import nodes_file, nodes_hull, nodes_move, nodes_plane, nodes_project, nodes_set
-from . import nodes_solid, nodes_sweep
+from . import (
+    nodes_file,
+    nodes_hull,
+    nodes_move,
+    nodes_plane,
+    nodes_project,
+    nodes_set,
+    nodes_solid,
+    nodes_sweep,
+)
 from .polish import polished_pitch
 from .registry import RECIPES, Evaluation, Geometry, OnInvalid
 from .source import error_at
@@ -25,9 +33,7 @@ def node_names() -> tuple[str, ...]:
     return tuple(sorted(RECIPES))
 
 
-def evaluate(
-    tree: CsgTree, *, polish: bool = False, on_invalid: OnInvalid = "error"
-) -> Geometry:
+def evaluate(tree: CsgTree, *, polish: bool = False, on_invalid: OnInvalid = "error") -> Geometry:
     """Return what a tree stands for: a solid, a region of the plane, or None if it is nothing.
 
     Parameters
@@ -144,5 +150,3 @@ def _placed(error: BspcsgError, node: Node, script: str) -> BspcsgError:
         return error
     message = f"{script}:{node.place.line}:{node.place.column}: {node.name}(): {error.message}"
     return type(error)(message, error.code, error.where)
-
-

@@ -23,7 +23,9 @@ def read_heights(path: Path) -> FloatArray:
     try:
         lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError as error:
-        raise FormatError(f"{path}: cannot read this file: {error.strerror}.", "unreadable") from error
+        raise FormatError(
+            f"{path}: cannot read this file: {error.strerror}.", "unreadable"
+        ) from error
     rows = [_row(path, k, line) for k, line in enumerate(lines, 1) if _holds_numbers(line)]
     columns = max(map(len, rows), default=0)
     if len(rows) < 2 or columns < 2:

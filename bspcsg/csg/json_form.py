@@ -118,7 +118,9 @@ def _argument(data: Any, where: str, name: str) -> Argument:
 
 def _value(data: Any, where: str, name: str, depth: int) -> Value:
     if isinstance(data, list) and depth <= DEEPEST_VECTOR:
-        return tuple(_value(entry, f"{where}[{k}]", name, depth + 1) for k, entry in enumerate(data))
+        return tuple(
+            _value(entry, f"{where}[{k}]", name, depth + 1) for k, entry in enumerate(data)
+        )
     if isinstance(data, dict) and data.get("number") in _ODD:
         return _ODD[data["number"]]
     if isinstance(data, (bool, str)) or data is None:

@@ -8,8 +8,9 @@ from .. import io
 from .._types import FloatArray
 from ..bsp import Region
 from .arguments import Arguments
-from .drawings import dxf_region, svg_region
+from .drawings import dxf_region
 from .heights import height_map, read_heights
+from .paper import svg_region
 from .registry import Evaluation, Geometry, node
 from .tessellation import Fineness
 from .tree import Node
@@ -61,5 +62,3 @@ def _path(arguments: Arguments, run: Evaluation) -> Path:
         message = f"there is no file “{name}”; names are relative to the script's folder."
         raise arguments.error(message, "missing_file")
     return path
-
-

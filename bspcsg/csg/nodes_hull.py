@@ -1,7 +1,6 @@
 """Convex hulls and sums of shapes: hull, minkowski."""
 
 from functools import reduce
-from typing import cast
 
 import manifold3d
 import numpy as np
@@ -25,14 +24,11 @@ _MOST_PAIRS = 20_000
 @node("hull")
 def hull(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Return the convex hull of all children together."""
-    same = [child for child in run.same_kind(owner, children) if not child.is_empty]
-    if not same:
-        return None
-    if isinstance(same[0], Solid):
-        solids = cast("list[Solid]", same)
+    solids, regions = run.same_kind(owner, [child for child in children if child])
+    if solids:
         return hull_solid(np.concatenate([solid.to_mesh().vertices for solid in solids]))
-    regions = cast("list[Region]", same)
-    return hull_region(np.concatenate([loop for r in regions for loop in r.to_polygons()]))
+    loops = [loop for region in regions for loop in region.to_polygons()]
+    return hull_region(np.concatenate(loops)) if loops else None
 
 
 def hull_solid(points: FloatArray) -> Solid:
@@ -79,13 +75,12 @@ def minkowski(owner: Node, children: list[Geometry], run: Evaluation) -> Geometr
     the sums of their corners, and these are united.
     """
     arguments = run.arguments(owner)
-    same = run.same_kind(owner, children)
-    if not same:
-        return None
-    if isinstance(same[0], Solid):
-        solids = cast("list[Solid]", same)
+    solids, regions = run.same_kind(owner, children)
+    if solids:
         return reduce(lambda a, b: _solid_sum(a, b, arguments), solids)
-    return reduce(lambda a, b: _region_sum(a, b, arguments), cast("list[Region]", same))
+    if regions:
+        return reduce(lambda a, b: _region_sum(a, b, arguments), regions)
+    return None
 
 
 def _solid_sum(a: Solid, b: Solid, arguments: Arguments) -> Solid:

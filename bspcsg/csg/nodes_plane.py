@@ -91,8 +91,11 @@ def _offset(clipper: Any, figure: Region, delta: float, join: Any, sides: int) -
     # This tolerance makes Clipper step by a whole circle's sides.
     tolerance = abs(delta) * scale * (1 - np.cos(np.pi / sides))
     pen = clipper.PyclipperOffset(_MITER_LIMIT, tolerance)
-    pen.AddPaths([np.rint(loop * scale).astype(int).tolist() for loop in loops], join,
-                 clipper.ET_CLOSEDPOLYGON)
+    pen.AddPaths(
+        [np.rint(loop * scale).astype(int).tolist() for loop in loops],
+        join,
+        clipper.ET_CLOSEDPOLYGON,
+    )
     paths = pen.Execute(delta * scale)
     return Region([np.array(path) / scale for path in paths], pitch=figure.pitch)
 

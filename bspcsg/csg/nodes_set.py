@@ -2,25 +2,20 @@
 
 from functools import reduce
 from operator import and_, sub
-from typing import cast
 
 from .. import setops
 from ..bsp import Region
-from ..solid import Solid
 from .registry import Evaluation, Geometry, node
 from .tree import Node
 
 
 def union_of(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Return the union of the children of one kind; None if there is none."""
-    same = run.same_kind(owner, children)
-    if not same:
-        return None
-    if len(same) == 1:
-        return same[0]
-    if isinstance(same[0], Solid):
-        return setops.union(cast("list[Solid]", same))
-    regions = cast("list[Region]", same)
+    solids, regions = run.same_kind(owner, children)
+    if solids:
+        return setops.union(solids)
+    if len(regions) <= 1:
+        return regions[0] if regions else None
     # Outlines wind once around what is inside: all of them together wind at least once.
     loops = [loop for region in regions for loop in region.to_polygons()]
     return Region(loops, pitch=min(region.pitch for region in regions))
@@ -37,21 +32,14 @@ def difference(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
     """Take all children but the first from the first; if that is nothing, so is the result."""
     if not children or children[0] is None:
         return None
-    same = run.same_kind(owner, children)
-    if isinstance(same[0], Solid):
-        solids = cast("list[Solid]", same)
-        return setops.difference(solids[0], solids[1:])
-    return reduce(sub, cast("list[Region]", same))
+    solids, regions = run.same_kind(owner, children)
+    return setops.difference(solids[0], solids[1:]) if solids else reduce(sub, regions)
 
 
 @node("intersection", makes_corners=False)
 def intersection(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Intersect the children; one that is nothing leaves nothing."""
-    if any(child is None for child in children):
+    if not children or any(child is None for child in children):
         return None
-    same = run.same_kind(owner, children)
-    if not same:
-        return None
-    if isinstance(same[0], Solid):
-        return setops.intersection(cast("list[Solid]", same))
-    return reduce(and_, cast("list[Region]", same))
+    solids, regions = run.same_kind(owner, children)
+    return setops.intersection(solids) if solids else reduce(and_, regions)

@@ -43,9 +43,7 @@ def _sphere(r: float, around: int, rings: int) -> Solid:
     ids = np.arange(around * rings).reshape(rings, around)
     following = np.roll(ids, -1, axis=1)
     # The first ring is the upper one.
-    bands = [
-        strip(ids[k + 1], following[k + 1], ids[k], following[k]) for k in range(rings - 1)
-    ]
+    bands = [strip(ids[k + 1], following[k + 1], ids[k], following[k]) for k in range(rings - 1)]
     cap = np.array([(0, k, k + 1) for k in range(1, around - 1)])
     faces = [*bands, cap, cap[:, ::-1] + around * (rings - 1)]
     return from_arrays(np.concatenate(levels) * r, np.concatenate(faces))
@@ -59,7 +57,9 @@ def cylinder_node(owner: Node, children: list[Geometry], run: Evaluation) -> Geo
     h = arguments.number("h", 1.0)
     r = arguments.number("d") / 2 if "d" in arguments else arguments.number("r", 1.0)
     low, high = (
-        arguments.number(f"d{end}") / 2 if f"d{end}" in arguments else arguments.number(f"r{end}", r)
+        arguments.number(f"d{end}") / 2
+        if f"d{end}" in arguments
+        else arguments.number(f"r{end}", r)
         for end in "12"
     )
     if h <= 0 or min(low, high) < 0 or max(low, high) <= 0:

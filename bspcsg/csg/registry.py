@@ -70,17 +70,22 @@ class Evaluation:
             self.warn(node, f"{error.message} It is left out")
             return None
 
-    def same_kind(self, node: Node, children: Sequence[Geometry]) -> list[Solid] | list[Region]:
-        """Return the children of the first one's dimension; others do not count, as in OpenSCAD."""
+    def same_kind(
+        self, node: Node, children: Sequence[Geometry]
+    ) -> tuple[list[Solid], list[Region]]:
+        """Return the solids or the regions among the children, whichever comes first.
+
+        Children of the other dimension do not count, as in OpenSCAD.
+        """
         there = [child for child in children if child is not None]
         solids = [child for child in there if isinstance(child, Solid)]
         regions = [child for child in there if isinstance(child, Region)]
-        if solids and regions:
-            flat = isinstance(there[0], Region)
-            left_out = "solids" if flat else "plane figures"
-            self.warn(node, f"its children are of 2D and 3D; the {left_out} among them are ignored")
-            return regions if flat else solids
-        return solids or regions
+        if not solids or not regions:
+            return solids, regions
+        flat = isinstance(there[0], Region)
+        left_out = "solids" if flat else "plane figures"
+        self.warn(node, f"its children are of 2D and 3D; the {left_out} among them are ignored")
+        return ([], regions) if flat else (solids, [])
 
 
 Maker: TypeAlias = Callable[[Node, list[Geometry], Evaluation], Geometry]

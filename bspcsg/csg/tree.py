@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
 #: What an argument may be: a number, a text, true or false, undef (None), or a vector of values.
-Value: TypeAlias = "float | str | bool | None | tuple[Value, ...]"
+Value: TypeAlias = "float | str | bool | tuple[Value, ...] | None"
 
 
 class Place(NamedTuple):

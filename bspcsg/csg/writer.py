@@ -5,7 +5,6 @@ import math
 from .tokens import quoted
 from .tree import Argument, CsgTree, Node, Value
 
-
 #: Lines are indented no further, so that a deep tree does not become mostly white.
 _DEEPEST_INDENT = 40
 
