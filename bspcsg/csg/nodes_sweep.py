@@ -49,10 +49,12 @@ def linear_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Ge
     arguments = run.arguments(owner, ("height", "center"))
     figure = _figure(arguments, owner, children, run)
     height = arguments.number("height", 100.0)
-    if figure is None or figure.is_empty or height <= 0:
-        return None if figure is None else Solid.empty()
+    if figure is None:
+        return None
+    if figure.is_empty or height <= 0:
+        return Solid.empty()
     sweep = _sweep(arguments, figure, height)
-    if sweep.twist == 0 and sweep.scale == (1, 1):
+    if sweep.twist == 0 and sweep.scale == (1.0, 1.0):
         return figure.extrude(height, center=arguments.flag("center"))
     return _swept(figure, sweep)
 
