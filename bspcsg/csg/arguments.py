@@ -1,6 +1,5 @@
 """A node's arguments, checked as they are asked for; errors name line and column."""
 
-import math
 from typing import Any
 
 from ..errors import FormatError
@@ -10,6 +9,9 @@ from .writer import value_text
 
 #: More corners than this in one body are refused, before memory runs out.
 MOST_CORNERS = 4_000_000
+
+#: Larger numbers stand for no length or angle; products of three still are doubles.
+LARGEST = 1e100
 
 #: What an error shows of a value.
 _QUOTED = 40
@@ -53,10 +55,10 @@ class Arguments:
         return self._values.get(name)
 
     def number(self, name: str, default: float | None = None) -> float:
-        """Return a finite number."""
+        """Return a number, finite and not absurdly large."""
         value = self._given(name, default)
-        if not _is_number(value) or not math.isfinite(value):
-            raise self._wrong(name, "a finite number", value)
+        if not _is_number(value) or not _is_usable(value):
+            raise self._wrong(name, "a number within ±1e100", value)
         return float(value)
 
     def flag(self, name: str, default: bool = False) -> bool:
@@ -76,27 +78,29 @@ class Arguments:
     def vector(
         self, name: str, size: int, default: tuple[float, ...] | None = None
     ) -> tuple[float, ...]:
-        """Return finite numbers, `size` of them; one number stands for equal ones."""
+        """Return `size` such numbers; one number stands for equal ones."""
         value = self._given(name, default)
         if _is_number(value):
             value = (value,) * size
-        if not isinstance(value, tuple) or len(value) < size or not _all_finite(value[:size]):
-            raise self._wrong(name, f"{size} finite numbers", value)
+        if not isinstance(value, tuple) or len(value) < size or not _all_usable(value[:size]):
+            raise self._wrong(name, f"{size} numbers within ±1e100", value)
         return tuple(float(entry) for entry in value[:size])
 
     def points(self, name: str, size: int) -> list[tuple[float, ...]]:
-        """Return points of `size` finite coordinates each."""
+        """Return points of `size` such numbers each."""
         value = self._given(name, None)
         if not isinstance(value, tuple):
             raise self._wrong(name, "a list of points", value)
         for number, point in enumerate(value):
-            if not isinstance(point, tuple) or len(point) != size or not _all_finite(point):
-                raise self._wrong(f"{name}[{number}]", f"{size} finite numbers", point)
+            if not isinstance(point, tuple) or len(point) != size or not _all_usable(point):
+                raise self._wrong(f"{name}[{number}]", f"{size} numbers within ±1e100", point)
         return [tuple(map(float, point)) for point in value]
 
-    def index_lists(self, name: str, count: int) -> list[list[int]]:
-        """Return lists of whole numbers from 0 up to below `count`."""
+    def index_lists(self, name: str, count: int, *, single: bool = False) -> list[list[int]]:
+        """Return lists of whole numbers from 0 up to below `count`; maybe a `single` one alone."""
         value = self._given(name, None)
+        if single and isinstance(value, tuple) and value and _is_number(value[0]):
+            value = (value,)
         if not isinstance(value, tuple):
             raise self._wrong(name, "a list of lists of point numbers", value)
         return [self._indices(f"{name}[{k}]", entry, count) for k, entry in enumerate(value)]
@@ -132,5 +136,9 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def _all_finite(values: tuple[Any, ...]) -> bool:
-    return all(_is_number(value) and math.isfinite(value) for value in values)
+def _is_usable(value: float) -> bool:
+    return abs(value) <= LARGEST  # false for NaN
+
+
+def _all_usable(values: tuple[Any, ...]) -> bool:
+    return all(_is_number(value) and _is_usable(value) for value in values)

@@ -122,19 +122,20 @@ class _Cache:
             raise unsupported(node, self.run.script)
         try:
             made = recipe.maker(node, children, self.run)
-            return self._snapped(made) if recipe.makes_corners else made
+            return self._built(made) if recipe.makes_corners else made
         except BspcsgError as error:
             raise _placed(error, node, self.run.script) from error
 
-    def _snapped(self, body: Geometry) -> Geometry:
-        """Return the body on the lattice asked for."""
+    def _built(self, body: Geometry) -> Geometry:
+        """Return a body with new corners on the lattice asked for; errors are this node's."""
         pitch = self.run.pitch
-        if pitch is None or body is None or body.is_empty:
-            return body
-        if isinstance(body, Region):
+        if isinstance(body, Region) and pitch is not None and not body.is_empty:
             return Region(body.to_polygons(), pitch=pitch)
-        mesh = body.normalized().to_mesh()
-        return Solid(mesh.vertices, mesh.faces, pitch=pitch)
+        # Asking whether it is empty builds it, and raises its errors here.
+        if isinstance(body, Solid) and not body.is_empty and pitch is not None:
+            mesh = body.normalized().to_mesh()
+            return Solid(mesh.vertices, mesh.faces, pitch=pitch)
+        return body
 
 
 def unsupported(node: Node, script: str) -> FormatError:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..bsp import Region
-from ..errors import FormatError
+from ..errors import BspcsgError, FormatError
 from ..io.atomic import write_file
 from ..solid import Solid
 from .evaluator import evaluate
@@ -118,7 +118,14 @@ def _solid(body: Geometry, name: str) -> Solid:
     if isinstance(body, Region):
         message = f"{name}: the model is a plane figure; put linear_extrude(height = 1) around it."
         raise FormatError(message, "not_3d")
-    return Solid.empty() if body is None else body
+    if body is None:
+        return Solid.empty()
+    try:
+        # What makes no solid is an error of this call, not of the first query.
+        assert body.tree is not None
+    except BspcsgError as error:
+        raise type(error)(f"{name}: {error.message}", error.code, error.where) from error
+    return body
 
 
 def dumps(model: Solid | CsgTree) -> str:

@@ -9,7 +9,7 @@ from .._types import FloatArray
 from ..bsp import Region
 from ..solid import Solid
 from ..transform import determinant_sign
-from .arguments import Arguments
+from .arguments import LARGEST, Arguments
 from .nodes_set import union_of
 from .polish import polished_matrix
 from .registry import Evaluation, Geometry, node
@@ -29,14 +29,14 @@ def multmatrix(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
 
 
 def _moved(owner: Node, body: Geometry, matrix: FloatArray, run: Evaluation) -> Geometry:
-    flat = isinstance(body, Region)
-    map_ = _flat_map(matrix) if flat else matrix
-    if body is not None and determinant_sign(map_) == 0:
+    if body is None or np.array_equal(matrix, np.eye(4)):
+        return body
+    if determinant_sign(_flat_map(matrix) if isinstance(body, Region) else matrix) == 0:
         run.warn(owner, "its matrix flattens its children; it is left out")
         return None
     if isinstance(body, Region):
         return body.transform(matrix[:2, [0, 1, 3]])
-    return None if body is None else body.transform(matrix)
+    return body.transform(matrix)
 
 
 def _flat_map(matrix: FloatArray) -> FloatArray:
@@ -56,6 +56,8 @@ def _matrix(arguments: Arguments) -> FloatArray | None:
     matrix[: len(rows)] = [list(_numbers(row)) for row in rows]
     if not np.isfinite(matrix).all():
         return None
+    if np.abs(matrix).max() > LARGEST:
+        raise arguments.error("its matrix has an entry beyond ±1e100.")
     if matrix[3, :3].any() or matrix[3, 3] == 0:
         raise arguments.error("the last row of its matrix must be 0, 0, 0, 1.")
     return matrix / matrix[3, 3] if matrix[3, 3] != 1 else matrix

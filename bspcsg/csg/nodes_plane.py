@@ -57,7 +57,7 @@ def polygon(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 def _paths(arguments: Arguments, count: int) -> list[list[int]]:
     if "paths" not in arguments or arguments.value("paths") == ():
         return [list(range(count))]
-    return arguments.index_lists("paths", count)
+    return arguments.index_lists("paths", count, single=True)
 
 
 @node("offset")
