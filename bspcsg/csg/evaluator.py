@@ -41,8 +41,9 @@ def evaluate(tree: CsgTree, *, polish: bool = False, on_invalid: OnInvalid = "er
     tree : CsgTree
     polish : bool
         Undo what six digits did: matrices within 1e-5 of a rotation become that rotation, and
-        coordinates are snapped to a lattice of about 1e-6 of the model's size. The model is
-        evaluated once more to know its size.
+        coordinates are snapped to a lattice of about 1e-6 of the model's size, so that faces meet
+        again that nearly did; faces of turned bodies may break where their corners move by as
+        much. The model is evaluated once more to know its size.
     on_invalid : {"error", "warn"}
         Whether polyhedra and imported meshes that are not closed are errors, or are left out with a
         warning, as OpenSCAD does.
@@ -122,20 +123,23 @@ class _Cache:
             raise unsupported(node, self.run.script)
         try:
             made = recipe.maker(node, children, self.run)
-            return self._built(made) if recipe.makes_corners else made
+            polished = self.run.pitch is not None
+            return self._built(made) if recipe.makes_corners or polished else made
         except BspcsgError as error:
             raise _placed(error, node, self.run.script) from error
 
     def _built(self, body: Geometry) -> Geometry:
-        """Return a body with new corners on the lattice asked for; errors are this node's."""
+        """Return a body on the lattice asked for; what is wrong with it is this node's error."""
         pitch = self.run.pitch
-        if isinstance(body, Region) and pitch is not None and not body.is_empty:
-            return Region(body.to_polygons(), pitch=pitch)
-        # Asking whether it is empty builds it, and raises its errors here.
-        if isinstance(body, Solid) and not body.is_empty and pitch is not None:
-            mesh = body.normalized().to_mesh()
-            return Solid(mesh.vertices, mesh.faces, pitch=pitch)
-        return body
+        # Asking whether it is empty builds it.
+        if body is None or body.is_empty or pitch is None:
+            return body
+        if isinstance(body, Region):
+            return body if body.pitch == pitch else Region(body.to_polygons(), pitch=pitch)
+        if body.tree.pitch == pitch:
+            return body
+        mesh = body.normalized().to_mesh()
+        return Solid(mesh.vertices, mesh.faces, pitch=pitch)
 
 
 def unsupported(node: Node, script: str) -> FormatError:
