@@ -41,9 +41,10 @@ def evaluate(tree: CsgTree, *, polish: bool = False, on_invalid: OnInvalid = "er
     tree : CsgTree
     polish : bool
         Undo what six digits did: matrices within 1e-5 of a rotation become that rotation, and
-        coordinates are snapped to a lattice of about 1e-6 of the model's size, so that faces meet
-        again that nearly did; faces of turned bodies may break where their corners move by as
-        much. The model is evaluated once more to know its size.
+        coordinates are snapped to a lattice whose step is a unit of the sixth digit of the model's
+        largest coordinate, so that faces meet again that nearly did; faces of turned bodies may
+        break where their corners move by as much. The model is evaluated once more to know its
+        size.
     on_invalid : {"error", "warn"}
         Whether polyhedra and imported meshes that are not closed are errors, or are left out with a
         warning, as OpenSCAD does.

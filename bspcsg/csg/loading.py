@@ -131,8 +131,8 @@ def _solid(body: Geometry, name: str) -> Solid:
 def dumps(model: Solid | CsgTree) -> str:
     """Return a solid or a tree as the text of a `.csg` script.
 
-    A solid becomes one polyhedron, its reduced boundary, in all digits: reading it gives an equal
-    solid.
+    A solid becomes one polyhedron, its reduced boundary, as it is saved to mesh files: corners in
+    double precision, which reading snaps to the lattice. A tree gives an equal tree again.
 
     Raises
     ------

@@ -9,8 +9,8 @@ from .._types import FloatArray
 #: Entries of a matrix may be this far from a rotation's to be taken for one.
 NEARLY = 1e-5
 
-#: Coordinates are snapped to a lattice of about this part of the model's size.
-RELATIVE_STEP = 1e-6
+#: OpenSCAD writes so many digits.
+DIGITS = 6
 
 
 def polished_matrix(matrix: FloatArray) -> FloatArray:
@@ -37,5 +37,9 @@ def polished_matrix(matrix: FloatArray) -> FloatArray:
 
 
 def polished_pitch(largest: float) -> int:
-    """Return the pitch of the lattice for a model whose coordinates reach so far."""
-    return math.floor(math.log10(largest * RELATIVE_STEP)) if largest > 0 else -9
+    """Return the pitch of the lattice for a model whose coordinates reach so far.
+
+    Its step is a unit of the sixth digit there: no coordinate was written finer, and what differs
+    by rounding alone falls on one lattice point, unless it lies halfway between two.
+    """
+    return math.floor(math.log10(largest)) + 1 - DIGITS if largest > 0 else -9
