@@ -177,10 +177,14 @@ def _points_of(elements: Any, segment: Any, chord: float) -> list[complex]:
     if segment.end is None:
         return []
     if isinstance(segment, (elements.Move, elements.Line, elements.Close)):
-        return [complex(segment.end)]
+        return [_complex(segment.end)]
     steps = _steps(segment, chord)
-    inner = [complex(segment.point(k / steps)) for k in range(1, steps)]
-    return [*inner, complex(segment.end)]
+    inner = [_complex(segment.point(k / steps)) for k in range(1, steps)]
+    return [*inner, _complex(segment.end)]
+
+
+def _complex(point: Any) -> complex:
+    return complex(float(point.x), float(point.y))
 
 
 def _steps(segment: Any, chord: float) -> int:
@@ -188,7 +192,7 @@ def _steps(segment: Any, chord: float) -> int:
     steps = 2
     while steps < 1 << 12:
         t = np.arange(4 * steps + 1) / (4 * steps)
-        curve = np.array([complex(segment.point(float(k))) for k in t])
+        curve = np.array([_complex(segment.point(float(k))) for k in t])
         start, end = curve[:-4:4], curve[4::4]
         if max(_distance(curve[k::4], start, end) for k in (1, 2, 3)) <= chord:
             break

@@ -120,22 +120,6 @@ class Intervals(Settled, ObjectTree):
         """The intervals one by one, in order."""
         return tuple(type(self)([pair], pitch=self.pitch) for pair in self.pairs)
 
-    def project(self, points: Any) -> FloatArray:
-        """Return the boundary point nearest to each of (k,) points; the lower one of two.
-
-        Raises
-        ------
-        InvalidMeshError
-            If the set has no boundary.
-        """
-        ends = self.pairs[np.isfinite(self.pairs)]
-        if len(ends) == 0:
-            raise invalid_parameter("A set without boundary has no nearest boundary point.")
-        array = np.asarray(points, dtype=np.float64)
-        if not np.isfinite(array).all():
-            raise InvalidMeshError("Points must be finite.", "non_finite")
-        return np.asarray(ends[np.abs(array[..., None] - ends).argmin(axis=-1)])
-
     def translate(self, offset: Scalar) -> "Intervals":
         """Return the set moved; exact if the offset is a whole number of lattice steps."""
         shift = number(offset, "offset")

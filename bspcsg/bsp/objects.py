@@ -7,19 +7,19 @@ rounded after the coordinates have been snapped to the lattice of step ``10**pit
 Sources: Thibault, Naylor 1987; Naylor, Amanatides, Thibault 1990.
 """
 
-from collections.abc import Callable, Sequence
-from fractions import Fraction
+from collections.abc import Sequence
 from typing import Any, Self
 
 from .. import _core, interop
-from .._types import FloatArray, Scalar, SetOp, SideArray, WindingRule
+from .._types import FloatArray, Scalar, SetOp, WindingRule
 from ..errors import core_errors, invalid_parameter
 from .boundary import boundary_arrays, suited_pitch
-from .pieces import BuildPolicy, Hyperplane, NodeTable, PieceArrays, Pieces, SplitCase
-from .rows import hyperplane_row, hyperplane_rows, point_rows
+from .pieces import BuildPolicy, Hyperplane, SplitCase
+from .rows import hyperplane_row, hyperplane_rows
+from .tree_queries import TreeQueries
 
 
-class ObjectTree:
+class ObjectTree(TreeQueries):
     """A set of points as a partition tree; an immutable value.
 
     Parameters
@@ -56,7 +56,7 @@ class ObjectTree:
     (Fraction(4, 1), Fraction(1, 1), Fraction(2, 1))
     """
 
-    __slots__ = ("_settled_size", "_tree")
+    __slots__ = ("_settled_size",)
 
     def __init__(
         self,
@@ -159,7 +159,9 @@ class ObjectTree:
                 f"A set of dimension {self.dimension} cannot be combined with one of dimension"
                 f" {other.dimension}."
             )
-        pitch = min(self.pitch, other.pitch)
+        # Nothing and everything live on any lattice.
+        pitches = [s.pitch for s in (self, other) if not (s.is_empty or s.is_full)]
+        pitch = min(pitches, default=self.pitch)
         return self._refined(pitch), other._refined(pitch)
 
     def _settled_nodes(self) -> int:
@@ -169,6 +171,8 @@ class ObjectTree:
     def _refined(self, pitch: int) -> _core.ObjectTree:
         if pitch == self.pitch:
             return self._tree
+        if self.is_empty or self.is_full:
+            return _core.ObjectTree.uniform(self.dimension, self.is_full, pitch)
         axes = list(range(1, self.dimension + 1))
         scale = 10 ** (self.pitch - pitch)
         with core_errors():
@@ -240,68 +244,6 @@ class ObjectTree:
             )
         return row
 
-    # Questions
-
-    def classify(self, points: Any) -> SideArray:
-        """Say of each point whether it is inside, exactly.
-
-        Parameters
-        ----------
-        points : (k, d) array_like of float
-            In model units, snapped to the lattice; on the line (k,) will do.
-
-        Returns
-        -------
-        (k,) int8
-            +1 inside, 0 on the boundary, -1 outside.
-        """
-        array = point_rows(points, self.dimension)
-        with core_errors():
-            return self._tree.classify(array)
-
-    @property
-    def measure(self) -> Fraction:
-        """Length, area or volume in model units, exactly.
-
-        Raises
-        ------
-        UnboundedError
-            If the set reaches to infinity.
-        """
-        with core_errors():
-            return Fraction(*self._tree.measure())
-
-    def boundary(self) -> Pieces:
-        """Return the boundary in convex pieces, with the nodes in whose cuts they lie.
-
-        The pieces of an unbounded set end at the border of the lattice.
-        """
-        return self._pieces(self._tree.boundary)
-
-    def cells(self) -> Pieces:
-        """Return the faces of the leaves that are inside: a decomposition into convex cells.
-
-        Raises
-        ------
-        UnboundedError
-            If the set reaches to infinity.
-        """
-        return self._pieces(self._tree.cells)
-
-    def _pieces(self, ask: Callable[[], PieceArrays]) -> Pieces:
-        with core_errors():
-            return Pieces(*ask())
-
-    @property
-    def nodes(self) -> NodeTable:
-        """The inner nodes as arrays; none if the tree is a leaf."""
-        with core_errors():
-            return NodeTable(*self._tree.nodes)
-
-    def stats(self) -> dict[str, int]:
-        """Return the numbers of inner nodes, leaves and coplanar fragments, and the depth."""
-        return self._tree.stats()
-
     def condensed(self) -> Self:
         """Return the same set as a balanced tree of its own boundary (1D and 2D).
 
@@ -310,31 +252,6 @@ class ObjectTree:
         """
         with core_errors():
             return self._of(self._tree.condensed())
-
-    @property
-    def dimension(self) -> int:
-        """1, 2 or 3."""
-        return self._tree.dimension
-
-    @property
-    def pitch(self) -> int:
-        """Exponent of the lattice step: it is ``10**pitch`` model units."""
-        return self._tree.pitch
-
-    @property
-    def is_empty(self) -> bool:
-        """Whether nothing is inside."""
-        return self._tree.is_empty
-
-    @property
-    def is_full(self) -> bool:
-        """Whether everything is inside."""
-        return self._tree.is_full
-
-    @property
-    def is_bounded(self) -> bool:
-        """Whether the set fits into some box."""
-        return self._tree.is_bounded
 
     # As a value
 

@@ -10,7 +10,6 @@ from .. import _core
 from .._types import FloatArray, Vector
 from ..errors import core_errors, invalid_parameter, number
 from .loops import Outline
-from .nearest import nearest_on_segments
 from .objects import ObjectTree
 
 
@@ -137,29 +136,6 @@ class PlaneQueries(ObjectTree):
     def _border(self) -> float:
         """What no finite coordinate exceeds."""
         return (2**53 - 2) * 10.0**self.pitch
-
-    def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Return the boundary point nearest to each point, and the distances.
-
-        Parameters
-        ----------
-        points : (k, 2) array_like of float
-
-        Returns
-        -------
-        nearest : (k, 2) float64, rounded
-        distance : (k,) float64
-
-        Raises
-        ------
-        InvalidMeshError
-            If the region has no boundary, or a point is not finite.
-        """
-        with core_errors():
-            edges, _, _ = self._tree.edges()
-        if len(edges) == 0:
-            raise invalid_parameter("A region without boundary has no nearest boundary point.")
-        return nearest_on_segments(points, edges.reshape(-1, 2, 2))
 
     def convex_parts(self) -> list[FloatArray]:
         """Return convex polygons that make up the region: the leaves of its tree that are inside.

@@ -56,8 +56,7 @@ fn same<S: Space>(a: &PartitionTree<S>, b: &PartitionTree<S>) -> bool {
 
 #[test]
 fn trees_with_axis_cuts_keep_the_invariants() {
-    for seed in 0..20 {
-        let size = [8, 1000, REACH][seed as usize % 3];
+    for (seed, size) in (0..20).zip([8, 1000, REACH].into_iter().cycle()) {
         let tree = random_region(seed, size);
         check(&tree, &Square).unwrap();
         assert!(is_bounded(&tree));

@@ -1,5 +1,7 @@
 """Identities of regions, exact, for random outlines."""
 
+from typing import Any
+
 import hypothesis.strategies as st
 import numpy as np
 from hypothesis import given
@@ -8,7 +10,7 @@ from bspcsg import bsp
 
 _POINTS = st.tuples(st.integers(-6, 6), st.integers(-6, 6))
 _LOOPS = st.lists(st.lists(_POINTS, min_size=3, max_size=7), min_size=0, max_size=3)
-_RULES = st.sampled_from(["positive", "nonzero", "even-odd"])
+_RULES: st.SearchStrategy[Any] = st.sampled_from(["positive", "nonzero", "even-odd"])
 
 
 @st.composite

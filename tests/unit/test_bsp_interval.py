@@ -19,8 +19,10 @@ INF = math.inf
 @st.composite
 def intervals(draw: st.DrawFn) -> bsp.Intervals:
     ends = st.integers(-6, 6).map(float)
-    pairs = draw(st.lists(st.tuples(ends, ends).filter(lambda p: p[0] < p[1]), max_size=4))
-    unbounded = draw(st.sampled_from([[], [(-INF, -5)], [(5, INF)], [(-INF, -5), (5, INF)]]))
+    pair = st.tuples(ends, ends).filter(lambda p: p[0] < p[1])
+    pairs: list[tuple[float, float]] = draw(st.lists(pair, max_size=4))
+    ways: list[list[tuple[float, float]]] = [[], [(-INF, -5)], [(5, INF)], [(-INF, -5), (5, INF)]]
+    unbounded = draw(st.sampled_from(ways))
     return bsp.Intervals([*pairs, *unbounded])
 
 
@@ -54,10 +56,12 @@ def test_measures() -> None:
     assert s.measure == 3
     assert s.length == 3.0
     assert s.centroid == pytest.approx((0.5 + 10) / 3)
-    assert s.bounds == (0, 6)
+    assert list(s.bounds or ()) == [0, 6]
     assert [part.pairs.tolist() for part in s.components] == [[[0, 1]], [[4, 6]]]
     assert s.classify([0, 0.5, 1, 2]).tolist() == [0, 1, 0, -1]
-    assert s.project([2, 3, -5, 0.4]).tolist() == [1, 4, 0, 0]
+    nearest, distance = s.project([2, 3, -5, 0.4])
+    assert nearest[:, 0].tolist() == [1, 4, 0, 0]
+    assert distance.tolist() == [1, 1, 5, 0.4]
     assert bsp.Intervals([(0, 0.1)]).measure == Fraction(1, 10)
     assert math.isnan(bsp.Intervals().centroid)
     assert bsp.Intervals().bounds is None

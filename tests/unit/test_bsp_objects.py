@@ -30,7 +30,8 @@ def box_facets(low: np.ndarray, high: np.ndarray) -> np.ndarray:
         corners = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
         return np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
     vertices, faces = b.box(1).to_mesh()
-    return (vertices * (high - low) + low)[faces]
+    triangles: np.ndarray = (vertices * (high - low) + low)[faces]
+    return triangles
 
 
 def random_set(dimension: int, seed: int) -> tuple[bsp.ObjectTree, np.ndarray]:
@@ -157,12 +158,28 @@ def test_boundary_measures_the_set(dimension: int) -> None:
 
 
 @pytest.mark.parametrize("dimension", DIMENSIONS)
+def test_nearest_boundary_points(dimension: int) -> None:
+    cube = bsp.ObjectTree(box_facets(np.zeros(dimension), np.full(dimension, 4.0)))
+    points = np.random.default_rng(1).uniform(-3, 7, (60, dimension))
+    nearest, distance = cube.project(points)
+    inside = cube.classify(points) > 0
+    # Inside a box the nearest wall, outside the point clamped to it.
+    clamped = np.linalg.norm(points - np.clip(points, 0, 4), axis=1)
+    wall = np.minimum(points, 4 - points).min(axis=1)
+    assert np.allclose(distance, np.where(inside, wall, clamped))
+    assert np.allclose(np.linalg.norm(points - nearest, axis=1), distance)
+    assert 0 < inside.sum() < 60
+    with pytest.raises(b.InvalidMeshError):
+        bsp.ObjectTree.uniform(dimension, full=False).project(points)
+
+
+@pytest.mark.parametrize("dimension", DIMENSIONS)
 def test_cells_are_convex_and_fill_the_set(dimension: int) -> None:
     tree, cells = random_set(dimension, 6)
     pieces = tree.cells()
     total = Fraction(0)
     for cell in range(int(pieces.owner.max()) + 1):
-        corners = np.concatenate([pieces[k] for k in np.flatnonzero(pieces.owner == cell)])
+        corners = np.concatenate([pieces[int(k)] for k in np.flatnonzero(pieces.owner == cell)])
         low, high = corners.min(axis=0), corners.max(axis=0)
         assert (tree.classify((low + high)[None] / 2) == 1).all()
         # All cuts are axis-parallel here, so that the cells are boxes.
@@ -216,6 +233,15 @@ def test_pitch_is_refined_exactly() -> None:
     assert (coarse - fine).pitch == -3
 
 
+@pytest.mark.parametrize("dimension", DIMENSIONS)
+def test_empty_and_full_sets_fit_every_lattice(dimension: int) -> None:
+    far = bsp.ObjectTree(box_facets(np.zeros(dimension), np.full(dimension, 1e12)))
+    assert far.pitch > -9
+    for uniform in (bsp.ObjectTree.uniform(dimension, full=full) for full in (True, False)):
+        assert (uniform & far).equals(far if uniform.is_full else uniform)
+        assert (far ^ uniform).equals(~far if uniform.is_full else far)
+
+
 @pytest.mark.parametrize(
     ("facets", "code"),
     [
@@ -243,7 +269,7 @@ def test_bad_hyperplanes_and_operands() -> None:
     with pytest.raises(b.InvalidMeshError):
         tree | bsp.ObjectTree.uniform(2, full=True)
     with pytest.raises(TypeError):
-        tree | 3  # type: ignore[operator]
+        tree | 3
     with pytest.raises(b.UnboundedError):
         (~tree).measure  # noqa: B018
     with pytest.raises(b.UnboundedError):

@@ -233,7 +233,7 @@ def test_bad_parameters() -> None:
         lambda: R.circle(1, 2),
         lambda: R(STAR, winding="left"),  # type: ignore[arg-type]
         lambda: R.half_plane((0, 0), 1),
-        lambda: R.half_plane((1, 0, 0), 1),  # type: ignore[arg-type]
+        lambda: R.half_plane((1, 0, 0), 1),
         lambda: plate().cast((0, 0), (0, 0)),
         lambda: plate().cast((0, math.inf), (1, 0)),
         lambda: plate().project([(math.nan, 0)]),

@@ -14,6 +14,7 @@ mod errors;
 mod objects;
 mod pieces;
 mod run;
+mod set_input;
 mod set_queries;
 mod set_store;
 mod sets;

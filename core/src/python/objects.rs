@@ -1,5 +1,7 @@
 //! The class `ObjectTree`: an immutable partition tree with in and out leaves, of any dimension.
 
+use std::sync::{Arc, OnceLock};
+
 use num_bigint::BigInt;
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -8,12 +10,16 @@ use pyo3::types::{PyBytes, PyDict, PyType};
 use super::errors::to_python;
 use super::pieces::{self, Pieces};
 use super::run::run;
+use super::set_input::{self, Input};
+use super::set_queries::{exact_corners, outline_pieces};
 use super::set_store::Nodes;
-use super::sets::{self, Input, Set};
+use super::sets::Set;
 use crate::error::Result;
 use crate::merge::SetOp;
 use crate::mesh::grid::Pitch;
 use crate::query::measure::Fraction;
+use crate::query::region::moments::{area, moments};
+use crate::query::region::outlines::Outline;
 use crate::tree::partition::Location;
 
 type Ratio = (BigInt, BigInt);
@@ -23,9 +29,28 @@ type Ratio = (BigInt, BigInt);
 pub struct ObjectTree {
     set: Set,
     pitch: Pitch,
+    outlines: OnceLock<Arc<Vec<Outline>>>,
 }
 
 impl ObjectTree {
+    fn of(set: Set, pitch: Pitch) -> Self {
+        let outlines = OnceLock::new();
+        Self {
+            set,
+            pitch,
+            outlines,
+        }
+    }
+
+    /// The outlines of a region, made once.
+    fn loops(&self, py: Python<'_>) -> PyResult<Arc<Vec<Outline>>> {
+        if let Some(known) = self.outlines.get() {
+            return Ok(Arc::clone(known));
+        }
+        let made = self.work(py, |set, _| set.outlines())?;
+        Ok(Arc::clone(self.outlines.get_or_init(|| Arc::new(made))))
+    }
+
     fn work<T: Send>(
         &self,
         py: Python<'_>,
@@ -35,8 +60,7 @@ impl ObjectTree {
     }
 
     fn with(&self, set: Set) -> Self {
-        let pitch = self.pitch;
-        Self { set, pitch }
+        Self::of(set, self.pitch)
     }
 }
 
@@ -73,12 +97,12 @@ impl ObjectTree {
             facets: rows(&facets),
             faces: faces.transpose().map_err(fail)?.unwrap_or_default(),
             cuts: cuts.as_ref().map(rows).unwrap_or_default(),
-            rule: sets::rule(winding).map_err(fail)?,
-            policy: sets::policy(policy, seed).map_err(fail)?,
+            rule: set_input::rule(winding).map_err(fail)?,
+            policy: set_input::policy(policy, seed).map_err(fail)?,
         };
         let size = input.facets.len();
         let set = run(py, 0, size, |_| Set::build(dimension, &input, pitch))?;
-        Ok(Self { set, pitch })
+        Ok(Self::of(set, pitch))
     }
 
     #[classmethod]
@@ -90,7 +114,7 @@ impl ObjectTree {
     ) -> PyResult<Self> {
         let made = Pitch::new(pitch).and_then(|pitch| {
             let set = Set::half_space(&hyperplane.as_array().to_vec(), pitch)?;
-            Ok(Self { set, pitch })
+            Ok(Self::of(set, pitch))
         });
         made.map_err(|e| to_python(py, &e))
     }
@@ -105,22 +129,22 @@ impl ObjectTree {
     ) -> PyResult<Self> {
         let made = Pitch::new(pitch).and_then(|pitch| {
             let set = Set::uniform(dimension, full)?;
-            Ok(Self { set, pitch })
+            Ok(Self::of(set, pitch))
         });
         made.map_err(|e| to_python(py, &e))
     }
 
     fn merge(&self, py: Python<'_>, other: PyRef<'_, Self>, op: &str) -> PyResult<Self> {
-        let op = sets::operation(op).map_err(|e| to_python(py, &e))?;
+        let op = set_input::operation(op).map_err(|e| to_python(py, &e))?;
         let (a, b) = (&self.set, &other.set);
-        sets::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
+        set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
         let set = run(py, 0, a.size() + b.size(), |_| a.merge(b, op))?;
         Ok(self.with(set))
     }
 
     fn equals(&self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<bool> {
         let (a, b) = (&self.set, &other.set);
-        sets::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
+        set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
         let difference = run(py, 0, a.size() + b.size(), |_| {
             a.merge(b, SetOp::SymmetricDifference)
         })?;
@@ -169,10 +193,11 @@ impl ObjectTree {
         pitch: i64,
     ) -> PyResult<Self> {
         let fail = |e| to_python(py, &e);
-        let map = sets::lattice_map(self.set.dimension(), &axes, shift, scale).map_err(fail)?;
+        let map =
+            set_input::lattice_map(self.set.dimension(), &axes, shift, scale).map_err(fail)?;
         let pitch = Pitch::new(pitch).map_err(fail)?;
         let set = self.work(py, |set, _| set.moved(&map))?;
-        Ok(Self { set, pitch })
+        Ok(Self::of(set, pitch))
     }
 
     fn boundary<'py>(&self, py: Python<'py>) -> PyResult<Pieces<'py>> {
@@ -191,23 +216,31 @@ impl ObjectTree {
     }
 
     fn outlines<'py>(&self, py: Python<'py>) -> PyResult<Pieces<'py>> {
-        let found = self.work(py, Set::outlines)?;
+        let found = outline_pieces(&self.loops(py)?, self.pitch);
         pieces::arrays(py, found, 2)
     }
 
     fn exact_outlines(&self, py: Python<'_>) -> PyResult<Vec<Vec<[Ratio; 2]>>> {
-        let found = self.work(py, Set::exact_outlines)?;
-        let corners = |c: Vec<[Fraction; 2]>| c.into_iter().map(|p| p.map(ratio)).collect();
-        Ok(found.into_iter().map(corners).collect())
+        let loops = self.loops(py)?;
+        let corners = |outline| {
+            let corners = exact_corners(outline, self.pitch).into_iter();
+            corners.map(|p| p.map(ratio)).collect()
+        };
+        Ok(loops.iter().map(corners).collect())
     }
 
     fn measure(&self, py: Python<'_>) -> PyResult<Ratio> {
+        if self.set.dimension() == 2 {
+            let loops = self.loops(py)?;
+            return self.work(py, |_, pitch| Ok(ratio(area(&loops, pitch))));
+        }
         self.work(py, Set::measure).map(ratio)
     }
 
     fn moments(&self, py: Python<'_>) -> PyResult<Vec<Ratio>> {
-        let moments = self.work(py, Set::moments)?;
-        Ok(moments.into_iter().map(ratio).collect())
+        let loops = self.loops(py)?;
+        let [x, y] = self.work(py, |_, pitch| Ok(moments(&loops, pitch)))?;
+        Ok([area(&loops, self.pitch), x, y].map(ratio).into())
     }
 
     fn cast<'py>(
@@ -259,7 +292,7 @@ impl ObjectTree {
     #[classmethod]
     fn load(_cls: &Bound<'_, PyType>, py: Python<'_>, data: &[u8]) -> PyResult<Self> {
         let (set, pitch) = Set::from_bytes(data).map_err(|e| to_python(py, &e))?;
-        Ok(Self { set, pitch })
+        Ok(Self::of(set, pitch))
     }
 
     #[getter]

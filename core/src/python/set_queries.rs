@@ -1,7 +1,8 @@
 //! What a set answers with: pieces, outlines, measures, places.
 
 use super::pieces::PieceList;
-use super::sets::{shape, Set};
+use super::set_input::shape;
+use super::sets::Set;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::Point1;
@@ -65,40 +66,18 @@ impl Set {
         Ok(list)
     }
 
-    /// The outlines of a plane region, each with the number of the one around it, or −1.
-    pub fn outlines(&self, pitch: Pitch) -> Result<PieceList> {
-        let mut list = PieceList::new();
-        for outline in outlines(self.plane()?)? {
-            let corners = outline.corners.iter().map(|p| pitch.position_in_plane(p));
-            list.push(corners, outline.parent.map_or(-1, |p| p as i64));
-        }
-        Ok(list)
+    /// The outlines of a plane region.
+    pub fn outlines(&self) -> Result<Vec<Outline>> {
+        outlines(self.plane()?)
     }
 
-    /// The corners of the outlines, exactly.
-    pub fn exact_outlines(&self, pitch: Pitch) -> Result<Vec<Vec<[Fraction; 2]>>> {
-        let exact = |point: &Point2| {
-            let (x, w) = point.coordinates();
-            [0, 1].map(|i| in_powers(big(&x[i]), big(w), pitch.exponent(), 1))
-        };
-        let corners = |outline: Outline| outline.corners.iter().map(exact).collect();
-        Ok(outlines(self.plane()?)?.into_iter().map(corners).collect())
-    }
-
-    /// The exact length, area or volume.
+    /// The exact length or volume; that of the plane follows from the outlines.
     pub fn measure(&self, pitch: Pitch) -> Result<Fraction> {
         match self {
             Self::Line(tree) => moments::length(tree, pitch),
             Self::Plane(tree) => Ok(moments::area(&outlines(tree)?, pitch)),
             Self::Space(tree) => moments::volume(tree, pitch),
         }
-    }
-
-    /// The exact area and first moments of a plane region.
-    pub fn moments(&self, pitch: Pitch) -> Result<Vec<Fraction>> {
-        let outlines = outlines(self.plane()?)?;
-        let [x, y] = moments::moments(&outlines, pitch);
-        Ok(vec![moments::area(&outlines, pitch), x, y])
     }
 
     /// The stretches of a line inside a plane region.
@@ -139,6 +118,25 @@ impl Set {
             _ => Err(shape("only sets of the plane have outlines")),
         }
     }
+}
+
+/// The corners of outlines, each with the number of the one around it, or −1.
+pub fn outline_pieces(outlines: &[Outline], pitch: Pitch) -> PieceList {
+    let mut list = PieceList::new();
+    for outline in outlines {
+        let corners = outline.corners.iter().map(|p| pitch.position_in_plane(p));
+        list.push(corners, outline.parent.map_or(-1, |p| p as i64));
+    }
+    list
+}
+
+/// The corners of an outline, exactly.
+pub fn exact_corners(outline: &Outline, pitch: Pitch) -> Vec<[Fraction; 2]> {
+    let exact = |point: &Point2| {
+        let (x, w) = point.coordinates();
+        [0, 1].map(|i| in_powers(big(&x[i]), big(w), pitch.exponent(), 1))
+    };
+    outline.corners.iter().map(exact).collect()
 }
 
 fn push_cells<S: AxisSpace, const D: usize>(

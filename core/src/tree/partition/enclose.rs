@@ -75,29 +75,29 @@ fn planned_cut<S: AxisSpace>(
     if given.is_some() || !plan.axis_cuts || facets.len() <= FEW {
         return given.cloned();
     }
-    let middles = (0..S::DIM).map(|axis| middle_cut(facets, axis));
-    let (size, cut) = middles.min_by_key(|(size, _)| *size)?;
-    (4 * size <= 3 * facets.len()).then_some(cut)
+    let middles = (0..S::DIM).filter_map(|axis| middle_cut(facets, axis));
+    middles.min_by_key(|(size, _)| *size).map(|(_, cut)| cut)
 }
 
-/// The cut across an axis at the median corner, and the size of the longer list that it leaves.
-fn middle_cut<S: AxisSpace>(facets: &[Facet<S>], axis: usize) -> (usize, S::Hyperplane) {
+/// The cut across an axis at the median corner and the size of the longer list that it leaves, if
+/// that is at most three quarters of all and at most a sixteenth is cut.
+///
+/// Long facets side by side are better divided by their own hyperplanes.
+fn middle_cut<S: AxisSpace>(facets: &[Facet<S>], axis: usize) -> Option<(usize, S::Hyperplane)> {
     let corner = |facet: &Facet<S>| S::corner(&facet.fragment, axis);
     let mut corners: Vec<i64> = facets.iter().map(corner).collect();
     let middle = corners.len() / 2;
     let (_, &mut at, _) = corners.select_nth_unstable(middle);
     let cut = S::axis_cut(axis, at);
-    let (mut minus, mut plus) = (0, 0);
+    let (mut minus, mut plus, mut both) = (0, 0, 0);
     for facet in facets {
         match S::split(&facet.fragment, &cut) {
             Split::Minus => minus += 1,
             Split::Plus => plus += 1,
-            Split::Both { .. } => {
-                minus += 1;
-                plus += 1;
-            }
+            Split::Both { .. } => both += 1,
             Split::Coplanar(_) => {}
         }
     }
-    (minus.max(plus), cut)
+    let size = minus.max(plus) + both;
+    (4 * size <= 3 * facets.len() && 16 * both <= facets.len()).then_some((size, cut))
 }
