@@ -18,6 +18,7 @@ from . import (
 )
 from .polish import polished_pitch
 from .registry import RECIPES, Evaluation, Geometry, OnInvalid
+from .scope import Scope, inherited, with_scope
 from .source import error_at
 from .tree import CsgTree, Node
 
@@ -95,14 +96,15 @@ class _Cache:
 
     def geometry(self, root: Node) -> Geometry:
         """Return what a node stands for; nodes may nest to any depth."""
-        waiting: list[tuple[Node, bool]] = [(root, False)]
+        waiting: list[tuple[Node, Scope | None]] = [(root, ())]
         done: list[int] = []
         while waiting:
-            node, ready = waiting.pop()
+            node, scope = waiting.pop()
             children = [child for child in node.children if not child.is_ignored]
-            if not ready:
-                waiting.append((node, True))
-                waiting.extend((child, False) for child in reversed(children))
+            if scope is not None:
+                inner = inherited(scope, node)
+                waiting.append((with_scope(node, scope), None))
+                waiting.extend((child, inner) for child in reversed(children))
                 continue
             first = len(done) - len(children)
             numbers = tuple(done[first:])

@@ -48,6 +48,15 @@ def test_circles_have_openscads_sides(arguments: str, sides: int) -> None:
     assert len(outline.points) == sides
 
 
+def test_special_variables_hold_inside_a_node() -> None:
+    def sides(text: str) -> int:
+        return len(region(text).to_polygons()[0])
+
+    assert sides("union($fn = 8) circle(r = 1);") == 8
+    assert sides("union($fn = 8) group($fa = 1) circle(r = 1, $fn = 4);") == 4
+    assert sides("union($fn = 8); circle(r = 1);") == 5
+
+
 @pytest.mark.parametrize(("r", "faces", "sides"), [(1, 22, 5), (10, 842, 30)])
 def test_spheres_have_no_poles(r: int, faces: int, sides: int) -> None:
     mesh = csg.loads(f"sphere(r = {r});").to_mesh()
