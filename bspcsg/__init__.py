@@ -36,6 +36,7 @@ from .primitives import (
     sphere,
     torus,
 )
+from .script import run_script, show
 from .setops import boolean, difference, intersection, union, xor
 from .solid import Solid
 
@@ -64,8 +65,10 @@ __all__ = [
     "load",
     "prism",
     "revolve",
+    "run_script",
     "save",
     "set_threads",
+    "show",
     "sphere",
     "torus",
     "union",

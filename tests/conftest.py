@@ -44,3 +44,12 @@ def shared_meshes() -> Path:
     if not folder.is_dir():
         pytest.skip("the shared meshes do not lie beside this checkout")
     return folder
+
+
+@pytest.fixture(scope="session")
+def shared_scripts() -> Path:
+    """Return the folder of OpenSCAD's scripts that lies beside a full checkout."""
+    folder = REPOSITORY.parent / "shared" / "csg"
+    if not folder.is_dir():
+        pytest.skip("the shared scripts do not lie beside this checkout")
+    return folder

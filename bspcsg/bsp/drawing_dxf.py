@@ -48,7 +48,7 @@ def load_dxf(
         ``"not_closed"``).
     """
     chord = positive(tolerance, "tolerance")
-    document = _document(path)
+    document = read_document(path)
     wanted = None if layers is None else set(layers)
     entities = [
         entity
@@ -81,7 +81,8 @@ def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
     write_file(path, [text.getvalue().encode(document.output_encoding, errors="dxfreplace")])
 
 
-def _document(path: str | os.PathLike[str]) -> Any:
+def read_document(path: str | os.PathLike[str]) -> Any:
+    """Return the ezdxf document of a file; `FormatError` if it is none."""
     ezdxf = optional("ezdxf", "2d")
     name = os.fspath(path)
     try:

@@ -6,6 +6,7 @@ appears complete or not at all.
 """
 
 import os
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import BspcsgError, Finding
@@ -15,19 +16,34 @@ from .raw import RawMesh
 if TYPE_CHECKING:
     from ..solid import Solid
 
-__all__ = ["FORMATS", "RawMesh", "encoder_of", "format_of", "load", "read", "save", "write"]
+#: Suffixes of scripts, which `load` evaluates.
+SCRIPTS = frozenset({".csg", ".scad"})
+
+__all__ = [
+    "FORMATS",
+    "SCRIPTS",
+    "RawMesh",
+    "encoder_of",
+    "format_of",
+    "load",
+    "read",
+    "save",
+    "write",
+]
 
 
 def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
-    """Read a mesh file as a solid; the suffix names the format.
+    """Read a mesh file or a script as a solid; the suffix names the format.
 
     Parameters
     ----------
     path : str or path
-        Ending in ``.stl``, ``.obj``, ``.ply``, ``.off`` or ``.3mf``. 3MF comes in millimetres,
-        the other formats in whatever unit they were written in.
+        Ending in ``.stl``, ``.obj``, ``.ply``, ``.off`` or ``.3mf``, or a script: ``.csg`` or
+        ``.scad`` (see `bspcsg.csg.load`). 3MF comes in millimetres, the other formats in whatever
+        unit they were written in.
     **options
-        As for `Solid`: ``pitch``, ``trusted``, ``winding``.
+        For meshes as for `Solid`: ``pitch``, ``trusted``, ``winding``; for scripts as for
+        `bspcsg.csg.load`.
 
     Raises
     ------
@@ -36,6 +52,10 @@ def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
     InvalidMeshError, LimitError
         If what it holds is no solid: the message names the file, `where` the faces.
     """
+    if Path(path).suffix.lower() in SCRIPTS:
+        from .. import csg
+
+        return csg.load(path, **options)
     return solid_of(read(path), path, **options)
 
 

@@ -1,0 +1,40 @@
+"""OpenSCAD's `.csg` scripts: read, evaluated and written.
+
+A script is a tree of primitives, transforms and operations, which `parse` reads and `dumps`
+writes. `evaluate` makes it a solid or a region of the plane with the corners that OpenSCAD gives
+it; `load` and `loads` do both. `to_json` and `from_json` hold the same tree as JSON.
+
+Examples
+--------
+>>> from bspcsg import csg
+>>> csg.loads("difference() { cube(size = 2); sphere(r = 1, $fn = 8); }").volume > 7
+True
+"""
+
+from .evaluator import evaluate, node_names
+from .json_form import from_json, to_json
+from .loading import dump, dumps, load, loads, read_tree, tree_of
+from .openscad import read_scad
+from .parser import parse
+from .registry import CsgWarning
+from .tree import Argument, CsgTree, Node, Place
+
+__all__ = [
+    "Argument",
+    "CsgTree",
+    "CsgWarning",
+    "Node",
+    "Place",
+    "dump",
+    "dumps",
+    "evaluate",
+    "from_json",
+    "load",
+    "loads",
+    "node_names",
+    "parse",
+    "read_scad",
+    "read_tree",
+    "to_json",
+    "tree_of",
+]

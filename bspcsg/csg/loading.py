@@ -1,0 +1,165 @@
+"""Scripts as solids, and solids as scripts."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..bsp import Region
+from ..errors import BspcsgError, FormatError
+from ..io.atomic import write_file
+from ..solid import Solid
+from .evaluator import evaluate
+from .json_form import from_json
+from .parser import parse
+from .registry import Geometry, OnInvalid
+from .tree import Argument, CsgTree, Node
+from .writer import written
+
+#: Files larger than this are refused, in bytes.
+_LARGEST = 1 << 28
+
+
+def load(
+    path: str | os.PathLike[str],
+    *,
+    polish: bool = False,
+    on_invalid: OnInvalid = "error",
+    **options: Any,
+) -> Solid:
+    """Read a script as a solid.
+
+    Parameters
+    ----------
+    path : path
+        A `.csg` file, a `.json` file of such a tree, or a `.scad` file, which the program openscad
+        converts first (see `bspcsg.csg.read_tree`).
+    polish : bool
+        Undo OpenSCAD's rounding to six digits (see `bspcsg.csg.evaluate`).
+    on_invalid : {"error", "warn"}
+        What to do about meshes that are not closed (see `bspcsg.csg.evaluate`).
+    **options
+        For `.scad`: ``defines``, a dict of variables.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be read or evaluated; the message names file, line and column. A model
+        of the plane is refused with the code "not_3d"; `evaluate` returns it as a region.
+    InvalidMeshError, LimitError
+        If a node makes no solid.
+
+    Warns
+    -----
+    CsgWarning
+        For what is left out as OpenSCAD leaves it out.
+    """
+    tree = read_tree(path, **options)
+    return _solid(evaluate(tree, polish=polish, on_invalid=on_invalid), tree.name)
+
+
+def loads(
+    text: str,
+    *,
+    polish: bool = False,
+    on_invalid: OnInvalid = "error",
+    folder: str | Path | None = None,
+    name: str = "<csg>",
+) -> Solid:
+    """Return the solid of a script's text (see `load`).
+
+    Examples
+    --------
+    >>> from bspcsg import csg
+    >>> csg.loads("difference() { cube(size = 2); cube(size = 1); }").volume
+    7.0
+    """
+    tree = parse(text, name, folder)
+    return _solid(evaluate(tree, polish=polish, on_invalid=on_invalid), name)
+
+
+def read_tree(path: str | os.PathLike[str], **options: Any) -> CsgTree:
+    """Read a script's tree: `.csg`, `.json`, or `.scad` through the program openscad.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be read, is empty, or is no such script.
+    """
+    file, name = Path(path), os.fspath(path)
+    suffix = file.suffix.lower()
+    if suffix == ".scad":
+        from .openscad import read_scad
+
+        return read_scad(file, **options)
+    if options:
+        raise FormatError(f"{name}: {', '.join(options)} is for .scad files only.", "bad_argument")
+    text = _text(file, name)
+    if suffix == ".json":
+        return from_json(text, name, file.parent)
+    return parse(text, name, file.parent)
+
+
+def _text(file: Path, name: str) -> str:
+    try:
+        if file.stat().st_size > _LARGEST:
+            raise FormatError(f"{name}: the file is larger than {_LARGEST:,} bytes.", "too_large")
+        return file.read_bytes().decode("utf-8")
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error
+    except UnicodeDecodeError as error:
+        message = f"{name}: this is no text: byte {error.start} is no UTF-8."
+        raise FormatError(message, "syntax", [error.start]) from error
+
+
+def _solid(body: Geometry, name: str) -> Solid:
+    if isinstance(body, Region):
+        message = f"{name}: the model is a plane figure; put linear_extrude(height = 1) around it."
+        raise FormatError(message, "not_3d")
+    if body is None:
+        return Solid.empty()
+    try:
+        # What makes no solid is an error of this call, not of the first query.
+        assert body.tree is not None
+    except BspcsgError as error:
+        raise type(error)(f"{name}: {error.message}", error.code, error.where) from error
+    return body
+
+
+def dumps(model: Solid | CsgTree) -> str:
+    """Return a solid or a tree as the text of a `.csg` script.
+
+    A solid becomes one polyhedron, its reduced boundary, as it is saved to mesh files: corners in
+    double precision, which reading snaps to the lattice. A tree gives an equal tree again.
+
+    Raises
+    ------
+    UnboundedError
+        If the solid reaches to infinity.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> from bspcsg import csg
+    >>> csg.loads(csg.dumps(b.cube(3))).equals(b.cube(3))
+    True
+    """
+    return written(model if isinstance(model, CsgTree) else tree_of(model))
+
+
+def tree_of(solid: Solid) -> CsgTree:
+    """Return the tree of one polyhedron that is the solid; an empty one has no nodes."""
+    if solid.is_empty:
+        return CsgTree(())
+    mesh = solid.normalized().to_mesh()
+    points = tuple(tuple(point) for point in mesh.vertices.tolist())
+    # Polyhedra list their corners clockwise, numbers are all doubles.
+    faces = tuple(tuple(face) for face in mesh.faces[:, ::-1].astype(np.float64).tolist())
+    return CsgTree((Node("polyhedron", (Argument("points", points), Argument("faces", faces))),))
+
+
+def dump(model: Solid | CsgTree, path: str | os.PathLike[str]) -> None:
+    """Write a `.csg` file (see `dumps`); it appears complete or not at all."""
+    write_file(path, [dumps(model).encode()])

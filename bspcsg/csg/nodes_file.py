@@ -1,0 +1,64 @@
+"""Shapes from files: import and surface."""
+
+from pathlib import Path
+
+import numpy as np
+
+from .. import io
+from .._types import FloatArray
+from ..bsp import Region
+from .arguments import Arguments
+from .drawings import dxf_region
+from .heights import height_map, read_heights
+from .paper import svg_region
+from .registry import Evaluation, Geometry, node
+from .tessellation import Fineness
+from .tree import Node
+
+
+@node("import")
+def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Read a mesh (STL, OFF, OBJ, PLY, 3MF) or a drawing (DXF, SVG)."""
+    del children
+    arguments = run.arguments(owner, ("file",))
+    path = _path(arguments, run)
+    suffix = path.suffix.lower()
+    if suffix == ".dxf":
+        return _dxf(path, arguments)
+    if suffix == ".svg":
+        return svg_region(path, arguments.number("dpi", 72.0), arguments.flag("center"))
+    if suffix not in io.FORMATS:
+        known = ", ".join(sorted([*io.FORMATS, ".dxf", ".svg"]))
+        message = f"“{suffix}” files are not supported; known are {known}."
+        raise arguments.error(message, "unsupported")
+    raw = io.read(path)
+    return run.closed_solid(owner, raw.vertices, raw.faces)
+
+
+def _dxf(path: Path, arguments: Arguments) -> Region:
+    origin = arguments.vector("origin", 2, (0.0, 0.0))
+    layer = arguments.text("layer", "")
+    scale = arguments.number("scale", 1.0)
+    return dxf_region(path, layer, np.array(origin), scale, Fineness.of(arguments))
+
+
+@node("surface")
+def surface(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Make the body below a table of heights (a text file of numbers)."""
+    del children
+    arguments = run.arguments(owner, ("file", "center"))
+    path = _path(arguments, run)
+    if path.suffix.lower() == ".png":
+        raise arguments.error("pictures are not supported; give a table of heights.", "unsupported")
+    heights: FloatArray = read_heights(path)
+    arguments.limited(heights.size * 2, "this surface")
+    return height_map(heights, centered=arguments.flag("center"))
+
+
+def _path(arguments: Arguments, run: Evaluation) -> Path:
+    name = arguments.text("file")
+    path = run.folder / name
+    if not name or "\0" in name or not path.is_file():
+        message = f"there is no file “{name}”; names are relative to the script's folder."
+        raise arguments.error(message, "missing_file")
+    return path

@@ -1,0 +1,45 @@
+"""Operations on children: unions, differences, intersections, and nodes that only group."""
+
+from functools import reduce
+from operator import and_, sub
+
+from .. import setops
+from ..bsp import Region
+from .registry import Evaluation, Geometry, node
+from .tree import Node
+
+
+def union_of(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Return the union of the children of one kind; None if there is none."""
+    solids, regions = run.same_kind(owner, children)
+    if solids:
+        return setops.union(solids)
+    if len(regions) <= 1:
+        return regions[0] if regions else None
+    # Outlines wind once around what is inside: all of them together wind at least once.
+    loops = [loop for region in regions for loop in region.to_polygons()]
+    return Region(loops, pitch=min(region.pitch for region in regions))
+
+
+@node("group", "union", "color", "render", makes_corners=False)
+def group(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Unite the children; colours and hints for the preview make no difference."""
+    return union_of(owner, children, run)
+
+
+@node("difference", makes_corners=False)
+def difference(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Take all children but the first from the first; if that is nothing, so is the result."""
+    if not children or children[0] is None:
+        return None
+    solids, regions = run.same_kind(owner, children)
+    return setops.difference(solids[0], solids[1:]) if solids else reduce(sub, regions)
+
+
+@node("intersection", makes_corners=False)
+def intersection(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Intersect the children; one that is nothing leaves nothing."""
+    if not children or any(child is None for child in children):
+        return None
+    solids, regions = run.same_kind(owner, children)
+    return setops.intersection(solids) if solids else reduce(and_, regions)

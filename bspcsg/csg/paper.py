@@ -1,0 +1,66 @@
+"""SVG drawings as OpenSCAD imports them: in millimetres on their page, y upwards."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+from ..bsp import Region, load_svg
+
+_MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6}
+_LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%]*)\s*")
+
+
+@dataclass(frozen=True)
+class _Page:
+    """Where user units lie on a page, in millimetres from its lower left corner."""
+
+    scale: float
+    x: float
+    y: float
+
+
+def svg_region(path: Path, dpi: float, centered: bool) -> Region:
+    """Return the filled shapes of an SVG file.
+
+    Its view box is fitted into its width and height, as browsers do; without a view box, user units
+    count as they are. Curves become chords within 0.01 user units.
+
+    Parameters
+    ----------
+    path : Path
+    dpi : float
+        Pixels per inch, for lengths without a unit.
+    centered : bool
+        Whether the middle of the drawing is at the origin, rather than a corner of the page.
+    """
+    region = load_svg(path)
+    page = _page(path, dpi)
+    placed = region.scale(page.scale).translate(page.x, page.y)
+    bounds = placed.bounds
+    if centered and bounds is not None:
+        return placed.translate(*(-bounds.mean(axis=0)).tolist())
+    return placed
+
+
+def _page(path: Path, dpi: float) -> _Page:
+    # `load_svg` has refused files that declare a document type or an entity.
+    _, root = next(iter(ElementTree.iterparse(path, events=("start",))))
+    width, height = (_length(root.get(name, ""), dpi) for name in ("width", "height"))
+    box = [float(word) for word in re.split(r"[\s,]+", root.get("viewBox", "").strip()) if word]
+    if len(box) != 4 or min(box[2:]) <= 0:
+        return _Page(1.0, 0.0, height or 0.0)
+    left, top, wide, high = box
+    width = width or (height / high * wide if height else wide * 25.4 / dpi)
+    height = height or high * width / wide
+    scale = min(width / wide, height / high)
+    x = (width - wide * scale) / 2 - left * scale
+    return _Page(scale, x, height - (height - high * scale) / 2 + top * scale)
+
+
+def _length(text: str, dpi: float) -> float | None:
+    """Return a length in millimetres; None for what is missing or relative."""
+    match = _LENGTH.fullmatch(text)
+    if match is None or match.group(2) == "%":
+        return None
+    return float(match.group(1)) * _MILLIMETRES.get(match.group(2), 25.4 / dpi)

@@ -1,0 +1,359 @@
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg import csg
+from bspcsg.bsp import Region
+
+MOVED = "multmatrix([[1, 0, 0, {}], [0, 1, 0, {}], [0, 0, 1, {}], [0, 0, 0, 1]])"
+TETRAHEDRON = "points = [[0, 0, 0], [6, 0, 0], [0, 1, 0], [0, 0, 1]]"
+
+
+def moved(x: float, y: float, z: float) -> str:
+    return MOVED.format(x, y, z)
+
+
+def region(text: str) -> Region:
+    found = csg.evaluate(csg.parse(text))
+    assert isinstance(found, Region)
+    return found
+
+
+def volume(text: str, **options: Any) -> float:
+    return csg.loads(text, **options).volume
+
+
+# Tessellation
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sides"),
+    [
+        ("r = 1", 5),
+        ("r = 10", 30),
+        ("r = 0.1", 5),
+        ("r = 1, $fn = 2", 3),
+        ("r = 1, $fn = 12.9", 12),
+        ("r = 1, $fn = nan", 3),
+        ("r = 10, $fa = 5, $fs = 0.1", 72),
+        ("d = 20", 30),
+    ],
+)
+def test_circles_have_openscads_sides(arguments: str, sides: int) -> None:
+    (outline,) = region(f"circle({arguments});").outlines
+    assert len(outline.points) == sides
+
+
+def test_special_variables_hold_inside_a_node() -> None:
+    def sides(text: str) -> int:
+        return len(region(text).to_polygons()[0])
+
+    assert sides("union($fn = 8) circle(r = 1);") == 8
+    assert sides("union($fn = 8) group($fa = 1) circle(r = 1, $fn = 4);") == 4
+    assert sides("union($fn = 8); circle(r = 1);") == 5
+
+
+@pytest.mark.parametrize(("r", "faces", "sides"), [(1, 22, 5), (10, 842, 30)])
+def test_spheres_have_no_poles(r: int, faces: int, sides: int) -> None:
+    mesh = csg.loads(f"sphere(r = {r});").to_mesh()
+    rings = (sides + 1) // 2
+    assert len(mesh.vertices) == rings * sides
+    assert len(mesh.faces) == 2 * (sides - 2) + 2 * sides * (rings - 1)
+    # OpenSCAD counts each cap as one.
+    assert faces == 2 + 2 * sides * (rings - 1)
+    assert mesh.vertices[:, 2].max() == pytest.approx(r * math.cos(math.pi / 2 / rings))
+
+
+def test_first_ring_of_a_sphere() -> None:
+    bounds = csg.loads("sphere(r = 10, $fn = 8);").bounds
+    assert bounds is not None
+    assert bounds[1, 2] == pytest.approx(9.238795325, abs=1e-9)
+
+
+# Operations
+
+
+def test_top_nodes_and_groups_are_united() -> None:
+    assert volume(f"cube(1); group() {{ {moved(2, 0, 0)} cube(1); cube(1); }}") == 2
+
+
+def test_ignored_and_root_nodes() -> None:
+    assert volume("difference() { %cube(9); *cube(9); #cube(2); cube(1); }") == 7
+    assert volume("cube(5); group() { !cube(2); } !cube(1);") == 8
+    assert csg.loads("%cube(1);").is_empty
+
+
+def test_nothing_first_leaves_nothing() -> None:
+    assert csg.loads("difference() { group(); cube(1); }").is_empty
+    assert csg.loads("difference() { cube(size = [0, 1, 1]); cube(1); }").is_empty
+    assert csg.loads("intersection() { group(); cube(1); }").is_empty
+    assert csg.loads("intersection();").is_empty
+    assert csg.loads("").is_empty
+
+
+def test_first_child_says_the_dimension() -> None:
+    with pytest.warns(csg.CsgWarning, match=r"<csg>:1:1: union\(\).*plane figures .* ignored"):
+        assert volume("union() { cube(1); square(5); }") == 1
+    with pytest.warns(csg.CsgWarning, match="solids among them are ignored"):
+        assert region("union() { square(2); cube(1); }").area == 4
+
+
+def test_plane_figures_combine() -> None:
+    text = f"difference() {{ square(4); {moved(1, 1, 9)} square(2); }}"
+    assert region(text).area == 12
+    assert region(f"intersection() {{ square(4); {moved(3, 3, 0)} square(4); }}").area == 1
+    assert region("square([0, 3]);").is_empty
+    with pytest.raises(b.FormatError, match="plane figure; put linear_extrude"):
+        csg.loads("square(4);")
+
+
+def test_repeated_parts_are_one_solid() -> None:
+    tree = csg.parse(f"cube(1); {moved(3, 0, 0)} cube(1); {moved(6, 0, 0)} cube(1);")
+    solid = csg.evaluate(tree)
+    assert isinstance(solid, b.Solid)
+    assert solid.volume == 3
+    operation = solid.last_operation
+    assert operation is not None
+    assert len(operation.operands) == 3
+
+
+def test_matrices() -> None:
+    assert volume(f"{moved(1, 2, 3)} cube(2);") == 8
+    assert volume("multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]) cube(2);") == 1
+    assert volume("multmatrix([[-2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) cube(2);") == 16
+    for wrong in ("inf", "nan"):
+        text = f"multmatrix([[{wrong},0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) cube(2);"
+        with pytest.warns(csg.CsgWarning, match="not finite; it is left out"):
+            assert csg.loads(text).is_empty
+    with pytest.warns(csg.CsgWarning, match="flattens its children"):
+        flat = "multmatrix([[1,0,0,0],[0,1,0,0],[0,0,0,0],[0,0,0,1]])"
+        assert csg.loads(f"{flat} cube(2);").is_empty
+    # The third row and column do not concern the plane.
+    assert region(f"{flat} square(2);").area == 4
+
+
+# Polyhedra
+
+
+def test_polyhedra_run_clockwise_but_need_not() -> None:
+    outward = "faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]"
+    inward = "faces = [[2, 1, 0], [1, 3, 0], [3, 2, 0], [2, 3, 1]]"
+    for faces in (outward, inward, outward.replace("faces", "triangles")):
+        assert volume(f"polyhedron({TETRAHEDRON}, {faces});") == pytest.approx(1)
+
+
+def test_open_polyhedra_are_errors_or_left_out() -> None:
+    text = f"cube(1); polyhedron({TETRAHEDRON}, faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3]]);"
+    with pytest.raises(b.InvalidMeshError, match=r"^<csg>:1:10: polyhedron\(\): .*not closed"):
+        csg.loads(text)
+    with pytest.warns(csg.CsgWarning, match="left out"):
+        assert volume(text, on_invalid="warn") == 1
+
+
+def test_equal_points_are_one() -> None:
+    points = "[[0,0,0],[1,0,0],[0,1,0],[0,0,1],[0,0,0]]"
+    faces = "[[0,1,2],[4,3,1],[4,2,3],[1,3,2],[0,4,1]]"
+    assert volume(f"polyhedron(points = {points}, faces = {faces});") == pytest.approx(1 / 6)
+
+
+# Sweeps and hulls
+
+
+def test_straight_and_tapered_extrusions() -> None:
+    assert volume("linear_extrude(height = 3, center = true) square(2);") == 12
+    pyramid = "linear_extrude(height = 3, scale = 0) square(2, center = true);"
+    assert volume(pyramid) == pytest.approx(4)
+    assert csg.loads("linear_extrude(height = -3) square(2);").is_empty
+    assert csg.loads("linear_extrude(height = 3) group();").is_empty
+
+
+def test_turned_extrusions() -> None:
+    ring = f"rotate_extrude({{}}$fn = 4) {moved(2, 0, 0)} square(1);"
+    assert volume(ring.format("")) == pytest.approx(10)
+    assert volume(ring.format("angle = 400, ")) == pytest.approx(10)
+    assert volume(ring.format("angle = 90, ")) == pytest.approx(2.5)
+    assert csg.loads(ring.format("angle = 0, ")).is_empty
+    bounds = csg.loads(ring.format("angle = -90, ")).bounds
+    np.testing.assert_array_equal(bounds, [[0, -3, 0], [3, 0, 1]])
+
+
+def test_hulls() -> None:
+    assert volume(f"hull() {{ cube(1); {moved(0, 0, 4)} cube(1); }}") == 5
+    assert region(f"hull() {{ square(1); {moved(4, 0, 0)} square(1); }}").area == 5
+    assert csg.loads("hull();").is_empty
+    assert csg.loads("hull() { group(); cube(size = [0, 1, 1]); }").is_empty
+
+
+def test_minkowski_sums() -> None:
+    assert volume("minkowski() { cube(2); cube(1); cube(1); }") == 64
+    assert region("minkowski() { square(2); square([1, 3]); }").area == 15
+    corner = f"difference() {{ cube(4); {moved(1, 1, -1)} cube(9); }}"
+    assert volume(f"minkowski() {{ {corner} cube(1); }}") == 5 * (25 - 9)
+    assert csg.loads("minkowski() { cube(2); cube(0); }").is_empty
+
+
+def test_minkowski_of_what_is_far_from_convex() -> None:
+    ball = "difference() { sphere(r = 20, $fn = 80); cube(3); }"
+    with pytest.raises(
+        b.FormatError, match=r":1:1: minkowski\(\): a child is not convex"
+    ) as caught:
+        csg.loads(f"minkowski() {{ {ball} cube(1); }}")
+    assert caught.value.code == "too_large"
+
+
+def test_sizes() -> None:
+    assert volume("resize(newsize = [4, 0, 0]) cube(2);") == 16
+    assert volume("resize(newsize = [4, 0, 0], auto = [0, 1, 0]) cube(2);") == 32
+    assert volume("resize(newsize = [4, 0, 6], auto = true) cube(2);") == 4 * 6 * 6
+    assert region("resize(newsize = [4, 6, 9]) square(2);").area == 24
+
+
+def test_projections() -> None:
+    ball = moved(0, 0, 3) + " cube(2, center = true);"
+    assert region(f"projection() {ball}").area == 4
+    assert region(f"projection(cut = true) {ball}").is_empty
+    assert region("projection(cut = true) cube(2);").area == 4
+    with pytest.warns(csg.CsgWarning, match="plane figures; they are ignored"):
+        assert csg.evaluate(csg.parse("projection() square(1);")) is None
+
+
+def test_offsets() -> None:
+    pytest.importorskip("pyclipper")
+    assert region("offset(delta = 1) square(2);").area == 16
+    assert region("offset(delta = -0.5) square(2);").area == 1
+    assert region("offset(delta = -5) square(2);").is_empty
+    assert region("offset(r = 1, $fn = 4) square(2);").area == pytest.approx(4 + 8 + 2)
+    with pytest.raises(b.FormatError, match="must be plane figures"):
+        csg.loads("offset(r = 1) cube(1);")
+
+
+# Files
+
+
+def test_imports_are_relative_to_the_script(tmp_path: Path) -> None:
+    b.cube(2).save(tmp_path / "part.stl")
+    b.cube(2).save(tmp_path / "part.off")
+    for name in ("part.stl", "part.off"):
+        (tmp_path / "all.csg").write_text(f'import(file = "{name}", layer = "", timestamp = 1);')
+        assert b.load(tmp_path / "all.csg").volume == 8
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "says"),
+    [
+        ('import(file = "none.stl");', "missing_file", "no file “none.stl”"),
+        ('import(file = ".");', "missing_file", "no file"),
+        ('import(file = "a\\x01b.stl");', "missing_file", "no file"),
+        ('import(file = "x.amf");', "unsupported", "“.amf” files are not supported"),
+        ('import(file = "x.stl");', "empty_file", "empty"),
+        ('surface(file = "x.amf");', "syntax", "two rows and columns"),
+        ('surface(file = "words.dat");', "syntax", "words.dat:1"),
+        ('surface(file = "x.png");', "unsupported", "pictures"),
+        ('import(file = "words.dxf");', "syntax", "no valid DXF"),
+        ('import(file = "words.svg");', "syntax", "words.svg"),
+        ("import();", "bad_argument", "file is missing"),
+    ],
+)
+def test_files_that_are_not_what_they_should(
+    tmp_path: Path, text: str, code: str, says: str
+) -> None:
+    for name in ("x.amf", "x.stl", "x.png"):
+        (tmp_path / name).touch()
+    for name in ("words.dat", "words.dxf", "words.svg"):
+        (tmp_path / name).write_text("not at all\n")
+    with pytest.raises(b.FormatError) as caught:
+        csg.loads(text, folder=tmp_path)
+    assert caught.value.code == code
+    assert str(caught.value).startswith("<csg>:1:1: ")
+    assert says in str(caught.value)
+
+
+# Errors
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('cube(size = "a");', 'size must be 3 numbers within ±1e100, not "a"'),
+        ("cube(size = [1, 2]);", "size must be 3 numbers"),
+        ("cube(size = [nan, 1, 1]);", "size must be 3 numbers"),
+        ("cube(1e300);", "size must be 3 numbers"),
+        ('cube(1, center = "yes");', "center must be true or false"),
+        ("sphere(r = true);", "r must be a number"),
+        ("multmatrix(3) cube(1);", "matrix of 4 rows"),
+        ("multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,1]]) cube(1);", "last row"),
+        ("polyhedron(points = [[0, 0]], faces = []);", "points[0] must be 3"),
+        ("polyhedron(points = [[0, 0, 0]], faces = [[0, 1, 2]]);", "from 0 to 0"),
+        ("polygon(points = 3);", "points must be a list of points"),
+        ("polygon(points = [[0, 0]], paths = [[0.5]]);", "whole numbers"),
+        ("rotate_extrude() square(2, center = true);", "must not cross the axis"),
+        ('linear_extrude(file = "a.dxf");', "put an import()"),
+        ("linear_extrude(height = 1, v = [1, 0, 1]) square(1);", "only v = [0, 0, 1]"),
+        ("sphere(r = 1, $fn = 1e9);", "more than 4,000,000 corners"),
+        ("linear_extrude(height = 1, twist = 1, slices = 1e12) square(1);", "corners"),
+        ('text(text = "x");', "text() is not supported. Convert it to paths"),
+        ("roof() square(1);", "roof() is not supported. Supported: circle color"),
+    ],
+)
+def test_errors_name_node_line_and_column(text: str, says: str) -> None:
+    with pytest.raises(b.FormatError) as caught:
+        csg.loads("group() {\n  " + text + " }", name="part.csg")
+    assert str(caught.value).startswith("part.csg:2:3: ")
+    assert caught.value.where == (2, 3)
+    assert says in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "cube(1e-300);",
+        "cube(1e99);",
+        f"{moved(1e90, 0, 0)} cube(1);",
+        "resize([1e90, 0, 0]) cube(1);",
+    ],
+)
+def test_sizes_beyond_the_lattice_are_errors_not_crashes(text: str) -> None:
+    with pytest.raises((b.LimitError, b.InvalidMeshError), match=r"^<csg>:"):
+        csg.loads(text)
+
+
+# Solids as scripts
+
+
+def test_solids_survive_as_polyhedra(tmp_path: Path) -> None:
+    part = b.cube(3) - b.cylinder(h=9, r=1, segments=7).rotate(20, "x")
+    csg.dump(part, tmp_path / "part.csg")
+    read = b.load(tmp_path / "part.csg")
+    assert (read ^ part).volume < 1e-7
+    assert csg.loads(csg.dumps(read)).equals(read)
+    assert csg.dumps(b.Solid.empty()) == ""
+    with pytest.raises(b.UnboundedError):
+        csg.dumps(~b.cube(1))
+
+
+# Polish
+
+
+def test_polish_makes_turned_boxes_meet() -> None:
+    turn = (
+        "multmatrix([[0.866025, -0.5, 0, {}], [0.5, 0.866025, 0, {}], [0, 0, 1, 0], [0, 0, 0, 1]])"
+    )
+    # 25.9808 is 30 cos 30°, to six digits; 30 times 0.866025 is less.
+    text = turn.format(0, 0) + "cube([30, 10, 10]);" + turn.format("25.9808", 15) + "cube(10);"
+    rough, polished = csg.loads(text), csg.loads(text, polish=True)
+    assert len(rough.to_trimesh().vertices) == 16
+    assert len(polished.to_trimesh().vertices) == 12
+    assert polished.volume == pytest.approx(4000, rel=2e-5)
+    assert polished.tree.pitch == -4
+
+
+def test_polish_keeps_what_is_no_rotation() -> None:
+    shear = "multmatrix([[1, 0.01, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])"
+    bounds = csg.loads(f"{shear} cube(10);", polish=True).bounds
+    assert bounds is not None
+    assert bounds[1, 0] == pytest.approx(10.1)
+    assert csg.loads("", polish=True).is_empty

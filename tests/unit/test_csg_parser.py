@@ -1,0 +1,241 @@
+import math
+import os
+from pathlib import Path
+
+import hypothesis.strategies as st
+import pytest
+from hypothesis import given
+
+from bspcsg import FormatError, csg
+from bspcsg.csg import Argument, CsgTree, Node
+
+DEEP = 100_000
+
+CORPUS = Path(__file__).parent.parent / "corpus" / "csg"
+
+
+def values(text: str) -> list[object]:
+    return [argument.value for argument in csg.parse(f"node({text});").nodes[0].arguments]
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("1", 1.0),
+        ("-2.5e-3", -0.0025),
+        (".5", 0.5),
+        ("1.", 1.0),
+        ("--3", 3.0),
+        ("+4", 4.0),
+        ("inf", math.inf),
+        ("-inf", -math.inf),
+        ("true", True),
+        ("false", False),
+        ("undef", None),
+        ('"a\\n\\"b\\\\\\u00e9"', 'a\n"b\\é'),
+        ("[]", ()),
+        ("[ 0, [1,2] ,[ ] , undef]", (0.0, (1.0, 2.0), (), None)),
+        ("[1, 2, ]", (1.0, 2.0)),
+    ],
+)
+def test_values(text: str, value: object) -> None:
+    assert values(text) == [value]
+
+
+def test_nan_is_a_value() -> None:
+    (value,) = values("nan")
+    assert isinstance(value, float)
+    assert math.isnan(value)
+
+
+def test_named_and_unnamed_arguments() -> None:
+    node = csg.parse("sphere($fn = 0, r=2, [1], center = true);").nodes[0]
+    assert [argument.name for argument in node.arguments] == ["$fn", "r", None, "center"]
+
+
+def test_bodies_modifiers_comments_and_places() -> None:
+    text = "// made\n%#group() { /* two\n lines */ cube(1); ; !sphere(); }\nmultmatrix() cube(2);"
+    group, moved = csg.parse(text).nodes
+    assert (group.modifiers, group.place) == ("%#", (2, 3))
+    assert [child.name for child in group.children] == ["cube", "sphere"]
+    assert group.children[0].place == (3, 11)
+    assert group.children[1].modifiers == "!"
+    assert [child.name for child in moved.children] == ["cube"]
+
+
+def test_byte_order_mark_and_line_ends() -> None:
+    assert csg.parse("\ufeffcube(1);\r\n\r\ncube(2);").nodes[1].place == (3, 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "where", "says"),
+    [
+        ("cube(", [1, 6], "the end of the file"),
+        ("cube(1)", [1, 1], "“;” is missing"),
+        ("group() {\n cube(1);", [1, 1], "“}” is missing"),
+        ("cube(size = [1, 2", [1, 18], "expected “]”"),
+        ('\n  text("abc);', [2, 8], "no closing quote"),
+        ("cube(1); /* never", [1, 10], "comment has no end"),
+        ("}", [1, 1], "expected a node"),
+        ("cube(1) );", [1, 9], "expected a node"),
+        ("x = 3;", [1, 1], "no variables"),
+        ("cube(1e999);", [1, 6], "too large"),
+        ("cube(1.2.3);", [1, 6], "cannot read “1.2.3”"),
+        ("cube(size == 1);", [1, 12], "expected a value"),
+        ("cube(size 1);", [1, 11], "expected “=” after size"),
+        ('cube(-"a");', [1, 7], "expected a value"),
+        ("cube(1 2);", [1, 8], "expected “,” or “)”"),
+        ("cube 1;", [1, 6], "expected “(” after cube"),
+        ("cube(1);\n@", [2, 1], "cannot read “@”"),
+        ("#", [1, 2], "expected a node"),
+    ],
+)
+def test_errors_name_line_and_column(text: str, where: list[int], says: str) -> None:
+    with pytest.raises(FormatError) as caught:
+        csg.parse(text, "part.csg")
+    assert list(caught.value.where) == where
+    assert caught.value.code == "syntax"
+    assert str(caught.value).startswith(f"part.csg:{where[0]}:{where[1]}: ")
+    assert says in str(caught.value)
+
+
+def test_nodes_nest_to_any_depth() -> None:
+    tree = csg.parse("group() {" * DEEP + "cube(1);" + "}" * DEEP)
+    text = csg.dumps(tree)
+    assert text.count("group()") == DEEP
+    assert csg.parse("group() " * DEEP + "cube(1);").nodes[0].name == "group"
+    assert csg.loads(text).volume == 1.0
+
+
+def test_vectors_do_not() -> None:
+    with pytest.raises(FormatError, match="nested deeper than 64"):
+        csg.parse("cube(" + "[" * DEEP)
+
+
+def test_deep_trees_are_no_json() -> None:
+    tree = csg.parse("group() {" * 300 + "cube(1);" + "}" * 300)
+    with pytest.raises(FormatError, match="nest deeper"):
+        csg.to_json(tree)
+    with pytest.raises(FormatError, match="no JSON"):
+        csg.from_json('{"nodes":' * DEEP)
+
+
+@pytest.mark.parametrize("path", sorted(CORPUS.glob("*.csg")), ids=lambda path: path.stem)
+def test_text_and_json_give_the_same_tree(path: Path) -> None:
+    tree = csg.read_tree(path)
+    assert csg.parse(csg.dumps(tree)) == tree
+    assert csg.from_json(csg.to_json(tree, indent=1)) == tree
+
+
+_numbers = st.floats(allow_nan=False)
+_scalars = st.one_of(_numbers, st.booleans(), st.none(), st.text(st.characters(codec="utf-8")))
+_values = st.recursive(_scalars, lambda inner: st.lists(inner, max_size=3).map(tuple), max_leaves=6)
+_names = st.from_regex(r"\$?[a-z_][a-z0-9_]{0,5}", fullmatch=True).filter(
+    lambda name: name not in {"true", "false", "undef", "inf", "nan"}
+)
+_arguments = st.builds(Argument, st.one_of(st.none(), _names), _values)
+_nodes = st.recursive(
+    st.builds(Node, _names, st.lists(_arguments, max_size=3).map(tuple)),
+    lambda inner: st.builds(
+        Node,
+        _names,
+        st.lists(_arguments, max_size=2).map(tuple),
+        st.lists(inner, max_size=3).map(tuple),
+        st.sampled_from(["", "#", "%", "*!"]),
+    ),
+    max_leaves=5,
+)
+
+
+@given(st.lists(_nodes, max_size=3).map(lambda nodes: CsgTree(tuple(nodes))))
+def test_any_tree_survives_both_forms(tree: CsgTree) -> None:
+    assert csg.parse(csg.dumps(tree)) == tree
+    assert csg.from_json(csg.to_json(tree)) == tree
+
+
+@given(st.text(st.sampled_from('abc(){}[],;=-+."\\/*#%! 0123456789e\n'), max_size=60))
+def test_any_text_is_a_tree_or_an_error_with_a_place(text: str) -> None:
+    try:
+        csg.parse(text)
+    except FormatError as error:
+        assert len(error.where) == 2
+
+
+def test_json_holds_numbers_that_json_has_not() -> None:
+    tree = csg.parse("cube([inf, -inf, 1e20, 0.1]);")
+    assert '{"number": "-inf"}' in csg.to_json(tree)
+    assert csg.from_json(csg.to_json(tree)) == tree
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "no JSON"),
+        ("[]", "format"),
+        ('{"format": "bspcsg-csg", "version": 2}', "version 2"),
+        ('{"format": "bspcsg-csg", "version": 1}', "nodes must be a list"),
+        ('{"format": "bspcsg-csg", "version": 1, "nodes": [{}]}', "nodes[0] must be a node"),
+        (
+            '{"format": "bspcsg-csg", "version": 1, "nodes": [{"node": "a b"}]}',
+            "nodes[0] must be a node",
+        ),
+        (
+            '{"format": "bspcsg-csg", "version": 1, "nodes": [{"node": "a", "modifiers": "?"}]}',
+            "modifiers must be",
+        ),
+        (
+            '{"format": "bspcsg-csg", "version": 1, "nodes": [{"node": "a", "arguments": [{}]}]}',
+            "nodes[0].arguments[0] must be an argument",
+        ),
+        (
+            '{"format": "bspcsg-csg", "version": 1, "nodes":'
+            ' [{"node": "a", "arguments": [{"value": {"x": 1}}]}]}',
+            "arguments[0].value must be",
+        ),
+    ],
+)
+def test_wrong_json_is_refused_with_its_place(text: str, says: str) -> None:
+    with pytest.raises(FormatError) as caught:
+        csg.from_json(text, "tree.json")
+    assert says in str(caught.value)
+
+
+def test_files_that_cannot_be_read(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match="No such file"):
+        csg.load(tmp_path / "none.csg")
+    with pytest.raises(FormatError, match="directory"):
+        csg.load(tmp_path)
+    (tmp_path / "binary.csg").write_bytes(b"cube(\xff);")
+    with pytest.raises(FormatError, match="byte 5 is no UTF-8"):
+        csg.load(tmp_path / "binary.csg")
+    with pytest.raises(FormatError, match="defines is for"):
+        csg.load(CORPUS / "paths.csg", defines={})
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs a POSIX system")
+def test_scad_needs_openscad(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "part.scad").write_text("cube(1);")
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(FormatError, match="needs the program openscad") as caught:
+        csg.load(tmp_path / "part.scad")
+    assert caught.value.code == "missing_program"
+
+
+def stand_in(folder: Path, script: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    program = folder / "openscad"
+    program.write_text(f"#!/bin/sh\n{script}\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{folder}{os.pathsep}{os.environ['PATH']}")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a POSIX shell")
+def test_scad_goes_through_openscad(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "part.scad").write_text("cube(w);")
+    stand_in(tmp_path, 'echo "cube(${3#-Dw=});" > "$2"', monkeypatch)
+    assert csg.load(tmp_path / "part.scad", defines={"w": 2.0}).volume == 8.0
+    stand_in(tmp_path, 'echo "ERROR: Parser error in line 1" >&2; exit 1', monkeypatch)
+    with pytest.raises(FormatError, match="refused it: ERROR: Parser error in line 1"):
+        csg.load(tmp_path / "part.scad")
+    stand_in(tmp_path, "exec sleep 5", monkeypatch)
+    with pytest.raises(FormatError, match=r"longer than 0\.2 seconds"):
+        csg.read_scad(tmp_path / "part.scad", timeout=0.2)

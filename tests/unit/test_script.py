@@ -1,0 +1,81 @@
+from pathlib import Path
+
+import pytest
+
+import bspcsg as b
+
+
+def script(folder: Path, text: str) -> Path:
+    path = folder / "part.py"
+    path.write_text(text)
+    return path
+
+
+def test_a_result_is_the_solid(tmp_path: Path) -> None:
+    path = script(tmp_path, "import bspcsg as b\nresult = b.cube(3) - b.cube(1)\n")
+    assert b.run_script(path).volume == 26
+
+
+def test_results_may_be_several_or_meshes(tmp_path: Path) -> None:
+    path = script(tmp_path, "import bspcsg as b\nresult = [b.cube(1), b.cube(2)]\n")
+    assert b.run_script(path).volume == 8
+    path = script(tmp_path, "import trimesh\nresult = trimesh.creation.box((1, 2, 3))\n")
+    assert b.run_script(path).volume == pytest.approx(6)
+
+
+def test_what_is_shown_is_united_even_after_exit(tmp_path: Path) -> None:
+    path = script(
+        tmp_path,
+        "import sys\nimport bspcsg as b\nb.show(b.cube(1))\nb.show(b.cube(1).translate(3, 0, 0))\n"
+        "sys.exit(0)\n",
+    )
+    assert b.run_script(path).volume == 2
+
+
+def test_scripts_see_their_folder_their_arguments_and_defines(tmp_path: Path) -> None:
+    (tmp_path / "sizes.py").write_text("HEIGHT = 5\n")
+    path = script(
+        tmp_path,
+        "import sys\nimport bspcsg as b\nfrom sizes import HEIGHT\nassert __name__ == '__main__'\n"
+        "result = b.box((w, float(sys.argv[1]), HEIGHT))\n",
+    )
+    assert b.run_script(path, arguments=["3"], defines={"w": 2}).volume == 30
+
+
+def test_what_scripts_print_goes_to_standard_error(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    path = script(tmp_path, "import bspcsg as b\nprint('made')\nresult = b.cube(1)\n")
+    b.run_script(path)
+    assert "made" not in capfd.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "says"),
+    [
+        ("def f():\n    return 1 / 0\nf()\n", "script_failed", "part.py:2: ZeroDivisionError: div"),
+        ("x = (\n", "script_failed", "part.py:1: SyntaxError: '(' was never closed"),
+        ("import bspcsg\nbspcsg.cube(-1)\n", "invalid_parameter", "part.py:2: size must be above"),
+        ("import os\nos._exit(3)\n", "script_died", "ended its process with code 3"),
+        ("x = 1\n", "no_result", "left no variable “result”"),
+        ("result = 3\n", "invalid_parameter", "Cannot find a mesh in int"),
+        ("while True:\n    pass\n", "timeout", "longer than 2 seconds"),
+    ],
+)
+def test_scripts_that_fail(tmp_path: Path, text: str, code: str, says: str) -> None:
+    path = script(tmp_path, text)
+    with pytest.raises(b.BspcsgError) as caught:
+        b.run_script(path, timeout=2 if code == "timeout" else 60)
+    assert caught.value.code == code
+    assert says in str(caught.value)
+
+
+def test_a_script_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(b.FormatError, match="no such file"):
+        b.run_script(tmp_path / "none.py")
+
+
+def test_show_does_nothing_elsewhere() -> None:
+    b.show(b.cube(1))
+    with pytest.raises(b.InvalidMeshError):
+        b.show(object())
