@@ -11,33 +11,38 @@ Examples
 820.0
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from ._core import __version__, set_threads
-from .check import CheckReport, Verdict, validate
-from .errors import (
-    BspcsgError,
-    Finding,
-    FormatError,
-    InternalError,
-    InvalidMeshError,
-    LimitError,
-    UnboundedError,
-)
-from .io import load, save
-from .mesh import Mesh
-from .primitives import (
-    box,
-    cone,
-    cube,
-    cylinder,
-    extrude,
-    half_space,
-    prism,
-    revolve,
-    sphere,
-    torus,
-)
-from .setops import boolean, difference, intersection, union, xor
-from .solid import Solid
+
+if TYPE_CHECKING:
+    from .check import CheckReport, Verdict, validate
+    from .errors import (
+        BspcsgError,
+        Finding,
+        FormatError,
+        InternalError,
+        InvalidMeshError,
+        LimitError,
+        UnboundedError,
+    )
+    from .io import load, save
+    from .mesh import Mesh
+    from .primitives import (
+        box,
+        cone,
+        cube,
+        cylinder,
+        extrude,
+        half_space,
+        prism,
+        revolve,
+        sphere,
+        torus,
+    )
+    from .setops import boolean, difference, intersection, union, xor
+    from .solid import Solid
 
 __all__ = [
     "BspcsgError",
@@ -72,3 +77,31 @@ __all__ = [
     "validate",
     "xor",
 ]
+
+#: Which module each name is from; it is imported when the name is first asked for, so that the
+#: command line starts without numpy.
+_MODULES = {
+    "check": "CheckReport Verdict validate",
+    "errors": "BspcsgError Finding FormatError InternalError InvalidMeshError LimitError"
+    " UnboundedError",
+    "io": "load save",
+    "mesh": "Mesh",
+    "primitives": "box cone cube cylinder extrude half_space prism revolve sphere torus",
+    "setops": "boolean difference intersection union xor",
+    "solid": "Solid",
+}
+_HOMES = {name: module for module, names in _MODULES.items() for name in names.split()}
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is asked for the first time."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f".{_HOMES[name]}", __name__), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Return the public names, imported or not."""
+    return sorted({*globals(), *__all__})

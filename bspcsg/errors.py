@@ -62,6 +62,10 @@ class FormatError(BspcsgError, ValueError):
     """A file cannot be read as what it claims to be, or cannot be written."""
 
 
+class MissingPartError(BspcsgError, RuntimeError):
+    """An optional part of this package, or a program it asks, is not installed."""
+
+
 class UnboundedError(BspcsgError, ValueError):
     """A finite answer was asked of a solid that reaches to infinity."""
 
@@ -115,6 +119,11 @@ def core_errors() -> Iterator[None]:
 def invalid_parameter(message: str) -> InvalidMeshError:
     """Return the error for a parameter that makes no solid."""
     return InvalidMeshError(message, "invalid_parameter")
+
+
+def missing_part(part: str, purpose: str, remedy: str) -> MissingPartError:
+    """Return the error for an optional part, with the command that installs it."""
+    return MissingPartError(f"{part} is needed {purpose}. Try: {remedy}", "missing_part")
 
 
 def number(value: Any, name: str) -> float:

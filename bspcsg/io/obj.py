@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import Finding, FormatError
 from ..mesh import Mesh
-from .raw import Polygons, RawMesh
+from .raw import Polygons, RawMesh, parts_of
 from .source import Source, quoted
 
 #: Statements that would add surface which is not in the polygons.
@@ -25,7 +25,8 @@ def read(source: Source) -> RawMesh:
     row_lines: list[int] = []
     polygons: list[list[int]] = []
     face_lines: list[int] = []
-    name, surfaces = b"", 0
+    objects: list[tuple[bytes, int]] = []
+    surfaces = 0
     for number, words in _statements(source):
         key = words[0]
         if key == b"v":
@@ -35,7 +36,7 @@ def read(source: Source) -> RawMesh:
             polygons.append(_references(source, number, words, len(rows)))
             face_lines.append(number)
         elif key == b"o":
-            name = name or b" ".join(words[1:])
+            objects.append((b" ".join(words[1:]), len(polygons)))
         surfaces += key in _SURFACES
     if not rows:
         raise source.error("this is no OBJ mesh: it has no vertex.")
@@ -44,7 +45,28 @@ def read(source: Source) -> RawMesh:
         vertices,
         lambda polygon, message, code: source.error(message, code, line=face_lines[polygon]),
     )
-    return RawMesh(vertices, faces, name.decode("utf-8", "replace"), _curved(surfaces))
+    named = _objects(objects, [len(polygon) - 2 for polygon in polygons], len(faces))
+    name = next((name for name, _ in named if name), "")
+    return RawMesh(
+        vertices, faces, name, _curved(surfaces), objects=named if len(named) > 1 else ()
+    )
+
+
+def _objects(
+    begun: list[tuple[bytes, int]], triangles: list[int], total: int
+) -> tuple[tuple[str, int], ...]:
+    """Return names and triangle counts of objects that begin at some polygons."""
+    if sum(triangles) != total:  # a polygon without area has fewer
+        return ()
+    if not begun or begun[0][1] > 0:
+        begun = [(b"", 0), *begun]
+    starts = [start for _, start in begun]
+    counts = [
+        sum(triangles[start:end])
+        for start, end in zip(starts, [*starts[1:], len(triangles)], strict=True)
+    ]
+    names = [name.decode("utf-8", "replace") for name, _ in begun]
+    return tuple((name, count) for name, count in zip(names, counts, strict=True) if count)
 
 
 def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
@@ -101,5 +123,9 @@ def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; every coordinate reads back as the same double."""
     for point in mesh.vertices.tolist():
         yield "v {!r} {!r} {!r}\n".format(*point).encode()
-    for face in (mesh.faces + np.int64(1)).tolist():
-        yield "f {} {} {}\n".format(*face).encode()
+    parts = parts_of(mesh)
+    for name, faces in parts:
+        if len(parts) > 1:
+            yield f"o {' '.join(name.split())}\n".encode("utf-8", "replace")
+        for face in (faces + np.int64(1)).tolist():
+            yield "f {} {} {}\n".format(*face).encode()

@@ -52,6 +52,7 @@ class Object:
     triangles: list[tuple[int, int, int]] = field(default_factory=list)
     components: list[Placed] = field(default_factory=list)
     beams: int = 0
+    name: str = ""
 
     def arrays(self) -> tuple[FloatArray, IndexArray]:
         """Return vertices (n, 3) and triangles (m, 3)."""
@@ -142,7 +143,8 @@ class PartReader:
         elif tag == "item":
             self._part.items.append(self._placed(attributes))
         elif tag == "object":
-            self._current = Object(attributes.get("type", "model"))
+            kind, name = attributes.get("type", "model"), attributes.get("name", "")
+            self._current = Object(kind, name=name)
             self._part.objects[attributes["id"]] = self._current
         elif tag == "model":
             self._part.unit = attributes.get("unit", "millimeter")

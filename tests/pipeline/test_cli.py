@@ -316,7 +316,7 @@ def test_wrong_usage(folder: Path, capsys: Capture, arguments: list[str]) -> Non
     assert (code, out) == (2, "") and err
 
 
-@pytest.mark.parametrize("name", ["x.step", "x", "x.3mf"])
+@pytest.mark.parametrize("name", ["x.step", "x", "x.amf"])
 def test_unknown_output_comes_before_any_work(folder: Path, capsys: Capture, name: str) -> None:
     code, _, err = ran(capsys, "union", "none.off", "nothing.off", "-o", name)
     assert code == 3 and name in err and "none.off" not in err
