@@ -92,7 +92,6 @@ _ADVICE = {
     "empty_mesh": "A mesh without faces is no solid; use Solid.empty() for the empty set.",
     "too_large": "Choose a coarser pitch (for example pitch=-6), or move or scale the solids.",
     "too_small": "Choose a finer pitch (for example pitch=-12), or scale the solid up.",
-    "unbounded": "Intersect it with a bounded solid first.",
     "internal": "This is a defect of bspcsg; please report it with the input.",
 }
 

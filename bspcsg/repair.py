@@ -16,6 +16,7 @@ from .errors import BspcsgError, invalid_parameter, missing_part
 from .io import RawMesh
 from .mesh import Mesh
 from .pieces import surfaces_of
+from .weld import welded
 
 #: The steps in the order in which they are taken.
 STEPS = ("weld", "dedup", "split", "orient", "fill")
@@ -95,7 +96,10 @@ def repair(
     turned = 0 if inward is None else int(inward.sum())
     if inward is not None and turned:
         faces[inward] = faces[inward][:, ::-1]
-    return Repair(RawMesh(vertices, faces, raw.name, (), (), raw.unit), failed, turned)
+    # What was split to be oriented and closed is joined again: equal points are one vertex.
+    points, same = welded(vertices[faces].reshape(-1, 3))
+    mesh = RawMesh(points, same.reshape(-1, 3), raw.name, (), (), raw.unit)
+    return Repair(mesh, failed, turned)
 
 
 def _asked(folder: Path, timeout: float | None) -> dict[str, str]:

@@ -34,7 +34,10 @@ def _dedup(meshes: Any, settings: dict[str, Any]) -> None:
 
 
 def _split(meshes: Any, settings: dict[str, Any]) -> None:
-    meshes.meshing_repair_non_manifold_edges(method="Split Vertices")
+    meshes.compute_selection_by_non_manifold_edges_per_face()
+    # Asked to split where there is nothing to split, the filter tears sound meshes apart.
+    if meshes.current_mesh().selected_face_number():
+        meshes.meshing_repair_non_manifold_edges(method="Split Vertices")
     meshes.meshing_repair_non_manifold_vertices(vertdispratio=0)
 
 

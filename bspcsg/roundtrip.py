@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ._types import FloatArray
-from .errors import BspcsgError, Finding
+from .errors import BspcsgError
 from .io import RawMesh
 from .mesh import Mesh
 from .solid import Solid
@@ -14,6 +14,9 @@ from .weld import welded
 
 #: What readers say about parts of a file that they pass by.
 _PASSED_BY = ("ignored", "curves_ignored", "extra_data")
+
+#: How many names are told.
+_TOLD = 4
 
 
 @dataclass(frozen=True)
@@ -36,6 +39,8 @@ class Losses:
         Names of objects that are gone.
     passed_by : tuple of str
         What the reader of the input said it left out.
+    dropped : tuple of str
+        Kinds of data in the input that a mesh of triangles has no room for.
     """
 
     triangles: tuple[int, int]
@@ -46,6 +51,7 @@ class Losses:
     solid: tuple[bool, bool]
     names: tuple[str, ...] = ()
     passed_by: tuple[str, ...] = ()
+    dropped: tuple[str, ...] = ()
 
     @property
     def any(self) -> bool:
@@ -55,6 +61,7 @@ class Losses:
     def sentences(self) -> list[str]:
         """Return what was lost, a few words each."""
         found = [sentence.rstrip(".") for sentence in self.passed_by]
+        found += [", ".join(self.dropped)] if self.dropped else []
         if self.triangles[0] != self.triangles[1]:
             found.append(f"{self.triangles[1]} triangles instead of {self.triangles[0]}")
         if self.points[0] != self.points[1]:
@@ -69,7 +76,9 @@ class Losses:
         if self.solid == (True, False):
             found.append("no longer a solid")
         if self.names:
-            found.append("names gone: " + ", ".join(f"“{name}”" for name in self.names))
+            told = ", ".join(f"“{name}”" for name in self.names[:_TOLD])
+            more = len(self.names) - _TOLD
+            found.append(f"names gone: {told}" + (f" and {more} more" if more > 0 else ""))
         return found
 
     def to_dict(self) -> dict[str, Any]:
@@ -77,15 +86,13 @@ class Losses:
         return {**asdict(self), "any": self.any}
 
 
-def losses_between(before: RawMesh, after: RawMesh, told: tuple[Finding, ...] = ()) -> Losses:
+def losses_between(before: RawMesh, after: RawMesh) -> Losses:
     """Return what was lost on the way from one mesh to the other.
 
     Parameters
     ----------
     before, after : RawMesh
-        What was written, and what reads back.
-    told : tuple of Finding
-        What was noteworthy about the file that the first mesh is from.
+        What was written, with what its own file said, and what reads back.
     """
     kept = {name for name, _ in after.objects} | {after.name}
     names = [name for name, _ in before.objects if name and name not in kept]
@@ -97,7 +104,8 @@ def losses_between(before: RawMesh, after: RawMesh, told: tuple[Finding, ...] = 
         (_volume(before), _volume(after)),
         (_is_solid(before), _is_solid(after)),
         tuple(dict.fromkeys(names)),
-        tuple(finding.message for finding in told if finding.code in _PASSED_BY),
+        tuple(finding.message for finding in before.findings if finding.code in _PASSED_BY),
+        before.dropped,
     )
 
 

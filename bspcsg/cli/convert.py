@@ -108,7 +108,7 @@ class _Conversion:
             self._out.note(f"{shown(path)} has no unit; mm assumed (say --unit in to change)")
         chunks, findings = encoded(raw, shown(target.path), target.suffix, target.text)
         data = b"".join(chunks)
-        lost = losses_between(raw, decoded(shown(target.path), data, target.suffix), raw.findings)
+        lost = losses_between(raw, decoded(shown(target.path), data, target.suffix))
         target.write_data(data)
         for finding in findings:
             if finding.code != "single_precision":  # its shift is told below, as measured

@@ -36,7 +36,7 @@ def read(source: Source) -> RawMesh:
     FormatError
         If the file is cut off, is no GLB of version 2, or holds what cannot be read.
     """
-    findings = check_container(source)
+    findings, dropped = check_container(source)
     try:
         scene = _decoded(source.data)
         parts = [_placed(scene, node) for node in scene.graph.nodes_geometry]
@@ -48,7 +48,8 @@ def read(source: Source) -> RawMesh:
         raise source.error("a coordinate is not a finite number.", "non_finite")
     if len(mesh.faces) and not 0 <= mesh.faces.min() <= mesh.faces.max() < len(mesh.vertices):
         raise source.error("a triangle names a vertex that does not exist.", "index_out_of_range")
-    return RawMesh(mesh.vertices, mesh.faces, "", (*findings, _unit()), mesh.objects, "mm")
+    findings = (*findings, _unit())
+    return RawMesh(mesh.vertices, mesh.faces, "", findings, mesh.objects, "mm", dropped)
 
 
 def _decoded(data: bytes) -> Any:

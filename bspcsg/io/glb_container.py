@@ -20,11 +20,21 @@ _DEEPEST = 64
 #: Extensions that change what the triangles are, and which are not decoded here.
 _GEOMETRIC = ("draco", "meshopt", "quantization", "instancing")
 
+#: Attributes of vertices by the first word of their names.
+_ATTRIBUTES = {"NORMAL": "normals", "TEXCOORD": "texture coordinates", "COLOR": "colours"}
+
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
 
-def check_container(source: Source) -> tuple[Finding, ...]:
-    """Refuse a file whose claims do not fit together; return what in it is no triangle.
+def check_container(source: Source) -> tuple[tuple[Finding, ...], tuple[str, ...]]:
+    """Refuse a file whose claims do not fit together; return what in it is more than triangles.
+
+    Returns
+    -------
+    tuple of Finding
+        Points and lines that are passed by.
+    tuple of str
+        As `RawMesh.dropped`.
 
     Raises
     ------
@@ -33,7 +43,7 @@ def check_container(source: Source) -> tuple[Finding, ...]:
     tree, held = _chunks(source)
     try:
         _Claims(source, tree, held).check()
-        return _passed_by(tree)
+        return _passed_by(tree), _dropped(tree)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as error:
         reason = f"{type(error).__name__}: {error}"
         raise source.error(f"the description in this GLB is not valid ({reason}).") from None
@@ -150,6 +160,15 @@ class _Claims:
                 count = self._tree["accessors"][corners]["count"]
                 total += count // 3 if mode == _TRIANGLES else count
         return total
+
+
+def _dropped(tree: dict[str, Any]) -> tuple[str, ...]:
+    """Return what is said besides the shape."""
+    found = {key for key in ("materials", "textures", "animations", "skins") if tree.get(key)}
+    for mesh in tree.get("meshes", []):
+        for primitive in mesh["primitives"]:
+            found |= {_ATTRIBUTES.get(name.split("_")[0], "") for name in primitive["attributes"]}
+    return tuple(sorted(found - {""}))
 
 
 def _passed_by(tree: dict[str, Any]) -> tuple[Finding, ...]:

@@ -9,6 +9,15 @@ from ..mesh import Mesh
 from .raw import Polygons, RawMesh, parts_of
 from .source import Source, quoted
 
+#: Statements about what a mesh of triangles has no room for.
+_DROPPED = {
+    b"vt": "texture coordinates",
+    b"vn": "normals",
+    b"usemtl": "materials",
+    b"l": "lines",
+    b"p": "points",
+}
+
 #: Statements that would add surface which is not in the polygons.
 _SURFACES = frozenset({b"surf", b"curv", b"cstype", b"bmat"})
 
@@ -26,6 +35,7 @@ def read(source: Source) -> RawMesh:
     polygons: list[list[int]] = []
     face_lines: list[int] = []
     objects: list[tuple[bytes, int]] = []
+    dropped: set[str] = set()
     surfaces = 0
     for number, words in _statements(source):
         key = words[0]
@@ -37,18 +47,28 @@ def read(source: Source) -> RawMesh:
             face_lines.append(number)
         elif key == b"o":
             objects.append((b" ".join(words[1:]), len(polygons)))
+        elif key in _DROPPED:
+            dropped.add(_DROPPED[key])
         surfaces += key in _SURFACES
     if not rows:
         raise source.error("this is no OBJ mesh: it has no vertex.")
     vertices = source.coordinates(rows, row_lines)
-    faces = _faces(source, polygons, face_lines).triangles(
+    if any(len(row) > 4 for row in rows):  # a fourth number is a weight
+        dropped.add("colours")
+    flat = _faces(source, polygons, face_lines)
+    faces = flat.triangles(
         vertices,
         lambda polygon, message, code: source.error(message, code, line=face_lines[polygon]),
     )
     named = _objects(objects, [len(polygon) - 2 for polygon in polygons], len(faces))
     name = next((name for name, _ in named if name), "")
     return RawMesh(
-        vertices, faces, name, _curved(surfaces), objects=named if len(named) > 1 else ()
+        vertices,
+        faces,
+        name,
+        _curved(surfaces),
+        objects=named if len(named) > 1 else (),
+        dropped=(*sorted(dropped), *flat.dropped),
     )
 
 

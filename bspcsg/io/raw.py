@@ -14,6 +14,9 @@ from ..errors import Finding, FormatError
 from ..mesh import Mesh
 from ..polygon import triangulate_face
 
+#: What to call it that faces of more corners became triangles.
+POLYGONS = "faces of more than three corners"
+
 
 @dataclass(frozen=True, eq=False)
 class RawMesh:
@@ -34,6 +37,8 @@ class RawMesh:
         file does not tell objects apart.
     unit : str
         ``"mm"`` if the format says how long a unit is, else empty.
+    dropped : tuple of str
+        Kinds of data in the file that a mesh of triangles has no room for, such as "colours".
     """
 
     vertices: FloatArray
@@ -42,6 +47,7 @@ class RawMesh:
     findings: tuple[Finding, ...] = ()
     objects: tuple[tuple[str, int], ...] = ()
     unit: str = ""
+    dropped: tuple[str, ...] = ()
 
 
 def parts_of(mesh: Mesh | RawMesh) -> list[tuple[str, IndexArray]]:
@@ -94,6 +100,11 @@ class Polygons:
         counts = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
         flat = [corner for polygon in polygons for corner in polygon]
         return cls(np.array(flat, dtype=np.int64), counts)
+
+    @property
+    def dropped(self) -> tuple[str, ...]:
+        """What triangles do not keep of these polygons, as `RawMesh.dropped` says it."""
+        return (POLYGONS,) if self.counts.max(initial=0) > 3 else ()
 
     @classmethod
     def from_rows(cls, rows: IndexArray) -> "Polygons":

@@ -62,7 +62,8 @@ def _read_binary(source: Source) -> RawMesh:
     _check_finite(source, corners)
     extra = len(data) - _HEADER - count * _RECORD.itemsize
     name = data[: _HEADER - 4].split(b"\0")[0].strip().decode("latin-1")
-    return _joined(corners, name, _extra_bytes(extra))
+    coloured = ("colours",) if records["attribute"].any() else ()
+    return replace(_joined(corners, name, _extra_bytes(extra)), dropped=coloured)
 
 
 def _check_finite(source: Source, corners: FloatArray) -> None:

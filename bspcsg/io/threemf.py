@@ -90,7 +90,8 @@ class _Package:
                 raise self._source.error("the build has too many triangles.", "too_large")
         findings += _ignored(beams, "beams")
         findings += _ignored(skipped, "objects that are support or surface")
-        mesh = replace(joined(pieces), findings=tuple(findings), unit="mm")
+        dropped = sorted(set().union(*(part.dropped for part in self._parts.values())))
+        mesh = replace(joined(pieces), findings=tuple(findings), unit="mm", dropped=tuple(dropped))
         scale = MILLIMETRES[part.unit]
         return mesh if scale == 1 else replace(mesh, vertices=mesh.vertices * scale)
 

@@ -82,11 +82,13 @@ def _surface(source: Source, grid: Any) -> RawMesh:
         if block.type in _FACES
         for face in block.data
     ]
-    faces = Polygons.from_lists(polygons).triangles(
+    flat = Polygons.from_lists(polygons)
+    faces = flat.triangles(
         vertices, lambda k, message, code: source.error(f"cell {k}: {message}", code)
     )
     ignored = sum(len(block.data) for block in grid.cells if block.type in _OTHER)
-    return RawMesh(vertices, faces, "", _ignored(ignored))
+    data = [f"data “{name}”" for name in (*grid.point_data, *grid.cell_data)]
+    return RawMesh(vertices, faces, "", _ignored(ignored), dropped=(*data, *flat.dropped))
 
 
 def _ignored(count: int) -> tuple[Finding, ...]:
