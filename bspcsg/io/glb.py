@@ -39,7 +39,7 @@ def read(source: Source) -> RawMesh:
     findings, dropped = check_container(source)
     try:
         scene = _decoded(source.data)
-        parts = [_placed(scene, node) for node in scene.graph.nodes_geometry]
+        parts = [_placed(scene, node) for node in _nodes(scene)]
     except Exception as error:  # what trimesh raises on damaged files is of any kind
         reason = f"{type(error).__name__}: {error}".splitlines()[0][:200]
         raise source.error(f"this GLB cannot be decoded: {reason}.") from error
@@ -55,9 +55,17 @@ def read(source: Source) -> RawMesh:
 def _decoded(data: bytes) -> Any:
     import trimesh
 
+    if data == EMPTY:
+        return trimesh.Scene()
     return trimesh.load_scene(
         io.BytesIO(data), file_type="glb", process=False, skip_materials=True, validate=False
     )
+
+
+def _nodes(scene: Any) -> list[str]:
+    """Return the nodes with a mesh, in the order of the meshes in the file."""
+    order = {name: number for number, name in enumerate(scene.geometry)}
+    return sorted(scene.graph.nodes_geometry, key=lambda node: order[scene.graph[node][1]])
 
 
 def _placed(scene: Any, node: str) -> RawMesh | None:
@@ -87,10 +95,25 @@ def _unit() -> Finding:
     return Finding("unit", "note", message, (), 1)
 
 
+def _container(description: bytes) -> bytes:
+    """Return the file of a description without data."""
+    text = description + b" " * (-len(description) % 4)
+    sizes = (2, 20 + len(text), len(text))
+    version, total, length = (size.to_bytes(4, "little") for size in sizes)
+    return b"glTF" + version + total + length + b"JSON" + text
+
+
+#: A file of nothing, which trimesh neither writes nor reads.
+EMPTY = _container(b'{"asset":{"version":"2.0"},"scene":0,"scenes":[{}]}')
+
+
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; coordinates are rounded to single precision."""
     import trimesh
 
+    if len(mesh.faces) == 0:
+        yield EMPTY
+        return
     scene: Any = trimesh.Scene()
     for number, (name, faces) in enumerate(parts_of(mesh), 1):
         if len(faces) == 0:

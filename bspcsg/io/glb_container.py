@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from ..errors import Finding
+from ..errors import Finding, FormatError
 from .source import Source
 
 _MAGIC, _HEADER = b"glTF", 12
@@ -44,6 +44,8 @@ def check_container(source: Source) -> tuple[tuple[Finding, ...], tuple[str, ...
     try:
         _Claims(source, tree, held).check()
         return _passed_by(tree), _dropped(tree)
+    except FormatError:
+        raise
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as error:
         reason = f"{type(error).__name__}: {error}"
         raise source.error(f"the description in this GLB is not valid ({reason}).") from None
