@@ -63,7 +63,8 @@ class Inputs:
         for path in paths:
             if str(path) == STREAM and not self.suffix:
                 raise click.UsageError("to read standard input, say its format: --from stl.")
-            format_of(path if self._suffix_of(path) == path.suffix.lower() else self.suffix)
+            if self._suffix_of(path) != self.suffix:
+                format_of(path)
 
     def _suffix_of(self, path: Path) -> str:
         from ..io import FORMATS

@@ -130,7 +130,8 @@ def read(path: str | os.PathLike[str]) -> RawMesh:
 def read_as(path: str | os.PathLike[str], suffix: str) -> RawMesh:
     """Read a mesh file as what a suffix names, whatever its own suffix; else as `read`."""
     name = os.fspath(path)
-    format_of(Path(name).with_suffix("") if not suffix else f"{name}{suffix}")
+    if suffix.lower() not in FORMATS:
+        format_of(name)
     try:
         data = Path(path).read_bytes()
     except OSError as error:

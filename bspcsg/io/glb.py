@@ -27,6 +27,9 @@ _TO_MILLIMETRES = np.array(
     [[1000, 0, 0, 0], [0, 0, -1000, 0], [0, 1000, 0, 0], [0, 0, 0, 1]], dtype=np.float64
 )
 
+#: Objects must have names for trimesh; those that have none get this one and a number.
+_UNNAMED = "unnamed"
+
 
 def read(source: Source) -> RawMesh:
     """Read the triangles of every node as one mesh, in millimetres with z upwards.
@@ -80,7 +83,8 @@ def _placed(scene: Any, node: str) -> RawMesh | None:
     turned = np.asarray(faces, dtype=np.int64)
     if np.linalg.det(placing[:3, :3]) < 0:
         turned = turned[:, ::-1]
-    return RawMesh(vertices, turned, str(name))
+    title = "" if str(name).startswith(_UNNAMED) else str(name)
+    return RawMesh(vertices, turned, title)
 
 
 def _moved(vertices: FloatArray, matrix: FloatArray) -> FloatArray:
@@ -120,7 +124,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
             continue
         used, corners = np.unique(faces, return_inverse=True)
         part = trimesh.Trimesh(mesh.vertices[used], corners.reshape(-1, 3), process=False)
-        title = name or f"part {number}"
+        title = name or f"{_UNNAMED} {number}"
         scene.add_geometry(part, geom_name=title, node_name=title, transform=_TO_METRES)
     yield scene.export(file_type="glb", include_normals=False)
 
