@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         InternalError,
         InvalidMeshError,
         LimitError,
+        MissingPartError,
         UnboundedError,
     )
     from .io import load, save
@@ -53,6 +54,7 @@ __all__ = [
     "InvalidMeshError",
     "LimitError",
     "Mesh",
+    "MissingPartError",
     "Solid",
     "UnboundedError",
     "Verdict",
@@ -83,7 +85,7 @@ __all__ = [
 _MODULES = {
     "check": "CheckReport Verdict validate",
     "errors": "BspcsgError Finding FormatError InternalError InvalidMeshError LimitError"
-    " UnboundedError",
+    " MissingPartError UnboundedError",
     "io": "load save",
     "mesh": "Mesh",
     "primitives": "box cone cube cylinder extrude half_space prism revolve sphere torus",

@@ -63,10 +63,11 @@ class Inputs:
         for path in paths:
             if str(path) == STREAM and not self.suffix:
                 raise click.UsageError("to read standard input, say its format: --from stl.")
-            if self._suffix_of(path) != self.suffix:
+            if self.suffix_of(path) != self.suffix:
                 format_of(path)
 
-    def _suffix_of(self, path: Path) -> str:
+    def suffix_of(self, path: Path) -> str:
+        """Return the suffix of the format that a file is read as."""
         from ..io import FORMATS
 
         own = path.suffix.lower()
@@ -79,7 +80,7 @@ class Inputs:
         if str(path) == STREAM:
             raw = decoded(STREAM, sys.stdin.buffer.read(), self.suffix)
         else:
-            raw = read_as(path, self._suffix_of(path))
+            raw = read_as(path, self.suffix_of(path))
         if raw.unit or self.unit is None:
             return raw
         scale = MILLIMETRES[self.unit]

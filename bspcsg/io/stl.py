@@ -58,7 +58,8 @@ def _read_binary(source: Source) -> RawMesh:
         message = f"the header promises 0 triangles, but data for {held} follow."
         raise source.error(message, offset=_HEADER)
     records = np.frombuffer(data, _RECORD, count, _HEADER)
-    corners = records["corners"].reshape(-1, 3).astype(np.float64)
+    with np.errstate(invalid="ignore"):  # NaN, which the next line refuses
+        corners = records["corners"].reshape(-1, 3).astype(np.float64)
     _check_finite(source, corners)
     extra = len(data) - _HEADER - count * _RECORD.itemsize
     name = data[: _HEADER - 4].split(b"\0")[0].strip().decode("latin-1")

@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 
 from .._types import FloatArray
-from ..errors import Finding
+from ..errors import Finding, FormatError
 from .raw import RawMesh, joined
 from .source import Source
 from .threemf_part import MILLIMETRES, Part, PartReader, Placed, parse_xml
@@ -28,6 +28,17 @@ _MOST_TRIANGLES = 1 << 27
 
 #: Unpacked size that a part may have, in bytes.
 _LARGEST_PART = 1 << 31
+
+#: What the standard library raises on damaged archives.
+_DAMAGES = (
+    zipfile.BadZipFile,
+    NotImplementedError,
+    RuntimeError,
+    EOFError,
+    zlib.error,
+    OSError,
+    ValueError,
+)
 
 _MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 
@@ -44,7 +55,9 @@ def read(source: Source) -> RawMesh:
         with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
             package = _Package(source, archive)
             return package.assemble(package.root())
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, zlib.error) as error:
+    except FormatError:
+        raise
+    except _DAMAGES as error:
         message = f"the archive is damaged or cut off: {error}."
         raise source.error(message, "truncated") from error
 

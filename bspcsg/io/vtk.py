@@ -6,6 +6,8 @@ meshio reads and writes files by name, so the bytes go through a temporary folde
 import contextlib
 import io
 import tempfile
+import warnings
+import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -20,6 +22,9 @@ from .source import Source
 #: Kinds of cells that are faces, and those that are passed by.
 _FACES = ("triangle", "quad", "polygon")
 _OTHER = ("vertex", "line")
+
+#: Size that the packed data of a file may unpack to, in bytes.
+_LARGEST = 1 << 31
 
 
 def reader(suffix: str) -> Callable[[Source], RawMesh]:
@@ -57,13 +62,56 @@ def _read(source: Source, suffix: str) -> RawMesh:
         path.write_bytes(source.data)
         said = io.StringIO()
         try:
-            with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            with (
+                contextlib.redirect_stdout(said),
+                contextlib.redirect_stderr(said),
+                _bounded(),
+                np.errstate(all="ignore"),
+                warnings.catch_warnings(action="ignore"),
+            ):
                 grid = meshio.read(path)
         except (Exception, SystemExit) as error:  # of any kind: meshio checks little itself
             reason = f"{type(error).__name__}: {error}".splitlines()[0][:200]
             reason = reason.replace(str(path), source.name)
             raise source.error(f"meshio cannot read this file ({reason}).") from error
     return _surface(source, grid)
+
+
+class _Unpacker:
+    """Stands for zlib in meshio, which unpacks whatever a few bytes claim to hold."""
+
+    def __init__(self) -> None:
+        self._left = _LARGEST
+
+    def decompress(self, data: bytes) -> bytes:
+        """Return the unpacked bytes, as long as all of them together are not too many."""
+        found = zlib.decompressobj().decompress(data, self._left)
+        self._left -= len(found)
+        if self._left <= 0:
+            raise MemoryError(f"its data unpack to more than {_LARGEST >> 20} MB")
+        return found
+
+
+class _Refuser:
+    """Stands for lzma in meshio, which has no way to unpack a part."""
+
+    @staticmethod
+    def decompress(data: bytes) -> bytes:
+        """Refuse."""
+        raise ValueError("data packed by LZMA are not read; pack them by zlib")
+
+
+@contextlib.contextmanager
+def _bounded() -> Iterator[None]:
+    """Let meshio unpack no more than a bounded amount of data inside the block."""
+    from meshio.vtu import _vtu
+
+    kept = _vtu.zlib, _vtu.lzma
+    _vtu.zlib, _vtu.lzma = _Unpacker(), _Refuser()
+    try:
+        yield
+    finally:
+        _vtu.zlib, _vtu.lzma = kept
 
 
 def _surface(source: Source, grid: Any) -> RawMesh:

@@ -10,7 +10,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg.errors import FormatError, MissingPartError
-from bspcsg.io import RawMesh, read, write
+from bspcsg.io import RawMesh, read, vtk, write
 from support.io import cube_mesh, refusal, same_mesh
 
 SUFFIXES = pytest.mark.parametrize("suffix", ["vtk", "vtu"])
@@ -60,6 +60,21 @@ def test_truncations(tmp_path: Path, suffix: str, part: float) -> None:
 def test_document_types_are_refused(tmp_path: Path) -> None:
     bomb = '<!DOCTYPE x [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]><VTKFile>&b;</VTKFile>'
     refusal(tmp_path / "x.vtu", bomb, "syntax")
+
+
+def test_packed_bombs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(vtk, "_LARGEST", 1 << 10)
+    path = tmp_path / "x.vtu"
+    ball = b.sphere(1, segments=24).normalized().to_mesh()
+    write(RawMesh(ball.vertices, ball.faces), path)
+    assert "unpack to more than" in refusal(path, path.read_bytes(), "syntax")
+
+
+def test_lzma_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "x.vtu"
+    vertices, faces = cube_mesh().vertices, cube_mesh().faces
+    meshio.vtu.write(path, meshio.Mesh(vertices, [("triangle", faces)]), compression="lzma")
+    assert "LZMA" in refusal(path, path.read_bytes(), "syntax")
 
 
 def test_huge_counts(tmp_path: Path) -> None:
