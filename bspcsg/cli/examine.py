@@ -102,7 +102,7 @@ def _details(path: Path, found: "Diagnosis", out: Output) -> str:
     for finding in found.findings:
         if out.verbosity >= least[finding.severity]:
             lines.append(f"  {finding.severity}: {finding.message.rstrip('.')}.")
-    if found.verdict == "not closed" and out.verbosity >= 0:
+    if found.verdict == "not closed" and out.advises:
         lines.append(f"  Try: {repair_command(path)}")
     return "\n".join(lines)
 

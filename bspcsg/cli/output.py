@@ -64,6 +64,11 @@ class Output:
         if self.verbosity > 0:
             click.echo(line, err=True)
 
+    @property
+    def advises(self) -> bool:
+        """Whether somebody is there to be told what to type next."""
+        return self.verbosity >= 0 and sys.stdout.isatty()
+
     def note(self, line: str) -> None:
         """Say on standard error what ``--quiet`` silences."""
         if self.verbosity >= 0:

@@ -32,5 +32,4 @@ def table_text(
     width = 80 + sum(max((len(row[k]) for row in listed), default=0) for k in range(len(columns)))
     drawn = StringIO()
     Console(file=drawn, width=width, highlight=False, markup=False).print(table)
-    # rich begins every line with a blank, and puts one around each table.
-    return "\n".join(line[1:].rstrip() for line in drawn.getvalue().splitlines() if line.strip())
+    return "\n".join(line.rstrip() for line in drawn.getvalue().splitlines() if line.strip())

@@ -17,7 +17,7 @@ from support.shapes import cube, cuboid, flipped, joined, moved
 def test_info(folder: Path, capsys: Capture) -> None:
     code, out, err = ran(capsys, "info", "a.off")
     assert (code, err) == (0, "")
-    found = dict(line.split("  ", 1) for line in out.splitlines()[2:])
+    found = dict(line.strip().split("  ", 1) for line in out.splitlines()[2:])
     values = {name: value.strip() for name, value in found.items()}
     assert values["triangles"] == "12" and values["volume"] == "8" and values["area"] == "24"
     assert values["unit"] == "not stated" and values["size"] == "2 × 2 × 2"
@@ -48,8 +48,13 @@ def test_info_of_unreadable_files(folder: Path, capsys: Capture) -> None:
     assert code == 3 and "error" in json.loads(out)["files"][0]
 
 
-def test_check_says_what_to_type(folder: Path, capsys: Capture) -> None:
+def test_what_to_type_for_a_repair(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     put("an open.off", (cube()[0], cube()[1][1:]))
+    assert "Try:" not in ran(capsys, "check", "an open.off")[1]
+    # On a terminal there is somebody to advise.
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     code, out, _ = ran(capsys, "check", "an open.off")
     assert code == 1 and "Try: bspcsg repair 'an open.off' -o 'an open-fixed.off'" in out
     code, _, err = ran(capsys, "union", "an open.off", "a.off", "-o", "x.ply")
@@ -170,7 +175,7 @@ def test_repair(folder: Path, capsys: Capture) -> None:
     put("open.off", (cube(2)[0], cube(2)[1][1:]))
     code, out, _ = ran(capsys, "repair", "open.off", "-o", "closed.off")
     assert code == 0 and out.endswith("closed.off: a solid\n")
-    rows = {line.split("  ")[0]: line.split()[-2:] for line in out.splitlines()}
+    rows = {line.strip().split("  ")[0]: line.split()[-2:] for line in out.splitlines()}
     assert rows["triangles"] == ["11", "12"] and rows["open edges"] == ["3", "0"]
     assert b.load("closed.off").volume_exact == 8
 
