@@ -38,7 +38,7 @@ _MANY = 4
     type=PATH,
     help="File to write; with several inputs, % stands for the name of each.",
 )
-@click.option("--outdir", type=click.Path(path_type=Path), help="Folder for the files, with --to.")
+@click.option("--outdir", type=PATH, help="Folder for the files, with --to.")
 @writing
 @click.option("--fail-on-loss", is_flag=True, help="Exit with 1 if anything was lost.")
 @reading

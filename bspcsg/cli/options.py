@@ -11,8 +11,9 @@ _Command = TypeVar("_Command", bound=Callable[..., Any])
 #: Threads beyond which nobody's machine goes.
 _MOST_THREADS = 1024
 
-#: A file, or "-" for a stream; the program that completes a line offers files for it.
-PATH = click.Path(path_type=Path, allow_dash=True)
+#: A file, or "-" for a stream; whoever completes a line offers files for it. Whether it can be read
+#: is found out by reading: click would call a forbidden file wrong usage.
+PATH = click.Path(path_type=Path, allow_dash=True, readable=False)
 
 _COMMON = [
     click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead."),

@@ -225,3 +225,12 @@ def test_help_needs_no_numpy(arguments: list[str]) -> None:
         check=False,
     )
     assert done.returncode == 0
+
+
+def test_folders_that_are_forbidden(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    for arguments in (["convert", "a.off"], ["eval", "a.off"], ["split", "a.off"]):
+        code, out, err = ran(capsys, *arguments, "-o", "x.ply")
+        assert (code, out) == (5, "") and "no folder . that can be written to" in err

@@ -95,3 +95,10 @@ def test_without_meshio(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     with pytest.raises(MissingPartError, match=r"pip install \"bspcsg\[vtk\]\""):
         write(cube_mesh(), tmp_path / "x.vtk")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("depth", [1000, 300_000])
+def test_deep_xml_is_no_harm(tmp_path: Path, depth: int) -> None:
+    deep = "<VTKFile>" * depth
+    refusal(tmp_path / "open.vtu", deep, "syntax")
+    refusal(tmp_path / "deep.vtu", deep + "</VTKFile>" * depth, "syntax")
