@@ -11,34 +11,40 @@ Examples
 820.0
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from ._core import __version__, set_threads
-from .check import CheckReport, Verdict, validate
-from .errors import (
-    BspcsgError,
-    Finding,
-    FormatError,
-    InternalError,
-    InvalidMeshError,
-    LimitError,
-    UnboundedError,
-)
-from .io import load, save
-from .mesh import Mesh
-from .primitives import (
-    box,
-    cone,
-    cube,
-    cylinder,
-    extrude,
-    half_space,
-    prism,
-    revolve,
-    sphere,
-    torus,
-)
-from .script import run_script, show
-from .setops import boolean, difference, intersection, union, xor
-from .solid import Solid
+
+if TYPE_CHECKING:
+    from .check import CheckReport, Verdict, validate
+    from .errors import (
+        BspcsgError,
+        Finding,
+        FormatError,
+        InternalError,
+        InvalidMeshError,
+        LimitError,
+        MissingPartError,
+        UnboundedError,
+    )
+    from .io import load, save
+    from .mesh import Mesh
+    from .primitives import (
+        box,
+        cone,
+        cube,
+        cylinder,
+        extrude,
+        half_space,
+        prism,
+        revolve,
+        sphere,
+        torus,
+    )
+    from .script import run_script, show
+    from .setops import boolean, difference, intersection, union, xor
+    from .solid import Solid
 
 __all__ = [
     "BspcsgError",
@@ -49,6 +55,7 @@ __all__ = [
     "InvalidMeshError",
     "LimitError",
     "Mesh",
+    "MissingPartError",
     "Solid",
     "UnboundedError",
     "Verdict",
@@ -75,3 +82,36 @@ __all__ = [
     "validate",
     "xor",
 ]
+
+#: Which module each name is from; it is imported when the name is first asked for, so that the
+#: command line starts without numpy.
+_MODULES = {
+    "check": "CheckReport Verdict validate",
+    "errors": "BspcsgError Finding FormatError InternalError InvalidMeshError LimitError"
+    " MissingPartError UnboundedError",
+    "io": "load save",
+    "mesh": "Mesh",
+    "primitives": "box cone cube cylinder extrude half_space prism revolve sphere torus",
+    "script": "run_script show",
+    "setops": "boolean difference intersection union xor",
+    "solid": "Solid",
+}
+#: Parts of the package that need no import of their own.
+_PARTS = frozenset({"bsp", "csg", "errors", "io"})
+_HOMES = {name: module for module, names in _MODULES.items() for name in names.split()}
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is asked for the first time."""
+    if name in _PARTS:
+        return import_module(f".{name}", __name__)
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f".{_HOMES[name]}", __name__), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Return the public names, imported or not."""
+    return sorted({*globals(), *__all__, *_PARTS})

@@ -62,6 +62,10 @@ class FormatError(BspcsgError, ValueError):
     """A file cannot be read as what it claims to be, or cannot be written."""
 
 
+class MissingPartError(BspcsgError, RuntimeError):
+    """An optional part of this package, or a program it asks, is not installed."""
+
+
 class UnboundedError(BspcsgError, ValueError):
     """A finite answer was asked of a solid that reaches to infinity."""
 
@@ -96,7 +100,6 @@ _ADVICE = {
     "not_simple": "Give the outline of a simple polygon.",
     "too_large": "Choose a coarser pitch (for example pitch=-6), or move or scale the solids.",
     "too_small": "Choose a finer pitch (for example pitch=-12), or scale the solid up.",
-    "unbounded": "Intersect it with a bounded solid first.",
     "internal": "This is a defect of bspcsg; please report it with the input.",
 }
 
@@ -123,6 +126,11 @@ def core_errors() -> Iterator[None]:
 def invalid_parameter(message: str) -> InvalidMeshError:
     """Return the error for a parameter that makes no solid."""
     return InvalidMeshError(message, "invalid_parameter")
+
+
+def missing_part(part: str, purpose: str, remedy: str) -> MissingPartError:
+    """Return the error for an optional part, with the command that installs it."""
+    return MissingPartError(f"{part} is needed {purpose}. Try: {remedy}", "missing_part")
 
 
 def number(value: Any, name: str) -> float:

@@ -39,7 +39,7 @@ class Pieces:
     @classmethod
     def of(cls, mesh: Mesh, film: float = 0.0) -> "Pieces":
         """Return the pieces of a mesh with faces; what is thinner than a film may be estimated."""
-        surfaces = _surfaces(mesh.faces, len(mesh.vertices))
+        surfaces = surfaces_of(mesh.faces, len(mesh.vertices))
         volumes, areas = _measures(mesh, surfaces, film)
         outer = _outer_surfaces(mesh, surfaces, volumes)
         volumes, areas = _summed(outer, volumes), _summed(outer, areas)
@@ -108,7 +108,7 @@ def _below(
     return half, start + down * half
 
 
-def _surfaces(faces: IndexArray, vertex_count: int) -> IndexArray:
+def surfaces_of(faces: IndexArray, vertex_count: int) -> IndexArray:
     """Return for each face the number of its connected surface, from 0."""
     root = np.arange(vertex_count)
     while True:

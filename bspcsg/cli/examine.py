@@ -5,10 +5,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..errors import BspcsgError, FormatError
+from ..errors import BspcsgError, FormatError, MissingPartError
 from . import output
-from .options import common
+from .files import Inputs, repair_command, shown
+from .options import PATH, common, reading
 from .output import Output, counted, grouped
+from .tables import table_text
 
 if TYPE_CHECKING:
     from ..diagnosis import Diagnosis
@@ -23,8 +25,9 @@ Example:
 
 
 @click.command("check", epilog=_EPILOG)
-@click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE [...]")
 @click.option("--strict", is_flag=True, help="Count warnings as failures too.")
+@reading
 @common
 def check(files: tuple[Path, ...], strict: bool, **given: Any) -> int:
     """Say what is wrong with each file, and whether it is a solid.
@@ -36,8 +39,9 @@ def check(files: tuple[Path, ...], strict: bool, **given: Any) -> int:
     from .. import set_threads
 
     set_threads(given["threads"])
-    out = Output(int(given["verbose"]) - int(given["quiet"]), given["as_json"])
-    results = [_examined(path) for path in files]
+    out = Output.of(given)
+    inputs = Inputs.of(out, given)
+    results = [_examined(inputs, path) for path in files]
     codes = [_exit_code(found, strict) for _, found in results]
     documents = [_document(path, found) for path, found in results]
     out.result("" if given["as_json"] else _text(results, out), {"files": documents})
@@ -47,13 +51,13 @@ def check(files: tuple[Path, ...], strict: bool, **given: Any) -> int:
     return max(codes)
 
 
-def _examined(path: Path) -> tuple[Path, "Diagnosis | BspcsgError"]:
+def _examined(inputs: Inputs, path: Path) -> tuple[Path, "Diagnosis | BspcsgError"]:
     from ..diagnosis import diagnose
-    from ..io import read
 
     try:
-        return path, diagnose(read(path))
-    except FormatError as error:
+        inputs.refuse_early([path])
+        return path, diagnose(inputs.raw(path))
+    except (FormatError, MissingPartError) as error:
         return path, error
 
 
@@ -93,11 +97,13 @@ def _conclusion(bad: int, count: int) -> str:
 
 
 def _details(path: Path, found: "Diagnosis", out: Output) -> str:
-    lines = [f"{path}: {_measures(found)}"]
+    lines = [f"{shown(path)}: {_measures(found)}"]
     least = {"error": -1, "warning": 0, "note": 0}
     for finding in found.findings:
         if out.verbosity >= least[finding.severity]:
             lines.append(f"  {finding.severity}: {finding.message.rstrip('.')}.")
+    if found.verdict == "not closed" and out.advises:
+        lines.append(f"  Try: {repair_command(path)}")
     return "\n".join(lines)
 
 
@@ -120,26 +126,13 @@ def _measures(found: "Diagnosis") -> str:
 
 
 def _table(read: list[tuple[Path, "Diagnosis"]]) -> str:
-    """Return the overview, drawn by rich."""
-    from io import StringIO
-
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("file", overflow="fold")
-    for name in ("triangles", "closed", "oriented", "manifold", "overlaps", "verdict"):
-        table.add_column(name, justify="right" if name == "triangles" else "left", no_wrap=True)
+    rows = []
     for path, found in read:
         overlaps = "—" if found.self_overlapping is None else _yes(found.self_overlapping)
         flags = [_yes(found.closed), _yes(found.oriented), _yes(found.manifold), overlaps]
-        table.add_row(str(path), grouped(found.triangles), *flags, found.verdict)
-    drawn = StringIO()
-    # Wide enough for any path: a table in a pipe or a log must not lose letters.
-    width = 80 + max(len(str(path)) for path, _ in read)
-    Console(file=drawn, width=width, highlight=False, markup=False).print(table)
-    return "\n".join(line.rstrip() for line in drawn.getvalue().splitlines() if line.strip())
+        rows.append((str(path), grouped(found.triangles), *flags, found.verdict))
+    columns = ("file", "triangles", "closed", "oriented", "manifold", "overlaps", "verdict")
+    return table_text(columns, rows, right=("triangles",))
 
 
 def _yes(flag: bool) -> str:

@@ -1,35 +1,78 @@
 """Entry point: the verbs, and what every failure becomes."""
 
+import codecs
+import errno
 import os
 import sys
 from collections.abc import Sequence
+from importlib import import_module
+from io import TextIOWrapper
 
 import click
 
 from .. import __version__
-from ..errors import BspcsgError
+from ..errors import BspcsgError, FormatError
 from . import output
-from .combine import difference, intersection, union, xor
-from .examine import check
 
 _EPILOG = """\b
 Exit codes:
   0    done, nothing found
-  1    done, but a check failed: not a solid, or manifold3d disagrees
+  1    done, but: not a solid, files differ, manifold3d disagrees, or a loss that was not allowed
   2    wrong usage
   3    a file is missing, unreadable or of an unknown format
   4    geometry refused: not closed, too large, or an empty result
   5    the output could not be written
+  6    an optional part is missing; bspcsg doctor says which
   70   a defect of bspcsg
+  124  a time limit was hit
   130  interrupted        141  closed pipe
+
+\b
+Completion of commands, options and files by the shell:
+  eval "$(_BSPCSG_COMPLETE=bash_source bspcsg)"       in ~/.bashrc
+  eval "$(_BSPCSG_COMPLETE=zsh_source bspcsg)"        in ~/.zshrc
+  _BSPCSG_COMPLETE=fish_source bspcsg | source        in config.fish
 
 \b
 Example:
   bspcsg difference plate.stl hole.obj -o part.ply
 """
 
+#: The verbs in the order of the help, each with the module that has it and its name there.
+_VERBS = {
+    "union": ("combine", "union"),
+    "difference": ("combine", "difference"),
+    "intersection": ("combine", "intersection"),
+    "xor": ("combine", "xor"),
+    "eval": ("evaluate", "evaluate"),
+    "split": ("split", "split"),
+    "convert": ("convert", "convert"),
+    "info": ("inform", "info"),
+    "check": ("examine", "check"),
+    "repair": ("mend", "repair"),
+    "compare": ("differ", "compare"),
+    "doctor": ("doctor", "doctor"),
+}
+
+_COMPLETE = "_BSPCSG_COMPLETE"
+
+
+class _Verbs(click.Group):
+    """The verbs; a module is imported when its verb is asked for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(_VERBS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in _VERBS:
+            return None
+        module, name = _VERBS[cmd_name]
+        found: click.Command = getattr(import_module(f".{module}", __package__), name)
+        return found
+
 
 @click.group(
+    cls=_Verbs,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog=_EPILOG,
 )
@@ -37,16 +80,16 @@ Example:
 def commands() -> None:
     """Exact set operations on closed triangle meshes.
 
-    Reads STL, OBJ, PLY, OFF and 3MF; writes STL, OBJ, PLY and OFF. The suffix names the format.
+    Reads and writes STL, OBJ, PLY, OFF, 3MF and GLB, and VTK and VTU if meshio is installed. The
+    suffix names the format; - stands for standard input or output.
     """
-
-
-for _verb in (union, difference, intersection, xor, check):
-    commands.add_command(_verb)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and end the process with its exit code."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors=_ERRORS)
     sys.exit(run(sys.argv[1:] if arguments is None else arguments))
 
 
@@ -71,10 +114,34 @@ def run(arguments: Sequence[str]) -> int:
     except Exception as error:
         if "--debug" in arguments:
             raise
+        if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EIO):
+            _discard_output()
+            message = f"standard output: cannot write: {error.strerror}."
+            return output.tell_error(FormatError(message, "unwritable"), as_json=False)
         return _failed(error, "--json" in arguments)
 
 
+def _as_it_came(error: UnicodeError) -> tuple[str | bytes, int]:
+    """Write the bytes of a file name as they came; what the terminal cannot show becomes ``?``."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    letters = error.object[error.start : error.end]
+    data = b"".join(
+        bytes([ord(letter) - 0xDC00]) if "\udc80" <= letter <= "\udcff" else b"?"
+        for letter in letters
+    )
+    return data, error.end
+
+
+_ERRORS = "bspcsg_names"
+codecs.register_error(_ERRORS, _as_it_came)
+
+
 def _invoked(arguments: list[str]) -> int:
+    if _COMPLETE in os.environ:
+        from click.shell_completion import shell_complete
+
+        return shell_complete(commands, {}, "bspcsg", _COMPLETE, os.environ[_COMPLETE])
     with commands.make_context("bspcsg", arguments) as context:
         code = commands.invoke(context)
     return code if isinstance(code, int) else output.DONE

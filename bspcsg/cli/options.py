@@ -1,6 +1,7 @@
 """Options that several verbs share."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -9,6 +10,10 @@ _Command = TypeVar("_Command", bound=Callable[..., Any])
 
 #: Threads beyond which nobody's machine goes.
 _MOST_THREADS = 1024
+
+#: A file, or "-" for a stream; whoever completes a line offers files for it. Whether it can be read
+#: is found out by reading: click would call a forbidden file wrong usage.
+PATH = click.Path(path_type=Path, allow_dash=True, readable=False)
 
 _COMMON = [
     click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead."),
@@ -25,8 +30,98 @@ _COMMON = [
 ]
 
 
+def _as_suffix(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
+    """Return the suffix of a format given with or without its dot."""
+    from ..io import FORMATS
+
+    if value is None:
+        return None
+    suffix = f".{value.lower().lstrip('.')}"
+    if suffix not in FORMATS:
+        known = ", ".join(name[1:] for name in sorted(FORMATS))
+        raise click.BadParameter(f"{value!r} is no format; known are {known}.", context, option)
+    return suffix
+
+
+_READING = [
+    click.option(
+        "--from",
+        "from_format",
+        metavar="FORMAT",
+        callback=_as_suffix,
+        help="Format of standard input, and of files without a known suffix, e.g. stl.",
+    ),
+    click.option(
+        "--unit",
+        type=click.Choice(["mm", "cm", "m", "in", "ft", "um"]),
+        help="What inputs that do not say are in; they become millimetres.",
+    ),
+]
+
+_SETS = [
+    click.option(
+        "--winding",
+        type=click.Choice(["positive", "nonzero", "even-odd"]),
+        default="positive",
+        help="Which winding numbers are inside a file that overlaps itself.",
+    ),
+    click.option(
+        "--pitch",
+        type=click.IntRange(-30, 30),
+        help="Lattice step 10^PITCH units; by default -9, or what the size asks for.",
+    ),
+]
+
+_WRITING = [
+    click.option(
+        "--to",
+        "to_format",
+        metavar="FORMAT",
+        callback=_as_suffix,
+        help="Format of the output, e.g. ply.",
+    ),
+    click.option("--ascii", "text", is_flag=True, help="Write STL and PLY as text."),
+]
+
+OUTPUT = click.option(
+    "-o",
+    "--output",
+    "target",
+    required=True,
+    type=PATH,
+    help="File to write, its format by its suffix; - for standard output.",
+)
+
+ALLOW_EMPTY = click.option(
+    "--allow-empty", is_flag=True, help="Write a file even if nothing is left."
+)
+
+CHECK = click.option(
+    "--check/--no-check", default=True, help="Compare the result with manifold3d's (default)."
+)
+
+
 def common(command: _Command) -> _Command:
     """Add the options that every verb has."""
-    for option in reversed(_COMMON):
+    return _with(_COMMON, command)
+
+
+def reading(command: _Command) -> _Command:
+    """Add the options of verbs that read meshes."""
+    return _with(_READING, command)
+
+
+def sets(command: _Command) -> _Command:
+    """Add the options of verbs that take meshes as sets."""
+    return _with(_SETS, command)
+
+
+def writing(command: _Command) -> _Command:
+    """Add the options of verbs that write meshes."""
+    return _with(_WRITING, command)
+
+
+def _with(options: list[Callable[[Any], Any]], command: _Command) -> _Command:
+    for option in reversed(options):
         command = option(command)
     return command

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from ..errors import BspcsgError, Finding, FormatError, InternalError
+from ..errors import BspcsgError, Finding, FormatError, InternalError, MissingPartError
 
 #: Version of the JSON documents.
 SCHEMA = 1
@@ -18,7 +18,9 @@ USAGE = 2
 UNREADABLE = 3
 REFUSED = 4
 UNWRITABLE = 5
+MISSING = 6
 INTERNAL = 70
+TIMED_OUT = 124
 INTERRUPTED = 130
 CLOSED_PIPE = 141
 
@@ -37,22 +39,45 @@ class Output:
         Below 0 for no notes, above 0 for more of them.
     as_json : bool
         Standard output gets one JSON document, and nothing else.
+    taken : bool
+        Standard output is taken by a mesh, so results go to standard error.
     """
 
     verbosity: int = 0
     as_json: bool = False
+    taken: bool = False
+
+    @classmethod
+    def of(cls, settings: dict[str, Any]) -> "Output":
+        """Return what the options that every verb has say."""
+        return cls(int(settings["verbose"]) - int(settings["quiet"]), settings["as_json"])
 
     def result(self, line: str, document: dict[str, Any]) -> None:
         """Print a result, as text or as the document."""
         if self.as_json:
             click.echo(json.dumps({"schema": SCHEMA, **document}, allow_nan=False))
-        elif line:
-            click.echo(line)
+        elif line and not (self.taken and self.verbosity < 0):
+            click.echo(line, err=self.taken)
 
     def detail(self, line: str) -> None:
         """Say on standard error what only ``--verbose`` asks for."""
         if self.verbosity > 0:
             click.echo(line, err=True)
+
+    @property
+    def advises(self) -> bool:
+        """Whether somebody is there to be told what to type next."""
+        return self.verbosity >= 0 and sys.stdout.isatty()
+
+    def note(self, line: str) -> None:
+        """Say on standard error what ``--quiet`` silences."""
+        if self.verbosity >= 0:
+            click.echo(f"note: {line}", err=True)
+
+    def warning(self, line: str) -> None:
+        """Say on standard error what ``--quiet`` silences, but with more weight."""
+        if self.verbosity >= 0:
+            click.echo(f"warning: {line}", err=True)
 
     def finding(self, name: str, finding: Finding) -> None:
         """Say on standard error what was noteworthy about a file."""
@@ -65,6 +90,10 @@ def exit_code_of(error: BspcsgError) -> int:
     """Return the exit code of a failure."""
     if isinstance(error, InternalError):
         return INTERNAL
+    if isinstance(error, MissingPartError):
+        return MISSING
+    if error.code == "timed_out":
+        return TIMED_OUT
     if isinstance(error, FormatError):
         return UNWRITABLE if error.code == "unwritable" else UNREADABLE
     return REFUSED

@@ -1,4 +1,4 @@
-"""Mesh files: STL, OBJ, PLY and OFF in and out, 3MF in.
+"""Mesh files: STL, OBJ, PLY, OFF, 3MF, GLB, and VTK through meshio, in and out.
 
 Everything is read and written in double precision where the format has it. A file that is cut off,
 or says what cannot be, is refused with its name and the line or byte; a file that is written
@@ -10,7 +10,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import BspcsgError, Finding
-from .formats import FORMATS, encoder_of, format_of, read, write
+from .formats import (
+    FORMATS,
+    decoded,
+    encoded,
+    encoder_of,
+    format_of,
+    read,
+    read_as,
+    write,
+)
 from .raw import RawMesh
 
 if TYPE_CHECKING:
@@ -23,10 +32,13 @@ __all__ = [
     "FORMATS",
     "SCRIPTS",
     "RawMesh",
+    "decoded",
+    "encoded",
     "encoder_of",
     "format_of",
     "load",
     "read",
+    "read_as",
     "save",
     "write",
 ]
@@ -38,8 +50,8 @@ def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
     Parameters
     ----------
     path : str or path
-        Ending in ``.stl``, ``.obj``, ``.ply``, ``.off`` or ``.3mf``, or a script: ``.csg`` or
-        ``.scad`` (see `bspcsg.csg.load`). 3MF comes in millimetres, the other formats in whatever
+        Ending in one of `FORMATS`, or a script: ``.csg`` or ``.scad`` (see `bspcsg.csg.load`).
+        3MF and GLB come in millimetres, the other formats in whatever
         unit they were written in.
     **options
         For meshes as for `Solid`: ``pitch``, ``trusted``, ``winding``; for scripts as for
@@ -79,7 +91,8 @@ def save(
     ----------
     solid : Solid
     path : str or path
-        Ending in ``.stl``, ``.obj``, ``.ply`` or ``.off``. Binary STL holds single precision.
+        Ending in one of `FORMATS`. Binary STL and GLB hold single precision; 3MF and GLB take the
+        model as millimetres.
     text : bool
         Write STL and PLY as text; OBJ and OFF always are.
 

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeAlias
 
@@ -10,29 +10,61 @@ import numpy as np
 
 from ..errors import Finding, FormatError
 from ..mesh import Mesh
-from . import obj, off, ply, stl, threemf
+from . import glb, obj, off, ply, stl, threemf, threemf_write, vtk
 from .atomic import write_file
 from .raw import RawMesh
 from .source import Source
 
 Encoder: TypeAlias = Callable[[Mesh | RawMesh], Iterator[bytes]]
+Losses: TypeAlias = Callable[[Mesh | RawMesh], tuple[Finding, ...]]
 
 
 @dataclass(frozen=True)
 class Format:
-    """How one format is read and written; one of the forms may be missing."""
+    """How one format is read and written; one of the written forms may be missing.
+
+    Parameters
+    ----------
+    read : callable
+    text, binary : callable, optional
+    losses : callable, optional
+        What the binary form cannot keep; raises OverflowError if it cannot hold the numbers.
+    unit : str
+        ``"mm"`` if files say how long a unit is, and are read and written in millimetres.
+    """
 
     read: Callable[[Source], RawMesh]
     text: Encoder | None = None
     binary: Encoder | None = None
+    losses: Losses | None = None
+    unit: str = ""
 
 
 FORMATS = {
-    ".stl": Format(stl.read, stl.text, stl.binary),
+    ".stl": Format(stl.read, stl.text, stl.binary, stl.losses),
     ".obj": Format(obj.read, obj.text),
     ".ply": Format(ply.read, ply.text, ply.binary),
     ".off": Format(off.read, off.text),
-    ".3mf": Format(threemf.read),
+    ".3mf": Format(threemf.read, None, threemf_write.binary, threemf_write.losses, "mm"),
+    ".glb": Format(glb.read, None, glb.binary, glb.losses, "mm"),
+    ".vtk": Format(vtk.reader(".vtk"), None, vtk.writer(".vtk")),
+    ".vtu": Format(vtk.reader(".vtu"), None, vtk.writer(".vtu")),
+}
+
+_BREP = (
+    "{} is a format of curved surfaces, and bspcsg reads meshes only. Make a mesh of it first, for"
+    " example with FreeCAD, Gmsh or the Python package cascadio."
+)
+_NO_LIBRARY = "{} is not read, for want of a well-kept library; have {} written instead."
+
+#: What to say of formats that people try, and that are not for us.
+_REFUSALS = {
+    **dict.fromkeys((".step", ".stp"), _BREP.format("STEP")),
+    **dict.fromkeys((".iges", ".igs"), _BREP.format("IGES")),
+    ".brep": _BREP.format("BREP"),
+    ".amf": _NO_LIBRARY.format("AMF", "3MF"),
+    ".vtp": _NO_LIBRARY.format("VTP", "VTU"),
+    ".gltf": "glTF with separate files is not read; pack it into one GLB file.",
 }
 
 
@@ -45,13 +77,13 @@ def format_of(path: str | os.PathLike[str]) -> Format:
         If it names none; code ``"unknown_format"``.
     """
     suffix = Path(path).suffix.lower()
-    if suffix not in FORMATS:
-        known = ", ".join(sorted(FORMATS))
-        message = f"{os.fspath(path)}: “{suffix}” is no known mesh format; known are {known}."
-        if not suffix:
-            message = f"{os.fspath(path)}: the name needs a suffix: {known}."
-        raise FormatError(message, "unknown_format")
-    return FORMATS[suffix]
+    if suffix in FORMATS:
+        return FORMATS[suffix]
+    known = ", ".join(sorted(FORMATS))
+    message = f"“{suffix}” is no known mesh format; known are {known}."
+    if not suffix:
+        message = f"the name needs a suffix: {known}."
+    raise FormatError(f"{os.fspath(path)}: {_REFUSALS.get(suffix, message)}", "unknown_format")
 
 
 def encoder_of(path: str | os.PathLike[str], text: bool = False) -> Encoder:
@@ -60,13 +92,13 @@ def encoder_of(path: str | os.PathLike[str], text: bool = False) -> Encoder:
     Raises
     ------
     FormatError
-        If the format is unknown or can only be read; code ``"unknown_format"``.
+        If the format is unknown or has no form as text; code ``"unknown_format"``.
     """
     chosen = format_of(path)
     encoder = chosen.text if text else chosen.binary or chosen.text
     if encoder is None:
-        writable = ", ".join(sorted(suffix for suffix, one in FORMATS.items() if one.text))
-        message = f"{os.fspath(path)}: this format can only be read; written are {writable}."
+        textual = ", ".join(sorted(suffix for suffix, one in FORMATS.items() if one.text))
+        message = f"{os.fspath(path)}: this format is never text; text can be {textual}."
         raise FormatError(message, "unknown_format")
     return encoder
 
@@ -81,7 +113,7 @@ def read(path: str | os.PathLike[str]) -> RawMesh:
     Parameters
     ----------
     path : str or path
-        Ending in ``.stl``, ``.obj``, ``.ply``, ``.off`` or ``.3mf``.
+        Ending in one of `FORMATS`.
 
     Raises
     ------
@@ -89,19 +121,31 @@ def read(path: str | os.PathLike[str]) -> RawMesh:
         If the file cannot be opened, is empty or cut off, is not of its format, or holds numbers
         that are not finite or vertex numbers out of range. The message names file and line (or
         byte), `where` holds that number.
+    MissingPartError
+        If the format needs a library that is not installed.
     """
-    chosen = format_of(path)
+    return read_as(path, Path(path).suffix)
+
+
+def read_as(path: str | os.PathLike[str], suffix: str) -> RawMesh:
+    """Read a mesh file as what a suffix names, whatever its own suffix; else as `read`."""
     name = os.fspath(path)
+    if suffix.lower() not in FORMATS:
+        format_of(name)
     try:
         data = Path(path).read_bytes()
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error
+    return decoded(name, data, suffix)
+
+
+def decoded(name: str, data: bytes, suffix: str) -> RawMesh:
+    """Return the mesh in the bytes of a file; `name` is for errors, the rest as for `read`."""
     if not data:
         raise FormatError(f"{name}: the file is empty.", "empty_file")
-    raw = chosen.read(Source(name, data))
-    stem = Path(path).stem
-    return RawMesh(raw.vertices, raw.faces, raw.name or stem, raw.findings)
+    raw = FORMATS[suffix.lower()].read(Source(name, data))
+    return replace(raw, name=raw.name or Path(name).stem)
 
 
 def write(
@@ -109,15 +153,15 @@ def write(
 ) -> tuple[Finding, ...]:
     """Write a mesh; the suffix names the format.
 
-    The file appears complete or not at all. Every format but binary STL keeps each coordinate's
-    double; what single precision changes is returned as findings.
+    The file appears complete or not at all. Every format but binary STL and GLB keeps each
+    coordinate's double; what single precision changes is returned as findings.
 
     Parameters
     ----------
     mesh : object
         With ``vertices`` (n, 3) float64 and ``faces`` (m, 3) int64.
     path : str or path
-        Ending in ``.stl``, ``.obj``, ``.ply`` or ``.off``.
+        Ending in one of `FORMATS`.
     text : bool
         Write STL and PLY as text; OBJ and OFF always are.
 
@@ -125,20 +169,27 @@ def write(
     ------
     FormatError
         If the format is unknown, cannot hold the coordinates, or the file cannot be written.
+    MissingPartError
+        If the format needs a library that is not installed.
     """
-    encoder = encoder_of(path, text)
-    findings: tuple[Finding, ...] = ()
-    if encoder is stl.binary:
-        findings = _single_precision(mesh, os.fspath(path))
-    if len(mesh.vertices) > np.iinfo(np.int32).max and encoder is ply.binary:
-        raise FormatError(f"{os.fspath(path)}: too many vertices for PLY; write OBJ.", "too_large")
-    write_file(path, encoder(mesh))
+    chunks, findings = encoded(mesh, path, Path(path).suffix, text)
+    write_file(path, chunks)
     return findings
 
 
-def _single_precision(mesh: Mesh | RawMesh, name: str) -> tuple[Finding, ...]:
+def encoded(
+    mesh: Mesh | RawMesh, path: str | os.PathLike[str], suffix: str, text: bool = False
+) -> tuple[Iterator[bytes], tuple[Finding, ...]]:
+    """Return the bytes of a file and what the format could not keep, as for `write`."""
+    name = os.fspath(path)
+    encoder = encoder_of(f"mesh{suffix}", text)
+    chosen = FORMATS[suffix.lower()]
+    if len(mesh.vertices) > np.iinfo(np.int32).max and encoder is ply.binary:
+        raise FormatError(f"{name}: too many vertices for PLY; write OBJ.", "too_large")
+    if chosen.losses is None or encoder is not chosen.binary:
+        return encoder(mesh), ()
     try:
-        return stl.losses(mesh)
+        return encoder(mesh), chosen.losses(mesh)
     except OverflowError:
-        message = f"{name}: coordinates are beyond STL's single precision; write PLY, OBJ or OFF."
+        message = f"{name}: coordinates are beyond single precision; write PLY, OBJ, OFF or 3MF."
         raise FormatError(message, "too_large") from None

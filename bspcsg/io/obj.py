@@ -6,8 +6,17 @@ import numpy as np
 
 from ..errors import Finding, FormatError
 from ..mesh import Mesh
-from .raw import Polygons, RawMesh
+from .raw import Polygons, RawMesh, parts_of
 from .source import Source, quoted
+
+#: Statements about what a mesh of triangles has no room for.
+_DROPPED = {
+    b"vt": "texture coordinates",
+    b"vn": "normals",
+    b"usemtl": "materials",
+    b"l": "lines",
+    b"p": "points",
+}
 
 #: Statements that would add surface which is not in the polygons.
 _SURFACES = frozenset({b"surf", b"curv", b"cstype", b"bmat"})
@@ -25,7 +34,9 @@ def read(source: Source) -> RawMesh:
     row_lines: list[int] = []
     polygons: list[list[int]] = []
     face_lines: list[int] = []
-    name, surfaces = b"", 0
+    objects: list[tuple[bytes, int]] = []
+    dropped: set[str] = set()
+    surfaces = 0
     for number, words in _statements(source):
         key = words[0]
         if key == b"v":
@@ -35,16 +46,47 @@ def read(source: Source) -> RawMesh:
             polygons.append(_references(source, number, words, len(rows)))
             face_lines.append(number)
         elif key == b"o":
-            name = name or b" ".join(words[1:])
+            objects.append((b" ".join(words[1:]), len(polygons)))
+        elif key in _DROPPED:
+            dropped.add(_DROPPED[key])
         surfaces += key in _SURFACES
     if not rows:
         raise source.error("this is no OBJ mesh: it has no vertex.")
     vertices = source.coordinates(rows, row_lines)
-    faces = _faces(source, polygons, face_lines).triangles(
+    if any(len(row) > 4 for row in rows):  # a fourth number is a weight
+        dropped.add("colours")
+    flat = _faces(source, polygons, face_lines)
+    faces = flat.triangles(
         vertices,
         lambda polygon, message, code: source.error(message, code, line=face_lines[polygon]),
     )
-    return RawMesh(vertices, faces, name.decode("utf-8", "replace"), _curved(surfaces))
+    named = _objects(objects, [len(polygon) - 2 for polygon in polygons], len(faces))
+    name = next((name for name, _ in named if name), "")
+    return RawMesh(
+        vertices,
+        faces,
+        name,
+        _curved(surfaces),
+        objects=named if len(named) > 1 else (),
+        dropped=(*sorted(dropped), *flat.dropped),
+    )
+
+
+def _objects(
+    begun: list[tuple[bytes, int]], triangles: list[int], total: int
+) -> tuple[tuple[str, int], ...]:
+    """Return names and triangle counts of objects that begin at some polygons."""
+    if sum(triangles) != total:  # a polygon without area has fewer
+        return ()
+    if not begun or begun[0][1] > 0:
+        begun = [(b"", 0), *begun]
+    starts = [start for _, start in begun]
+    counts = [
+        sum(triangles[start:end])
+        for start, end in zip(starts, [*starts[1:], len(triangles)], strict=True)
+    ]
+    names = [name.decode("utf-8", "replace") for name, _ in begun]
+    return tuple((name, count) for name, count in zip(names, counts, strict=True) if count)
 
 
 def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
@@ -101,5 +143,9 @@ def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; every coordinate reads back as the same double."""
     for point in mesh.vertices.tolist():
         yield "v {!r} {!r} {!r}\n".format(*point).encode()
-    for face in (mesh.faces + np.int64(1)).tolist():
-        yield "f {} {} {}\n".format(*face).encode()
+    parts = parts_of(mesh)
+    for name, faces in parts:
+        if len(parts) > 1:
+            yield f"o {' '.join(name.split())}\n".encode("utf-8", "replace")
+        for face in (faces + np.int64(1)).tolist():
+            yield "f {} {} {}\n".format(*face).encode()

@@ -33,10 +33,23 @@ def read(source: Source) -> RawMesh:
     points, polygons = lines[:vertex_count], lines[vertex_count : vertex_count + face_count]
     vertices = source.coordinates([row for _, row in points], [number for number, _ in points])
     corners = [_corners(source, number, words) for number, words in polygons]
-    faces = Polygons.from_lists(corners).triangles(
+    flat = Polygons.from_lists(corners)
+    faces = flat.triangles(
         vertices, lambda k, message, code: source.error(message, code, line=polygons[k][0])
     )
-    return RawMesh(vertices, faces, "", _extra_lines(lines[vertex_count + face_count :]))
+    extra = _extra_lines(lines[vertex_count + face_count :])
+    dropped = (*_more_than_a_shape(points, polygons), *flat.dropped)
+    return RawMesh(vertices, faces, "", extra, dropped=dropped)
+
+
+def _more_than_a_shape(points: list[_Line], polygons: list[_Line]) -> tuple[str, ...]:
+    """Return what is said of vertices and faces besides the shape."""
+    found = []
+    if any(len(words) > 3 for _, words in points):
+        found.append("data of vertices")
+    if any(len(words) > int(words[0]) + 1 for _, words in polygons):
+        found.append("colours of faces")
+    return tuple(found)
 
 
 def _body(source: Source) -> Iterator[_Line]:

@@ -48,7 +48,21 @@ def read(source: Source) -> RawMesh:
         hint = " Its triangle strips cannot be read; save it with faces." if strips else ""
         raise source.error(f"this PLY has no face lists.{hint}", line=header.lines)
     faces = found.polygons.triangles(found.vertices, found.polygon_error)
-    return RawMesh(found.vertices, faces, "", rest)
+    dropped = (*_more_than_a_shape(header), *found.polygons.dropped)
+    return RawMesh(found.vertices, faces, "", rest, dropped=dropped)
+
+
+def _more_than_a_shape(header: Header) -> tuple[str, ...]:
+    """Return which elements and properties say something besides the shape."""
+    found = []
+    for element in header.elements:
+        shape = {"vertex": ("x", "y", "z"), "face": _FACE_LISTS}.get(element.name)
+        names = [prop.name for prop in element.properties if shape and prop.name not in shape]
+        if shape is None and element.number:
+            found.append(f"“{element.name}” elements")
+        elif names and element.number:
+            found.append(f"{element.name} properties {', '.join(names)}")
+    return tuple(found)
 
 
 def _axes(element: Element) -> tuple[int, int, int] | None:

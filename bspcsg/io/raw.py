@@ -4,14 +4,18 @@ Readers neither weld, orient, repair nor drop anything, with one exception: STL 
 its corners with equal coordinates become one vertex.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from .._types import FloatArray, IndexArray
 from ..errors import Finding, FormatError
+from ..mesh import Mesh
 from ..polygon import triangulate_face
+
+#: What to call it that faces of more corners became triangles.
+POLYGONS = "faces of more than three corners"
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,12 +32,45 @@ class RawMesh:
         What the file calls the mesh, or the file's stem.
     findings : tuple of Finding
         What was noteworthy about the file.
+    objects : tuple of (str, int)
+        Names of the objects in the file and how many triangles each has, in order; empty if the
+        file does not tell objects apart.
+    unit : str
+        ``"mm"`` if the format says how long a unit is, else empty.
+    dropped : tuple of str
+        Kinds of data in the file that a mesh of triangles has no room for, such as "colours".
     """
 
     vertices: FloatArray
     faces: IndexArray
     name: str = ""
     findings: tuple[Finding, ...] = ()
+    objects: tuple[tuple[str, int], ...] = ()
+    unit: str = ""
+    dropped: tuple[str, ...] = ()
+
+
+def parts_of(mesh: Mesh | RawMesh) -> list[tuple[str, IndexArray]]:
+    """Return names and triangles of the objects of a mesh; one that has none is one object."""
+    objects = mesh.objects if isinstance(mesh, RawMesh) else ()
+    if sum(count for _, count in objects) != len(mesh.faces):
+        return [(mesh.name if isinstance(mesh, RawMesh) else "", mesh.faces)]
+    ends = np.cumsum([0] + [count for _, count in objects]).tolist()
+    names = [name for name, _ in objects]
+    return [
+        (name, mesh.faces[start:end])
+        for name, start, end in zip(names, ends, ends[1:], strict=False)
+    ]
+
+
+def joined(meshes: Sequence[RawMesh]) -> RawMesh:
+    """Return several meshes as one, each an object of its name; nothing is welded."""
+    starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes]).tolist()
+    vertices = [np.zeros((0, 3))] + [mesh.vertices for mesh in meshes]
+    faces = [np.zeros((0, 3), dtype=np.int64)]
+    faces += [mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]
+    objects = tuple((mesh.name, len(mesh.faces)) for mesh in meshes)
+    return RawMesh(np.concatenate(vertices), np.concatenate(faces), objects=objects)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +100,11 @@ class Polygons:
         counts = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
         flat = [corner for polygon in polygons for corner in polygon]
         return cls(np.array(flat, dtype=np.int64), counts)
+
+    @property
+    def dropped(self) -> tuple[str, ...]:
+        """What triangles do not keep of these polygons, as `RawMesh.dropped` says it."""
+        return (POLYGONS,) if self.counts.max(initial=0) > 3 else ()
 
     @classmethod
     def from_rows(cls, rows: IndexArray) -> "Polygons":

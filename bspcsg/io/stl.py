@@ -5,6 +5,7 @@ its first word: binary files begin with "solid" often enough.
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,7 +13,8 @@ from .._types import FloatArray
 from ..errors import Finding
 from ..mesh import Mesh
 from ..weld import welded
-from .raw import RawMesh
+from . import single
+from .raw import RawMesh, parts_of
 from .source import Source, quoted
 
 _HEADER = 84
@@ -56,11 +58,13 @@ def _read_binary(source: Source) -> RawMesh:
         message = f"the header promises 0 triangles, but data for {held} follow."
         raise source.error(message, offset=_HEADER)
     records = np.frombuffer(data, _RECORD, count, _HEADER)
-    corners = records["corners"].reshape(-1, 3).astype(np.float64)
+    with np.errstate(invalid="ignore"):  # NaN, which the next line refuses
+        corners = records["corners"].reshape(-1, 3).astype(np.float64)
     _check_finite(source, corners)
     extra = len(data) - _HEADER - count * _RECORD.itemsize
     name = data[: _HEADER - 4].split(b"\0")[0].strip().decode("latin-1")
-    return _joined(corners, name, _extra_bytes(extra))
+    coloured = ("colours",) if records["attribute"].any() else ()
+    return replace(_joined(corners, name, _extra_bytes(extra)), dropped=coloured)
 
 
 def _check_finite(source: Source, corners: FloatArray) -> None:
@@ -82,12 +86,14 @@ def _extra_bytes(count: int) -> tuple[Finding, ...]:
 def _read_text(source: Source) -> RawMesh:
     rows: list[list[bytes]] = []
     lines: list[int] = []
-    name, inside, step, number = b"", False, 0, 0
+    solids: list[tuple[bytes, int]] = []
+    inside, step, number = False, 0, 0
     for number, words in source.text_lines():
         key = words[0].lower()
         if step == 0 and key == (b"endsolid" if inside else b"solid"):
             inside = not inside
-            name = name or b" ".join(words[1:])
+            if inside:
+                solids.append((b" ".join(words[1:]), len(rows)))
             continue
         if not inside or key != _FACET[step]:
             expected = _FACET[step] if inside else b"solid"
@@ -102,7 +108,13 @@ def _read_text(source: Source) -> RawMesh:
         raise source.error(
             f"the file ends where “{missing}” must follow.", "truncated", line=number
         )
-    return _joined(source.coordinates(rows, lines), name.decode("utf-8", "replace"), ())
+    raw = _joined(source.coordinates(rows, lines), "", ())
+    ends = [*(first for _, first in solids[1:]), len(rows)]
+    names = [name.decode("utf-8", "replace") for name, _ in solids]
+    starts = [first for _, first in solids]
+    objects = [(n, (end - start) // 3) for n, start, end in zip(names, starts, ends, strict=True)]
+    title = next(filter(None, names), "")
+    return replace(raw, name=title, objects=tuple(objects) if len(objects) > 1 else ())
 
 
 def _joined(corners: FloatArray, name: str, findings: tuple[Finding, ...]) -> RawMesh:
@@ -122,16 +134,18 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
 
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
-    """Yield the ASCII form; every coordinate reads back as the same double."""
-    yield b"solid bspcsg\n"
-    corners = mesh.vertices[mesh.faces]
-    for normal, triangle in zip(_normals(corners).tolist(), corners.tolist(), strict=True):
-        yield (
-            "facet normal {} {} {}\n outer loop\n".format(*normal)
-            + "".join("  vertex {!r} {!r} {!r}\n".format(*corner) for corner in triangle)
-            + " endloop\nendfacet\n"
-        ).encode()
-    yield b"endsolid bspcsg\n"
+    """Yield the ASCII form, a solid for each object; every double reads back as it was."""
+    for name, faces in parts_of(mesh):
+        title = " ".join(name.split()) or "bspcsg"
+        yield f"solid {title}\n".encode("utf-8", "replace")
+        corners = mesh.vertices[faces]
+        for normal, triangle in zip(_normals(corners).tolist(), corners.tolist(), strict=True):
+            yield (
+                "facet normal {} {} {}\n outer loop\n".format(*normal)
+                + "".join("  vertex {!r} {!r} {!r}\n".format(*corner) for corner in triangle)
+                + " endloop\nendfacet\n"
+            ).encode()
+        yield f"endsolid {title}\n".encode("utf-8", "replace")
 
 
 def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
@@ -142,33 +156,7 @@ def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
     OverflowError
         If a coordinate is beyond single precision.
     """
-    with np.errstate(over="ignore"):
-        rounded = mesh.vertices.astype(np.float32).astype(np.float64)
-    if not np.isfinite(rounded).all():
-        raise OverflowError
-    shift = float(np.abs(rounded - mesh.vertices).max(initial=0.0))
-    if shift == 0:
-        return ()
-    message = (
-        f"binary STL holds single precision: coordinates moved by up to {shift:.2g}."
-        " PLY, OBJ, OFF and ASCII STL keep every digit."
-    )
-    return Finding("single_precision", "note", message, (), 1), *_merged(mesh, rounded)
-
-
-def _merged(mesh: Mesh | RawMesh, rounded: FloatArray) -> tuple[Finding, ...]:
-    before, after = len(welded(mesh.vertices)[0]), welded(rounded)[1]
-    lost = before - len(np.unique(after))
-    if not lost:
-        return ()
-    faces = after[mesh.faces]
-    flat = (faces == np.roll(faces, 1, axis=1)).any(axis=1)
-    message = (
-        f"single precision merges {lost} vertices with others and flattens {int(flat.sum())}"
-        " triangles; write PLY, OBJ or OFF to keep the mesh as it is."
-    )
-    where = tuple(np.flatnonzero(flat)[:8].tolist())
-    return (Finding("merged_by_rounding", "warning", message, where, lost),)
+    return single.losses(mesh, "binary STL")
 
 
 def _normals(corners: FloatArray) -> FloatArray:

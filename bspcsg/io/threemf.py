@@ -1,4 +1,4 @@
-"""3MF, reading only: build items with their components and transforms, in millimetres.
+"""3MF, reading: build items with their components and transforms, in millimetres.
 
 A file is a ZIP archive of XML parts. Sizes are limited before anything is unpacked and document
 types are refused, so that a small file cannot grow without bound.
@@ -8,14 +8,14 @@ import io
 import posixpath
 import zipfile
 import zlib
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeAlias
 
 import numpy as np
 
-from .._types import FloatArray, IndexArray
-from ..errors import Finding
-from .raw import RawMesh
+from .._types import FloatArray
+from ..errors import Finding, FormatError
+from .raw import RawMesh, joined
 from .source import Source
 from .threemf_part import MILLIMETRES, Part, PartReader, Placed, parse_xml
 
@@ -28,6 +28,17 @@ _MOST_TRIANGLES = 1 << 27
 
 #: Unpacked size that a part may have, in bytes.
 _LARGEST_PART = 1 << 31
+
+#: What the standard library raises on damaged archives.
+_DAMAGES = (
+    zipfile.BadZipFile,
+    NotImplementedError,
+    RuntimeError,
+    EOFError,
+    zlib.error,
+    OSError,
+    ValueError,
+)
 
 _MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 
@@ -44,19 +55,15 @@ def read(source: Source) -> RawMesh:
         with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
             package = _Package(source, archive)
             return package.assemble(package.root())
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, zlib.error) as error:
+    except FormatError:
+        raise
+    except _DAMAGES as error:
         message = f"the archive is damaged or cut off: {error}."
         raise source.error(message, "truncated") from error
 
 
 #: The part that names an object, the object, and the transforms around it, innermost first.
 _Waiting: TypeAlias = tuple[str, Placed, tuple[FloatArray, ...]]
-
-
-@dataclass(frozen=True, eq=False)
-class _Piece:
-    vertices: FloatArray
-    faces: IndexArray
 
 
 class _Package:
@@ -96,7 +103,8 @@ class _Package:
                 raise self._source.error("the build has too many triangles.", "too_large")
         findings += _ignored(beams, "beams")
         findings += _ignored(skipped, "objects that are support or surface")
-        mesh = replace(_joined(pieces), findings=tuple(findings))
+        dropped = sorted(set().union(*(part.dropped for part in self._parts.values())))
+        mesh = replace(joined(pieces), findings=tuple(findings), unit="mm", dropped=tuple(dropped))
         scale = MILLIMETRES[part.unit]
         return mesh if scale == 1 else replace(mesh, vertices=mesh.vertices * scale)
 
@@ -145,7 +153,7 @@ def _part_name(target: str) -> str:
     return posixpath.normpath(target).lstrip("/")
 
 
-def _moved(part: Part, item: str, transforms: tuple[FloatArray, ...]) -> _Piece:
+def _moved(part: Part, item: str, transforms: tuple[FloatArray, ...]) -> RawMesh:
     """Return the mesh of an object under transforms; a mirrored one is turned right side out."""
     vertices, faces = part.objects[item].arrays()
     for matrix in transforms:
@@ -158,15 +166,7 @@ def _moved(part: Part, item: str, transforms: tuple[FloatArray, ...]) -> _Piece:
         vertices = np.stack(columns, axis=1)
         if np.linalg.det(matrix[:3]) < 0:
             faces = faces[:, ::-1]
-    return _Piece(vertices, faces)
-
-
-def _joined(pieces: list[_Piece]) -> RawMesh:
-    starts = np.cumsum([0] + [len(piece.vertices) for piece in pieces])
-    vertices = [np.zeros((0, 3))] + [piece.vertices for piece in pieces]
-    faces = [np.zeros((0, 3), dtype=np.int64)]
-    faces += [piece.faces + start for piece, start in zip(pieces, starts.tolist(), strict=False)]
-    return RawMesh(np.concatenate(vertices), np.concatenate(faces))
+    return RawMesh(vertices, faces, part.objects[item].name)
 
 
 def _unit_finding(part: Part) -> tuple[Finding, ...]:

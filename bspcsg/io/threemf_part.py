@@ -21,6 +21,16 @@ MILLIMETRES = {
     "meter": 1000.0,
 }
 
+#: Elements about what a mesh of triangles has no room for.
+_DROPPED = {
+    "base": "materials",
+    "color": "colours",
+    "composite": "materials",
+    "tex2coord": "texture coordinates",
+    "texture2d": "textures",
+    "metadata": "metadata",
+}
+
 Start: TypeAlias = Callable[[str, dict[str, str]], None]
 
 
@@ -52,6 +62,7 @@ class Object:
     triangles: list[tuple[int, int, int]] = field(default_factory=list)
     components: list[Placed] = field(default_factory=list)
     beams: int = 0
+    name: str = ""
 
     def arrays(self) -> tuple[FloatArray, IndexArray]:
         """Return vertices (n, 3) and triangles (m, 3)."""
@@ -66,6 +77,7 @@ class Part:
     unit: str = "millimeter"
     objects: dict[str, Object] = field(default_factory=dict)
     items: list[Placed] = field(default_factory=list)
+    dropped: set[str] = field(default_factory=set)
 
 
 def parse_xml(source: Source, start: Start) -> None:
@@ -142,12 +154,15 @@ class PartReader:
         elif tag == "item":
             self._part.items.append(self._placed(attributes))
         elif tag == "object":
-            self._current = Object(attributes.get("type", "model"))
+            kind, name = attributes.get("type", "model"), attributes.get("name", "")
+            self._current = Object(kind, name=name)
             self._part.objects[attributes["id"]] = self._current
         elif tag == "model":
             self._part.unit = attributes.get("unit", "millimeter")
             if self._part.unit not in MILLIMETRES:
                 raise ValueError(f"unknown unit {self._part.unit}")
+        elif tag in _DROPPED:
+            self._part.dropped.add(_DROPPED[tag])
         self._current.beams += tag == "beam"
 
     def _placed(self, attributes: dict[str, str]) -> Placed:

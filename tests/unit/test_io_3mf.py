@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bspcsg.io import RawMesh, read
+from bspcsg.io import RawMesh, read, threemf
 from support.io import cube_mesh, refusal
 
 NAMESPACE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
@@ -125,3 +125,19 @@ def test_archive_without_a_model(tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "x.3mf", "w") as archive:
         archive.writestr("readme.txt", "nothing")
     refusal(tmp_path / "x.3mf", (tmp_path / "x.3mf").read_bytes(), "truncated")
+
+
+@pytest.mark.parametrize("depth", [1000, 300_000])
+def test_deep_xml_is_no_harm(tmp_path: Path, depth: int) -> None:
+    deep = "<metadatagroup>" * depth + "</metadatagroup>" * depth
+    raw = read(package(tmp_path / "deep.3mf", model(CUBE + deep, ITEM)))
+    assert len(raw.faces) == 12
+    path = package(tmp_path / "open.3mf", "<model>" * depth)
+    refusal(path, path.read_bytes(), "syntax")
+
+
+def test_parts_that_unpack_to_too_much(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(threemf, "_LARGEST_PART", 1000)
+    path = package(tmp_path / "bomb.3mf", model(CUBE, ITEM) + " " * 10**7)
+    assert path.stat().st_size < 20_000
+    assert "is too large" in refusal(path, path.read_bytes(), "too_large")

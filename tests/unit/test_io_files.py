@@ -31,12 +31,6 @@ def test_suffix_in_capitals(tmp_path: Path) -> None:
     assert read(tmp_path / "CUBE.STL").name == "bspcsg"
 
 
-def test_3mf_is_not_written(tmp_path: Path) -> None:
-    with pytest.raises(FormatError) as caught:
-        write(cube_mesh(), tmp_path / "x.3mf")
-    assert caught.value.code == "unknown_format"
-
-
 @pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "off", "3mf"])
 def test_empty_and_missing_files(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"x.{suffix}"

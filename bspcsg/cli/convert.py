@@ -1,0 +1,193 @@
+"""The verb that changes formats: convert."""
+
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..errors import BspcsgError
+from . import output
+from .files import STREAM, Inputs, Target, expanded, shown
+from .options import PATH, common, reading, writing
+from .output import Output, counted
+
+if TYPE_CHECKING:
+    from ..io import RawMesh
+    from ..roundtrip import Losses
+
+_EPILOG = """\b
+Examples:
+  bspcsg convert part.3mf -o part.ply --fail-on-loss
+  bspcsg convert parts/*.stl --to glb --outdir web
+"""
+
+#: Files from which on a bar shows how far it is.
+_MANY = 4
+
+
+@click.command("convert", epilog=_EPILOG)
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="IN [...]")
+@click.option(
+    "-o",
+    "--output",
+    "target",
+    type=PATH,
+    help="File to write; with several inputs, % stands for the name of each.",
+)
+@click.option("--outdir", type=PATH, help="Folder for the files, with --to.")
+@writing
+@click.option("--fail-on-loss", is_flag=True, help="Exit with 1 if anything was lost.")
+@reading
+@common
+def convert(files: tuple[Path, ...], **given: Any) -> int:
+    """Write meshes in other formats, and say what was lost.
+
+    Every file is read back and compared. Meshes need not be closed; nothing is repaired. 3MF and
+    GLB state their unit: what comes from other formats is taken as millimetres unless --unit says
+    otherwise, and GLB is written in metres with y upwards.
+    """
+    return _Conversion(files, **given).run()
+
+
+class _Conversion:
+    """Some files, and where each goes."""
+
+    def __init__(
+        self, files: tuple[Path, ...], target: Path | None, outdir: Path | None, **settings: Any
+    ) -> None:
+        self._settings = settings
+        self._pairs = [
+            (path, Target.of(where, settings))
+            for path, where in _targets(files, target, outdir, settings["to_format"])
+        ]
+        taken = any(where.is_stream for _, where in self._pairs)
+        verbosity = int(settings["verbose"]) - int(settings["quiet"])
+        self._out = Output(verbosity, settings["as_json"], taken)
+        self._inputs = Inputs.of(self._out, settings)
+
+    def run(self) -> int:
+        self._refuse_early()
+        documents, code = [], output.DONE
+        with _progress(self._pairs, self._out) as pairs:
+            for path, target in pairs:
+                try:
+                    document, lost = self._converted(path, target)
+                except BspcsgError as error:
+                    if len(self._pairs) == 1:
+                        raise
+                    # One bad file of many does not keep the others.
+                    found = output.exit_code_of(error)
+                    click.echo(f"bspcsg: error: {error.message}", err=True)
+                    document, lost = {"file": str(path), "error": error.message}, False
+                    code = max(code, found)
+                documents.append(document)
+                if lost and self._settings["fail_on_loss"]:
+                    code = max(code, output.FOUND)
+        if self._out.as_json:
+            self._out.result("", {"files": documents})
+        return code
+
+    def _refuse_early(self) -> None:
+        for _, target in self._pairs:
+            target.refuse_early(self._out.as_json)
+        self._inputs.refuse_early([path for path, _ in self._pairs])
+        self._tell_units()
+
+    def _tell_units(self) -> None:
+        """Say once which inputs have no unit although the output states one."""
+        from ..io import FORMATS
+
+        unknown = [
+            path
+            for path, target in self._pairs
+            if FORMATS[target.suffix.lower()].unit
+            and not FORMATS[self._inputs.suffix_of(path)].unit
+        ]
+        if unknown and self._settings["unit"] is None:
+            more = f" and {len(unknown) - 1} more have" if len(unknown) > 1 else " has"
+            self._out.note(
+                f"{shown(unknown[0])}{more} no unit; mm assumed (say --unit in to change)"
+            )
+
+    def _converted(self, path: Path, target: Target) -> tuple[dict[str, Any], bool]:
+        """Convert one file; return what happened to it, and whether anything was lost."""
+        from ..io import decoded, encoded
+        from ..roundtrip import losses_between
+
+        began = time.perf_counter()
+        raw = self._inputs.raw(path)
+        self._inputs.tell(path, raw.findings)
+        chunks, findings = encoded(raw, shown(target.path), target.suffix, target.text)
+        data = b"".join(chunks)
+        lost = losses_between(raw, decoded(shown(target.path), data, target.suffix))
+        target.write_data(data)
+        for finding in findings:
+            if finding.code != "single_precision":  # its shift is told below, as measured
+                self._out.finding(shown(target.path), finding)
+        seconds = time.perf_counter() - began
+        if not self._out.as_json:
+            self._out.result(_line(raw, target, lost, seconds), {})
+        document = {"file": str(path), "output": str(target.path), "triangles": len(raw.faces)}
+        return {**document, "lost": lost.to_dict(), "seconds": round(seconds, 4)}, lost.any
+
+
+def _line(raw: "RawMesh", target: Target, lost: "Losses", seconds: float) -> str:
+    words = "; ".join(lost.sentences())
+    return (
+        f"{shown(target.path)}  {counted(len(raw.faces), 'triangle')}"
+        f"  {'lost: ' + words if words else 'nothing lost'}  {seconds:.2f} s"
+    )
+
+
+def _targets(
+    files: tuple[Path, ...], target: Path | None, outdir: Path | None, suffix: str | None
+) -> list[tuple[Path, Path]]:
+    """Return each file with where it goes."""
+    if (target is None) == (outdir is None):
+        raise click.UsageError("say where to write: either -o FILE or --outdir DIR.")
+    if outdir is not None:
+        if suffix is None:
+            raise click.UsageError("--outdir needs the format: --to glb.")
+        pairs = [(path, outdir / f"{_stem(path)}{suffix}") for path in files]
+    elif len(files) == 1 or target is None:
+        return [(files[0], target or Path(STREAM))]
+    elif "%" not in target.name:
+        raise click.UsageError(
+            "for several inputs, -o needs a % for their names, as in 'web/%.glb'."
+        )
+    else:
+        pairs = [(path, expanded(target, _stem(path))) for path in files]
+    _refuse_twins(pairs)
+    return pairs
+
+
+def _stem(path: Path) -> str:
+    return "stdin" if str(path) == STREAM else path.stem
+
+
+def _refuse_twins(pairs: list[tuple[Path, Path]]) -> None:
+    seen: dict[Path, Path] = {}
+    for path, where in pairs:
+        if where in seen:
+            raise click.UsageError(f"{seen[where]} and {path} would both be written to {where}.")
+        seen[where] = path
+
+
+@contextmanager
+def _progress(
+    pairs: list[tuple[Path, Target]], out: Output
+) -> Iterator[Iterator[tuple[Path, Target]]]:
+    """Yield the pairs, under a bar on the terminal if there are many."""
+    if len(pairs) < _MANY or not sys.stderr.isatty() or out.verbosity < 0:
+        yield iter(pairs)
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
+
+    columns = ("converting", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        yield iter(bar.track(pairs))

@@ -1,0 +1,194 @@
+"""Set formulas over file names, such as ``(a.stl - b.stl) | "my part.stl"``.
+
+Operators bind as Python's do: ``~`` before ``+ -`` before ``&`` before ``^`` before ``|``. A bare
+name ends at a blank, a parenthesis, a quote or one of ``| & ^``; it may contain ``+ - ~``, which
+are operators only where a name could begin.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias, TypeVar
+
+_Value = TypeVar("_Value")
+
+#: What ends a bare name, and what is an operator only where a name could begin.
+_ENDS = "|&^()\"'"
+_SIGNS = "+-~"
+
+#: Binary operators from the loosest, each with what it stands for.
+_LEVELS: tuple[dict[str, str], ...] = (
+    {"|": "union"},
+    {"^": "xor"},
+    {"&": "intersection"},
+    {"+": "union", "-": "difference"},
+)
+
+#: How deep parentheses and complements may lie in one another.
+_DEEPEST = 100
+
+
+class FormulaError(Exception):
+    """A formula that cannot be read.
+
+    Parameters
+    ----------
+    message : str
+    column : int
+        Where, counted from 0.
+    """
+
+    def __init__(self, message: str, column: int) -> None:
+        super().__init__(message, column)
+        self.message = message
+        self.column = column
+
+
+@dataclass(frozen=True)
+class File:
+    """A file name, and where it stands in the formula."""
+
+    name: str
+    column: int
+
+
+@dataclass(frozen=True)
+class Operation:
+    """An operation by its name: union, difference, intersection, xor or complement."""
+
+    name: str
+    operands: "tuple[Formula, ...]"
+
+
+Formula: TypeAlias = File | Operation
+
+
+@dataclass(frozen=True)
+class _Token:
+    """An operator or parenthesis, a file name, or the end."""
+
+    kind: str
+    text: str
+    column: int
+
+
+def parse(text: str) -> Formula:
+    """Return the formula that a text stands for.
+
+    Raises
+    ------
+    FormulaError
+        If it stands for none; with the column.
+    """
+    parser = _Parser(_tokens(text))
+    found = parser.level(0, 0)
+    parser.expect("end", "an operator or the end")
+    return found
+
+
+def files_of(formula: Formula) -> list[File]:
+    """Return the different files of a formula, in the order in which they first occur."""
+    found: dict[str, File] = {}
+    waiting = [formula]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, File):
+            found.setdefault(node.name, node)
+        else:
+            waiting.extend(reversed(node.operands))
+    return list(found.values())
+
+
+def evaluated(
+    formula: Formula,
+    leaf: Callable[[File], _Value],
+    combine: Callable[[str, list[_Value]], _Value],
+) -> _Value:
+    """Return the value of a formula, given that of its files and what its operations do."""
+    if isinstance(formula, File):
+        return leaf(formula)
+    values = [evaluated(operand, leaf, combine) for operand in formula.operands]
+    return combine(formula.name, values)
+
+
+def _tokens(text: str) -> list[_Token]:
+    tokens: list[_Token] = []
+    at = 0
+    while at < len(text):
+        letter = text[at]
+        if letter.isspace():
+            at += 1
+        elif letter in "\"'":
+            end = text.find(letter, at + 1)
+            if end < 0:
+                raise FormulaError("this quote is never closed.", at)
+            if end == at + 1:
+                raise FormulaError("there is no name between these quotes.", at)
+            tokens.append(_Token("file", text[at + 1 : end], at))
+            at = end + 1
+        elif letter in _ENDS + _SIGNS:
+            tokens.append(_Token(letter, letter, at))
+            at += 1
+        else:
+            end = _end_of_name(text, at)
+            tokens.append(_Token("file", text[at:end], at))
+            at = end
+    return [*tokens, _Token("end", "", len(text))]
+
+
+def _end_of_name(text: str, start: int) -> int:
+    end = start
+    while end < len(text) and not text[end].isspace() and text[end] not in _ENDS:
+        end += 1
+    return end
+
+
+class _Parser:
+    """Reads tokens from the left, one level of operators for each depth of the call."""
+
+    def __init__(self, tokens: list[_Token]) -> None:
+        self._tokens = tokens
+        self._next = 0
+
+    def level(self, number: int, depth: int) -> Formula:
+        """Return the operands joined by operators of this level or tighter ones."""
+        if number == len(_LEVELS):
+            return self._operand(depth)
+        found = self.level(number + 1, depth)
+        while self._peek().kind in _LEVELS[number]:
+            name = _LEVELS[number][self._take().kind]
+            found = Operation(name, (found, self.level(number + 1, depth)))
+        return found
+
+    def expect(self, kind: str, wanted: str) -> _Token:
+        """Take a token of a kind, or say what is there instead."""
+        token = self._peek()
+        if token.kind != kind:
+            raise FormulaError(f"expected {wanted}, found {_called(token)}.", token.column)
+        return self._take()
+
+    def _operand(self, depth: int) -> Formula:
+        token = self._peek()
+        if depth > _DEEPEST:
+            raise FormulaError("this lies too deep in parentheses.", token.column)
+        if token.kind == "~":
+            self._take()
+            return Operation("complement", (self._operand(depth + 1),))
+        if token.kind == "(":
+            self._take()
+            inner = self.level(0, depth + 1)
+            self.expect(")", "an operator or “)”")
+            return inner
+        found = self.expect("file", "a file name or “(”")
+        return File(found.text, found.column)
+
+    def _peek(self) -> _Token:
+        return self._tokens[self._next]
+
+    def _take(self) -> _Token:
+        token = self._tokens[self._next]
+        self._next += 1
+        return token
+
+
+def _called(token: _Token) -> str:
+    return "the end" if token.kind == "end" else f"“{token.text}”"

@@ -1,0 +1,161 @@
+"""One set operation on files, from reading to telling what came out."""
+
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import output
+from .files import Inputs, Target, shown
+from .output import Output, counted
+
+if TYPE_CHECKING:
+    from ..check import CheckReport
+    from ..mesh import Mesh
+    from ..solid import Solid
+
+#: Triangles and bits up to which the exact volume is printed; of more, its digits fill pages.
+_EXACT_FACES, _EXACT_BITS = 500, 10_000
+
+
+class Job:
+    """One operation on files.
+
+    Subclasses say what to combine, and how.
+
+    Parameters
+    ----------
+    op : str
+        What to call it.
+    target : Path
+    **settings
+        The other options, by their names.
+    """
+
+    def __init__(self, op: str, target: Path, **settings: Any) -> None:
+        self.op = op
+        self.settings = settings
+        self.target = Target.of(target, settings)
+        verbosity = int(settings["verbose"]) - int(settings["quiet"])
+        self.out = Output(verbosity, settings["as_json"], self.target.is_stream)
+        self.inputs = Inputs.of(self.out, settings)
+        self.seconds: dict[str, float] = {}
+        self._last = time.perf_counter()
+
+    def combined(self) -> "Solid":
+        """Read the files and return what they make."""
+        raise NotImplementedError
+
+    def compared(self, result: "Solid") -> "CheckReport | None":
+        """Return what manifold3d says, or None if there is nothing to compare."""
+        raise NotImplementedError
+
+    def paths(self) -> Sequence[Path]:
+        """Return the files that are read."""
+        raise NotImplementedError
+
+    def run(self) -> int:
+        """Do it, and return the exit code."""
+        from .. import set_threads
+
+        set_threads(self.settings["threads"])
+        self.target.refuse_early(self.out.as_json)
+        self.inputs.refuse_early(self.paths())
+        result = self.combined()
+        mesh = self._mesh_of(result)
+        self.lap("combine")
+        report = self.compared(result) if self.settings["check"] else None
+        self.lap("check")
+        if report is not None and report.verdict == "subject failed":
+            self._tell(result, mesh, report, written=False)
+            return output.FOUND
+        for finding in self.target.write(mesh):
+            self.out.finding(shown(self.target.path), finding)
+        self.lap("write")
+        self._tell(result, mesh, report, written=True)
+        return output.DONE if report is None or report.ok else output.FOUND
+
+    def _mesh_of(self, result: "Solid") -> "Mesh":
+        mesh = result.normalized().to_mesh()
+        if len(mesh.faces) == 0 and not self.settings["allow_empty"]:
+            raise output.EmptyResultError(
+                f"{shown(self.target.path)}: nothing is left, so nothing was written;"
+                " say --allow-empty if that is meant.",
+                "empty_result",
+            )
+        return mesh
+
+    def _tell(
+        self, result: "Solid", mesh: "Mesh", report: "CheckReport | None", written: bool
+    ) -> None:
+        name = shown(self.target.path)
+        for finding in result.normalized().findings:
+            self.out.finding(name, finding)
+        for note in () if report is None else report.notes:
+            self.out.detail(f"note: {note}")
+        line = summary(name, mesh, sum(self.seconds.values()))
+        if report is not None:
+            line = f"{line}\n  check: {report.summary()}"
+        if not written:
+            line = f"{name}: not written\n  check: {report.summary() if report else ''}"
+        as_json = self.out.as_json
+        self.out.result(line, self._document(result, mesh, report, written) if as_json else {})
+
+    def _document(
+        self, result: "Solid", mesh: "Mesh", report: "CheckReport | None", written: bool
+    ) -> dict[str, Any]:
+        return {
+            "operation": self.op,
+            "files": [str(path) for path in self.paths()],
+            "output": str(self.target.path) if written else None,
+            "winding": self.settings["winding"],
+            "pitch": result.pitch,
+            **mesh_values(mesh),
+            "volume": result.volume,
+            "volume_exact": _exact_volume(result, mesh),
+            "findings": output.finding_values(result.normalized().findings),
+            "check": None if report is None else report.to_dict(),
+            "seconds": self.seconds,
+        }
+
+    def lap(self, name: str) -> None:
+        """Note the time since the last call under a name."""
+        now = time.perf_counter()
+        self.seconds[name] = round(now - self._last, 4)
+        self._last = now
+        self.out.detail(f"{name}: {self.seconds[name]:.3f} s")
+
+
+def mesh_values(mesh: "Mesh") -> dict[str, Any]:
+    """Return the measures of a mesh as JSON values."""
+    return {
+        "triangles": len(mesh.faces),
+        "vertices": len(mesh.vertices),
+        "surfaces": mesh.components if len(mesh.faces) else 0,
+        "genus": mesh.genus if len(mesh.faces) else 0,
+        "volume": mesh.volume,
+        "area": mesh.area,
+        "bounds": None if (bounds := mesh.bounds) is None else bounds.tolist(),
+    }
+
+
+def _exact_volume(result: "Solid", mesh: "Mesh") -> str | None:
+    """Return a fraction like ``"1/3"``, unless it is unwieldy."""
+    if len(mesh.faces) > _EXACT_FACES:
+        return None
+    volume = result.volume_exact
+    longest = max(volume.numerator.bit_length(), volume.denominator.bit_length())
+    return str(volume) if longest <= _EXACT_BITS else None
+
+
+def summary(name: str, mesh: "Mesh", seconds: float | None) -> str:
+    """Return one line about a mesh that was written."""
+    words = [name, "empty"]
+    if len(mesh.faces):
+        triangles, surfaces = (
+            counted(len(mesh.faces), "triangle"),
+            counted(mesh.components, "surface"),
+        )
+        measures = [f"genus {mesh.genus}", f"volume {mesh.volume:.9g}", "closed"]
+        words = [name, triangles, surfaces, *measures]
+    return "  ".join(words if seconds is None else [*words, f"{seconds:.2f} s"])

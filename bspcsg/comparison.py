@@ -1,0 +1,133 @@
+"""Whether two solids are the same set, and if not, how they differ.
+
+Whether they are the same is decided exactly. How far their boundaries are apart is estimated from
+points on the boundary of the symmetric difference: everywhere else they coincide, so even a small
+bump on a large body is sampled.
+"""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from . import interop
+from ._types import FloatArray
+from .discrepancy import SetDifference
+from .errors import missing_part
+from .mesh import Mesh
+from .pieces import Pieces
+from .solid import Solid
+from .verdict import Facts
+
+#: How many points are measured at once; more need more memory.
+_BATCH = 5000
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How two solids differ.
+
+    Parameters
+    ----------
+    a, b : Facts
+        Of the reduced boundaries.
+    difference : SetDifference
+        The symmetric difference; its volume is zero only if the sets are equal.
+    hausdorff : float or None
+        A lower bound of the distance of the boundaries in model units, the larger of both ways,
+        from samples; None if it was not measured or one set is empty.
+    samples : int
+        How many points were measured.
+    """
+
+    a: Facts
+    b: Facts
+    equal: bool
+    difference: SetDifference
+    hausdorff: float | None = None
+    samples: int = 0
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as JSON values."""
+        return asdict(self)
+
+
+def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> Comparison:
+    """Compare two solids as sets.
+
+    Parameters
+    ----------
+    a, b : Solid
+        Bounded.
+    samples : int
+        How many points of the difference to measure; 0 for none.
+    seed : int
+        Of the random points.
+
+    Raises
+    ------
+    UnboundedError
+        If a solid reaches to infinity.
+    MissingPartError
+        If distances are wanted and rtree or scipy are not installed.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> found = compare(b.cube(2), b.box((2, 2, 2.5)), samples=100)
+    >>> found.equal, found.difference.volume, found.hausdorff
+    (False, 2.0, 0.5)
+    """
+    meshes = a.normalized().to_mesh(), b.normalized().to_mesh()
+    facts = Facts.of(meshes[0]), Facts.of(meshes[1])
+    difference = (a ^ b).normalized()
+    if difference.is_empty:
+        return Comparison(*facts, True, SetDifference(0.0), 0.0)
+    mesh = difference.to_mesh()
+    found = _measured(difference, mesh)
+    if samples == 0 or any(len(one.faces) == 0 for one in (*meshes, mesh)):
+        return Comparison(*facts, False, found)
+    points = _sampled(mesh, samples, np.random.default_rng(seed))
+    distance = max(_farthest(one, points) for one in meshes)
+    return Comparison(*facts, False, found, distance, len(points))
+
+
+def _measured(difference: Solid, mesh: Mesh) -> SetDifference:
+    volume = difference.volume
+    if len(mesh.faces) == 0 or mesh.area == 0:
+        return SetDifference(volume)
+    pieces = Pieces.of(mesh)
+    worst = pieces.thickest
+    thickness = max(float(pieces.thickness[worst]), 2 * volume / mesh.area)
+    return SetDifference(volume, mesh.area, thickness, pieces.corner_of(worst))
+
+
+def _sampled(mesh: Mesh, count: int, rng: np.random.Generator) -> FloatArray:
+    """Return vertices, at most `count` of them, and as many random points on the faces."""
+    vertices = mesh.vertices[np.unique(mesh.faces)]
+    if len(vertices) > count:
+        vertices = rng.choice(vertices, count, replace=False)
+    a, b, c = (mesh.vertices[mesh.faces[:, corner]] for corner in range(3))
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    if areas.sum() == 0:
+        return vertices
+    face = rng.choice(len(areas), count, p=areas / areas.sum())
+    u, v = rng.random((2, count, 1))
+    root = np.sqrt(u)
+    inner = (1 - root) * a[face] + root * (1 - v) * b[face] + root * v * c[face]
+    return np.concatenate([vertices, inner])
+
+
+def _farthest(mesh: Mesh, points: FloatArray) -> float:
+    """Return the largest distance of the points from a mesh."""
+    try:
+        import rtree  # noqa: F401
+        import scipy  # noqa: F401
+        from trimesh import proximity
+    except ImportError as error:
+        remedy = 'pip install "bspcsg[compare]", or say --samples 0'
+        raise missing_part(str(error.name), "to measure distances", remedy) from error
+    closest_point: Any = proximity.closest_point
+    target = interop.to_trimesh(mesh)
+    batches = [points[at : at + _BATCH] for at in range(0, len(points), _BATCH)]
+    return max(float(closest_point(target, batch)[1].max()) for batch in batches)

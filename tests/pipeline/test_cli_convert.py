@@ -1,0 +1,122 @@
+"""Conversions: what is written, what is told to be lost, and what is refused."""
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+import bspcsg as b
+from bspcsg.io import RawMesh, read, write
+from support.cli import Capture, put, ran
+from support.shapes import cube, icosphere, joined, moved
+
+SUFFIXES = ["stl", "obj", "ply", "off", "3mf", "glb", "vtk", "vtu"]
+
+
+@pytest.mark.parametrize("source", SUFFIXES)
+@pytest.mark.parametrize("target", SUFFIXES)
+def test_any_format_to_any(folder: Path, capsys: Capture, source: str, target: str) -> None:
+    put(f"in.{source}", cube(2.5))
+    code, out, _ = ran(capsys, "convert", f"in.{source}", "-o", f"out.{target}", "--fail-on-loss")
+    assert code == 0 and "nothing lost" in out
+    assert b.load(f"out.{target}").equals(b.cube(2.5))
+
+
+def test_losses_are_told_and_can_fail(folder: Path, capsys: Capture) -> None:
+    put("ball.ply", icosphere(2))
+    code, out, _ = ran(capsys, "convert", "ball.ply", "-o", "x.stl")
+    assert code == 0 and "lost: coordinates moved by up to" in out
+    assert ran(capsys, "convert", "ball.ply", "-o", "x.stl", "--fail-on-loss")[0] == 1
+    assert ran(capsys, "convert", "ball.ply", "-o", "x.stl", "--ascii", "--fail-on-loss")[0] == 0
+
+
+def test_losses_as_json(folder: Path, capsys: Capture) -> None:
+    objects = (("lid", 12), ("body", 12))
+    write(RawMesh(*joined(cube(), moved(cube(), (3, 0, 0))), objects=objects), "x.3mf")
+    code, out, _ = ran(capsys, "convert", "x.3mf", "-o", "x.off", "--json")
+    found = json.loads(out)["files"][0]
+    assert code == 0 and found["lost"]["names"] == ["lid", "body"] and found["lost"]["any"]
+    assert found["lost"]["shift"] == 0 and found["lost"]["volume"] == [2.0, 2.0]
+
+
+def test_open_meshes_are_converted_as_they_are(folder: Path, capsys: Capture) -> None:
+    put("open.off", (cube()[0], cube()[1][1:]))
+    code, out, _ = ran(capsys, "convert", "open.off", "-o", "x.3mf")
+    assert code == 0 and "nothing lost" in out and len(read("x.3mf").faces) == 11
+
+
+def test_units(folder: Path, capsys: Capture) -> None:
+    _, _, err = ran(capsys, "convert", "a.off", "-o", "x.3mf")
+    assert "a.off has no unit; mm assumed (say --unit in to change)" in err
+    code, _, err = ran(capsys, "convert", "a.off", "-o", "x.3mf", "--unit", "in")
+    assert code == 0 and "no unit" not in err
+    assert read("x.3mf").vertices.max() == 50.8
+    # What states its unit keeps it.
+    assert ran(capsys, "convert", "x.3mf", "-o", "y.stl", "--unit", "ft")[0] == 0
+    assert read("y.stl").vertices.max() == pytest.approx(50.8)
+    assert ran(capsys, "convert", "a.off", "-o", "x.glb")[2].count("metres with y upwards") == 1
+
+
+def test_many_files(folder: Path, capsys: Capture) -> None:
+    Path("out").mkdir()
+    code, out, _ = ran(capsys, "convert", "a.off", "c.stl", "--to", "ply", "--outdir", "out")
+    assert code == 0 and sorted(os.listdir("out")) == ["a.ply", "c.ply"] and out.count("\n") == 2
+    assert ran(capsys, "convert", "a.off", "c.stl", "-o", "out/%-new.obj")[0] == 0
+    assert sorted(os.listdir("out"))[1::2] == ["a.ply", "c.ply"]
+
+
+def test_one_bad_file_of_many(folder: Path, capsys: Capture) -> None:
+    Path("bad.stl").write_text("nothing")
+    code, out, err = ran(capsys, "convert", "bad.stl", "a.off", "--to", "ply", "--outdir", ".")
+    assert code == 3 and "bad.stl" in err and out.startswith("a.ply")
+    assert Path("a.ply").exists() and not Path("bad.ply").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["a.off"], 2, "-o FILE or --outdir"),
+        (["a.off", "-o", "x.ply", "--outdir", "."], 2, "-o FILE or --outdir"),
+        (["a.off", "--outdir", "."], 2, "--to"),
+        (["a.off", "c.stl", "-o", "x.ply"], 2, "needs a %"),
+        (["a.off", "./a.off", "--to", "ply", "--outdir", "."], 2, "both be written"),
+        (["a.off", "-o", "x.ply", "--unit", "parsec"], 2, "parsec"),
+        (["a.off", "-o", "x.step"], 3, "curved surfaces"),
+        (["part.stp", "-o", "x.stl"], 3, "STEP is a format of curved surfaces"),
+        (["part.amf", "-o", "x.stl"], 3, "have 3MF written instead"),
+        (["part.gltf", "-o", "x.stl"], 3, "one GLB file"),
+        (["none.stl", "-o", "x.ply"], 3, "No such file"),
+        (["a.off", "-o", "x.3mf", "--ascii"], 3, "never text"),
+        (["a.off", "-o", "no/x.ply"], 5, "no folder"),
+    ],
+)
+def test_refusals(
+    folder: Path, capsys: Capture, arguments: list[str], code: int, words: str
+) -> None:
+    before = sorted(os.listdir())
+    found, out, err = ran(capsys, "convert", *arguments)
+    assert (found, out) == (code, "") and words in err
+    assert sorted(os.listdir()) == before
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("part", [0.0, 0.3, 0.9])
+def test_truncated_files(folder: Path, capsys: Capture, suffix: str, part: float) -> None:
+    put(f"ball.{suffix}", icosphere(1))
+    data = Path(f"ball.{suffix}").read_bytes()
+    # An OBJ has no end, so only a line that is cut says that it was.
+    Path(f"cut.{suffix}").write_bytes(data[: int(len(data) * part)] + b"\nf 1" * (suffix == "obj"))
+    code, out, err = ran(capsys, "convert", f"cut.{suffix}", "-o", "x.ply")
+    assert (code, out) == (3, "") and err.startswith(f"bspcsg: error: cut.{suffix}")
+    assert len(err.splitlines()) == 1 and not Path("x.ply").exists()
+
+
+def test_a_missing_part_is_code_6(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import sys
+
+    monkeypatch.setitem(sys.modules, "meshio", None)
+    code, _, err = ran(capsys, "convert", "a.off", "-o", "x.vtu")
+    assert code == 6 and 'pip install "bspcsg[vtk]"' in err

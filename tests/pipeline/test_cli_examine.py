@@ -1,0 +1,255 @@
+"""The verbs that look at files and compare them: info, compare, split, repair, doctor."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+import bspcsg as b
+from bspcsg.io import RawMesh, write
+from support.cli import Capture, put, ran
+from support.shapes import cube, cuboid, flipped, joined, moved
+
+# info
+
+
+def test_info(folder: Path, capsys: Capture) -> None:
+    code, out, err = ran(capsys, "info", "a.off")
+    assert (code, err) == (0, "")
+    found = dict(line.strip().split("  ", 1) for line in out.splitlines()[2:])
+    values = {name: value.strip() for name, value in found.items()}
+    assert values["triangles"] == "12" and values["volume"] == "8" and values["area"] == "24"
+    assert values["unit"] == "not stated" and values["size"] == "2 × 2 × 2"
+    assert values["verdict"] == "solid" and values["genus"] == "0"
+
+
+def test_info_of_units_and_names(folder: Path, capsys: Capture) -> None:
+    objects = (("lid", 12), ("body", 12))
+    write(RawMesh(*joined(cube(), moved(cube(), (3, 0, 0))), objects=objects), "x.3mf")
+    _, out, _ = ran(capsys, "info", "x.3mf")
+    assert "2 mm³" in out and "2 objects: lid, body" in out
+    found = json.loads(ran(capsys, "info", "x.3mf", "--json")[1])["files"][0]
+    assert found["unit"] == "mm" and found["objects"][1] == {"name": "body", "triangles": 12}
+    assert found["bounds"] == [[0, 0, 0], [4, 1, 1]] and found["volume"] == 2
+
+
+def test_info_of_what_is_no_solid(folder: Path, capsys: Capture) -> None:
+    put("open.off", (cube()[0], cube()[1][1:]))
+    code, out, _ = ran(capsys, "info", "open.off", "a.off")
+    assert code == 0 and "not closed" in out and "error: 3 edges" in out
+
+
+def test_info_of_unreadable_files(folder: Path, capsys: Capture) -> None:
+    Path("bad.ply").write_text("ply\n")
+    code, out, err = ran(capsys, "info", "bad.ply", "a.off")
+    assert code == 3 and "a.off" in out and err.startswith("bspcsg: error: bad.ply")
+    code, out, _ = ran(capsys, "info", "bad.ply", "a.off", "--json")
+    assert code == 3 and "error" in json.loads(out)["files"][0]
+
+
+def test_what_to_type_for_a_repair(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    put("an open.off", (cube()[0], cube()[1][1:]))
+    assert "Try:" not in ran(capsys, "check", "an open.off")[1]
+    # On a terminal there is somebody to advise.
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    code, out, _ = ran(capsys, "check", "an open.off")
+    assert code == 1 and "Try: bspcsg repair 'an open.off' -o 'an open-fixed.off'" in out
+    code, _, err = ran(capsys, "union", "an open.off", "a.off", "-o", "x.ply")
+    assert code == 4 and "Try: bspcsg repair 'an open.off'" in err
+
+
+# compare
+
+
+def test_equal_sets(folder: Path, capsys: Capture) -> None:
+    halves = joined(cuboid((0, 0, 0), (1, 2, 2)), cuboid((1, 0, 0), (2, 2, 2)))
+    put("halves.ply", halves)
+    code, out, _ = ran(capsys, "compare", "a.off", "halves.ply")
+    assert code == 0 and out.endswith("The sets are equal, exactly.\n")
+
+
+def test_different_sets(folder: Path, capsys: Capture) -> None:
+    code, out, _ = ran(capsys, "compare", "a.off", "c.stl")
+    assert code == 1 and "symmetric difference: volume 14" in out
+    assert "Hausdorff distance: at least" in out and out.endswith("The sets differ.\n")
+
+
+def test_differences_as_json(folder: Path, capsys: Capture) -> None:
+    put("longer.off", cuboid((0, 0, 0), (2, 2, 2.5)))
+    code, out, _ = ran(capsys, "compare", "a.off", "longer.off", "--json", "--samples", "100")
+    found = json.loads(out)
+    assert code == 1 and (found["same"], found["equal"]) == (False, False)
+    assert found["hausdorff"] == pytest.approx(0.5) and found["difference"]["volume"] == 2.0
+
+
+def test_a_tolerance(folder: Path, capsys: Capture) -> None:
+    put("longer.off", cuboid((0, 0, 0), (2, 2, 2.001)))
+    assert ran(capsys, "compare", "a.off", "longer.off", "--tol", "1e-4")[0] == 1
+    code, out, _ = ran(capsys, "compare", "a.off", "longer.off", "--tol", "0.01")
+    assert code == 0 and out.endswith("The sets differ, within the tolerance.\n")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["a.off"], 2, "Missing argument"),
+        (["a.off", "c.stl", "--tol", "-1"], 2, "--tol"),
+        (["a.off", "c.stl", "--tol", "1", "--samples", "0"], 2, "--samples"),
+        (["a.off", "none.stl"], 3, "none.stl"),
+        (["a.off", "open.off"], 4, "not closed"),
+    ],
+)
+def test_compare_refusals(
+    folder: Path, capsys: Capture, arguments: list[str], code: int, words: str
+) -> None:
+    put("open.off", (cube()[0], cube()[1][1:]))
+    found, out, err = ran(capsys, "compare", *arguments)
+    assert (found, out) == (code, "") and words in err
+
+
+def test_distances_need_a_part(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "rtree", None)
+    code, _, err = ran(capsys, "compare", "a.off", "c.stl")
+    assert code == 6 and 'pip install "bspcsg[compare]"' in err
+    assert ran(capsys, "compare", "a.off", "c.stl", "--samples", "0")[0] == 1
+
+
+# split
+
+
+def test_components(folder: Path, capsys: Capture) -> None:
+    put("two.ply", joined(cube(), cuboid((5, 0, 0), (7, 2, 2))))
+    code, out, _ = ran(capsys, "split", "two.ply", "-o", "part-%.off")
+    assert code == 0 and out.startswith("part-1.off  12 triangles")
+    assert [b.load(f"part-{k}.off").volume_exact for k in (1, 2)] == [8, 1]
+    assert ran(capsys, "split", "two.ply", "-o", "p.off")[0] == 0
+    assert Path("p-1.off").exists() and Path("p-2.off").exists()
+
+
+def test_a_plane(folder: Path, capsys: Capture) -> None:
+    code, out, _ = ran(capsys, "split", "a.off", "--plane", "0,0,1,0.5", "-o", "s%.off", "--json")
+    parts = json.loads(out)["parts"]
+    assert code == 0 and [part["volume"] for part in parts] == [2.0, 6.0]
+    assert [part["check"] for part in parts] == ["agree", "agree"]
+    assert b.load("s1.off").bounds.tolist() == [[0, 0, 0], [2, 2, 0.5]]  # type: ignore[union-attr]
+
+
+def test_another_solid(folder: Path, capsys: Capture) -> None:
+    assert ran(capsys, "split", "a.off", "--by", "c.stl", "-o", "s%.off")[0] == 0
+    assert [b.load(f"s{k}.off").volume_exact for k in (1, 2)] == [7, 1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["a.off", "-o", "-"], 2, "standard output"),
+        (["a.off", "-o", "x.off", "--plane", "1,2,3"], 2, "is no plane"),
+        (["a.off", "-o", "x.off", "--plane", "0,0,0,1"], 2, "is no plane"),
+        (["a.off", "-o", "x.off", "--plane", "nan,0,1,1"], 2, "is no plane"),
+        (["a.off", "-o", "x.off", "--plane", "0,0,1,1", "--by", "c.stl"], 2, "exclude"),
+        (["a.off", "-o", "x.step"], 3, "STEP"),
+        (["none.off", "-o", "x.off"], 3, "none.off"),
+        (["a.off", "-o", "x.off", "--plane", "0,0,1,9"], 4, "on one side"),
+        (["inverted.off", "-o", "x.off"], 4, "nothing in it"),
+        (["a.off", "-o", "no/x.off"], 5, "no folder"),
+    ],
+)
+def test_split_refusals(
+    folder: Path, capsys: Capture, arguments: list[str], code: int, words: str
+) -> None:
+    put("inverted.off", flipped(cube()))
+    found, out, err = ran(capsys, "split", *arguments)
+    assert (found, out) == (code, "") and words in err
+    assert not list(folder.glob("x*"))
+
+
+# repair
+
+
+def test_repair(folder: Path, capsys: Capture) -> None:
+    put("open.off", (cube(2)[0], cube(2)[1][1:]))
+    code, out, _ = ran(capsys, "repair", "open.off", "-o", "closed.off")
+    assert code == 0 and out.endswith("closed.off: a solid\n")
+    rows = {line.strip().split("  ")[0]: line.split()[-2:] for line in out.splitlines()}
+    assert rows["triangles"] == ["11", "12"] and rows["open edges"] == ["3", "0"]
+    assert b.load("closed.off").volume_exact == 8
+
+
+def test_repair_as_json(folder: Path, capsys: Capture) -> None:
+    put("inverted.off", flipped(cube(2)))
+    code, out, _ = ran(capsys, "repair", "inverted.off", "-o", "x.off", "--json")
+    found = json.loads(out)
+    assert code == 0 and found["turned"] == 12
+    verdicts = found["before"]["verdict"], found["after"]["verdict"]
+    assert verdicts == ("inside out", "solid")
+
+
+def test_what_cannot_be_repaired_is_code_1(folder: Path, capsys: Capture) -> None:
+    put("open.off", (cube(2)[0], cube(2)[1][1:]))
+    code, out, _ = ran(capsys, "repair", "open.off", "-o", "x.off", "--steps", "weld,orient")
+    assert code == 1 and "still no solid: not closed" in out and Path("x.off").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["a.off", "-o", "x.off", "--steps", "weld,polish"], 2, "'polish' is no step"),
+        (["a.off", "-o", "x.off", "--steps", ","], 2, "at least one"),
+        (["a.off", "-o", "x.off", "--max-hole", "2"], 2, "--max-hole"),
+        (["none.off", "-o", "x.off"], 3, "none.off"),
+        (["a.off", "-o", "no/x.off"], 5, "no folder"),
+        (["a.off", "-o", "x.off", "--timeout", "0.001"], 124, "longer than 0.001 s"),
+    ],
+)
+def test_repair_refusals(
+    folder: Path, capsys: Capture, arguments: list[str], code: int, words: str
+) -> None:
+    found, out, err = ran(capsys, "repair", *arguments)
+    assert (found, out) == (code, "") and words in err and not Path("x.off").exists()
+
+
+def test_repair_needs_a_part(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "pymeshlab.py").write_text("raise ImportError('libGL.so.1: cannot open')")
+    monkeypatch.setenv("PYTHONPATH", str(folder))
+    code, _, err = ran(capsys, "repair", "a.off", "-o", "x.off")
+    assert code == 6 and "apt-get install" in err and "libgl1 libopengl0" in err
+
+
+# doctor
+
+
+def test_doctor(capsys: Capture) -> None:
+    code, out, err = ran(capsys, "doctor")
+    assert (code, err) == (0, "") and b.__version__ in out and "manifold3d" in out
+    found = json.loads(ran(capsys, "doctor", "--json")[1])
+    assert found["complete"]
+    assert {"numpy", "pymeshlab", "meshio"} <= {part["name"] for part in found["parts"]}
+
+
+def test_doctor_names_what_is_missing(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "pymeshlab.py").write_text("plugin_number = lambda: 49")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setenv("PATH", "")
+    monkeypatch.setattr("bspcsg.cli.doctor.find_spec", lambda name: name != "meshio" or None)
+    code, out, _ = ran(capsys, "doctor")
+    assert code == 0 and "49 of 58 plug-ins" in out and "libgl1 libopengl0" in out
+    lines = {line.split()[0]: line for line in out.splitlines() if line.split()}
+    assert "missing" in lines["meshio"] and 'pip install "bspcsg[vtk]"' in lines["meshio"]
+    assert "missing" in lines["openscad"] and "apt-get install openscad" in lines["openscad"]
+
+
+def test_doctor_fails_without_what_is_required(
+    capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("bspcsg.cli.doctor.find_spec", lambda name: name != "rich" or None)
+    code, out, _ = ran(capsys, "doctor", "--json")
+    assert code == 6 and not json.loads(out)["complete"]

@@ -1,0 +1,236 @@
+"""Streams, names that are no text, full disks, interrupts, completion, and how fast it starts."""
+
+import errno
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import bspcsg as b
+from support.cli import Capture, finished, process, put, ran
+from support.shapes import icosphere, moved
+
+POSIX = pytest.mark.skipif(os.name != "posix", reason="as POSIX has it")
+
+
+def volume_of(data: bytes, suffix: str) -> float:
+    path = Path(f"read-back.{suffix}")
+    path.write_bytes(data)
+    return b.load(path).volume
+
+
+@pytest.mark.parametrize("suffix", ["stl", "ply", "3mf", "glb"])
+def test_streams_in_and_out(folder: Path, suffix: str) -> None:
+    given = Path("c.stl").read_bytes()
+    arguments = ["union", "a.off", "-", "--from", "stl", "-o", "-", "--to", suffix]
+    code, out, err = finished(*arguments, given=given)
+    assert code == 0 and volume_of(out, suffix) == pytest.approx(15, rel=1e-6)
+    # The mesh has standard output to itself; what is told goes beside it.
+    assert b"check: agree" in err
+
+
+def test_a_chain_of_pipes(folder: Path) -> None:
+    made = finished("union", "a.off", "c.stl", "-o", "-", "--to", "ply", "-q")
+    assert made[0] == 0 and made[2] == b""
+    code, out, _ = finished("info", "-", "--from", "ply", given=made[1])
+    assert code == 0 and b"volume" in out and b"15" in out
+
+
+def test_files_without_a_suffix(folder: Path, capsys: Capture) -> None:
+    Path("c.stl").rename("c")
+    assert ran(capsys, "union", "a.off", "c", "-o", "x", "--from", "stl", "--to", "ply")[0] == 0
+    assert volume_of(Path("x").read_bytes(), "ply") == 15
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["union", "-", "a.off", "-o", "x.ply"], "--from"),
+        (["union", "-", "-", "-o", "x.ply", "--from", "stl"], "only once"),
+        (["union", "a.off", "c.stl", "-o", "-"], "--to"),
+        (["union", "a.off", "c.stl", "-o", "-", "--to", "ply", "--json"], "--json"),
+        (["union", "a.off", "c.stl", "-o", "x.ply", "--to", "step"], "'step' is no format"),
+        (["info", "-"], "--from"),
+    ],
+)
+def test_streams_that_cannot_be(
+    folder: Path, capsys: Capture, arguments: list[str], words: str
+) -> None:
+    code, out, err = ran(capsys, *arguments)
+    assert (code, out) == (2, "") and words in err and "Try: bspcsg" in err
+
+
+def test_an_empty_stream(folder: Path) -> None:
+    code, out, err = finished("union", "a.off", "-", "--from", "stl", "-o", "x.ply")
+    assert (code, out, err) == (3, b"", b"bspcsg: error: -: the file is empty.\n")
+
+
+@POSIX
+@pytest.mark.parametrize("suffix", [b"stl", b"3mf", b"glb", b"obj"])
+def test_names_that_are_no_text(folder: Path, suffix: bytes) -> None:
+    os.rename(b"c.stl", b"c\xff\n.stl")
+    name = b"x\xfe." + suffix
+    code, out, err = finished("union", "a.off", b"c\xff\n.stl", "-o", name)
+    assert code == 0 and out.startswith(name) and os.path.exists(name)
+    code, out, err = finished("info", b"none\xff.stl")
+    assert code == 3 and b"none\xff.stl: cannot read" in err
+
+
+@POSIX
+def test_terminals_without_quotes_and_signs(folder: Path) -> None:
+    code, out, _ = finished("info", "a.off", more={"PYTHONIOENCODING": "latin-1"})
+    # The sign of the size is in Latin-1, the line under the name is not.
+    assert code == 0 and b"2 \xd7 2 \xd7 2" in out and b"????" in out
+
+
+@pytest.mark.parametrize("verb", ["union", "eval", "convert", "split", "repair"])
+def test_a_full_disk(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch, verb: str
+) -> None:
+    put("open.ply", (icosphere(1)[0], icosphere(1)[1][1:]))
+
+    def full(*_: Any) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    arguments = {
+        "union": ["union", "a.off", "c.stl"],
+        "eval": ["eval", "a.off - c.stl"],
+        "convert": ["convert", "a.off"],
+        "split": ["split", "a.off"],
+        "repair": ["repair", "open.ply"],
+    }
+    before = sorted(os.listdir())
+    code, out, err = ran(capsys, *arguments[verb], "-o", "x.ply")
+    assert (code, out) == (5, "") and "No space left on device" in err
+    assert sorted(os.listdir()) == before
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no /dev/full")
+@pytest.mark.parametrize(
+    "arguments", [["info", "a.off"], ["check", "a.off"], ["convert", "a.off", "-o-", "--to", "stl"]]
+)
+def test_a_full_output(folder: Path, arguments: list[str]) -> None:
+    with open("/dev/full", "wb") as full:
+        code, _, err = finished(*arguments, stdout=full)
+    assert code == 5
+    assert err == b"bspcsg: error: standard output: cannot write: No space left on device.\n"
+
+
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="nothing is forbidden to root")
+def test_no_permission(folder: Path, capsys: Capture) -> None:
+    Path("a.off").chmod(0)
+    code, _, err = ran(capsys, "info", "a.off")
+    assert code == 3 and "Permission denied" in err
+    folder.chmod(0o500)
+    code, _, err = ran(capsys, "convert", "c.stl", "-o", "x.ply")
+    assert code == 5 and "can be written to" in err
+
+
+def test_forbidden_files_as_the_system_tells_it(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def forbidden(*_: Any) -> None:
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr(Path, "read_bytes", forbidden)
+    code, _, err = ran(capsys, "info", "a.off")
+    assert code == 3
+    assert err == "bspcsg: error: a.off: cannot read this file: Permission denied.\n"
+
+
+@pytest.mark.parametrize("verb", ["info", "check", "compare", "convert"])
+def test_folders_are_no_files(folder: Path, capsys: Capture, verb: str) -> None:
+    Path("d.stl").mkdir()
+    more = {"compare": ["a.off"], "convert": ["-o", "x.ply"]}.get(verb, [])
+    code, _, err = ran(capsys, verb, "d.stl", *more)
+    assert code == 3 and "d.stl: cannot read this file: Is a directory." in err
+
+
+@POSIX
+@pytest.mark.parametrize("verb", ["eval", "compare"])
+def test_interrupts_are_quiet(folder: Path, verb: str) -> None:
+    put("s.ply", icosphere(6))
+    put("t.ply", moved(icosphere(6), (0.001, 0.002, 0.003)))
+    more = {"eval": ["s.ply ^ t.ply", "-o", "x.ply"], "compare": ["s.ply", "t.ply"]}[verb]
+    running = process(verb, *more, "-v", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert running.stderr is not None and b"s.ply" in running.stderr.readline()
+    time.sleep(0.3)
+    running.send_signal(signal.SIGINT)
+    out, err = running.communicate(timeout=60)
+    assert running.returncode == 130
+    assert out == b"" and b"Traceback" not in err and not Path("x.ply").exists()
+
+
+SHELLS = {"bash": b"complete", "zsh": b"compdef", "fish": b"complete"}
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_completion_scripts(shell: str) -> None:
+    if shell == "bash":
+        bash = subprocess.run(["bash", "--version"], capture_output=True, check=False)
+        if bash.returncode:
+            pytest.skip("bash is not installed")
+    code, out, _ = finished(more={"_BSPCSG_COMPLETE": f"{shell}_source"})
+    assert code == 0 and SHELLS[shell] in out and b"_BSPCSG_COMPLETE" in out
+
+
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [
+        ("bspcsg co", {b"plain,convert", b"plain,compare"}),
+        ("bspcsg union --win", {b"plain,--winding"}),
+        ("bspcsg union --winding e", {b"plain,even-odd"}),
+        ("bspcsg check a", {b"file,a"}),
+    ],
+)
+def test_completions(words: str, found: set[bytes]) -> None:
+    more = {
+        "_BSPCSG_COMPLETE": "bash_complete",
+        "COMP_WORDS": words,
+        "COMP_CWORD": str(len(words.split()) - 1),
+    }
+    code, out, _ = finished(more=more)
+    assert code == 0 and set(out.split()) == found
+
+
+@POSIX
+def test_the_version_comes_at_once() -> None:
+    spent = []
+    for _ in range(3):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        assert process("--version", stdout=subprocess.DEVNULL).wait(timeout=60) == 0
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    assert min(spent) < 0.2
+
+
+@pytest.mark.parametrize("arguments", [["--version"], ["--help"], ["union", "--help"]])
+def test_help_needs_no_numpy(arguments: list[str]) -> None:
+    text = (
+        "import sys; from bspcsg.cli.main import run; code = run(sys.argv[1:]);"
+        " sys.exit(code or 'numpy' in sys.modules or 'trimesh' in sys.modules)"
+    )
+    path = str(Path(b.__file__).parent.parent)
+    done = subprocess.run(
+        [sys.executable, "-c", text, *arguments],
+        env={**os.environ, "PYTHONPATH": path},
+        stdout=subprocess.DEVNULL,
+        check=False,
+    )
+    assert done.returncode == 0
+
+
+def test_folders_that_are_forbidden(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    for arguments in (["convert", "a.off"], ["eval", "a.off"], ["split", "a.off"]):
+        code, out, err = ran(capsys, *arguments, "-o", "x.ply")
+        assert (code, out) == (5, "") and "no folder . that can be written to" in err

@@ -1,0 +1,49 @@
+"""Running the command line, in this process and as a process of its own."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import bspcsg
+from bspcsg.cli.main import run
+from bspcsg.io import RawMesh, write
+
+from .shapes import Arrays
+
+Capture = pytest.CaptureFixture[str]
+
+
+def put(name: str, mesh: Arrays) -> None:
+    """Write a mesh to a file."""
+    write(RawMesh(*mesh), name)
+
+
+def ran(capsys: Capture, *arguments: str) -> tuple[int, str, str]:
+    """Run a command in this process; return exit code and both streams."""
+    code = run(arguments)
+    said = capsys.readouterr()
+    assert "Traceback" not in said.out + said.err
+    return code, said.out, said.err
+
+
+def process(*arguments: str | bytes, **settings: Any) -> "subprocess.Popen[bytes]":
+    """Start a command as a process of its own."""
+    path = str(Path(bspcsg.__file__).parent.parent)
+    environment = {**os.environ, "PYTHONPATH": path, **settings.pop("more", {})}
+    command = [sys.executable, "-m", "bspcsg", *arguments]
+    return subprocess.Popen(command, env=environment, **settings)
+
+
+def finished(
+    *arguments: str | bytes, given: bytes = b"", **settings: Any
+) -> tuple[int, bytes, bytes]:
+    """Run a command as a process of its own; return exit code and both streams."""
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    running = process(*arguments, **{**pipes, **settings})
+    out, err = running.communicate(given, timeout=60)
+    assert b"Traceback" not in (out or b"") + (err or b"")
+    return running.returncode, out, err

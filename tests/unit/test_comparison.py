@@ -1,0 +1,58 @@
+"""Equality, symmetric difference and distances of two solids."""
+
+import builtins
+from typing import Any
+
+import pytest
+
+import bspcsg as b
+from bspcsg.comparison import compare
+from bspcsg.errors import MissingPartError
+
+
+def test_equal_sets_of_different_meshes() -> None:
+    halves = b.box((1, 2, 2)) | b.box((1, 2, 2)).translate(1, 0, 0)
+    found = compare(halves, b.cube(2))
+    assert found.equal and found.hausdorff == 0 and found.difference.volume == 0
+
+
+def test_a_small_bump_on_a_large_body_is_found() -> None:
+    body = b.cube(100)
+    bumped = body | b.box((0.01, 0.01, 3)).translate(50, 50, 99)
+    found = compare(body, bumped, samples=50)
+    assert not found.equal
+    assert found.difference.volume == pytest.approx(2e-4, rel=1e-9)
+    assert found.hausdorff == pytest.approx(2, rel=1e-9)
+
+
+def test_both_ways_count() -> None:
+    body, dented = b.cube(10), b.cube(10) - b.cube(1).translate(4.5, 4.5, 9.5)
+    for pair in ((body, dented), (dented, body)):
+        # The middle of the dent's floor is half its side from the nearest wall.
+        assert 0.4 < (compare(*pair, 500).hausdorff or 0) <= 0.5 + 1e-9
+
+
+def test_thickness_and_place() -> None:
+    found = compare(b.cube(2), b.box((2, 2, 2.001)), samples=0)
+    assert found.difference.thickness == pytest.approx(0.001, rel=0.01)
+    assert found.difference.place is not None and found.difference.place[2] >= 2
+    assert (found.hausdorff, found.samples) == (None, 0)
+
+
+def test_an_empty_set_has_no_distance() -> None:
+    found = compare(b.cube(1), b.Solid.empty())
+    assert not found.equal and found.hausdorff is None and found.difference.volume == 1
+
+
+def test_what_is_missing_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    plain = builtins.__import__
+
+    def refusing(name: str, *rest: Any, **more: Any) -> Any:
+        if name == "rtree":
+            raise ImportError("No module named 'rtree'", name="rtree")
+        return plain(name, *rest, **more)
+
+    monkeypatch.setattr(builtins, "__import__", refusing)
+    with pytest.raises(MissingPartError) as caught:
+        compare(b.cube(1), b.cube(2))
+    assert "bspcsg[compare]" in caught.value.message and "--samples 0" in caught.value.message

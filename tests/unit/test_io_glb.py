@@ -1,0 +1,190 @@
+"""GLB: metres and axes, nodes, names, single precision, and what is refused."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg.errors import FormatError
+from bspcsg.io import RawMesh, read, write
+from support.io import cube_mesh, refusal, same_mesh
+from support.shapes import cube, icosphere
+
+Edit = Callable[[dict[str, Any]], Any]
+
+
+def opened(data: bytes) -> tuple[dict[str, Any], bytes]:
+    """Return the description and the binary chunk with its head."""
+    size = int.from_bytes(data[12:16], "little")
+    return json.loads(data[20 : 20 + size]), data[20 + size :]
+
+
+def closed(tree: dict[str, Any], rest: bytes) -> bytes:
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    chunk = len(text).to_bytes(4, "little") + b"JSON" + text
+    return (
+        b"glTF"
+        + (2).to_bytes(4, "little")
+        + (12 + len(chunk + rest)).to_bytes(4, "little")
+        + chunk
+        + rest
+    )
+
+
+def cube_file(path: Path) -> bytes:
+    write(cube_mesh(2.0), path)
+    return path.read_bytes()
+
+
+def edited(path: Path, edit: Edit) -> bytes:
+    tree, rest = opened(cube_file(path))
+    edit(tree)
+    return closed(tree, rest)
+
+
+def test_what_single_precision_holds_comes_back(tmp_path: Path) -> None:
+    findings = write(cube_mesh(2.5), tmp_path / "x.glb")
+    assert [finding.code for finding in findings] == ["unit"]
+    raw = read(tmp_path / "x.glb")
+    same_mesh(raw, cube_mesh(2.5))
+    assert raw.unit == "mm" and [finding.code for finding in raw.findings] == ["unit"]
+
+
+def test_what_it_does_not_hold_is_said(tmp_path: Path) -> None:
+    ball = RawMesh(*icosphere(2))
+    codes = [finding.code for finding in write(ball, tmp_path / "x.glb")]
+    assert codes == ["unit", "single_precision"]
+    assert np.abs(read(tmp_path / "x.glb").vertices - ball.vertices).max() < 1e-7
+
+
+def test_other_readers_see_metres_with_y_upwards(tmp_path: Path) -> None:
+    import trimesh
+
+    write(RawMesh(*b.box((1000, 2000, 3000)).normalized().to_mesh()), tmp_path / "x.glb")
+    scene = trimesh.load_scene(tmp_path / "x.glb")
+    assert scene.units == "meters"
+    assert np.allclose(scene.bounds, [[0, 0, -2], [1, 3, 0]])
+
+
+def test_objects_keep_their_names(tmp_path: Path) -> None:
+    vertices, faces = cube()
+    both = np.concatenate([vertices, vertices + 5]), np.concatenate([faces, faces + 8])
+    write(RawMesh(*both, objects=(("lid", 12), ("körper", 12))), tmp_path / "x.glb")
+    raw = read(tmp_path / "x.glb")
+    assert raw.objects == (("lid", 12), ("körper", 12))
+    assert b.Solid(raw.vertices, raw.faces).volume_exact == 2
+
+
+def test_nodes_move_and_mirror(tmp_path: Path) -> None:
+    def move(tree: dict[str, Any]) -> None:
+        matrix = [-0.001, 0, 0, 0, 0, 0, -0.001, 0, 0, 0.001, 0, 0, 1, 0, 0, 1]
+        tree["nodes"].append({"mesh": 0, "matrix": matrix})
+        tree["scenes"][0]["nodes"].append(1)
+
+    path = tmp_path / "x.glb"
+    path.write_bytes(edited(path, move))
+    raw = read(path)
+    assert b.Solid(raw.vertices, raw.faces).volume_exact == 16
+    assert raw.vertices.max(axis=0).tolist() == [1000, 2, 2]
+
+
+def test_an_empty_mesh(tmp_path: Path) -> None:
+    write(RawMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64)), tmp_path / "x.glb")
+    assert len(read(tmp_path / "x.glb").faces) == 0
+
+
+def test_coordinates_beyond_single_precision(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match="beyond single precision"):
+        write(RawMesh(*cube(1e39)), tmp_path / "x.glb")
+    assert list(tmp_path.iterdir()) == []
+
+
+def set_at(*keys: Any, value: Any) -> Edit:
+    def edit(tree: dict[str, Any]) -> None:
+        for key in keys[:-1]:
+            tree = tree[key]
+        tree[keys[-1]] = value
+
+    return edit
+
+
+REFUSED: dict[str, tuple[Edit, str]] = {
+    "count": (set_at("accessors", 0, "count", value=10**12), "truncated"),
+    "negative count": (set_at("accessors", 0, "count", value=-3), "truncated"),
+    "view": (set_at("bufferViews", 0, "byteLength", value=10**9), "truncated"),
+    "view number": (set_at("accessors", 1, "bufferView", value=7), "syntax"),
+    "no view": (lambda tree: tree["accessors"][1].pop("bufferView"), "unsupported"),
+    "kind": (set_at("accessors", 1, "componentType", value=1), "syntax"),
+    "words": (set_at("accessors", 1, "count", value="many"), "syntax"),
+    "uri": (set_at("buffers", 0, "uri", value="http://example.com/x.bin"), "unsupported"),
+    "draco": (
+        set_at("extensionsRequired", value=["KHR_draco_mesh_compression"]),
+        "unsupported",
+    ),
+    "fan": (set_at("meshes", 0, "primitives", 0, "mode", value=6), "unsupported"),
+    "loop": (set_at("nodes", 0, "children", value=[0]), "too_large"),
+    "two parents": (
+        set_at("nodes", value=[{"children": [2]}, {"children": [2]}, {"mesh": 0}]),
+        "too_large",
+    ),
+    "deep": (
+        set_at("nodes", value=[*({"children": [k + 1]} for k in range(99)), {"mesh": 0}]),
+        "too_large",
+    ),
+    "meshes": (set_at("meshes", value=7), "syntax"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_refused_descriptions(tmp_path: Path, name: str) -> None:
+    edit, code = REFUSED[name]
+    path = tmp_path / "x.glb"
+    refusal(path, edited(path, edit), code)
+
+
+@pytest.mark.parametrize("size", [1, 4, 11, 12, 19, 30, 200, -1, -100])
+def test_truncations(tmp_path: Path, size: int) -> None:
+    path = tmp_path / "x.glb"
+    data = cube_file(path)[:size]
+    path.write_bytes(data)
+    with pytest.raises(FormatError):
+        read(path)
+
+
+def test_deep_json(tmp_path: Path) -> None:
+    text = b"[" * 100_000
+    head = b"glTF" + (2).to_bytes(4, "little") + (20 + len(text)).to_bytes(4, "little")
+    refusal(tmp_path / "x.glb", head + len(text).to_bytes(4, "little") + b"JSON" + text, "syntax")
+
+
+def test_version_1(tmp_path: Path) -> None:
+    data = cube_file(tmp_path / "x.glb")
+    said = refusal(tmp_path / "x.glb", data[:4] + b"\1\0\0\0" + data[8:], "syntax")
+    assert "version 1" in said
+
+
+@pytest.mark.parametrize(
+    ("value", "code"), [(float("nan"), "non_finite"), (99, "index_out_of_range")]
+)
+def test_bad_numbers(tmp_path: Path, value: float, code: str) -> None:
+    path = tmp_path / "x.glb"
+    tree, rest = opened(cube_file(path))
+    accessor = tree["accessors"][1 if code == "non_finite" else 0]
+    start = 8 + tree["bufferViews"][accessor["bufferView"]]["byteOffset"]
+    kind = np.float32 if code == "non_finite" else np.uint32
+    rest = rest[:start] + kind(value).tobytes() + rest[start + 4 :]
+    path.write_bytes(closed(tree, rest))
+    with pytest.raises(FormatError) as caught:
+        read(path)
+    assert caught.value.code in (code, "syntax")
+
+
+def test_appearance_is_dropped_by_name(tmp_path: Path) -> None:
+    path = tmp_path / "x.glb"
+    path.write_bytes(edited(path, set_at("materials", value=[{"name": "red"}])))
+    assert read(path).dropped == ("materials",)

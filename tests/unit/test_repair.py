@@ -1,0 +1,115 @@
+"""Repairs: holes, orientation, duplicates, and what happens when pymeshlab is not well."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg import repair as repairing
+from bspcsg.diagnosis import diagnose
+from bspcsg.errors import BspcsgError, InvalidMeshError, MissingPartError
+from bspcsg.io import RawMesh
+from bspcsg.repair import repair
+from support.shapes import Arrays, cube, cuboid, flipped, icosphere, joined
+
+
+def volume_after(mesh: Arrays) -> float:
+    made = repair(RawMesh(*mesh))
+    found = diagnose(made.mesh)
+    assert found.is_solid, found.findings
+    assert found.volume is not None
+    return found.volume
+
+
+def test_holes_are_filled() -> None:
+    vertices, faces = icosphere(2)
+    full = b.Solid(vertices, faces).volume
+    low = vertices[faces].mean(axis=1)[:, 2] < 0.9
+    assert 2 < low.sum() < len(faces) - 5
+    assert volume_after((vertices, faces[low])) == pytest.approx(full, rel=0.03)
+    assert volume_after((vertices, faces[1:])) == pytest.approx(full, rel=1e-9)
+
+
+def test_triangles_are_turned() -> None:
+    vertices, faces = cube(2)
+    faces[4] = faces[4, ::-1]
+    assert volume_after((vertices, faces)) == 8
+    assert volume_after(flipped(cube(2))) == 8
+
+
+def test_one_part_inside_out() -> None:
+    assert volume_after(joined(cube(2), flipped(cuboid((5, 0, 0), (6, 1, 1))))) == 9
+
+
+def test_cavities_stay_cavities() -> None:
+    hollow = joined(cube(3), flipped(cuboid((1, 1, 1), (2, 2, 2))))
+    assert volume_after(hollow) == 26
+    assert volume_after(flipped(hollow)) == 26
+
+
+def test_duplicates_and_flat_triangles_go() -> None:
+    vertices, faces = cube(2)
+    made = repair(RawMesh(vertices, np.concatenate([faces, faces[:3], [[0, 1, 1]]])))
+    assert len(made.mesh.faces) == 12 and diagnose(made.mesh).is_solid
+
+
+def test_sound_meshes_stay_as_they_are() -> None:
+    made = repair(RawMesh(*icosphere(2)))
+    assert (len(made.mesh.faces), made.failed, made.turned) == (320, {}, 0)
+    assert b.Solid(made.mesh.vertices, made.mesh.faces).equals(b.Solid(*icosphere(2)))
+
+
+def test_coordinates_keep_their_doubles() -> None:
+    vertices, faces = cube(1 / 3)
+    made = repair(RawMesh(vertices, faces[1:]))
+    assert set(made.mesh.vertices.ravel().tolist()) == {0.0, 1 / 3}
+
+
+def test_near_vertices_are_joined_only_on_request() -> None:
+    vertices, faces = cube(1)
+    corners = vertices[faces].reshape(-1, 3)
+    corners[0] += 1e-7
+    soup = RawMesh(corners, np.arange(36).reshape(-1, 3))
+    assert diagnose(repair(soup, weld=1e-5).mesh).triangles == 12
+    assert diagnose(repair(soup, ["weld", "dedup"]).mesh).verdict == "not closed"
+
+
+def test_unknown_steps() -> None:
+    with pytest.raises(InvalidMeshError, match="polish"):
+        repair(RawMesh(*cube()), ["polish"])
+
+
+def test_a_time_limit() -> None:
+    with pytest.raises(BspcsgError) as caught:
+        repair(RawMesh(*cube()), timeout=0.001)
+    assert caught.value.code == "timed_out"
+
+
+FAILURES = {
+    "raise ImportError('libGL.so.1: cannot open shared object file')": "libgl1 libopengl0",
+    "raise ImportError(\"No module named 'pymeshlab'\")": "bspcsg[repair]",
+    "plugin_number = lambda: 49": "libgl1 libopengl0",
+}
+
+
+@pytest.mark.parametrize("text", FAILURES)
+def test_what_is_missing_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str
+) -> None:
+    (tmp_path / "pymeshlab.py").write_text(text)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with pytest.raises(MissingPartError) as caught:
+        repair(RawMesh(*cube()))
+    assert FAILURES[text] in caught.value.message and "pymeshlab" in caught.value.message
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals as POSIX has them")
+def test_a_crash_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    child = tmp_path / "child.py"
+    child.write_text("import os\nos.abort()\n")
+    monkeypatch.setattr(repairing, "_CHILD", child)
+    with pytest.raises(BspcsgError) as caught:
+        repair(RawMesh(*cube()))
+    assert caught.value.code == "repair_failed" and "exit code -6" in caught.value.message
