@@ -1,6 +1,7 @@
 """Wavefront OBJ: its vertices and polygons. Materials, normals, groups and curves are passed by."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,6 +23,19 @@ _DROPPED = {
 _SURFACES = frozenset({b"surf", b"curv", b"cstype", b"bmat"})
 
 
+@dataclass
+class _Found:
+    """What the statements say, in their order; lines are those of the rows beside them."""
+
+    rows: list[list[bytes]] = field(default_factory=list)
+    row_lines: list[int] = field(default_factory=list)
+    polygons: list[list[int]] = field(default_factory=list)
+    face_lines: list[int] = field(default_factory=list)
+    objects: list[tuple[bytes, int]] = field(default_factory=list)
+    dropped: set[str] = field(default_factory=set)
+    surfaces: int = 0
+
+
 def read(source: Source) -> RawMesh:
     """Read all objects and groups as one mesh.
 
@@ -30,46 +44,44 @@ def read(source: Source) -> RawMesh:
     FormatError
         If a line is no valid statement, or names a vertex that does not exist; names the line.
     """
-    rows: list[list[bytes]] = []
-    row_lines: list[int] = []
-    polygons: list[list[int]] = []
-    face_lines: list[int] = []
-    objects: list[tuple[bytes, int]] = []
-    dropped: set[str] = set()
-    surfaces = 0
-    for number, words in _statements(source):
-        key = words[0]
-        if key == b"v":
-            rows.append(words[1:])
-            row_lines.append(number)
-        elif key == b"f":
-            polygons.append(_references(source, number, words, len(rows)))
-            face_lines.append(number)
-        elif key == b"o":
-            objects.append((b" ".join(words[1:]), len(polygons)))
-        elif key in _DROPPED:
-            dropped.add(_DROPPED[key])
-        surfaces += key in _SURFACES
-    if not rows:
+    found = _collected(source)
+    if not found.rows:
         raise source.error("this is no OBJ mesh: it has no vertex.")
-    vertices = source.coordinates(rows, row_lines)
-    if any(len(row) > 4 for row in rows):  # a fourth number is a weight
-        dropped.add("colours")
-    flat = _faces(source, polygons, face_lines)
-    faces = flat.triangles(
+    vertices = source.coordinates(found.rows, found.row_lines)
+    polygons = _faces(source, found.polygons, found.face_lines)
+    faces = polygons.triangles(
         vertices,
-        lambda polygon, message, code: source.error(message, code, line=face_lines[polygon]),
+        lambda k, message, code: source.error(message, code, line=found.face_lines[k]),
     )
-    named = _objects(objects, [len(polygon) - 2 for polygon in polygons], len(faces))
-    name = next((name for name, _ in named if name), "")
+    named = _objects(found.objects, [len(corners) - 2 for corners in found.polygons], len(faces))
     return RawMesh(
         vertices,
         faces,
-        name,
-        _curved(surfaces),
+        next((name for name, _ in named if name), ""),
+        _curved(found.surfaces),
         objects=named if len(named) > 1 else (),
-        dropped=(*sorted(dropped), *flat.dropped),
+        dropped=(*sorted(found.dropped), *polygons.dropped),
     )
+
+
+def _collected(source: Source) -> _Found:
+    found = _Found()
+    for number, words in _statements(source):
+        key = words[0]
+        if key == b"v":
+            found.rows.append(words[1:])
+            found.row_lines.append(number)
+        elif key == b"f":
+            found.polygons.append(_references(source, number, words, len(found.rows)))
+            found.face_lines.append(number)
+        elif key == b"o":
+            found.objects.append((b" ".join(words[1:]), len(found.polygons)))
+        elif key in _DROPPED:
+            found.dropped.add(_DROPPED[key])
+        found.surfaces += key in _SURFACES
+    if any(len(row) > 4 for row in found.rows):  # a fourth number is a weight
+        found.dropped.add("colours")
+    return found
 
 
 def _objects(
