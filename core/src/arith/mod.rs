@@ -21,4 +21,4 @@ mod round;
 pub use gcd::gcd_u128;
 pub use int::Int;
 pub use modular::{inv_mod, mul_mod, P1, P2};
-pub use round::ratio_to_f64;
+pub use round::{mantissa_and_exponent, ratio_to_f64};

@@ -9,6 +9,19 @@ const LEAST_EXPONENT: i32 = -1074;
 /// The exponent of the least normal double.
 const LEAST_NORMAL_EXPONENT: i32 = -1022;
 
+/// The integers m and e of a finite double m·2^e; both are zero for zero.
+pub fn mantissa_and_exponent(x: f64) -> (i64, i32) {
+    const FRACTION: u64 = (1 << 52) - 1;
+    let bits = x.abs().to_bits();
+    let (fraction, exponent) = ((bits & FRACTION) as i64, (bits >> 52) as i32);
+    let (size, exponent) = match (exponent, fraction) {
+        (0, 0) => return (0, 0),
+        (0, _) => (fraction, LEAST_EXPONENT),
+        _ => (fraction | 1 << 52, exponent - 1 + LEAST_EXPONENT),
+    };
+    (if x < 0.0 { -size } else { size }, exponent)
+}
+
 /// The double nearest to `numerator / denominator`, ties to even; `denominator > 0`.
 ///
 /// Subnormal results are rounded once, like all others; ratios beyond the largest double

@@ -9,6 +9,7 @@ use rustc_hash::FxHashMap as HashMap;
 
 use super::assemble::{Corner, ExactMesh};
 use super::round::Mesh;
+use crate::arith::mantissa_and_exponent;
 use crate::geometry::plane::Plane;
 use crate::merge::list::Sources;
 
@@ -110,24 +111,10 @@ fn turn([a, b, c]: [[f64; 2]; 3]) -> i32 {
 fn exact_turn(points: [[f64; 2]; 3]) -> i32 {
     let parts = points.map(|p| p.map(mantissa_and_exponent));
     let least = parts.iter().flatten().map(|p| p.1).min().unwrap_or(0);
-    let [a, b, c] = parts.map(|p| p.map(|(m, e)| m << (e - least).unsigned_abs()));
+    let [a, b, c] = parts.map(|p| p.map(|(m, e)| BigInt::from(m) << (e - least).unsigned_abs()));
     let left = (&b[0] - &a[0]) * (&c[1] - &a[1]);
     let right = (&b[1] - &a[1]) * (&c[0] - &a[0]);
     left.cmp(&right) as i32
-}
-
-/// The integers m and e of a finite double m · 2^e.
-fn mantissa_and_exponent(x: f64) -> (BigInt, i32) {
-    let bits = x.abs().to_bits();
-    let fraction = bits & ((1 << 52) - 1);
-    let exponent = i32::try_from(bits >> 52).unwrap_or(0);
-    let (m, e) = match (exponent, fraction) {
-        (0, 0) => (0, 0),
-        (0, _) => (fraction, -1074),
-        _ => (fraction | 1 << 52, exponent - 1075),
-    };
-    let magnitude = BigInt::from(m);
-    (if x < 0.0 { -magnitude } else { magnitude }, e)
 }
 
 /// A mesh whose edges can be swapped; half-edge 3t + i runs from corner i of triangle t.

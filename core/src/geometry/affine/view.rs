@@ -3,6 +3,7 @@
 use num_bigint::{BigInt, Sign};
 
 use super::Affine;
+use crate::arith::mantissa_and_exponent;
 use crate::geometry::plane::FILTER;
 use crate::geometry::side::Side;
 
@@ -71,21 +72,6 @@ impl Viewpoint {
             Sign::Plus => 1,
         })
     }
-}
-
-/// A finite double as m·2^e.
-fn mantissa_and_exponent(x: f64) -> (i64, i32) {
-    let bits = x.to_bits();
-    let field = ((bits >> 52) & 0x7ff) as i32;
-    let fraction = i64::try_from(bits & ((1 << 52) - 1)).unwrap_or(0);
-    let (size, exponent) = match field {
-        0 => (fraction, -1074),
-        _ => (fraction | 1 << 52, field - 1075),
-    };
-    if size == 0 {
-        return (0, 0);
-    }
-    (if x < 0.0 { -size } else { size }, exponent)
 }
 
 #[cfg(test)]

@@ -68,11 +68,6 @@ fn meet_across<const D: usize>(
     })
 }
 
-/// The sign of the direction against the facet's normal: 1 where the ray leaves through it.
-pub fn heading<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> i32 {
-    total(&weights(&relative(ray, facet), ray.direction())).signum()
-}
-
 /// Where the line of the ray, shifted by (ε, ε², ε³), crosses the facet, and in which direction.
 ///
 /// Shifted so, the line meets no edge, no vertex and no facet lengthwise, so that the signs along

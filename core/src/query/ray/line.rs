@@ -1,6 +1,7 @@
 //! Rays: a lattice point and an integer direction, with what the double filter needs of them.
 
 use super::bounds::DIRECTION_BITS;
+use crate::arith::mantissa_and_exponent;
 use crate::error::{Error, ErrorKind, Result};
 
 /// A ray from a lattice point, exact, in `D` dimensions.
@@ -15,7 +16,7 @@ pub struct Ray<const D: usize> {
     pub(in crate::query) near: Near<D>,
 }
 
-/// The ray in doubles: origin and direction are exact, the quotients carry one rounding each.
+/// The ray in doubles: origin and direction carry one rounding each at most, as `filter` supposes.
 #[derive(Clone, Debug)]
 pub(in crate::query) struct Near<const D: usize> {
     pub origin: [f64; D],
@@ -104,31 +105,17 @@ fn zero_direction() -> Error {
 
 /// The integers nearest to the components times a common power of two, and its exponent.
 fn integers<const D: usize>(direction: &[f64; D]) -> Option<([i128; D], i32)> {
-    let parts = direction.map(decoded);
+    let parts = direction.map(mantissa_and_exponent);
     let top = |(m, e): &(i64, i32)| (*m != 0).then(|| e + bits(*m));
     let highest = parts.iter().filter_map(top).max()?;
     let exponent = DIRECTION_BITS as i32 - highest;
-    let wide = parts.map(|(m, e)| shifted(m, e + exponent));
+    let wide = parts.map(|(m, e)| if m == 0 { 0 } else { shifted(m, e + exponent) });
     let spare = wide.iter().fold(0, |all, c| all | c).trailing_zeros();
     Some((wide.map(|c| c >> spare), exponent - spare as i32))
 }
 
 fn bits(m: i64) -> i32 {
     64 - m.unsigned_abs().leading_zeros() as i32
-}
-
-/// A double as mantissa times a power of two.
-fn decoded(x: f64) -> (i64, i32) {
-    let raw = x.to_bits();
-    let field = (raw >> 52 & 0x7ff) as i32;
-    let fraction = (raw & ((1 << 52) - 1)) as i64;
-    let mantissa = if field == 0 {
-        fraction
-    } else {
-        fraction | 1 << 52
-    };
-    let signed = if x < 0.0 { -mantissa } else { mantissa };
-    (signed, field.max(1) - 1075)
 }
 
 /// The integer nearest to `m`·2^`shift`, halves upwards.

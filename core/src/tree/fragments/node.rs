@@ -98,15 +98,6 @@ impl<S: Affine> FragmentTree<S> {
         &self.crossings
     }
 
-    /// The subtree on one side of a node.
-    pub fn child(&self, node: u32, half: Half) -> Option<u32> {
-        let node = self.nodes.get(node as usize)?;
-        match half {
-            Half::Minus => node.minus,
-            Half::Plus => node.plus,
-        }
-    }
-
     /// R(v): the part of `whole` on a node's sides of all cuts above it.
     ///
     /// `None` if there is no such node or nothing is left.
