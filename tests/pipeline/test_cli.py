@@ -354,7 +354,10 @@ def test_interruption_is_quiet_and_leaves_nothing(folder: Path) -> None:
     time.sleep(0.1)
     running.send_signal(signal.SIGINT)
     began = time.monotonic()
-    _, err = running.communicate(timeout=60)
-    assert running.wait(timeout=60) == 130
+    try:
+        _, err = running.communicate(timeout=60)
+    finally:
+        running.kill()
+    assert running.returncode == 130
     assert time.monotonic() - began < 3
     assert b"Traceback" not in err and not Path("x.ply").exists()

@@ -1,6 +1,7 @@
 """Running the command line, in this process and as a process of its own."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -35,7 +36,14 @@ def process(*arguments: str | bytes, **settings: Any) -> "subprocess.Popen[bytes
     path = str(Path(bspcsg.__file__).parent.parent)
     environment = {**os.environ, "PYTHONPATH": path, **settings.pop("more", {})}
     command = [sys.executable, "-m", "bspcsg", *arguments]
-    return subprocess.Popen(command, env=environment, **settings)
+    heed = heed_interrupts if os.name == "posix" else None
+    # Between fork and exec this sets one signal; no lock of another thread is asked for.
+    return subprocess.Popen(command, env=environment, preexec_fn=heed, **settings)  # noqa: PLW1509
+
+
+def heed_interrupts() -> None:
+    """Undo what a shell does to programs in the background: they ignore interrupts."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def finished(
