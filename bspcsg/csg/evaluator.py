@@ -134,8 +134,9 @@ class _Cache:
     def _built(self, body: Geometry) -> Geometry:
         """Return a body on the lattice asked for; what is wrong with it is this node's error."""
         pitch = self.run.pitch
-        # Asking whether it is empty builds it.
-        if body is None or body.is_empty or pitch is None:
+        if isinstance(body, Solid):
+            body.tree  # noqa: B018  builds it
+        if body is None or pitch is None or body.is_empty:
             return body
         if isinstance(body, Region):
             return body if body.pitch == pitch else Region(body.to_polygons(), pitch=pitch)

@@ -7,6 +7,7 @@ import numpy as np
 from .._types import FloatArray, IndexArray
 from ..bsp import Region
 from ..polygon import directed_edges, triangulate
+from ..primitives import from_arrays
 from ..solid import Solid
 from ..transform import cos_sin
 from ..weld import welded
@@ -118,7 +119,7 @@ def _swept(figure: Region, sweep: _Sweep) -> Solid:
     ]
     cap = triangulate(loops)
     faces = [cap[:, ::-1], *bands, cap + sweep.slices * len(points)]
-    return _closed(np.concatenate(levels), np.concatenate(faces))
+    return _closed(np.concatenate(levels), np.concatenate(faces), crossing=sweep.twist != 0)
 
 
 def _band(
@@ -149,12 +150,13 @@ def _is_flat(level: FloatArray) -> bool:
     return bool((np.ptp(level[:, :2], axis=0) == 0).any())
 
 
-def _closed(vertices: FloatArray, faces: IndexArray) -> Solid:
-    """Return the solid of a mesh in which corners may coincide."""
+def _closed(vertices: FloatArray, faces: IndexArray, *, crossing: bool) -> Solid:
+    """Return the solid of a mesh in which corners may coincide, and faces may cross or not."""
     points, same = welded(vertices)
     triangles = same[faces]
     proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
-    return Solid(points, np.ascontiguousarray(triangles[proper]))
+    kept = np.ascontiguousarray(triangles[proper])
+    return Solid(points, kept) if crossing else from_arrays(points, kept)
 
 
 @node("rotate_extrude")

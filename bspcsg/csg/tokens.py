@@ -11,7 +11,7 @@ WORD = re.compile(
       (?P<space>[\s\ufeff]+ | //[^\n]* | /\*.*?\*/)
     | (?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![\w.]))
     | (?P<name>\$?[A-Za-z_]\w*)
-    | (?P<string>"(?:[^"\\]+|\\.)*")
+    | (?P<string>"(?:[^"\\]++|\\.)*+")
     | (?P<mark>[\#%!*(){}\[\],;=+\-])
     """,
     re.VERBOSE | re.DOTALL,

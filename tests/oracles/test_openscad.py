@@ -67,6 +67,19 @@ def half(rng: Rng) -> str:
     return f"{shift} {{ square([50, 100], center = true); }}"
 
 
+def extrusion(rng: Rng, inside: str) -> str:
+    """Return an extrusion; what is projected is not twisted.
+
+    OpenSCAD drops corners of projections that lie within its grid of a straight line, and twisted
+    faces depend on such corners far more than on their places.
+    """
+    twist = "0" if "projection" in inside else number(rng, -90, 90)
+    return (
+        f"linear_extrude(height = {number(rng, 1, 12)}, twist = {twist},"
+        f" scale = {number(rng, 0.2, 2)}, {fineness(rng)}) {{ {inside} }}"
+    )
+
+
 def body(rng: Rng, depth: int) -> str:
     leaves: list[Callable[[], str]] = [
         lambda: f"cube([{number(rng, 1, 12)}, 4.5, {number(rng, 1, 9)}], center = {flag(rng)});",
@@ -79,10 +92,7 @@ def body(rng: Rng, depth: int) -> str:
     inner: list[Callable[[], str]] = [
         lambda: f"{move(rng, flat=False)} {{ {body(rng, depth - 1)} }}",
         lambda: f"{operation(rng)} {{ {body(rng, depth - 1)} {body(rng, depth - 1)} }}",
-        lambda: (
-            f"linear_extrude(height = {number(rng, 1, 12)}, twist = {number(rng, -90, 90)},"
-            f" scale = {number(rng, 0.2, 2)}, {fineness(rng)}) {{ {figure(rng, depth - 1)} }}"
-        ),
+        lambda: extrusion(rng, figure(rng, depth - 1)),
         lambda: (
             f"rotate_extrude(angle = {rng.choice(['360', number(rng, -350, 350)])},"
             f" {fineness(rng)}) {{ intersection() {{ {half(rng)} {figure(rng, depth - 1)} }} }}"

@@ -107,6 +107,12 @@ def test_nodes_nest_to_any_depth() -> None:
     assert csg.loads(text).volume == 1.0
 
 
+@pytest.mark.timeout(20)
+def test_a_long_text_without_its_end_is_found_at_once() -> None:
+    with pytest.raises(FormatError, match="no closing quote"):
+        csg.parse('cube("' + "cube(size = [1, 2]); \\n" * 10_000)
+
+
 def test_vectors_do_not() -> None:
     with pytest.raises(FormatError, match="nested deeper than 64"):
         csg.parse("cube(" + "[" * DEEP)
