@@ -30,7 +30,12 @@ _OPTIONAL = (
     ("meshio", "VTK and VTU files", "vtk"),
     ("scipy", "distances in compare", "compare"),
     ("rtree", "distances in compare", "compare"),
+    ("pillow", "PNG files of render", "pictures"),
+    ("ezdxf", "DXF files of slice", "2d"),
 )
+
+#: Names under which packages are imported that are called otherwise.
+_MODULES = {"pillow": "PIL"}
 
 #: Optional programs, what each is for, and how to install it.
 _PROGRAMS = (("openscad", ".scad files", "apt-get install openscad"),)
@@ -107,7 +112,7 @@ def _packages() -> list[_Part]:
 def _version_of(name: str) -> str:
     """Return the version of a package that can be imported, or nothing."""
     try:
-        return version(name) if find_spec(name) is not None else ""
+        return version(name) if find_spec(_MODULES.get(name, name)) is not None else ""
     except (PackageNotFoundError, ImportError, ValueError):
         return ""
 

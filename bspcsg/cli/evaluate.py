@@ -12,7 +12,6 @@ from .job import Job
 from .options import ALLOW_EMPTY, CHECK, OUTPUT, common, reading, sets, writing
 
 if TYPE_CHECKING:
-    from ..check import CheckReport
     from ..solid import Solid
 
 _HELP = """Write the set that a FORMULA over file names stands for.
@@ -64,12 +63,6 @@ class _Evaluation(Job):
         solids = {file.name: self._loaded(file) for file in files_of(self._formula)}
         self.lap("read")
         return evaluated(self._formula, lambda file: solids[file.name], _combined)
-
-    def compared(self, result: "Solid") -> "CheckReport | None":
-        from ..check import check_result
-
-        # A formula of one name has nothing to compare.
-        return None if result.last_operation is None else check_result(result)
 
     def _loaded(self, file: File) -> "Solid":
         try:

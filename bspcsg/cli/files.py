@@ -168,10 +168,7 @@ class Target:
         encoder_of(self.path if named else f"{self.path}{self.suffix}", self.text)
         if self.is_stream:
             return
-        folder = self.path.parent
-        if not folder.is_dir() or not os.access(folder, os.W_OK):
-            message = f"{self.path}: there is no folder {folder} that can be written to."
-            raise FormatError(message, "unwritable")
+        refuse_folder(self.path)
 
     def write(self, mesh: "Mesh | RawMesh") -> tuple[Finding, ...]:
         """Write a mesh, and return what the format could not keep."""
@@ -201,6 +198,28 @@ class Target:
         except OSError as error:
             message = f"standard output: cannot write: {error.strerror}."
             raise FormatError(message, "unwritable") from error
+
+
+def refuse_folder(path: Path) -> None:
+    """Refuse a file to be written to a folder that is not there or forbidden."""
+    folder = path.parent
+    if not folder.is_dir() or not os.access(folder, os.W_OK):
+        message = f"{path}: there is no folder {folder} that can be written to."
+        raise FormatError(message, "unwritable")
+
+
+def refuse_drawing(path: Path, suffixes: Sequence[str]) -> None:
+    """Refuse early a file for a drawing that cannot be written.
+
+    Raises
+    ------
+    FormatError
+        If its suffix is none of those, or its folder cannot be written to.
+    """
+    if path.suffix.lower() not in suffixes:
+        known = " or ".join(suffixes)
+        raise FormatError(f"{shown(path)}: the name must end in {known}.", "unknown_format")
+    refuse_folder(path)
 
 
 def shown(path: Path) -> str:

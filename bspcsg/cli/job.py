@@ -48,11 +48,17 @@ class Job:
 
     def compared(self, result: "Solid") -> "CheckReport | None":
         """Return what manifold3d says, or None if there is nothing to compare."""
-        raise NotImplementedError
+        from ..check import check_result
+
+        return None if result.last_operation is None else check_result(result)
 
     def paths(self) -> Sequence[Path]:
         """Return the files that are read."""
         raise NotImplementedError
+
+    def refuse_inputs(self) -> None:
+        """Refuse inputs that can be known to fail before anything is read."""
+        self.inputs.refuse_early(self.paths())
 
     def run(self) -> int:
         """Do it, and return the exit code."""
@@ -60,7 +66,7 @@ class Job:
 
         set_threads(self.settings["threads"])
         self.target.refuse_early(self.out.as_json)
-        self.inputs.refuse_early(self.paths())
+        self.refuse_inputs()
         result = self.combined()
         mesh = self._mesh_of(result)
         self.lap("combine")
@@ -108,7 +114,7 @@ class Job:
             "operation": self.op,
             "files": [str(path) for path in self.paths()],
             "output": str(self.target.path) if written else None,
-            "winding": self.settings["winding"],
+            "winding": self.settings.get("winding"),
             "pitch": result.pitch,
             **mesh_values(mesh),
             "volume": result.volume,

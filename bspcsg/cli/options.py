@@ -92,6 +92,16 @@ OUTPUT = click.option(
     help="File to write, its format by its suffix; - for standard output.",
 )
 
+#: For verbs that write no mesh; standard output keeps what they say.
+DRAWING = click.option(
+    "-o",
+    "--output",
+    "target",
+    required=True,
+    type=click.Path(path_type=Path, readable=False),
+    help="File to write, its format by its suffix.",
+)
+
 ALLOW_EMPTY = click.option(
     "--allow-empty", is_flag=True, help="Write a file even if nothing is left."
 )

@@ -25,6 +25,13 @@ INTERRUPTED = 130
 CLOSED_PIPE = 141
 
 
+#: Codes of errors that say which optional package or program is not installed.
+_MISSING_CODES = frozenset({"missing_dependency", "missing_package", "missing_program"})
+
+#: Codes of errors that say that a time limit was hit.
+_TIME_CODES = frozenset({"timed_out", "timeout"})
+
+
 class EmptyResultError(BspcsgError):
     """The result holds nothing, and nobody said that this is meant."""
 
@@ -90,9 +97,9 @@ def exit_code_of(error: BspcsgError) -> int:
     """Return the exit code of a failure."""
     if isinstance(error, InternalError):
         return INTERNAL
-    if isinstance(error, MissingPartError):
+    if isinstance(error, MissingPartError) or error.code in _MISSING_CODES:
         return MISSING
-    if error.code == "timed_out":
+    if error.code in _TIME_CODES:
         return TIMED_OUT
     if isinstance(error, FormatError):
         return UNWRITABLE if error.code == "unwritable" else UNREADABLE

@@ -1,0 +1,153 @@
+"""The verb that makes pictures: render."""
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..errors import BspcsgError
+from . import output
+from .files import Inputs, refuse_drawing, shown
+from .options import DRAWING, PATH, common, reading
+from .output import Output, counted
+
+if TYPE_CHECKING:
+    from ..bsp import Picture
+
+_EPILOG = """\b
+Example:
+  bspcsg render part.stl -o part.png --view front --size 1200x900
+"""
+
+_SUFFIXES = (".svg", ".png")
+_VIEWS = ("iso", "front", "back", "left", "right", "top", "bottom")
+_STYLES = ("shaded", "hidden", "edges")
+
+#: The background that lets through what is behind the picture.
+_TRANSPARENT = "none"
+
+
+def _as_size(context: click.Context, option: click.Parameter, value: str) -> tuple[int, int]:
+    """Return width and height in pixels."""
+    from ..bsp.picture import checked_size
+
+    words = value.lower().split("x")
+    if len(words) != 2 or not all(word.isdecimal() for word in words):
+        wanted = "width and height in pixels, as in 800x600"
+        raise click.BadParameter(f"{value!r} is no size; it takes {wanted}.", context, option)
+    try:
+        return checked_size([int(word) for word in words])
+    except BspcsgError as error:
+        raise click.BadParameter(error.message, context, option) from None
+
+
+def _as_colour(context: click.Context, option: click.Parameter, value: str) -> str | None:
+    """Return a colour that pictures take, or None for transparent."""
+    from ..bsp.colours import colour
+
+    if value == _TRANSPARENT:
+        return None
+    try:
+        colour(value)
+    except BspcsgError:
+        wanted = f"white, black, {_TRANSPARENT} or a colour like '#3070b0'"
+        raise click.BadParameter(f"{value!r} is not {wanted}.", context, option) from None
+    return value
+
+
+@click.command("render", short_help="Write a picture of a mesh.", epilog=_EPILOG)
+@click.argument("file", type=PATH, metavar="FILE")
+@DRAWING
+@click.option(
+    "--view",
+    type=click.Choice(_VIEWS),
+    default="iso",
+    show_default=True,
+    help="From where; z is up, front looks along +y.",
+)
+@click.option(
+    "--size",
+    metavar="WxH",
+    default="800x600",
+    show_default=True,
+    callback=_as_size,
+    help="Width and height in pixels.",
+)
+@click.option(
+    "--style",
+    type=click.Choice(_STYLES),
+    default="shaded",
+    show_default=True,
+    help="Light and edges, a drawing with hidden lines removed, or all edges.",
+)
+@click.option(
+    "--background",
+    metavar="COLOUR",
+    default="white",
+    show_default=True,
+    callback=_as_colour,
+    help="white, black, a colour like '#3070b0', or none for transparent.",
+)
+@reading
+@common
+def render(file: Path, target: Path, **given: Any) -> int:
+    """Write a picture of a mesh as SVG or PNG, painted from back to front.
+
+    The mesh need not be closed. PNG needs Pillow; bspcsg doctor says whether it is there.
+    """
+    return _Rendering(file, target, **given).run()
+
+
+class _Rendering:
+    """One mesh, and the file for its picture."""
+
+    def __init__(self, file: Path, target: Path, **settings: Any) -> None:
+        self._file = file
+        self._target = target
+        self._settings = settings
+        self._out = Output.of(settings)
+        self._inputs = Inputs.of(self._out, settings)
+
+    def run(self) -> int:
+        from .. import set_threads
+        from ..io.atomic import write_file
+
+        set_threads(self._settings["threads"])
+        began = time.perf_counter()
+        refuse_drawing(self._target, _SUFFIXES)
+        self._inputs.refuse_early([self._file])
+        picture = self._picture()
+        as_svg = self._target.suffix.lower() == ".svg"
+        write_file(self._target, [picture.svg.encode() if as_svg else picture.png])
+        self._tell(picture, time.perf_counter() - began)
+        return output.DONE
+
+    def _picture(self) -> "Picture":
+        from ..bsp import picture
+
+        raw = self._inputs.raw(self._file)
+        self._inputs.tell(self._file, raw.findings)
+        if not len(raw.faces):
+            self._out.warning(f"{shown(self._file)}: there is nothing in it to be seen.")
+        names = ("view", "size", "style", "background")
+        looks = {name: self._settings[name] for name in names}
+        return picture((raw.vertices, raw.faces), **looks)
+
+    def _tell(self, picture: "Picture", seconds: float) -> None:
+        width, height = self._settings["size"]
+        polygons = len(picture.painting.source)
+        line = (
+            f"{shown(self._target)}  {width} x {height} pixels"
+            f"  {counted(polygons, 'polygon')}  {seconds:.2f} s"
+        )
+        document = {
+            "file": str(self._file),
+            "output": str(self._target),
+            "view": self._settings["view"],
+            "style": self._settings["style"],
+            "size": [width, height],
+            "polygons": polygons,
+            "seconds": round(seconds, 4),
+        }
+        self._out.result(line, document)

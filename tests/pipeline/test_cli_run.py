@@ -1,0 +1,115 @@
+"""Scripts at the command line."""
+
+import json
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+
+import bspcsg as b
+from support.cli import Capture, finished, ran
+
+MOVED = "multmatrix([[1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 1, -1], [0, 0, 0, 1]])"
+PLATE = f"difference() {{ cube([4, 3, 1]); {MOVED} cube([1, 1, 3]); }}"
+PYTHON = "import bspcsg as b\nprint('made')\nresult = b.cube((4, 3, 1))\n"
+OPEN = """cube(1);
+polyhedron(points = [[5,0,0],[6,0,0],[5,1,0],[5,0,1]], faces = [[0,1,2],[0,3,1],[0,2,3]]);
+"""
+
+
+def test_csg(folder: Path, capsys: Capture) -> None:
+    Path("plate.csg").write_text(PLATE)
+    code, out, err = ran(capsys, "run", "plate.csg", "-o", "x.ply")
+    assert (code, err) == (0, "") and b.load("x.ply").volume_exact == 11
+    assert "volume 11" in out and "check: agree" in out
+
+
+def test_csg_as_json(folder: Path, capsys: Capture) -> None:
+    Path("plate.csg").write_text(PLATE)
+    code, out, _ = ran(capsys, "run", "plate.csg", "-o", "x.ply", "--json")
+    found = json.loads(out)
+    assert code == 0 and found["operation"] == "run" and found["files"] == ["plate.csg"]
+    assert found["volume_exact"] == "11" and found["genus"] == 1 and found["check"] is not None
+
+
+def test_polish_coarsens_the_lattice(folder: Path, capsys: Capture) -> None:
+    matrix = "[[0.866025, -0.5, 0, 0], [0.5, 0.866025, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"
+    Path("turned.csg").write_text(f"multmatrix({matrix}) cube(1);")
+    for options, pitch in ([], -9), (["--polish"], -5):
+        code, out, _ = ran(capsys, "run", "turned.csg", "-o", "x.ply", "--json", *options)
+        assert code == 0 and json.loads(out)["pitch"] == pitch
+
+
+@pytest.mark.skipif(shutil.which("openscad") is None, reason="needs openscad")
+def test_scad(folder: Path, capsys: Capture) -> None:
+    Path("plate.scad").write_text(f"module plate() {PLATE}\nplate();")
+    assert ran(capsys, "run", "plate.scad", "-o", "x.3mf")[0] == 0
+    assert b.load("x.3mf").volume_exact == 11
+
+
+def test_openscad_that_is_missing_is_code_6(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Path("plate.scad").write_text(PLATE)
+    monkeypatch.setenv("PATH", "")
+    code, _, err = ran(capsys, "run", "plate.scad", "-o", "x.ply")
+    assert code == 6 and "apt install openscad" in err and not Path("x.ply").exists()
+
+
+def test_python_keeps_standard_output_free(folder: Path) -> None:
+    Path("part.py").write_text(PYTHON)
+    code, out, err = finished("run", "part.py", "-o", "x.off", "--json")
+    assert code == 0 and json.loads(out)["volume_exact"] == "12" and b"made" in err
+    assert b.load("x.off").volume_exact == 12
+
+
+def test_what_is_left_out_is_told(folder: Path, capsys: Capture) -> None:
+    Path("open.csg").write_text(OPEN)
+    code, _, err = ran(capsys, "run", "open.csg", "-o", "x.off")
+    assert code == 4 and "open.csg:2:1: polyhedron()" in err and not Path("x.off").exists()
+    code, _, err = ran(capsys, "run", "open.csg", "-o", "x.off", "--skip-open", "--polish")
+    assert code == 0 and err.count("warning: open.csg:2:1: polyhedron()") == 1
+    assert b.load("x.off").volume_exact == 1
+
+
+def test_time_limits_are_code_124(folder: Path, capsys: Capture) -> None:
+    Path("slow.py").write_text("import time\ntime.sleep(60)\n")
+    code, _, err = ran(capsys, "run", "slow.py", "-o", "x.off", "--timeout", "0.5")
+    assert code == 124 and "longer than 0.5 seconds" in err
+
+
+def test_nothing_is_refused_unless_allowed(folder: Path, capsys: Capture) -> None:
+    Path("none.csg").write_text("difference() { cube(1); cube(2); }")
+    code, _, err = ran(capsys, "run", "none.csg", "-o", "x.off")
+    assert code == 4 and "--allow-empty" in err and not Path("x.off").exists()
+    assert ran(capsys, "run", "none.csg", "-o", "x.off", "--allow-empty")[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["none.csg", "-o", "x.off"], 3, "none.csg: cannot read"),
+        (["none.scad", "-o", "x.off"], 3, "none.scad: cannot read"),
+        (["none.py", "-o", "x.off"], 3, "none.py: cannot read"),
+        (["a.off", "-o", "x.off"], 3, "this is no script"),
+        (["bad.csg", "-o", "x.off"], 3, "bad.csg:1:"),
+        (["flat.csg", "-o", "x.off"], 3, "linear_extrude"),
+        (["bad.py", "-o", "x.off"], 3, "bad.py:2: ZeroDivisionError"),
+        (["bad.csg", "-o", "x.step"], 3, "curved surfaces"),
+        (["bad.csg", "-o", "no/x.off"], 5, "no folder"),
+        (["bad.py", "-o", "x.off", "--polish"], 2, "--polish is not for .py"),
+        (["bad.csg", "-o", "x.off", "--timeout", "1"], 2, "--timeout is not for .csg"),
+        (["bad.csg", "-o", "x.off", "--timeout", "0"], 2, "--timeout"),
+    ],
+)
+def test_refusals(
+    folder: Path, capsys: Capture, arguments: list[str], code: int, words: str
+) -> None:
+    Path("bad.csg").write_text("cube(")
+    Path("flat.csg").write_text("square(1);")
+    Path("bad.py").write_text("x = 1\n1 / 0\n")
+    before = sorted(os.listdir())
+    found, out, err = ran(capsys, "run", *arguments)
+    assert (found, out) == (code, "") and words in err
+    assert sorted(os.listdir()) == before
