@@ -10,6 +10,7 @@ pub mod dim2;
 pub mod dim3;
 pub mod line;
 pub mod outline;
+pub mod path;
 pub mod plane;
 pub mod polygon;
 mod residue;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::leaf::is_whole;
+use super::kept::is_whole;
 use super::list::Sources;
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, triangle_change, Segment};

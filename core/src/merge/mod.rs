@@ -1,10 +1,13 @@
 //! Set operations: one descent over trees and deferred leaves, and generic tree merging.
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
+mod cutting;
 pub mod descend;
 pub mod evaluate;
 pub mod expression;
+mod general;
 mod join;
+mod kept;
 pub mod leaf;
 pub mod list;
 pub mod local_tree;
