@@ -69,6 +69,11 @@ impl Pitch {
         }
     }
 
+    /// By what model units are multiplied; `None` for steps of several units, which divide.
+    pub(super) fn steps_per_unit(self) -> Option<f64> {
+        (self.0 <= 0).then(|| power_of_ten(-self.0))
+    }
+
     fn fits(self, x: f64) -> bool {
         self.steps(x).abs() < LIMIT
     }

@@ -7,11 +7,17 @@ use rayon::prelude::*;
 
 use super::finding::{Finding, Severity};
 use super::grid::{snap_point, Pitch};
+use super::joints::Joints;
+use super::snap::snap_all;
 use super::source::{Shape, Source, TriangleMesh};
 use super::topology::{open_edges, Topology};
 use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::cell::Cell;
 use crate::geometry::plane::Plane;
 use crate::geometry::plane::{normal, Lattice};
+
+/// Rows of one task.
+const CHUNK: usize = 1 << 14;
 
 /// Reads a closed triangle mesh onto the lattice.
 ///
@@ -24,33 +30,24 @@ use crate::geometry::plane::{normal, Lattice};
 pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -> Result<Source> {
     let mut findings = Vec::new();
     let faces = check_indices(faces, vertices.len())?;
-    let pitch = choose_pitch(vertices, pitch, &mut findings)?;
-    let lattice = snap_all(vertices, pitch)?;
+    let bounds = Bounds::of(vertices)?;
+    let pitch = choose_pitch(&bounds, pitch, &mut findings)?;
+    let (lattice, doubles) = snap_all(vertices, pitch)?;
     let mut mesh = TriangleMesh {
         vertices: lattice,
-        doubles: vertices.to_vec(),
+        doubles,
         faces,
         numbers: None,
     };
-    drop_flat_faces(&mut mesh, &mut findings);
+    let (volume, flat) = weigh(&mesh);
+    drop_faces(&mut mesh, flat, &mut findings);
     if mesh.faces.is_empty() {
         let text = "the mesh has no face of positive area";
         return Err(Error::new(ErrorKind::EmptyMesh, text));
     }
-    let topology = close(&mut mesh, &mut findings)?;
-    if !topology.irregular().is_empty() {
-        findings.push(Finding::about(
-            "non_manifold",
-            Severity::Note,
-            &topology
-                .irregular()
-                .iter()
-                .map(|v| u64::from(*v))
-                .collect::<Vec<_>>(),
-            "more than two faces share an edge, or several fans a vertex, at these vertices",
-        ));
-    }
-    if signed_volume(&mesh) < 0.0 {
+    let joints = close(&mut mesh, &mut findings)?;
+    findings.extend(irregularity(&joints));
+    if volume < 0.0 {
         findings.push(Finding::about(
             "inside_out",
             Severity::Warning,
@@ -58,23 +55,18 @@ pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -
             "the faces enclose a negative volume: they are probably oriented inside out",
         ));
     }
-    Ok(Source::with_topology(mesh, pitch, topology, findings))
+    let cell = Cell::around(
+        &snap_point(pitch, &bounds.low)?,
+        &snap_point(pitch, &bounds.high)?,
+    );
+    Ok(Source::checked(mesh, pitch, joints, cell, findings))
 }
 
-/// Six times the enclosed volume in doubles, about the first vertex.
-fn signed_volume(mesh: &TriangleMesh) -> f64 {
-    let origin = mesh.doubles.first().copied().unwrap_or_default();
-    let local = |v: u32| {
-        let p = mesh.doubles[v as usize];
-        [p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]]
-    };
-    let determinant = |f: &[u32; 3]| {
-        let [a, b, c] = f.map(local);
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-            + a[1] * (b[2] * c[0] - b[0] * c[2])
-            + a[2] * (b[0] * c[1] - b[1] * c[0])
-    };
-    mesh.faces.iter().map(determinant).sum()
+fn irregularity(joints: &Joints) -> Option<Finding> {
+    let places: Vec<u64> = joints.irregular.iter().map(|v| u64::from(*v)).collect();
+    let text = "more than two faces share an edge, or several fans a vertex, at these vertices";
+    let finding = || Finding::about("non_manifold", Severity::Note, &places, text);
+    (!places.is_empty()).then(finding)
 }
 
 /// The half-space normal·x ≤ offset, in model units.
@@ -142,6 +134,7 @@ fn integer_normal(normal: &[f64; 3], size: f64) -> ([i128; 3], bool) {
     (rounded.map(|c| c as i128), exact)
 }
 
+/// The faces with indices of 32 bits, all of them below `count`.
 fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[u32; 3]>> {
     let limit = u32::try_from(count)
         .ok()
@@ -153,47 +146,108 @@ fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[u32; 3]>> {
             "a mesh holds at most 2^30 faces",
         ));
     }
-    let narrow = |(row, face): (usize, &[i64; 3])| {
-        let ok = face.iter().all(|v| (0..i64::from(limit)).contains(v));
-        if ok {
-            return Ok(face.map(|v| v as u32));
-        }
-        let text = format!("face {row} names vertices {face:?}, but there are {count} vertices");
-        Err(Error::at(
-            ErrorKind::IndexOutOfRange,
-            vec![row as u64],
-            text,
-        ))
+    let mut narrow = vec![[0; 3]; faces.len()];
+    let good = narrow
+        .par_chunks_mut(CHUNK)
+        .zip(faces.par_chunks(CHUNK))
+        .map(|(narrow, faces)| narrow_all(faces, limit, narrow))
+        .reduce(|| true, |a, b| a & b);
+    if good {
+        return Ok(narrow);
+    }
+    let bad = |face: &[i64; 3]| face.iter().any(|v| !(0..i64::from(limit)).contains(v));
+    let row = faces.iter().position(bad).unwrap_or(0);
+    let face = faces[row];
+    let text = format!("face {row} names vertices {face:?}, but there are {count} vertices");
+    Err(Error::at(
+        ErrorKind::IndexOutOfRange,
+        vec![row as u64],
+        text,
+    ))
+}
+
+/// Copies indices; says whether all are below the limit.
+fn narrow_all(faces: &[[i64; 3]], limit: u32, narrow: &mut [[u32; 3]]) -> bool {
+    let mut good = true;
+    for (wide, narrow) in faces.as_flattened().iter().zip(narrow.as_flattened_mut()) {
+        *narrow = *wide as u32;
+        good &= (*wide as u64) < u64::from(limit);
+    }
+    good
+}
+
+/// The box around points in model units.
+struct Bounds {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Bounds {
+    const NOTHING: Self = Self {
+        low: [f64::INFINITY; 3],
+        high: [f64::NEG_INFINITY; 3],
     };
-    faces.iter().enumerate().map(narrow).collect()
+
+    fn of(points: &[[f64; 3]]) -> Result<Self> {
+        let chunks = points.par_chunks(CHUNK).map(Self::of_chunk);
+        let found = chunks.reduce(|| Some(Self::NOTHING), |a, b| Some(a?.with(&b?)));
+        found.ok_or_else(|| {
+            let bad = |p: &[f64; 3]| p.iter().any(|c| !c.is_finite());
+            let row = points.iter().position(bad).unwrap_or(0);
+            let point = place(&points[row]);
+            let text = format!("vertex {row} is {point}; coordinates must be finite");
+            Error::at(ErrorKind::NonFinite, vec![row as u64], text)
+        })
+    }
+
+    /// The box, if all coordinates are finite.
+    fn of_chunk(points: &[[f64; 3]]) -> Option<Self> {
+        let mut bounds = Self::NOTHING;
+        let mut finite = true;
+        for point in points {
+            for (i, c) in point.iter().enumerate() {
+                bounds.low[i] = if *c < bounds.low[i] {
+                    *c
+                } else {
+                    bounds.low[i]
+                };
+                bounds.high[i] = if *c > bounds.high[i] {
+                    *c
+                } else {
+                    bounds.high[i]
+                };
+                finite &= c.is_finite();
+            }
+        }
+        finite.then_some(bounds)
+    }
+
+    fn with(&self, other: &Self) -> Self {
+        Self {
+            low: [0, 1, 2].map(|i| self.low[i].min(other.low[i])),
+            high: [0, 1, 2].map(|i| self.high[i].max(other.high[i])),
+        }
+    }
+
+    fn largest(&self) -> f64 {
+        let magnitudes = self.low.iter().chain(&self.high).map(|c| c.abs());
+        magnitudes.fold(0.0, f64::max)
+    }
+
+    fn extent(&self) -> f64 {
+        (0..3).fold(0.0, |m, i| f64::max(m, self.high[i] - self.low[i]))
+    }
 }
 
 fn choose_pitch(
-    vertices: &[[f64; 3]],
+    bounds: &Bounds,
     pitch: Option<Pitch>,
     findings: &mut Vec<Finding>,
 ) -> Result<Pitch> {
-    if let Some(row) = vertices
-        .iter()
-        .position(|p| p.iter().any(|c| !c.is_finite()))
-    {
-        let text = format!(
-            "vertex {row} is {}; coordinates must be finite",
-            place(&vertices[row])
-        );
-        return Err(Error::at(ErrorKind::NonFinite, vec![row as u64], text));
-    }
     if let Some(pitch) = pitch {
         return Ok(pitch);
     }
-    let mut largest = 0.0f64;
-    let mut extent = 0.0f64;
-    for i in 0..3 {
-        let low = vertices.iter().fold(f64::INFINITY, |m, p| m.min(p[i]));
-        let high = vertices.iter().fold(f64::NEG_INFINITY, |m, p| m.max(p[i]));
-        largest = largest.max(low.abs()).max(high.abs());
-        extent = extent.max(high - low);
-    }
+    let (largest, extent) = (bounds.largest(), bounds.extent());
     let chosen = Pitch::suited(if largest.is_finite() { largest } else { 0.0 }, extent)?;
     if chosen != Pitch::DEFAULT {
         let text = format!(
@@ -205,90 +259,101 @@ fn choose_pitch(
     Ok(chosen)
 }
 
-fn snap_all(vertices: &[[f64; 3]], pitch: Pitch) -> Result<Vec<Lattice>> {
-    vertices
-        .par_iter()
-        .with_min_len(1 << 13)
+/// Six times the enclosed volume in cubic steps, and the faces without area.
+///
+/// The sum is in doubles, about the first vertex, in the order of the faces.
+fn weigh(mesh: &TriangleMesh) -> (f64, Vec<u32>) {
+    let origin = mesh.vertices.first().copied().unwrap_or_default();
+    let (volumes, flat): (Vec<f64>, Vec<Vec<u32>>) = mesh
+        .faces
+        .par_chunks(CHUNK)
         .enumerate()
-        .map(|(row, p)| {
-            snap_point(pitch, p).map_err(|e| {
-                Error::at(
-                    e.kind(),
-                    vec![row as u64],
-                    format!("vertex {row}: {}", e.message()),
-                )
-            })
-        })
-        .collect()
+        .map(|(chunk, faces)| weigh_chunk(faces, &mesh.vertices, &origin, chunk * CHUNK))
+        .unzip();
+    (volumes.iter().sum(), flat.concat())
 }
 
-/// Leaves out the faces without area.
-fn drop_flat_faces(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) {
-    let flat: Vec<bool> = mesh
-        .faces
-        .par_iter()
-        .with_min_len(1 << 13)
-        .map(|f| is_flat(&f.map(|v| mesh.vertices[v as usize])))
-        .collect();
-    let places: Vec<u64> = (0u64..)
-        .zip(&flat)
-        .filter(|(_, f)| **f)
-        .map(|(i, _)| i)
-        .collect();
-    if places.is_empty() {
+/// Leaves out some faces, given in ascending order.
+fn drop_faces(mesh: &mut TriangleMesh, faces: Vec<u32>, findings: &mut Vec<Finding>) {
+    if faces.is_empty() {
         return;
     }
-    let keep: Vec<u32> = (0u32..)
-        .zip(&flat)
-        .filter(|(_, f)| !**f)
-        .map(|(i, _)| i)
-        .collect();
+    let mut dropped = faces.iter().peekable();
+    let kept = |face: &u32| dropped.next_if_eq(&face).is_none();
+    let keep: Vec<u32> = (0..mesh.faces.len() as u32).filter(kept).collect();
     mesh.faces = keep.iter().map(|i| mesh.faces[*i as usize]).collect();
     mesh.numbers = Some(keep);
-    findings.push(Finding::about(
-        "zero_area",
-        Severity::Note,
-        &places,
-        "faces without area were left out",
-    ));
+    let places: Vec<u64> = faces.into_iter().map(u64::from).collect();
+    let text = "faces without area were left out";
+    findings.push(Finding::about("zero_area", Severity::Note, &places, text));
+}
+
+/// The share of a run of faces in [`weigh`].
+fn weigh_chunk(
+    faces: &[[u32; 3]],
+    vertices: &[Lattice],
+    origin: &Lattice,
+    first: usize,
+) -> (f64, Vec<u32>) {
+    let mut volume = 0.0;
+    let mut flat = Vec::new();
+    for (number, face) in (first as u32..).zip(faces) {
+        let corners = face.map(|v| &vertices[v as usize]);
+        let [u, v] = spokes(corners);
+        let arm = [0, 1, 2].map(|i| (corners[0][i] - origin[i]) as f64);
+        volume += arm[0] * (u[1] * v[2] - u[2] * v[1])
+            + arm[1] * (u[2] * v[0] - u[0] * v[2])
+            + arm[2] * (u[0] * v[1] - u[1] * v[0]);
+        if !surely_wide(&u, &v) && is_flat(&corners.map(|c| *c)) {
+            flat.push(number);
+        }
+    }
+    (volume, flat)
 }
 
 /// Whether a triangle has no area.
 pub fn is_flat(corners: &[Lattice; 3]) -> bool {
     let [a, b, c] = corners;
-    let u = [0, 1, 2].map(|i| (b[i] - a[i]) as f64);
-    let v = [0, 1, 2].map(|i| (c[i] - a[i]) as f64);
+    let [u, v] = spokes([a, b, c]);
+    !surely_wide(&u, &v) && normal(a, b, c) == [0; 3]
+}
+
+/// The edges from the first corner to the others, in doubles.
+fn spokes([a, b, c]: [&Lattice; 3]) -> [[f64; 3]; 2] {
+    [b, c].map(|end| [0, 1, 2].map(|i| (end[i] - a[i]) as f64))
+}
+
+/// Whether two edges are not parallel, beyond the rounding of their cross product.
+fn surely_wide(u: &[f64; 3], v: &[f64; 3]) -> bool {
     let certain = |i: usize, j: usize| {
         let (p, q) = (u[i] * v[j], u[j] * v[i]);
         (p - q).abs() > 4.0 * f64::EPSILON * (p.abs() + q.abs())
     };
-    if certain(0, 1) || certain(1, 2) || certain(2, 0) {
-        return false;
-    }
-    normal(a, b, c) == [0; 3]
+    certain(0, 1) || certain(1, 2) || certain(2, 0)
 }
 
-/// Pairs half-edges; welds by place, then cancels along lines, if they do not pair by index.
-fn close(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Topology> {
-    let topology = Topology::new(&mesh.faces, mesh.vertices.len());
-    if topology.unpaired().next().is_none() {
-        return Ok(topology);
+/// How the faces meet; vertices are welded by place, then edges cancelled along lines, if the
+/// faces do not close by index.
+fn close(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Joints> {
+    if let Some(joints) = Joints::of_closed(mesh) {
+        return Ok(joints);
     }
-    let before = mesh.faces.clone();
-    if weld(mesh) {
+    if let Some(welded) = weld(mesh) {
+        mesh.faces = welded;
         findings.push(Finding::about(
             "welded",
             Severity::Note,
             &[0],
             "vertices at the same place were welded to close the mesh",
         ));
-    } else {
-        mesh.faces = before;
+        if let Some(joints) = Joints::of_closed(mesh) {
+            return Ok(joints);
+        }
     }
     let topology = Topology::new(&mesh.faces, mesh.vertices.len());
     let open = open_edges(&mesh.vertices, &mesh.faces, topology.unpaired());
     if open.is_empty() {
-        return Ok(topology);
+        return Ok(Joints::of_open(mesh, &topology));
     }
     Err(not_closed(mesh, &open))
 }
@@ -319,8 +384,8 @@ fn place([x, y, z]: &[f64; 3]) -> String {
     format!("({x}, {y}, {z})")
 }
 
-/// Makes vertices at one lattice point one vertex; says whether there were any.
-fn weld(mesh: &mut TriangleMesh) -> bool {
+/// The faces with vertices at one lattice point made one; `None` if there are no such vertices.
+fn weld(mesh: &TriangleMesh) -> Option<Vec<[u32; 3]>> {
     let mut first: HashMap<Lattice, u32> =
         HashMap::with_capacity_and_hasher(mesh.vertices.len(), rustc_hash::FxBuildHasher);
     let image: Vec<u32> = (0u32..)
@@ -328,8 +393,6 @@ fn weld(mesh: &mut TriangleMesh) -> bool {
         .map(|(i, p)| *first.entry(*p).or_insert(i))
         .collect();
     let changed = (0u32..).zip(&image).any(|(i, v)| i != *v);
-    for vertex in mesh.faces.iter_mut().flatten() {
-        *vertex = image[*vertex as usize];
-    }
-    changed
+    let weld = |face: &[u32; 3]| face.map(|v| image[v as usize]);
+    changed.then(|| mesh.faces.iter().map(weld).collect())
 }

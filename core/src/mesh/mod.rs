@@ -1,14 +1,19 @@
 //! Triangle meshes on the lattice: import, topology and findings.
 #![allow(
     clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
     clippy::cast_precision_loss,
     clippy::cast_sign_loss
 )]
 
+mod chain;
 mod ears;
 pub mod facets;
 pub mod finding;
 pub mod grid;
 pub mod import;
+pub mod joints;
+mod links;
+mod snap;
 pub mod source;
 pub mod topology;

@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::finding::Finding;
 use super::grid::Pitch;
+use super::joints::Joints;
 use super::topology::Topology;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::{Lattice, Plane};
@@ -16,6 +17,7 @@ pub struct Source {
     id: u64,
     pitch: Pitch,
     shape: Shape,
+    joints: OnceLock<Joints>,
     topology: OnceLock<Topology>,
     cell: OnceLock<Option<Cell>>,
     findings: Vec<Finding>,
@@ -52,21 +54,24 @@ impl Source {
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
             pitch,
             shape,
+            joints: OnceLock::new(),
             topology: OnceLock::new(),
             cell: OnceLock::new(),
             findings,
         }
     }
 
-    /// A source whose half-edges are paired already.
-    pub fn with_topology(
+    /// A source of a mesh of which the joints and the smallest cell are known already.
+    pub fn checked(
         mesh: TriangleMesh,
         pitch: Pitch,
-        topology: Topology,
+        joints: Joints,
+        cell: Cell,
         findings: Vec<Finding>,
     ) -> Self {
         let source = Self::new(pitch, Shape::Mesh(mesh), findings);
-        let _ = source.topology.set(topology);
+        let _ = source.joints.set(joints);
+        let _ = source.cell.set(Some(cell));
         source
     }
 
@@ -101,6 +106,12 @@ impl Source {
     /// The number of faces.
     pub fn face_count(&self) -> usize {
         self.mesh().map_or(1, |m| m.faces.len())
+    }
+
+    /// How the faces meet, found on first use; `None` for a half-space.
+    pub fn joints(&self) -> Option<&Joints> {
+        let mesh = self.mesh()?;
+        Some(self.joints.get_or_init(|| Joints::of(mesh)))
     }
 
     /// The half-edges' mates, paired on first use; `None` for a half-space.

@@ -1,0 +1,78 @@
+//! Whether the boundary of a surface vanishes, without looking for pairs.
+
+use rayon::prelude::*;
+
+/// Faces of one task.
+const CHUNK: usize = 1 << 14;
+
+/// Whether every directed edge occurs as often as its opposite.
+///
+/// Each edge is given a number of 128 bits that looks random; it is added for one direction and
+/// subtracted for the other, modulo 2^128. A closed surface sums to zero, whatever its order. An
+/// open one sums to a number that is zero by chance 2^-128.
+pub fn is_closed(faces: &[[u32; 3]]) -> bool {
+    let chunk_sum = |faces: &[[u32; 3]]| faces.iter().map(boundary).fold(0, u128::wrapping_add);
+    let sum = faces.par_chunks(CHUNK).map(chunk_sum);
+    sum.reduce(|| 0, u128::wrapping_add) == 0
+}
+
+fn boundary([a, b, c]: &[u32; 3]) -> u128 {
+    directed(*a, *b)
+        .wrapping_add(directed(*b, *c))
+        .wrapping_add(directed(*c, *a))
+}
+
+fn directed(from: u32, to: u32) -> u128 {
+    let number = scattered(u64::from(from.min(to)) << 32 | u64::from(from.max(to)));
+    if from < to {
+        number
+    } else {
+        number.wrapping_neg()
+    }
+}
+
+/// Numbers without pattern: the first binary places after the point of √2, √3, √5 and √7.
+const SALT: [u64; 4] = [
+    0x6A09_E667_F3BC_C908,
+    0xBB67_AE85_84CA_A73B,
+    0x3C6E_F372_FE94_F82B,
+    0xA54F_F53A_5F1D_36F1,
+];
+
+/// A number that depends on each bit of the key as if by chance: two rounds of multiply and fold.
+fn scattered(key: u64) -> u128 {
+    let first = u128::from(key ^ SALT[0]) * u128::from(key.rotate_left(29) ^ SALT[1]);
+    let (low, high) = (first as u64, (first >> 64) as u64);
+    let second = u128::from(low ^ SALT[2]) * u128::from(high ^ SALT[3]);
+    second ^ first.rotate_left(64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_closed;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Corners are few, so that edges repeat and now and then all cancel.
+        #[test]
+        fn closed_is_what_a_count_of_edges_says(
+            faces in prop::collection::vec(prop::array::uniform3(0u32..5), 0..6),
+            twins in any::<bool>(),
+        ) {
+            let proper = |f: &[u32; 3]| f[0] != f[1] && f[1] != f[2] && f[2] != f[0];
+            let mut faces: Vec<_> = faces.into_iter().filter(proper).collect();
+            if twins {
+                let back: Vec<_> = faces.iter().map(|[a, b, c]| [*b, *a, *c]).collect();
+                faces.extend(back);
+            }
+            let mut sums = [[0i32; 5]; 5];
+            for [a, b, c] in &faces {
+                for (from, to) in [(*a, *b), (*b, *c), (*c, *a)] {
+                    sums[from as usize][to as usize] += 1;
+                    sums[to as usize][from as usize] -= 1;
+                }
+            }
+            prop_assert_eq!(is_closed(&faces), sums.iter().flatten().all(|s| *s == 0));
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Many points onto the lattice at once, to the same places as one by one.
+
+use rayon::prelude::*;
+
+use super::grid::{snap_point, Pitch};
+use crate::error::{Error, Result};
+use crate::geometry::plane::Lattice;
+
+/// Rows of one task.
+const CHUNK: usize = 1 << 13;
+
+/// Among the doubles around 1.5·2^52 are the integers and nothing else: adding it rounds.
+const ROUNDER: f64 = 6_755_399_441_055_744.0;
+
+/// Below this magnitude the sum with [`ROUNDER`] stays among them.
+const REACH: f64 = (1u64 << 51) as f64;
+
+/// The lattice points nearest to points in model units, and copies of these.
+///
+/// # Errors
+/// As [`Pitch::snap`], with the first row that does not fit.
+pub fn snap_all(points: &[[f64; 3]], pitch: Pitch) -> Result<(Vec<Lattice>, Vec<[f64; 3]>)> {
+    let mut lattice = vec![[0; 3]; points.len()];
+    let mut doubles = vec![[0.0; 3]; points.len()];
+    let chunks: Vec<Result<()>> = lattice
+        .par_chunks_mut(CHUNK)
+        .zip(doubles.par_chunks_mut(CHUNK))
+        .zip(points.par_chunks(CHUNK))
+        .enumerate()
+        .map(|(chunk, ((lattice, doubles), points))| {
+            doubles.copy_from_slice(points);
+            snap_chunk(doubles, pitch, chunk * CHUNK, lattice)
+        })
+        .collect();
+    chunks.into_iter().collect::<Result<()>>()?;
+    Ok((lattice, doubles))
+}
+
+fn snap_chunk(
+    points: &[[f64; 3]],
+    pitch: Pitch,
+    first_row: usize,
+    lattice: &mut [Lattice],
+) -> Result<()> {
+    if let Some(power) = pitch.steps_per_unit() {
+        if snap_clear(points, power, lattice) {
+            return Ok(());
+        }
+    }
+    for (row, (point, place)) in points.iter().zip(lattice).enumerate() {
+        *place = snap_point(pitch, point).map_err(|e| at_row(&e, first_row + row))?;
+    }
+    Ok(())
+}
+
+fn at_row(error: &Error, row: usize) -> Error {
+    let text = format!("vertex {row}: {}", error.message());
+    Error::at(error.kind(), vec![row as u64], text)
+}
+
+/// Rounds the products with a power; says whether doubles left no doubt about any.
+///
+/// The rounded product is within `f64::EPSILON / 2` of the exact one, relatively. If it is also
+/// nearer to an integer than one half by more than that, then that integer is nearest to the exact
+/// product.
+fn snap_clear(points: &[[f64; 3]], power: f64, lattice: &mut [Lattice]) -> bool {
+    let mut clear = true;
+    for (point, place) in points.as_flattened().iter().zip(lattice.as_flattened_mut()) {
+        let product = point * power;
+        let sum = product + ROUNDER;
+        let rest = product - (sum - ROUNDER);
+        clear &= product.abs() < REACH;
+        clear &= rest.abs() + product.abs() * f64::EPSILON < 0.5;
+        *place = (sum.to_bits() as i64).wrapping_sub(ROUNDER.to_bits() as i64);
+    }
+    clear
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{snap_all, REACH};
+    use crate::mesh::grid::{snap_point, Pitch};
+    use proptest::prelude::*;
+
+    /// Doubles at, and next to, the middle between two lattice points, and everywhere else.
+    fn coordinate() -> impl Strategy<Value = f64> {
+        let middle = |k: i64, ulps: i64| {
+            let x = (k as f64 + 0.5) / 1e9;
+            f64::from_bits((x.to_bits() as i64 + ulps) as u64)
+        };
+        prop_oneof![
+            (-(1i64 << 40)..1 << 40, -2i64..3).prop_map(move |(k, u)| middle(k, u)),
+            (-(1i64 << 53)..1 << 53, -2i64..3).prop_map(move |(k, u)| middle(k, u)),
+            -1e3..1e3,
+            -9e6..9e6,
+            Just(-0.0),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn points_snap_as_one_by_one(
+            rows in prop::collection::vec([coordinate(), coordinate(), coordinate()], 1..40),
+            exponent in -9i64..3,
+        ) {
+            let pitch = Pitch::new(exponent).unwrap();
+            let singly: Result<Vec<_>, _> = rows.iter().map(|p| snap_point(pitch, p)).collect();
+            match (snap_all(&rows, pitch), singly) {
+                (Ok((lattice, doubles)), Ok(expected)) => {
+                    prop_assert_eq!(lattice, expected);
+                    prop_assert_eq!(doubles, rows);
+                }
+                (Err(e), Err(expected)) => prop_assert_eq!(e.kind(), expected.kind()),
+                (all, singly) => prop_assert!(false, "{:?} against {:?}", all, singly),
+            }
+        }
+    }
+
+    #[test]
+    fn the_first_row_that_does_not_fit_is_named() {
+        let pitch = Pitch::DEFAULT;
+        let rows = [[0.0; 3], [REACH, 0.0, 0.0], [f64::NAN; 3]];
+        assert_eq!(snap_all(&rows, pitch).unwrap_err().place(), [1]);
+        let rows = [[1.0, 0.0, f64::NAN], [REACH, 0.0, 0.0]];
+        assert_eq!(snap_all(&rows, pitch).unwrap_err().place(), [0]);
+    }
+}
