@@ -1,6 +1,8 @@
 //! Set operations: one descent over trees and deferred leaves, and generic tree merging.
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
+mod bins;
+mod crossings;
 pub mod descend;
 pub mod evaluate;
 pub mod expression;
@@ -12,8 +14,10 @@ pub mod merge_trees;
 pub mod op;
 mod overlay;
 pub mod partition_tree;
+mod separation;
 pub mod simple;
 pub mod split_tree;
+mod window;
 
 pub use merge_trees::merge;
 pub use op::{Outcome, SetOp};
