@@ -252,8 +252,9 @@ impl Pair {
         let lists: Vec<(u32, List)> = (0..).zip(self.lists.iter().cloned()).collect();
         let rule = Rule::Positive;
         let expression = expression(op);
+        let named: Vec<(u32, &List)> = lists.iter().map(|(k, list)| (*k, list)).collect();
         let general =
-            leaf::in_general_position(&self.cell, &expression, rule, &lists, &self.sources);
+            leaf::in_general_position(&self.cell, &expression, rule, &named, &self.sources);
         let node = leaf::by_trees(&self.cell, &expression, rule, lists, &self.sources, |_| ());
         self.check(op, "trees", node);
         match general.filter(|_| self.is_simple()) {

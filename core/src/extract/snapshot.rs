@@ -422,12 +422,7 @@ impl PartData {
         if !is_balanced(&edges) {
             return Err(bad_snapshot());
         }
-        let part = Part {
-            source: Arc::clone(source),
-            face: self.face,
-            home,
-            edges,
-        };
+        let part = Part::new(Arc::clone(source), self.face, home, edges);
         Ok(PartElement {
             part: Arc::new(part),
             flip: self.flip,

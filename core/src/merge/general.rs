@@ -34,7 +34,7 @@ type Labels = u64;
 pub fn evaluate(
     cell: &Cell,
     expression: &Expression,
-    lists: &[(u32, List)],
+    lists: &[(u32, &List)],
     sources: &Sources,
 ) -> Option<(Vec<Kept>, i32)> {
     let simple = lists.iter().all(|(_, list)| (0..=1).contains(&list.corner));
@@ -108,7 +108,7 @@ enum Stays {
 }
 
 impl<'a> Scene<'a> {
-    fn new(cell: &'a Cell, lists: &'a [(u32, List)], sources: &'a Sources) -> Self {
+    fn new(cell: &'a Cell, lists: &[(u32, &'a List)], sources: &'a Sources) -> Self {
         let mut scene = Self {
             cell,
             corner: cell.corner(),

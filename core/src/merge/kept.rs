@@ -53,8 +53,8 @@ impl Kept {
         match &self.what {
             What::Whole => source.clip(self.face.1, cell).into_iter().collect(),
             What::Part(part) => {
-                let pieces = part.pieces().into_iter();
-                pieces.filter_map(|p| p.clipped(cell)).collect()
+                let clipped = part.pieces().iter().filter_map(|p| p.clone().clipped(cell));
+                clipped.collect()
             }
             What::Pieces(pieces) => pieces.clone(),
         }
@@ -102,17 +102,8 @@ pub fn assemble(mut kept: Vec<Kept>, corner: i32, cell: &Cell, sources: &Sources
         if is_whole(&edges, source, face, cell) {
             list_whole(&mut leaf.groups, source, face, run[0].flip);
         } else {
-            let part = Part {
-                source: Arc::clone(source),
-                face,
-                home: *cell,
-                edges,
-            };
-            let part = Arc::new(part);
-            leaf.parts.push(PartElement {
-                part,
-                flip: run[0].flip,
-            });
+            let part = Arc::new(Part::new(Arc::clone(source), face, *cell, edges));
+            leaf.parts.push(PartElement { part, flip });
         }
     }
     Node::Deferred(leaf)

@@ -66,7 +66,8 @@ pub fn evaluate(
     sources: &Sources,
     evidence: impl FnMut(u32),
 ) -> Node {
-    in_general_position(cell, expression, rule, &lists, sources)
+    let named: Vec<(u32, &List)> = lists.iter().map(|(k, list)| (*k, list)).collect();
+    in_general_position(cell, expression, rule, &named, sources)
         .unwrap_or_else(|| by_trees(cell, expression, rule, lists, sources, evidence))
 }
 
@@ -75,7 +76,7 @@ pub fn in_general_position(
     cell: &Cell,
     expression: &Expression,
     rule: Rule,
-    lists: &[(u32, List)],
+    lists: &[(u32, &List)],
     sources: &Sources,
 ) -> Option<Node> {
     if rule != Rule::Positive {

@@ -1,6 +1,8 @@
 //! Set operations: one descent over trees and deferred leaves, and generic tree merging.
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
+mod bins;
+mod crossings;
 mod cutting;
 pub mod descend;
 pub mod evaluate;
@@ -15,8 +17,10 @@ pub mod merge_trees;
 pub mod op;
 mod overlay;
 pub mod partition_tree;
+mod separation;
 pub mod simple;
 pub mod split_tree;
+mod window;
 
 pub use merge_trees::merge;
 pub use op::{Outcome, SetOp};

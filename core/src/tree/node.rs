@@ -1,6 +1,6 @@
 //! The partition tree of a solid: dyadic cuts above, deferred leaves below.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::geometry::cell::Cell;
 use crate::geometry::outline;
@@ -137,15 +137,27 @@ pub struct Part {
     pub home: Cell,
     /// The outline, counterclockwise on the face.
     pub edges: Vec<OutlineEdge>,
+    pieces: OnceLock<Arc<Vec<Polygon>>>,
 }
 
 impl Part {
-    /// The convex pieces, derived from the outline.
-    pub fn pieces(&self) -> Vec<Polygon> {
-        match self.source.clip(self.face, &self.home) {
-            Some(polygon) => outline::pieces(polygon, &self.edges),
-            None => Vec::new(),
+    /// The part of a face that an outline bounds in a cell.
+    pub fn new(source: Arc<Source>, face: u32, home: Cell, edges: Vec<OutlineEdge>) -> Self {
+        Self {
+            source,
+            face,
+            home,
+            edges,
+            pieces: OnceLock::new(),
         }
+    }
+
+    /// The convex pieces, derived from the outline on first use.
+    pub fn pieces(&self) -> &Arc<Vec<Polygon>> {
+        self.pieces.get_or_init(|| {
+            let polygon = self.source.clip(self.face, &self.home);
+            Arc::new(polygon.map_or_else(Vec::new, |p| outline::pieces(p, &self.edges)))
+        })
     }
 }
 
