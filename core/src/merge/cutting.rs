@@ -7,6 +7,7 @@
 //! Everything is for general position. Faces that touch the polygon in edges, in one plane with it,
 //! or that meet it in one and the same segment are for the local trees: the answer is `None`.
 
+use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::sync::Arc;
 
@@ -18,15 +19,15 @@ use crate::geometry::vertex::Vertex;
 
 /// A convex polygon and the planes that bound it within its own, once somebody asks for them.
 #[derive(Debug)]
-pub struct Face {
+pub struct Face<'a> {
     /// The polygon.
-    pub polygon: Polygon,
+    pub polygon: Cow<'a, Polygon>,
     rims: OnceCell<Vec<Plane>>,
 }
 
-impl Face {
+impl<'a> Face<'a> {
     /// A face.
-    pub fn new(polygon: Polygon) -> Self {
+    pub fn new(polygon: Cow<'a, Polygon>) -> Self {
         let rims = OnceCell::new();
         Self { polygon, rims }
     }
@@ -54,7 +55,7 @@ impl Face {
 #[derive(Clone, Copy, Debug)]
 pub struct Cutter<'a> {
     /// The face, or a convex piece of it.
-    pub face: &'a Face,
+    pub face: &'a Face<'a>,
     /// Whose it is.
     pub operand: usize,
     /// By how much the winding number on its minus side exceeds that on its plus side.
@@ -306,7 +307,7 @@ pub enum Contact {
 }
 
 /// How a face may meet a polygon whose bounds it shares.
-pub fn contact(polygon: &Polygon, face: &Face) -> Contact {
+pub fn contact(polygon: &Polygon, face: &Face<'_>) -> Contact {
     let theirs = face.polygon.sides(polygon.support());
     let crossed = straddle(&theirs) == (true, true);
     if !crossed && theirs.iter().filter(|s| **s == 0).count() > 1 {

@@ -5,6 +5,7 @@
 //! that hang together at vertices. Whatever is special — faces in one plane, edges in faces,
 //! contacts, operands that overlap themselves — is left to the local trees of `leaf`.
 
+use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::sync::Arc;
 
@@ -64,9 +65,9 @@ struct Element<'a> {
 enum Place<'a> {
     Face(Triangle<'a>),
     /// The face of a half-space: its slot, and its part in the cell.
-    Plane(u32, Face),
+    Plane(u32, Face<'a>),
     /// A piece of a part: the part's number in the scene.
-    Piece(usize, Face),
+    Piece(usize, Face<'a>),
 }
 
 /// A whole face.
@@ -76,7 +77,7 @@ struct Triangle<'a> {
     face: u32,
     vertices: [u32; 3],
     corners: [Lattice; 3],
-    shape: OnceCell<Face>,
+    shape: OnceCell<Face<'a>>,
 }
 
 struct Scene<'a> {
@@ -90,14 +91,14 @@ struct Scene<'a> {
 }
 
 /// What became of an element.
-enum Fate {
+enum Fate<'a> {
     /// It does not meet the cell.
     Absent,
     /// Nothing crosses it, and it has this anchor.
-    Uncut(Anchor),
+    Uncut(Anchor<'a>),
     /// It was cut up; the numbers of the pieces follow from that of a piece with this corner, which
     /// is also the given anchor, if it is one.
-    Cut(Cutting, Arc<Vertex>, Option<Anchor>),
+    Cut(Cutting, Arc<Vertex>, Option<Anchor<'a>>),
 }
 
 /// What stays of an element on one side.
@@ -140,7 +141,7 @@ impl<'a> Scene<'a> {
                     shape: OnceCell::new(),
                 }),
                 Shape::HalfSpace(plane) => match Polygon::span(plane, self.cell) {
-                    Some(polygon) => Place::Plane(slot, Face::new(polygon)),
+                    Some(polygon) => Place::Plane(slot, Face::new(Cow::Owned(polygon))),
                     None => continue,
                 },
             };
@@ -165,7 +166,7 @@ impl<'a> Scene<'a> {
                 self.elements.push(Element {
                     operand,
                     weight: if p.element.flip { -1 } else { 1 },
-                    place: Place::Piece(part, Face::new(piece.clone())),
+                    place: Place::Piece(part, Face::new(Cow::Borrowed(piece))),
                     low: low.map(|x| x.floor() as i64),
                     high: high.map(|x| x.ceil() as i64),
                 });
@@ -224,14 +225,14 @@ impl<'a> Scene<'a> {
         }
     }
 
-    fn fates(&self) -> Option<Vec<Fate>> {
+    fn fates(&self) -> Option<Vec<Fate<'_>>> {
         let neighbours = self.neighbours();
         (0..self.elements.len())
             .map(|i| self.fate(i, &neighbours[i]))
             .collect()
     }
 
-    fn fate(&self, i: usize, neighbours: &[u32]) -> Option<Fate> {
+    fn fate(&self, i: usize, neighbours: &[u32]) -> Option<Fate<'_>> {
         let element = &self.elements[i];
         let anchor = element.anchors(self.cell).first().copied();
         if let (Some(anchor), true) = (anchor, neighbours.is_empty()) {
@@ -244,7 +245,7 @@ impl<'a> Scene<'a> {
         if let (Some(anchor), true) = (anchor, cutters.is_empty()) {
             return Some(Fate::Uncut(anchor));
         }
-        let corner = |c: &&Corner| anchor.is_none_or(|a| c.at.as_lattice() == Some(&a.place));
+        let corner = |c: &&Corner| anchor.is_none_or(|a| a.is_at(&c.at));
         let base = Arc::clone(&polygon.corners().iter().find(corner)?.at);
         Some(Fate::Cut(cut_up(polygon, &cutters)?, base, anchor))
     }
@@ -401,12 +402,12 @@ impl<'a> Scene<'a> {
     }
 }
 
-impl Element<'_> {
-    fn shape(&self) -> &Face {
+impl<'a> Element<'a> {
+    fn shape(&self) -> &Face<'a> {
         match &self.place {
             Place::Face(t) => t.shape.get_or_init(|| {
                 let plane = t.source.plane(t.face);
-                Face::new(Polygon::triangle(&t.corners, plane))
+                Face::new(Cow::Owned(Polygon::triangle(&t.corners, plane)))
             }),
             Place::Plane(_, shape) | Place::Piece(_, shape) => shape,
         }
@@ -421,16 +422,23 @@ impl Element<'_> {
     }
 
     /// The corners inside the cell that other elements of the operand may share.
-    fn anchors(&self, cell: &Cell) -> SmallVec<[Anchor; 4]> {
+    fn anchors(&self, cell: &Cell) -> SmallVec<[Anchor<'_>; 4]> {
         match &self.place {
             Place::Face(t) => (0..3)
                 .filter(|i| cell.holds_box(&t.corners[*i], &t.corners[*i]))
                 .map(|i| Anchor {
-                    name: (t.slot, t.vertices[i]),
-                    place: t.corners[i],
+                    name: (u64::from(t.slot), u64::from(t.vertices[i])),
+                    place: Spot::Lattice(t.corners[i]),
                 })
                 .collect(),
-            Place::Plane(..) | Place::Piece(..) => SmallVec::new(),
+            Place::Piece(_, shape) => {
+                let corners = shape.polygon.corners().iter().map(|c| &c.at);
+                corners
+                    .filter(|v| is_well_inside(v, cell))
+                    .map(Anchor::of_vertex)
+                    .collect()
+            }
+            Place::Plane(..) => SmallVec::new(),
         }
     }
 
@@ -481,17 +489,49 @@ fn stays_of_pieces(fate: Fate, sides: &[Option<usize>]) -> [Stays; 2] {
     })
 }
 
-/// A vertex of a source inside the cell.
+/// A vertex of an operand's boundary inside the cell.
 #[derive(Clone, Copy)]
-struct Anchor {
-    name: (u32, u32),
-    place: Lattice,
+struct Anchor<'a> {
+    name: (u64, u64),
+    place: Spot<'a>,
+}
+
+#[derive(Clone, Copy)]
+enum Spot<'a> {
+    Lattice(Lattice),
+    Exact(&'a Arc<Vertex>),
+}
+
+impl<'a> Anchor<'a> {
+    /// A corner of a piece: pieces that share the corner share the object.
+    fn of_vertex(vertex: &'a Arc<Vertex>) -> Self {
+        Self {
+            name: (u64::MAX, Arc::as_ptr(vertex) as usize as u64),
+            place: Spot::Exact(vertex),
+        }
+    }
+
+    fn is_at(&self, corner: &Arc<Vertex>) -> bool {
+        match self.place {
+            Spot::Lattice(p) => corner.as_lattice() == Some(&p),
+            Spot::Exact(vertex) => Arc::ptr_eq(vertex, corner),
+        }
+    }
+}
+
+/// Whether a point certainly lies in a cell.
+fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
+    let (p, low, high) = (vertex.approx(), cell.low(), cell.high());
+    (0..3).all(|i| {
+        let slack = p[i].abs() * 4.0 * f64::EPSILON;
+        p[i] - slack >= low[i] as f64 && p[i] + slack <= high[i] as f64
+    })
 }
 
 /// Vertices with what is known of the other operands there. Vertices of elements that nothing
 /// crosses have the same labels.
 struct Anchors {
-    numbers: HashMap<(usize, u32, u32), u32>,
+    numbers: HashMap<(usize, u64, u64), u32>,
     parents: Vec<u32>,
     labels: Vec<Option<Labels>>,
 }
@@ -517,8 +557,8 @@ impl Anchors {
 
     fn root(&mut self, operand: usize, anchor: Anchor) -> u32 {
         let next = self.parents.len() as u32;
-        let (slot, vertex) = anchor.name;
-        let mut at = *self.numbers.entry((operand, slot, vertex)).or_insert(next);
+        let (kind, vertex) = anchor.name;
+        let mut at = *self.numbers.entry((operand, kind, vertex)).or_insert(next);
         if at == next {
             self.parents.push(next);
             self.labels.push(None);
@@ -533,7 +573,10 @@ impl Anchors {
     fn label(&mut self, scene: &Scene, operand: usize, anchor: Anchor) -> Option<Labels> {
         let root = self.root(operand, anchor) as usize;
         if self.labels[root].is_none() {
-            self.labels[root] = Some(scene.count_at_lattice(operand, &anchor.place)?);
+            self.labels[root] = Some(match anchor.place {
+                Spot::Lattice(point) => scene.count_at_lattice(operand, &point)?,
+                Spot::Exact(point) => scene.count(operand, point)?,
+            });
         }
         self.labels[root]
     }
