@@ -393,7 +393,8 @@ impl State {
 
 fn divide_tree(branch: Branch, cell: &Cell, cut: Cut) -> (State, State) {
     if branch.cell == *cell {
-        if let Node::Cut([minus, plus]) = &*branch.node {
+        if let Node::Cut(halves) = &*branch.node {
+            let [minus, plus] = &halves.children;
             return (
                 State::Tree(branch.child(minus)),
                 State::Tree(branch.child(plus)),
