@@ -210,8 +210,7 @@ struct Pair {
 impl Pair {
     fn new(shapes: [Shape; 2], cell: Cell, seed: u64) -> Option<Self> {
         let solids = shapes.each_ref().map(Shape::unchecked);
-        let table: Vec<Arc<Source>> = solids.iter().flat_map(|s| s.sources().to_vec()).collect();
-        let sources = Sources::new(Arc::from(table));
+        let sources = Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect());
         let [a, b] = solids.each_ref().map(|s| list_in(s, &cell, &sources));
         let lists = [a?, b?];
         let count = sources.get(0).face_count() as u64;
@@ -301,7 +300,7 @@ impl Pair {
             complement: false,
             node: Arc::new(node),
         };
-        let sources = Arc::clone(self.sources.table());
+        let sources = self.sources.table().clone();
         Solid::new(root, self.sources.get(0).pitch(), sources, true)
     }
 }
@@ -343,7 +342,7 @@ fn the_kernel_agrees_with_merged_trees_in_small_cells() {
 
 /// The tree of a whole solid that has not been operated on.
 fn whole_tree(solid: &Solid, seed: u64) -> Tree {
-    tree_in(&solid.sources()[0], &everything(), 0, 0, seed)
+    tree_in(solid.sources().get(0), &everything(), 0, 0, seed)
 }
 
 fn assert_same_solid(tree: &Tree, solid: &Solid, context: &str) {

@@ -8,6 +8,7 @@ pub mod crossing;
 pub mod dim1;
 pub mod dim2;
 pub mod dim3;
+pub mod fixed;
 pub mod line;
 pub mod outline;
 pub mod path;

@@ -517,7 +517,8 @@ fn opened_leaf(branch: Branch, descent: &Descent) -> State {
 
 fn divide_tree(branch: Branch, cell: &Cell, cut: Cut) -> (State, State) {
     if branch.cell == *cell {
-        if let Node::Cut([minus, plus]) = &*branch.node {
+        if let Node::Cut(halves) = &*branch.node {
+            let [minus, plus] = &halves.children;
             return (
                 State::Tree(branch.child(minus)),
                 State::Tree(branch.child(plus)),

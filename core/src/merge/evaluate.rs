@@ -1,7 +1,6 @@
 //! Expressions over solids.
 
 use std::sync::atomic::AtomicBool;
-use std::sync::Arc;
 
 use super::descend::{Counters, Descent};
 use super::expression::{Expression, Term};
@@ -10,8 +9,8 @@ use super::list::Sources;
 use super::simple::is_simple;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grid::Pitch;
-use crate::mesh::source::Source;
 use crate::tree::solid::Solid;
+use crate::tree::table::Table;
 
 /// The value of an expression whose operands are these solids.
 ///
@@ -39,7 +38,7 @@ pub fn evaluate(
         let overlaps = descent.overlapping();
         if overlaps.is_empty() {
             let reduced = operands.iter().all(Solid::is_reduced);
-            let table = Arc::clone(sources.table());
+            let table = sources.table().clone();
             let named = operands.iter().map(Solid::named).max().unwrap_or(0);
             let solid = Solid::new(root, pitch, table, reduced).outgrowing(named);
             return Ok((solid, descent.counters));
@@ -74,7 +73,7 @@ pub fn normalize(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid
 }
 
 fn unite(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid> {
-    let sources = Sources::new(Arc::clone(solid.sources()));
+    let sources = Sources::new(solid.sources().clone());
     if is_simple(solid, &sources, cancel)? == Some(true) {
         return Ok(solid.clone().with_reduced(true));
     }
@@ -84,7 +83,7 @@ fn unite(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid> {
     if descent.overlapping().is_empty() {
         return Ok(solid.clone().with_reduced(true));
     }
-    let table = Arc::clone(sources.table());
+    let table = sources.table().clone();
     Ok(Solid::new(root, solid.pitch(), table, true))
 }
 
@@ -111,15 +110,13 @@ fn common_pitch(expression: &Expression, solids: &[Solid]) -> Result<Pitch> {
 }
 
 /// The operands' sources in the order of their first appearance.
-fn joint_table(solids: &[Solid]) -> Arc<[Arc<Source>]> {
-    if let [only] = solids {
-        return Arc::clone(only.sources());
-    }
-    let mut seen = std::collections::HashSet::new();
-    solids
-        .iter()
-        .flat_map(|s| s.sources().iter())
-        .filter(|s| seen.insert(s.id()))
-        .cloned()
-        .collect()
+fn joint_table(solids: &[Solid]) -> Table {
+    let tables = solids.iter().map(Solid::sources);
+    tables.fold(Table::default(), |all, one| {
+        if all.is_empty() {
+            one.clone()
+        } else {
+            all.joined(one)
+        }
+    })
 }

@@ -1,8 +1,6 @@
 //! The list of elements that meet a cell, and its division at the cell's cut.
 
-use std::sync::Arc;
-
-use rustc_hash::FxHashMap as HashMap;
+use std::sync::{Arc, OnceLock};
 
 use super::separation::misses;
 use crate::geometry::cell::{Cell, Cut};
@@ -11,6 +9,7 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Branch, Deferred, Group, Node, PartElement};
+use crate::tree::table::Table;
 
 /// Coordinates relative to a cell, coarse enough for 32 bits.
 #[derive(Clone, Copy, Debug)]
@@ -88,39 +87,27 @@ pub struct List {
 
 /// The sources of an evaluation, in the order of the expression.
 #[derive(Debug)]
-pub struct Sources {
-    table: Arc<[Arc<Source>]>,
-    by_id: HashMap<u64, u32>,
-}
+pub struct Sources(Table);
 
 impl Sources {
-    /// A table; the first place of a source counts.
-    pub fn new(table: Arc<[Arc<Source>]>) -> Self {
-        let mut by_id = std::collections::HashMap::with_capacity_and_hasher(
-            table.len(),
-            rustc_hash::FxBuildHasher,
-        );
-        for (slot, source) in (0u32..).zip(table.iter()) {
-            by_id.entry(source.id()).or_insert(slot);
-        }
-        Self { table, by_id }
+    /// The sources of a table.
+    pub fn new(table: Table) -> Self {
+        Self(table)
     }
 
     /// The table.
-    pub fn table(&self) -> &Arc<[Arc<Source>]> {
-        &self.table
+    pub fn table(&self) -> &Table {
+        &self.0
     }
 
     /// The source in a slot.
     pub fn get(&self, slot: usize) -> &Arc<Source> {
-        &self.table[slot]
+        self.0.get(slot)
     }
 
     /// The slot of a source.
     pub fn slot(&self, source: &Source) -> usize {
-        self.by_id
-            .get(&source.id())
-            .map_or(usize::MAX, |s| *s as usize)
+        self.0.slot(source).unwrap_or(usize::MAX)
     }
 }
 
@@ -293,6 +280,7 @@ impl List {
             parts,
             corner,
             worked: self.worked,
+            share: OnceLock::new(),
         })
     }
 }

@@ -41,9 +41,10 @@ struct Check<'a> {
 /// # Errors
 /// `Cancelled`.
 pub fn is_simple(solid: &Solid, sources: &Sources, cancel: &AtomicBool) -> Result<Option<bool>> {
-    let (Node::Deferred(leaf), [source]) = (&*solid.root().node, &**solid.sources()) else {
+    let (Node::Deferred(leaf), 1) = (&*solid.root().node, solid.sources().len()) else {
         return Ok(None);
     };
+    let source = solid.sources().get(0);
     let Some(mesh) = source
         .mesh()
         .filter(|_| leaf.parts.is_empty() && leaf.groups.len() == 1)

@@ -22,7 +22,7 @@ use crate::mesh::finding::Finding;
 use crate::mesh::grid::{snap_point, Pitch};
 use crate::mesh::import::{half_space, import};
 use crate::query::classify::{classify, Location};
-use crate::query::measure::{volume, volume_near, volume_residues};
+use crate::query::measure::{volume, volume_near, volume_residues, volume_rounded};
 use crate::query::region::hyperplane::plane;
 use crate::query::region::section::section;
 use crate::tree::solid::Solid;
@@ -186,7 +186,7 @@ impl Tree {
 
     #[getter]
     fn source_id(&self) -> Option<u64> {
-        self.solid.sources().first().map(|s| s.id())
+        self.solid.sources().iter().next().map(|s| s.id())
     }
 
     #[getter]
@@ -203,6 +203,11 @@ impl Tree {
     fn volume6_exact(&self, py: Python<'_>) -> PyResult<(BigInt, BigInt)> {
         let fraction = run(py, 0, self.size(), |_| volume(&self.solid))?;
         Ok((fraction.numerator, fraction.denominator))
+    }
+
+    /// The nearest double; None if the near volume has to decide.
+    fn volume_rounded(&self, py: Python<'_>) -> Option<f64> {
+        py.detach(|| volume_rounded(&self.solid))
     }
 
     fn volume_near(&self, py: Python<'_>) -> PyResult<(BigInt, BigInt)> {

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use super::flux::Share;
 use crate::geometry::cell::Cell;
 use crate::geometry::outline;
 use crate::geometry::outline::OutlineEdge;
@@ -17,8 +18,27 @@ pub enum Node {
     Leaf(i32),
     /// A preliminary leaf: its boundary is listed, not yet partitioned.
     Deferred(Deferred),
-    /// The cell's dyadic cut, minus half first.
-    Cut([Branch; 2]),
+    /// The cell's dyadic cut.
+    Cut(Halves),
+}
+
+impl Node {
+    /// A cut with these halves.
+    pub fn cut(minus: Branch, plus: Branch) -> Self {
+        Self::Cut(Halves {
+            children: [minus, plus],
+            share: OnceLock::new(),
+        })
+    }
+}
+
+/// The two halves of a node's cell.
+#[derive(Debug)]
+pub struct Halves {
+    /// Minus half first.
+    pub children: [Branch; 2],
+    /// What the node contributes to the volume, once somebody has asked.
+    pub share: OnceLock<Share>,
 }
 
 /// A subtree in its place.
@@ -102,6 +122,8 @@ pub struct Deferred {
     pub corner: i32,
     /// Whether several operands had boundary here: elements may touch each other.
     pub worked: bool,
+    /// What the node contributes to the volume, once somebody has asked.
+    pub share: OnceLock<Share>,
 }
 
 /// Whole faces of one source with one orientation.

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use rustc_hash::FxHashSet as HashSet;
 
 use super::node::{Branch, Deferred, Group, Node};
+use super::table::Table;
 use crate::geometry::cell::Cell;
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::{Shape, Source};
@@ -19,7 +20,7 @@ const SPARE: usize = 64;
 pub struct Solid {
     root: Branch,
     pitch: Pitch,
-    sources: Arc<[Arc<Source>]>,
+    sources: Table,
     /// How many sources the tree named when that was last counted.
     named: usize,
     reduced: bool,
@@ -28,7 +29,7 @@ pub struct Solid {
 
 impl Solid {
     /// A solid from its parts; `reduced` says that its elements are the reduced boundary.
-    pub fn new(root: Branch, pitch: Pitch, sources: Arc<[Arc<Source>]>, reduced: bool) -> Self {
+    pub fn new(root: Branch, pitch: Pitch, sources: Table, reduced: bool) -> Self {
         let named = sources.len();
         Self {
             root,
@@ -51,7 +52,7 @@ impl Solid {
         if self.sources.len() > 2 * named + SPARE {
             let names = names(&self.root);
             let kept = |s: &&Arc<Source>| names.contains(&s.id());
-            self.sources = self.sources.iter().filter(kept).cloned().collect();
+            self.sources = self.sources.iter().filter(kept).collect();
             self.named = self.sources.len();
         }
         self
@@ -66,7 +67,7 @@ impl Solid {
     pub fn uniform(pitch: Pitch, inside: bool) -> Self {
         let cell = Cell::around(&[0; 3], &[0; 3]);
         let root = Branch::uniform(cell, i32::from(inside));
-        Self::new(root, pitch, Arc::from([]), true)
+        Self::new(root, pitch, Table::default(), true)
     }
 
     /// The solid a source bounds: all its faces in one deferred leaf.
@@ -87,9 +88,8 @@ impl Solid {
         };
         let leaf = Deferred {
             groups: vec![group],
-            parts: Vec::new(),
             corner,
-            worked: false,
+            ..Deferred::default()
         };
         let node = Arc::new(Node::Deferred(leaf));
         let root = Branch {
@@ -98,7 +98,7 @@ impl Solid {
             complement: false,
             node,
         };
-        Self::new(root, pitch, Arc::from([source]), reduced)
+        Self::new(root, pitch, [&source].into_iter().collect(), reduced)
     }
 
     /// The root.
@@ -112,7 +112,7 @@ impl Solid {
     }
 
     /// The sources, in the order of the expression.
-    pub fn sources(&self) -> &Arc<[Arc<Source>]> {
+    pub fn sources(&self) -> &Table {
         &self.sources
     }
 
@@ -145,7 +145,7 @@ fn names(root: &Branch) -> HashSet<u64> {
                 names.extend(leaf.groups.iter().map(|g| g.source.id()));
                 names.extend(leaf.parts.iter().map(|p| p.part.source.id()));
             }
-            Node::Cut(children) => open.extend(children),
+            Node::Cut(halves) => open.extend(&halves.children),
         }
     }
     names

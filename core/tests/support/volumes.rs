@@ -1,8 +1,10 @@
 //! Exact sums.
 
 use bspcsg::arith::{inv_mod, mul_mod, Int, P1, P2};
+use bspcsg::geometry::fixed::FLUX_PLACES;
 use bspcsg::geometry::vertex::Homogeneous;
 use bspcsg::query::measure::{self, Fraction};
+use bspcsg::tree::flux::share;
 use bspcsg::tree::solid::Solid;
 use num_bigint::{BigInt, Sign};
 use num_integer::Integer;
@@ -57,9 +59,16 @@ impl PartialEq for Ratio {
     }
 }
 
-/// The exact volume.
+/// The exact volume; what the nodes have kept must agree with it.
 pub fn volume(solid: &Solid) -> Ratio {
-    Ratio::of(measure::volume(solid).expect("a bounded solid"))
+    let exact = Ratio::of(measure::volume(solid).expect("a bounded solid"));
+    let exponent = u32::try_from(-3 * solid.pitch().exponent()).expect("steps are not long");
+    let units = (BigInt::from(6) << FLUX_PLACES) * BigInt::from(10).pow(exponent);
+    let ends = share(solid.root()).flux.ends().expect("a moderate error");
+    let [low, high] = ends.map(|end| big(&end) * &exact.1);
+    let middle = &exact.0 * units;
+    assert!(low <= middle && middle <= high, "the flux misses {exact:?}");
+    exact
 }
 
 /// Six times the volume of the tetrahedron from the origin to three points.
