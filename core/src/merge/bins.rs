@@ -131,6 +131,7 @@ impl Bins {
             parts: Vec::new(),
             corner: self.corner_of(cell),
             worked: self.leaf().worked,
+            ..Deferred::default()
         };
         Branch {
             cell: *cell,
