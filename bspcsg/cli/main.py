@@ -54,6 +54,8 @@ _VERBS = {
     "check": ("examine", "check"),
     "repair": ("mend", "repair"),
     "compare": ("differ", "compare"),
+    "report": ("report", "report"),
+    "view": ("view", "view"),
     "doctor": ("doctor", "doctor"),
 }
 

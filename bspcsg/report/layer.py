@@ -11,7 +11,7 @@ from .._types import FloatArray, IndexArray
 COLOURS = ("#6f9bd1", "#e0a458", "#7fb285", "#a98bc9", "#c98b8b", "#79b7bd")
 
 #: Colours of a result, and of where two results differ.
-RESULT, DIFFERENCE = "#b4c2d1", "#d7263d"
+RESULT, DIFFERENCE = "#b4c2d1", "#f0283a"
 
 #: Vertices of a simplified mesh lie on a grid of so many cells along the longest side.
 _CELLS = 96

@@ -1,10 +1,19 @@
 """Results of several files, such as the shards of one campaign, as one."""
 
+import json
 import os
 from collections import Counter
 from collections.abc import Iterable
 
-from ..campaign.record import VERDICTS, CaseRecord, Results, RunRecord, read_results
+from ..campaign.record import (
+    SCHEMA,
+    VERDICTS,
+    CaseRecord,
+    Results,
+    RunRecord,
+    is_failure,
+    read_results,
+)
 from ..errors import FormatError
 
 
@@ -52,3 +61,16 @@ def versions_of(runs: Iterable[RunRecord]) -> dict[str, list[str]]:
         for name, version in run["versions"].items():
             found.setdefault(name, set()).add(version)
     return {name: sorted(versions) for name, versions in found.items()}
+
+
+def document(results: Results) -> str:
+    """Return everything as one JSON document."""
+    cases = sorted(results.cases.values(), key=lambda case: (rank(case), case["case"]))
+    found = {
+        "schema": SCHEMA,
+        "verdicts": dict(counted_verdicts(results)),
+        "failures": sum(map(is_failure, cases)),
+        "runs": results.runs,
+        "cases": cases,
+    }
+    return json.dumps(found, indent=1, allow_nan=False) + "\n"

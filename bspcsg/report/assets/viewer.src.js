@@ -11,6 +11,7 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 const FIELD_OF_VIEW = 30;
+const HOME = new Vector3(1, -1, 1);
 const CREASE = Math.cos((25 * Math.PI) / 180);
 // Beyond this many triangles edges are a grey haze, and finding them takes seconds.
 const MOST_FOR_EDGES = 100_000;
@@ -183,7 +184,7 @@ class View {
     const half = Math.min(FIELD_OF_VIEW, FIELD_OF_VIEW * this.camera.aspect) * (Math.PI / 360);
     const distance = (1.02 * this.model.radius) / Math.sin(half);
     this.controls.target.set(0, 0, 0);
-    this.camera.position.set(1, -1, 1).setLength(distance);
+    this.camera.position.copy(HOME).setLength(distance);
     this.controls.update();
     this.draw();
   }
@@ -248,11 +249,12 @@ class View {
     this.draw();
   }
 
-  /** Show what lies below the place on this axis (0, 1, 2), or everything for axis null. */
+  /** Cut at the place on this axis (0, 1, 2), open to where `home` looks from, or null for none. */
   section(axis, place) {
     if (axis !== null) {
-      this.plane.normal.set(0, 0, 0).setComponent(axis, -1);
-      this.plane.constant = place;
+      const way = -Math.sign(HOME.getComponent(axis));
+      this.plane.normal.set(0, 0, 0).setComponent(axis, way);
+      this.plane.constant = -way * place;
     }
     this.layers.forEach((layer) => layer.cut(axis !== null));
     this.draw();
