@@ -36,9 +36,7 @@ def operands_of(case: Case) -> tuple[list[Solid], list[FloatArray | None]]:
             mesh if pose is None else placed(mesh, pose)
             for mesh, pose in zip(meshes, rows, strict=True)
         ]
-    solids = [
-        _solid(mesh, operand) for mesh, operand in zip(meshes, case.operands, strict=True)
-    ]
+    solids = [_solid(mesh, operand) for mesh, operand in zip(meshes, case.operands, strict=True)]
     return solids, rows
 
 

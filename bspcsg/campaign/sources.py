@@ -79,9 +79,7 @@ def inputs_in(paths: Sequence[Path]) -> Inputs:
     return Inputs(tuple(meshes), tuple(scripts), tuple(cases))
 
 
-def _kind_of(
-    path: Path, meshes: list[Path], scripts: list[Path], cases: list[Path]
-) -> list[Path]:
+def _kind_of(path: Path, meshes: list[Path], scripts: list[Path], cases: list[Path]) -> list[Path]:
     suffix = path.suffix.lower()
     kinds = [(FORMATS, meshes), (_SCRIPTS, scripts), ((_CASES,), cases)]
     for suffixes, kind in kinds:
