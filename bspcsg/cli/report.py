@@ -14,7 +14,9 @@ from .options import PATH, common
 from .output import Output, counted
 
 if TYPE_CHECKING:
-    from ..campaign.record import Results
+    from collections.abc import Callable, Sequence
+
+    from ..campaign.record import CaseRecord, Results, RunRecord
 
 _EPILOG = """\b
 Examples:
@@ -117,17 +119,22 @@ class _Reporting:
             from ..report.page import report_page
 
             return report_page(results, self._settings["cards"], self._settings["title"])
+        if self._form == "json":
+            from ..report.merging import document
+
+            return document(results)
+        from ..report.merging import ordered
+
+        return self._summary()(ordered(results), results.runs)
+
+    def _summary(self) -> "Callable[[Sequence[CaseRecord], Sequence[RunRecord]], str]":
         if self._form == "md":
-            from ..report.markdown import markdown
+            from ..report.markdown import markdown_text
 
-            return markdown(results)
-        if self._form == "junit":
-            from ..report.junit import junit
+            return markdown_text
+        from ..report.junit import junit_text
 
-            return junit(results)
-        from ..report.merging import document
-
-        return document(results)
+        return junit_text
 
     def _put(self, data: bytes) -> None:
         from ..io.atomic import write_file

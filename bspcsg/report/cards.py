@@ -119,11 +119,9 @@ def _figures(case: CaseRecord, stored: Stored) -> list[Figure]:
         _figure(f"{layer.name} · {named.get(layer.name, '')}", layer, still([layer], camera))
         for layer in stored.operands
     ]
-    if stored.result is None:
-        return figures
     result = still([stored.result], camera)
     figures.append(_figure("result", stored.result, result))
-    if stored.difference is not None and len(stored.difference.faces):
+    if len(stored.difference.faces):
         images = [image for image in (result, still([stored.difference], camera)) if image]
         return [*figures, Figure("difference of the results, in red", images)]
     return [*figures, _no_difference(case)]

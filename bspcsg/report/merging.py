@@ -2,18 +2,16 @@
 
 import json
 import os
-from collections import Counter
 from collections.abc import Iterable
 
 from ..campaign.record import (
-    SCHEMA,
     VERDICTS,
     CaseRecord,
     Results,
     RunRecord,
-    is_failure,
     read_results,
 )
+from ..campaign.summary import summary_of
 from ..errors import FormatError
 
 
@@ -48,12 +46,6 @@ def rank(case: CaseRecord) -> int:
     return VERDICTS.index(verdict) if verdict in VERDICTS else len(VERDICTS)
 
 
-def counted_verdicts(results: Results) -> list[tuple[str, int]]:
-    """Return how many cases have each verdict, the ones to worry about first."""
-    counts = Counter(case["verdict"] for case in sorted(results.cases.values(), key=rank))
-    return list(counts.items())
-
-
 def versions_of(runs: Iterable[RunRecord]) -> dict[str, list[str]]:
     """Return the versions of each engine, usually one."""
     found: dict[str, set[str]] = {}
@@ -63,14 +55,15 @@ def versions_of(runs: Iterable[RunRecord]) -> dict[str, list[str]]:
     return {name: sorted(versions) for name, versions in found.items()}
 
 
+def ordered(results: Results) -> list[CaseRecord]:
+    """Return all cases, the ones to worry about first, then by name."""
+    return sorted(
+        results.cases.values(), key=lambda case: (rank(case), case["case"], case["key"])
+    )
+
+
 def document(results: Results) -> str:
     """Return everything as one JSON document."""
-    cases = sorted(results.cases.values(), key=lambda case: (rank(case), case["case"]))
-    found = {
-        "schema": SCHEMA,
-        "verdicts": dict(counted_verdicts(results)),
-        "failures": sum(map(is_failure, cases)),
-        "runs": results.runs,
-        "cases": cases,
-    }
+    cases = ordered(results)
+    found = {**summary_of(cases), "runs": results.runs, "results": cases}
     return json.dumps(found, indent=1, allow_nan=False) + "\n"

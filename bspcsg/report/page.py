@@ -5,10 +5,11 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ..campaign.record import FactsRecord, Results, is_failure
+from ..campaign.summary import counts_by_verdict
 from .assets import asset, bundle, rendered
 from .cards import Purse, cards_of, picked
 from .charts import Chart, share_below
-from .merging import counted_verdicts, rank, versions_of
+from .merging import ordered, versions_of
 from .table import table
 from .wording import milliseconds, number, tone, vector, whole
 
@@ -45,7 +46,7 @@ def report_page(results: Results, cards: int = 40, title: str = "Validation repo
     MissingPartError
         If Jinja2 is not installed.
     """
-    cases = sorted(results.cases.values(), key=lambda case: (rank(case), case["case"], case["key"]))
+    cases = ordered(results)
     chosen = picked(results, cards)
     columns, rows = table(cases, {case["key"]: f"case-{k + 1}" for k, case in enumerate(chosen)})
     # Each cell and row costs its tags besides its text.
@@ -56,7 +57,7 @@ def report_page(results: Results, cards: int = 40, title: str = "Validation repo
         title=title,
         lead=_lead(results),
         failed=any(map(is_failure, cases)),
-        verdicts=[(name, count, tone(name)) for name, count in counted_verdicts(results)],
+        verdicts=[(name, count, tone(name)) for name, count in counts_by_verdict(cases).items()],
         charts=_charts(results),
         runs=results.runs,
         versions=versions_of(results.runs),
