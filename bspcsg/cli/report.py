@@ -2,6 +2,7 @@
 
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ from .options import PATH, common
 from .output import Output, counted
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from ..campaign.record import CaseRecord, Results, RunRecord
 
@@ -34,7 +35,12 @@ _FORMATS = ("html", "md", "json", "junit")
 )
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="RESULTS.jsonl [...]")
 @click.option(
-    "-o", "--output", "target", required=True, type=PATH, help="File to write; - for standard output."
+    "-o",
+    "--output",
+    "target",
+    required=True,
+    type=PATH,
+    help="File to write; - for standard output.",
 )
 @click.option(
     "--format",
@@ -107,7 +113,9 @@ class _Reporting:
             known = ", ".join(_SUFFIXES)
             if self._is_stream:
                 raise click.UsageError("to write to standard output, say the form: --format md.")
-            message = f"{shown(self._target)}: the name must end in one of {known}; or say --format."
+            message = (
+                f"{shown(self._target)}: the name must end in one of {known}; or say --format."
+            )
             raise FormatError(message, "unknown_format")
         if self._is_stream and self._out.as_json:
             raise click.UsageError("--json and a report cannot both go to standard output.")
@@ -118,7 +126,9 @@ class _Reporting:
         if self._form == "html":
             from ..report.page import report_page
 
-            return report_page(results, self._settings["cards"], self._settings["title"])
+            with _progress(self._out) as watch:
+                settings = self._settings
+                return report_page(results, settings["cards"], settings["title"], watch)
         if self._form == "json":
             from ..report.merging import document
 
@@ -144,3 +154,17 @@ class _Reporting:
             sys.stdout.buffer.flush()
         else:
             write_file(self._target, [data])
+
+
+@contextmanager
+def _progress(out: Output) -> "Iterator[Callable[[list[CaseRecord]], Iterable[CaseRecord]]]":
+    """Yield what shows, as a bar on the terminal, how many cards are drawn."""
+    if not sys.stderr.isatty() or out.verbosity < 0:
+        yield iter
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
+
+    columns = ("drawing", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        yield bar.track

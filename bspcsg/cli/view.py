@@ -39,7 +39,9 @@ _LARGE = 20_000_000
     type=click.Path(path_type=Path, readable=False),
     help="Page to write; by default one in the folder for temporary files.",
 )
-@click.option("--open/--no-open", "opens", default=True, help="Open the page in a browser (default).")
+@click.option(
+    "--open/--no-open", "opens", default=True, help="Open the page in a browser (default)."
+)
 @reading
 @common
 def view(files: tuple[Path, ...], target: Path | None, **given: Any) -> int:

@@ -1,7 +1,8 @@
 """The cards of a report: which cases get one, and how much of each fits on the page."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from ..campaign.record import CaseRecord, Results
@@ -9,15 +10,21 @@ from ..errors import BspcsgError
 from .layer import Layer
 from .merging import rank
 from .packing import packed
-from .still import camera_for, still
+from .still import camera_for, ring, still
 from .stored import Stored, stored_meshes
 from .wording import tone, whole
 
 #: Characters of a page with so many cards; a page with more cards may be longer in proportion.
-_PAGE, _CARDS = 1_500_000, 40
+_PAGE, _CARDS = 1_450_000, 40
 
 #: Share of the page that cards have even if the table is long.
 _LEAST_SHARE = 0.3
+
+#: Cells a side that a view is simplified to, until it fits.
+_CELLS = (128, 64, 40, 24)
+
+#: Characters of the pictures of one card, about.
+_PICTURES = 10_000
 
 #: How much more than its share of what is left one view may take.
 _GENEROSITY = 2
@@ -65,6 +72,7 @@ class Purse:
     """The characters that may still be spent on cards."""
 
     def __init__(self, cards: int, spent: int) -> None:
+        self._cards = cards
         page = _PAGE * max(1.0, cards / _CARDS)
         self.left = max(page - spent, _LEAST_SHARE * page)
 
@@ -72,9 +80,11 @@ class Purse:
         """Take so many out."""
         self.left -= characters
 
-    def allowance(self, cards: int) -> float:
-        """Return what one of so many cards that are still to come may take."""
-        return min(self.left, _GENEROSITY * self.left / cards)
+    def allowance(self) -> float:
+        """Return what the view of the next card may take, when its pictures are paid for."""
+        cards = max(self._cards, 1)
+        self._cards -= 1
+        return min(self.left, _GENEROSITY * (self.left / cards - _PICTURES))
 
 
 def picked(results: Results, count: int) -> list[CaseRecord]:
@@ -89,7 +99,7 @@ def _urgency(case: CaseRecord) -> tuple[int, bool, float, str]:
     return rank(case), case["meshes"] is None, -doubt, case["case"]
 
 
-def cards_of(cases: Sequence[CaseRecord], results: Results, purse: Purse) -> Iterable[Card]:
+def cards_of(cases: Iterable[CaseRecord], results: Results, purse: Purse) -> Iterable[Card]:
     """Yield a card for each case; what does not fit is left out and said."""
     for number, case in enumerate(cases):
         address = f"case-{number + 1}"
@@ -103,7 +113,7 @@ def cards_of(cases: Sequence[CaseRecord], results: Results, purse: Purse) -> Ite
             yield Card(address, case, tone(case["verdict"]), [], None, error.message)
             continue
         purse.spend(sum(len(image) for figure in figures for image in figure.images))
-        model, note = _model(stored.layers, purse.allowance(len(cases) - number))
+        model, note = _model(stored.layers, purse.allowance())
         purse.spend(len(model["data"]) if model else 0)
         yield Card(address, case, tone(case["verdict"]), figures, model, note)
 
@@ -113,7 +123,7 @@ def _figures(case: CaseRecord, stored: Stored) -> list[Figure]:
     if not stored.layers:
         return []
     camera = camera_for(stored.layers, (4, 3))
-    names = [operand["file"] or operand["name"] for operand in case["operands"]]
+    names = [Path(operand["file"] or operand["name"]).name for operand in case["operands"]]
     named = dict(zip((layer.name for layer in stored.operands), names, strict=False))
     figures = [
         _figure(f"{layer.name} · {named.get(layer.name, '')}", layer, still([layer], camera))
@@ -122,8 +132,11 @@ def _figures(case: CaseRecord, stored: Stored) -> list[Figure]:
     result = still([stored.result], camera)
     figures.append(_figure("result", stored.result, result))
     if len(stored.difference.faces):
-        images = [image for image in (result, still([stored.difference], camera)) if image]
-        return [*figures, Figure("difference of the results, in red", images)]
+        found = case["set_difference"]
+        place = found["place"] if found else None
+        images = [result, still([stored.difference], camera, edges=False)]
+        images += [] if place is None else [ring(place, camera)]
+        return [*figures, Figure("difference of the results, in red", [i for i in images if i])]
     return [*figures, _no_difference(case)]
 
 
@@ -151,12 +164,15 @@ def _model(layers: list[Layer], allowance: float) -> tuple[dict[str, Any] | None
     model = packed(layers, quantised=True)
     if len(model["data"]) <= allowance:
         return model, ""
-    simple = packed([layer.simplified() for layer in layers], quantised=True)
-    before, after = (sum(layer["triangles"] for layer in m["layers"]) for m in (model, simple))
+    for cells in _CELLS:
+        simple = packed([layer.simplified(cells) for layer in layers], quantised=True)
+        if len(simple["data"]) <= allowance:
+            before, after = (
+                sum(layer["triangles"] for layer in m["layers"]) for m in (model, simple)
+            )
+            return simple, (
+                f"The 3D view shows {whole(after)} triangles instead of {whole(before)}, to fit on"
+                f" this page; pictures and numbers are of all of them."
+            )
     size = f"{len(model['data']) / 1000:.0f} kB"
-    if len(simple["data"]) <= allowance:
-        return simple, (
-            f"The 3D view shows {whole(after)} of {whole(before)} triangles, simplified to fit on"
-            f" this page; numbers are of all of them."
-        )
     return None, f"The 3D view would take {size}; fewer cards leave more room for each."

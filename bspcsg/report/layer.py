@@ -13,9 +13,6 @@ COLOURS = ("#6f9bd1", "#e0a458", "#7fb285", "#a98bc9", "#c98b8b", "#79b7bd")
 #: Colours of a result, and of where two results differ.
 RESULT, DIFFERENCE = "#b4c2d1", "#f0283a"
 
-#: Vertices of a simplified mesh lie on a grid of so many cells along the longest side.
-_CELLS = 96
-
 
 @dataclass(frozen=True, eq=False)
 class Layer:
@@ -51,14 +48,14 @@ class Layer:
         _, edge = np.unique(low * size + high, return_inverse=True)
         return not np.bincount(edge.ravel(), np.sign(end - start)).any()
 
-    def simplified(self) -> "Layer":
-        """Return the layer with vertices that lie close together made one: for small pictures."""
+    def simplified(self, cells: int) -> "Layer":
+        """Return the layer with the vertices in each cell made one, so many cells a side."""
         if len(self.faces) == 0:
             return self
         low, high = bounds_of([self])
-        step = max(float((high - low).max()), np.finfo(np.float64).tiny) / _CELLS
-        cells = np.rint((self.vertices - low) / step).astype(np.int64)
-        _, same = np.unique(cells, axis=0, return_inverse=True)
+        step = max(float((high - low).max()), np.finfo(np.float64).tiny) / cells
+        places = np.rint((self.vertices - low) / step).astype(np.int64)
+        _, same = np.unique(places, axis=0, return_inverse=True)
         same = same.ravel()
         counts = np.bincount(same)[:, None]
         sums = [np.bincount(same, axis) for axis in (self.vertices - low).T]

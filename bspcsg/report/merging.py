@@ -57,9 +57,7 @@ def versions_of(runs: Iterable[RunRecord]) -> dict[str, list[str]]:
 
 def ordered(results: Results) -> list[CaseRecord]:
     """Return all cases, the ones to worry about first, then by name."""
-    return sorted(
-        results.cases.values(), key=lambda case: (rank(case), case["case"], case["key"])
-    )
+    return sorted(results.cases.values(), key=lambda case: (rank(case), case["case"], case["key"]))
 
 
 def document(results: Results) -> str:

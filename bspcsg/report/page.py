@@ -1,10 +1,10 @@
 """The report of a campaign as one page."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from ..campaign.record import FactsRecord, Results, is_failure
+from ..campaign.record import CaseRecord, FactsRecord, Results, is_failure
 from ..campaign.summary import counts_by_verdict
 from .assets import asset, bundle, rendered
 from .cards import Purse, cards_of, picked
@@ -31,7 +31,12 @@ _FACTS: tuple[tuple[str, str, Any], ...] = (
 )
 
 
-def report_page(results: Results, cards: int = 40, title: str = "Validation report") -> str:
+def report_page(
+    results: Results,
+    cards: int = 40,
+    title: str = "Validation report",
+    watch: Callable[[list[CaseRecord]], Iterable[CaseRecord]] = iter,
+) -> str:
     """Return the page about all cases.
 
     Parameters
@@ -40,6 +45,8 @@ def report_page(results: Results, cards: int = 40, title: str = "Validation repo
     cards : int
         How many cases are shown with pictures and all their numbers, failures first.
     title : str
+    watch : callable
+        Given the cases of the cards, yields them one by one as they are drawn.
 
     Raises
     ------
@@ -64,7 +71,7 @@ def report_page(results: Results, cards: int = 40, title: str = "Validation repo
         columns=columns,
         rows=rows,
         operations=sorted({case["operation"] for case in cases}),
-        cards=list(cards_of(chosen, results, Purse(len(chosen), spent))),
+        cards=list(cards_of(watch(chosen), results, Purse(len(chosen), spent))),
         total=len(cases),
         facts=_facts,
         number=number,
@@ -110,7 +117,7 @@ def _charts(results: Results) -> list[tuple[str, str, Chart]]:
         ("Time of the operation", "seconds", share_below(list(times.items()))),
         (
             "Thickness of the difference",
-            "times the bound for the same set",
+            "thickness / bound for the same set",
             share_below([("bspcsg and oracle", ratios)]),
         ),
     )

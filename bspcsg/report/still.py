@@ -8,19 +8,24 @@ from urllib.parse import quote
 import numpy as np
 
 from ..bsp import Camera, Picture, picture
-from .layer import Layer, bounds_of
+from .layer import DIFFERENCE, Layer, bounds_of
 
-#: Triangles above which a mesh is simplified first: more are smaller than a pixel.
-_MOST_TRIANGLES = 12_000
+#: Triangles above which a mesh is simplified first, to so many cells a side: more are smaller than
+#: a pixel.
+_MOST_TRIANGLES, _CELLS = 6_000, 96
 
-#: Characters up to which a picture stays SVG, which is sharp at every size.
-_FEW_CHARACTERS = 5_000
+#: Triangles above which edges are left out of small pictures, which they would blacken.
+_MOST_WITH_EDGES = 1_500
+
+#: Characters up to which a picture stays SVG, which is sharp at every size, and how many a polygon
+#: has at least.
+_FEW_CHARACTERS, _POLYGON = 5_000, 40
 
 #: Characters of SVG above which there is no picture if none of pixels can be made.
 _MOST_CHARACTERS = 150_000
 
-#: Of WebP, from 0 to 100.
-_QUALITY = 68
+#: Of WebP: from 0 to 100, and how long to search, from 0 to 6.
+_QUALITY, _EFFORT = 66, 3
 
 
 def camera_for(layers: Sequence[Layer], size: tuple[int, int]) -> Camera:
@@ -31,7 +36,10 @@ def camera_for(layers: Sequence[Layer], size: tuple[int, int]) -> Camera:
 
 
 def still(
-    layers: Sequence[Layer], camera: Camera | None = None, size: tuple[int, int] = (320, 240)
+    layers: Sequence[Layer],
+    camera: Camera | None = None,
+    size: tuple[int, int] = (320, 240),
+    edges: bool = True,
 ) -> str:
     """Return a picture of opaque layers as the address of an image, or nothing if it is too large.
 
@@ -42,12 +50,14 @@ def still(
         By default one that sees all of them.
     size : (int, int)
         Width and height in pixels.
+    edges : bool
+        Whether to draw those that show the shape, if they are not too many.
     """
-    shown = [layer for layer in layers if len(layer.faces)]
-    if not shown:
+    if not any(len(layer.faces) for layer in layers):
         return ""
-    painted = _painted(shown, camera or camera_for(shown, size), size)
-    if len(painted.svg) <= _FEW_CHARACTERS:
+    painted = _painted(layers, camera or camera_for(layers, size), size, edges)
+    few = len(painted.painting.source) * _POLYGON <= _FEW_CHARACTERS
+    if few and len(painted.svg) <= _FEW_CHARACTERS:
         return _vector(painted.svg)
     pixels = _pixels(painted)
     if pixels:
@@ -55,20 +65,46 @@ def still(
     return _vector(painted.svg) if len(painted.svg) <= _MOST_CHARACTERS else ""
 
 
-def _painted(layers: Sequence[Layer], camera: Camera, size: tuple[int, int]) -> Picture:
-    whole = sum(len(layer.faces) for layer in layers) <= _MOST_TRIANGLES
-    meshes = list(layers) if whole else [layer.simplified() for layer in layers]
-    starts = np.cumsum([0, *(len(layer.vertices) for layer in meshes)])
-    vertices = np.concatenate([layer.vertices for layer in meshes])
-    pairs = list(zip(meshes, starts, strict=False))
-    faces = np.concatenate([layer.faces + start for layer, start in pairs])
+def drawing(layer: Layer, size: tuple[int, int], most: int) -> str:
+    """Return the text of an SVG picture; of more than so many triangles it shows the rough shape.
+
+    Parameters
+    ----------
+    layer : Layer
+    size : (int, int)
+        Width and height in pixels.
+    most : int
+    """
+    rough = len(layer.faces) > most
+    shape = layer.simplified(_CELLS // 2) if rough else layer
+    return _painted([shape], camera_for([layer], size), size, edges=not rough).svg
+
+
+def ring(place: Sequence[float], camera: Camera, size: tuple[int, int] = (320, 240)) -> str:
+    """Return the address of an image with a red ring around a point, as the camera sees it."""
+    width, height = size
+    (x, y), *_ = camera.flatten(camera.place(np.array([place]))) * (height / 2)
+    circle = f"<circle cx='{width / 2 + x:.1f}' cy='{height / 2 - y:.1f}' r='9'/>"
+    return _vector(
+        f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {width} {height}' fill='none'"
+        f" stroke='{DIFFERENCE}' stroke-width='2'>{circle}</svg>"
+    )
+
+
+def _painted(
+    layers: Sequence[Layer], camera: Camera, size: tuple[int, int], edges: bool
+) -> Picture:
+    count = sum(len(layer.faces) for layer in layers)
+    whole = count <= _MOST_TRIANGLES
+    meshes = list(layers) if whole else [layer.simplified(_CELLS) for layer in layers]
+    starts = np.cumsum([0, *(len(layer.vertices) for layer in meshes)]).tolist()
+    faces = [layer.faces + start for layer, start in zip(meshes, starts, strict=False)]
     colours = [layer.colour for layer in meshes for _ in range(len(layer.faces))]
     return picture(
-        (vertices, faces),
+        (np.concatenate([layer.vertices for layer in meshes]), np.concatenate(faces)),
         camera=camera,
         size=size,
-        # Bends of a simplified mesh are not those of the shape.
-        edges="feature" if whole else "none",
+        edges="feature" if edges and count <= _MOST_WITH_EDGES * size[0] / 320 else "none",
         colors=colours or None,
         background=None,
         line_width=1.0,
@@ -87,5 +123,5 @@ def _pixels(painted: Picture) -> str:
         return ""
     buffer = io.BytesIO()
     with Image.open(io.BytesIO(painted.png)) as image:
-        image.save(buffer, "WEBP", quality=_QUALITY, method=6)
+        image.save(buffer, "WEBP", quality=_QUALITY, method=_EFFORT)
     return "data:image/webp;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")

@@ -1,13 +1,14 @@
 """A small campaign's results, made without the runner of campaigns."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import bspcsg as b
+from bspcsg.campaign.meshes import packed
 
 Record = dict[str, Any]
 
@@ -92,15 +93,17 @@ def disagreeing() -> Record:
     }
 
 
-def keep_meshes(record: Record, folder: Path, **solids: b.Solid) -> Record:
-    """Store the meshes of a case beside its results, and return the record that names them."""
+def keep_meshes(
+    record: Record, folder: Path, operands: Sequence[b.Solid], result: b.Solid, other: b.Solid
+) -> Record:
+    """Store the meshes of a case beside its results, and return the record that names them.
+
+    `other` is what manifold3d is said to have made.
+    """
     name = f"meshes-{len(list(folder.glob('meshes-*.npz')))}.npz"
-    arrays = {}
-    for key, solid in solids.items():
-        mesh = solid.to_mesh()
-        arrays[f"{key}_vertices"] = mesh.vertices
-        arrays[f"{key}_faces"] = mesh.faces.astype(np.int32)
-    np.savez_compressed(folder / name, **arrays)
+    meshes = [solid.to_mesh() for solid in operands]
+    data = packed(meshes, result.to_mesh(), (result ^ other).to_mesh())
+    (folder / name).write_bytes(data)
     return record | {"meshes": name}
 
 
@@ -111,11 +114,11 @@ def records(folder: Path) -> list[Record]:
         for operation in ("union", "difference"):
             record = case(name, operation, first, second)
             result = first | second if operation == "union" else first - second
-            meshes = {"a": first, "b": second, "result": result, "difference": b.Solid.empty()}
-            found.append(keep_meshes(record, folder, **meshes) if name != "away" else record)
+            kept = name != "away"
+            operands = [first, second]
+            found.append(keep_meshes(record, folder, operands, result, result) if kept else record)
     first, second = b.cube(2), b.cube(0.5).translate(2, 0, 0)
-    meshes = {"a": first, "b": second, "result": first | second, "difference": second}
-    return [*found, keep_meshes(disagreeing(), folder, **meshes)]
+    return [*found, keep_meshes(disagreeing(), folder, [first, second], first | second, first)]
 
 
 def write_results(path: Path, lines: Iterable[Record]) -> Path:
