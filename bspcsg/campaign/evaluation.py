@@ -24,7 +24,8 @@ from .facts import facts_of
 from .identities import identity_of
 from .memory import forget_peak, peak_mb
 from .operands import operands_of
-from .opinions import Question, crossings_opinion, is_installed, opinion, script_opinion
+from .opinions import crossings_opinion, is_installed, opinion, script_opinion
+from .questions import Question
 from .record import (
     SCHEMA,
     CaseRecord,
@@ -167,7 +168,7 @@ class _Evaluation:
         identity = None if self._is_script else identity_of(self._case.operation, solids, result)
         first = _manifold_record(found, asked)
         others = self._further(found, solids, result)
-        verdict, reason = ruled(found.report, others, identity)
+        verdict, reason = ruled(found.report, others, identity, self._is_script)
         record = blank_record(self._case, verdict, reason)
         self._describe_operands(record, solids, rows)
         record["ours"] = facts_of(found.ours, found.report.ours, crossings=True)

@@ -362,9 +362,10 @@ class _Validation:
 
     def _text(self, records: "Sequence[CaseRecord]") -> str:
         from ..campaign.record import is_failure
-        from ..campaign.summary import conclusion, verdict_lines
+        from ..campaign.summary import conclusion, counts_by_verdict
 
-        rows = verdict_lines(records)
+        counts = counts_by_verdict(records)
+        rows = [(verdict, str(count)) for verdict, count in counts.items()]
         lines = [table_text(("verdict", "cases"), rows, right=("cases",))] if rows else []
         failures = [record for record in records if is_failure(record)]
         lines += [_failure(record) for record in failures[:_NAMED]]
