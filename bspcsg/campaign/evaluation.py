@@ -13,8 +13,6 @@ from .. import oracle
 from .._types import FloatArray, SetOp
 from ..check import COMBINE, Examination, examine
 from ..comparison import hausdorff
-from ..csg import CsgWarning
-from ..csg import load as load_script
 from ..errors import BspcsgError, InternalError, MissingPartError
 from ..mesh import Mesh
 from ..solid import Solid
@@ -187,10 +185,12 @@ class _Evaluation:
     def _loaded(self) -> tuple[list[Solid], Sequence[FloatArray | None]]:
         if not self._is_script:
             return operands_of(self._case)
+        from .. import csg
+
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", CsgWarning)
+            warnings.simplefilter("ignore", csg.CsgWarning)
             path = str(self._case.operands[0].file)
-            return [load_script(path, on_invalid="warn")], [None]
+            return [csg.load(path, on_invalid="warn")], [None]
 
     def _examined(self, result: Solid, solids: list[Solid]) -> Examination:
         if not self._is_script:

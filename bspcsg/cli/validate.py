@@ -255,6 +255,11 @@ class _Validation:
         inputs = self._usable(inputs_in(self._paths), answering)
         operations = self._settings["operations"] or _OPERATIONS
         cases = cases_of(inputs, tuple(dict.fromkeys(operations)), draw)
+        if not cases:
+            raise click.UsageError(
+                "there is nothing to validate; give at least two mesh files, a folder of them, a"
+                " script, or a file of cases."
+            )
         if self._settings["only"] is not None:
             cases = [one for one in cases if fnmatch.fnmatchcase(one.name, self._settings["only"])]
             if not cases:
