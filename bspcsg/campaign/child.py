@@ -40,7 +40,7 @@ class Child:
         self._greeting = greeting
         self._process: subprocess.Popen[str] | None = None
         self._lines: queue.SimpleQueue[str] = queue.SimpleQueue()
-        self._said = tempfile.TemporaryFile(mode="w+", errors="replace")  # noqa: SIM115
+        self._said = tempfile.TemporaryFile()  # noqa: SIM115
         self._lock = threading.Lock()
         self._stopped = False
 
@@ -82,6 +82,8 @@ class Child:
         with self._lock:
             self._stopped = True
         self._kill()
+        with self._lock:
+            self._said.close()
 
     def _running(self) -> "subprocess.Popen[str]":
         with self._lock:
@@ -136,8 +138,12 @@ class Child:
             except subprocess.TimeoutExpired:
                 code = None
         self._kill()
-        self._said.seek(0)
-        last = [line.strip() for line in self._said.read().splitlines() if line.strip()][-1:]
+        with self._lock:
+            if self._stopped:
+                return "stopped"
+            self._said.seek(0)
+            said = self._said.read().decode("utf-8", "replace")
+        last = [line.strip() for line in said.splitlines() if line.strip()][-1:]
         return ": ".join([_how(code), *last])
 
     def _kill(self) -> None:
@@ -152,6 +158,10 @@ class Child:
         else:
             process.kill()
         process.wait()
+        assert process.stdin is not None
+        # What was not sent any more cannot be.
+        with suppress(OSError):
+            process.stdin.close()
 
 
 def _how(code: int | None) -> str:

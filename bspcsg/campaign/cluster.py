@@ -6,7 +6,7 @@ a request to a child process and waits, as `bspcsg.campaign.pool` does on one ma
 
 import json
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -63,7 +63,9 @@ class Cluster:
             raise missing_part("distributed", "for --scheduler", remedy)
         self._scheduler, self._greeting = scheduler, json.dumps(greeting)
 
-    def answers(self, requests: Sequence[Any], seconds: float) -> Iterator[tuple[int, Any]]:
+    def answers(
+        self, requests: Sequence[Any], seconds: float
+    ) -> Generator[tuple[int, Any], None, None]:
         """Yield the number of each request and its answer as it comes.
 
         Raises
@@ -71,8 +73,10 @@ class Cluster:
         BspcsgError
             If the scheduler cannot be reached; code "no_scheduler".
         """
-        from distributed import as_completed
+        import distributed
 
+        # Dask has no types.
+        as_completed: Any = distributed.as_completed
         client = self._client()
         numbers = {}
         try:
@@ -87,12 +91,13 @@ class Cluster:
             client.close()
 
     def _client(self) -> Any:
-        from distributed import Client
+        import distributed
 
+        client: Any = distributed.Client
         is_file = Path(self._scheduler).is_file()
         place = {"scheduler_file": self._scheduler} if is_file else {"address": self._scheduler}
         try:
-            return Client(**place, timeout=_PATIENCE, set_as_default=False)
+            return client(**place, timeout=_PATIENCE, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             message = f"{self._scheduler}: no scheduler answers there ({error})."
             raise BspcsgError(message, "no_scheduler") from error

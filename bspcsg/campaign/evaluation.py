@@ -13,8 +13,6 @@ from .. import oracle
 from .._types import FloatArray, SetOp
 from ..check import COMBINE, Examination, examine
 from ..comparison import hausdorff
-from ..csg import CsgWarning
-from ..csg import load as load_script
 from ..errors import BspcsgError, InternalError, MissingPartError
 from ..mesh import Mesh
 from ..solid import Solid
@@ -24,7 +22,8 @@ from .facts import facts_of
 from .identities import identity_of
 from .memory import forget_peak, peak_mb
 from .operands import operands_of
-from .opinions import Question, crossings_opinion, is_installed, opinion, script_opinion
+from .opinions import crossings_opinion, is_installed, opinion, script_opinion
+from .questions import Question
 from .record import (
     SCHEMA,
     CaseRecord,
@@ -167,7 +166,7 @@ class _Evaluation:
         identity = None if self._is_script else identity_of(self._case.operation, solids, result)
         first = _manifold_record(found, asked)
         others = self._further(found, solids, result)
-        verdict, reason = ruled(found.report, others, identity)
+        verdict, reason = ruled(found.report, others, identity, self._is_script)
         record = blank_record(self._case, verdict, reason)
         self._describe_operands(record, solids, rows)
         record["ours"] = facts_of(found.ours, found.report.ours, crossings=True)
@@ -186,10 +185,12 @@ class _Evaluation:
     def _loaded(self) -> tuple[list[Solid], Sequence[FloatArray | None]]:
         if not self._is_script:
             return operands_of(self._case)
+        from .. import csg
+
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", CsgWarning)
+            warnings.simplefilter("ignore", csg.CsgWarning)
             path = str(self._case.operands[0].file)
-            return [load_script(path, on_invalid="warn")], [None]
+            return [csg.load(path, on_invalid="warn")], [None]
 
     def _examined(self, result: Solid, solids: list[Solid]) -> Examination:
         if not self._is_script:

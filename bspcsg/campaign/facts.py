@@ -1,10 +1,10 @@
 """Facts about meshes, as records hold them."""
 
-import math
-from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
+from .._types import FloatArray
 from ..errors import BspcsgError
 from ..mesh import Mesh
 from ..solid import Solid
@@ -32,32 +32,15 @@ def facts_of(mesh: Mesh, facts: Facts | None = None, crossings: bool = False) ->
         "euler_number": known.euler_number,
         "components": known.components,
         "open_edges": known.open_edges,
-        "centroid": _finite(mesh.centroid.tolist()),
-        "inertia": _inertia(mesh),
+        "centroid": _finite(mesh.centroid),
+        "inertia": _finite(mesh.inertia),
         "self_intersections": _crossings(mesh) if crossings else None,
     }
 
 
-def exact_text(volume: Fraction) -> str:
-    """Return a rational number as ``p/q``."""
-    return f"{volume.numerator}/{volume.denominator}"
-
-
-def _finite(numbers: list[float]) -> list[float] | None:
-    return numbers if all(map(math.isfinite, numbers)) else None
-
-
-def _inertia(mesh: Mesh) -> list[list[float]] | None:
-    """Return the moments of inertia about the centre of volume, at density 1."""
-    from trimesh.triangles import mass_properties
-
-    if len(mesh.faces) == 0 or not mesh.volume:
-        return None
-    # From near the middle, far-away models keep their digits.
-    corners = (mesh.vertices - mesh.centroid)[mesh.faces]
-    with np.errstate(all="ignore"):
-        found = np.asarray(mass_properties(corners, density=1.0)["inertia"])
-    return found.tolist() if np.isfinite(found).all() else None
+def _finite(array: FloatArray) -> Any:
+    """Return an array as lists, or None if it has no number."""
+    return array.tolist() if np.isfinite(array).all() else None
 
 
 def _crossings(mesh: Mesh) -> int | None:

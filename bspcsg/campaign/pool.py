@@ -3,7 +3,7 @@
 import queue
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from typing import Any, Protocol
 
 from .child import Child, CrashedError, TimedOutError
@@ -12,7 +12,9 @@ from .child import Child, CrashedError, TimedOutError
 class Answering(Protocol):
     """Something that answers requests in any order."""
 
-    def answers(self, requests: Sequence[Any], seconds: float) -> Iterator[tuple[int, Any]]:
+    def answers(
+        self, requests: Sequence[Any], seconds: float
+    ) -> Generator[tuple[int, Any], None, None]:
         """Yield the number of each request and its answer as it comes.
 
         An answer that never came is a dict with ``failure`` ("timeout" or "crash"), ``reason`` and
@@ -49,7 +51,9 @@ class LocalPool:
     def __init__(self, jobs: int, greeting: dict[str, Any]) -> None:
         self._jobs, self._greeting = jobs, greeting
 
-    def answers(self, requests: Sequence[Any], seconds: float) -> Iterator[tuple[int, Any]]:
+    def answers(
+        self, requests: Sequence[Any], seconds: float
+    ) -> Generator[tuple[int, Any], None, None]:
         """Yield the number of each request and its answer as it comes."""
         waiting: queue.SimpleQueue[int] = queue.SimpleQueue()
         for number in range(len(requests)):

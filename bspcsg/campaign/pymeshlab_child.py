@@ -14,6 +14,9 @@ import numpy as np
 
 MISSING = 6
 
+#: What pymeshlab says when it cannot keep a result in which nothing is left.
+_EMPTY = "Vertex matrix is empty"
+
 #: The boolean filters: exact, by mesh arrangements with CGAL's kernel inside libigl.
 FILTERS = {
     "union": "generate_boolean_union",
@@ -47,9 +50,17 @@ def main(folder: Path) -> int:
         found = meshes.current_mesh()
         np.savez(folder / "result.npz", vertices=found.vertex_matrix(), faces=found.face_matrix())
     except pymeshlab.PyMeshLabException as error:
-        said["failed"] = str(error).strip().splitlines()[-1]
+        _note_failure(folder, str(error), said)
     (folder / "said.json").write_text(json.dumps(said))
     return 0
+
+
+def _note_failure(folder: Path, message: str, said: dict[str, str]) -> None:
+    """Say what failed; a result without vertices is raised as a failure too."""
+    if _EMPTY in message:
+        np.savez(folder / "result.npz", vertices=np.zeros((0, 3)), faces=np.zeros((0, 3), int))
+    else:
+        said["failed"] = message.strip().splitlines()[-1]
 
 
 if __name__ == "__main__":

@@ -7,7 +7,10 @@ from .record import IdentityRecord, OracleRecord
 
 
 def ruled(
-    report: CheckReport, others: Sequence[OracleRecord], identity: IdentityRecord | None
+    report: CheckReport,
+    others: Sequence[OracleRecord],
+    identity: IdentityRecord | None,
+    is_script: bool = False,
 ) -> tuple[str, str]:
     """Return verdict and reason.
 
@@ -17,12 +20,14 @@ def ruled(
         Against manifold3d.
     others : sequence of OracleRecord
     identity : IdentityRecord or None
+    is_script : bool
+        Whether `others` is openscad about its own language.
 
     Notes
     -----
     Counts of crossings are exact, so a point in the wrong place overrules everybody. Of engines
     that round, one alone against ours and another is taken to be wrong; ours alone never is
-    excused.
+    excused. For scripts openscad counts alone: manifold3d gets the leaves that we have made.
     """
     verdict, reason = report.verdict, report.reason
     if identity is not None and not identity["holds"]:
@@ -34,6 +39,9 @@ def ruled(
         if other["agrees"] is False:
             return str(Verdict.DISAGREE), _joined(reason, f"crossing counts: {other['says']}")
     engines = [other for other in others if other not in counts]
+    if is_script and any(engine["agrees"] is False for engine in engines):
+        said = "; ".join(f"{engine['name']} {engine['says']}" for engine in engines)
+        return str(Verdict.DISAGREE), _joined(reason, said)
     return _weighed(verdict, reason, engines, bool(counts and counts[0]["agrees"]))
 
 

@@ -2,7 +2,7 @@
 
 import os
 import platform
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
@@ -84,12 +84,11 @@ def run_cases(
     return [found[case.key] for case in plan.cases if case.key in found]
 
 
-def _records(plan: Plan, answering: Answering) -> Iterator[CaseRecord]:
+def _records(plan: Plan, answering: Answering) -> Generator[CaseRecord, None, None]:
     cases = plan.open_cases
     chosen = _chosen(len(cases), plan.keep)
     requests = [{"case": case.to_dict(), "keep": n in chosen} for n, case in enumerate(cases)]
-    answers = cast(Any, answering.answers(requests, plan.timeout))
-    with closing(answers):
+    with closing(answering.answers(requests, plan.timeout)) as answers:
         for number, answer in answers:
             yield _record_of(cases[number], answer)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import FormatError, invalid_parameter
+from ..errors import FormatError
 from ..io import FORMATS
 from .case import OPERATIONS, SCRIPT, Case, Operand, command_for, digest_of, digest_of_mesh
 from .poses import COINCIDENT
@@ -101,19 +101,12 @@ def cases_of(inputs: Inputs, operations: Sequence[str], draw: Draw) -> list[Case
 
     Raises
     ------
-    InvalidMeshError
-        If there is nothing to ask.
     FormatError
         If a file of cases is not understood.
     """
     cases = [*_pairs(inputs.meshes, operations, draw)]
     cases += [_script(path) for path in inputs.scripts]
     cases += [case for path in inputs.cases for case in _listed(path)]
-    if not cases:
-        raise invalid_parameter(
-            "There is nothing to validate: give at least two mesh files, a folder of them, a"
-            " script, or a file of cases."
-        )
     return cases
 
 
@@ -146,7 +139,7 @@ def _drawn_pairs(
     paths: Sequence[Path], operations: Sequence[str], draw: Draw, operand: "_Operands"
 ) -> Iterator[Case]:
     if draw.number is not None:
-        first, second = (paths * 2)[:2] if len(paths) == 1 else paths[:2]
+        first, second = paths[0], paths[min(1, len(paths) - 1)]
         yield from _in_pose(first, second, operations, draw.pose, draw.seed, draw.number, operand)
         return
     for number in range(draw.count):

@@ -6,9 +6,6 @@ from typing import Any
 
 from .record import FAILURES, SCHEMA, VERDICTS, CaseRecord, is_failure
 
-#: Words for verdicts that say more than their names.
-_WORDS = {"refused": "refused as no solid"}
-
 
 def summary_of(cases: Sequence[CaseRecord]) -> dict[str, Any]:
     """Return counts by verdict, operation, kind and pose, and the failures by name.
@@ -43,14 +40,6 @@ def conclusion(cases: Sequence[CaseRecord]) -> str:
     if failed:
         return f"{failed} of {len(cases)} cases failed."
     return f"None of {len(cases)} cases failed."
-
-
-def verdict_lines(cases: Sequence[CaseRecord]) -> list[tuple[str, str]]:
-    """Return each verdict in words with its count."""
-    return [
-        (_WORDS.get(verdict, verdict), str(count))
-        for verdict, count in counts_by_verdict(cases).items()
-    ]
 
 
 def _counts_within(cases: Sequence[CaseRecord], field: str) -> dict[str, dict[str, int]]:

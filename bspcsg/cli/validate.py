@@ -255,6 +255,11 @@ class _Validation:
         inputs = self._usable(inputs_in(self._paths), answering)
         operations = self._settings["operations"] or _OPERATIONS
         cases = cases_of(inputs, tuple(dict.fromkeys(operations)), draw)
+        if not cases:
+            raise click.UsageError(
+                "there is nothing to validate; give at least two mesh files, a folder of them, a"
+                " script, or a file of cases."
+            )
         if self._settings["only"] is not None:
             cases = [one for one in cases if fnmatch.fnmatchcase(one.name, self._settings["only"])]
             if not cases:
@@ -362,9 +367,10 @@ class _Validation:
 
     def _text(self, records: "Sequence[CaseRecord]") -> str:
         from ..campaign.record import is_failure
-        from ..campaign.summary import conclusion, verdict_lines
+        from ..campaign.summary import conclusion, counts_by_verdict
 
-        rows = verdict_lines(records)
+        counts = counts_by_verdict(records)
+        rows = [(verdict, str(count)) for verdict, count in counts.items()]
         lines = [table_text(("verdict", "cases"), rows, right=("cases",))] if rows else []
         failures = [record for record in records if is_failure(record)]
         lines += [_failure(record) for record in failures[:_NAMED]]

@@ -30,10 +30,10 @@ def junit_text(cases: Sequence[CaseRecord], runs: Sequence[RunRecord] = ()) -> s
     runs : sequence of RunRecord
         Whose commands, versions and machine become properties.
     """
-    root = Xml.Element("testsuites", name="bspcsg validate", **_counts(cases))
+    root = Xml.Element("testsuites", _counts(cases), name="bspcsg validate")
     for operation in sorted({case["operation"] for case in cases}):
         part = [case for case in cases if case["operation"] == operation]
-        suite = Xml.SubElement(root, "testsuite", name=operation, **_counts(part))
+        suite = Xml.SubElement(root, "testsuite", _counts(part), name=operation)
         if runs:
             suite.set("timestamp", runs[0]["started"])
             _describe_runs(suite, runs)
