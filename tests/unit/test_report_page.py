@@ -3,16 +3,19 @@
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import bspcsg as b
 from bspcsg.campaign.record import Results
 from bspcsg.report import cards
+from bspcsg.report.cards import Card, Purse, cards_of
 from bspcsg.report.charts import share_below
 from bspcsg.report.merging import merged
 from bspcsg.report.page import report_page
 from bspcsg.report.wording import milliseconds, number, tone, vector, whole
 from support.results import case, header, keep_meshes, records, write_results
+from support.shapes import icosphere
 
 
 @pytest.fixture(scope="module")
@@ -65,23 +68,46 @@ def test_cards_are_as_many_as_asked_for(results: Results) -> None:
     assert "A &amp; B" in page and "<article" not in report_page(results, cards=0)
 
 
-def test_a_full_page_stays_within_its_size(
+def test_views_are_simplified_or_left_out_to_stay_within_the_size(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ball = b.sphere(r=1, segments=72)
+    monkeypatch.setattr(cards, "still", lambda *_, **__: "a picture")
+    # Shuffled, because regular meshes are packed into next to nothing.
+    rng = np.random.default_rng(5)
+    vertices, faces = icosphere(4)
+    places = rng.permutation(len(vertices))
+    ball = b.Solid(vertices[places], rng.permutation(np.argsort(places)[faces]))
     record = case("cubes", "union", b.cube(1), b.cube(1))
     kept = keep_meshes(record, tmp_path, [], ball, ball)
-    lines = [header(), *(kept | {"key": str(k)} for k in range(3))]
-    results = merged([write_results(tmp_path / "r.jsonl", lines)])
-    roomy = report_page(results)
-    assert roomy.count('class="opener"') == 3 and "to fit on this page" not in roomy
-    monkeypatch.setattr(cards, "_PAGE", limit := len(roomy) - 9_000)
-    monkeypatch.setattr(cards, "_LEAST_SHARE", 0.0)
-    tight = report_page(results)
-    assert len(tight) < limit
-    assert tight.count('class="opener"') > 0 and "to fit on this page" in tight
-    monkeypatch.setattr(cards, "_CELLS", ())
-    assert "fewer cards leave more room" in report_page(results)
+    results = merged([write_results(tmp_path / "r.jsonl", [header(), kept])])
+
+    def card(left: float) -> Card:
+        purse = Purse(1, 0)
+        purse.left = left
+        (found,) = cards_of(list(results.cases.values()), results, purse)
+        spent = sum(len(image) for figure in found.figures for image in figure.images)
+        assert purse.left == left - spent - (len(found.model["data"]) if found.model else 0)
+        return found
+
+    roomy = card(1e6)
+    assert roomy.model is not None and roomy.note == ""
+    pictures = sum(len(image) for figure in roomy.figures for image in figure.images)
+    limit = 0.9 * len(roomy.model["data"])
+    tight = card(pictures + limit)
+    assert tight.model is not None and len(tight.model["data"]) < limit
+    assert "triangles instead of 5\u202f120, to fit on this page" in tight.note
+    assert card(1000).model is None and "fewer cards leave more room" in card(1000).note
+
+
+def test_each_view_gets_its_share() -> None:
+    purse = Purse(40, 300_000)
+    first = purse.allowance()
+    assert 20_000 < first < 60_000
+    for _ in range(38):
+        purse.spend(10_000 + int(purse.allowance()))
+    assert 0 <= purse.allowance() <= purse.left
+    # A long table leaves cards their part of the page.
+    assert Purse(40, 10**9).left > 300_000 and Purse(80, 0).left > 1.9 * Purse(40, 0).left
 
 
 @pytest.mark.parametrize(
