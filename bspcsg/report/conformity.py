@@ -43,7 +43,7 @@ def _departure_in_dict(value: Any, kind: Any, place: str) -> str:
 def _departure_in_items(value: Any, container: type, kind: Any, place: str) -> str:
     if not isinstance(value, container):
         return f"{place} is no {container.__name__}"
-    items = value.items() if isinstance(value, dict) else enumerate(value)
+    items: Any = value.items() if isinstance(value, dict) else enumerate(list(value))
     found = (departure(item, kind, f"{place}[{key!r}]") for key, item in items)
     return next(filter(None, found), "")
 
