@@ -284,7 +284,12 @@ class _Validation:
         for path in bad:
             self._out.detail(f"{shown(path)}: left out: {found[path]['refused']}")
         if bad:
-            self._out.note(f"{counted(len(bad), 'file')} left out that are no solids")
+            words = (
+                "file left out that is no solid"
+                if len(bad) == 1
+                else ("files left out that are no solids")
+            )
+            self._out.note(f"{len(bad)} {words}")
         if large:
             self._out.note(f"{counted(len(large), 'file')} left out with over {most} triangles")
         out = {*bad, *large}
