@@ -73,7 +73,7 @@ def fake_openscad(monkeypatch: pytest.MonkeyPatch, said: str, corners: "Mesh | N
         return subprocess.CompletedProcess(command, 0, "", said)
 
     monkeypatch.setattr(openscad_engine, "_ran", run)
-    monkeypatch.setattr(openscad_engine.shutil, "which", lambda name: name)
+    monkeypatch.setattr(shutil, "which", lambda name: name)
 
 
 def test_openscad_that_left_something_out_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
