@@ -143,15 +143,27 @@ def _sampled(mesh: Mesh, count: int, rng: np.random.Generator) -> FloatArray:
     return np.concatenate([vertices, inner])
 
 
-def _farthest(mesh: Mesh, points: FloatArray) -> float:
-    """Return the largest distance of the points from a mesh."""
+def require_distances() -> None:
+    """Refuse to measure distances without what that needs.
+
+    Raises
+    ------
+    MissingPartError
+        If rtree or scipy are not installed.
+    """
     try:
         import rtree  # noqa: F401
         import scipy  # noqa: F401
-        from trimesh import proximity
     except ImportError as error:
         remedy = 'pip install "bspcsg[compare]", or say --samples 0'
         raise missing_part(str(error.name), "to measure distances", remedy) from error
+
+
+def _farthest(mesh: Mesh, points: FloatArray) -> float:
+    """Return the largest distance of the points from a mesh."""
+    require_distances()
+    from trimesh import proximity
+
     closest_point: Any = proximity.closest_point
     target = interop.to_trimesh(mesh)
     batches = [points[at : at + _BATCH] for at in range(0, len(points), _BATCH)]
