@@ -53,17 +53,6 @@ def test_crossings_tell_right_from_wrong() -> None:
     assert "are where they should be" in right["says"]
 
 
-@needs_openscad
-def test_openscad_tells_right_from_wrong(tmp_path: Path) -> None:
-    assert opinion("openscad", question())["agrees"] is True
-    script = tmp_path / "m.csg"
-    script.write_text("difference() { cube(size = 3); multmatrix([[1,0,0,2],[0,1,0,2],[0,0,1,2],"
-                      "[0,0,0,1]]) { cube(size = 2); } }")  # fmt: skip
-    ours = question().ours
-    assert script_opinion(script, ours, -9, 60.0)["agrees"] is True
-    assert script_opinion(script, WRONG.to_mesh(), -9, 60.0)["agrees"] is False
-
-
 def fake_openscad(monkeypatch: pytest.MonkeyPatch, said: str, corners: "Mesh | None") -> None:
     """Let openscad write a mesh and say something."""
 
@@ -74,6 +63,33 @@ def fake_openscad(monkeypatch: pytest.MonkeyPatch, said: str, corners: "Mesh | N
 
     monkeypatch.setattr(openscad_engine, "_ran", run)
     monkeypatch.setattr(shutil, "which", lambda name: name)
+
+
+def test_openscad_tells_right_from_wrong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fake_openscad(monkeypatch, "OpenSCAD version 2021.01\n", question().ours)
+    right, wrong = opinion("openscad", question()), opinion("openscad", question(WRONG))
+    assert (right["agrees"], right["version"]) == (True, "2021.01") and wrong["agrees"] is False
+    ours = question().ours
+    assert script_opinion(tmp_path / "m.csg", ours, -9, 60.0)["agrees"] is True
+    assert script_opinion(tmp_path / "m.csg", WRONG.to_mesh(), -9, 60.0)["agrees"] is False
+
+
+def test_question_in_openscads_language_is_the_same_question(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from bspcsg import csg
+
+    scripts: list[str] = []
+
+    def keep(path: Path, timeout: float) -> Any:
+        scripts.append(path.read_text())
+        raise NoOpinionError("kept")
+
+    monkeypatch.setattr(openscad_engine, "run_script", keep)
+    volumes = {"union": 34, "difference": 26, "intersection": 1, "xor": 33}
+    for operation in volumes:
+        opinion("openscad", question(operation=operation))
+    assert [csg.loads(script).volume for script in scripts] == list(volumes.values())
 
 
 def test_openscad_that_left_something_out_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
