@@ -28,7 +28,8 @@ def distances_to_triangles(points: FloatArray, corners: FloatArray) -> FloatArra
     inside = (sides > 0).all(axis=1) & (lengths > 0)
     height = np.abs(np.einsum("kj,kj->k", local[:, 0], normals))
     planes = np.divide(height, lengths, np.full_like(height, np.inf), where=inside)
-    return np.minimum(nearest, planes)
+    found: FloatArray = np.minimum(nearest, planes)
+    return found
 
 
 def _to_segments(starts: FloatArray, ends: FloatArray) -> FloatArray:
