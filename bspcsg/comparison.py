@@ -13,6 +13,7 @@ import numpy as np
 from . import interop
 from ._types import FloatArray
 from .discrepancy import SetDifference
+from .distance import distances_to_triangles
 from .errors import missing_part
 from .mesh import Mesh
 from .pieces import Pieces
@@ -20,7 +21,7 @@ from .solid import Solid
 from .verdict import Facts
 
 #: How many points are measured at once; more need more memory.
-_BATCH = 5000
+_BATCH = 1000
 
 
 @dataclass(frozen=True)
@@ -87,9 +88,34 @@ def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> Compari
     found = _measured(difference, mesh)
     if samples == 0 or any(len(one.faces) == 0 for one in (*meshes, mesh)):
         return Comparison(*facts, False, found)
-    points = _sampled(mesh, samples, np.random.default_rng(seed))
-    distance = max(_farthest(one, points) for one in meshes)
-    return Comparison(*facts, False, found, distance, len(points))
+    *ways, count = hausdorff(*meshes, mesh, samples, seed)
+    return Comparison(*facts, False, found, max(ways), count)
+
+
+def hausdorff(
+    a: Mesh, b: Mesh, difference: Mesh | None, samples: int, seed: int = 0
+) -> tuple[float, float, int]:
+    """Return how far each mesh reaches from the other, at least, and from how many points.
+
+    Parameters
+    ----------
+    a, b : Mesh
+    difference : Mesh or None
+        The boundary of their symmetric difference, which holds all that one has and the other has
+        not; None if there is none.
+    samples : int
+        How many points of its faces, and of its vertices at most.
+    seed : int
+
+    Raises
+    ------
+    MissingPartError
+        If rtree or scipy are not installed.
+    """
+    if difference is None or not all(len(one.faces) for one in (a, b, difference)):
+        return 0.0, 0.0, 0
+    points = _sampled(difference, samples, np.random.default_rng(seed))
+    return _farthest(b, points), _farthest(a, points), len(points)
 
 
 def _measured(difference: Solid, mesh: Mesh) -> SetDifference:
@@ -118,16 +144,38 @@ def _sampled(mesh: Mesh, count: int, rng: np.random.Generator) -> FloatArray:
     return np.concatenate([vertices, inner])
 
 
-def _farthest(mesh: Mesh, points: FloatArray) -> float:
-    """Return the largest distance of the points from a mesh."""
+def require_distances() -> None:
+    """Refuse to measure distances without what that needs.
+
+    Raises
+    ------
+    MissingPartError
+        If rtree or scipy are not installed.
+    """
     try:
         import rtree  # noqa: F401
         import scipy  # noqa: F401
-        from trimesh import proximity
     except ImportError as error:
         remedy = 'pip install "bspcsg[compare]", or say --samples 0'
         raise missing_part(str(error.name), "to measure distances", remedy) from error
-    closest_point: Any = proximity.closest_point
-    target = interop.to_trimesh(mesh)
-    batches = [points[at : at + _BATCH] for at in range(0, len(points), _BATCH)]
-    return max(float(closest_point(target, batch)[1].max()) for batch in batches)
+
+
+def _farthest(mesh: Mesh, points: FloatArray) -> float:
+    """Return the largest distance of the points from a mesh."""
+    require_distances()
+    from trimesh import proximity
+
+    nearby_faces: Any = proximity.nearby_faces
+    target, corners = interop.to_trimesh(mesh), mesh.vertices[mesh.faces]
+    farthest = 0.0
+    for at in range(0, len(points), _BATCH):
+        batch = points[at : at + _BATCH]
+        # Which faces can be the nearest is taken from trimesh, but not how far they are: there it
+        # is wrong for needles by a good part of their length.
+        near = nearby_faces(target, batch)
+        counts = np.array([len(faces) for faces in near])
+        faces = np.concatenate(near).astype(np.int64)
+        found = distances_to_triangles(np.repeat(batch, counts, axis=0), corners[faces])
+        starts = np.concatenate([[0], counts.cumsum()[:-1]])
+        farthest = max(farthest, float(np.minimum.reduceat(found, starts).max()))
+    return farthest

@@ -22,7 +22,7 @@ Example:
   bspcsg doctor
 """
 
-_REQUIRED = ("numpy", "click", "rich", "manifold3d", "trimesh")
+_REQUIRED = ("numpy", "click", "rich", "jinja2", "manifold3d", "trimesh")
 
 #: Optional packages, what each is for, and the extra that brings it.
 _OPTIONAL = (
@@ -30,15 +30,16 @@ _OPTIONAL = (
     ("meshio", "VTK and VTU files", "vtk"),
     ("scipy", "distances in compare", "compare"),
     ("rtree", "distances in compare", "compare"),
-    ("pillow", "PNG files of render", "pictures"),
+    ("pillow", "PNG files of render, small pictures in report", "pictures"),
     ("ezdxf", "DXF files of slice", "2d"),
+    ("distributed", "validate on a cluster", "cluster"),
 )
 
 #: Names under which packages are imported that are called otherwise.
 _MODULES = {"pillow": "PIL"}
 
 #: Optional programs, what each is for, and how to install it.
-_PROGRAMS = (("openscad", ".scad files", "apt-get install openscad"),)
+_PROGRAMS = (("openscad", ".scad files, validate", "apt-get install openscad"),)
 
 #: Seconds to wait for a program that says its version or loads its plug-ins.
 _PATIENCE = 30
