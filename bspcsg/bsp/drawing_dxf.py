@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .._types import FloatArray, Scalar, WindingRule
-from ..errors import FormatError, positive
+from ..errors import FormatError, positive, words_of
 from ..interop import optional
 from ..io.atomic import write_file
 from .region import Region
@@ -93,7 +93,7 @@ def read_document(path: str | os.PathLike[str]) -> Any:
             f"{name}: cannot read this file: {error.strerror}.", "unreadable"
         ) from error
     except (ezdxf.DXFError, ValueError, LookupError, TypeError, AttributeError) as error:
-        raise FormatError(f"{name}: this is no valid DXF: {error}.", "syntax") from error
+        raise FormatError(f"{name}: this is no valid DXF: {words_of(error)}.", "syntax") from error
 
 
 def _flattened(entity: Any, chord: float) -> list[FloatArray]:

@@ -11,7 +11,7 @@ from xml.parsers import expat
 import numpy as np
 
 from .._types import FloatArray, Scalar, WindingRule
-from ..errors import FormatError, positive
+from ..errors import FormatError, positive, words_of
 from ..interop import optional
 from ..io.atomic import write_file
 from .region import Region
@@ -56,7 +56,8 @@ def load_svg(
     try:
         drawing = elements.SVG.parse(io.BytesIO(_in_user_units(data)), reify=True, ppi=96.0)
     except (ValueError, TypeError, AttributeError, ArithmeticError, LookupError) as error:
-        raise FormatError(f"{os.fspath(path)}: this is no valid SVG: {error}.", "syntax") from error
+        message = f"{os.fspath(path)}: this is no valid SVG: {words_of(error)}."
+        raise FormatError(message, "syntax") from error
     region = Region(pitch=pitch)
     for shape in drawing.elements():
         if isinstance(shape, elements.Shape) and _is_filled(shape):

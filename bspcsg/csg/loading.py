@@ -85,7 +85,7 @@ def read_tree(path: str | os.PathLike[str], **options: Any) -> CsgTree:
     Raises
     ------
     FormatError
-        If the file cannot be read, is empty, or is no such script.
+        If the file cannot be read or is no such script; an empty one is a model of nothing.
     """
     file, name = Path(path), os.fspath(path)
     suffix = file.suffix.lower()
