@@ -95,23 +95,7 @@ class _Conversion:
         for _, target in self._pairs:
             target.refuse_early(self._out.as_json)
         self._inputs.refuse_early([path for path, _ in self._pairs])
-        self._tell_units()
-
-    def _tell_units(self) -> None:
-        """Say once which inputs have no unit although the output states one."""
-        from ..io import FORMATS
-
-        unknown = [
-            path
-            for path, target in self._pairs
-            if FORMATS[target.suffix.lower()].unit
-            and not FORMATS[self._inputs.suffix_of(path)].unit
-        ]
-        if unknown and self._settings["unit"] is None:
-            more = f" and {len(unknown) - 1} more have" if len(unknown) > 1 else " has"
-            self._out.note(
-                f"{shown(unknown[0])}{more} no unit; mm assumed (say --unit in to change)"
-            )
+        self._inputs.tell_units(self._pairs)
 
     def _converted(self, path: Path, target: Target) -> tuple[dict[str, Any], bool]:
         """Convert one file; return what happened to it, and whether anything was lost."""

@@ -83,5 +83,7 @@ def _combined(name: str, solids: list["Solid"]) -> "Solid":
 
 def _pointed(formula: str, message: str, column: int) -> str:
     """Return a message with the formula and a mark under the column."""
+    if not formula.strip():
+        return f"formula:{column + 1}: {message}"
     printed = "".join(" " if letter.isspace() else letter for letter in formula)
     return f"formula:{column + 1}: {message}\n  {printed}\n  {' ' * column}^"

@@ -63,8 +63,26 @@ class Inputs:
         for path in paths:
             if str(path) == STREAM and not self.suffix:
                 raise click.UsageError("to read standard input, say its format: --from stl.")
+            if not path.suffix and path.is_dir():
+                message = f"{path}: this is a folder; name the files in it, as in {path / '*.stl'}."
+                raise FormatError(message, "unreadable")
             if self.suffix_of(path) != self.suffix:
                 format_of(path)
+
+    def tell_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
+        """Say once which inputs have no unit although their outputs state one."""
+        from ..io import FORMATS
+
+        unknown = [
+            path
+            for path, target in pairs
+            if FORMATS[target.suffix.lower()].unit and not FORMATS[self.suffix_of(path)].unit
+        ]
+        if unknown and self.unit is None:
+            more = f" and {len(unknown) - 1} more have" if len(unknown) > 1 else " has"
+            self.out.note(
+                f"{shown(unknown[0])}{more} no unit; mm assumed (say --unit in to change)"
+            )
 
     def suffix_of(self, path: Path) -> str:
         """Return the suffix of the format that a file is read as."""

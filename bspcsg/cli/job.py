@@ -57,8 +57,9 @@ class Job:
         raise NotImplementedError
 
     def refuse_inputs(self) -> None:
-        """Refuse inputs that can be known to fail before anything is read."""
+        """Refuse what can be known to fail before anything is read; tell what will be assumed."""
         self.inputs.refuse_early(self.paths())
+        self.inputs.tell_units((path, self.target) for path in self.paths())
 
     def run(self) -> int:
         """Do it, and return the exit code."""

@@ -73,6 +73,21 @@ class _Verbs(click.Group):
         found: click.Command = getattr(import_module(f".{module}", __package__), name)
         return found
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and args[0] not in _VERBS and not args[0].startswith("-"):
+            raise click.UsageError(f"there is no verb {args[0]!r}.{_meant(args[0])}", ctx)
+        return super().resolve_command(ctx, args)
+
+
+def _meant(word: str) -> str:
+    """Return a question after the verb that a wrong one resembles."""
+    from difflib import get_close_matches
+
+    close = get_close_matches(word, _VERBS, n=1)
+    return f" Is {close[0]} meant?" if close else ""
+
 
 @click.group(
     cls=_Verbs,

@@ -67,7 +67,7 @@ _SETS = [
     ),
     click.option(
         "--pitch",
-        type=click.IntRange(-30, 30),
+        type=click.IntRange(-22, 22),
         help="Lattice step 10^PITCH units; by default -9, or what the size asks for.",
     ),
 ]

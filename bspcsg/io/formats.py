@@ -82,7 +82,7 @@ def format_of(path: str | os.PathLike[str]) -> Format:
     known = ", ".join(sorted(FORMATS))
     message = f"“{suffix}” is no known mesh format; known are {known}."
     if not suffix:
-        message = f"the name needs a suffix: {known}."
+        message = f"the name needs a suffix that says the format: {known}."
     raise FormatError(f"{os.fspath(path)}: {_REFUSALS.get(suffix, message)}", "unknown_format")
 
 

@@ -12,6 +12,7 @@ import tempfile
 import zipfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -187,9 +188,9 @@ def _ply_binary() -> Iterator[Broken]:
     for index in (8, -1, 2**31 - 1, -(2**31)):
         changed = overwritten(data, faces + 1, struct.pack("<i", index))
         yield Broken(f"a corner {index}", ".ply", changed)
-    for count in (b"999999999", b"9999999999999999999999"):
-        changed = swapped(data, b"element face 12", b"element face " + count)
-        yield Broken(f"promises {count!r} faces", ".ply", changed)
+    for promised in (b"999999999", b"9999999999999999999999"):
+        changed = swapped(data, b"element face 12", b"element face " + promised)
+        yield Broken(f"promises {promised!r} faces", ".ply", changed)
     huge = overwritten(data, start + 8, struct.pack("<d", 1e308))
     yield Broken("beyond the lattice", ".ply", huge, REFUSED)
 
@@ -276,7 +277,7 @@ def _3mf_models() -> Iterator[tuple[str, Callable[[bytes], bytes]]]:
         (b"<resources>", b"<resources><"),
         (b"<resources>", b"<resources>&undefined;"),
     ):
-        yield f"{new.decode()!r} for {old.decode()!r}", lambda d, o=old, n=new: swapped(d, o, n)
+        yield f"{new.decode()!r} for {old.decode()!r}", partial(swapped, old=old, new=new)
     yield "half a model", lambda data: data[: len(data) // 2]
     yield "a model of zeros", lambda data: bytes(len(data))
     yield "no UTF-8", lambda data: swapped(data, b"<resources>", b"<resources>\xff")
