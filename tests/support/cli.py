@@ -63,3 +63,16 @@ def finished(
     out, err = running.communicate(given, timeout=60)
     assert b"Traceback" not in (out or b"") + (err or b"")
     return running.returncode, out, err
+
+
+def script(name: str, *arguments: str) -> "subprocess.CompletedProcess[str]":
+    """Run one of the project's scripts with the interpreter of the tests."""
+    root = Path(__file__).resolve().parents[2]
+    return subprocess.run(
+        [str(root / "scripts" / name), *arguments],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHON": sys.executable},
+        timeout=280,
+        check=False,
+    )
