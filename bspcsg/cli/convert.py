@@ -16,6 +16,7 @@ from .options import PATH, common, reading, writing
 from .output import Output, counted
 
 if TYPE_CHECKING:
+    from ..errors import Finding
     from ..io import RawMesh
     from ..roundtrip import Losses
 
@@ -68,6 +69,7 @@ class _Conversion:
         verbosity = int(settings["verbose"]) - int(settings["quiet"])
         self._out = Output(verbosity, settings["as_json"], taken)
         self._inputs = Inputs.of(self._out, settings)
+        self._told: set[str] = set()
 
     def run(self) -> int:
         self._refuse_early()
@@ -110,13 +112,22 @@ class _Conversion:
         lost = losses_between(raw, decoded(shown(target.path), data, target.suffix))
         target.write_data(data)
         for finding in findings:
-            if finding.code != "single_precision":  # its shift is told below, as measured
-                self._out.finding(shown(target.path), finding)
+            self._tell(target, finding)
         seconds = time.perf_counter() - began
         if not self._out.as_json:
             self._out.result(_line(raw, target, lost, seconds), {})
         document = {"file": str(path), "output": str(target.path), "triangles": len(raw.faces)}
         return {**document, "lost": lost.to_dict(), "seconds": round(seconds, 4)}, lost.any
+
+
+    def _tell(self, target: Target, finding: "Finding") -> None:
+        """Tell about a file; what is so for all files of a format is told once."""
+        if finding.code == "single_precision":  # its shift is told with the losses, as measured
+            return
+        if finding.code == "unit" and finding.message in self._told:
+            return
+        self._told.add(finding.message)
+        self._out.finding(shown(target.path), finding)
 
 
 def _line(raw: "RawMesh", target: Target, lost: "Losses", seconds: float) -> str:

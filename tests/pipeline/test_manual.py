@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from bspcsg.cli.main import _VERBS
+from support.cli import script
 from support.documents import (
     DOCS,
     ROOT,
@@ -21,7 +22,6 @@ from support.documents import (
     prepare,
     same,
 )
-from support.cli import script
 
 PAGES = page_files()
 ALL = sorted(DOCS.rglob("*.md"))
