@@ -34,7 +34,17 @@ from .setops import difference, intersection, union, xor
 from .solid import Solid
 from .verdict import CheckReport, Facts, Verdict
 
-__all__ = ["COMBINE", "CheckReport", "Facts", "Verdict", "check_result", "validate"]
+__all__ = [
+    "COMBINE",
+    "CheckReport",
+    "Examination",
+    "Facts",
+    "Verdict",
+    "check_result",
+    "examine",
+    "same_set_bound",
+    "validate",
+]
 
 #: How many lattice steps, neighbouring doubles and tolerances of manifold3d are forgiven.
 STEPS, ULPS, TOLERANCES = 2, 8, 4
@@ -85,6 +95,38 @@ def check_result(
     UnboundedError
         If the result reaches to infinity.
     """
+    return examine(result, op, operands).report
+
+
+@dataclass(frozen=True, eq=False)
+class Examination:
+    """A report and the meshes it rests on.
+
+    Parameters
+    ----------
+    report : CheckReport
+    program : sequence of (str, list of int)
+    operands : list of Mesh
+        As they came; cut to a box if an operand is unbounded, fewer if manifold3d was not asked.
+    ours : Mesh
+    theirs : Mesh or None
+        manifold3d's, if it gave one.
+    difference : Mesh or None
+        The boundary of the symmetric difference, if there is one.
+    """
+
+    report: CheckReport
+    program: Sequence[ProgramLine]
+    operands: list[Mesh]
+    ours: Mesh
+    theirs: Mesh | None = None
+    difference: Mesh | None = None
+
+
+def examine(
+    result: Solid, op: SetOp | None = None, operands: Sequence[Solid] | None = None
+) -> Examination:
+    """Compare as `check_result` does, and keep the meshes."""
     if op is not None and operands is not None:
         return _Check(op, _program(op, len(operands)), list(operands), result).run()
     last = result.last_operation
@@ -94,6 +136,12 @@ def check_result(
             " operation and give its operands."
         )
     return _Check(_name_of(last.program), last.program, list(last.operands), last.result).run()
+
+
+def same_set_bound(pitch: int, *meshes: Mesh) -> float:
+    """Return the thickness up to which a difference of meshes on a lattice is rounding."""
+    reach = max((float(np.abs(mesh.vertices).max(initial=0)) for mesh in meshes), default=0.0)
+    return STEPS * 10.0**pitch + ULPS * float(np.spacing(reach))
 
 
 #: The operations by name, each on any number of solids.
@@ -142,9 +190,15 @@ class _Check:
     notes: list[str] = field(default_factory=list)
     came: list[Mesh] = field(default_factory=list)
     set_volume: float = 0.0
+    theirs: Mesh | None = None
+    difference: Mesh | None = None
 
-    def run(self) -> CheckReport:
+    def run(self) -> Examination:
         mesh = self.result.normalized().to_mesh()
+        report = self._judged(mesh)
+        return Examination(report, self.program, self.came, mesh, self.theirs, self.difference)
+
+    def _judged(self, mesh: Mesh) -> CheckReport:
         ours = Facts.of(mesh)
         self.set_volume = self.result.volume
         fault = self._fault(mesh, ours)
@@ -159,6 +213,7 @@ class _Check:
             return self._report(Verdict.ORACLE_REFUSED, str(error), ours)
         except oracle.OracleFailedError as error:
             return self._report(Verdict.ORACLE_FAILED, str(error), ours)
+        self.theirs = answer.mesh
         return self._compared(mesh, ours, answer)
 
     def _fault(self, mesh: Mesh, ours: Facts) -> str:
@@ -169,7 +224,7 @@ class _Check:
         if status != "NoError":
             return f"manifold3d does not take the result: {status}"
         gap = abs(ours.volume - self.set_volume)
-        if gap > self._same_set_bound(mesh) * ours.area + _SUMMING * abs(ours.volume):
+        if gap > same_set_bound(self.result.pitch, mesh) * ours.area + _SUMMING * abs(ours.volume):
             return f"the mesh's volume differs from the set's by {gap:.3g}"
         return ""
 
@@ -205,7 +260,7 @@ class _Check:
         if theirs.open_edges:
             reason = f"manifold3d's mesh has {theirs.open_edges} open edges"
             return self._report(Verdict.ORACLE_FAILED, reason, ours, theirs)
-        same = self._same_set_bound(mesh, answer.mesh)
+        same = same_set_bound(self.result.pitch, mesh, answer.mesh)
         rounding = same + TOLERANCES * answer.tolerance
         try:
             found, pieces = difference_of(mesh, answer.mesh, self.result.pitch, same)
@@ -215,6 +270,7 @@ class _Check:
         except BspcsgError as error:
             reason = f"the meshes could not be compared: {error.message}"
             return self._report(Verdict.ORACLE_FAILED, reason, ours, theirs)
+        self.difference = None if pieces is None else pieces.mesh
         verdict, reason = _judged(ours, theirs, found, same, rounding, _edge_length(mesh))
         if (
             verdict is Verdict.DISAGREE
@@ -230,10 +286,6 @@ class _Check:
         disputed = pieces.thicker_than(rounding)[:_MOST_PIECES]
         points = [pieces.points_in(piece) for piece in disputed]
         return settle(self.program, self.came, ours, theirs, points)
-
-    def _same_set_bound(self, *meshes: Mesh) -> float:
-        reach = max((float(np.abs(mesh.vertices).max(initial=0)) for mesh in meshes), default=0.0)
-        return STEPS * 10.0**self.result.pitch + ULPS * float(np.spacing(reach))
 
     def _report(
         self,

@@ -87,9 +87,34 @@ def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> Compari
     found = _measured(difference, mesh)
     if samples == 0 or any(len(one.faces) == 0 for one in (*meshes, mesh)):
         return Comparison(*facts, False, found)
-    points = _sampled(mesh, samples, np.random.default_rng(seed))
-    distance = max(_farthest(one, points) for one in meshes)
-    return Comparison(*facts, False, found, distance, len(points))
+    *ways, count = hausdorff(*meshes, mesh, samples, seed)
+    return Comparison(*facts, False, found, max(ways), count)
+
+
+def hausdorff(
+    a: Mesh, b: Mesh, difference: Mesh | None, samples: int, seed: int = 0
+) -> tuple[float, float, int]:
+    """Return how far each mesh reaches from the other, at least, and from how many points.
+
+    Parameters
+    ----------
+    a, b : Mesh
+    difference : Mesh or None
+        The boundary of their symmetric difference, which holds all that one has and the other has
+        not; None if there is none.
+    samples : int
+        How many points of its faces, and of its vertices at most.
+    seed : int
+
+    Raises
+    ------
+    MissingPartError
+        If rtree or scipy are not installed.
+    """
+    if difference is None or not all(len(one.faces) for one in (a, b, difference)):
+        return 0.0, 0.0, 0
+    points = _sampled(difference, samples, np.random.default_rng(seed))
+    return _farthest(b, points), _farthest(a, points), len(points)
 
 
 def _measured(difference: Solid, mesh: Mesh) -> SetDifference:

@@ -83,6 +83,24 @@ class Mesh:
         return middle + np.array([math.fsum(axis.tolist()) for axis in moments.T]) / volume
 
     @property
+    def inertia(self) -> FloatArray:
+        """Moments of inertia about the centroid, (3, 3) float64, at density 1; NaN without volume.
+
+        In model units to the fifth power.
+        """
+        centroid = self.centroid
+        if np.isnan(centroid).any():
+            return np.full((3, 3), np.nan)
+        weights = self._signed_volumes(centroid)
+        corners = [corner - centroid for corner in self._corners()]
+        # A tetrahedron with a corner at the origin and p, q, r: V/20 times the sum of the products
+        # of p, q, r and of p + q + r, each with itself, is the integral of x x'.
+        points = [*corners, sum(corners)]
+        second = sum(np.einsum("m,mi,mj->ij", weights, point, point) for point in points) / 20
+        moments: FloatArray = np.trace(second) * np.eye(3) - second
+        return moments
+
+    @property
     def bounds(self) -> FloatArray | None:
         """Lowest and highest coordinates, (2, 3) float64, or None for an empty mesh."""
         if len(self.faces) == 0:

@@ -45,6 +45,24 @@ def settle(
     return rulings.pop() if len(rulings) == 1 else Ruling.UNCLEAR
 
 
+def count_agreeing(
+    program: Sequence[ProgramLine],
+    operands: Sequence[Mesh],
+    ours: Mesh,
+    points: Sequence[Point],
+) -> tuple[int, int]:
+    """Return at how many points our result is right, and how many could be settled."""
+    agreeing = settled = 0
+    for point in points:
+        inside = is_inside(ours, point)
+        found = [is_inside(operand, point) for operand in operands]
+        known = [each for each in found if each is not None]
+        if inside is not None and len(known) == len(found):
+            settled += 1
+            agreeing += _value(program, known) == inside
+    return agreeing, settled
+
+
 def _settled_piece(
     program: Sequence[ProgramLine],
     operands: Sequence[Mesh],

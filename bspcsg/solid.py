@@ -367,6 +367,18 @@ class Solid(Measured):
             return f"Solid({describe(self._node, self._factors, self._mesh)})"
         return f"Solid({describe(Node(self._placed), (), self._mesh)})"
 
+    def _repr_html_(self) -> str | None:
+        """Return what a notebook shows: an interactive view, or why there is none."""
+        from .report.notebook import solid_html
+
+        return solid_html(self)
+
+    def _repr_svg_(self) -> str:
+        """Return a picture, for notebooks that show no HTML."""
+        from .report.notebook import solid_svg
+
+        return solid_svg(self)
+
     def __copy__(self) -> "Solid":
         """Return the solid itself, which never changes."""
         return self

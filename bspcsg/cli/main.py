@@ -54,6 +54,9 @@ _VERBS = {
     "check": ("examine", "check"),
     "repair": ("mend", "repair"),
     "compare": ("differ", "compare"),
+    "validate": ("validate", "validate"),
+    "report": ("report", "report"),
+    "view": ("view", "view"),
     "doctor": ("doctor", "doctor"),
 }
 
@@ -160,7 +163,7 @@ def _invoked(arguments: list[str]) -> int:
         from click.shell_completion import shell_complete
 
         return shell_complete(commands, {}, "bspcsg", _COMPLETE, os.environ[_COMPLETE])
-    with commands.make_context("bspcsg", arguments) as context:
+    with commands.make_context("bspcsg", arguments, obj=tuple(arguments)) as context:
         code = commands.invoke(context)
     return code if isinstance(code, int) else output.DONE
 

@@ -15,15 +15,17 @@ _MOST_THREADS = 1024
 #: is found out by reading: click would call a forbidden file wrong usage.
 PATH = click.Path(path_type=Path, allow_dash=True, readable=False)
 
+_THREADS = click.option(
+    "-j",
+    "--threads",
+    type=click.IntRange(0, _MOST_THREADS),
+    default=0,
+    help="Number of threads; 0, the default, for all cores.",
+)
+
 _COMMON = [
     click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead."),
-    click.option(
-        "-j",
-        "--threads",
-        type=click.IntRange(0, _MOST_THREADS),
-        default=0,
-        help="Number of threads; 0, the default, for all cores.",
-    ),
+    _THREADS,
     click.option("-q", "--quiet", is_flag=True, help="Say nothing but results and errors."),
     click.option("-v", "--verbose", is_flag=True, help="Say more about what is done."),
     click.option("--debug", is_flag=True, help="Show where an error comes from."),
@@ -114,6 +116,11 @@ CHECK = click.option(
 def common(command: _Command) -> _Command:
     """Add the options that every verb has."""
     return _with(_COMMON, command)
+
+
+def telling(command: _Command) -> _Command:
+    """Add the options of verbs that say with a `-j` of their own what runs at once."""
+    return _with([option for option in _COMMON if option is not _THREADS], command)
 
 
 def reading(command: _Command) -> _Command:

@@ -1,0 +1,86 @@
+"""Who answers requests: children of this process, as many at once as it has been told."""
+
+import queue
+import threading
+import time
+from collections.abc import Generator, Sequence
+from typing import Any, Protocol
+
+from .child import Child, CrashedError, TimedOutError
+
+
+class Answering(Protocol):
+    """Something that answers requests in any order."""
+
+    def answers(
+        self, requests: Sequence[Any], seconds: float
+    ) -> Generator[tuple[int, Any], None, None]:
+        """Yield the number of each request and its answer as it comes.
+
+        An answer that never came is a dict with ``failure`` ("timeout" or "crash"), ``reason`` and
+        ``seconds``. Closing the iterator ends what is still under way.
+        """
+        ...
+
+
+def answer_of(child: Child, request: Any, seconds: float) -> Any:
+    """Return a child's answer, or what became of the child."""
+    began = time.perf_counter()
+    try:
+        return child.answer(request, seconds)
+    except TimedOutError:
+        kind, reason = "timeout", f"stopped after {seconds:g} s"
+    except (CrashedError, OSError, ValueError) as error:
+        # Neither a process that cannot be started nor an answer that is none ends the campaign.
+        kind, reason = "crash", str(error)
+    spent = round(time.perf_counter() - began, 4)
+    return {"failure": kind, "reason": reason, "seconds": spent}
+
+
+class LocalPool:
+    """Children of this process.
+
+    Parameters
+    ----------
+    jobs : int
+        How many at once.
+    greeting : dict
+        See `bspcsg.campaign.child.Child`.
+    """
+
+    def __init__(self, jobs: int, greeting: dict[str, Any]) -> None:
+        self._jobs, self._greeting = jobs, greeting
+
+    def answers(
+        self, requests: Sequence[Any], seconds: float
+    ) -> Generator[tuple[int, Any], None, None]:
+        """Yield the number of each request and its answer as it comes."""
+        waiting: queue.SimpleQueue[int] = queue.SimpleQueue()
+        for number in range(len(requests)):
+            waiting.put(number)
+        answered: queue.SimpleQueue[tuple[int, Any]] = queue.SimpleQueue()
+        stopped = threading.Event()
+
+        def work(child: Child) -> None:
+            with child:
+                while not stopped.is_set():
+                    try:
+                        number = waiting.get_nowait()
+                    except queue.Empty:
+                        return
+                    answered.put((number, answer_of(child, requests[number], seconds)))
+
+        children = [Child(self._greeting) for _ in range(min(self._jobs, len(requests)))]
+        threads = [threading.Thread(target=work, args=(child,)) for child in children]
+        try:
+            for thread in threads:
+                thread.start()
+            for _ in requests:
+                yield answered.get()
+        finally:
+            stopped.set()
+            for child in children:
+                child.stop()
+            for thread in threads:
+                if thread.ident is not None:
+                    thread.join()

@@ -1,0 +1,67 @@
+"""The process that asks pymeshlab: ``pymeshlab_child.py FOLDER`` combines what lies in there.
+
+It runs apart because pymeshlab is under another licence, and can crash or hang. It imports nothing
+of this package, reads ``operands.npz``, writes ``result.npz`` and ``said.json``, and exits with 6
+without pymeshlab.
+"""
+
+import json
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+MISSING = 6
+
+#: What pymeshlab says when it cannot keep a result in which nothing is left.
+_EMPTY = "Vertex matrix is empty"
+
+#: The boolean filters: exact, by mesh arrangements with CGAL's kernel inside libigl.
+FILTERS = {
+    "union": "generate_boolean_union",
+    "difference": "generate_boolean_difference",
+    "intersection": "generate_boolean_intersection",
+    "xor": "generate_boolean_xor",
+}
+
+
+def main(folder: Path) -> int:
+    """Combine the operands in a folder, the first with each of the others in turn."""
+    try:
+        import pymeshlab
+
+        meshes = pymeshlab.MeshSet()
+    except ImportError as error:
+        (folder / "said.json").write_text(json.dumps({"missing": str(error)}))
+        return MISSING
+    said = {"version": version("pymeshlab")}
+    with np.load(folder / "operands.npz", allow_pickle=False) as arrays:
+        for number in range(int(arrays["count"])):
+            corners = arrays[f"vertices{number}"], arrays[f"faces{number}"]
+            meshes.add_mesh(pymeshlab.Mesh(*corners))
+        combine = getattr(meshes, FILTERS[str(arrays["operation"])])
+        count = int(arrays["count"])
+    try:
+        current = 0
+        for number in range(1, count):
+            combine(first_mesh=current, second_mesh=number)
+            current = meshes.current_mesh_id()
+        found = meshes.current_mesh()
+        np.savez(folder / "result.npz", vertices=found.vertex_matrix(), faces=found.face_matrix())
+    except pymeshlab.PyMeshLabException as error:
+        _note_failure(folder, str(error), said)
+    (folder / "said.json").write_text(json.dumps(said))
+    return 0
+
+
+def _note_failure(folder: Path, message: str, said: dict[str, str]) -> None:
+    """Say what failed; a result without vertices is raised as a failure too."""
+    if _EMPTY in message:
+        np.savez(folder / "result.npz", vertices=np.zeros((0, 3)), faces=np.zeros((0, 3), int))
+    else:
+        said["failed"] = message.strip().splitlines()[-1]
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

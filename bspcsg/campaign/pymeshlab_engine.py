@@ -1,0 +1,62 @@
+"""pymeshlab's exact booleans, asked in a process of their own."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from .questions import Answer, NoOpinionError, Question, mesh_of
+
+_CHILD = Path(__file__).with_name("pymeshlab_child.py")
+_MISSING = 6
+
+
+def ask_pymeshlab(question: Question) -> Answer:
+    """Return what pymeshlab makes of the operands.
+
+    Raises
+    ------
+    NoOpinionError
+        If it is not installed, fails, crashes or takes too long.
+    """
+    if any(len(mesh.faces) == 0 for mesh in question.operands):
+        raise NoOpinionError("it takes no empty operands")
+    with tempfile.TemporaryDirectory(prefix="bspcsg-") as name:
+        folder = Path(name)
+        _put_operands(folder, question)
+        said = _asked_child(folder, question.timeout)
+        if "failed" in said:
+            raise NoOpinionError(f"it failed: {said['failed']}")
+        with np.load(folder / "result.npz", allow_pickle=False) as found:
+            return Answer(said["version"], mesh_of(found["vertices"], found["faces"]))
+
+
+def _put_operands(folder: Path, question: Question) -> None:
+    arrays: dict[str, np.ndarray] = {
+        "operation": np.array(question.operation),
+        "count": np.array(len(question.operands)),
+    }
+    for number, mesh in enumerate(question.operands):
+        arrays[f"vertices{number}"], arrays[f"faces{number}"] = mesh.vertices, mesh.faces
+    # The stubs of numpy take the arrays' names for its one option.
+    np.savez(folder / "operands.npz", **arrays)  # type: ignore[arg-type]
+
+
+def _asked_child(folder: Path, timeout: float) -> dict[str, str]:
+    # Without -P, this package's own folder would hide modules of the standard library.
+    command = [sys.executable, "-P", os.fspath(_CHILD), os.fspath(folder)]
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=timeout, check=False)
+    except subprocess.TimeoutExpired as error:
+        raise NoOpinionError(f"it took longer than {timeout:g} s") from error
+    path = folder / "said.json"
+    said: dict[str, str] = json.loads(path.read_text()) if path.exists() else {}
+    if done.returncode == _MISSING and "missing" in said:
+        raise NoOpinionError(f"it could not be loaded: {said['missing']}")
+    if done.returncode != 0 or not said:
+        raise NoOpinionError(f"its process ended with {done.returncode}")
+    return said

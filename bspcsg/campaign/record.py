@@ -1,0 +1,294 @@
+"""What a campaign leaves behind: a file of JSON lines, one for each run and each finished case.
+
+Lines are appended as cases end, in any order, and each is written whole before the next begins. A
+runner that is killed while it writes leaves a torn last line, which readers leave out and writers
+close first.
+"""
+
+import json
+import os
+import threading
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal, NotRequired, Self, TypedDict, cast
+
+from ..errors import FormatError
+
+#: Version of the lines.
+SCHEMA = 1
+
+#: Verdicts that fail a campaign.
+FAILURES = frozenset({"DISAGREE", "subject failed", "timeout", "crash"})
+
+#: All verdicts, the ones to worry about first.
+VERDICTS = (
+    "DISAGREE",
+    "subject failed",
+    "crash",
+    "timeout",
+    "oracle failed",
+    "oracle refused",
+    "refused",
+    "within rounding",
+    "same set, other topology",
+    "agree",
+)
+
+Kind = Literal["pair", "csg", "pose"]
+
+
+class Machine(TypedDict):
+    """Where a run took place."""
+
+    processor: str
+    cores: int
+    memory_gb: float
+    system: str
+
+
+class RunRecord(TypedDict):
+    """The header of a run."""
+
+    schema: int
+    type: Literal["run"]
+    command: str
+    seed: int
+    started: str
+    versions: dict[str, str]
+    machine: Machine
+
+
+class FactsRecord(TypedDict):
+    """What a mesh is like; lengths in model units, inertia about the centroid at density 1."""
+
+    vertices: int
+    triangles: int
+    volume: float
+    area: float
+    euler_number: int
+    components: int
+    open_edges: int
+    centroid: list[float] | None
+    inertia: list[list[float]] | None
+    self_intersections: int | None
+
+
+class OperandRecord(TypedDict):
+    """What went in; `pose` holds the rows of an affine map, or None for none."""
+
+    name: str
+    file: str | None
+    sha256: str
+    pose: list[list[float]] | None
+    triangles: int | None
+    volume: float | None
+
+
+class OracleRecord(TypedDict):
+    """What another engine said; `agrees` is None if that could not be told."""
+
+    name: str
+    version: str
+    agrees: bool | None
+    says: str
+    facts: FactsRecord | None
+    seconds: float
+
+
+class DifferenceRecord(TypedDict):
+    """The symmetric difference of our result and the first oracle's."""
+
+    volume: float
+    exact: str | None
+    thickness: float
+    equal: bool
+    place: list[float] | None
+
+
+class HausdorffRecord(TypedDict):
+    """Lower bounds of the distances from ours to theirs and back, from so many points."""
+
+    forward: float
+    backward: float
+    samples: int
+
+
+class BoundsRecord(TypedDict):
+    """Thicknesses up to which sets count as the same, and as within rounding."""
+
+    same_set: float
+    rounding: float
+
+
+class IdentityRecord(TypedDict):
+    """Whether exact volumes add up as the equation says."""
+
+    equation: str
+    holds: bool
+
+
+class SecondsRecord(TypedDict):
+    """Wall time of the parts of a case."""
+
+    load: float
+    ours: float
+    check: float
+    total: float
+
+
+class CaseRecord(TypedDict):
+    """What came of one case."""
+
+    schema: int
+    type: Literal["case"]
+    key: str
+    case: str
+    kind: Kind
+    operation: str
+    operands: list[OperandRecord]
+    command: str
+    seed: int | None
+    pose: str | None
+    verdict: str
+    reason: str
+    ours: FactsRecord | None
+    oracles: list[OracleRecord]
+    set_difference: DifferenceRecord | None
+    hausdorff: HausdorffRecord | None
+    bounds: BoundsRecord | None
+    identity: NotRequired[IdentityRecord | None]
+    seconds: SecondsRecord
+    memory_mb: float | None
+    meshes: str | None
+
+
+def is_failure(case: CaseRecord) -> bool:
+    """Whether a case fails the campaign that it is part of."""
+    return case["verdict"] in FAILURES
+
+
+@dataclass
+class Results:
+    """The lines of one or several files.
+
+    Parameters
+    ----------
+    runs : list of RunRecord
+        In the order of the files.
+    cases : dict of str to CaseRecord
+        By key, the latest line of each.
+    folders : dict of str to Path
+        By key, what the path of the case's meshes is relative to.
+    """
+
+    runs: list[RunRecord] = field(default_factory=list)
+    cases: dict[str, CaseRecord] = field(default_factory=dict)
+    folders: dict[str, Path] = field(default_factory=dict)
+
+
+def read_results(paths: Iterable[str | os.PathLike[str]]) -> Results:
+    """Read results files, such as the shards of one campaign.
+
+    Raises
+    ------
+    FormatError
+        If a file cannot be read, or a line other than a torn last one is none of a results file.
+    """
+    results = Results()
+    for path in map(Path, paths):
+        for line in _lines(path):
+            if line["type"] == "run":
+                results.runs.append(cast(RunRecord, line))
+            else:
+                case = cast(CaseRecord, line)
+                results.cases[case["key"]] = case
+                results.folders[case["key"]] = path.parent
+    return results
+
+
+def _lines(path: Path) -> list[dict[str, Any]]:
+    try:
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise FormatError(f"{path}: cannot read: {error.strerror}.", "unreadable") from error
+    *whole, _torn = text.split("\n")
+    return [_parsed(line, path, number) for number, line in enumerate(whole, 1) if line.strip()]
+
+
+def _parsed(line: str, path: Path, number: int) -> dict[str, Any]:
+    try:
+        found = json.loads(line)
+    except (ValueError, RecursionError):
+        found = None
+    known = isinstance(found, dict) and found.get("type") in ("run", "case")
+    if not known or (found["type"] == "case" and not isinstance(found.get("key"), str)):
+        message = f"{path}:{number}: this is no line of a results file."
+        raise FormatError(f"{message} bspcsg validate --results writes such files.", "malformed")
+    if found.get("schema") != SCHEMA:
+        message = f"{path}:{number}: schema {found.get('schema')!r}, but {SCHEMA} is known."
+        raise FormatError(message, "unknown_schema")
+    return cast(dict[str, Any], found)
+
+
+class Journal:
+    """A results file that is being written; lines may come from several threads.
+
+    Parameters
+    ----------
+    path : path-like
+        Appended to if it is there.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be written.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        self._lock = threading.Lock()
+        try:
+            self._closed_torn_line()
+            self._file = self.path.open("ab")
+        except OSError as error:
+            raise self._unwritable(error) from error
+
+    def append(self, record: RunRecord | CaseRecord) -> None:
+        """Add a line, and hand it to the operating system before anything else happens."""
+        line = json.dumps(record, allow_nan=False, ensure_ascii=True) + "\n"
+        try:
+            with self._lock:
+                self._file.write(line.encode("ascii"))
+                self._file.flush()
+        except OSError as error:
+            raise self._unwritable(error) from error
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def __enter__(self) -> Self:
+        """Return the journal."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close the file."""
+        self.close()
+
+    def _closed_torn_line(self) -> None:
+        """Cut off what a killed writer left of its last line."""
+        if not self.path.exists():
+            return
+        with self.path.open("r+b") as file:
+            size = file.seek(0, os.SEEK_END)
+            file.truncate(_end_of_last_line(self.path, size))
+
+    def _unwritable(self, error: OSError) -> FormatError:
+        return FormatError(f"{self.path}: cannot write: {error.strerror}.", "unwritable")
+
+
+def _end_of_last_line(path: Path, size: int) -> int:
+    with path.open("rb") as file:
+        data = file.read(size)
+    return data.rfind(b"\n") + 1

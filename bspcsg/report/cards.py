@@ -1,0 +1,178 @@
+"""The cards of a report: which cases get one, and how much of each fits on the page."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ..campaign.record import CaseRecord, Results
+from ..errors import BspcsgError
+from .layer import Layer
+from .merging import rank
+from .packing import packed
+from .still import camera_for, ring, still
+from .stored import Stored, stored_meshes
+from .wording import tone, whole
+
+#: Characters of a page with so many cards; a page with more cards may be longer in proportion.
+_PAGE, _CARDS = 1_450_000, 40
+
+#: Share of the page that cards have even if the table is long.
+_LEAST_SHARE = 0.3
+
+#: Cells a side that a view is simplified to, until it fits.
+_CELLS = (128, 64, 40, 24)
+
+#: Characters of the pictures of one card, about.
+_PICTURES = 10_000
+
+#: How much more than its share of what is left one view may take.
+_GENEROSITY = 2
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A picture of a card; of several images each is in front of the one before.
+
+    `text` stands where there is no picture; `is_same` if that is because two sets are the same.
+    """
+
+    caption: str
+    images: list[str] = field(default_factory=list)
+    text: str = ""
+    is_same: bool = False
+
+
+@dataclass(frozen=True)
+class Card:
+    """What a page shows of one case.
+
+    Parameters
+    ----------
+    address : str
+        In the page.
+    case : CaseRecord
+    tone : str
+    figures : list of Figure
+    model : dict or None
+        What the viewer unpacks.
+    note : str
+        What was left out, and why.
+    """
+
+    address: str
+    case: CaseRecord
+    tone: str
+    figures: list[Figure]
+    model: dict[str, Any] | None
+    note: str
+
+
+class Purse:
+    """The characters that may still be spent on cards."""
+
+    def __init__(self, cards: int, spent: int) -> None:
+        self._cards = cards
+        page = _PAGE * max(1.0, cards / _CARDS)
+        self.left = max(page - spent, _LEAST_SHARE * page)
+
+    def spend(self, characters: int) -> None:
+        """Take so many out."""
+        self.left -= characters
+
+    def allowance(self) -> float:
+        """Return what the view of the next card may take, when its pictures are paid for."""
+        cards = max(self._cards, 1)
+        self._cards -= 1
+        return min(self.left, _GENEROSITY * (self.left / cards - _PICTURES))
+
+
+def picked(results: Results, count: int) -> list[CaseRecord]:
+    """Return the cases that get a card: failures first, then those with meshes, then by doubt."""
+    return sorted(results.cases.values(), key=_urgency)[:count]
+
+
+def _urgency(case: CaseRecord) -> tuple[int, bool, float, str]:
+    found, bounds = case["set_difference"], case["bounds"]
+    known = found is not None and bounds is not None and bounds["same_set"] > 0
+    doubt = found["thickness"] / bounds["same_set"] if found and bounds and known else 0.0
+    return rank(case), case["meshes"] is None, -doubt, case["case"]
+
+
+def cards_of(cases: Iterable[CaseRecord], results: Results, purse: Purse) -> Iterable[Card]:
+    """Yield a card for each case; what does not fit is left out and said."""
+    for number, case in enumerate(cases):
+        address = f"case-{number + 1}"
+        if case["meshes"] is None:
+            yield Card(address, case, tone(case["verdict"]), [], None, "No meshes were kept.")
+            continue
+        try:
+            stored = stored_meshes(results.folders[case["key"]], case["meshes"])
+            figures = _figures(case, stored)
+        except BspcsgError as error:
+            yield Card(address, case, tone(case["verdict"]), [], None, error.message)
+            continue
+        purse.spend(sum(len(image) for figure in figures for image in figure.images))
+        model, note = _model(stored.layers, purse.allowance())
+        purse.spend(len(model["data"]) if model else 0)
+        yield Card(address, case, tone(case["verdict"]), figures, model, note)
+
+
+def _figures(case: CaseRecord, stored: Stored) -> list[Figure]:
+    """Return pictures of the operands, the result and the difference, all from one place."""
+    if not stored.layers:
+        return []
+    camera = camera_for(stored.layers, (4, 3))
+    names = [Path(operand["file"] or operand["name"]).name for operand in case["operands"]]
+    named = dict(zip((layer.name for layer in stored.operands), names, strict=False))
+    figures = [
+        _figure(f"{layer.name} · {named.get(layer.name, '')}", layer, still([layer], camera))
+        for layer in stored.operands
+    ]
+    result = still([stored.result], camera)
+    figures.append(_figure("result", stored.result, result))
+    if len(stored.difference.faces):
+        found = case["set_difference"]
+        place = found["place"] if found else None
+        images = [result, still([stored.difference], camera, edges=False)]
+        images += [] if place is None else [ring(place, camera)]
+        return [*figures, Figure("difference of the results, in red", [i for i in images if i])]
+    return [*figures, _no_difference(case)]
+
+
+def _figure(name: str, layer: Layer, image: str) -> Figure:
+    if len(layer.faces) == 0:
+        return Figure(name, text="empty")
+    caption = f"{name} · {whole(len(layer.faces))} triangles"
+    return Figure(caption, [image]) if image else Figure(caption, text="too large for a picture")
+
+
+def _no_difference(case: CaseRecord) -> Figure:
+    found = case["set_difference"]
+    name = "difference of the results"
+    if found is None:
+        return Figure(name, text="not compared")
+    if found["equal"]:
+        return Figure(name, text="exactly the same set", is_same=True)
+    return Figure(name, text=f"a film {found['thickness']:.2g} thick")
+
+
+def _model(layers: list[Layer], allowance: float) -> tuple[dict[str, Any] | None, str]:
+    """Return what the viewer unpacks, simpler if need be, and what was done to it."""
+    if not layers:
+        return None, "The result is empty; there is nothing to turn."
+    model = packed(layers, quantised=True)
+    if len(model["data"]) <= allowance:
+        return model, ""
+    for cells in _CELLS:
+        simple = packed([layer.simplified(cells) for layer in layers], quantised=True)
+        if len(simple["data"]) <= allowance:
+            before, after = (
+                sum(layer["triangles"] for layer in m["layers"]) for m in (model, simple)
+            )
+            return simple, (
+                f"The 3D view shows {whole(after)} triangles instead of {whole(before)}, to fit on"
+                f" this page; pictures and numbers are of all of them."
+            )
+    size = f"{len(model['data']) / 1000:.0f} kB"
+    return None, f"The 3D view would take {size}; fewer cards leave more room for each."

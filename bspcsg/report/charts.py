@@ -1,0 +1,88 @@
+"""Charts as SVG, in the colours of the page that they stand in."""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+_WIDTH, _HEIGHT = 360, 190
+_LEFT, _RIGHT, _TOP, _BOTTOM = 42, 8, 8, 32
+
+#: Points of a curve: more cannot be told apart.
+_MOST_POINTS = 200
+
+
+class Mark(NamedTuple):
+    """A label on an axis, and where it stands in pixels."""
+
+    place: float
+    text: str
+
+
+class Curve(NamedTuple):
+    """A line of a chart: its name and its path."""
+
+    name: str
+    path: str
+
+
+class Chart(NamedTuple):
+    """What the template draws: curves, labels of the axes, and the frame in pixels."""
+
+    curves: list[Curve]
+    across: list[Mark]
+    upwards: list[Mark]
+    width: int
+    height: int
+    left: int
+    right: int
+    top: int
+    bottom: int
+
+
+def share_below(series: Sequence[tuple[str, Sequence[float]]]) -> Chart | None:
+    """Return the chart of which share of the values lies below a value, on a logarithmic axis.
+
+    Parameters
+    ----------
+    series : sequence of (str, sequence of float)
+        Names and values; those not above 0 count as below every other. There is no chart if none
+        is above 0.
+    """
+    positive = [value for _, values in series for value in values if value > 0]
+    if not positive:
+        return None
+    low, high = math.floor(math.log10(min(positive))), math.ceil(math.log10(max(positive)))
+    high = max(high, low + 1)
+    curves = [Curve(name, _path(sorted(values), low, high)) for name, values in series if values]
+    step = math.ceil((high - low) / 6)
+    across = [Mark(_x(power, low, high), _power(power)) for power in range(low, high + 1, step)]
+    upwards = [Mark(_y(share / 100), f"{share} %") for share in (0, 50, 100)]
+    frame = (_WIDTH, _HEIGHT, _LEFT, _WIDTH - _RIGHT, _TOP, _HEIGHT - _BOTTOM)
+    return Chart(curves, across, upwards, *frame)
+
+
+def _path(values: Sequence[float], low: int, high: int) -> str:
+    """Return the steps of a curve, each as far up as the share of values up to there."""
+    count = len(values)
+    picked = sorted({round(k * (count - 1) / _MOST_POINTS) for k in range(_MOST_POINTS + 1)})
+    steps = [
+        f"H{_x(math.log10(values[k]), low, high):.1f}V{_y((k + 1) / count):.1f}"
+        for k in picked
+        if values[k] > 0
+    ]
+    start = sum(value <= 0 for value in values) / count
+    return f"M{_x(low, low, high):.1f},{_y(start):.1f}{''.join(steps)}H{_x(high, low, high):.1f}"
+
+
+def _x(power: float, low: int, high: int) -> float:
+    return _LEFT + (power - low) / (high - low) * (_WIDTH - _LEFT - _RIGHT)
+
+
+def _y(share: float) -> float:
+    return _TOP + (1 - share) * (_HEIGHT - _TOP - _BOTTOM)
+
+
+def _power(exponent: int) -> str:
+    if -3 <= exponent <= 4:
+        return f"{10.0**exponent:g}"
+    return f"1e{exponent}"

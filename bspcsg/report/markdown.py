@@ -1,0 +1,77 @@
+"""Campaigns as Markdown, for the summary of a build or a message to somebody."""
+
+from collections.abc import Sequence
+
+from ..campaign.record import CaseRecord, RunRecord, is_failure
+from ..campaign.summary import conclusion, counts_by_verdict
+
+#: How many cases a table lists at most.
+_MOST = 50
+
+#: Verdicts that are listed although they are no failures.
+_NOTEWORTHY = ("oracle failed", "oracle refused", "within rounding", "refused")
+
+
+def markdown_text(cases: Sequence[CaseRecord], runs: Sequence[RunRecord] = ()) -> str:
+    """Return counts, failures and noteworthy cases as tables.
+
+    Parameters
+    ----------
+    cases : sequence of CaseRecord
+    runs : sequence of RunRecord
+        Whose commands, versions and machine are told.
+    """
+    failures = [case for case in cases if is_failure(case)]
+    blocks = ["# Validation", f"**{conclusion(cases)}**", _counts(cases)]
+    if failures:
+        blocks += ["## Failures", _listed(failures)]
+    for verdict in _NOTEWORTHY:
+        found = [case for case in cases if case["verdict"] == verdict]
+        if found:
+            blocks += [f"## {verdict.capitalize()}", _listed(found)]
+    blocks += [_run(run) for run in runs]
+    return "\n\n".join(blocks) + "\n"
+
+
+def _counts(cases: Sequence[CaseRecord]) -> str:
+    operations = sorted({case["operation"] for case in cases})
+    head = _row(["verdict", *operations, "all"])
+    rows = [head, _row(["---", *("---:" for _ in [*operations, "all"])])]
+    parts = [
+        counts_by_verdict([case for case in cases if case["operation"] == operation])
+        for operation in operations
+    ]
+    for verdict, total in counts_by_verdict(cases).items():
+        rows.append(_row([verdict, *(str(part.get(verdict, 0)) for part in parts), str(total)]))
+    return "\n".join(rows)
+
+
+def _listed(cases: Sequence[CaseRecord]) -> str:
+    rows = [_row(["case", "verdict", "why", "again"]), _row(["---"] * 4)]
+    for case in cases[:_MOST]:
+        rows.append(_row([case["case"], case["verdict"], case["reason"], _code(case["command"])]))
+    more = len(cases) - _MOST
+    return "\n".join(rows) + (f"\n\nand {more} more" if more > 0 else "")
+
+
+def _run(run: RunRecord) -> str:
+    machine = run["machine"]
+    versions = ", ".join(f"{name} {version}" for name, version in run["versions"].items())
+    return "\n".join(
+        [
+            f"- {_code(run['command'])}, started {run['started']}, seed {run['seed']}",
+            f"- {versions}",
+            f"- {machine['processor']}, {machine['cores']} cores, {machine['memory_gb']} GB,"
+            f" {machine['system']}",
+        ]
+    )
+
+
+def _row(cells: Sequence[str]) -> str:
+    # A bar would end the cell, a line break the row.
+    safe = (cell.replace("|", "\\|").replace("\n", " ") for cell in cells)
+    return f"| {' | '.join(safe)} |"
+
+
+def _code(text: str) -> str:
+    return f"`{text.replace('`', chr(39))}`" if text else ""

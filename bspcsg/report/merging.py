@@ -1,0 +1,67 @@
+"""Results of several files, such as the shards of one campaign, as one."""
+
+import json
+import os
+from collections.abc import Iterable
+
+from ..campaign.record import (
+    VERDICTS,
+    CaseRecord,
+    Results,
+    RunRecord,
+    read_results,
+)
+from ..campaign.summary import summary_of
+from ..errors import FormatError
+
+
+def merged(paths: Iterable[str | os.PathLike[str]]) -> Results:
+    """Read results files as one; the order in which they are named does not matter.
+
+    Of several lines about one case the last counts; of several files the one that was started last.
+
+    Raises
+    ------
+    FormatError
+        If a file cannot be read or is none of results, or there is no case in any.
+    """
+    everything = Results()
+    for results in sorted((read_results([path]) for path in paths), key=_started):
+        everything.runs += [run for run in results.runs if run not in everything.runs]
+        everything.cases.update(results.cases)
+        everything.folders.update(results.folders)
+    if not everything.cases:
+        raise FormatError("There is no case in these results; nothing to report.", "empty_results")
+    return everything
+
+
+def _started(results: Results) -> tuple[str, list[str]]:
+    # Keys decide where times do not, so that nothing depends on the order of the files.
+    return max((run["started"] for run in results.runs), default=""), sorted(results.cases)
+
+
+def rank(case: CaseRecord) -> int:
+    """Return the place of a case's verdict among all verdicts, the ones to worry about first."""
+    verdict = case["verdict"]
+    return VERDICTS.index(verdict) if verdict in VERDICTS else len(VERDICTS)
+
+
+def versions_of(runs: Iterable[RunRecord]) -> dict[str, list[str]]:
+    """Return the versions of each engine, usually one."""
+    found: dict[str, set[str]] = {}
+    for run in runs:
+        for name, version in run["versions"].items():
+            found.setdefault(name, set()).add(version)
+    return {name: sorted(versions) for name, versions in found.items()}
+
+
+def ordered(results: Results) -> list[CaseRecord]:
+    """Return all cases, the ones to worry about first, then by name."""
+    return sorted(results.cases.values(), key=lambda case: (rank(case), case["case"], case["key"]))
+
+
+def document(results: Results) -> str:
+    """Return everything as one JSON document."""
+    cases = ordered(results)
+    found = {**summary_of(cases), "runs": results.runs, "results": cases}
+    return json.dumps(found, indent=1, allow_nan=False) + "\n"

@@ -1,0 +1,124 @@
+"""The report of a campaign as one page."""
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from ..campaign.record import CaseRecord, FactsRecord, Results, is_failure
+from ..campaign.summary import counts_by_verdict
+from .assets import asset, bundle, rendered
+from .cards import Purse, cards_of, picked
+from .charts import Chart, share_below
+from .merging import ordered, versions_of
+from .table import table
+from .wording import milliseconds, number, tone, vector, whole
+
+#: Characters of one card beside its pictures and its view, about.
+_CARD_TEXT = 4_000
+
+_FILES = ("page.css", "report.css", "loader.js", "table.js")
+
+_FACTS: tuple[tuple[str, str, Any], ...] = (
+    ("volume", "volume", lambda value: number(value, 12)),
+    ("area", "area", lambda value: number(value, 12)),
+    ("triangles", "triangles", whole),
+    ("vertices", "vertices", whole),
+    ("euler_number", "Euler number", whole),
+    ("components", "surfaces", whole),
+    ("open_edges", "open edges", whole),
+    ("self_intersections", "self-intersections", whole),
+    ("centroid", "centroid", vector),
+)
+
+
+def report_page(
+    results: Results,
+    cards: int = 40,
+    title: str = "Validation report",
+    watch: Callable[[list[CaseRecord]], Iterable[CaseRecord]] = iter,
+) -> str:
+    """Return the page about all cases.
+
+    Parameters
+    ----------
+    results : Results
+    cards : int
+        How many cases are shown with pictures and all their numbers, failures first.
+    title : str
+    watch : callable
+        Given the cases of the cards, yields them one by one as they are drawn.
+
+    Raises
+    ------
+    MissingPartError
+        If Jinja2 is not installed.
+    """
+    cases = ordered(results)
+    chosen = picked(results, cards)
+    columns, rows = table(cases, {case["key"]: f"case-{k + 1}" for k, case in enumerate(chosen)})
+    # Each cell and row costs its tags besides its text.
+    spent = sum(60 + sum(4 + len(cell) for cell in row.cells) for row in rows)
+    spent += len(bundle()) + sum(len(asset(name)) for name in _FILES) + _CARD_TEXT * len(chosen)
+    page = rendered(
+        "report.html",
+        title=title,
+        lead=_lead(results),
+        failed=any(map(is_failure, cases)),
+        verdicts=[(name, count, tone(name)) for name, count in counts_by_verdict(cases).items()],
+        charts=_charts(results),
+        runs=results.runs,
+        versions=versions_of(results.runs),
+        columns=columns,
+        rows=rows,
+        operations=sorted({case["operation"] for case in cases}),
+        cards=list(cards_of(watch(chosen), results, Purse(len(chosen), spent))),
+        total=len(cases),
+        facts=_facts,
+        number=number,
+        whole=whole,
+        vector=vector,
+        milliseconds=milliseconds,
+    )
+    return re.sub(r"\n\s+", "\n", page)
+
+
+def _lead(results: Results) -> str:
+    failures = sum(map(is_failure, results.cases.values()))
+    count = f"{whole(len(results.cases))} case{'s' if len(results.cases) != 1 else ''}"
+    return f"{count}, {whole(failures) if failures else 'no'} failure{'s' if failures > 1 else ''}"
+
+
+def _facts(ours: FactsRecord | None, oracles: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return the names of all engines that made a mesh, and rows of what the meshes are like."""
+    made = [("bspcsg", ours), *((oracle["name"], oracle["facts"]) for oracle in oracles)]
+    made = [(name, facts) for name, facts in made if facts is not None]
+    rows = [
+        (title, [shown(facts[key]) for _, facts in made])
+        for key, title, shown in _FACTS
+        if any(facts[key] is not None for _, facts in made)
+    ]
+    return {"engines": [name for name, _ in made], "rows": rows}
+
+
+def _charts(results: Results) -> list[tuple[str, str, Chart]]:
+    """Return title, name of the axis and curves of what can be drawn."""
+    times: dict[str, list[float]] = {"bspcsg": []}
+    ratios = []
+    for case in results.cases.values():
+        if case["ours"]:
+            times["bspcsg"].append(case["seconds"]["ours"])
+        for oracle in case["oracles"]:
+            if oracle["facts"]:
+                times.setdefault(oracle["name"], []).append(oracle["seconds"])
+        found, bounds = case["set_difference"], case["bounds"]
+        if found and bounds and bounds["same_set"] > 0:
+            ratios.append(found["thickness"] / bounds["same_set"])
+    drawn = (
+        ("Time of the operation", "seconds", share_below(list(times.items()))),
+        (
+            "Thickness of the difference",
+            "thickness / bound for the same set",
+            share_below([("bspcsg and oracle", ratios)]),
+        ),
+    )
+    return [(title, axis, chart) for title, axis, chart in drawn if chart is not None]

@@ -1,0 +1,78 @@
+"""The meshes that a campaign has kept of a case, as layers of a view."""
+
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ..campaign.meshes import unpacked
+from ..errors import FormatError
+from ..mesh import Mesh
+from .layer import COLOURS, DIFFERENCE, RESULT, Layer
+
+#: Operands are seen through when they are shown with the result.
+_OPERAND_OPACITY = 0.4
+
+
+class Stored(NamedTuple):
+    """What was kept of one case: operands in their order, the result, and what is too much in it.
+
+    `difference` is where the result and the oracle's are not the same; empty if they are.
+    """
+
+    operands: list[Layer]
+    result: Layer
+    difference: Layer
+
+    @property
+    def layers(self) -> list[Layer]:
+        """All layers that have faces; operands are hidden at first, unless nothing came out."""
+        hidden = len(self.result.faces) > 0
+        operands = [
+            replace(layer, shown=not hidden, opacity=_OPERAND_OPACITY) for layer in self.operands
+        ]
+        layers = [*operands, self.result, self.difference]
+        return [layer for layer in layers if len(layer.faces)]
+
+
+def stored_meshes(folder: Path, name: str) -> Stored:
+    """Read the meshes of a case.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the results file is.
+    name : str
+        Path of the meshes in that folder.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be read, is not in that folder, or holds something else.
+    """
+    path = folder / name
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise FormatError(f"{name}: meshes lie in the folder of the results only.", "unreadable")
+    try:
+        meshes = unpacked(path)
+        operands = [
+            _layer(mesh, letter.upper(), COLOURS[number % len(COLOURS)])
+            for number, (letter, mesh) in enumerate(sorted(meshes.operands.items()))
+        ]
+        result = _layer(meshes.result, "result", RESULT)
+        return Stored(operands, result, _layer(meshes.difference, "difference", DIFFERENCE))
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise FormatError(f"{name}: cannot read these meshes: {error}.", "unreadable") from error
+
+
+def _layer(mesh: Mesh, name: str, colour: str) -> Layer:
+    for array in (mesh.vertices, mesh.faces):
+        if array.ndim != 2 or array.shape[1] != 3:
+            raise ValueError(f"an array of {name} has the shape {array.shape}")
+    if not np.isfinite(mesh.vertices).all():
+        raise ValueError(f"{name} has a coordinate that is not a finite number")
+    if len(mesh.faces) and not (mesh.faces.min() >= 0 and mesh.faces.max() < len(mesh.vertices)):
+        raise ValueError(f"{name} has a face that names a vertex which does not exist")
+    return Layer(name, mesh.vertices, mesh.faces, colour)

@@ -1,0 +1,61 @@
+"""Numbers and verdicts as a page shows them."""
+
+import math
+from collections.abc import Sequence
+
+#: How much a verdict is to worry about, which gives its colour and its sign.
+_TONES = {
+    "agree": "good",
+    "same set, other topology": "good",
+    "within rounding": "near",
+    "oracle refused": "warn",
+    "oracle failed": "warn",
+    "refused": "mute",
+}
+
+#: What stands where there is no number.
+NOTHING = "–"
+
+#: What stands between thousands.
+_THIN = "\N{NARROW NO-BREAK SPACE}"
+
+#: Powers of ten from and below which numbers are written out.
+_PLAIN = (-4, 9)
+
+
+def tone(verdict: str) -> str:
+    """Return good, near, warn, mute or bad; an unknown verdict is bad."""
+    return _TONES.get(verdict, "bad")
+
+
+def number(value: float | None, digits: int = 6) -> str:
+    """Return a number with so many digits that count, and powers of ten only where they help."""
+    if value is None:
+        return NOTHING
+    power = math.floor(math.log10(abs(value))) if value and math.isfinite(value) else 0
+    if not _PLAIN[0] <= power < max(_PLAIN[1], digits) or not math.isfinite(value):
+        return f"{value:.{digits}g}"
+    places = max(digits - 1 - power, 0)
+    text = f"{value:,.{places}f}".replace(",", _THIN)
+    return text.rstrip("0").rstrip(".") if places else text
+
+
+def whole(value: int | None) -> str:
+    """Return a whole number with its thousands apart."""
+    return NOTHING if value is None else f"{value:,}".replace(",", _THIN)
+
+
+def milliseconds(seconds: float | None) -> str:
+    """Return a time in milliseconds."""
+    return (
+        NOTHING
+        if seconds is None
+        else f"{seconds * 1e3:.3g}"
+        if seconds < 1
+        else whole(round(seconds * 1e3))
+    )
+
+
+def vector(values: Sequence[float] | None) -> str:
+    """Return a point."""
+    return NOTHING if values is None else ", ".join(f"{value:.6g}" for value in values)
