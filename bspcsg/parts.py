@@ -5,8 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ._types import FloatArray, IndexArray
-from .mesh import Mesh
-from .pieces import surfaces_of
+from .mesh import Mesh, surfaces_of
 from .primitives import half_space
 from .solid import Solid
 

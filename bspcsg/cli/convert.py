@@ -64,9 +64,7 @@ class _Conversion:
             (path, Target.of(where, settings))
             for path, where in _targets(files, target, outdir, settings["to_format"])
         ]
-        taken = any(where.is_stream for _, where in self._pairs)
-        verbosity = int(settings["verbose"]) - int(settings["quiet"])
-        self._out = Output(verbosity, settings["as_json"], taken)
+        self._out = Output.of(settings, any(where.is_stream for _, where in self._pairs))
         self._inputs = Inputs.of(self._out, settings)
 
     def run(self) -> int:
