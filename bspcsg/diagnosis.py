@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ._types import FloatArray, IndexArray
+from .counting import uncounted
 from .errors import BspcsgError, Finding
 from .io import RawMesh
 from .mesh import Mesh, surfaces_of
@@ -80,6 +81,7 @@ class Diagnosis:
         return found
 
 
+@uncounted
 def diagnose(raw: RawMesh) -> Diagnosis:
     """Say what is wrong with a mesh."""
     with np.errstate(over="ignore", invalid="ignore"):

@@ -13,6 +13,7 @@ trimesh has no public hook for engines: `register` writes into its table of engi
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
+from .counting import uncounted
 from .errors import MissingPartError, invalid_parameter
 from .setops import difference, intersection, union
 from .solid import Solid
@@ -68,6 +69,7 @@ def register(default: bool = False) -> None:
         engines[None] = boolean
 
 
+@uncounted
 def boolean(
     meshes: "Iterable[trimesh.Trimesh]",
     operation: str,

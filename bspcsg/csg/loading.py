@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..bsp import Region
+from ..counting import counted
 from ..errors import BspcsgError, FormatError
 from ..io.atomic import write_file
 from ..solid import Solid
@@ -21,6 +22,7 @@ from .writer import written
 _LARGEST = 1 << 28
 
 
+@counted
 def load(
     path: str | os.PathLike[str],
     *,
@@ -59,6 +61,7 @@ def load(
     return _solid(evaluate(tree, polish=polish, on_invalid=on_invalid), tree.name)
 
 
+@counted
 def loads(
     text: str,
     *,

@@ -9,6 +9,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..counting import counted
 from ..errors import BspcsgError, Finding
 from .formats import (
     FORMATS,
@@ -44,6 +45,7 @@ __all__ = [
 ]
 
 
+@counted
 def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
     """Read a mesh file or a script as a solid; the suffix names the format.
 
