@@ -114,15 +114,27 @@ class Solid(Measured):
 
     @classmethod
     @counted
-    def from_mesh(cls, mesh: Any, **options: Any) -> "Solid":
+    def from_mesh(
+        cls,
+        mesh: Any,
+        *,
+        format: str | None = None,  # noqa: A002
+        tolerance: float = interop.TESSELLATION_TOLERANCE,
+        **options: Any,
+    ) -> "Solid":
         """Return the solid of whatever holds a mesh.
 
         Parameters
         ----------
         mesh : object
             A trimesh, manifold3d, pymeshlab, open3d, pyvista, vtk or meshio mesh, a CadQuery or
-            build123d shape, a pair (vertices, faces), a path, or anything that has ``vertices``
-            and ``faces``. A `Solid` is returned as it is.
+            build123d shape, a pair (vertices, faces) as libigl has it, a path, the bytes of a file
+            or an open one, or anything that has ``vertices`` and ``faces``. A `Solid` is returned
+            as it is.
+        format : str, optional
+            Of bytes and open files: a suffix, such as ``"stl"``.
+        tolerance : float
+            How far from the true surface of a CAD shape its triangles may be, in model units.
         **options
             As for `Solid`.
 
@@ -130,12 +142,23 @@ class Solid(Measured):
         ------
         InvalidMeshError
             If the object holds no mesh, or as for `Solid`.
+        FormatError
+            If a file cannot be read as what it should be.
+
+        Notes
+        -----
+        Coordinates are taken as they are: those of pyvista and of files in binary STL have single
+        precision, unless a pyvista mesh was made of float64 points.
         """
         if isinstance(mesh, Solid):
             return mesh
         if isinstance(mesh, (str, os.PathLike)):
             return cls.load(mesh, **options)
-        return cls(*interop.arrays_from(mesh), **options)
+        if isinstance(mesh, (bytes, bytearray, memoryview)) or hasattr(mesh, "readable"):
+            from . import io
+
+            return io.loads(mesh, format, **options)
+        return cls(*interop.arrays_from(mesh, tolerance), **options)
 
     @classmethod
     @counted

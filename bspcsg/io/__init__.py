@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..counting import counted
-from ..errors import BspcsgError, Finding
+from ..errors import BspcsgError, Finding, FormatError
 from .formats import (
     FORMATS,
     decoded,
@@ -38,6 +38,7 @@ __all__ = [
     "encoder_of",
     "format_of",
     "load",
+    "loads",
     "read",
     "read_as",
     "save",
@@ -71,6 +72,36 @@ def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
 
         return csg.load(path, **options)
     return solid_of(read(path), path, **options)
+
+
+@counted
+def loads(data: Any, suffix: str | None, **options: Any) -> "Solid":
+    """Return the solid in the bytes of a mesh file, or in one that is open for reading bytes.
+
+    Parameters
+    ----------
+    data : bytes or file
+    suffix : str
+        One of `FORMATS`, with or without its dot.
+    **options
+        As for `Solid`.
+
+    Raises
+    ------
+    FormatError
+        If the format is not said (code "unknown_format"), or as for `load`.
+    """
+    named = f".{(suffix or '').lower().removeprefix('.')}"
+    if named not in FORMATS:
+        known = ", ".join(name[1:] for name in sorted(FORMATS))
+        message = f"To read bytes, say their format: one of {known}, not {suffix!r}."
+        raise FormatError(message, "unknown_format")
+    content = data.read() if hasattr(data, "read") else bytes(data)
+    if not isinstance(content, bytes):
+        raise FormatError("A mesh is read from bytes; open the file with mode 'rb'.", "unreadable")
+    name = getattr(data, "name", None)
+    called = name if isinstance(name, str) else "<bytes>"
+    return solid_of(decoded(called, content, named), called, **options)
 
 
 def solid_of(raw: RawMesh, path: str | os.PathLike[str], **options: Any) -> "Solid":
