@@ -331,6 +331,12 @@ class Solid(Measured):
 
         io.save(self, path, **options)
 
+    def to_csg(self, *, flat: bool = False) -> str:
+        """Return the expression that made the solid as a `.csg` script (see `bspcsg.csg.dumps`)."""
+        from . import csg
+
+        return csg.dumps(self, flat=flat)
+
     @classmethod
     def load(cls, path: str | os.PathLike[str], **options: Any) -> "Solid":
         """Read a mesh file; the suffix names the format (see `bspcsg.load`)."""
@@ -404,6 +410,11 @@ class Solid(Measured):
         if self._placed is None:
             return f"Solid({describe(self._node, self._factors, self._mesh)})"
         return f"Solid({describe(Node(self._placed), (), self._mesh)})"
+
+    @property
+    def expression(self) -> Placed:
+        """The expression's node and the transform on it, for the modules of this package."""
+        return Placed(self._node, self._factors)
 
     def alias(self) -> "Solid":
         """Return the same value as another object, for the modules of this package."""

@@ -12,8 +12,9 @@ True
 """
 
 from .evaluator import evaluate, node_names
+from .from_solid import tree_of
 from .json_form import from_json, to_json
-from .loading import dump, dumps, load, loads, read_tree, tree_of
+from .loading import dump, dumps, load, loads, read_tree
 from .openscad import read_scad
 from .parser import parse
 from .registry import CsgWarning

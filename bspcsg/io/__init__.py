@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ..solid import Solid
 
 #: Suffixes of scripts, which `load` evaluates.
-SCRIPTS = frozenset({".csg", ".scad"})
+SCRIPTS = frozenset({".csg", ".json", ".scad"})
 
 __all__ = [
     "FORMATS",
@@ -53,7 +53,8 @@ def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
     Parameters
     ----------
     path : str or path
-        Ending in one of `FORMATS`, or a script: ``.csg`` or ``.scad`` (see `bspcsg.csg.load`).
+        Ending in one of `FORMATS`, or a script: ``.csg``, ``.json`` or ``.scad`` (see
+        `bspcsg.csg.load`).
         3MF and GLB come in millimetres, the other formats in whatever
         unit they were written in.
     **options
@@ -124,8 +125,8 @@ def save(
     ----------
     solid : Solid
     path : str or path
-        Ending in one of `FORMATS`. Binary STL and GLB hold single precision; 3MF and GLB take the
-        model as millimetres.
+        Ending in one of `FORMATS`, or in ``.csg`` for the expression (see `bspcsg.csg.dump`).
+        Binary STL and GLB hold single precision; 3MF and GLB take the model as millimetres.
     text : bool
         Write STL and PLY as text; OBJ and OFF always are.
 
@@ -141,5 +142,10 @@ def save(
     UnboundedError
         If the solid reaches to infinity.
     """
+    if Path(path).suffix.lower() == ".csg":
+        from .. import csg
+
+        csg.dump(solid, path)
+        return ()
     encoder_of(path, text)
     return write(solid.normalized().to_mesh(), path, text=text)
