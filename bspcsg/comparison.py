@@ -12,6 +12,7 @@ import numpy as np
 
 from . import interop
 from ._types import FloatArray
+from .counting import uncounted
 from .discrepancy import SetDifference
 from .errors import missing_part
 from .mesh import Mesh
@@ -52,6 +53,7 @@ class Comparison:
         return asdict(self)
 
 
+@uncounted
 def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> Comparison:
     """Compare two solids as sets.
 

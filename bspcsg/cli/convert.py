@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..errors import BspcsgError
+from ..errors import BspcsgError, Finding
 from . import output
 from .files import STREAM, Inputs, Target, expanded, shown
 from .options import PATH, common, reading, writing
 from .output import Output, counted
 
 if TYPE_CHECKING:
-    from ..errors import Finding
     from ..io import RawMesh
     from ..roundtrip import Losses
 
@@ -65,9 +64,7 @@ class _Conversion:
             (path, Target.of(where, settings))
             for path, where in _targets(files, target, outdir, settings["to_format"])
         ]
-        taken = any(where.is_stream for _, where in self._pairs)
-        verbosity = int(settings["verbose"]) - int(settings["quiet"])
-        self._out = Output(verbosity, settings["as_json"], taken)
+        self._out = Output.of(settings, any(where.is_stream for _, where in self._pairs))
         self._inputs = Inputs.of(self._out, settings)
         self._told: set[str] = set()
 
@@ -120,7 +117,7 @@ class _Conversion:
         return {**document, "lost": lost.to_dict(), "seconds": round(seconds, 4)}, lost.any
 
 
-    def _tell(self, target: Target, finding: "Finding") -> None:
+    def _tell(self, target: Target, finding: Finding) -> None:
         """Tell about a file; what is so for all files of a format is told once."""
         if finding.code == "single_precision":  # its shift is told with the losses, as measured
             return

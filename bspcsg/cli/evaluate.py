@@ -9,7 +9,7 @@ import click
 from ..errors import BspcsgError
 from .formula import File, Formula, FormulaError, evaluated, files_of, parse
 from .job import Job
-from .options import ALLOW_EMPTY, CHECK, OUTPUT, common, reading, sets, writing
+from .options import from_files
 
 if TYPE_CHECKING:
     from ..solid import Solid
@@ -33,13 +33,7 @@ Example:
 
 @click.command("eval", help=_HELP, epilog=_EPILOG)
 @click.argument("formula")
-@OUTPUT
-@writing
-@ALLOW_EMPTY
-@CHECK
-@reading
-@sets
-@common
+@from_files
 def evaluate(formula: str, **given: Any) -> int:
     """Work out a formula; its help is above, where it can keep its line breaks."""
     return _Evaluation(formula, **given).run()

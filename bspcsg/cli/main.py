@@ -46,6 +46,7 @@ _VERBS = {
     "xor": ("combine", "xor"),
     "eval": ("evaluate", "evaluate"),
     "run": ("run", "run"),
+    "tree": ("tree", "tree"),
     "split": ("split", "split"),
     "slice": ("section", "section"),
     "render": ("render", "render"),

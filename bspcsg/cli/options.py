@@ -1,5 +1,6 @@
 """Options that several verbs share."""
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
@@ -112,6 +113,42 @@ CHECK = click.option(
     "--check/--no-check", default=True, help="Compare the result with manifold3d's (default)."
 )
 
+TIMEOUT = click.option(
+    "--timeout", type=click.FloatRange(min=0, min_open=True), help="Seconds to give it."
+)
+
+
+def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, ...] | None]:
+    """Return the callback of an option that takes a direction, and maybe more numbers after it.
+
+    Parameters
+    ----------
+    what : str
+        What an error calls the value, such as ``"normal"``.
+    names : str
+        Of the numbers, apart by commas; the first three must not all be 0.
+    example : str
+    """
+    count = names.count(",") + 1
+    spoken = {3: "three", 4: "four"}[count]
+    zeros = "not" if count == 3 else "the first three not"
+
+    def as_numbers(
+        context: click.Context, option: click.Parameter, value: str | None
+    ) -> tuple[float, ...] | None:
+        if value is None:
+            return None
+        try:
+            found = tuple(float(word) for word in value.split(","))
+        except ValueError:
+            found = ()
+        if len(found) != count or not all(map(math.isfinite, found)) or not any(found[:3]):
+            wanted = f"{spoken} numbers {names}, {zeros} all 0, as in {example}"
+            raise click.BadParameter(f"{value!r} is no {what}; it takes {wanted}.", context, option)
+        return found
+
+    return as_numbers
+
 
 def common(command: _Command) -> _Command:
     """Add the options that every verb has."""
@@ -136,6 +173,16 @@ def sets(command: _Command) -> _Command:
 def writing(command: _Command) -> _Command:
     """Add the options of verbs that write meshes."""
     return _with(_WRITING, command)
+
+
+def making(command: _Command) -> _Command:
+    """Add the options of verbs that make one solid and write it."""
+    return _with([OUTPUT, writing, ALLOW_EMPTY, CHECK], command)
+
+
+def from_files(command: _Command) -> _Command:
+    """Add the options of verbs that make one solid of files as sets."""
+    return _with([making, reading, sets, common], command)
 
 
 def _with(options: list[Callable[[Any], Any]], command: _Command) -> _Command:

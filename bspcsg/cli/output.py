@@ -58,9 +58,9 @@ class Output:
     taken: bool = False
 
     @classmethod
-    def of(cls, settings: dict[str, Any]) -> "Output":
+    def of(cls, settings: dict[str, Any], taken: bool = False) -> "Output":
         """Return what the options that every verb has say."""
-        return cls(int(settings["verbose"]) - int(settings["quiet"]), settings["as_json"])
+        return cls(int(settings["verbose"]) - int(settings["quiet"]), settings["as_json"], taken)
 
     def result(self, line: str, document: dict[str, Any]) -> None:
         """Print a result, as text or as the document."""

@@ -10,7 +10,7 @@ import click
 from ..errors import FormatError
 from .files import shown
 from .job import Job
-from .options import ALLOW_EMPTY, CHECK, OUTPUT, common, writing
+from .options import TIMEOUT, common, making
 
 if TYPE_CHECKING:
     from ..solid import Solid
@@ -27,8 +27,6 @@ _SUFFIXES = (".csg", ".scad", ".py")
     "run", short_help="Write the solid that an OpenSCAD or Python script makes.", epilog=_EPILOG
 )
 @click.argument("script", type=click.Path(path_type=Path, readable=False), metavar="SCRIPT")
-@OUTPUT
-@writing
 @click.option(
     "--polish", is_flag=True, help="Undo OpenSCAD's rounding to six digits; not for Python."
 )
@@ -37,13 +35,8 @@ _SUFFIXES = (".csg", ".scad", ".py")
     is_flag=True,
     help="Leave out meshes that are not closed, with a warning; not for Python.",
 )
-@click.option(
-    "--timeout",
-    type=click.FloatRange(min=0, min_open=True),
-    help="Seconds to give a .py or .scad script.",
-)
-@ALLOW_EMPTY
-@CHECK
+@TIMEOUT
+@making
 @common
 def run(script: Path, **given: Any) -> int:
     """Evaluate a script and write the solid it makes.

@@ -8,7 +8,7 @@ import click
 
 from . import output
 from .files import Inputs, refuse_drawing, shown
-from .options import DRAWING, PATH, common, reading, sets
+from .options import DRAWING, PATH, common, numbers, reading, sets
 from .output import Output, counted
 
 if TYPE_CHECKING:
@@ -32,22 +32,6 @@ def _as_finite(
     return value
 
 
-def _as_normal(
-    context: click.Context, option: click.Parameter, value: str | None
-) -> tuple[float, ...] | None:
-    """Return the three numbers of a direction."""
-    if value is None:
-        return None
-    try:
-        numbers = tuple(float(word) for word in value.split(","))
-    except ValueError:
-        numbers = ()
-    if len(numbers) != 3 or not all(map(math.isfinite, numbers)) or not any(numbers):
-        wanted = "three numbers nx,ny,nz, not all 0, as in 1,0,0"
-        raise click.BadParameter(f"{value!r} is no normal; it takes {wanted}.", context, option)
-    return numbers
-
-
 @click.command("slice", short_help="Write the section of a solid by a plane.", epilog=_EPILOG)
 @click.argument("file", type=PATH, metavar="FILE")
 @DRAWING
@@ -55,7 +39,10 @@ def _as_normal(
     "--z", "height", type=float, metavar="HEIGHT", callback=_as_finite, help="Cut at this height."
 )
 @click.option(
-    "--normal", metavar="NX,NY,NZ", callback=_as_normal, help="Cut along nx x + ny y + nz z = d."
+    "--normal",
+    metavar="NX,NY,NZ",
+    callback=numbers("normal", "nx,ny,nz", "1,0,0"),
+    help="Cut along nx x + ny y + nz z = d.",
 )
 @click.option(
     "--offset",

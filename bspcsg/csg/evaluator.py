@@ -4,6 +4,7 @@ from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
 
 from ..bsp import Region
+from ..counting import counted
 from ..errors import BspcsgError, FormatError
 from ..solid import Solid
 from . import (
@@ -34,6 +35,7 @@ def node_names() -> tuple[str, ...]:
     return tuple(sorted(RECIPES))
 
 
+@counted
 def evaluate(tree: CsgTree, *, polish: bool = False, on_invalid: OnInvalid = "error") -> Geometry:
     """Return what a tree stands for: a solid, a region of the plane, or None if it is nothing.
 
