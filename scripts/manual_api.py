@@ -9,7 +9,14 @@ import griffe
 _ROOT = Path(__file__).resolve().parent.parent
 
 #: Packages with names of their own for users, and how their pages begin.
-_PACKAGES = ("bspcsg", "bspcsg.bsp", "bspcsg.csg", "bspcsg.io")
+_PACKAGES = (
+    "bspcsg",
+    "bspcsg.bsp",
+    "bspcsg.csg",
+    "bspcsg.io",
+    "bspcsg.block",
+    "bspcsg.trimesh_engine",
+)
 
 #: On which page the names of a module stand; on one of its package's name if it is not here.
 _PAGES = {
@@ -17,6 +24,8 @@ _PAGES = {
     "bspcsg.mesh": "solid",
     "bspcsg.primitives": "shapes",
     "bspcsg.setops": "operations",
+    "bspcsg.block": "operations",
+    "bspcsg.trimesh_engine": "trimesh",
     "bspcsg.errors": "errors",
     "bspcsg.check": "check",
     "bspcsg.verdict": "check",
@@ -52,6 +61,7 @@ _TITLES = {
     "trees": "Partition trees",
     "scripts": "Scripts",
     "files": "Files",
+    "trimesh": "The engine for trimesh",
     "others": "Other functions",
 }
 
@@ -67,13 +77,22 @@ def api_pages() -> dict[str, str]:
     seen: set[str] = set()
     for package in _PACKAGES:
         module = loader.modules_collection[package]
-        for name in sorted(map(str, module.exports or ()), key=str.lower):
+        for name in _public(module):
             entity = None if name.startswith("_") else _target(module[name])
             if entity is not None and entity.path not in seen:
                 seen.add(entity.path)
                 placed[_page(entity, package)].append((f"{package}.{name}", entity))
     pages = {name: _page_text(_TITLES[name], held) for name, held in placed.items() if held}
     return {"index": _index(placed), **pages}
+
+
+def _public(module: Any) -> list[str]:
+    """Return what a module exports; without ``__all__``, the functions and classes it defines."""
+    if module.exports is not None:
+        return sorted(map(str, module.exports), key=str.lower)
+    own = [name for name, member in module.members.items() if not member.is_alias]
+    kinds = ("function", "class")
+    return [n for n in own if n[0] != "_" and module[n].kind.value in kinds]
 
 
 def _target(member: Any) -> Any | None:

@@ -116,7 +116,6 @@ class _Conversion:
         document = {"file": str(path), "output": str(target.path), "triangles": len(raw.faces)}
         return {**document, "lost": lost.to_dict(), "seconds": round(seconds, 4)}, lost.any
 
-
     def _tell(self, target: Target, finding: Finding) -> None:
         """Tell about a file; what is so for all files of a format is told once."""
         if finding.code == "single_precision":  # its shift is told with the losses, as measured

@@ -19,6 +19,7 @@ from bspcsg import check as checking
 from bspcsg.cli.main import _VERBS, run
 from bspcsg.errors import missing_part
 from support.cli import Capture, finished, process, put, ran
+from support.results import disagreeing, header, write_results
 from support.shapes import cube, cuboid, icosphere, joined, moved
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="as POSIX has it")
@@ -40,6 +41,10 @@ CODES = {
         "check a.off c.stl",
         "repair open.stl -o x.ply",
         "compare a.off same.obj",
+        "validate a.off c.stl --op union --results x.jsonl -j 1",
+        "report results.jsonl -o x.html",
+        "view a.off -o x.html --no-open",
+        "tree good.csg",
         "doctor",
         "--help",
         "--version",
@@ -70,6 +75,10 @@ CODES = {
         "check --from step a.off",
         "repair open.stl -o x.ply --steps none",
         "compare a.off",
+        "validate",
+        "report results.jsonl",
+        "view",
+        "tree",
         "doctor a.off",
         "info a.off --threads -1",
         "info - --from",
@@ -94,6 +103,11 @@ CODES = {
         "check a.off cut.stl",
         "repair cut.stl -o x.ply",
         "compare a.off none.stl",
+        "validate none.stl",
+        "report none.jsonl -o x.html",
+        "report a.off -o x.html",
+        "view none.stl -o x.html --no-open",
+        "tree bad.csg",
     ],
     4: [
         "union a.off open.stl -o x.ply",
@@ -122,6 +136,9 @@ CODES = {
         "convert a.off -o folder.ply",
         "convert a.off --to stl --outdir a.off",
         "repair open.stl -o no/x.ply",
+        "report results.jsonl -o no/x.html",
+        "view a.off -o no/x.html --no-open",
+        "tree good.csg -o no/x.json",
     ],
 }
 
@@ -152,6 +169,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     Path("open.csg").write_text('import(file = "open.stl");')
     Path("bad.py").write_text("raise ValueError('no')")
     Path("number.py").write_text("result = 3")
+    write_results(Path("results.jsonl"), [header(), disagreeing()])
     Path("endless.py").write_text("while True:\n    pass\n")
     yield folder
     os.chdir(before)
