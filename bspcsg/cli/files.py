@@ -4,7 +4,7 @@ import os
 import shlex
 import sys
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -39,6 +39,8 @@ class Inputs:
         What files that do not say are in; None if the user has not said either.
     winding : str
     pitch : int or None
+    noticed : list of Finding
+        What was told about the solids so far, which results repeat.
     """
 
     out: Output
@@ -46,6 +48,7 @@ class Inputs:
     unit: str | None = None
     winding: Any = "positive"
     pitch: int | None = None
+    noticed: list[Finding] = field(default_factory=list)
 
     @classmethod
     def of(cls, out: Output, settings: dict[str, Any]) -> "Inputs":
@@ -110,6 +113,7 @@ class Inputs:
         raw = self.raw(path)
         solid = self.as_solid(raw, path)
         noticed = [Finding.from_core(found) for found in solid.tree.findings]
+        self.noticed.extend(noticed)
         self.tell(path, (*raw.findings, *noticed))
         self.out.detail(f"{shown(path)}: {counted(len(raw.faces), 'triangle')}")
         return solid

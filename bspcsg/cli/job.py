@@ -97,7 +97,8 @@ class Job(ABC):
     ) -> None:
         name = shown(self.target.path)
         for finding in result.normalized().findings:
-            self.out.finding(name, finding)
+            if finding not in self.inputs.noticed:
+                self.out.finding(name, finding)
         for note in () if report is None else report.notes:
             self.out.detail(f"note: {note}")
         line = summary(name, mesh, sum(self.seconds.values()))

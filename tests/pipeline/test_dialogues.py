@@ -5,11 +5,13 @@ import json
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from bspcsg.cli.main import run
+from bspcsg.io import read
 from support.cli import Capture, put, ran
-from support.shapes import cuboid, flipped, icosphere
+from support.shapes import cuboid, flipped, icosphere, joined
 
 
 @pytest.fixture(autouse=True)
@@ -206,6 +208,23 @@ def test_warnings_do_not_fail(capsys: Capture) -> None:
     code, _, err = ran(capsys, "union", "two.ply", "a.off", "-o", "x.ply")
     assert code == 0 and err.startswith("warning: two.ply: ")
     assert ran(capsys, "union", "two.ply", "a.off", "-o", "x.ply", "-q")[2] == ""
+
+
+def test_a_note_names_the_places_and_is_told_once(capsys: Capture) -> None:
+    put("touching.off", joined(cuboid((0, 0, 0), (1, 1, 1)), cuboid((1, 1, 0), (2, 2, 1))))
+    vertices, faces = read("touching.off").vertices, read("touching.off").faces
+    shared, indices = np.unique(vertices, axis=0, return_inverse=True)
+    put("touching.off", (shared, indices.ravel()[faces]))
+    _, _, err = ran(capsys, "union", "touching.off", "a.off", "-o", "x.ply")
+    notes = [line for line in err.splitlines() if "share an edge" in line]
+    assert len(notes) == 1
+    named = notes[0].rpartition(": ")[2].split(", ")
+    assert shared[[int(number) for number in named]][:, :2].tolist() == [[1, 1]] * len(named)
+
+
+def test_what_holds_for_a_format_is_told_once(capsys: Capture) -> None:
+    _, _, err = ran(capsys, "convert", "a.off", "c.stl", "--to", "glb", "--outdir", ".")
+    assert err.count("GLB is in metres") == 1
 
 
 def test_an_error_after_json_was_asked_for_wrongly(capsys: Capture) -> None:
