@@ -49,6 +49,12 @@ _PAGES = {
     "bspcsg": "others",
 }
 
+#: Methods that are as everybody expects them.
+_UNTOLD = ("__init__", "__repr__", "__str__", "__copy__", "__deepcopy__", "__reduce__", "__hash__")
+
+#: What the docstrings of methods say that are public for neighbours only.
+_INSIDE = "for the modules of this package"
+
 _TITLES = {
     "solid": "Solids and meshes",
     "shapes": "Shapes",
@@ -137,7 +143,8 @@ def _entity(entity: Any, path: str, level: int) -> Iterator[str]:
     elif entity.value is not None and len(str(entity.value)) < 200:
         yield f"```text\n{path.rpartition('.')[2]} = {entity.value}\n```"
     if entity.docstring is not None:
-        yield from _sections(entity.docstring.parsed)
+        # Apart from its owner, so that types stay the words they are.
+        yield from _sections(griffe.Docstring(entity.docstring.value).parse("numpy"))
     if entity.is_class:
         for member in _members(entity):
             yield from _entity(member, member.name, level + 1)
@@ -149,7 +156,9 @@ def _members(cls: Any) -> list[Any]:
     for name, member in cls.all_members.items():
         target = _target(member)
         hidden = name.startswith("_") and not (name.startswith("__") and name.endswith("__"))
-        if target is None or hidden or name == "__init__" or target.docstring is None:
+        if target is None or hidden or name in _UNTOLD or target.docstring is None:
+            continue
+        if _INSIDE in target.docstring.value:
             continue
         found.append(target)
     return sorted(found, key=lambda member: (member.name.startswith("__"), member.name))

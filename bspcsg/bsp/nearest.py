@@ -4,7 +4,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import trimesh
 
 from .._types import FloatArray
 from .pieces import Pieces
@@ -29,6 +28,9 @@ def nearest_on_segments(points: FloatArray, segments: FloatArray) -> FloatArray:
 
 def nearest_on_polygons(points: FloatArray, polygons: Pieces) -> FloatArray:
     """Return the point of any convex polygon in space that is nearest to each of (k, 3) points."""
+    # It takes most of a second to import, which pictures need not wait for.
+    import trimesh
+
     triangles = np.concatenate([_fan(polygons[k]) for k in range(len(polygons))])
 
     def candidates(block: FloatArray) -> FloatArray:

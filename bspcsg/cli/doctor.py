@@ -22,7 +22,7 @@ Example:
   bspcsg doctor
 """
 
-_REQUIRED = ("numpy", "click", "rich", "manifold3d", "trimesh")
+_REQUIRED = ("numpy", "click", "rich", "jinja2", "manifold3d", "trimesh")
 
 #: Optional packages, what each is for, and the extra that brings it.
 _OPTIONAL = (
@@ -30,7 +30,7 @@ _OPTIONAL = (
     ("meshio", "VTK and VTU files", "vtk"),
     ("scipy", "distances in compare", "compare"),
     ("rtree", "distances in compare", "compare"),
-    ("pillow", "PNG files of render", "pictures"),
+    ("pillow", "PNG files of render, small pictures in report", "pictures"),
     ("ezdxf", "DXF files of slice", "2d"),
 )
 

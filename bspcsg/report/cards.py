@@ -83,8 +83,9 @@ class Purse:
     def allowance(self) -> float:
         """Return what the view of the next card may take, when its pictures are paid for."""
         cards = max(self._cards, 1)
-        self._cards -= 1
-        return min(self.left, _GENEROSITY * (self.left / cards - _PICTURES))
+        self._cards = cards - 1
+        free = self.left - self._cards * _PICTURES
+        return min(free, _GENEROSITY * free / cards)
 
 
 def picked(results: Results, count: int) -> list[CaseRecord]:
@@ -136,7 +137,8 @@ def _figures(case: CaseRecord, stored: Stored) -> list[Figure]:
         place = found["place"] if found else None
         images = [result, still([stored.difference], camera, edges=False)]
         images += [] if place is None else [ring(place, camera)]
-        return [*figures, Figure("difference of the results, in red", [i for i in images if i])]
+        caption = f"difference, {found['thickness']:.2g} thick" if found else "difference"
+        return [*figures, Figure(caption, [image for image in images if image])]
     return [*figures, _no_difference(case)]
 
 
@@ -149,12 +151,12 @@ def _figure(name: str, layer: Layer, image: str) -> Figure:
 
 def _no_difference(case: CaseRecord) -> Figure:
     found = case["set_difference"]
-    name = "difference of the results"
+    name = "difference"
     if found is None:
         return Figure(name, text="not compared")
     if found["equal"]:
         return Figure(name, text="exactly the same set", is_same=True)
-    return Figure(name, text=f"a film {found['thickness']:.2g} thick")
+    return Figure(name, text=f"{found['thickness']:.2g} thick, without a surface")
 
 
 def _model(layers: list[Layer], allowance: float) -> tuple[dict[str, Any] | None, str]:
@@ -172,7 +174,7 @@ def _model(layers: list[Layer], allowance: float) -> tuple[dict[str, Any] | None
             )
             return simple, (
                 f"The 3D view shows {whole(after)} triangles instead of {whole(before)}, to fit on"
-                f" this page; pictures and numbers are of all of them."
+                f" this page; numbers are of all of them."
             )
     size = f"{len(model['data']) / 1000:.0f} kB"
     return None, f"The 3D view would take {size}; fewer cards leave more room for each."

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .._types import FloatArray, IndexArray
+from ..weld import welded
 
 #: Colours of operands in their order, taken again from the start after the last.
 COLOURS = ("#6f9bd1", "#e0a458", "#7fb285", "#a98bc9", "#c98b8b", "#79b7bd")
@@ -54,9 +55,8 @@ class Layer:
             return self
         low, high = bounds_of([self])
         step = max(float((high - low).max()), np.finfo(np.float64).tiny) / cells
-        places = np.rint((self.vertices - low) / step).astype(np.int64)
-        _, same = np.unique(places, axis=0, return_inverse=True)
-        same = same.ravel()
+        # In the order of the vertices, so that neighbours stay close to each other and pack well.
+        _, same = welded(np.rint((self.vertices - low) / step))
         counts = np.bincount(same)[:, None]
         sums = [np.bincount(same, axis) for axis in (self.vertices - low).T]
         faces = same[self.faces]

@@ -3,6 +3,7 @@
 import json
 import os
 from collections.abc import Iterable
+from typing import Any
 
 from ..campaign.record import (
     VERDICTS,
@@ -13,6 +14,7 @@ from ..campaign.record import (
 )
 from ..campaign.summary import summary_of
 from ..errors import FormatError
+from .conformity import departure
 
 
 def merged(paths: Iterable[str | os.PathLike[str]]) -> Results:
@@ -26,13 +28,25 @@ def merged(paths: Iterable[str | os.PathLike[str]]) -> Results:
         If a file cannot be read or is none of results, or there is no case in any.
     """
     everything = Results()
-    for results in sorted((read_results([path]) for path in paths), key=_started):
+    for results in sorted(map(_read, paths), key=_started):
         everything.runs += [run for run in results.runs if run not in everything.runs]
         everything.cases.update(results.cases)
         everything.folders.update(results.folders)
     if not everything.cases:
         raise FormatError("There is no case in these results; nothing to report.", "empty_results")
     return everything
+
+
+def _read(path: str | os.PathLike[str]) -> Results:
+    results = read_results([path])
+    lines: list[tuple[Any, type]] = [(run, RunRecord) for run in results.runs]
+    lines += [(case, CaseRecord) for case in results.cases.values()]
+    for line, kind in lines:
+        fault = departure(line, kind, line["type"])
+        if fault:
+            message = f"{os.fspath(path)}: {fault}. bspcsg validate --results writes such files."
+            raise FormatError(message, "malformed")
+    return results
 
 
 def _started(results: Results) -> tuple[str, list[str]]:

@@ -75,9 +75,11 @@ def drawing(layer: Layer, size: tuple[int, int], most: int) -> str:
         Width and height in pixels.
     most : int
     """
-    rough = len(layer.faces) > most
-    shape = layer.simplified(_CELLS // 2) if rough else layer
-    return _painted([shape], camera_for([layer], size), size, edges=not rough).svg
+    shape, cells = layer, _CELLS
+    while len(shape.faces) > most and cells > 1:
+        cells = cells * 2 // 3
+        shape = layer.simplified(cells)
+    return _painted([shape], camera_for([layer], size), size, edges=shape is layer).svg
 
 
 def ring(place: Sequence[float], camera: Camera, size: tuple[int, int] = (320, 240)) -> str:

@@ -164,10 +164,11 @@ class View {
   }
 
   light() {
-    this.camera.add(new DirectionalLight(0xffffff, 2.6));
+    const lamp = new DirectionalLight(0xffffff, 2.3);
     // Over the viewer's left shoulder, as in the painter's pictures.
-    this.camera.children[0].position.set(-0.6, 0.75, 0.85);
-    this.scene.add(new AmbientLight(0xffffff, 0.9), this.camera);
+    lamp.position.set(-0.25, 0.45, 0.85);
+    this.camera.add(lamp, lamp.target);
+    this.scene.add(new AmbientLight(0xffffff, 1.1), this.camera);
   }
 
   aim() {

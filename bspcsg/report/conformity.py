@@ -1,0 +1,57 @@
+"""Whether values that were read have the form that their type says."""
+
+import math
+from types import NoneType, UnionType
+from typing import Any, Union, get_args, get_origin, get_type_hints, is_typeddict
+
+
+def departure(value: Any, kind: Any, place: str = "") -> str:
+    """Return where a JSON value is not of a type and why, or nothing if it is.
+
+    Parameters
+    ----------
+    value : object
+    kind : type
+        A typed dictionary, or what occurs in one.
+    place : str
+        What to call the value.
+    """
+    if is_typeddict(kind):
+        return _departure_in_dict(value, kind, place)
+    origin, arguments = get_origin(kind), get_args(kind)
+    if origin in (Union, UnionType):
+        if value is None and NoneType in arguments:
+            return ""
+        (only,) = (argument for argument in arguments if argument is not NoneType)
+        return departure(value, only, place)
+    if origin in (list, dict):
+        return _departure_in_items(value, origin, arguments[-1], place)
+    return _departure_of_scalar(value, kind, place)
+
+
+def _departure_in_dict(value: Any, kind: Any, place: str) -> str:
+    if not isinstance(value, dict):
+        return f"{place} is no object"
+    lacking = sorted(kind.__required_keys__ - value.keys())
+    if lacking:
+        return f"{place} has no {lacking[0]!r}".strip()
+    hints = get_type_hints(kind)
+    found = (departure(value[key], hints[key], f"{place}.{key}") for key in hints if key in value)
+    return next(filter(None, found), "")
+
+
+def _departure_in_items(value: Any, container: type, kind: Any, place: str) -> str:
+    if not isinstance(value, container):
+        return f"{place} is no {container.__name__}"
+    items = value.items() if isinstance(value, dict) else enumerate(value)
+    found = (departure(item, kind, f"{place}[{key!r}]") for key, item in items)
+    return next(filter(None, found), "")
+
+
+def _departure_of_scalar(value: Any, kind: Any, place: str) -> str:
+    if not isinstance(kind, type):
+        return ""
+    if kind is float:
+        is_number = isinstance(value, (int, float)) and math.isfinite(value)
+        return "" if is_number else f"{place} is no finite number"
+    return "" if isinstance(value, kind) else f"{place} is no {kind.__name__}"

@@ -1,0 +1,52 @@
+"""What notebooks show for a solid."""
+
+import html
+import re
+from xml.etree import ElementTree
+
+import pytest
+
+import bspcsg as b
+from bspcsg.report import notebook
+
+
+def test_the_view_is_a_page_in_a_frame() -> None:
+    shown = (b.cube(2) - b.sphere(r=1.2, segments=16))._repr_html_()
+    assert shown is not None and len(shown) < 260_000
+    frame = re.fullmatch(r'<iframe srcdoc="([^"]*)" title="[^"]*" sandbox="allow-scripts".*', shown)
+    assert frame is not None
+    page = html.unescape(frame[1])
+    assert page.startswith("<!doctype html>") and "default-src 'none'" in page
+    assert 'id="bspcsg-viewer"' in page
+
+
+def test_the_picture_is_svg() -> None:
+    drawn = (b.cube(2) - b.sphere(r=1.2, segments=16))._repr_svg_()
+    assert ElementTree.fromstring(drawn).tag.endswith("svg") and drawn.count("<path") > 3
+
+
+def test_pictures_of_large_solids_stay_small() -> None:
+    assert len(b.sphere(r=1, segments=150)._repr_svg_()) < 150_000
+
+
+@pytest.mark.parametrize(
+    ("solid", "words"),
+    [
+        (b.Solid.empty(), "empty"),
+        (b.cube(1) - b.cube(2, center=True), "empty"),
+        (~b.cube(1), "reaches to infinity"),
+        (b.Solid.full(), "reaches to infinity"),
+        (b.half_space((0, 0, 1), 0), "reaches to infinity"),
+    ],
+)
+def test_solids_without_a_boundary_to_show(solid: b.Solid, words: str) -> None:
+    assert words in str(solid._repr_html_())
+    drawn = solid._repr_svg_()
+    assert words in drawn and ElementTree.fromstring(drawn).tag.endswith("svg")
+
+
+def test_too_large_a_solid_is_a_picture_and_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(notebook, "_MOST_IN_VIEW", 100)
+    shown = str(b.sphere(r=1, segments=24)._repr_html_())
+    assert shown.startswith("<svg") and "528 triangles are too many for a notebook" in shown
+    assert "iframe" not in shown
