@@ -14,6 +14,7 @@ from . import interop
 from ._types import FloatArray
 from .counting import uncounted
 from .discrepancy import SetDifference
+from .distance import distances_to_triangles
 from .errors import missing_part
 from .mesh import Mesh
 from .pieces import Pieces
@@ -21,7 +22,7 @@ from .solid import Solid
 from .verdict import Facts
 
 #: How many points are measured at once; more need more memory.
-_BATCH = 5000
+_BATCH = 1000
 
 
 @dataclass(frozen=True)
@@ -145,16 +146,38 @@ def _sampled(mesh: Mesh, count: int, rng: np.random.Generator) -> FloatArray:
     return np.concatenate([vertices, inner])
 
 
-def _farthest(mesh: Mesh, points: FloatArray) -> float:
-    """Return the largest distance of the points from a mesh."""
+def require_distances() -> None:
+    """Refuse to measure distances without what that needs.
+
+    Raises
+    ------
+    MissingPartError
+        If rtree or scipy are not installed.
+    """
     try:
         import rtree  # noqa: F401
         import scipy  # noqa: F401
-        from trimesh import proximity
     except ImportError as error:
         remedy = 'pip install "bspcsg[compare]", or say --samples 0'
         raise missing_part(str(error.name), "to measure distances", remedy) from error
-    closest_point: Any = proximity.closest_point
-    target = interop.to_trimesh(mesh)
-    batches = [points[at : at + _BATCH] for at in range(0, len(points), _BATCH)]
-    return max(float(closest_point(target, batch)[1].max()) for batch in batches)
+
+
+def _farthest(mesh: Mesh, points: FloatArray) -> float:
+    """Return the largest distance of the points from a mesh."""
+    require_distances()
+    from trimesh import proximity
+
+    nearby_faces: Any = proximity.nearby_faces
+    target, corners = interop.to_trimesh(mesh), mesh.vertices[mesh.faces]
+    farthest = 0.0
+    for at in range(0, len(points), _BATCH):
+        batch = points[at : at + _BATCH]
+        # Which faces can be the nearest is taken from trimesh, but not how far they are: there it
+        # is wrong for needles by a good part of their length.
+        near = nearby_faces(target, batch)
+        counts = np.array([len(faces) for faces in near])
+        faces = np.concatenate(near).astype(np.int64)
+        found = distances_to_triangles(np.repeat(batch, counts, axis=0), corners[faces])
+        starts = np.concatenate([[0], counts.cumsum()[:-1]])
+        farthest = max(farthest, float(np.minimum.reduceat(found, starts).max()))
+    return farthest

@@ -53,7 +53,7 @@ class Case:
     Parameters
     ----------
     name : str
-        Different for each case of a campaign, and the same each time it is run.
+        The same each time the campaign is run.
     kind : {"pair", "csg", "pose"}
     operation : str
     operands : tuple of Operand

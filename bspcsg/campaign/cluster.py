@@ -11,7 +11,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from ..errors import BspcsgError, missing_part
+from ..errors import MissingPartError, missing_part
 from .child import Child
 from .pool import answer_of
 
@@ -70,7 +70,7 @@ class Cluster:
 
         Raises
         ------
-        BspcsgError
+        MissingPartError
             If the scheduler cannot be reached; code "no_scheduler".
         """
         import distributed
@@ -83,7 +83,7 @@ class Cluster:
             for number, request in enumerate(requests):
                 place = (answer_on_worker, request, self._greeting, seconds)
                 numbers[client.submit(*place, pure=False)] = number
-            for future in as_completed(list(numbers)):
+            for future in as_completed(list(numbers), loop=client.loop):
                 yield numbers[future], _result_of(future)
         finally:
             client.cancel(list(numbers), force=True)
@@ -100,7 +100,7 @@ class Cluster:
             return client(**place, timeout=_PATIENCE, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             message = f"{self._scheduler}: no scheduler answers there ({error})."
-            raise BspcsgError(message, "no_scheduler") from error
+            raise MissingPartError(message, "no_scheduler") from error
 
 
 def _result_of(future: Any) -> Any:

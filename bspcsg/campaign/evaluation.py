@@ -3,11 +3,9 @@
 import time
 import warnings
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
-
-import numpy as np
 
 from .. import oracle
 from .._types import FloatArray, SetOp
@@ -164,13 +162,12 @@ class _Evaluation:
         found = self._examined(result, solids)
         asked = time.perf_counter() - began
         identity = None if self._is_script else identity_of(self._case.operation, solids, result)
-        first = _manifold_record(found, asked)
         others = self._further(found, solids, result)
         verdict, reason = ruled(found.report, others, identity, self._is_script)
         record = blank_record(self._case, verdict, reason)
         self._describe_operands(record, solids, rows)
         record["ours"] = facts_of(found.ours, found.report.ours, crossings=True)
-        record["oracles"] = [first, *others]
+        record["oracles"] = [_manifold_record(found, asked), *others]
         record["identity"] = identity
         record["set_difference"] = _difference_record(found.report)
         record["hausdorff"] = self._distances(found)
@@ -285,12 +282,10 @@ def _difference_record(report: CheckReport) -> DifferenceRecord | None:
     if found is None:
         return None
     equal = found.volume == 0
-    values = asdict(found)
-    place = None if found.place is None else [float(np.float64(x)) for x in found.place]
     return {
-        "volume": values["volume"],
+        "volume": found.volume,
         "exact": "0" if equal else None,
-        "thickness": values["thickness"],
+        "thickness": found.thickness,
         "equal": equal,
-        "place": place,
+        "place": None if found.place is None else [float(x) for x in found.place],
     }

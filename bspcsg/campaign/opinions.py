@@ -14,6 +14,7 @@ import numpy as np
 
 from .. import __version__
 from ..check import TOLERANCES, same_set_bound
+from ..comparison import require_distances
 from ..discrepancy import SetDifference, difference_of
 from ..errors import BspcsgError, missing_part
 from ..mesh import Mesh
@@ -43,13 +44,15 @@ def is_installed(engine: str) -> bool:
     return bool(shutil.which(engine)) if engine == "openscad" else find_spec(engine) is not None
 
 
-def require(engines: Sequence[str]) -> None:
-    """Refuse engines that are not installed.
+def require(engines: Sequence[str], samples: int) -> None:
+    """Refuse engines, and points to measure distances from, if what they need is not installed.
 
     Raises
     ------
     MissingPartError
     """
+    if samples:
+        require_distances()
     for engine in engines:
         if not is_installed(engine):
             raise missing_part(engine, "to compare with", ENGINES[engine])

@@ -60,7 +60,11 @@ class RunRecord(TypedDict):
 
 
 class FactsRecord(TypedDict):
-    """What a mesh is like; lengths in model units, inertia about the centroid at density 1."""
+    """What a mesh is like; lengths in model units, inertia about the centroid at density 1.
+
+    ``self_intersections`` is 0 if no two faces cross or touch but in common edges and corners,
+    exactly; None if some do, or if nobody looked.
+    """
 
     vertices: int
     triangles: int

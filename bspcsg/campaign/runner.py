@@ -103,7 +103,7 @@ def _record_of(case: Case, answer: Any) -> CaseRecord:
 
 def _chosen(count: int, keep: str) -> set[int]:
     """Return the numbers of cases whose meshes are kept however dull they are."""
-    wanted = count if keep == "all" else int(keep) if keep.isdigit() else 0
+    wanted = count if keep == "all" else int(keep) if keep.isdecimal() else 0
     # Spread over all of them, so that every kind is seen.
     return {number * count // wanted for number in range(min(wanted, count))} if wanted else set()
 

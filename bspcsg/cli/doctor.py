@@ -32,13 +32,14 @@ _OPTIONAL = (
     ("rtree", "distances in compare", "compare"),
     ("pillow", "PNG files of render, small pictures in report", "pictures"),
     ("ezdxf", "DXF files of slice", "2d"),
+    ("distributed", "validate on a cluster", "cluster"),
 )
 
 #: Names under which packages are imported that are called otherwise.
 _MODULES = {"pillow": "PIL"}
 
 #: Optional programs, what each is for, and how to install it.
-_PROGRAMS = (("openscad", ".scad files", "apt-get install openscad"),)
+_PROGRAMS = (("openscad", ".scad files, validate", "apt-get install openscad"),)
 
 #: Seconds to wait for a program that says its version or loads its plug-ins.
 _PATIENCE = 30

@@ -12,6 +12,15 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from . import output
+from .campaign_options import (
+    OPERATIONS,
+    POSES,
+    as_bytes,
+    as_engines,
+    as_keep,
+    as_pose,
+    as_shard,
+)
 from .files import refuse_folder, shown
 from .options import telling
 from .output import Output, counted
@@ -30,72 +39,10 @@ Examples:
   bspcsg validate model.csg cases.json --against pymeshlab,openscad
 """
 
-_OPERATIONS = ("union", "difference", "intersection", "xor")
-_ENGINES = ("manifold3d", "pymeshlab", "openscad")
-_POSES = ("random", "corner", "beside", "copy", "mirror", "turned", "same")
-
-_SUFFIXES = {"": 1, "K": 10**3, "M": 10**6, "G": 10**9, "T": 10**12}
-
 #: How many failures are named at the end; the results file has all.
 _NAMED = 20
 
 _FILE = click.Path(path_type=Path, readable=False)
-
-
-def _as_engines(
-    context: click.Context, option: click.Parameter, value: str | None
-) -> tuple[str, ...]:
-    names = tuple(name.strip() for name in (value or "").split(",") if name.strip())
-    for name in names:
-        if name not in _ENGINES:
-            known = ", ".join(_ENGINES)
-            raise click.BadParameter(f"{name!r} is none of {known}.", context, option)
-    return names
-
-
-def _as_bytes(context: click.Context, option: click.Parameter, value: str) -> int | None:
-    text = value.strip().upper().removesuffix("B")
-    suffix = text[-1:] if text[-1:] in _SUFFIXES and not text[-1:].isdigit() else ""
-    try:
-        size = float(text.removesuffix(suffix)) * _SUFFIXES[suffix]
-    except ValueError:
-        size = -1.0
-    if not 0 <= size < float("inf"):
-        message = f"{value!r} is no size; it takes a number of bytes, as in 4G or 500M."
-        raise click.BadParameter(message, context, option)
-    return int(size) or None
-
-
-def _as_shard(
-    context: click.Context, option: click.Parameter, value: str | None
-) -> tuple[int, int] | None:
-    if value is None:
-        return None
-    number, _, count = value.partition("/")
-    if not (number.isdigit() and count.isdigit() and 1 <= int(number) <= int(count)):
-        message = f"{value!r} is no shard; it takes its number and how many there are, as in 2/8."
-        raise click.BadParameter(message, context, option)
-    return int(number), int(count)
-
-
-def _as_pose(
-    context: click.Context, option: click.Parameter, value: str | None
-) -> tuple[str | None, int | None]:
-    if value is None:
-        return None, None
-    name, colon, number = value.partition(":")
-    if name not in _POSES or (colon and not number.isdigit()):
-        known = ", ".join(_POSES)
-        message = f"{value!r} is no pose; it takes one of {known}, or one and a number: random:17."
-        raise click.BadParameter(message, context, option)
-    return name, int(number) if colon else None
-
-
-def _as_keep(context: click.Context, option: click.Parameter, value: str) -> str:
-    if value not in ("interesting", "all", "none") and not value.isdigit():
-        message = f"{value!r} is none of interesting, all, none, or a number."
-        raise click.BadParameter(message, context, option)
-    return value
 
 
 @click.command("validate", short_help="Compare many results with other engines'.", epilog=_EPILOG)
@@ -104,7 +51,7 @@ def _as_keep(context: click.Context, option: click.Parameter, value: str) -> str
     "--op",
     "operations",
     multiple=True,
-    type=click.Choice(_OPERATIONS),
+    type=click.Choice(OPERATIONS),
     help="Operation on each pair; may be repeated, by default all four.",
 )
 @click.option(
@@ -115,8 +62,8 @@ def _as_keep(context: click.Context, option: click.Parameter, value: str) -> str
 @click.option(
     "--pose",
     metavar="NAME[:NUMBER]",
-    callback=_as_pose,
-    help=f"Place the second of each pair so ({', '.join(_POSES)}); a number for one draw.",
+    callback=as_pose,
+    help=f"Place the second of each pair so ({', '.join(POSES)}); a number for one draw.",
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, help="Of the random draws.")
 @click.option(
@@ -128,7 +75,7 @@ def _as_keep(context: click.Context, option: click.Parameter, value: str) -> str
 @click.option(
     "--against",
     metavar="ENGINES",
-    callback=_as_engines,
+    callback=as_engines,
     help="Ask these in every case besides manifold3d: pymeshlab, openscad. By default they are"
     " asked where manifold3d disagrees or has no answer, and openscad about scripts.",
 )
@@ -150,10 +97,10 @@ def _as_keep(context: click.Context, option: click.Parameter, value: str) -> str
     metavar="SIZE",
     default="4G",
     show_default=True,
-    callback=_as_bytes,
+    callback=as_bytes,
     help="Memory for a case; 0 for no limit.",
 )
-@click.option("--shard", metavar="I/N", callback=_as_shard, help="Only the I-th of N parts.")
+@click.option("--shard", metavar="I/N", callback=as_shard, help="Only the I-th of N parts.")
 @click.option("--resume", is_flag=True, help="Leave out what the results file has already.")
 @click.option(
     "--fail-fast/--keep-going", default=False, help="Stop at the first failure, or go on (default)."
@@ -163,7 +110,7 @@ def _as_keep(context: click.Context, option: click.Parameter, value: str) -> str
     "keep",
     metavar="WHICH",
     default="interesting",
-    callback=_as_keep,
+    callback=as_keep,
     help="Meshes to keep beside the results: interesting (default), all, none, or so many more.",
 )
 @click.option(
@@ -206,7 +153,7 @@ class _Validation:
         from ..campaign.record import is_failure
 
         self._refuse_early()
-        require(self._settings["against"])
+        require(self._settings["against"], self._settings["samples"])
         answering = self._answering()
         cases = self._cases(answering)
         header = self._header()
@@ -253,7 +200,7 @@ class _Validation:
         pose, number = self._settings["pose"]
         draw = Draw(self._settings["poses"] or 0, self._settings["seed"], pose, number)
         inputs = self._usable(inputs_in(self._paths), answering)
-        operations = self._settings["operations"] or _OPERATIONS
+        operations = self._settings["operations"] or OPERATIONS
         cases = cases_of(inputs, tuple(dict.fromkeys(operations)), draw)
         if not cases:
             raise click.UsageError(
@@ -284,7 +231,12 @@ class _Validation:
         for path in bad:
             self._out.detail(f"{shown(path)}: left out: {found[path]['refused']}")
         if bad:
-            self._out.note(f"{counted(len(bad), 'file')} left out that are no solids")
+            words = (
+                "file left out that is no solid"
+                if len(bad) == 1
+                else ("files left out that are no solids")
+            )
+            self._out.note(f"{len(bad)} {words}")
         if large:
             self._out.note(f"{counted(len(large), 'file')} left out with over {most} triangles")
         out = {*bad, *large}

@@ -1,0 +1,70 @@
+"""What the options of validate take, and how it is read."""
+
+import click
+
+OPERATIONS = ("union", "difference", "intersection", "xor")
+ENGINES = ("manifold3d", "pymeshlab", "openscad")
+POSES = ("random", "corner", "beside", "copy", "mirror", "turned", "same")
+
+_SUFFIXES = {"": 1, "K": 10**3, "M": 10**6, "G": 10**9, "T": 10**12}
+
+
+def as_engines(
+    context: click.Context, option: click.Parameter, value: str | None
+) -> tuple[str, ...]:
+    """Return the names of engines apart by commas."""
+    names = tuple(name.strip() for name in (value or "").split(",") if name.strip())
+    for name in names:
+        if name not in ENGINES:
+            known = ", ".join(ENGINES)
+            raise click.BadParameter(f"{name!r} is none of {known}.", context, option)
+    return names
+
+
+def as_bytes(context: click.Context, option: click.Parameter, value: str) -> int | None:
+    """Return a size in bytes, or None for no limit."""
+    text = value.strip().upper().removesuffix("B")
+    suffix = text[-1:] if text[-1:] in _SUFFIXES and not text[-1:].isdecimal() else ""
+    try:
+        size = float(text.removesuffix(suffix)) * _SUFFIXES[suffix]
+    except ValueError:
+        size = -1.0
+    if not 0 <= size < float("inf"):
+        message = f"{value!r} is no size; it takes a number of bytes, as in 4G or 500M."
+        raise click.BadParameter(message, context, option)
+    return int(size) or None
+
+
+def as_shard(
+    context: click.Context, option: click.Parameter, value: str | None
+) -> tuple[int, int] | None:
+    """Return the number of a shard and how many there are."""
+    if value is None:
+        return None
+    number, _, count = value.partition("/")
+    if not (number.isdecimal() and count.isdecimal() and 1 <= int(number) <= int(count)):
+        message = f"{value!r} is no shard; it takes its number and how many there are, as in 2/8."
+        raise click.BadParameter(message, context, option)
+    return int(number), int(count)
+
+
+def as_pose(
+    context: click.Context, option: click.Parameter, value: str | None
+) -> tuple[str | None, int | None]:
+    """Return the name of a pose and the number of its draw."""
+    if value is None:
+        return None, None
+    name, colon, number = value.partition(":")
+    if name not in POSES or (colon and not number.isdecimal()):
+        known = ", ".join(POSES)
+        message = f"{value!r} is no pose; it takes one of {known}, or one and a number: random:17."
+        raise click.BadParameter(message, context, option)
+    return name, int(number) if colon else None
+
+
+def as_keep(context: click.Context, option: click.Parameter, value: str) -> str:
+    """Return whose meshes are kept."""
+    if value not in ("interesting", "all", "none") and not value.isdecimal():
+        message = f"{value!r} is none of interesting, all, none, or a number."
+        raise click.BadParameter(message, context, option)
+    return value

@@ -1,0 +1,58 @@
+"""Children that crash or hang cost what they were asked, and nothing else."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from bspcsg.campaign.child import Child, CrashedError, TimedOutError
+from bspcsg.campaign.evaluation import Settings
+from bspcsg.campaign.pool import LocalPool
+from bspcsg.campaign.runner import greeting
+from support.cli import put
+from support.shapes import cube
+
+GREETING = greeting(Settings(), None, 1)
+
+
+@pytest.fixture
+def good(tmp_path: Path) -> str:
+    put(str(tmp_path / "good.off"), cube(2))
+    return str(tmp_path / "good.off")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+def test_crash_and_hang_are_that_request_only(tmp_path: Path, good: str) -> None:
+    hanging = tmp_path / "endless.off"
+    os.mkfifo(hanging)
+    requests: list[Any] = [{"survey": good}, {"survey": 3.5}, {"survey": str(hanging)}] * 2
+    found = dict(LocalPool(2, GREETING).answers(requests, 2.0))
+    for number in (0, 3):
+        assert found[number] == {"file": good, "triangles": 12, "refused": None}
+    for number in (1, 4):
+        assert found[number]["failure"] == "crash" and "TypeError" in found[number]["reason"]
+    for number in (2, 5):
+        assert found[number]["failure"] == "timeout" and found[number]["seconds"] >= 2.0
+
+
+def test_child_that_cannot_start_says_why(good: str) -> None:
+    child = Child({**GREETING, "folder": "/nowhere/at/all"})
+    with child, pytest.raises(CrashedError, match="/nowhere/at/all"):
+        child.answer({"survey": good}, 10.0)
+
+
+def test_child_is_started_again_after_a_time_out(good: str) -> None:
+    with Child(GREETING) as child:
+        with pytest.raises(TimedOutError):
+            child.answer({"survey": good}, 0.0)
+        assert child.answer({"survey": good}, 20.0)["triangles"] == 12
+        child.stop()
+        with pytest.raises(CrashedError, match="stopped"):
+            child.answer({"survey": good}, 20.0)
+
+
+def test_closing_the_answers_ends_the_children(good: str) -> None:
+    answers = LocalPool(1, GREETING).answers([{"survey": good}] * 50, 20.0)
+    assert next(answers)[1]["triangles"] == 12
+    answers.close()
