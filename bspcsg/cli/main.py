@@ -54,6 +54,7 @@ _VERBS = {
     "check": ("examine", "check"),
     "repair": ("mend", "repair"),
     "compare": ("differ", "compare"),
+    "bench": ("bench", "bench"),
     "doctor": ("doctor", "doctor"),
 }
 

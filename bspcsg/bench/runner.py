@@ -1,0 +1,300 @@
+"""Runs cases in child processes with a limit on each call, and gathers what they say."""
+
+import json
+import os
+import select
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from .cases import CASES, Case
+from .engines import ENGINES
+from .targets import OURS
+from .worker import Task
+
+#: The engine whose word is asked first.
+_REFEREE = "manifold3d"
+
+#: Seconds for making operands before the first call, and for ending after the last.
+_GRACE = 120.0
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How cases are run.
+
+    Parameters
+    ----------
+    engines : sequence of str
+        Those that take part where they can.
+    runs : int
+        Timed runs of each engine.
+    small : bool
+        Whether small items are taken.
+    limit, budget : float
+        Seconds for one call, and for all runs of an engine on an item.
+    shared : Path
+        Folder of shared data.
+    core : Path or None
+        Another build of the compiled core.
+    memory_gb : float
+        Address space of a worker.
+    steps : int
+        Steps of the dome; 0 for all.
+    """
+
+    engines: Sequence[str]
+    runs: int = 5
+    small: bool = False
+    limit: float = 300.0
+    budget: float = 150.0
+    shared: Path = Path("../shared")
+    core: Path | None = None
+    memory_gb: float = 12.0
+    steps: int = 0
+
+
+#: Called with a line about what is under way.
+Progress = Callable[[str], None]
+
+
+def run_case(key: str, settings: Settings, progress: Progress) -> dict[str, Any]:
+    """Run one case and return its row of the record."""
+    case = CASES[key]
+    if case.needs and not (settings.shared / case.needs).exists():
+        missing = f"{settings.shared / case.needs} does not exist"
+        return {"case": key, "title": case.title, "left_out": missing, "items": []}
+    labels = case.small if settings.small else case.items
+    items = [_item(key, label, settings, progress) for label in labels]
+    return {"case": key, "title": case.title, "small": settings.small, "items": items}
+
+
+def _item(key: str, label: str, settings: Settings, progress: Progress) -> dict[str, Any]:
+    case = CASES[key]
+    taking_part = [name for name in settings.engines if not case.engines or name in case.engines]
+    task = Task(
+        case=key,
+        item=label,
+        small=settings.small,
+        engines=taking_part,
+        runs=settings.runs,
+        budget=settings.budget,
+        shared=str(settings.shared),
+        cores=case.cores,
+        memory_gb=settings.memory_gb,
+        steps=settings.steps,
+    )
+    gathered = Gathered(label)
+    for part in _parts(case, task):
+        _until_done(part, settings, gathered, progress)
+    row = gathered.row()
+    if case.checked_at_once and not _checked(row):
+        row["at_once"] = _at_once(task, settings, progress)
+    return judged(row)
+
+
+def _parts(case: Case, task: Task) -> list[Task]:
+    """Return one task for all engines, or one for each if each is to be alone."""
+    if not case.alone:
+        return [task]
+    return [replace(task, engines=[name]) for name in task.engines]
+
+
+def _checked(row: dict[str, Any]) -> bool:
+    return any("facts" in found for name, found in row["engines"].items() if name != OURS)
+
+
+def _at_once(task: Task, settings: Settings, progress: Progress) -> dict[str, Any]:
+    """Ask the referee for the set of a chain as one expression."""
+    gathered = Gathered(task.item)
+    asked = replace(task, engines=[_REFEREE], runs=0, at_once=True, cores=0)
+    _until_done(asked, settings, gathered, progress)
+    return gathered.row()["engines"].get(_REFEREE, {})
+
+
+def _until_done(
+    task: Task, settings: Settings, gathered: "Gathered", progress: Progress
+) -> None:
+    """Run workers until each engine is done or has failed; one that ends a worker is left out."""
+    engines = list(task.engines)
+    while engines:
+        culprit = _work(replace(task, engines=engines), settings, gathered, progress)
+        if culprit is None:
+            return
+        gathered.forget_unfinished(engines, culprit)
+        engines = [name for name in engines if not gathered.is_over(name)]
+
+
+def _work(
+    task: Task, settings: Settings, gathered: "Gathered", progress: Progress
+) -> str | None:
+    """Run one worker; return the engine that was under way when it ended before its time."""
+    boot = Path(__file__).with_name("boot.py")
+    core = str(settings.core.resolve()) if settings.core else ""
+    command = [sys.executable, "-P", str(boot), str(_PACKAGE.parent), core]
+    with subprocess.Popen(
+        [*command, json.dumps(asdict(task))],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE if not os.environ.get("BSPCSG_BENCH_DEBUG") else None,
+        env={**os.environ, "PYTHONHASHSEED": "0"},
+    ) as child:
+        try:
+            under_way, reason = _listen(child, task, settings.limit, gathered, progress)
+        finally:
+            child.kill()
+    if reason is None:
+        return None
+    gathered.ended(under_way or task.engines[0], reason)
+    return under_way or task.engines[0]
+
+
+def _listen(
+    child: "subprocess.Popen[bytes]",
+    task: Task,
+    limit: float,
+    gathered: "Gathered",
+    progress: Progress,
+) -> tuple[str | None, dict[str, Any] | None]:
+    """Take in what a worker says; return who was under way, and why it ended if not well."""
+    under_way, began = None, time.monotonic()
+    for line in _lines(child, lambda: began + (limit if under_way else _GRACE + limit)):
+        if line is None:
+            return under_way, {"state": "stopped", "stopped_after": time.monotonic() - began}
+        said = json.loads(line)
+        gathered.take(said)
+        if said["say"] == "begin":
+            under_way, began = said["engine"], time.monotonic()
+            progress(f"{task.case}, {task.item}: {under_way}")
+        elif said["say"] in ("run", "failed"):
+            under_way, began = None, time.monotonic()
+        elif said["say"] == "end":
+            return None, None
+    code = child.wait()
+    return under_way, {"state": "crashed", "reason": f"the process ended with code {code}"}
+
+
+def _lines(
+    child: "subprocess.Popen[bytes]", deadline: Callable[[], float]
+) -> Iterator[bytes | None]:
+    """Yield lines as they come, and None when the deadline of the moment passes."""
+    assert child.stdout is not None
+    descriptor, waiting = child.stdout.fileno(), b""
+    while True:
+        left = deadline() - time.monotonic()
+        if left <= 0 or not select.select([descriptor], [], [], left)[0]:
+            yield None
+            return
+        chunk = os.read(descriptor, 1 << 16)
+        if not chunk:
+            return
+        *whole, waiting = (waiting + chunk).split(b"\n")
+        yield from whole
+
+
+class Gathered:
+    """What workers said about one item."""
+
+    def __init__(self, label: str) -> None:
+        self._label = label
+        self._extent: dict[str, Any] = {}
+        self._engines: dict[str, dict[str, Any]] = {}
+
+    def take(self, said: dict[str, Any]) -> None:
+        """Take in one line."""
+        if said["say"] == "extent":
+            self._extent = {name: said[name] for name in ("area", "size", "triangles")}
+        elif said["say"] == "plan":
+            self._of(said)["planned"] = said["runs"]
+        elif said["say"] == "run":
+            self._add_run(self._of(said), said)
+        elif said["say"] == "step":
+            self._of(said)["steps_done"] = said["done"]
+        elif said["say"] == "failed":
+            self._of(said).update(state="failed", reason=said["reason"])
+
+    def _of(self, said: dict[str, Any]) -> dict[str, Any]:
+        return self._engines.setdefault(said["engine"], {"seconds": [], "memory_mb": 0.0})
+
+    def _add_run(self, found: dict[str, Any], said: dict[str, Any]) -> None:
+        found["seconds"].append(said["seconds"])
+        found["memory_mb"] = max(found["memory_mb"], said["memory_mb"] or 0.0)
+        found["peak_mb"] = max(found.get("peak_mb", 0.0), said["peak_mb"])
+        found.setdefault("volumes", []).append(said["facts"]["volume"])
+        for name in ("parts", "windows", "counters", "facts"):
+            if name in said:
+                found[name] = said[name]
+
+    def ended(self, engine: str, reason: dict[str, Any]) -> None:
+        """Note that the worker ended while this engine was under way."""
+        self._engines.setdefault(engine, {"seconds": [], "memory_mb": 0.0}).update(reason)
+
+    def is_over(self, engine: str) -> bool:
+        """Whether an engine failed, or has all its runs."""
+        found = self._engines.get(engine, {})
+        wanted = max(found.get("planned", 0), 0) + 1
+        return "state" in found or len(found.get("seconds", ())) >= wanted
+
+    def forget_unfinished(self, engines: Sequence[str], culprit: str) -> None:
+        """Forget the runs of engines that will start anew."""
+        for name in engines:
+            if name != culprit and not self.is_over(name):
+                self._engines.pop(name, None)
+
+    def row(self) -> dict[str, Any]:
+        """Return the item as it is kept."""
+        for found in self._engines.values():
+            # The first run of each warms caches and pools, unless there was time for no other.
+            first, *rest = found["seconds"] or [None]
+            found["first"] = first
+            found["runs"] = len(rest) or len(found["seconds"])
+            found["median"] = median(rest) if rest else first
+            if "state" not in found:
+                found["state"] = "ok"
+            elif found["seconds"]:
+                found["median"] = None
+        return {"item": self._label, **self._extent, "engines": self._engines}
+
+
+def judged(row: dict[str, Any]) -> dict[str, Any]:
+    """Compare the volumes of all answers with ours, within what rounding allows."""
+    ours = row["engines"].get(OURS, {})
+    if "facts" not in ours:
+        return row
+    others = {name: found for name, found in row["engines"].items() if name != OURS}
+    others |= {f"{_REFEREE}": row["at_once"]} if "facts" in row.get("at_once", {}) else {}
+    for name, found in others.items():
+        if "facts" in found:
+            found["difference"] = max(
+                abs(mine - theirs)
+                for mine in ours["volumes"]
+                for theirs in found["volumes"]
+            )
+            found["bound"] = _bound(row, ours, found, name)
+            found["agrees"] = found["difference"] <= found["bound"]
+            found["same_euler_number"] = (
+                found["facts"]["euler_number"] == ours["facts"]["euler_number"]
+            )
+    return row
+
+
+def _bound(row: dict[str, Any], ours: dict[str, Any], theirs: dict[str, Any], name: str) -> float:
+    """Return by how much two right volumes may differ.
+
+    An engine may move each vertex by its resolution; no wall of the answer is more than its part of
+    an operand's, so that the volume changes by at most the operands' area times that way.
+    """
+    ways = sum(_resolution(engine, row["size"]) for engine in (OURS, name))
+    roundings = ours["facts"]["volume_error"] + theirs["facts"]["volume_error"]
+    return float(row["area"] * ways + roundings)
+
+
+def _resolution(engine: str, size: float) -> float:
+    # Asked of the class: making an engine would load it.
+    return ENGINES[engine].resolution(ENGINES[engine].__new__(ENGINES[engine]), size)

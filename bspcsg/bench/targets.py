@@ -1,0 +1,191 @@
+"""What a row is to reach, and what it reached."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import exp, log
+from statistics import mean
+from typing import Any, Protocol
+
+import numpy as np
+
+#: The engine that the others are measured against.
+OURS = "bspcsg"
+
+#: Results by item and engine, as in the records.
+Items = Sequence[dict[str, Any]]
+
+
+@dataclass(frozen=True)
+class Reached:
+    """What a row reached of one target.
+
+    Parameters
+    ----------
+    value : float or None
+        None if an engine that it needs has no time.
+    at_least : float or None
+        Set if the other engine was stopped before its end: the ratio is this or more.
+    text : str
+    met : bool or None
+        None if nothing can be said.
+    """
+
+    value: float | None
+    text: str
+    met: bool | None
+
+
+class Target(Protocol):
+    """One figure to reach."""
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+
+    def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
+
+
+@dataclass(frozen=True)
+class Faster:
+    """So many times faster than another engine, on each item."""
+
+    factor: float
+    engine: str = "manifold3d"
+
+    @property
+    def text(self) -> str:
+        return f"≥ {self.factor:g} × {self.engine}"
+
+    def reached(self, items: Items) -> Reached:
+        found = [ratio(item, self.engine) for item in items]
+        ratios = [value for value in found if value is not None]
+        if not ratios:
+            return Reached(None, "—", None)
+        least = min(ratios, key=lambda value: value[0])
+        met = least[0] >= self.factor
+        return Reached(
+            least[0], f"{least[1]}{least[0]:.3g} ×", met or (None if least[1] else False)
+        )
+
+
+@dataclass(frozen=True)
+class MeanFaster:
+    """So many times faster in the geometric mean over all items."""
+
+    factor: float
+    engine: str = "manifold3d"
+
+    @property
+    def text(self) -> str:
+        return f"mean ≥ {self.factor:g} × {self.engine}"
+
+    def reached(self, items: Items) -> Reached:
+        ratios = [found[0] for item in items if (found := ratio(item, self.engine)) is not None]
+        if not ratios:
+            return Reached(None, "—", None)
+        value = exp(mean(map(log, ratios)))
+        return Reached(value, f"{value:.3g} × over {len(ratios)}", value >= self.factor)
+
+
+@dataclass(frozen=True)
+class Within:
+    """Done in so many seconds, the median of each item."""
+
+    seconds: float
+
+    @property
+    def text(self) -> str:
+        return f"< {self.seconds:g} s"
+
+    def reached(self, items: Items) -> Reached:
+        times = [result_of(item, OURS).get("median") for item in items]
+        known = [value for value in times if value is not None]
+        if not known:
+            return Reached(None, "unfinished", False)
+        return Reached(max(known), f"{max(known):.3g} s", max(known) < self.seconds)
+
+
+@dataclass(frozen=True)
+class MemoryWithin:
+    """Done in so much memory, that of the whole process."""
+
+    megabytes: float
+
+    @property
+    def text(self) -> str:
+        return f"< {self.megabytes:g} MB"
+
+    def reached(self, items: Items) -> Reached:
+        peaks = [result_of(item, OURS).get("peak_mb") for item in items]
+        known = [value for value in peaks if value is not None]
+        if not known:
+            return Reached(None, "—", None)
+        return Reached(max(known), f"{max(known):.0f} MB", max(known) < self.megabytes)
+
+
+@dataclass(frozen=True)
+class SteadySteps:
+    """The last steps of a chain take at most so many times as long as the thousandth."""
+
+    factor: float
+
+    @property
+    def text(self) -> str:
+        return f"last steps ≤ {self.factor:g} × step 1 000"
+
+    def reached(self, items: Items) -> Reached:
+        windows = [result_of(item, OURS).get("windows") or {} for item in items]
+        pairs = [(w["thousandth"], w["last"]) for w in windows if "thousandth" in w]
+        if not pairs:
+            return Reached(None, "—", None)
+        value = max(last / early for early, last in pairs)
+        return Reached(value, f"{value:.2f} ×", value <= self.factor)
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Time grows at most with this power of the number of triangles."""
+
+    exponent: float
+
+    @property
+    def text(self) -> str:
+        return f"∝ n^{self.exponent:g}"
+
+    def reached(self, items: Items) -> Reached:
+        value = exponent(items, OURS)
+        if value is None:
+            return Reached(None, "—", None)
+        return Reached(value, f"n^{value:.2f}", value <= self.exponent)
+
+
+def result_of(item: dict[str, Any], engine: str) -> dict[str, Any]:
+    """Return what an engine reached on an item; empty if it did not take part."""
+    found: dict[str, Any] = item["engines"].get(engine, {})
+    return found
+
+
+def ratio(item: dict[str, Any], engine: str) -> tuple[float, str] | None:
+    """Return how many times faster we are, and ``"> "`` if the other was stopped before its end."""
+    ours, theirs = result_of(item, OURS), result_of(item, engine)
+    if theirs.get("agrees") is False or not ours.get("median"):
+        return None
+    if theirs.get("median"):
+        return theirs["median"] / ours["median"], ""
+    if theirs.get("state") == "stopped" and theirs["stopped_after"] > ours["median"]:
+        return theirs["stopped_after"] / ours["median"], "> "
+    return None
+
+
+def exponent(items: Items, engine: str) -> float | None:
+    """Fit the power of the number of triangles that an engine's time grows with."""
+    points = [
+        (item["triangles"], found)
+        for item in items
+        if (found := result_of(item, engine).get("median"))
+    ]
+    if len(points) < 2:
+        return None
+    sizes, times = np.log(np.array(points)).T
+    return float(np.polyfit(sizes, times, 1)[0])
