@@ -21,7 +21,8 @@ def swept_capsules(shared: Path) -> tuple[Arrays, list[Arrays]]:
         vertices = np.split(data["v"].astype(np.float64), np.cumsum(data["nv"])[:-1])
         faces = np.split(data["f"].astype(np.int64), np.cumsum(data["nf"])[:-1])
     base, *tools = zip(vertices, faces, strict=True)
-    return base, tools
+    # The tools are stored inside out.
+    return base, [(points, triangles[:, ::-1].copy()) for points, triangles in tools]
 
 
 def posed_pair(shared: Path, number: int) -> tuple[Arrays, Arrays]:
@@ -29,7 +30,10 @@ def posed_pair(shared: Path, number: int) -> tuple[Arrays, Arrays]:
     random = generator(number)
     names = solid_names(shared)
     first, second = random.choice(len(names), size=2, replace=False)
-    posed = [turned(_unit(shared / "meshes" / names[k]), random_rotation(random)) for k in (first, second)]
+    posed = [
+        turned(_unit(shared / "meshes" / names[k]), random_rotation(random))
+        for k in (first, second)
+    ]
     return posed[0], moved(posed[1], _APART * unit_vector(random))
 
 
@@ -58,6 +62,8 @@ def solid_names(shared: Path) -> list[str]:
 def _unit(path: Path) -> Arrays:
     from ..io import load
 
-    vertices, faces = load(path).to_mesh()
+    vertices, faces = (array.copy() for array in load(path).to_mesh())
     low, high = vertices.min(axis=0), vertices.max(axis=0)
-    return scaled(moved((vertices, faces), -(low + high) / 2), 2 / float(np.linalg.norm(high - low)))
+    return scaled(
+        moved((vertices, faces), -(low + high) / 2), 2 / float(np.linalg.norm(high - low))
+    )

@@ -119,9 +119,7 @@ def _at_once(task: Task, settings: Settings, progress: Progress) -> dict[str, An
     return gathered.row()["engines"].get(_REFEREE, {})
 
 
-def _until_done(
-    task: Task, settings: Settings, gathered: "Gathered", progress: Progress
-) -> None:
+def _until_done(task: Task, settings: Settings, gathered: "Gathered", progress: Progress) -> None:
     """Run workers until each engine is done or has failed; one that ends a worker is left out."""
     engines = list(task.engines)
     while engines:
@@ -132,9 +130,7 @@ def _until_done(
         engines = [name for name in engines if not gathered.is_over(name)]
 
 
-def _work(
-    task: Task, settings: Settings, gathered: "Gathered", progress: Progress
-) -> str | None:
+def _work(task: Task, settings: Settings, gathered: "Gathered", progress: Progress) -> str | None:
     """Run one worker; return the engine that was under way when it ended before its time."""
     boot = Path(__file__).with_name("boot.py")
     core = str(settings.core.resolve()) if settings.core else ""
@@ -220,10 +216,11 @@ class Gathered:
             self._of(said).update(state="failed", reason=said["reason"])
 
     def _of(self, said: dict[str, Any]) -> dict[str, Any]:
-        return self._engines.setdefault(said["engine"], {"seconds": [], "memory_mb": 0.0})
+        return self._engines.setdefault(said["engine"], _nothing_yet())
 
     def _add_run(self, found: dict[str, Any], said: dict[str, Any]) -> None:
         found["seconds"].append(said["seconds"])
+        found["cpu_seconds"].append(said["cpu"])
         found["memory_mb"] = max(found["memory_mb"], said["memory_mb"] or 0.0)
         found["peak_mb"] = max(found.get("peak_mb", 0.0), said["peak_mb"])
         found.setdefault("volumes", []).append(said["facts"]["volume"])
@@ -233,7 +230,7 @@ class Gathered:
 
     def ended(self, engine: str, reason: dict[str, Any]) -> None:
         """Note that the worker ended while this engine was under way."""
-        self._engines.setdefault(engine, {"seconds": [], "memory_mb": 0.0}).update(reason)
+        self._engines.setdefault(engine, _nothing_yet()).update(reason)
 
     def is_over(self, engine: str) -> bool:
         """Whether an engine failed, or has all its runs."""
@@ -250,16 +247,23 @@ class Gathered:
     def row(self) -> dict[str, Any]:
         """Return the item as it is kept."""
         for found in self._engines.values():
-            # The first run of each warms caches and pools, unless there was time for no other.
-            first, *rest = found["seconds"] or [None]
-            found["first"] = first
-            found["runs"] = len(rest) or len(found["seconds"])
-            found["median"] = median(rest) if rest else first
+            found["median"] = _warm_median(found["seconds"])
+            found["cpu"] = _warm_median(found["cpu_seconds"])
+            found["runs"] = max(len(found["seconds"]) - 1, min(len(found["seconds"]), 1))
             if "state" not in found:
                 found["state"] = "ok"
             elif found["seconds"]:
                 found["median"] = None
         return {"item": self._label, **self._extent, "engines": self._engines}
+
+
+def _nothing_yet() -> dict[str, Any]:
+    return {"seconds": [], "cpu_seconds": [], "memory_mb": 0.0}
+
+
+def _warm_median(times: list[float]) -> float | None:
+    """Return the median without the first, which warms caches, unless there is no other."""
+    return median(times[1:] or times) if times else None
 
 
 def judged(row: dict[str, Any]) -> dict[str, Any]:
@@ -272,9 +276,7 @@ def judged(row: dict[str, Any]) -> dict[str, Any]:
     for name, found in others.items():
         if "facts" in found:
             found["difference"] = max(
-                abs(mine - theirs)
-                for mine in ours["volumes"]
-                for theirs in found["volumes"]
+                abs(mine - theirs) for mine in ours["volumes"] for theirs in found["volumes"]
             )
             found["bound"] = _bound(row, ours, found, name)
             found["agrees"] = found["difference"] <= found["bound"]

@@ -38,9 +38,7 @@ def rotation(axis: object, angle: float) -> FloatArray:
     """Return the matrix of a turn by an angle in radians about an axis through the origin."""
     x, y, z = (v := np.asarray(axis, dtype=np.float64)) / np.linalg.norm(v)
     across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.asarray(
-        np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * (across @ across)
-    )
+    return np.asarray(np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * (across @ across))
 
 
 def random_rotation(random: np.random.Generator) -> FloatArray:

@@ -3,35 +3,68 @@
 from typing import Any
 
 from .cases import CASES
-from .targets import OURS, exponent
+from .record import seconds_text
+from .targets import OURS
 
 Row = dict[str, Any]
 
-#: The columns of the table of rows.
-COLUMNS = ("case", "to reach", "reached", "met", OURS, "others", "memory MB", "answers")
+#: Runs whose median needs no remark.
+_ENOUGH = 5
+
+#: What stands in place of a figure that there is none of.
+_NOTHING = "—"
+
+_MET = {True: "yes", False: "no", None: _NOTHING}
 
 
-def rows_of(record: dict[str, Any]) -> list[list[str]]:
-    """Return one line for each target of each case."""
-    lines = []
+def lines_of(record: dict[str, Any], titles: bool) -> list[list[str]]:
+    """Return the table: a line of columns' names, and one for each target of each case.
+
+    Parameters
+    ----------
+    record : dict
+        As `bspcsg.bench.record.read` returns it.
+    titles : bool
+        Whether cases stand with their titles, instead of their names.
+    """
+    engines = _engines_of(record)
+    lines = [["case", "to reach", "reached", "met", *engines, "memory", "answers"]]
     for row in record["cases"]:
-        if "left_out" in row:
-            lines.append([row["title"], "", "left out", "", "", row["left_out"], "", ""])
-            continue
-        described = [_times(row, OURS), _others(row), _memory(row), _answers(row)]
-        for number, target in enumerate(CASES[row["case"]].targets):
-            reached = target.reached(row["items"])
-            met = {True: "yes", False: "no", None: "—"}[reached.met]
-            head = [row["title"] if number == 0 else "", target.text, reached.text, met]
-            lines.append([*head, *(described if number == 0 else [""] * len(described))])
+        name = _title(row) if titles else row["case"]
+        lines += _lines_of_row(row, name, engines)
+    return lines
+
+
+def _engines_of(record: dict[str, Any]) -> list[str]:
+    """Return all engines that took part, ours first."""
+    engines = (name for row in record["cases"] for i in row["items"] for name in i["engines"])
+    return list(dict.fromkeys([OURS, *engines]))
+
+
+def _title(row: Row) -> str:
+    sizes = ", ".join(item["item"] for item in row["items"])
+    return f"{row['title']} (small: {sizes})" if row.get("small") else str(row["title"])
+
+
+def _lines_of_row(row: Row, name: str, engines: list[str]) -> list[list[str]]:
+    """Return one line for each target; what is the same for all stands in the first."""
+    if "left_out" in row:
+        return [[name, "", "left out", "", *[""] * len(engines), "", row["left_out"]]]
+    described = [*(_times(row, engine) for engine in engines), _memory(row), _answers(row)]
+    lines = []
+    for target in CASES[row["case"]].targets:
+        reached = target.reached(row["items"])
+        head = [name, target.text, reached.text, _MET[reached.met]]
+        lines.append([*head, *described])
+        name, described = "", [""] * len(described)
     return lines
 
 
 def markdown(record: dict[str, Any]) -> str:
     """Return the table as Markdown, with a line about the machine."""
-    lines = [list(COLUMNS), ["---"] * len(COLUMNS), *rows_of(record)]
-    drawn = "\n".join(f"| {' | '.join(line)} |" for line in lines)
-    return f"{about(record)}\n\n{drawn}\n"
+    head, *lines = lines_of(record, titles=True)
+    drawn = [f"| {' | '.join(line)} |" for line in [head, ["---"] * len(head), *lines]]
+    return "\n".join([about(record), "", *drawn, ""])
 
 
 def about(record: dict[str, Any]) -> str:
@@ -46,44 +79,32 @@ def about(record: dict[str, Any]) -> str:
 
 
 def _times(row: Row, engine: str) -> str:
-    texts = [_time(item["engines"].get(engine)) for item in row["items"]]
-    if len(texts) == 1:
-        return texts[0]
-    known = [t for item in row["items"] if (t := item["engines"].get(engine, {}).get("median"))]
-    if not known:
-        return texts[0]
-    power = exponent(row["items"], engine)
-    grown = f", n^{power:.2f}" if power is not None and row["case"] == "sizes" else ""
-    return f"{seconds_text(min(known))} … {seconds_text(max(known))}{grown}"
+    """Return the median of an engine, or from the least to the greatest of several items."""
+    found = [item["engines"].get(engine) for item in row["items"]]
+    known = [result["median"] for result in found if result and result["median"]]
+    if len(found) == 1 or not known:
+        return _time(found[0])
+    missing = f", {len(found) - len(known)} missing" if len(known) < len(found) else ""
+    return f"{seconds_text(min(known))} … {seconds_text(max(known))}{missing}"
 
 
 def _time(found: Row | None) -> str:
     if not found:
-        return "—"
+        return _NOTHING
     if found["state"] == "stopped":
         steps = f" at step {found['steps_done']}" if "steps_done" in found else ""
         return f"> {seconds_text(found['stopped_after'])}{steps}"
     if found["state"] != "ok":
-        return found["state"]
-    fewer = "" if found["runs"] >= 5 else f" ({found['runs']})"
+        return str(found["state"])
+    fewer = "" if found["runs"] >= _ENOUGH else f" ({found['runs']})"
     return f"{seconds_text(found['median'])}{fewer}"
 
 
-def seconds_text(seconds: float) -> str:
-    """Return a time with three digits and a unit that suits it."""
-    if seconds < 1e-3:
-        return f"{seconds * 1e6:.3g} µs"
-    return f"{seconds * 1e3:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"
-
-
-def _others(row: Row) -> str:
-    names = dict.fromkeys(name for item in row["items"] for name in item["engines"])
-    return ", ".join(f"{name} {_times(row, name)}" for name in names if name != OURS)
-
-
 def _memory(row: Row) -> str:
-    peaks = [f["peak_mb"] for item in row["items"] if (f := item["engines"].get(OURS, {})).get("peak_mb")]
-    return f"{max(peaks):.0f}" if peaks and CASES[row["case"]].alone else ""
+    """Return the peak of our process where it did nothing else."""
+    peaks = [item["engines"].get(OURS, {}).get("peak_mb") for item in row["items"]]
+    known = [peak for peak in peaks if peak]
+    return f"{max(known):.0f} MB" if known and CASES[row["case"]].alone else ""
 
 
 def _answers(row: Row) -> str:
@@ -97,7 +118,7 @@ def _answers(row: Row) -> str:
 
 def _differing(item: Row) -> list[str]:
     words = [
-        f"{name} differs by {found['difference']:.1e}, allowed {found['bound']:.1e} ({item['item']})"
+        f"{name} differs by {found['difference']:.1e}, {found['bound']:.1e} allowed"
         for name, found in item["engines"].items()
         if found.get("agrees") is False
     ]

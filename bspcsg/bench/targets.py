@@ -23,8 +23,6 @@ class Reached:
     ----------
     value : float or None
         None if an engine that it needs has no time.
-    at_least : float or None
-        Set if the other engine was stopped before its end: the ratio is this or more.
     text : str
     met : bool or None
         None if nothing can be said.
@@ -58,15 +56,12 @@ class Faster:
         return f"≥ {self.factor:g} × {self.engine}"
 
     def reached(self, items: Items) -> Reached:
-        found = [ratio(item, self.engine) for item in items]
-        ratios = [value for value in found if value is not None]
+        ratios = [found for item in items if (found := ratio(item, self.engine)) is not None]
         if not ratios:
             return Reached(None, "—", None)
-        least = min(ratios, key=lambda value: value[0])
-        met = least[0] >= self.factor
-        return Reached(
-            least[0], f"{least[1]}{least[0]:.3g} ×", met or (None if least[1] else False)
-        )
+        least = min(ratios, key=lambda found: found.value)
+        met = least.value >= self.factor
+        return Reached(least.value, least.text, met or (None if least.is_bound else False))
 
 
 @dataclass(frozen=True)
@@ -81,7 +76,7 @@ class MeanFaster:
         return f"mean ≥ {self.factor:g} × {self.engine}"
 
     def reached(self, items: Items) -> Reached:
-        ratios = [found[0] for item in items if (found := ratio(item, self.engine)) is not None]
+        ratios = [found.value for item in items if (found := ratio(item, self.engine)) is not None]
         if not ratios:
             return Reached(None, "—", None)
         value = exp(mean(map(log, ratios)))
@@ -166,15 +161,42 @@ def result_of(item: dict[str, Any], engine: str) -> dict[str, Any]:
     return found
 
 
-def ratio(item: dict[str, Any], engine: str) -> tuple[float, str] | None:
-    """Return how many times faster we are, and ``"> "`` if the other was stopped before its end."""
+@dataclass(frozen=True)
+class Ratio:
+    """How many times faster we are.
+
+    Parameters
+    ----------
+    value : float
+        Of the medians of wall time.
+    cpu : float or None
+        Of the medians of processor time of all threads, which other users of the machine disturb
+        less.
+    is_bound : bool
+        Whether the other engine was stopped before its end, so that the ratio is this or more.
+    """
+
+    value: float
+    cpu: float | None = None
+    is_bound: bool = False
+
+    @property
+    def text(self) -> str:
+        """The ratio in words."""
+        worked = "" if self.cpu is None else f" (processor {self.cpu:.3g} ×)"
+        return f"{'> ' if self.is_bound else ''}{self.value:.3g} ×{worked}"
+
+
+def ratio(item: dict[str, Any], engine: str) -> Ratio | None:
+    """Compare our time with another engine's; None if one of them has none, or answers differ."""
     ours, theirs = result_of(item, OURS), result_of(item, engine)
     if theirs.get("agrees") is False or not ours.get("median"):
         return None
     if theirs.get("median"):
-        return theirs["median"] / ours["median"], ""
+        worked = theirs["cpu"] / ours["cpu"] if ours["cpu"] else None
+        return Ratio(theirs["median"] / ours["median"], worked)
     if theirs.get("state") == "stopped" and theirs["stopped_after"] > ours["median"]:
-        return theirs["stopped_after"] / ours["median"], "> "
+        return Ratio(theirs["stopped_after"] / ours["median"], is_bound=True)
     return None
 
 

@@ -121,7 +121,7 @@ class _Turns:
         name = self.engine.name
         self.say({"say": "begin", "engine": name})
         try:
-            seconds, outcome, memory = self._timed()
+            seconds, cpu, outcome, memory = self._timed()
         except MemoryError:
             self._fail("out of memory")
         except Exception as error:  # whatever an engine raises, the others go on
@@ -129,19 +129,28 @@ class _Turns:
         else:
             first = not self._warm
             self._plan(seconds)
-            self.say({"say": "run", "engine": name, "seconds": seconds, "memory_mb": memory,
-                      "peak_mb": peak_mb(), **self._details(outcome, first)})
+            self.say(
+                {
+                    "say": "run",
+                    "engine": name,
+                    "seconds": seconds,
+                    "cpu": cpu,
+                    "memory_mb": memory,
+                    "peak_mb": peak_mb(),
+                    **self._details(outcome, first),
+                }
+            )
 
-    def _timed(self) -> tuple[float, Outcome, float | None]:
+    def _timed(self) -> tuple[float, float, Outcome, float | None]:
         prepared = self.work.prepare(self.engine)
         gc.collect()
         held = held_mb()
         counted = forget_peak()
-        began = time.perf_counter()
+        began, used = time.perf_counter(), time.process_time()
         outcome = self.work.run(self.engine, prepared, self._teller())
-        seconds = time.perf_counter() - began
+        seconds, cpu = time.perf_counter() - began, time.process_time() - used
         memory = peak_mb() - held if counted else None
-        return sum(outcome.parts.values()) or seconds, outcome, memory
+        return sum(outcome.parts.values()) or seconds, cpu, outcome, memory
 
     def _plan(self, seconds: float) -> None:
         """Settle after the first run how many more fit into the budget."""
@@ -165,15 +174,14 @@ class _Turns:
         self.say({"say": "failed", "engine": self.engine.name, "reason": reason})
 
     def _teller(self) -> Tell:
-        began = last = time.perf_counter()
+        last = time.perf_counter()
 
         def tell(done: int) -> None:
             nonlocal last
             now = time.perf_counter()
             if now - last >= _TELL_EVERY:
                 last = now
-                self.say({"say": "step", "engine": self.engine.name, "done": done,
-                          "seconds": now - began})
+                self.say({"say": "step", "engine": self.engine.name, "done": done})
 
         return tell
 

@@ -38,13 +38,13 @@ def _as_engines(
             known = ", ".join(list(ENGINES)[1:])
             raise click.BadParameter(f"{name!r} is no engine; known are {known}.", context, option)
         if name not in installed():
-            raise click.BadParameter(f"{name} is not installed: pip install {name}", context, option)
+            raise click.BadParameter(
+                f"{name} is not installed: pip install {name}", context, option
+            )
     return list(dict.fromkeys([next(iter(ENGINES)), *asked]))
 
 
-def _as_cases(
-    context: click.Context, option: click.Parameter, value: tuple[str, ...]
-) -> list[str]:
+def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str, ...]) -> list[str]:
     """Return names of cases; none means all."""
     from ..bench.cases import CASES
 
@@ -54,9 +54,7 @@ def _as_cases(
     return list(dict.fromkeys(value)) or list(CASES)
 
 
-@click.command(
-    "bench", short_help="Time set operations beside other engines.", epilog=_EPILOG
-)
+@click.command("bench", short_help="Time set operations beside other engines.", epilog=_EPILOG)
 @click.argument("cases", nargs=-1, callback=_as_cases, metavar="[CASE]...")
 @click.option("--list", "listed", is_flag=True, help="Name the cases and what each is to reach.")
 @click.option(
@@ -205,7 +203,8 @@ def _show(record: dict[str, Any], style: str) -> None:
     if style == "md":
         click.echo(table.markdown(record), nl=False)
         return
-    click.echo(table_text(list(table.COLUMNS), table.rows_of(record)))
+    head, *lines = table.lines_of(record, titles=False)
+    click.echo(table_text(head, lines))
     click.echo(table.about(record))
 
 
