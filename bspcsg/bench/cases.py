@@ -46,6 +46,8 @@ class Case:
         Each engine runs in a process of its own, and the peak of its memory is what counts.
     needs : str
         Path of data that may be missing, below the folder of shared data.
+    limit : float
+        Seconds after which a call is stopped, unless another limit is asked for.
     checked_at_once : bool
         If no other engine finishes the chain, manifold3d is asked for the same as one expression.
     """
@@ -58,6 +60,7 @@ class Case:
     cores: int = 0
     alone: bool = False
     needs: str = ""
+    limit: float = 300.0
     checked_at_once: bool = False
 
 
@@ -259,6 +262,7 @@ CASES: dict[str, Case] = {
         {"20 steps": dome(20)},
         ("bspcsg",),
         alone=True,
+        limit=900.0,
         checked_at_once=True,
     ),
     "sizes": Case(

@@ -59,8 +59,8 @@ class Engine(ABC):
         return {}
 
 
-class Bspcsg(Engine):
-    """This package, by its public functions."""
+class _Bspcsg(Engine):
+    """Our own, by the public functions of the package."""
 
     name = "bspcsg"
 
@@ -93,7 +93,7 @@ class Bspcsg(Engine):
         return dict(solid.tree.stats())
 
 
-class Manifold(Engine):
+class _Manifold(Engine):
     """manifold3d in double precision; what it puts off is forced before a clock stops."""
 
     name = "manifold3d"
@@ -136,7 +136,7 @@ class Manifold(Engine):
             raise EngineError(f"manifold3d says {status.name}")
 
 
-class Trueform(Engine):
+class _Trueform(Engine):
     """trueform; a result becomes an operand again as a mesh."""
 
     name = "trueform"
@@ -198,7 +198,7 @@ class _OfArrays(Engine):
         """Combine two meshes."""
 
 
-class Meshlib(_OfArrays):
+class _Meshlib(_OfArrays):
     """MeshLib."""
 
     name = "meshlib"
@@ -237,7 +237,7 @@ class Meshlib(_OfArrays):
         return Engine.boolean(self, first, second, operation)
 
 
-class Pymeshlab(_OfArrays):
+class _Pymeshlab(_OfArrays):
     """pymeshlab, whose booleans are libigl's."""
 
     name = "pymeshlab"
@@ -257,7 +257,7 @@ class Pymeshlab(_OfArrays):
         return made.vertex_matrix(), made.face_matrix()
 
 
-class Vtk(_OfArrays):
+class _Vtk(_OfArrays):
     """VTK's boolean filter for polygonal data."""
 
     name = "vtk"
@@ -293,7 +293,7 @@ class Vtk(_OfArrays):
 
 #: All engines, ours first, then those that answers are compared with, then by speed.
 ENGINES: dict[str, type[Engine]] = {
-    made.name: made for made in (Bspcsg, Manifold, Trueform, Meshlib, Pymeshlab, Vtk)
+    made.name: made for made in (_Bspcsg, _Manifold, _Trueform, _Meshlib, _Pymeshlab, _Vtk)
 }
 
 
@@ -304,7 +304,7 @@ def installed() -> dict[str, str]:
 
 def version_of(name: str) -> str:
     """Return the version of an installed package, or nothing."""
-    if name == Bspcsg.name:
+    if name == _Bspcsg.name:
         # Also of a checkout that is only on the path.
         return str(import_module(name).__version__)
     try:

@@ -5,7 +5,7 @@ from math import log2
 
 import numpy as np
 
-from .._types import FloatArray
+from .._types import FloatArray, IndexArray
 from .shapes import Arrays
 
 #: Unit roundoff of doubles.
@@ -86,7 +86,7 @@ def size_of(vertices: FloatArray) -> float:
     return float(np.abs(vertices).max(initial=0.0))
 
 
-def _open_edges(faces: FloatArray, count: int) -> int:
+def _open_edges(faces: IndexArray, count: int) -> int:
     """Count directed edges that are not paired with an opposite one each."""
     starts, ends = faces[:, [0, 1, 2]].ravel(), faces[:, [1, 2, 0]].ravel()
     forward, back = np.sort(starts * count + ends), np.sort(ends * count + starts)

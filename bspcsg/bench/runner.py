@@ -6,7 +6,7 @@ import select
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from statistics import median
@@ -25,6 +25,8 @@ _GRACE = 120.0
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
+_BOOT = Path(__file__).with_name("boot.py")
+
 
 @dataclass(frozen=True)
 class Settings:
@@ -38,8 +40,10 @@ class Settings:
         Timed runs of each engine.
     small : bool
         Whether small items are taken.
-    limit, budget : float
-        Seconds for one call, and for all runs of an engine on an item.
+    limit : float or None
+        Seconds for one call; None for what suits the case.
+    budget : float
+        Seconds for all runs of an engine on an item.
     shared : Path
         Folder of shared data.
     core : Path or None
@@ -53,7 +57,7 @@ class Settings:
     engines: Sequence[str]
     runs: int = 5
     small: bool = False
-    limit: float = 300.0
+    limit: float | None = None
     budget: float = 150.0
     shared: Path = Path("../shared")
     core: Path | None = None
@@ -116,7 +120,8 @@ def _at_once(task: Task, settings: Settings, progress: Progress) -> dict[str, An
     gathered = Gathered(task.item)
     asked = replace(task, engines=[_REFEREE], runs=0, at_once=True, cores=0)
     _until_done(asked, settings, gathered, progress)
-    return gathered.row()["engines"].get(_REFEREE, {})
+    found: dict[str, Any] = gathered.row()["engines"].get(_REFEREE, {})
+    return found
 
 
 def _until_done(task: Task, settings: Settings, gathered: "Gathered", progress: Progress) -> None:
@@ -132,17 +137,18 @@ def _until_done(task: Task, settings: Settings, gathered: "Gathered", progress: 
 
 def _work(task: Task, settings: Settings, gathered: "Gathered", progress: Progress) -> str | None:
     """Run one worker; return the engine that was under way when it ended before its time."""
-    boot = Path(__file__).with_name("boot.py")
+    limit = CASES[task.case].limit if settings.limit is None else settings.limit
     core = str(settings.core.resolve()) if settings.core else ""
-    command = [sys.executable, "-P", str(boot), str(_PACKAGE.parent), core]
+    command = [sys.executable, "-P", str(_BOOT), str(_PACKAGE.parent), core]
     with subprocess.Popen(
         [*command, json.dumps(asdict(task))],
         stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE if not os.environ.get("BSPCSG_BENCH_DEBUG") else None,
+        # Engines write there what they like; what is wrong is said on standard output.
+        stderr=subprocess.DEVNULL,
         env={**os.environ, "PYTHONHASHSEED": "0"},
     ) as child:
         try:
-            under_way, reason = _listen(child, task, settings.limit, gathered, progress)
+            under_way, reason = _listen(child, task, limit, gathered, progress)
         finally:
             child.kill()
     if reason is None:
@@ -159,39 +165,46 @@ def _listen(
     progress: Progress,
 ) -> tuple[str | None, dict[str, Any] | None]:
     """Take in what a worker says; return who was under way, and why it ended if not well."""
+    lines = _Lines(child)
     under_way, began = None, time.monotonic()
-    for line in _lines(child, lambda: began + (limit if under_way else _GRACE + limit)):
+    while True:
+        line = lines.next(began + (limit if under_way else _GRACE + limit))
         if line is None:
             return under_way, {"state": "stopped", "stopped_after": time.monotonic() - began}
+        if not line:
+            reason = f"the process ended with code {child.wait()}"
+            return under_way, {"state": "crashed", "reason": reason}
         said = json.loads(line)
         gathered.take(said)
+        if said["say"] == "end":
+            return None, None
         if said["say"] == "begin":
             under_way, began = said["engine"], time.monotonic()
             progress(f"{task.case}, {task.item}: {under_way}")
         elif said["say"] in ("run", "failed"):
             under_way, began = None, time.monotonic()
-        elif said["say"] == "end":
-            return None, None
-    code = child.wait()
-    return under_way, {"state": "crashed", "reason": f"the process ended with code {code}"}
 
 
-def _lines(
-    child: "subprocess.Popen[bytes]", deadline: Callable[[], float]
-) -> Iterator[bytes | None]:
-    """Yield lines as they come, and None when the deadline of the moment passes."""
-    assert child.stdout is not None
-    descriptor, waiting = child.stdout.fileno(), b""
-    while True:
-        left = deadline() - time.monotonic()
-        if left <= 0 or not select.select([descriptor], [], [], left)[0]:
-            yield None
-            return
-        chunk = os.read(descriptor, 1 << 16)
-        if not chunk:
-            return
-        *whole, waiting = (waiting + chunk).split(b"\n")
-        yield from whole
+class _Lines:
+    """What a process writes, line by line."""
+
+    def __init__(self, child: "subprocess.Popen[bytes]") -> None:
+        assert child.stdout is not None
+        self._descriptor = child.stdout.fileno()
+        self._waiting = b""
+
+    def next(self, deadline: float) -> bytes | None:
+        """Return a line, nothing at the end, or None when the deadline has passed."""
+        while b"\n" not in self._waiting:
+            left = deadline - time.monotonic()
+            if left <= 0 or not select.select([self._descriptor], [], [], left)[0]:
+                return None
+            chunk = os.read(self._descriptor, 1 << 16)
+            if not chunk:
+                return b""
+            self._waiting += chunk
+        line, _, self._waiting = self._waiting.partition(b"\n")
+        return line
 
 
 class Gathered:

@@ -53,9 +53,11 @@ class Faster:
 
     @property
     def text(self) -> str:
+        """What is asked for."""
         return f"≥ {self.factor:g} × {self.engine}"
 
     def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
         ratios = [found for item in items if (found := ratio(item, self.engine)) is not None]
         if not ratios:
             return Reached(None, "—", None)
@@ -73,9 +75,11 @@ class MeanFaster:
 
     @property
     def text(self) -> str:
+        """What is asked for."""
         return f"mean ≥ {self.factor:g} × {self.engine}"
 
     def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
         ratios = [found.value for item in items if (found := ratio(item, self.engine)) is not None]
         if not ratios:
             return Reached(None, "—", None)
@@ -91,9 +95,11 @@ class Within:
 
     @property
     def text(self) -> str:
+        """What is asked for."""
         return f"< {self.seconds:g} s"
 
     def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
         times = [result_of(item, OURS).get("median") for item in items]
         known = [value for value in times if value is not None]
         if not known:
@@ -109,9 +115,11 @@ class MemoryWithin:
 
     @property
     def text(self) -> str:
+        """What is asked for."""
         return f"< {self.megabytes:g} MB"
 
     def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
         peaks = [result_of(item, OURS).get("peak_mb") for item in items]
         known = [value for value in peaks if value is not None]
         if not known:
@@ -127,9 +135,11 @@ class SteadySteps:
 
     @property
     def text(self) -> str:
+        """What is asked for."""
         return f"last steps ≤ {self.factor:g} × step 1 000"
 
     def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
         windows = [result_of(item, OURS).get("windows") or {} for item in items]
         pairs = [(w["thousandth"], w["last"]) for w in windows if "thousandth" in w]
         if not pairs:
@@ -146,9 +156,11 @@ class Growth:
 
     @property
     def text(self) -> str:
+        """What is asked for."""
         return f"∝ n^{self.exponent:g}"
 
     def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
         value = exponent(items, OURS)
         if value is None:
             return Reached(None, "—", None)

@@ -71,9 +71,11 @@ class Pair(Work):
     operation: Operation = "difference"
 
     def extent(self) -> Extent:
+        """Add the operands up."""
         return extent_of([self.first, self.second])
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+        """Do it."""
         return Outcome(engine.boolean(self.first, self.second, self.operation))
 
 
@@ -82,9 +84,11 @@ class BuiltPair(Pair):
     """The same with operands that are built, anew for each run, before the clock starts."""
 
     def prepare(self, engine: Engine) -> Any:
+        """Build both operands."""
         return [engine.solid(self.first), engine.solid(self.second)]
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+        """Do it."""
         made = engine.combine(self.operation, prepared)
         return Outcome(engine.arrays(made), solid=made)
 
@@ -98,9 +102,11 @@ class Expression(Work):
     operation: Operation = "difference"
 
     def extent(self) -> Extent:
+        """Add the operands up."""
         return extent_of([self.base, *(mesh for group in self.groups for mesh in group)])
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+        """Do it."""
         laps = Laps()
         operands = [engine.solid(self.base)]
         for group in self.groups:
@@ -122,6 +128,7 @@ class Chain(Work):
     operation: Operation = "difference"
 
     def extent(self) -> Extent:
+        """Add the operands up."""
         return extent_of([self.base, *self.tools])
 
     def at_once(self) -> Expression:
@@ -129,6 +136,7 @@ class Chain(Work):
         return Expression(self.base, [[tool] for tool in self.tools], self.operation)
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+        """Do it."""
         laps = Laps()
         solid = engine.solid(self.base)
         tools = [engine.solid(tool) for tool in self.tools]
@@ -148,6 +156,7 @@ class Carving(Work):
     tools: Callable[[], Iterable[Arrays]]
 
     def extent(self) -> Extent:
+        """Add the operands up."""
         total = extent_of([self.base])
         for tool in self.tools():
             more = extent_of([tool])
@@ -163,6 +172,7 @@ class Carving(Work):
         return Expression(self.base, [[tool] for tool in self.tools()])
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+        """Do it."""
         solid = engine.solid(self.base)
         steps = []
         for done, tool in enumerate(self.tools(), start=1):
