@@ -248,7 +248,7 @@ class Gathered:
     def is_over(self, engine: str) -> bool:
         """Whether an engine failed, or has all its runs."""
         found = self._engines.get(engine, {})
-        wanted = max(found.get("planned", 0), 0) + 1
+        wanted = found.get("planned", 0) + 1
         return "state" in found or len(found.get("seconds", ())) >= wanted
 
     def forget_unfinished(self, engines: Sequence[str], culprit: str) -> None:

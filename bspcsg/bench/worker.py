@@ -158,8 +158,8 @@ class _Turns:
             self.left -= 1
             return
         self._warm = True
-        self.left = min(self.task.runs, int(self.task.budget / seconds) - 1)
-        self.say({"say": "plan", "engine": self.engine.name, "runs": max(self.left, 0)})
+        self.left = max(min(self.task.runs, int(self.task.budget / seconds) - 1), 0)
+        self.say({"say": "plan", "engine": self.engine.name, "runs": self.left})
 
     def _details(self, outcome: Outcome, first: bool) -> dict[str, Any]:
         details: dict[str, Any] = {"parts": outcome.parts, "facts": asdict(facts_of(outcome.mesh))}

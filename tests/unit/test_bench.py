@@ -11,6 +11,7 @@ from bspcsg.bench import real, shapes
 from bspcsg.bench.facts import facts_of, mesh_volume
 from bspcsg.bench.runner import judged
 from bspcsg.bench.targets import Faster, Growth, MeanFaster, SteadySteps, Within
+from bspcsg.bench.worker import Task, perform
 from support.shapes import exact_volume
 
 
@@ -108,3 +109,11 @@ def test_times_and_their_growth() -> None:
     windows = {"windows": {"thousandth": 0.002, "last": 0.005}}
     steady = SteadySteps(2).reached([{"engines": {"bspcsg": _result(1.0, **windows)}}])
     assert (steady.value, steady.met) == (2.5, False)
+
+
+def test_an_engine_that_uses_up_its_budget_has_one_run() -> None:
+    said: list[dict[str, Any]] = []
+    task = Task("cubes", "2 × 12", True, ["bspcsg"], runs=5, budget=1e-9, shared=".")
+    perform(task, said.append)
+    assert [line["say"] for line in said] == ["extent", "begin", "plan", "run", "end"]
+    assert said[3]["facts"]["euler_number"] == 2
