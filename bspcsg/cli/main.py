@@ -58,6 +58,7 @@ _VERBS = {
     "validate": ("validate", "validate"),
     "report": ("report", "report"),
     "view": ("view", "view"),
+    "bench": ("bench", "bench"),
     "doctor": ("doctor", "doctor"),
 }
 

@@ -45,6 +45,7 @@ CODES = {
         "report results.jsonl -o x.html",
         "view a.off -o x.html --no-open",
         "tree good.csg",
+        "bench --list",
         "doctor",
         "--help",
         "--version",
@@ -79,6 +80,7 @@ CODES = {
         "report results.jsonl",
         "view",
         "tree",
+        "bench no-such-case",
         "doctor a.off",
         "info a.off --threads -1",
         "info - --from",
@@ -108,6 +110,7 @@ CODES = {
         "report a.off -o x.html",
         "view none.stl -o x.html --no-open",
         "tree bad.csg",
+        "bench --from none.json",
     ],
     4: [
         "union a.off open.stl -o x.ply",
