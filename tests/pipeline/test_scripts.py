@@ -24,11 +24,7 @@ def test_campaign_goes_on_where_it_stopped(tmp_path: Path) -> None:
 
 
 def test_bench_checks_its_answers() -> None:
-<<<<<<< HEAD
-    done = script("bench", "--quick", "--runs", "1")
-=======
-    done = run("bench", "cubes", "--quick", "--runs", "1", "--against", "manifold3d")
->>>>>>> work-b
+    done = script("bench", "cubes", "--quick", "--runs", "1", "--against", "manifold3d")
     assert done.returncode == 0, done.stdout + done.stderr
     assert "agree" in done.stdout
 
