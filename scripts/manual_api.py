@@ -144,7 +144,8 @@ def _entity(entity: Any, path: str, level: int) -> Iterator[str]:
         yield f"```text\n{path.rpartition('.')[2]} = {entity.value}\n```"
     if entity.docstring is not None:
         # Apart from its owner, so that types stay the words they are.
-        yield from _sections(griffe.Docstring(entity.docstring.value).parse("numpy", warnings=False))
+        text = griffe.Docstring(entity.docstring.value)
+        yield from _sections(text.parse("numpy", warnings=False))
     if entity.is_class:
         for member in _members(entity):
             yield from _entity(member, member.name, level + 1)
