@@ -11,7 +11,7 @@ from io import TextIOWrapper
 import click
 
 from .. import __version__
-from ..errors import BspcsgError, FormatError
+from ..errors import BspcsgError, FormatError, InternalError
 from . import output
 
 _EPILOG = """\b
@@ -183,7 +183,7 @@ def _failed(error: Exception, as_json: bool) -> int:
         return output.tell_error(error, as_json)
     said = "out of memory" if isinstance(error, MemoryError) else f"{type(error).__name__}: {error}"
     message = f"{said}. This is a defect of bspcsg; run it again with --debug to see where."
-    return output.tell_error(BspcsgError(message), as_json) and output.INTERNAL
+    return output.tell_error(InternalError(message), as_json)
 
 
 def _discard_output() -> None:

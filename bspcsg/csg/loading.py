@@ -8,6 +8,7 @@ from ..bsp import Region
 from ..counting import counted
 from ..errors import BspcsgError, FormatError
 from ..io.atomic import write_file
+from ..io.source import content_of
 from ..solid import Solid
 from .evaluator import evaluate
 from .from_solid import tree_of
@@ -107,7 +108,7 @@ def _text(file: Path, name: str) -> str:
     try:
         if file.stat().st_size > _LARGEST:
             raise FormatError(f"{name}: the file is larger than {_LARGEST:,} bytes.", "too_large")
-        return file.read_bytes().decode("utf-8")
+        return content_of(file).decode("utf-8")
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error

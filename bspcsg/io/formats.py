@@ -13,7 +13,7 @@ from ..mesh import Mesh
 from . import glb, obj, off, ply, stl, threemf, threemf_write, vtk
 from .atomic import write_file
 from .raw import RawMesh
-from .source import Source
+from .source import Source, content_of
 
 Encoder: TypeAlias = Callable[[Mesh | RawMesh], Iterator[bytes]]
 Losses: TypeAlias = Callable[[Mesh | RawMesh], tuple[Finding, ...]]
@@ -133,7 +133,7 @@ def read_as(path: str | os.PathLike[str], suffix: str) -> RawMesh:
     if suffix.lower() not in FORMATS:
         format_of(name)
     try:
-        data = Path(path).read_bytes()
+        data = content_of(Path(path))
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error

@@ -1,7 +1,10 @@
 """A file's bytes with the name and the places that errors about it carry."""
 
+import errno
+import stat
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -83,6 +86,14 @@ class Source:
         words = b" ".join(rows[row][:3])
         message = f"expected three coordinates, found {quoted(words)}."
         return self.error(message, line=lines[row])
+
+
+def content_of(path: Path) -> bytes:
+    """Return the bytes of a file or pipe; devices, some of which never end, raise OSError."""
+    mode = path.stat().st_mode
+    if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
+        raise OSError(errno.EINVAL, "it is a device")
+    return path.read_bytes()
 
 
 def quoted(words: bytes) -> str:

@@ -1,6 +1,7 @@
 """Every exit code, from every verb that can end in it; what fails writes nothing."""
 
 import errno
+import json
 import os
 import resource
 import shlex
@@ -253,6 +254,8 @@ def test_code_70_asks_for_a_report(
     code, out, err = ran(capsys, "union", "a.off", "c.stl", "-o", "x.ply")
     assert (code, out) == (70, "") and len(err.splitlines()) == 1
     assert "AssertionError: never" in err and "--debug" in err
+    code, out, _ = ran(capsys, "union", "a.off", "c.stl", "-o", "x.ply", "--json")
+    assert code == json.loads(out)["exit"] == 70
 
 
 def test_code_70_of_an_exhausted_memory(
@@ -316,6 +319,19 @@ def _no_large_files() -> None:
     """Let no file grow beyond 2000 bytes, as on a disk that is nearly full."""
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="there is no /dev/zero")
+def test_code_3_of_devices_that_never_end(place: Path, capsys: Capture) -> None:
+    for name, line in {
+        "zero.stl": "info zero.stl",
+        "zero.csg": "run zero.csg -o x.ply",
+        "zero": "convert zero --from stl -o x.ply",
+    }.items():
+        Path(name).symlink_to("/dev/zero")
+        code, _, err = ran(capsys, *shlex.split(line))
+        assert code == 3 and f"{name}: cannot read this file: it is a device." in err
+        os.unlink(name)
 
 
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EIO])
