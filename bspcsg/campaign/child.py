@@ -12,8 +12,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Self
 
-#: Seconds that a worker may take to start, in which it imports the package.
-_START = 60.0
+#: Seconds that a worker may take to start: it imports the package, which takes a quarter of a
+#: second on an idle machine, and a hundred times as long on one that is much too busy.
+_START = 300.0
 
 #: Seconds that a process may take to end after it has closed its output.
 _LAST_WORDS = 5.0

@@ -111,12 +111,18 @@ def _chosen(count: int, keep: str) -> set[int]:
 def survey(
     files: Sequence[Path], answering: Answering, seconds: float
 ) -> dict[Path, dict[str, Any]]:
-    """Return for each file its ``triangles``, and why it is ``refused`` as a solid, or None."""
+    """Return for each file its ``triangles``, and why it is ``refused`` as a solid, or None.
+
+    A file on which the worker crashes or hangs counts as a solid without triangles: it stays in,
+    so that its cases say so, and the draw does not depend on how busy the machine is.
+    """
     requests = [{"survey": str(file)} for file in files]
     found: dict[Path, dict[str, Any]] = {}
     for number, answer in answering.answers(requests, seconds):
-        refused = answer.get("failure") or answer.get("refused")
-        found[files[number]] = {"triangles": answer.get("triangles", 0), "refused": refused}
+        names = ("triangles", "refused")
+        found[files[number]] = {"triangles": 0, "refused": None} | {
+            name: answer[name] for name in names if name in answer
+        }
     return found
 
 

@@ -197,7 +197,7 @@ def _listed(path: Path) -> Iterator[Case]:
     try:
         document = json.loads(_readable(Path.read_bytes, path))
         entries = [(entry, _operations_in(entry)) for entry in document["cases"]]
-    except (ValueError, TypeError, KeyError, RecursionError) as error:
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
         raise _malformed(path, str(error)) from error
     for number, (entry, operations) in enumerate(entries):
         operands = tuple(_listed_operands(path, entry))
@@ -234,7 +234,7 @@ def _listed_operand(path: Path, name: str, values: dict[str, Any]) -> Operand:
         return Operand(name, str(file), _readable(digest_of, file), pose)
     mesh = {"vertices": values["vertices"], "faces": values["faces"]}
     for part in mesh.values():
-        if np.array(part, dtype=np.float64).ndim != 2:
+        if np.shape(np.array(part, dtype=np.float64))[1:] != (3,):
             raise ValueError(f"operand {name} needs vertices and faces of three numbers each")
     return Operand(name, None, digest_of_mesh(mesh), pose, mesh)
 

@@ -9,7 +9,7 @@ import pytest
 from bspcsg.campaign.child import Child, CrashedError, TimedOutError
 from bspcsg.campaign.evaluation import Settings
 from bspcsg.campaign.pool import LocalPool
-from bspcsg.campaign.runner import greeting
+from bspcsg.campaign.runner import greeting, survey
 from support.cli import put
 from support.shapes import cube
 
@@ -56,3 +56,16 @@ def test_closing_the_answers_ends_the_children(good: str) -> None:
     answers = LocalPool(1, GREETING).answers([{"survey": good}] * 50, 20.0)
     assert next(answers)[1]["triangles"] == 12
     answers.close()
+
+
+def test_file_that_crashes_the_survey_stays_in(good: str) -> None:
+    class Shaky:
+        """Answers about the first file, and crashes at the second."""
+
+        def answers(self, requests: Any, seconds: float) -> Any:
+            yield 0, {"file": good, "triangles": 0, "refused": "open"}
+            yield 1, {"failure": "crash", "reason": "gone", "seconds": 0.1}
+
+    found = survey([Path("a.stl"), Path("b.stl")], Shaky(), 1.0)
+    assert found[Path("a.stl")] == {"triangles": 0, "refused": "open"}
+    assert found[Path("b.stl")] == {"triangles": 0, "refused": None}
