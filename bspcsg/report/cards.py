@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..campaign.record import CaseRecord, Results
+from ..campaign.record import CaseRecord, Results, is_failure
 from ..errors import BspcsgError
 from .layer import Layer
 from .merging import rank
@@ -89,15 +89,16 @@ class Purse:
 
 
 def picked(results: Results, count: int) -> list[CaseRecord]:
-    """Return the cases that get a card: failures first, then those with meshes, then by doubt."""
+    """Return the cases that get a card: failures first, then those with meshes, by doubt."""
     return sorted(results.cases.values(), key=_urgency)[:count]
 
 
-def _urgency(case: CaseRecord) -> tuple[int, bool, float, str]:
+def _urgency(case: CaseRecord) -> tuple[bool, bool, int, float, str]:
     found, bounds = case["set_difference"], case["bounds"]
     known = found is not None and bounds is not None and bounds["same_set"] > 0
     doubt = found["thickness"] / bounds["same_set"] if found and bounds and known else 0.0
-    return rank(case), case["meshes"] is None, -doubt, case["case"]
+    failed, unseen = is_failure(case), case["meshes"] is None
+    return not failed, unseen and not failed, rank(case), -doubt, case["case"]
 
 
 def cards_of(cases: Iterable[CaseRecord], results: Results, purse: Purse) -> Iterable[Card]:

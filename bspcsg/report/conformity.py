@@ -43,7 +43,8 @@ def _departure_in_dict(value: Any, kind: Any, place: str) -> str:
 def _departure_in_items(value: Any, container: type, kind: Any, place: str) -> str:
     if not isinstance(value, container):
         return f"{place} is no {container.__name__}"
-    items = value.items() if isinstance(value, dict) else enumerate(value)
+    given: Any = value
+    items = given.items() if container is dict else enumerate(given)
     found = (departure(item, kind, f"{place}[{key!r}]") for key, item in items)
     return next(filter(None, found), "")
 

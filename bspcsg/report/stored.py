@@ -1,5 +1,6 @@
 """The meshes that a campaign has kept of a case, as layers of a view."""
 
+import os
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -53,7 +54,8 @@ def stored_meshes(folder: Path, name: str) -> Stored:
         If the file cannot be read, is not in that folder, or holds something else.
     """
     path = folder / name
-    if not path.resolve().is_relative_to(folder.resolve()):
+    # Links are the user's own; what the results say must not lead elsewhere.
+    if os.path.isabs(name) or os.path.normpath(name).startswith(".."):
         raise FormatError(f"{name}: meshes lie in the folder of the results only.", "unreadable")
     try:
         meshes = unpacked(path)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from ..campaign.record import CaseRecord, FactsRecord
+from ..campaign.record import CaseRecord
 from .merging import rank
 from .wording import NOTHING, milliseconds, number, tone, whole
 
@@ -29,15 +29,10 @@ class Column(NamedTuple):
 class Row(NamedTuple):
     """One case; `card` is the address of its card in the page, or empty."""
 
-    verdict: str
     tone: str
     rank: int
     card: str
     cells: list[str]
-
-
-def _fact(case: CaseRecord) -> FactsRecord | None:
-    return case["ours"]
 
 
 def _triangles_in(case: CaseRecord) -> str:
@@ -114,7 +109,6 @@ def table(cases: Sequence[CaseRecord], cards: dict[str, str]) -> tuple[list[Colu
     used = [k for k in range(len(COLUMNS)) if k < 3 or any(row[k] != NOTHING for row in rows)]
     return [COLUMNS[k] for k in used], [
         Row(
-            case["verdict"],
             tone(case["verdict"]),
             rank(case),
             cards.get(case["key"], ""),

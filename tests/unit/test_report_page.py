@@ -34,10 +34,10 @@ def attributes(page: str, name: str) -> list[str]:
 
 
 def test_all_cases_are_in_the_table_and_failures_come_first(page: str) -> None:
-    rows = re.findall(r"<tr data-verdict=.*", page)
+    rows = re.findall(r"<tr class=.*", page)
     assert len(rows) == 9 and "DISAGREE" in rows[0]
     assert "9 cases, 1 failure" in page
-    assert attributes(page, "data-verdict")[:2] == ["DISAGREE", "agree"]
+    assert attributes(page, "data-verdict") == ["DISAGREE", "agree"]
     assert "bspcsg validate a.stl b.stl --seed 7" in page and "a processor, 2 cores" in page
 
 

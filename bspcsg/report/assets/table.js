@@ -45,7 +45,7 @@
       .map((chip) => chip.dataset.verdict);
     let left = 0;
     for (const row of rows) {
-      const hit = (!wanted.length || wanted.includes(row.dataset.verdict))
+      const hit = (!wanted.length || wanted.includes(text(row, verdicts)))
         && (!operation.value || text(row, operations) === operation.value)
         && asked.every((word) => sought.get(row).includes(word));
       row.hidden = !hit;

@@ -1,0 +1,111 @@
+"""A browser without a window, and what it did."""
+
+import io
+import json
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+_NO_WEBGL = ("--disable-gpu", "--disable-3d-apis")
+
+#: Debian's names, and where other systems have them.
+_BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+
+
+@contextmanager
+def started(*, webgl: bool) -> Iterator["Browser"]:
+    """Start Chromium; a test is skipped where it is not installed."""
+    program = next(filter(None, map(shutil.which, _BROWSERS)), None)
+    driver = shutil.which("chromedriver")
+    if program is None or driver is None:
+        pytest.skip("chromium and chromedriver are not installed")
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+
+    options = webdriver.ChromeOptions()
+    options.binary_location = program
+    window = ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--hide-scrollbars")
+    drawing = ("--enable-unsafe-swiftshader",) if webgl else _NO_WEBGL
+    for argument in (*window, *drawing, "--window-size=640,640", "--force-device-scale-factor=1"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    running = webdriver.Chrome(options=options, service=Service(driver))
+    try:
+        yield Browser(running)
+    finally:
+        running.quit()
+
+
+class Browser:
+    """A page at a time, with what tests ask of it."""
+
+    def __init__(self, running: Any) -> None:
+        self._running = running
+
+    def open(self, path: Path) -> None:
+        """Open a file, and forget what earlier pages did."""
+        self._running.get_log("browser")
+        self._running.get_log("performance")
+        self._running.get(path.as_uri())
+
+    def run(self, script: str, *arguments: Any) -> Any:
+        """Return what the body of a function says in the page."""
+        return self._running.execute_script(script, *arguments)
+
+    def texts(self, selector: str) -> list[str]:
+        """Return the texts of all elements that can be seen."""
+        script = (
+            "return [...document.querySelectorAll(arguments[0])]"
+            ".filter(e => e.checkVisibility()).map(e => e.textContent.trim())"
+        )
+        return list(self.run(script, selector))
+
+    def click(self, selector: str, number: int = 0) -> None:
+        """Click the nth of the elements, as a mouse does."""
+        element = self._running.find_elements("css selector", selector)[number]
+        self.run("arguments[0].scrollIntoView({block: 'center'})", element)
+        element.click()
+
+    def type(self, selector: str, *keys: str) -> None:
+        """Give keys to an element."""
+        self._running.find_element("css selector", selector).send_keys(*keys)
+
+    def wait(self, condition: str) -> None:
+        """Wait until an expression holds in the page."""
+        from selenium.webdriver.support.ui import WebDriverWait
+
+        WebDriverWait(self._running, 20, poll_frequency=0.05).until(
+            lambda _: self.run(f"return Boolean({condition})"), condition
+        )
+
+    def pixels(self, selector: str) -> "np.ndarray[Any, np.dtype[np.uint8]]":
+        """Return what an element looks like, (h, w, 3), when all that was asked for is drawn."""
+        self._running.execute_async_script(
+            "const done = arguments[0];"
+            "requestAnimationFrame(() => requestAnimationFrame(() => done()))"
+        )
+        data = self._running.find_element("css selector", selector).screenshot_as_png
+        with Image.open(io.BytesIO(data)) as image:
+            return np.asarray(image.convert("RGB"))
+
+    def errors(self) -> list[str]:
+        """Return what the console got as errors."""
+        log = self._running.get_log("browser")
+        return [entry["message"] for entry in log if entry["level"] == "SEVERE"]
+
+    def requests(self) -> list[str]:
+        """Return the addresses that were asked for since the page was opened."""
+        messages = [
+            json.loads(e["message"])["message"] for e in self._running.get_log("performance")
+        ]
+        return [
+            message["params"]["request"]["url"]
+            for message in messages
+            if message["method"] == "Network.requestWillBeSent"
+        ]
