@@ -205,7 +205,7 @@ def ratio(item: dict[str, Any], engine: str) -> Ratio | None:
     if theirs.get("agrees") is False or not ours.get("median"):
         return None
     if theirs.get("median"):
-        worked = theirs["cpu"] / ours["cpu"] if ours["cpu"] else None
+        worked = theirs["cpu"] / ours["cpu"] if ours["cpu"] and theirs["cpu"] else None
         return Ratio(theirs["median"] / ours["median"], worked)
     if theirs.get("state") == "stopped" and theirs["stopped_after"] > ours["median"]:
         return Ratio(theirs["stopped_after"] / ours["median"], is_bound=True)

@@ -63,7 +63,11 @@ fn predicates(c: &mut Criterion) {
     group.bench_function("plane through three points", |b| {
         b.iter(|| {
             let k = next();
-            Plane::through(&points[k], &points[(k + 1) % COUNT], &points[(k + 2) % COUNT])
+            Plane::through(
+                &points[k],
+                &points[(k + 1) % COUNT],
+                &points[(k + 2) % COUNT],
+            )
         });
     });
     group.bench_function("lattice point against a plane", |b| {
@@ -75,7 +79,11 @@ fn predicates(c: &mut Criterion) {
     group.bench_function("meet of three planes", |b| {
         b.iter(|| {
             let k = next();
-            Vertex::meet(&planes[k], &planes[(k + 1) % COUNT], &planes[(k + 2) % COUNT])
+            Vertex::meet(
+                &planes[k],
+                &planes[(k + 1) % COUNT],
+                &planes[(k + 2) % COUNT],
+            )
         });
     });
     group.bench_function("meet of three planes against a fourth", |b| {
@@ -115,12 +123,17 @@ fn splits(c: &mut Criterion) {
     let faces = u32::try_from(source.face_count()).expect("few");
     let facets = (0..faces).filter_map(|face| {
         let fragment = source.clip(face, &frame)?;
-        Some(Facet { fragment, source: u64::from(face) })
+        Some(Facet {
+            fragment,
+            source: u64::from(face),
+        })
     });
     let policy = PivotPolicy::Random(1);
     let built = autopartition::<Dim3>(facets.collect(), frame, Label::Out, policy);
     let tree = built.expect("a sphere").tree;
-    let across = Arc::new(Plane::through(&[1, 2, 3], &[1 << 28, 5, -7], &[3, 1 << 28, 11]).expect("a plane"));
+    let across = Arc::new(
+        Plane::through(&[1, 2, 3], &[1 << 28, 5, -7], &[3, 1 << 28, 11]).expect("a plane"),
+    );
     let span = Polygon::span(&across, &frame).expect("it crosses");
     group.bench_function("tree of a sphere of 80 triangles", |b| {
         b.iter(|| split_tree(&tree, black_box(&span)));

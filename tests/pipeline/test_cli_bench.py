@@ -36,9 +36,10 @@ def test_the_list_names_all_cases(capsys: Capture) -> None:
     assert [line.split()[0] for line in out.splitlines()[2:]] == list(CASES)
 
 
+@pytest.mark.timeout(300)
 def test_cases_are_measured_recorded_and_shown_again(capsys: Capture, tmp_path: Path) -> None:
     record_path, plot_path = tmp_path / "r.json", tmp_path / "sizes.svg"
-    cases = ["cubes", "drilled-steps", "sizes", "memory"]
+    cases = ["cubes", "drilled-steps", "sizes"]
     code, out, err = ran(
         capsys,
         *["bench", *cases, "--quick", "--runs", "1", "--against", "manifold3d", "-q"],
@@ -58,7 +59,7 @@ def test_cases_are_measured_recorded_and_shown_again(capsys: Capture, tmp_path: 
         assert ours["facts"]["open_edges"] == 0 < ours["facts"]["triangles"]
     chain = record["cases"][1]["items"][0]["engines"]["bspcsg"]
     assert set(chain["parts"]) == {"build", "steps", "mesh out"}
-    assert record["cases"][3]["items"][0]["engines"]["bspcsg"]["peak_mb"] > 20
+    assert record["cases"][0]["items"][0]["engines"]["bspcsg"]["peak_mb"] > 20
     drawing = ElementTree.parse(plot_path)
     assert len(drawing.findall(".//{*}circle")) == 2 * len(CASES["sizes"].small)
     code, again, _ = ran(capsys, "bench", "--from", str(record_path))

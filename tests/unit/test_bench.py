@@ -106,8 +106,8 @@ def test_times_and_their_growth() -> None:
     assert Growth(1.05).reached(items).value == pytest.approx(1.1)
     assert Growth(1.05).reached(items).met is False
     assert Within(1.0).reached(items).met
-    windows = {"windows": {"thousandth": 0.002, "last": 0.005}}
-    steady = SteadySteps(2).reached([{"engines": {"bspcsg": _result(1.0, **windows)}}])
+    chain = _result(1.0, windows={"thousandth": 0.002, "last": 0.005})
+    steady = SteadySteps(2).reached([{"engines": {"bspcsg": chain}}])
     assert (steady.value, steady.met) == (2.5, False)
 
 
