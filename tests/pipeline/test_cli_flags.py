@@ -11,8 +11,9 @@ from PIL import Image
 
 import bspcsg as b
 from bspcsg import csg
+from bspcsg.cli.main import run
 from bspcsg.io import read
-from support.cli import Capture, finished, put, ran
+from support.cli import Capture, put, ran
 from support.shapes import cube
 
 TURNED = b.box((1, 2, 3))
@@ -109,9 +110,9 @@ def test_repairs_that_close_nothing(
 def test_invalid_meshes_in_scripts(opened: Path, capsys: Capture) -> None:
     Path("m.csg").write_text('cube(1); import(file = "open.off");')
     pytest.importorskip("pymeshlab")
-    run = ["run", "m.csg", "-o", "x.off"]
-    assert ran(capsys, *run)[0] == 4
-    code, _, err = ran(capsys, *run, "--on-invalid", "repair")
+    command = ["run", "m.csg", "-o", "x.off"]
+    assert ran(capsys, *command)[0] == 4
+    code, _, err = ran(capsys, *command, "--on-invalid", "repair")
     assert code == 0 and "m.csg:1:10: import(): " in err and "It is repaired" in err
     assert b.load("x.off").volume == 1
 
@@ -226,9 +227,16 @@ def test_up_in_glb(folder: Path, capsys: Capture, options: list[str], size: list
         (["slice", "a.off", "--z", "1"], "DXF", b"  0\nSECTION"),
     ],
 )
-def test_drawings_as_streams(folder: Path, arguments: list[str], form: str, start: bytes) -> None:
-    code, out, err = finished(*arguments, "-o", "-", "--to", form)
-    assert code == 0 and out.startswith(start) and err.startswith(b"-  ")
+def test_drawings_as_streams(
+    folder: Path,
+    capsysbinary: pytest.CaptureFixture[bytes],
+    arguments: list[str],
+    form: str,
+    start: bytes,
+) -> None:
+    assert run([*arguments, "-o", "-", "--to", form]) == 0
+    out, err = capsysbinary.readouterr()
+    assert out.startswith(start) and err.startswith(b"-  ")
     if form == "png":
         assert Image.open(io.BytesIO(out)).size == (40, 30)
 
