@@ -253,6 +253,11 @@ def refuse_unwritable(path: Path, overwrite: bool = True) -> None:
     if not overwrite and os.path.lexists(path):
         message = f"{path}: this file is there already; --overwrite replaces it."
         raise FormatError(message, "unwritable")
+    refuse_folder(path)
+
+
+def refuse_folder(path: Path) -> None:
+    """Refuse a file to be written to a folder that is not there or forbidden."""
     folder = path.parent
     if not folder.is_dir() or not os.access(folder, os.W_OK):
         message = f"{path}: there is no folder {folder} that can be written to."
