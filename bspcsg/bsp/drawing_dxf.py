@@ -71,6 +71,11 @@ def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
     FormatError
         If the file cannot be written.
     """
+    write_file(path, [dxf_data(region)])
+
+
+def dxf_data(region: Region) -> bytes:
+    """Return what `save_dxf` writes."""
     ezdxf = optional("ezdxf", "2d")
     outlines = region.to_polygons()
     document = ezdxf.new("R2010")
@@ -78,7 +83,8 @@ def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
         document.modelspace().add_lwpolyline(points.tolist(), close=True)
     text = io.StringIO()
     document.write(text)
-    write_file(path, [text.getvalue().encode(document.output_encoding, errors="dxfreplace")])
+    data: bytes = text.getvalue().encode(document.output_encoding, errors="dxfreplace")
+    return data
 
 
 def read_document(path: str | os.PathLike[str]) -> Any:

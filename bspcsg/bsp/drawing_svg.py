@@ -91,19 +91,23 @@ def save_svg(
     FormatError
         If the file cannot be written.
     """
+    write_file(path, [svg_data(region, fill=fill, margin=margin)])
+
+
+def svg_data(region: Region, *, fill: str = "#9db8d9", margin: Scalar = 0.05) -> bytes:
+    """Return what `save_svg` writes."""
     bounds = region.bounds
     low, high = (np.zeros(2), np.ones(2)) if bounds is None else bounds
     space = float((high - low).max()) * float(margin)
     width, height = (high - low + 2 * space).tolist()
     x, y = float(low[0]) - space, -float(high[1]) - space
     outlines = " ".join(_path_of(points) for points in region.to_polygons())
-    text = (
+    return (
         '<svg xmlns="http://www.w3.org/2000/svg"'
         f' viewBox="{x!r} {y!r} {width!r} {height!r}">\n'
         f'<path fill-rule="nonzero" fill="{fill}" stroke="black"'
         f' stroke-width="{max(width, height) / 400!r}" d="{outlines}"/>\n</svg>\n'
-    )
-    write_file(path, [text.encode()])
+    ).encode()
 
 
 def _path_of(points: FloatArray) -> str:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 _HELP = {
     "union": "Write what is inside at least one of the files.",
-    "difference": "Write what is inside the first file and none of the others.",
+    "difference": "Write what is inside the first file and none of the others. Also called cut.",
     "intersection": "Write what is inside all of the files.",
     "xor": "Write what is inside an odd number of the files.",
 }

@@ -11,7 +11,7 @@ import click
 
 from ..errors import BspcsgError, Finding
 from . import output
-from .files import STREAM, Inputs, Target, expanded, shown
+from .files import STREAM, Inputs, Target, expanded, put, shown
 from .options import PATH, common, reading, writing
 from .output import Output, counted
 
@@ -40,6 +40,16 @@ _MANY = 4
 )
 @click.option("--outdir", type=PATH, help="Folder for the files, with --to.")
 @writing
+@click.option(
+    "--up",
+    type=click.Choice(["y", "z"]),
+    help="Which axis is to be up in the output; y in GLB by default, z in all others.",
+)
+@click.option(
+    "--from-up",
+    type=click.Choice(["y", "z"]),
+    help="Which axis is up in the inputs; y in GLB by default, z in all others.",
+)
 @click.option("--fail-on-loss", is_flag=True, help="Exit with 1 if anything was lost.")
 @reading
 @common
@@ -48,7 +58,8 @@ def convert(files: tuple[Path, ...], **given: Any) -> int:
 
     Every file is read back and compared. Meshes need not be closed; nothing is repaired. 3MF and
     GLB state their unit: what comes from other formats is taken as millimetres unless --unit says
-    otherwise, and GLB is written in metres with y upwards.
+    otherwise, and GLB is written in metres with y upwards. Where --up and --from-up differ, the
+    model is turned by a quarter about x.
     """
     return _Conversion(files, **given).run()
 
@@ -102,12 +113,13 @@ class _Conversion:
         from ..roundtrip import losses_between
 
         began = time.perf_counter()
-        raw = self._inputs.raw(path)
+        raw = self._turned(path, target)
         self._inputs.tell(path, raw.findings)
-        chunks, findings = encoded(raw, shown(target.path), target.suffix, target.text)
+        shortened, _ = target.rounded(raw)
+        chunks, findings = encoded(shortened, shown(target.path), target.suffix, target.text)
         data = b"".join(chunks)
         lost = losses_between(raw, decoded(shown(target.path), data, target.suffix))
-        target.write_data(data)
+        put(target.path, [data], target.overwrite)
         for finding in findings:
             self._tell(target, finding)
         seconds = time.perf_counter() - began
@@ -115,6 +127,20 @@ class _Conversion:
             self._out.result(_line(raw, target, lost, seconds), {})
         document = {"file": str(path), "output": str(target.path), "triangles": len(raw.faces)}
         return {**document, "lost": lost.to_dict(), "seconds": round(seconds, 4)}, lost.any
+
+    def _turned(self, path: Path, target: Target) -> "RawMesh":
+        """Read a file, turned so that the axis asked for is up in the output."""
+        from ..io import FORMATS
+        from ..io.turning import turned
+
+        raw = self._inputs.raw(path)
+        usual_in = FORMATS[self._inputs.suffix_of(path)].up
+        usual_out = FORMATS[target.suffix.lower()].up
+        # Reading and writing turn by what is usual: what is left is the difference to that.
+        told_in = self._settings["from_up"] or usual_in
+        told_out = self._settings["up"] or usual_out
+        quarters = (told_in == "y") - (usual_in == "y") - (told_out == "y") + (usual_out == "y")
+        return turned(raw, quarters)
 
     def _tell(self, target: Target, finding: Finding) -> None:
         """Tell about a file; what is so for all files of a format is told once."""

@@ -62,6 +62,9 @@ _VERBS = {
     "doctor": ("doctor", "doctor"),
 }
 
+#: Other names of verbs, which the help leaves out.
+_ALIASES = {"cut": "difference"}
+
 _COMPLETE = "_BSPCSG_COMPLETE"
 
 
@@ -72,9 +75,10 @@ class _Verbs(click.Group):
         return list(_VERBS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name not in _VERBS:
+        verb = _ALIASES.get(cmd_name, cmd_name)
+        if verb not in _VERBS:
             return None
-        module, name = _VERBS[cmd_name]
+        module, name = _VERBS[verb]
         found: click.Command = getattr(import_module(f".{module}", __package__), name)
         return found
 

@@ -18,7 +18,9 @@ PATH = click.Path(path_type=Path, allow_dash=True, readable=False)
 
 _THREADS = click.option(
     "-j",
+    "--jobs",
     "--threads",
+    "threads",
     type=click.IntRange(0, _MOST_THREADS),
     default=0,
     help="Number of threads; 0, the default, for all cores.",
@@ -73,6 +75,13 @@ _SETS = [
         type=click.IntRange(-22, 22),
         help="Lattice step 10^PITCH units; by default -9, or what the size asks for.",
     ),
+    click.option(
+        "--on-invalid",
+        type=click.Choice(["error", "warn", "repair"]),
+        default="error",
+        show_default=True,
+        help="Refuse files that are not closed, leave them out, or close them with pymeshlab.",
+    ),
 ]
 
 _WRITING = [
@@ -84,26 +93,34 @@ _WRITING = [
         help="Format of the output, e.g. ply.",
     ),
     click.option("--ascii", "text", is_flag=True, help="Write STL and PLY as text."),
+    click.option(
+        "--digits",
+        type=click.IntRange(1, 17),
+        help="Significant digits of coordinates; by default as many as give the same doubles.",
+    ),
+    click.option(
+        "--overwrite/--no-overwrite",
+        default=True,
+        help="Whether to replace a file that is there (default).",
+    ),
 ]
 
-OUTPUT = click.option(
-    "-o",
-    "--output",
-    "target",
-    required=True,
-    type=PATH,
-    help="File to write, its format by its suffix; - for standard output.",
-)
+_DRAWING = [
+    click.option(
+        "-o",
+        "--output",
+        "target",
+        required=True,
+        type=PATH,
+        help="File to write, its format by its suffix; - for standard output.",
+    ),
+    click.option("--to", "to_format", metavar="FORMAT", help="Format of the output, e.g. svg."),
+    _WRITING[-1],
+]
 
-#: For verbs that write no mesh; standard output keeps what they say.
-DRAWING = click.option(
-    "-o",
-    "--output",
-    "target",
-    required=True,
-    type=click.Path(path_type=Path, readable=False),
-    help="File to write, its format by its suffix.",
-)
+OUTPUT = _DRAWING[0]
+
+OVERWRITE = _WRITING[-1]
 
 ALLOW_EMPTY = click.option(
     "--allow-empty", is_flag=True, help="Write a file even if nothing is left."
@@ -173,6 +190,11 @@ def sets(command: _Command) -> _Command:
 def writing(command: _Command) -> _Command:
     """Add the options of verbs that write meshes."""
     return _with(_WRITING, command)
+
+
+def drawing(command: _Command) -> _Command:
+    """Add the options of verbs that write a drawing."""
+    return _with(_DRAWING, command)
 
 
 def making(command: _Command) -> _Command:

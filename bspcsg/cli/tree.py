@@ -10,8 +10,8 @@ import click
 
 from ..errors import FormatError
 from . import output
-from .files import STREAM, refuse_folder, shown
-from .options import PATH, TIMEOUT, common
+from .files import STREAM, put, refuse_unwritable, shown
+from .options import OVERWRITE, PATH, TIMEOUT, common
 from .output import Output, counted
 
 if TYPE_CHECKING:
@@ -56,6 +56,7 @@ _FORMS = {
     help="What standard input is.",
 )
 @click.option("--simplify", is_flag=True, help="Leave out nodes that make no difference.")
+@OVERWRITE
 @TIMEOUT
 @common
 def tree(file: Path, **given: Any) -> int:
@@ -90,8 +91,7 @@ class _Showing:
     def run(self) -> int:
         from ..csg import simplified
 
-        if self._to_file:
-            refuse_folder(self._target or Path())
+        refuse_unwritable(self._target or Path(STREAM), self._settings["overwrite"])
         found = self._read()
         tree = simplified(found) if self._settings["simplify"] else found
         kinds = _kinds(tree)
@@ -114,10 +114,8 @@ class _Showing:
         return read_tree(self._file, **({} if timeout is None else {"timeout": timeout}))
 
     def _write(self, text: str) -> None:
-        from ..io.atomic import write_file
-
-        if self._to_file:
-            write_file(self._target or Path(), [text.encode()])
+        if self._target and self._to_file:
+            put(self._target, [text.encode()], self._settings["overwrite"])
         elif not self._out.as_json:
             click.echo(text, nl=False)
 

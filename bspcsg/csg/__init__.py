@@ -17,7 +17,7 @@ from .from_solid import tree_of
 from .json_form import from_json, to_json
 from .loading import dump, dumps, load, loads, read_tree
 from .openscad import read_scad
-from .parser import parse
+from .parser import parse, value_of
 from .registry import CsgWarning
 from .simplified import simplified
 from .tree import Argument, CsgTree, Node, Place
@@ -44,5 +44,6 @@ __all__ = [
     "simplified",
     "to_json",
     "tree_of",
+    "value_of",
     "written",
 ]

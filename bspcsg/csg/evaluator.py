@@ -48,9 +48,9 @@ def evaluate(tree: CsgTree, *, polish: bool = False, on_invalid: OnInvalid = "er
         largest coordinate, so that faces meet again that nearly did; faces of turned bodies may
         break where their corners move by as much. The model is evaluated once more to know its
         size.
-    on_invalid : {"error", "warn"}
+    on_invalid : {"error", "warn", "repair"}
         Whether polyhedra and imported meshes that are not closed are errors, or are left out with a
-        warning, as OpenSCAD does.
+        warning, as OpenSCAD does, or closed by `bspcsg.repair` with one.
 
     Raises
     ------

@@ -39,7 +39,7 @@ def load(
         converts first (see `bspcsg.csg.read_tree`).
     polish : bool
         Undo OpenSCAD's rounding to six digits (see `bspcsg.csg.evaluate`).
-    on_invalid : {"error", "warn"}
+    on_invalid : {"error", "warn", "repair"}
         What to do about meshes that are not closed (see `bspcsg.csg.evaluate`).
     **options
         For `.scad`: ``defines``, a dict of variables.

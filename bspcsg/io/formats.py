@@ -31,6 +31,8 @@ class Format:
         What the binary form cannot keep; raises OverflowError if it cannot hold the numbers.
     unit : str
         ``"mm"`` if files say how long a unit is, and are read and written in millimetres.
+    up : {"z", "y"}
+        Which axis is up in files; meshes in memory have z up.
     """
 
     read: Callable[[Source], RawMesh]
@@ -38,6 +40,7 @@ class Format:
     binary: Encoder | None = None
     losses: Losses | None = None
     unit: str = ""
+    up: str = "z"
 
 
 FORMATS = {
@@ -46,7 +49,7 @@ FORMATS = {
     ".ply": Format(ply.read, ply.text, ply.binary),
     ".off": Format(off.read, off.text),
     ".3mf": Format(threemf.read, None, threemf_write.binary, threemf_write.losses, "mm"),
-    ".glb": Format(glb.read, None, glb.binary, glb.losses, "mm"),
+    ".glb": Format(glb.read, None, glb.binary, glb.losses, "mm", "y"),
     ".vtk": Format(vtk.reader(".vtk"), None, vtk.writer(".vtk")),
     ".vtu": Format(vtk.reader(".vtu"), None, vtk.writer(".vtu")),
 }
@@ -63,7 +66,8 @@ _REFUSALS = {
     **dict.fromkeys((".iges", ".igs"), _BREP.format("IGES")),
     ".brep": _BREP.format("BREP"),
     ".amf": _NO_LIBRARY.format("AMF", "3MF"),
-    ".vtp": _NO_LIBRARY.format("VTP", "VTU"),
+    ".vtp": "VTP is read by VTK's own package only, of some hundred megabytes, which is left out"
+    " here; have VTU written instead, or pass what pyvista read to Solid.from_mesh.",
     ".gltf": "glTF with separate files is not read; pack it into one GLB file.",
 }
 

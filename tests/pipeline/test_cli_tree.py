@@ -1,13 +1,15 @@
 """Trees of scripts at the command line: shown, simplified and converted."""
 
+import io
 import json
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
 
 from bspcsg import csg
-from support.cli import Capture, finished, ran
+from support.cli import Capture, ran
 
 MOVED = "multmatrix([[1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 1, -1], [0, 0, 0, 1]])"
 STILL = "multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])"
@@ -81,13 +83,17 @@ def test_json_tells_the_kinds(plate: Path, capsys: Capture) -> None:
     assert code == 0 and json.loads(out)["output"] == "x.txt" and Path("x.txt").is_file()
 
 
-def test_streams(folder: Path) -> None:
-    code, out, err = finished("tree", "-", "--to", "json", given=PLATE.encode())
-    assert (code, err) == (0, b"") and csg.from_json(out.decode()) == csg.parse(PLATE)
-    code, text, _ = finished("tree", "-", "--from", "json", "-o", "-", "--to", "csg", given=out)
-    assert code == 0 and csg.parse(text.decode()) == csg.parse(PLATE)
-    code, _, err = finished("tree", "-", given=b"\xff")
-    assert code == 3 and b"byte 0 is no UTF-8" in err
+def test_streams(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+    def asked(data: bytes, *arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
+        return ran(capsys, "tree", "-", *arguments)
+
+    code, out, err = asked(PLATE.encode(), "--to", "json")
+    assert (code, err) == (0, "") and csg.from_json(out) == csg.parse(PLATE)
+    code, text, _ = asked(out.encode(), "--from", "json", "-o", "-", "--to", "csg")
+    assert code == 0 and csg.parse(text) == csg.parse(PLATE)
+    code, _, err = asked(b"\xff")
+    assert code == 3 and "byte 0 is no UTF-8" in err
 
 
 @pytest.mark.skipif(shutil.which("openscad") is None, reason="needs openscad")
