@@ -85,7 +85,8 @@ class _Verbs(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        if args and args[0] not in _VERBS and not args[0].startswith("-"):
+        known = {*_VERBS, *_ALIASES}
+        if args and args[0] not in known and not args[0].startswith("-"):
             raise click.UsageError(f"there is no verb {args[0]!r}.{_meant(args[0])}", ctx)
         return super().resolve_command(ctx, args)
 

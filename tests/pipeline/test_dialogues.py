@@ -174,7 +174,7 @@ def test_progress_at_a_terminal_only(capsys: Capture, monkeypatch: pytest.Monkey
 def test_no_mesh_on_a_terminal(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     code, out, err = ran(capsys, "convert", "a.off", "-o", "-", "--to", "stl")
-    assert (code, out) == (2, "") and "a mesh is no text for a terminal; use a pipe" in err
+    assert (code, out) == (2, "") and "this is no text for a terminal; use a pipe" in err
 
 
 @pytest.mark.parametrize("verb", ["info", "check"])

@@ -174,7 +174,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     Path("bad.py").write_text("raise ValueError('no')")
     Path("number.py").write_text("result = 3")
     write_results(Path("results.jsonl"), [header(), disagreeing()])
-    Path("endless.py").write_text("while True:\n    pass\n")
+    Path("endless.py").write_text("open('started', 'w')\nwhile True:\n    pass\n")
     yield folder
     os.chdir(before)
 
@@ -277,8 +277,11 @@ def test_code_124_after_a_time_limit(place: Path, capsys: Capture, line: str) ->
 
 @POSIX
 def test_code_130_after_an_interrupt(place: Path) -> None:
+    Path("started").unlink(missing_ok=True)
     running = process("run", "endless.py", "-o", "x.ply", stderr=subprocess.PIPE)
-    time.sleep(1)
+    began = time.monotonic()
+    while not Path("started").exists() and time.monotonic() - began < 30:
+        time.sleep(0.05)
     running.send_signal(signal.SIGINT)
     _, err = running.communicate(timeout=30)
     assert (running.returncode, err) == (130, b"") and not Path("x.ply").exists()

@@ -104,7 +104,7 @@ def expected_of(block: str) -> list[str]:
 
 
 def same(printed: str, shown: str) -> bool:
-    """Whether an output is the one that is shown, but for times and versions."""
+    """Whether an output is the one that is shown, but for times, versions and sizes."""
     pattern = "\n".join(re.escape(line) for line in _lines(shown))
     anything = re.escape(ANYTHING)
     pattern = re.sub(rf"^{anything}$", r"[\\s\\S]*", pattern, flags=re.MULTILINE)
@@ -112,8 +112,9 @@ def same(printed: str, shown: str) -> bool:
 
 
 def _lines(text: str) -> list[str]:
-    """Return the lines without blanks at their ends, times and versions."""
+    """Return the lines without blanks at their ends, times, versions and sizes of files."""
     text = re.sub(r"\d+(\.\d+)? (m?s|minutes?)\b", "# s", text)
+    text = re.sub(r"\b\d+ kB\b", "# kB", text)
     text = re.sub(r"\b\d+\.\d+\.\d+\b", "#.#.#", text)
     return [line.rstrip() for line in text.strip("\n").splitlines()]
 
