@@ -23,6 +23,7 @@ import numpy as np
 
 from . import oracle
 from ._types import ProgramLine, SetOp
+from .counting import uncounted
 from .discrepancy import SetDifference, difference_of
 from .errors import BspcsgError, InternalError, invalid_parameter
 from .mesh import Mesh
@@ -56,6 +57,7 @@ _MOST_PIECES = 50
 _SUMMING = 1e-11
 
 
+@uncounted
 def validate(op: SetOp, *operands: Solid) -> CheckReport:
     """Carry out an operation and compare the result with manifold3d's.
 
@@ -75,6 +77,7 @@ def validate(op: SetOp, *operands: Solid) -> CheckReport:
     return check_result(COMBINE[op](*operands), op, operands)
 
 
+@uncounted
 def check_result(
     result: Solid, op: SetOp | None = None, operands: Sequence[Solid] | None = None
 ) -> CheckReport:

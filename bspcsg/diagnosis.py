@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 
 from ._types import FloatArray, IndexArray
+from .counting import uncounted
 from .errors import BspcsgError, Finding
 from .io import RawMesh
-from .mesh import Mesh
+from .mesh import Mesh, surfaces_of
 from .solid import Solid
 from .weld import welded
 
@@ -80,6 +81,7 @@ class Diagnosis:
         return found
 
 
+@uncounted
 def diagnose(raw: RawMesh) -> Diagnosis:
     """Say what is wrong with a mesh."""
     with np.errstate(over="ignore", invalid="ignore"):
@@ -157,46 +159,25 @@ class _Edges:
 
 
 def _edge_findings(mesh: Mesh, edges: _Edges) -> list[Finding]:
+    holes = f" around {_many(_chains(edges.ends[edges.open]), 'hole')}" if len(edges.open) else ""
+    kinds = (
+        ("open_edges", "error", edges.open, f"with one triangle only,{holes}"),
+        ("orientation", "error", edges.turned, "whose triangles do not run opposite ways"),
+        ("non_manifold", "warning", edges.crowded, "with more than two triangles"),
+    )
     found = []
-    if len(edges.open):
-        ends = edges.ends[edges.open]
-        message = (
-            f"{_many(len(ends), 'edge')} with one triangle only,"
-            f" around {_many(_loops(ends), 'hole')};"
-            f" the first {_between(mesh.vertices, ends[0])}"
-        )
-        found.append(Finding("open_edges", "error", message, edges.faces_at(edges.open), len(ends)))
-    if len(edges.turned):
-        ends = edges.ends[edges.turned]
-        message = (
-            f"{_many(len(ends), 'edge')} whose triangles do not run opposite ways;"
-            f" the first {_between(mesh.vertices, ends[0])}"
-        )
-        where = edges.faces_at(edges.turned)
-        found.append(Finding("orientation", "error", message, where, len(ends)))
-    if len(edges.crowded):
-        ends = edges.ends[edges.crowded]
-        message = (
-            f"{_many(len(ends), 'edge')} with more than two triangles;"
-            f" the first {_between(mesh.vertices, ends[0])}"
-        )
-        where = edges.faces_at(edges.crowded)
-        found.append(Finding("non_manifold", "warning", message, where, len(ends)))
+    for code, severity, which, what in kinds:
+        if len(which):
+            first = _between(mesh.vertices, edges.ends[which[0]])
+            message = f"{_many(len(which), 'edge')} {what}; the first {first}"
+            found.append(Finding(code, severity, message, edges.faces_at(which), len(which)))
     return found
 
 
-def _loops(ends: IndexArray) -> int:
+def _chains(ends: IndexArray) -> int:
     """Count the connected chains of edges."""
     used, edges = np.unique(ends, return_inverse=True)
-    edges = edges.reshape(-1, 2)
-    root = np.arange(len(used))
-    while True:
-        low = root[edges].min(axis=1)
-        np.minimum.at(root, root[edges].ravel(), np.repeat(low, 2))
-        while not np.array_equal(root, jumped := root[root]):
-            root = jumped
-        if (root[edges[:, 0]] == root[edges[:, 1]]).all():
-            return len(np.unique(root))
+    return int(surfaces_of(edges.reshape(-1, 2), len(used)).max()) + 1
 
 
 def _face_findings(mesh: Mesh, edges: _Edges) -> list[Finding]:

@@ -74,6 +74,9 @@ class InternalError(BspcsgError, RuntimeError):
     """An invariant of this package failed; please report it."""
 
 
+#: How much of another library's words a message repeats.
+_LONGEST = 200
+
 _CLASSES: dict[str, type[BspcsgError]] = {
     "not_closed": InvalidMeshError,
     "non_finite": InvalidMeshError,
@@ -121,6 +124,13 @@ def core_errors() -> Iterator[None]:
         yield
     except _core.CoreError as error:
         raise from_core(error) from error
+
+
+def words_of(error: BaseException) -> str:
+    """Return what another library's exception says: one printable line, not too long."""
+    text = " ".join(str(error).split())
+    printable = "".join(letter for letter in text if letter.isprintable())[:_LONGEST]
+    return printable.rstrip(". ") or type(error).__name__
 
 
 def invalid_parameter(message: str) -> InvalidMeshError:

@@ -27,8 +27,14 @@ _Array = TypeVar("_Array", FloatArray, IndexArray)
 TESSELLATION_TOLERANCE = 0.01
 
 
-def arrays_from(mesh: Any) -> Arrays:
+def arrays_from(mesh: Any, tolerance: float = TESSELLATION_TOLERANCE) -> Arrays:
     """Return vertices and faces of whatever holds a mesh.
+
+    Parameters
+    ----------
+    mesh : object
+    tolerance : float
+        Chord error for shapes that have to be tessellated first, in model units.
 
     Raises
     ------
@@ -37,13 +43,27 @@ def arrays_from(mesh: Any) -> Arrays:
     """
     if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
         return mesh[0], mesh[1]
+    if all(hasattr(mesh, name) for name in _SHAPE):
+        return _from_shape(mesh, tolerance)
+    for names, holder in _HOLDERS:
+        if all(hasattr(mesh, name) for name in names):
+            return arrays_from(holder(mesh), tolerance)
+    if all(hasattr(mesh, name) for name in _WORKPLANE):
+        return _joined([arrays_from(shape, tolerance) for shape in _shapes_on(mesh)])
     for names, reader in _READERS:
         if all(hasattr(mesh, name) for name in names):
             return reader(mesh)
     raise invalid_parameter(
         f"Cannot find a mesh in {type(mesh).__name__}: expected vertices and faces, or a pair"
-        " (vertices, faces)."
+        f" (vertices, faces).{_advice(mesh)}"
     )
+
+
+def _advice(mesh: Any) -> str:
+    """Return what else to do with things that people try."""
+    if hasattr(mesh, "extract_surface"):
+        return " A grid of cells has a surface: pass mesh.extract_surface()."
+    return ""
 
 
 def own_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
@@ -171,8 +191,8 @@ def _from_meshio(mesh: Any) -> Arrays:
     return mesh.points, [face for block in surface for face in block.data]
 
 
-def _from_shape(shape: Any) -> Arrays:
-    vertices, faces = shape.tessellate(TESSELLATION_TOLERANCE)
+def _from_shape(shape: Any, tolerance: float) -> Arrays:
+    vertices, faces = shape.tessellate(tolerance)
     return [_coordinates(vertex) for vertex in vertices], faces
 
 
@@ -180,20 +200,43 @@ def _coordinates(vector: Any) -> tuple[float, ...]:
     return tuple(vector.toTuple() if hasattr(vector, "toTuple") else vector)
 
 
+def _shapes_on(workplane: Any) -> list[Any]:
+    return list(workplane.vals()) if hasattr(workplane, "vals") else [workplane.val()]
+
+
+def _joined(parts: list[Arrays]) -> Arrays:
+    """Return several meshes as one; where they overlap, winding numbers unite them."""
+    points = [points_array(vertices) for vertices, _ in parts]
+    starts = np.cumsum([0, *map(len, points)])
+    faces = [
+        face_array(given, corners) + start
+        for (_, given), corners, start in zip(parts, points, starts, strict=False)
+    ]
+    return np.concatenate(points), np.concatenate(faces)
+
+
+#: Shapes of CAD kernels have methods named vertices and faces: they come before plain meshes.
+_SHAPE = ("tessellate", "wrapped")
+
+_WORKPLANE = ("val", "plane")
+
+#: What holds a mesh or a shape, by its attributes, and how to get at that.
+_HOLDERS: tuple[tuple[tuple[str, ...], Callable[[Any], Any]], ...] = (
+    (("current_mesh",), lambda meshes: meshes.current_mesh()),
+    (("part", "pending_faces"), lambda builder: builder.part),
+    (("toCompound", "children"), lambda assembly: assembly.toCompound()),
+    (("geometry", "to_mesh"), lambda scene: scene.to_mesh()),
+    (("to_legacy",), lambda mesh: mesh.to_legacy()),
+)
+
 _READERS: tuple[tuple[tuple[str, ...], Callable[[Any], Arrays]], ...] = (
     (("to_mesh64",), _from_manifold),
     (("vert_properties", "tri_verts"), _from_manifold_mesh),
-    (("current_mesh",), lambda meshes: arrays_from(meshes.current_mesh())),
     (("vertex_matrix", "face_matrix"), lambda mesh: (mesh.vertex_matrix(), mesh.face_matrix())),
     (("points", "faces"), _from_polydata),
     # Grids have points and cells too, but are no surface: the last name leaves them out.
     (("points", "cells", "cell_sets"), _from_meshio),
     (("GetPoint", "GetCell", "GetPolys"), _from_vtk),
-    # Shapes of CAD kernels have methods named vertices and faces: they come before plain meshes.
-    (("tessellate", "wrapped"), _from_shape),
-    (("val", "plane"), lambda workplane: arrays_from(workplane.val())),
-    (("geometry", "to_mesh"), lambda scene: arrays_from(scene.to_mesh())),
-    (("to_legacy",), lambda mesh: arrays_from(mesh.to_legacy())),
     (("vertices", "faces"), lambda mesh: (mesh.vertices, mesh.faces)),
     (("vertices", "triangles"), lambda mesh: (mesh.vertices, mesh.triangles)),
 )

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from fractions import Fraction
-from typing import Any
+from typing import Any, Self
 
 from . import interop
 from ._core import Tree
@@ -24,6 +24,10 @@ class Measured(ABC):
     @abstractmethod
     def to_mesh(self) -> Mesh:
         """Return the boundary as a closed mesh."""
+
+    @abstractmethod
+    def alias(self) -> Self:
+        """Return the same value as another object, with all that is known about it."""
 
     @abstractmethod
     def normalized(self) -> "Measured":

@@ -118,8 +118,7 @@ class Mesh:
     @property
     def components(self) -> int:
         """Number of connected surfaces; the wall of a closed cavity is one of its own."""
-        used, faces = np.unique(self.faces, return_inverse=True)
-        return _count_components(len(used), faces.reshape(-1, 3))
+        return len(np.unique(surfaces_of(self.faces, len(self.vertices))))
 
     @property
     def genus(self) -> int:
@@ -148,13 +147,25 @@ class Mesh:
         return np.unique(ends[:, 0] * np.int64(len(self.vertices)) + ends[:, 1])
 
 
-def _count_components(vertex_count: int, faces: IndexArray) -> int:
-    """Count the classes of vertices that faces connect, by hooking and pointer jumping."""
+def surfaces_of(faces: IndexArray, vertex_count: int) -> IndexArray:
+    """Return for each face the number of its connected surface, from 0.
+
+    Parameters
+    ----------
+    faces : (m, k) int64
+        Corners of each face; those that share one are connected. With k = 2, edges and chains.
+    vertex_count : int
+
+    Returns
+    -------
+    (m,) int64
+    """
+    # Hooking and pointer jumping: every vertex points to a lower one it is connected to.
     root = np.arange(vertex_count)
     while True:
         low = root[faces].min(axis=1)
-        np.minimum.at(root, root[faces].ravel(), np.repeat(low, 3))
+        np.minimum.at(root, root[faces].ravel(), np.repeat(low, faces.shape[1]))
         while not np.array_equal(root, jumped := root[root]):
             root = jumped
         if (root[faces] == root[faces[:, :1]]).all():
-            return len(np.unique(root))
+            return np.unique(root[faces[:, 0]], return_inverse=True)[1]

@@ -5,12 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from ._types import FloatArray, IndexArray
-from .mesh import Mesh
-from .pieces import surfaces_of
+from .counting import uncounted
+from .mesh import Mesh, surfaces_of
 from .primitives import half_space
 from .solid import Solid
 
 
+@uncounted
 def connected_parts(solid: Solid) -> list[Mesh]:
     """Return the boundaries of the connected components, the largest volume first.
 
@@ -41,6 +42,7 @@ def connected_parts(solid: Solid) -> list[Mesh]:
     return sorted(parts, key=lambda part: -part.volume)
 
 
+@uncounted
 def sides_of_plane(solid: Solid, normal: Sequence[float], offset: float) -> tuple[Solid, Solid]:
     """Return what of a solid lies below and above the plane ``normal . x = offset``.
 

@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 
 from ._types import FloatArray, IndexArray
-from .mesh import Mesh
+from .mesh import Mesh, surfaces_of
 
 Point: TypeAlias = tuple[float, float, float]
 
@@ -106,18 +106,6 @@ def _below(
         return None
     half = float(depth[hit].min()) / 2
     return half, start + down * half
-
-
-def surfaces_of(faces: IndexArray, vertex_count: int) -> IndexArray:
-    """Return for each face the number of its connected surface, from 0."""
-    root = np.arange(vertex_count)
-    while True:
-        low = root[faces].min(axis=1)
-        np.minimum.at(root, root[faces].ravel(), np.repeat(low, 3))
-        while not np.array_equal(root, jumped := root[root]):
-            root = jumped
-        if (root[faces] == root[faces[:, :1]]).all():
-            return np.unique(root[faces[:, 0]], return_inverse=True)[1]
 
 
 def _measures(mesh: Mesh, surfaces: IndexArray, film: float) -> tuple[FloatArray, FloatArray]:

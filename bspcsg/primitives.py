@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ._types import FloatArray, IndexArray, Scalar, Vector
+from .counting import counted
 from .errors import InvalidMeshError, at_least, invalid_parameter, number, positive
 from .leaf import MeshLeaf, PlaneLeaf
 from .polygon import triangulate
@@ -45,6 +46,7 @@ _BOX_FACES = np.array(
 )  # fmt: skip
 
 
+@counted
 def box(size: Scalar | Vector, center: bool = False) -> Solid:
     """Return a box.
 
@@ -69,11 +71,13 @@ def box(size: Scalar | Vector, center: bool = False) -> Solid:
     return from_arrays(vertices, _BOX_FACES)
 
 
+@counted
 def cube(size: Scalar | Vector, center: bool = False) -> Solid:
     """Return a cube of this edge length, or a box: another name for `box`."""
     return box(size, center)
 
 
+@counted
 def sphere(r: Scalar, segments: int = 32) -> Solid:
     """Return a sphere about the origin, made of meridians and parallels.
 
@@ -97,6 +101,7 @@ def sphere(r: Scalar, segments: int = 32) -> Solid:
     return from_arrays(*surface_of_revolution(profile, around, closed=False))
 
 
+@counted
 def cylinder(
     h: Scalar,
     r: Scalar | None = None,
@@ -141,11 +146,13 @@ def cylinder(
     return from_arrays(vertices, np.concatenate([sides, bottom, top]))
 
 
+@counted
 def cone(h: Scalar, r: Scalar, *, segments: int = 32, center: bool = False) -> Solid:
     """Return a cone along z with its apex up: a `cylinder` whose upper radius is 0."""
     return cylinder(h, r1=r, r2=0, segments=segments, center=center)
 
 
+@counted
 def torus(r: Scalar, tube: Scalar, *, segments: int = 32, tube_segments: int = 16) -> Solid:
     """Return a torus around the z axis.
 
@@ -173,6 +180,7 @@ def torus(r: Scalar, tube: Scalar, *, segments: int = 32, tube_segments: int = 1
     )
 
 
+@counted
 def prism(sides: int, h: Scalar, r: Scalar, *, center: bool = False) -> Solid:
     """Return an upright regular prism.
 
@@ -196,6 +204,7 @@ def prism(sides: int, h: Scalar, r: Scalar, *, center: bool = False) -> Solid:
     return cylinder(h, r, segments=at_least(3, sides, "sides"), center=center)
 
 
+@counted
 def half_space(normal: Vector, offset: Scalar = 0.0) -> Solid:
     """Return all points x with ``normal . x <= offset``.
 

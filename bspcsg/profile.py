@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ._types import FloatArray, IndexArray, Scalar
+from .counting import counted
 from .errors import at_least, invalid_parameter, positive
 from .leaf import MeshLeaf
 from .polygon import contours_of, directed_edges, triangulate
@@ -14,6 +15,7 @@ from .sweep import RingLayout, strip
 from .transform import cos_sin
 
 
+@counted
 def extrude(polygon: Any, h: Scalar, *, center: bool = False) -> Solid:
     """Return the upright prism over a polygon, which may be concave and have holes.
 
@@ -47,6 +49,7 @@ def extrude(polygon: Any, h: Scalar, *, center: bool = False) -> Solid:
     return _solid(np.concatenate(levels), [caps[:, ::-1], caps + count, sides])
 
 
+@counted
 def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = 32) -> Solid:
     """Return the solid that a polygon sweeps around the z axis, from the x axis on.
 

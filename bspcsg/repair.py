@@ -14,8 +14,7 @@ import numpy as np
 from ._types import FloatArray, IndexArray
 from .errors import BspcsgError, invalid_parameter, missing_part
 from .io import RawMesh
-from .mesh import Mesh
-from .pieces import surfaces_of
+from .mesh import Mesh, surfaces_of
 from .weld import welded
 
 #: The steps in the order in which they are taken.

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ._types import FloatArray
+from .counting import uncounted
 from .errors import BspcsgError
 from .io import RawMesh
 from .mesh import Mesh
@@ -86,6 +87,7 @@ class Losses:
         return {**asdict(self), "any": self.any}
 
 
+@uncounted
 def losses_between(before: RawMesh, after: RawMesh) -> Losses:
     """Return what was lost on the way from one mesh to the other.
 

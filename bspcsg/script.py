@@ -19,6 +19,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from .counting import counted, uncounted
 from .errors import BspcsgError, FormatError
 from .setops import union
 from .solid import Solid
@@ -29,6 +30,7 @@ TIMEOUT = 600.0
 _shown: list[Solid] = []
 
 
+@uncounted
 def show(*solids: Any) -> None:
     """Make solids part of a script's result; meshes of other libraries count as well.
 
@@ -40,6 +42,7 @@ def show(*solids: Any) -> None:
     _shown.extend(Solid.from_mesh(solid) for solid in solids)
 
 
+@counted
 def run_script(
     path: str | os.PathLike[str],
     *,

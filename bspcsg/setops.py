@@ -1,12 +1,17 @@
 """Set operations on any number of solids, and on bare arrays."""
 
-from collections.abc import Iterable
-from typing import Any
+import operator
+from collections.abc import Iterable, Sequence
+from functools import reduce
+from typing import Any, overload
 
 from . import interop
 from ._core import Tree
 from ._types import FloatArray, IndexArray, ProgramLine, SetOp
+from .block import Unfilled
+from .counting import counted
 from .errors import core_errors, invalid_parameter
+from .expression import Operator
 from .leaf import at_pitch
 from .solid import Solid, combine
 
@@ -18,12 +23,17 @@ _PROGRAMS: dict[str, list[ProgramLine]] = {
 }
 
 
+@overload
+def union() -> Unfilled: ...
+@overload
+def union(*solids: Solid | Iterable[Solid]) -> Solid: ...
 def union(*solids: Solid | Iterable[Solid]) -> Solid:
     """Return what is inside at least one solid; the empty set if there is none.
 
     Parameters
     ----------
     *solids : Solid or iterable of Solid
+        Without any, ``with union() as u:`` opens a block (see `bspcsg.block`).
 
     Examples
     --------
@@ -31,16 +41,20 @@ def union(*solids: Solid | Iterable[Solid]) -> Solid:
     >>> b.union(b.cube(1).translate(i, 0, 0) for i in range(3)).volume
     3.0
     """
-    operands = _flat(solids)
-    return _combined("or", operands) if operands else Solid.empty()
+    return _united(_flat(solids)) if solids else Unfilled(_united)
 
 
+@overload
+def intersection() -> Unfilled: ...
+@overload
+def intersection(*solids: Solid | Iterable[Solid]) -> Solid: ...
 def intersection(*solids: Solid | Iterable[Solid]) -> Solid:
     """Return what is inside all solids; all of space if there is none.
 
     Parameters
     ----------
     *solids : Solid or iterable of Solid
+        Without any, ``with intersection() as i:`` opens a block (see `bspcsg.block`).
 
     Examples
     --------
@@ -48,33 +62,46 @@ def intersection(*solids: Solid | Iterable[Solid]) -> Solid:
     >>> b.intersection(b.cube(2), b.cube(2).translate(1, 1, 1)).volume
     1.0
     """
-    operands = _flat(solids)
-    return _combined("and", operands) if operands else Solid.full()
+    return _intersected(_flat(solids)) if solids else Unfilled(_intersected, full=True)
 
 
-def difference(solid: Solid, *rest: Solid | Iterable[Solid]) -> Solid:
-    """Return what is inside the first solid and none of the others.
+@overload
+def difference() -> Unfilled: ...
+@overload
+def difference(*solids: Solid | Iterable[Solid]) -> Solid: ...
+def difference(*solids: Solid | Iterable[Solid]) -> Solid:
+    """Return what is inside the first solid and none of the others; the empty set if there is none.
 
     Parameters
     ----------
-    solid : Solid
-    *rest : Solid or iterable of Solid
+    *solids : Solid or iterable of Solid
+        Without any, ``with difference() as d:`` opens a block (see `bspcsg.block`).
 
     Examples
     --------
     >>> import bspcsg as b
     >>> b.difference(b.cube(3), [b.cube(1), b.cube(1).translate(2, 0, 0)]).volume
     25.0
+    >>> with b.difference() as plate:
+    ...     body = b.cube((20, 20, 10))
+    ...     hole = b.prism(4, h=10, r=3).translate(10, 10, 0)
+    >>> plate.solid.volume
+    3820.0
     """
-    return _combined("and", [*_flat([solid]), *(~other for other in _flat(rest))])
+    return _less(_flat(solids)) if solids else Unfilled(_less)
 
 
+@overload
+def xor() -> Unfilled: ...
+@overload
+def xor(*solids: Solid | Iterable[Solid]) -> Solid: ...
 def xor(*solids: Solid | Iterable[Solid]) -> Solid:
-    """Return what is inside an odd number of the solids.
+    """Return what is inside an odd number of the solids; the empty set if there is none.
 
     Parameters
     ----------
     *solids : Solid or iterable of Solid
+        Without any, ``with xor() as x:`` opens a block (see `bspcsg.block`).
 
     Examples
     --------
@@ -82,11 +109,7 @@ def xor(*solids: Solid | Iterable[Solid]) -> Solid:
     >>> b.xor(b.cube(2), b.cube(2)).is_empty
     True
     """
-    operands = _flat(solids)
-    result = operands[0] if operands else Solid.empty()
-    for operand in operands[1:]:
-        result = result ^ operand
-    return result
+    return _odd(_flat(solids)) if solids else Unfilled(_odd)
 
 
 def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, IndexArray]:
@@ -135,8 +158,29 @@ def _tree(vertices: Any, faces: Any) -> Tree:
         return Tree.from_mesh(points, triangles)
 
 
-def _combined(operator: Any, operands: list[Solid]) -> Solid:
-    return operands[0] if len(operands) == 1 else combine(operator, operands)
+@counted
+def _united(solids: Sequence[Solid]) -> Solid:
+    return _combined("or", solids) if solids else Solid.empty()
+
+
+@counted
+def _intersected(solids: Sequence[Solid]) -> Solid:
+    return _combined("and", solids) if solids else Solid.full()
+
+
+@counted
+def _less(solids: Sequence[Solid]) -> Solid:
+    operands = [*solids[:1], *(~other for other in solids[1:])]
+    return _combined("and", operands) if operands else Solid.empty()
+
+
+@counted
+def _odd(solids: Sequence[Solid]) -> Solid:
+    return reduce(operator.xor, solids) if solids else Solid.empty()
+
+
+def _combined(op: Operator, operands: Sequence[Solid]) -> Solid:
+    return operands[0] if len(operands) == 1 else combine(op, operands)
 
 
 def _flat(solids: Iterable[Solid | Iterable[Solid]]) -> list[Solid]:

@@ -18,6 +18,7 @@ import numpy as np
 from . import interop, transform
 from ._core import Tree
 from ._types import ProgramLine, Scalar, Vector, WindingRule
+from .counting import count, counted, uncounted
 from .describe import describe
 from .errors import core_errors, invalid_parameter
 from .expression import Node, Operator, Placed, complement, evaluate, operation
@@ -90,6 +91,7 @@ class Solid(Measured):
         # Errors in a mesh belong to the line that gave it, not to the first query.
         leaf.own_tree()
         self._set(Node(leaf), ())
+        count(self)
 
     def _set(self, node: Node, factors: Factors) -> None:
         self._node = node
@@ -111,15 +113,28 @@ class Solid(Measured):
         return cls.from_node(Node(leaf))
 
     @classmethod
-    def from_mesh(cls, mesh: Any, **options: Any) -> "Solid":
+    @counted
+    def from_mesh(
+        cls,
+        mesh: Any,
+        *,
+        format: str | None = None,  # noqa: A002
+        tolerance: float = interop.TESSELLATION_TOLERANCE,
+        **options: Any,
+    ) -> "Solid":
         """Return the solid of whatever holds a mesh.
 
         Parameters
         ----------
         mesh : object
             A trimesh, manifold3d, pymeshlab, open3d, pyvista, vtk or meshio mesh, a CadQuery or
-            build123d shape, a pair (vertices, faces), a path, or anything that has ``vertices``
-            and ``faces``. A `Solid` is returned as it is.
+            build123d shape, a pair (vertices, faces) as libigl has it, a path, the bytes of a file
+            or an open one, or anything that has ``vertices`` and ``faces``. A `Solid` is returned
+            as it is.
+        format : str, optional
+            Of bytes and open files: a suffix, such as ``"stl"``.
+        tolerance : float
+            How far from the true surface of a CAD shape its triangles may be, in model units.
         **options
             As for `Solid`.
 
@@ -127,25 +142,39 @@ class Solid(Measured):
         ------
         InvalidMeshError
             If the object holds no mesh, or as for `Solid`.
+        FormatError
+            If a file cannot be read as what it should be.
+
+        Notes
+        -----
+        Coordinates are taken as they are: those of pyvista and of files in binary STL have single
+        precision, unless a pyvista mesh was made of float64 points.
         """
         if isinstance(mesh, Solid):
             return mesh
         if isinstance(mesh, (str, os.PathLike)):
             return cls.load(mesh, **options)
-        return cls(*interop.arrays_from(mesh), **options)
+        if isinstance(mesh, (bytes, bytearray, memoryview)) or hasattr(mesh, "readable"):
+            from . import io
+
+            return io.loads(mesh, format, **options)
+        return cls(*interop.arrays_from(mesh, tolerance), **options)
 
     @classmethod
+    @counted
     def empty(cls) -> "Solid":
         """Return the empty set."""
         return cls.from_leaf(ConstantLeaf(full=False))
 
     @classmethod
+    @counted
     def full(cls) -> "Solid":
         """Return all of space."""
         return cls.from_leaf(ConstantLeaf(full=True))
 
     # Set operations
 
+    @counted
     def __or__(self, other: object) -> "Solid":
         """Union."""
         return combine("or", (self, other)) if isinstance(other, Solid) else NotImplemented
@@ -156,30 +185,37 @@ class Solid(Measured):
         """Make ``sum(solids)`` work, which starts from 0."""
         return self if isinstance(other, int) and other == 0 else NotImplemented
 
+    @counted
     def __and__(self, other: object) -> "Solid":
         """Intersection."""
         return combine("and", (self, other)) if isinstance(other, Solid) else NotImplemented
 
+    @counted
     def __sub__(self, other: object) -> "Solid":
         """Difference."""
         return combine("and", (self, ~other)) if isinstance(other, Solid) else NotImplemented
 
+    @counted
     def __xor__(self, other: object) -> "Solid":
         """Symmetric difference, as for Python's sets (manifold3d's ``^`` is the intersection)."""
         return combine("xor", (self, other)) if isinstance(other, Solid) else NotImplemented
 
+    @counted
     def __invert__(self) -> "Solid":
         """Complement: everything outside."""
         return Solid.from_node(*complement(Placed(self._node, self._factors)))
 
+    @uncounted
     def equals(self, other: "Solid") -> bool:
         """Whether both are the same set of points, exactly."""
         return (self ^ other).is_empty
 
+    @uncounted
     def __le__(self, other: object) -> bool:
         """Whether this set is part of the other, exactly."""
         return (self - other).is_empty if isinstance(other, Solid) else NotImplemented
 
+    @uncounted
     def isdisjoint(self, other: "Solid") -> bool:
         """Whether the two have no volume in common; contact is allowed."""
         return (self & other).is_empty
@@ -235,6 +271,7 @@ class Solid(Measured):
         """
         return self._moved((transform.matrix_factor(matrix),))
 
+    @counted
     def _moved(self, factors: Factors) -> "Solid":
         kept = tuple(factor for factor in factors if not factor.is_identity)
         return Solid.from_node(self._node, kept + self._factors) if kept else self
@@ -293,6 +330,12 @@ class Solid(Measured):
         from . import io
 
         io.save(self, path, **options)
+
+    def to_csg(self, *, flat: bool = False) -> str:
+        """Return the expression that made the solid as a `.csg` script (see `bspcsg.csg.dumps`)."""
+        from . import csg
+
+        return csg.dumps(self, flat=flat)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], **options: Any) -> "Solid":
@@ -353,6 +396,7 @@ class Solid(Measured):
 
         return slice_solid(self, offset, normal, origin=origin)
 
+    @uncounted
     def check(self, **options: Any) -> Any:
         """Compare the operation that made this solid with manifold3d (see `bspcsg.check`)."""
         from . import check
@@ -378,6 +422,17 @@ class Solid(Measured):
         from .report.notebook import solid_svg
 
         return solid_svg(self)
+
+    @property
+    def expression(self) -> Placed:
+        """The expression's node and the transform on it, for the modules of this package."""
+        return Placed(self._node, self._factors)
+
+    def alias(self) -> "Solid":
+        """Return the same value as another object, for the modules of this package."""
+        other = Solid.from_node(self._node, self._factors)
+        other._placed, other._mesh, other._reduced = self._placed, self._mesh, self._reduced
+        return other
 
     def __copy__(self) -> "Solid":
         """Return the solid itself, which never changes."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .._types import FloatArray, Scalar, WindingRule
-from ..errors import FormatError, positive
+from ..errors import FormatError, positive, words_of
 from ..interop import optional
 from ..io.atomic import write_file
 from .region import Region
@@ -71,6 +71,11 @@ def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
     FormatError
         If the file cannot be written.
     """
+    write_file(path, [dxf_data(region)])
+
+
+def dxf_data(region: Region) -> bytes:
+    """Return what `save_dxf` writes."""
     ezdxf = optional("ezdxf", "2d")
     outlines = region.to_polygons()
     document = ezdxf.new("R2010")
@@ -78,7 +83,8 @@ def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
         document.modelspace().add_lwpolyline(points.tolist(), close=True)
     text = io.StringIO()
     document.write(text)
-    write_file(path, [text.getvalue().encode(document.output_encoding, errors="dxfreplace")])
+    data: bytes = text.getvalue().encode(document.output_encoding, errors="dxfreplace")
+    return data
 
 
 def read_document(path: str | os.PathLike[str]) -> Any:
@@ -93,7 +99,7 @@ def read_document(path: str | os.PathLike[str]) -> Any:
             f"{name}: cannot read this file: {error.strerror}.", "unreadable"
         ) from error
     except (ezdxf.DXFError, ValueError, LookupError, TypeError, AttributeError) as error:
-        raise FormatError(f"{name}: this is no valid DXF: {error}.", "syntax") from error
+        raise FormatError(f"{name}: this is no valid DXF: {words_of(error)}.", "syntax") from error
 
 
 def _flattened(entity: Any, chord: float) -> list[FloatArray]:

@@ -11,7 +11,7 @@ from xml.parsers import expat
 import numpy as np
 
 from .._types import FloatArray, Scalar, WindingRule
-from ..errors import FormatError, positive
+from ..errors import FormatError, positive, words_of
 from ..interop import optional
 from ..io.atomic import write_file
 from .region import Region
@@ -56,7 +56,8 @@ def load_svg(
     try:
         drawing = elements.SVG.parse(io.BytesIO(_in_user_units(data)), reify=True, ppi=96.0)
     except (ValueError, TypeError, AttributeError, ArithmeticError, LookupError) as error:
-        raise FormatError(f"{os.fspath(path)}: this is no valid SVG: {error}.", "syntax") from error
+        message = f"{os.fspath(path)}: this is no valid SVG: {words_of(error)}."
+        raise FormatError(message, "syntax") from error
     region = Region(pitch=pitch)
     for shape in drawing.elements():
         if isinstance(shape, elements.Shape) and _is_filled(shape):
@@ -90,19 +91,23 @@ def save_svg(
     FormatError
         If the file cannot be written.
     """
+    write_file(path, [svg_data(region, fill=fill, margin=margin)])
+
+
+def svg_data(region: Region, *, fill: str = "#9db8d9", margin: Scalar = 0.05) -> bytes:
+    """Return what `save_svg` writes."""
     bounds = region.bounds
     low, high = (np.zeros(2), np.ones(2)) if bounds is None else bounds
     space = float((high - low).max()) * float(margin)
     width, height = (high - low + 2 * space).tolist()
     x, y = float(low[0]) - space, -float(high[1]) - space
     outlines = " ".join(_path_of(points) for points in region.to_polygons())
-    text = (
+    return (
         '<svg xmlns="http://www.w3.org/2000/svg"'
         f' viewBox="{x!r} {y!r} {width!r} {height!r}">\n'
         f'<path fill-rule="nonzero" fill="{fill}" stroke="black"'
         f' stroke-width="{max(width, height) / 400!r}" d="{outlines}"/>\n</svg>\n'
-    )
-    write_file(path, [text.encode()])
+    ).encode()
 
 
 def _path_of(points: FloatArray) -> str:

@@ -1,6 +1,7 @@
 """Orders of a partition tree: the painter's, by distance, and plain traversals."""
 
-from collections.abc import Iterator
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from .tree import PartitionTree
 
 
-class Ordered:
+class Ordered(ABC):
     """The traversals of a tree."""
 
     core: _core.FragmentTree
@@ -95,33 +96,38 @@ class Ordered:
             return self.core.sides(place, at_infinity)
 
     def _by_distance(self, sides: Any, ties_minus_first: bool = True) -> Iterator[Node | Leaf]:
-        pending: list[tuple[Node | Leaf, bool]] = [(self._start(), False)]
-        while pending:
-            place, done = pending.pop()
-            if isinstance(place, Leaf) or done:
-                yield place
-                continue
-            side = sides[place.index]
-            minus, plus = place.children
+        def arranged(node: Node) -> Sequence[Node | Leaf]:
+            side = sides[node.index]
+            minus, plus = node.children
             first_minus = side < 0 or (side == 0 and ties_minus_first)
-            near, far = (minus, plus) if first_minus else (plus, minus)
-            pending += [(far, False), (place, True), (near, False)]
+            return (minus, node, plus) if first_minus else (plus, node, minus)
+
+        return self._traversed(arranged)
 
     def walk(self, order: Literal["pre", "in", "post"] = "pre") -> Iterator[Node | Leaf]:
         """Yield all nodes and leaves, minus before plus, a node before, between or after them."""
         if order not in ("pre", "in", "post"):
             raise invalid_parameter(f"The order is 'pre', 'in' or 'post', not {order!r}.")
+        place = ("pre", "in", "post").index(order)
+
+        def arranged(node: Node) -> Sequence[Node | Leaf]:
+            steps: list[Node | Leaf] = list(node.children)
+            steps.insert(place, node)
+            return steps
+
+        return self._traversed(arranged)
+
+    def _traversed(
+        self, arranged: Callable[[Node], Sequence[Node | Leaf]]
+    ) -> Iterator[Node | Leaf]:
+        """Yield nodes and leaves, given the order of each node and its two children."""
         pending: list[tuple[Node | Leaf, bool]] = [(self._start(), False)]
         while pending:
-            place, done = pending.pop()
-            if isinstance(place, Leaf) or done:
+            place, opened = pending.pop()
+            if isinstance(place, Leaf) or opened:
                 yield place
                 continue
-            minus, plus = ((child, False) for child in place.children)
-            own: tuple[Node | Leaf, bool] = (place, True)
-            steps = [minus, plus]
-            steps.insert(("pre", "in", "post").index(order), own)
-            pending += reversed(steps)
+            pending += [(step, step is place) for step in reversed(arranged(place))]
 
     def visit(self, visitor: Visitor, order: Literal["pre", "in", "post"] = "pre") -> None:
         """Call ``visitor.node(node)`` or ``visitor.leaf(leaf)`` for each, in an order of `walk`."""
@@ -135,5 +141,6 @@ class Ordered:
         return self.root or Leaf(self._tree, None, "minus")
 
     @property
+    @abstractmethod
     def _tree(self) -> "PartitionTree":
-        raise NotImplementedError
+        """The tree itself."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .job import Job
-from .options import ALLOW_EMPTY, CHECK, OUTPUT, PATH, common, reading, sets, writing
+from .options import PATH, from_files
 
 if TYPE_CHECKING:
     from ..check import CheckReport
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 _HELP = {
     "union": "Write what is inside at least one of the files.",
-    "difference": "Write what is inside the first file and none of the others.",
+    "difference": "Write what is inside the first file and none of the others. Also called cut.",
     "intersection": "Write what is inside all of the files.",
     "xor": "Write what is inside an odd number of the files.",
 }
@@ -32,13 +32,7 @@ def _verb(op: str) -> click.Command:
     """Return the command of an operation."""
 
     @click.argument("files", nargs=-1, required=True, type=PATH, metavar="A B [C ...]")
-    @OUTPUT
-    @writing
-    @ALLOW_EMPTY
-    @CHECK
-    @reading
-    @sets
-    @common
+    @from_files
     def run(**given: Any) -> int:
         return _Named(op, **given).run()
 

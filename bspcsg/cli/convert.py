@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..errors import BspcsgError
+from ..errors import BspcsgError, Finding
 from . import output
-from .files import STREAM, Inputs, Target, expanded, shown
+from .files import STREAM, Inputs, Target, expanded, put, shown
 from .options import PATH, common, reading, writing
 from .output import Output, counted
 
@@ -40,6 +40,16 @@ _MANY = 4
 )
 @click.option("--outdir", type=PATH, help="Folder for the files, with --to.")
 @writing
+@click.option(
+    "--up",
+    type=click.Choice(["y", "z"]),
+    help="Which axis is to be up in the output; y in GLB by default, z in all others.",
+)
+@click.option(
+    "--from-up",
+    type=click.Choice(["y", "z"]),
+    help="Which axis is up in the inputs; y in GLB by default, z in all others.",
+)
 @click.option("--fail-on-loss", is_flag=True, help="Exit with 1 if anything was lost.")
 @reading
 @common
@@ -48,7 +58,8 @@ def convert(files: tuple[Path, ...], **given: Any) -> int:
 
     Every file is read back and compared. Meshes need not be closed; nothing is repaired. 3MF and
     GLB state their unit: what comes from other formats is taken as millimetres unless --unit says
-    otherwise, and GLB is written in metres with y upwards.
+    otherwise, and GLB is written in metres with y upwards. Where --up and --from-up differ, the
+    model is turned by a quarter about x.
     """
     return _Conversion(files, **given).run()
 
@@ -64,10 +75,9 @@ class _Conversion:
             (path, Target.of(where, settings))
             for path, where in _targets(files, target, outdir, settings["to_format"])
         ]
-        taken = any(where.is_stream for _, where in self._pairs)
-        verbosity = int(settings["verbose"]) - int(settings["quiet"])
-        self._out = Output(verbosity, settings["as_json"], taken)
+        self._out = Output.of(settings, any(where.is_stream for _, where in self._pairs))
         self._inputs = Inputs.of(self._out, settings)
+        self._told: set[str] = set()
 
     def run(self) -> int:
         self._refuse_early()
@@ -95,23 +105,7 @@ class _Conversion:
         for _, target in self._pairs:
             target.refuse_early(self._out.as_json)
         self._inputs.refuse_early([path for path, _ in self._pairs])
-        self._tell_units()
-
-    def _tell_units(self) -> None:
-        """Say once which inputs have no unit although the output states one."""
-        from ..io import FORMATS
-
-        unknown = [
-            path
-            for path, target in self._pairs
-            if FORMATS[target.suffix.lower()].unit
-            and not FORMATS[self._inputs.suffix_of(path)].unit
-        ]
-        if unknown and self._settings["unit"] is None:
-            more = f" and {len(unknown) - 1} more have" if len(unknown) > 1 else " has"
-            self._out.note(
-                f"{shown(unknown[0])}{more} no unit; mm assumed (say --unit in to change)"
-            )
+        self._inputs.tell_units(self._pairs)
 
     def _converted(self, path: Path, target: Target) -> tuple[dict[str, Any], bool]:
         """Convert one file; return what happened to it, and whether anything was lost."""
@@ -119,20 +113,43 @@ class _Conversion:
         from ..roundtrip import losses_between
 
         began = time.perf_counter()
-        raw = self._inputs.raw(path)
+        raw = self._turned(path, target)
         self._inputs.tell(path, raw.findings)
-        chunks, findings = encoded(raw, shown(target.path), target.suffix, target.text)
+        shortened, _ = target.rounded(raw)
+        chunks, findings = encoded(shortened, shown(target.path), target.suffix, target.text)
         data = b"".join(chunks)
         lost = losses_between(raw, decoded(shown(target.path), data, target.suffix))
-        target.write_data(data)
+        put(target.path, [data], target.overwrite)
         for finding in findings:
-            if finding.code != "single_precision":  # its shift is told below, as measured
-                self._out.finding(shown(target.path), finding)
+            self._tell(target, finding)
         seconds = time.perf_counter() - began
         if not self._out.as_json:
             self._out.result(_line(raw, target, lost, seconds), {})
         document = {"file": str(path), "output": str(target.path), "triangles": len(raw.faces)}
         return {**document, "lost": lost.to_dict(), "seconds": round(seconds, 4)}, lost.any
+
+    def _turned(self, path: Path, target: Target) -> "RawMesh":
+        """Read a file, turned so that the axis asked for is up in the output."""
+        from ..io import FORMATS
+        from ..io.turning import turned
+
+        raw = self._inputs.raw(path)
+        usual_in = FORMATS[self._inputs.suffix_of(path)].up
+        usual_out = FORMATS[target.suffix.lower()].up
+        # Reading and writing turn by what is usual: what is left is the difference to that.
+        told_in = self._settings["from_up"] or usual_in
+        told_out = self._settings["up"] or usual_out
+        quarters = (told_in == "y") - (usual_in == "y") - (told_out == "y") + (usual_out == "y")
+        return turned(raw, quarters)
+
+    def _tell(self, target: Target, finding: Finding) -> None:
+        """Tell about a file; what is so for all files of a format is told once."""
+        if finding.code == "single_precision":  # its shift is told with the losses, as measured
+            return
+        if finding.code == "unit" and finding.message in self._told:
+            return
+        self._told.add(finding.message)
+        self._out.finding(shown(target.path), finding)
 
 
 def _line(raw: "RawMesh", target: Target, lost: "Losses", seconds: float) -> str:

@@ -9,7 +9,7 @@ import click
 from ..errors import BspcsgError
 from .formula import File, Formula, FormulaError, evaluated, files_of, parse
 from .job import Job
-from .options import ALLOW_EMPTY, CHECK, OUTPUT, common, reading, sets, writing
+from .options import from_files
 
 if TYPE_CHECKING:
     from ..solid import Solid
@@ -33,13 +33,7 @@ Example:
 
 @click.command("eval", help=_HELP, epilog=_EPILOG)
 @click.argument("formula")
-@OUTPUT
-@writing
-@ALLOW_EMPTY
-@CHECK
-@reading
-@sets
-@common
+@from_files
 def evaluate(formula: str, **given: Any) -> int:
     """Work out a formula; its help is above, where it can keep its line breaks."""
     return _Evaluation(formula, **given).run()
@@ -83,5 +77,7 @@ def _combined(name: str, solids: list["Solid"]) -> "Solid":
 
 def _pointed(formula: str, message: str, column: int) -> str:
     """Return a message with the formula and a mark under the column."""
+    if not formula.strip():
+        return f"formula:{column + 1}: {message}"
     printed = "".join(" " if letter.isspace() else letter for letter in formula)
     return f"formula:{column + 1}: {message}\n  {printed}\n  {' ' * column}^"

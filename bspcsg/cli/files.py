@@ -4,7 +4,7 @@ import os
 import shlex
 import sys
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -39,6 +39,10 @@ class Inputs:
         What files that do not say are in; None if the user has not said either.
     winding : str
     pitch : int or None
+    on_invalid : {"error", "warn", "repair"}
+        What to do about a file that is not closed.
+    noticed : list of Finding
+        What was told about the solids so far, which results repeat.
     """
 
     out: Output
@@ -46,13 +50,15 @@ class Inputs:
     unit: str | None = None
     winding: Any = "positive"
     pitch: int | None = None
+    on_invalid: str = "error"
+    noticed: list[Finding] = field(default_factory=list)
 
     @classmethod
     def of(cls, out: Output, settings: dict[str, Any]) -> "Inputs":
         """Return what the options of a verb say."""
-        names = {"from_format": "suffix", "unit": "unit", "winding": "winding", "pitch": "pitch"}
-        found = {to: settings[name] for name, to in names.items() if settings.get(name) is not None}
-        return cls(out, **found)
+        names = ("unit", "winding", "pitch", "on_invalid")
+        found = {name: settings[name] for name in names if settings.get(name) is not None}
+        return cls(out, settings.get("from_format") or "", **found)
 
     def refuse_early(self, paths: Sequence[Path]) -> None:
         """Refuse what can be known to fail before anything is read."""
@@ -63,8 +69,26 @@ class Inputs:
         for path in paths:
             if str(path) == STREAM and not self.suffix:
                 raise click.UsageError("to read standard input, say its format: --from stl.")
+            if not path.suffix and path.is_dir():
+                message = f"{path}: this is a folder; name the files in it, as in {path / '*.stl'}."
+                raise FormatError(message, "unreadable")
             if self.suffix_of(path) != self.suffix:
                 format_of(path)
+
+    def tell_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
+        """Say once which inputs have no unit although their outputs state one."""
+        from ..io import FORMATS
+
+        unknown = [
+            path
+            for path, target in pairs
+            if FORMATS[target.suffix.lower()].unit and not FORMATS[self.suffix_of(path)].unit
+        ]
+        if unknown and self.unit is None:
+            more = f" and {len(unknown) - 1} more have" if len(unknown) > 1 else " has"
+            self.out.note(
+                f"{shown(unknown[0])}{more} no unit; mm assumed (say --unit in to change)"
+            )
 
     def suffix_of(self, path: Path) -> str:
         """Return the suffix of the format that a file is read as."""
@@ -92,21 +116,54 @@ class Inputs:
         raw = self.raw(path)
         solid = self.as_solid(raw, path)
         noticed = [Finding.from_core(found) for found in solid.tree.findings]
+        self.noticed.extend(noticed)
         self.tell(path, (*raw.findings, *noticed))
         self.out.detail(f"{shown(path)}: {counted(len(raw.faces), 'triangle')}")
         return solid
 
     def as_solid(self, raw: "RawMesh", path: Path) -> "Solid":
-        """Return the solid of what was read; a mesh that is none is told how to become one."""
-        from ..io import solid_of
-
+        """Return the solid of what was read; one that is not closed as the user has it."""
         try:
-            return solid_of(raw, shown(path), winding=self.winding, pitch=self.pitch)
+            return self._solid_of(raw, path)
         except InvalidMeshError as error:
             if error.code != "not_closed":
                 raise
-            message = f"{error.message}\n  Try: {repair_command(path)}"
+            if self.on_invalid == "warn":
+                return self._left_out(error)
+            if self.on_invalid == "repair":
+                return self._repaired(raw, path)
+            message = (
+                f"{error.message}\n  Try: {repair_command(path)}"
+                "\n  --on-invalid repair fills it; --on-invalid warn goes on without it."
+            )
             raise InvalidMeshError(message, error.code, error.where) from error
+
+    def _solid_of(self, raw: "RawMesh", path: Path) -> "Solid":
+        from ..io import solid_of
+
+        return solid_of(raw, shown(path), winding=self.winding, pitch=self.pitch)
+
+    def _left_out(self, error: InvalidMeshError) -> "Solid":
+        from ..solid import Solid
+
+        self.out.warning(f"{error.message} It is left out.")
+        return Solid.empty()
+
+    def _repaired(self, raw: "RawMesh", path: Path) -> "Solid":
+        from ..repair import repair
+
+        made = repair(raw)
+        try:
+            solid = self._solid_of(made.mesh, path)
+        except InvalidMeshError as error:
+            message = (
+                f"{error.message}\n  A repair did not close it; {repair_command(path)} tells more."
+            )
+            raise InvalidMeshError(message, error.code, error.where) from error
+        counts = f"{counted(len(raw.faces), 'triangle')} became {len(made.mesh.faces)}"
+        turned = f", {made.turned} of them turned round" if made.turned else ""
+        self.out.warning(f"{shown(path)} was not closed and is repaired: {counts}{turned}.")
+        return solid
 
     def tell(self, path: Path, findings: Sequence[Finding]) -> None:
         """Say what was noteworthy about a file."""
@@ -132,16 +189,23 @@ class Target:
         Of the format.
     text : bool
         Whether the form as text is asked for.
+    overwrite : bool
+        Whether a file that is there may be replaced.
+    digits : int or None
+        Significant digits of coordinates, if they are to be rounded.
     """
 
     path: Path
     suffix: str
     text: bool = False
+    overwrite: bool = True
+    digits: int | None = None
 
     @classmethod
     def of(cls, path: Path, settings: dict[str, Any]) -> "Target":
         """Return the target that the options of a verb say."""
-        return cls(path, settings.get("to_format") or path.suffix, settings["text"])
+        suffix = settings.get("to_format") or path.suffix
+        return cls(path, suffix, settings["text"], settings["overwrite"], settings["digits"])
 
     @property
     def is_stream(self) -> bool:
@@ -166,38 +230,52 @@ class Target:
             raise click.UsageError("--json and a mesh cannot both go to standard output.")
         named = self.path.suffix == self.suffix
         encoder_of(self.path if named else f"{self.path}{self.suffix}", self.text)
-        if self.is_stream:
-            return
-        refuse_folder(self.path)
+        refuse_unwritable(self.path, self.overwrite)
+
+    def rounded(self, mesh: "Mesh | RawMesh") -> "tuple[Mesh | RawMesh, tuple[Finding, ...]]":
+        """Return the mesh with the digits asked for, and what that did."""
+        from ..io.rounding import rounded
+
+        return (mesh, ()) if self.digits is None else rounded(mesh, self.digits)
 
     def write(self, mesh: "Mesh | RawMesh") -> tuple[Finding, ...]:
-        """Write a mesh, and return what the format could not keep."""
+        """Write a mesh, and return what the format or the number of digits could not keep."""
         from ..io import encoded
 
-        chunks, findings = encoded(mesh, shown(self.path), self.suffix, self.text)
-        self._put(chunks)
-        return findings
+        shortened, moved = self.rounded(mesh)
+        chunks, findings = encoded(shortened, shown(self.path), self.suffix, self.text)
+        put(self.path, chunks, self.overwrite)
+        return moved + findings
 
-    def write_data(self, data: bytes) -> None:
-        """Write the bytes of a file."""
-        self._put([data])
 
-    def _put(self, chunks: Iterable[bytes]) -> None:
-        from ..io.atomic import write_file
+def put(path: Path, chunks: Iterable[bytes], overwrite: bool = True) -> None:
+    """Write bytes to a file, which appears complete or not at all, or to standard output."""
+    from ..io.atomic import write_file
 
-        if not self.is_stream:
-            write_file(self.path, chunks)
-            return
-        if sys.stdout.isatty():
-            raise click.UsageError("a mesh is no text for a terminal; use a pipe, or -o FILE.")
-        try:
-            sys.stdout.buffer.writelines(chunks)
-            sys.stdout.buffer.flush()
-        except BrokenPipeError:
-            raise
-        except OSError as error:
-            message = f"standard output: cannot write: {error.strerror}."
-            raise FormatError(message, "unwritable") from error
+    if str(path) != STREAM:
+        refuse_unwritable(path, overwrite)
+        write_file(path, chunks)
+        return
+    if sys.stdout.isatty():
+        raise click.UsageError("this is no text for a terminal; use a pipe, or -o FILE.")
+    try:
+        sys.stdout.buffer.writelines(chunks)
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        message = f"standard output: cannot write: {error.strerror}."
+        raise FormatError(message, "unwritable") from error
+
+
+def refuse_unwritable(path: Path, overwrite: bool = True) -> None:
+    """Refuse a file that is there and to be kept, or in a folder that is missing or forbidden."""
+    if str(path) == STREAM:
+        return
+    if not overwrite and os.path.lexists(path):
+        message = f"{path}: this file is there already; --overwrite replaces it."
+        raise FormatError(message, "unwritable")
+    refuse_folder(path)
 
 
 def refuse_folder(path: Path) -> None:
@@ -206,20 +284,6 @@ def refuse_folder(path: Path) -> None:
     if not folder.is_dir() or not os.access(folder, os.W_OK):
         message = f"{path}: there is no folder {folder} that can be written to."
         raise FormatError(message, "unwritable")
-
-
-def refuse_drawing(path: Path, suffixes: Sequence[str]) -> None:
-    """Refuse early a file for a drawing that cannot be written.
-
-    Raises
-    ------
-    FormatError
-        If its suffix is none of those, or its folder cannot be written to.
-    """
-    if path.suffix.lower() not in suffixes:
-        known = " or ".join(suffixes)
-        raise FormatError(f"{shown(path)}: the name must end in {known}.", "unknown_format")
-    refuse_folder(path)
 
 
 def shown(path: Path) -> str:

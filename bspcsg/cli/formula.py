@@ -79,6 +79,8 @@ def parse(text: str) -> Formula:
     FormulaError
         If it stands for none; with the column.
     """
+    if not text.strip():
+        raise FormulaError("the formula is empty.", 0)
     parser = _Parser(_tokens(text))
     found = parser.level(0, 0)
     parser.expect("end", "an operator or the end")

@@ -1,6 +1,7 @@
 """One set operation on files, from reading to telling what came out."""
 
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 _EXACT_FACES, _EXACT_BITS = 500, 10_000
 
 
-class Job:
+class Job(ABC):
     """One operation on files.
 
     Subclasses say what to combine, and how.
@@ -36,15 +37,14 @@ class Job:
         self.op = op
         self.settings = settings
         self.target = Target.of(target, settings)
-        verbosity = int(settings["verbose"]) - int(settings["quiet"])
-        self.out = Output(verbosity, settings["as_json"], self.target.is_stream)
+        self.out = Output.of(settings, self.target.is_stream)
         self.inputs = Inputs.of(self.out, settings)
         self.seconds: dict[str, float] = {}
         self._last = time.perf_counter()
 
+    @abstractmethod
     def combined(self) -> "Solid":
         """Read the files and return what they make."""
-        raise NotImplementedError
 
     def compared(self, result: "Solid") -> "CheckReport | None":
         """Return what manifold3d says, or None if there is nothing to compare."""
@@ -52,13 +52,14 @@ class Job:
 
         return None if result.last_operation is None else check_result(result)
 
+    @abstractmethod
     def paths(self) -> Sequence[Path]:
         """Return the files that are read."""
-        raise NotImplementedError
 
     def refuse_inputs(self) -> None:
-        """Refuse inputs that can be known to fail before anything is read."""
+        """Refuse what can be known to fail before anything is read; tell what will be assumed."""
         self.inputs.refuse_early(self.paths())
+        self.inputs.tell_units((path, self.target) for path in self.paths())
 
     def run(self) -> int:
         """Do it, and return the exit code."""
@@ -96,7 +97,8 @@ class Job:
     ) -> None:
         name = shown(self.target.path)
         for finding in result.normalized().findings:
-            self.out.finding(name, finding)
+            if finding not in self.inputs.noticed:
+                self.out.finding(name, finding)
         for note in () if report is None else report.notes:
             self.out.detail(f"note: {note}")
         line = summary(name, mesh, sum(self.seconds.values()))

@@ -11,7 +11,7 @@ from io import TextIOWrapper
 import click
 
 from .. import __version__
-from ..errors import BspcsgError, FormatError
+from ..errors import BspcsgError, FormatError, InternalError
 from . import output
 
 _EPILOG = """\b
@@ -46,6 +46,7 @@ _VERBS = {
     "xor": ("combine", "xor"),
     "eval": ("evaluate", "evaluate"),
     "run": ("run", "run"),
+    "tree": ("tree", "tree"),
     "split": ("split", "split"),
     "slice": ("section", "section"),
     "render": ("render", "render"),
@@ -57,8 +58,12 @@ _VERBS = {
     "validate": ("validate", "validate"),
     "report": ("report", "report"),
     "view": ("view", "view"),
+    "bench": ("bench", "bench"),
     "doctor": ("doctor", "doctor"),
 }
+
+#: Other names of verbs, which the help leaves out.
+_ALIASES = {"cut": "difference"}
 
 _COMPLETE = "_BSPCSG_COMPLETE"
 
@@ -70,11 +75,28 @@ class _Verbs(click.Group):
         return list(_VERBS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name not in _VERBS:
+        verb = _ALIASES.get(cmd_name, cmd_name)
+        if verb not in _VERBS:
             return None
-        module, name = _VERBS[cmd_name]
+        module, name = _VERBS[verb]
         found: click.Command = getattr(import_module(f".{module}", __package__), name)
         return found
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        known = {*_VERBS, *_ALIASES}
+        if args and args[0] not in known and not args[0].startswith("-"):
+            raise click.UsageError(f"there is no verb {args[0]!r}.{_meant(args[0])}", ctx)
+        return super().resolve_command(ctx, args)
+
+
+def _meant(word: str) -> str:
+    """Return a question after the verb that a wrong one resembles."""
+    from difflib import get_close_matches
+
+    close = get_close_matches(word, _VERBS, n=1)
+    return f" Is {close[0]} meant?" if close else ""
 
 
 @click.group(
@@ -166,7 +188,7 @@ def _failed(error: Exception, as_json: bool) -> int:
         return output.tell_error(error, as_json)
     said = "out of memory" if isinstance(error, MemoryError) else f"{type(error).__name__}: {error}"
     message = f"{said}. This is a defect of bspcsg; run it again with --debug to see where."
-    return output.tell_error(BspcsgError(message), as_json) and output.INTERNAL
+    return output.tell_error(InternalError(message), as_json)
 
 
 def _discard_output() -> None:

@@ -7,7 +7,7 @@ import click
 
 from . import output
 from .files import Inputs, Target, shown
-from .options import OUTPUT, PATH, common, reading, writing
+from .options import OUTPUT, PATH, TIMEOUT, common, reading, writing
 from .output import Output, counted, grouped
 from .tables import table_text
 
@@ -53,7 +53,7 @@ _DEFECTS = {
     show_default=True,
     help="Edges around the largest hole to fill.",
 )
-@click.option("--timeout", type=click.FloatRange(min=0, min_open=True), help="Seconds to give it.")
+@TIMEOUT
 @reading
 @common
 def repair(file: Path, target: Path, **given: Any) -> int:
@@ -73,8 +73,7 @@ class _Repairing:
         self._file = file
         self._target = Target.of(target, settings)
         self._settings = settings
-        verbosity = int(settings["verbose"]) - int(settings["quiet"])
-        self._out = Output(verbosity, settings["as_json"], self._target.is_stream)
+        self._out = Output.of(settings, self._target.is_stream)
         self._inputs = Inputs.of(self._out, settings)
 
     def run(self) -> int:

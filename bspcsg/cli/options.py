@@ -1,5 +1,6 @@
 """Options that several verbs share."""
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
@@ -17,7 +18,9 @@ PATH = click.Path(path_type=Path, allow_dash=True, readable=False)
 
 _THREADS = click.option(
     "-j",
+    "--jobs",
     "--threads",
+    "threads",
     type=click.IntRange(0, _MOST_THREADS),
     default=0,
     help="Number of threads; 0, the default, for all cores.",
@@ -69,8 +72,15 @@ _SETS = [
     ),
     click.option(
         "--pitch",
-        type=click.IntRange(-30, 30),
+        type=click.IntRange(-22, 22),
         help="Lattice step 10^PITCH units; by default -9, or what the size asks for.",
+    ),
+    click.option(
+        "--on-invalid",
+        type=click.Choice(["error", "warn", "repair"]),
+        default="error",
+        show_default=True,
+        help="Refuse files that are not closed, leave them out, or close them with pymeshlab.",
     ),
 ]
 
@@ -83,26 +93,34 @@ _WRITING = [
         help="Format of the output, e.g. ply.",
     ),
     click.option("--ascii", "text", is_flag=True, help="Write STL and PLY as text."),
+    click.option(
+        "--digits",
+        type=click.IntRange(1, 17),
+        help="Significant digits of coordinates; by default as many as give the same doubles.",
+    ),
+    click.option(
+        "--overwrite/--no-overwrite",
+        default=True,
+        help="Whether to replace a file that is there (default).",
+    ),
 ]
 
-OUTPUT = click.option(
-    "-o",
-    "--output",
-    "target",
-    required=True,
-    type=PATH,
-    help="File to write, its format by its suffix; - for standard output.",
-)
+_DRAWING = [
+    click.option(
+        "-o",
+        "--output",
+        "target",
+        required=True,
+        type=PATH,
+        help="File to write, its format by its suffix; - for standard output.",
+    ),
+    click.option("--to", "to_format", metavar="FORMAT", help="Format of the output, e.g. svg."),
+    _WRITING[-1],
+]
 
-#: For verbs that write no mesh; standard output keeps what they say.
-DRAWING = click.option(
-    "-o",
-    "--output",
-    "target",
-    required=True,
-    type=click.Path(path_type=Path, readable=False),
-    help="File to write, its format by its suffix.",
-)
+OUTPUT = _DRAWING[0]
+
+OVERWRITE = _WRITING[-1]
 
 ALLOW_EMPTY = click.option(
     "--allow-empty", is_flag=True, help="Write a file even if nothing is left."
@@ -111,6 +129,42 @@ ALLOW_EMPTY = click.option(
 CHECK = click.option(
     "--check/--no-check", default=True, help="Compare the result with manifold3d's (default)."
 )
+
+TIMEOUT = click.option(
+    "--timeout", type=click.FloatRange(min=0, min_open=True), help="Seconds to give it."
+)
+
+
+def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, ...] | None]:
+    """Return the callback of an option that takes a direction, and maybe more numbers after it.
+
+    Parameters
+    ----------
+    what : str
+        What an error calls the value, such as ``"normal"``.
+    names : str
+        Of the numbers, apart by commas; the first three must not all be 0.
+    example : str
+    """
+    count = names.count(",") + 1
+    spoken = {3: "three", 4: "four"}[count]
+    zeros = "not" if count == 3 else "the first three not"
+
+    def as_numbers(
+        context: click.Context, option: click.Parameter, value: str | None
+    ) -> tuple[float, ...] | None:
+        if value is None:
+            return None
+        try:
+            found = tuple(float(word) for word in value.split(","))
+        except ValueError:
+            found = ()
+        if len(found) != count or not all(map(math.isfinite, found)) or not any(found[:3]):
+            wanted = f"{spoken} numbers {names}, {zeros} all 0, as in {example}"
+            raise click.BadParameter(f"{value!r} is no {what}; it takes {wanted}.", context, option)
+        return found
+
+    return as_numbers
 
 
 def common(command: _Command) -> _Command:
@@ -136,6 +190,21 @@ def sets(command: _Command) -> _Command:
 def writing(command: _Command) -> _Command:
     """Add the options of verbs that write meshes."""
     return _with(_WRITING, command)
+
+
+def drawing(command: _Command) -> _Command:
+    """Add the options of verbs that write a drawing."""
+    return _with(_DRAWING, command)
+
+
+def making(command: _Command) -> _Command:
+    """Add the options of verbs that make one solid and write it."""
+    return _with([OUTPUT, writing, ALLOW_EMPTY, CHECK], command)
+
+
+def from_files(command: _Command) -> _Command:
+    """Add the options of verbs that make one solid of files as sets."""
+    return _with([making, reading, sets, common], command)
 
 
 def _with(options: list[Callable[[Any], Any]], command: _Command) -> _Command:

@@ -25,6 +25,9 @@ INTERRUPTED = 130
 CLOSED_PIPE = 141
 
 
+#: How many faces or vertices a message names.
+_FEW = 3
+
 #: Codes of errors that say which optional package or program is not installed.
 _MISSING_CODES = frozenset({"missing_dependency", "missing_package", "missing_program"})
 
@@ -55,9 +58,9 @@ class Output:
     taken: bool = False
 
     @classmethod
-    def of(cls, settings: dict[str, Any]) -> "Output":
+    def of(cls, settings: dict[str, Any], taken: bool = False) -> "Output":
         """Return what the options that every verb has say."""
-        return cls(int(settings["verbose"]) - int(settings["quiet"]), settings["as_json"])
+        return cls(int(settings["verbose"]) - int(settings["quiet"]), settings["as_json"], taken)
 
     def result(self, line: str, document: dict[str, Any]) -> None:
         """Print a result, as text or as the document."""
@@ -90,7 +93,16 @@ class Output:
         """Say on standard error what was noteworthy about a file."""
         least = -1 if finding.severity == "error" else 0
         if self.verbosity >= least:
-            click.echo(f"{finding.severity}: {name}: {finding.message}", err=True)
+            said = f"{finding.message}{_places(finding)}"
+            click.echo(f"{finding.severity}: {name}: {said}", err=True)
+
+
+def _places(finding: Finding) -> str:
+    """Return the first numbers of what a message calls these faces or vertices."""
+    if " these" not in finding.message or not finding.where:
+        return ""
+    first = ", ".join(map(str, finding.where[:_FEW]))
+    return f": {first}, …" if finding.count > _FEW else f": {first}"
 
 
 def exit_code_of(error: BspcsgError) -> int:

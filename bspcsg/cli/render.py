@@ -1,23 +1,23 @@
 """The verb that makes pictures: render."""
 
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..errors import BspcsgError
-from . import output
-from .files import Inputs, refuse_drawing, shown
-from .options import DRAWING, PATH, common, reading
-from .output import Output, counted
+from .drawing import Drawing
+from .files import shown
+from .options import PATH, common, drawing, reading
+from .output import counted
 
 if TYPE_CHECKING:
     from ..bsp import Picture
 
 _EPILOG = """\b
-Example:
+Examples:
   bspcsg render part.stl -o part.png --view front --size 1200x900
+  bspcsg render part.stl -o - --to svg | display
 """
 
 _SUFFIXES = (".svg", ".png")
@@ -58,7 +58,7 @@ def _as_colour(context: click.Context, option: click.Parameter, value: str) -> s
 
 @click.command("render", short_help="Write a picture of a mesh.", epilog=_EPILOG)
 @click.argument("file", type=PATH, metavar="FILE")
-@DRAWING
+@drawing
 @click.option(
     "--view",
     type=click.Choice(_VIEWS),
@@ -96,58 +96,32 @@ def render(file: Path, target: Path, **given: Any) -> int:
 
     The mesh need not be closed. PNG needs Pillow; bspcsg doctor says whether it is there.
     """
-    return _Rendering(file, target, **given).run()
+    return _Rendering(file, target, _SUFFIXES, **given).run()
 
 
-class _Rendering:
-    """One mesh, and the file for its picture."""
+class _Rendering(Drawing):
+    """One mesh, seen from somewhere."""
 
-    def __init__(self, file: Path, target: Path, **settings: Any) -> None:
-        self._file = file
-        self._target = target
-        self._settings = settings
-        self._out = Output.of(settings)
-        self._inputs = Inputs.of(self._out, settings)
-
-    def run(self) -> int:
-        from .. import set_threads
-        from ..io.atomic import write_file
-
-        set_threads(self._settings["threads"])
-        began = time.perf_counter()
-        refuse_drawing(self._target, _SUFFIXES)
-        self._inputs.refuse_early([self._file])
+    def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
         picture = self._picture()
-        as_svg = self._target.suffix.lower() == ".svg"
-        write_file(self._target, [picture.svg.encode() if as_svg else picture.png])
-        self._tell(picture, time.perf_counter() - began)
-        return output.DONE
+        width, height = self.settings["size"]
+        polygons = len(picture.painting.source)
+        values = {
+            "view": self.settings["view"],
+            "style": self.settings["style"],
+            "size": [width, height],
+            "polygons": polygons,
+        }
+        data = picture.svg.encode() if self.suffix == ".svg" else picture.png
+        return data, f"{width} x {height} pixels  {counted(polygons, 'polygon')}", values
 
     def _picture(self) -> "Picture":
         from ..bsp import picture
 
-        raw = self._inputs.raw(self._file)
-        self._inputs.tell(self._file, raw.findings)
+        raw = self.inputs.raw(self.file)
+        self.inputs.tell(self.file, raw.findings)
         if not len(raw.faces):
-            self._out.warning(f"{shown(self._file)}: there is nothing in it to be seen.")
+            self.out.warning(f"{shown(self.file)}: there is nothing in it to be seen.")
         names = ("view", "size", "style", "background")
-        looks = {name: self._settings[name] for name in names}
+        looks = {name: self.settings[name] for name in names}
         return picture((raw.vertices, raw.faces), **looks)
-
-    def _tell(self, picture: "Picture", seconds: float) -> None:
-        width, height = self._settings["size"]
-        polygons = len(picture.painting.source)
-        line = (
-            f"{shown(self._target)}  {width} x {height} pixels"
-            f"  {counted(polygons, 'polygon')}  {seconds:.2f} s"
-        )
-        document = {
-            "file": str(self._file),
-            "output": str(self._target),
-            "view": self._settings["view"],
-            "style": self._settings["style"],
-            "size": [width, height],
-            "polygons": polygons,
-            "seconds": round(seconds, 4),
-        }
-        self._out.result(line, document)

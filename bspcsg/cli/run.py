@@ -1,54 +1,113 @@
 """The verb that evaluates scripts: run."""
 
+import re
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from ..errors import FormatError
 from .files import shown
 from .job import Job
-from .options import ALLOW_EMPTY, CHECK, OUTPUT, common, writing
+from .options import TIMEOUT, common, making
 
 if TYPE_CHECKING:
     from ..solid import Solid
 
+
+#: What needs no quotes on the command line; an expression is not taken for a text.
+_PLAIN_WORD = re.compile(r"[A-Za-z_][\w.-]*")
+
+
+def _list_nodes(context: click.Context, option: click.Parameter, wanted: bool) -> None:
+    """Print the names of the nodes that can be evaluated, and end."""
+    if wanted and not context.resilient_parsing:
+        from ..csg import node_names
+
+        click.echo("\n".join(node_names()))
+        context.exit()
+
+
+def _as_defines(
+    context: click.Context, option: click.Parameter, values: tuple[str, ...]
+) -> dict[str, Any]:
+    """Return variables by their names; a word that is no value of the language is a text."""
+    from ..csg import value_of
+
+    defines = {}
+    for given in values:
+        name, equals, value = given.partition("=")
+        if not equals or not name.removeprefix("$").isidentifier():
+            raise click.BadParameter(f"{given!r} is not NAME=VALUE.", context, option)
+        try:
+            defines[name] = value_of(value)
+        except FormatError:
+            if not _PLAIN_WORD.fullmatch(value):
+                wanted = "a number, text, true, false or [list]"
+                message = f"{value!r} is no value; it takes {wanted}."
+                raise click.BadParameter(message, context, option) from None
+            defines[name] = value
+    return defines
+
+
 _EPILOG = """\b
-Example:
-  bspcsg run bracket.scad -o bracket.3mf --polish
+Examples:
+  bspcsg run bracket.scad -o bracket.3mf --polish -D width=12.5
+  bspcsg run part.py -o part.stl
 """
 
-_SUFFIXES = (".csg", ".scad", ".py")
+_SUFFIXES = (".csg", ".json", ".scad", ".py")
+
+#: Options that make sense for some scripts only, by their names, with those that they are not for.
+_NOT_FOR = {
+    "polish": (".py",),
+    "on_invalid": (".py",),
+    "timeout": (".csg", ".json"),
+    "defines": (".csg", ".json"),
+}
 
 
 @click.command(
     "run", short_help="Write the solid that an OpenSCAD or Python script makes.", epilog=_EPILOG
 )
 @click.argument("script", type=click.Path(path_type=Path, readable=False), metavar="SCRIPT")
-@OUTPUT
-@writing
+@click.option(
+    "-D",
+    "defines",
+    metavar="NAME=VALUE",
+    multiple=True,
+    callback=_as_defines,
+    help="Set a variable of a .scad or .py script: a number, text, true, false or [list].",
+)
+@click.option(
+    "--list-nodes",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_list_nodes,
+    help="List the nodes that can be evaluated, and end.",
+)
 @click.option(
     "--polish", is_flag=True, help="Undo OpenSCAD's rounding to six digits; not for Python."
 )
 @click.option(
-    "--skip-open",
-    is_flag=True,
-    help="Leave out meshes that are not closed, with a warning; not for Python.",
+    "--on-invalid",
+    type=click.Choice(["error", "warn", "repair"]),
+    default="error",
+    show_default=True,
+    help="Refuse meshes that are not closed, leave them out, or close them; not for Python.",
 )
-@click.option(
-    "--timeout",
-    type=click.FloatRange(min=0, min_open=True),
-    help="Seconds to give a .py or .scad script.",
-)
-@ALLOW_EMPTY
-@CHECK
+@TIMEOUT
+@making
 @common
 def run(script: Path, **given: Any) -> int:
     """Evaluate a script and write the solid it makes.
 
-    A .csg file is read as OpenSCAD writes it, a .scad file needs the program openscad. A .py file
+    A .csg file is read as OpenSCAD writes it, a .json file is the same tree (see bspcsg tree), a
+    .scad file needs the program openscad. A .py file
     leaves its solid in the variable result, or calls bspcsg.show; it runs with all your rights, and
     what it prints goes to standard error.
     """
@@ -74,20 +133,23 @@ class _Run(Job):
         self._refuse_options()
 
     def _refuse_options(self) -> None:
-        for name, useless in (("polish", ".py"), ("skip_open", ".py"), ("timeout", ".csg")):
-            if self.settings[name] and self._suffix == useless:
-                option = name.replace("_", "-")
-                raise click.UsageError(f"--{option} is not for {useless} files.")
+        context = click.get_current_context()
+        for name, useless in _NOT_FOR.items():
+            given = context.get_parameter_source(name) is not ParameterSource.DEFAULT
+            if given and self._suffix in useless:
+                option = "-D" if name == "defines" else f"--{name.replace('_', '-')}"
+                raise click.UsageError(f"{option} is not for {self._suffix} files.")
 
     def combined(self) -> "Solid":
         from ..script import run_script
 
-        limits = {} if self.settings["timeout"] is None else {"timeout": self.settings["timeout"]}
+        given = {name: self.settings[name] for name in ("timeout", "defines")}
+        options = {name: value for name, value in given.items() if value}
         if self._suffix == ".py":
-            return run_script(self._script, **limits)
-        return self._loaded(**limits)
+            return run_script(self._script, **options)
+        return self._loaded(**options)
 
-    def _loaded(self, **limits: float) -> "Solid":
+    def _loaded(self, **options: Any) -> "Solid":
         """Return the solid of OpenSCAD's script; what was left out is told."""
         from .. import csg
 
@@ -96,8 +158,8 @@ class _Run(Job):
             solid = csg.load(
                 self._script,
                 polish=self.settings["polish"],
-                on_invalid="warn" if self.settings["skip_open"] else "error",
-                **limits,
+                on_invalid=self.settings["on_invalid"],
+                **options,
             )
         # A polished model is evaluated twice, and warns as often.
         for said in dict.fromkeys(str(warning.message) for warning in caught):

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from . import output
-from .files import Inputs, refuse_drawing, shown
-from .options import DRAWING, PATH, common, reading, sets
-from .output import Output, counted
+from .drawing import Drawing
+from .files import shown
+from .options import PATH, common, drawing, numbers, reading, sets
+from .output import counted
 
 if TYPE_CHECKING:
     from ..bsp import Region
@@ -32,30 +33,17 @@ def _as_finite(
     return value
 
 
-def _as_normal(
-    context: click.Context, option: click.Parameter, value: str | None
-) -> tuple[float, ...] | None:
-    """Return the three numbers of a direction."""
-    if value is None:
-        return None
-    try:
-        numbers = tuple(float(word) for word in value.split(","))
-    except ValueError:
-        numbers = ()
-    if len(numbers) != 3 or not all(map(math.isfinite, numbers)) or not any(numbers):
-        wanted = "three numbers nx,ny,nz, not all 0, as in 1,0,0"
-        raise click.BadParameter(f"{value!r} is no normal; it takes {wanted}.", context, option)
-    return numbers
-
-
 @click.command("slice", short_help="Write the section of a solid by a plane.", epilog=_EPILOG)
 @click.argument("file", type=PATH, metavar="FILE")
-@DRAWING
+@drawing
 @click.option(
     "--z", "height", type=float, metavar="HEIGHT", callback=_as_finite, help="Cut at this height."
 )
 @click.option(
-    "--normal", metavar="NX,NY,NZ", callback=_as_normal, help="Cut along nx x + ny y + nz z = d."
+    "--normal",
+    metavar="NX,NY,NZ",
+    callback=numbers("normal", "nx,ny,nz", "1,0,0"),
+    help="Cut along nx x + ny y + nz z = d.",
 )
 @click.option(
     "--offset",
@@ -74,56 +62,23 @@ def section(file: Path, target: Path, **given: Any) -> int:
     (z, x). A face in the plane counts as above it, so a box standing on z = 0 is empty there and
     full at its top. DXF needs ezdxf; bspcsg doctor says whether it is there.
     """
-    return _Section(file, target, **given).run()
+    return _Section(file, target, _SUFFIXES, **given).run()
 
 
-class _Section:
-    """One solid, a plane, and the file for the drawing."""
+class _Section(Drawing):
+    """One solid, and a plane."""
 
-    def __init__(self, file: Path, target: Path, **settings: Any) -> None:
-        self._file = file
-        self._target = target
-        self._settings = settings
+    def __init__(self, *paths: Any, **settings: Any) -> None:
+        super().__init__(*paths, **settings)
         self._normal, self._offset = _plane(**{name: settings[name] for name in _PLANE})
-        self._out = Output.of(settings)
-        self._inputs = Inputs.of(self._out, settings)
 
-    def run(self) -> int:
-        from .. import set_threads
-
-        set_threads(self._settings["threads"])
-        refuse_drawing(self._target, _SUFFIXES)
-        self._inputs.refuse_early([self._file])
-        region = self._inputs.solid(self._file).slice(self._offset, self._normal)
+    def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
+        region = self.inputs.solid(self.file).slice(self._offset, self._normal)
         if region.is_empty:
             raise output.EmptyResultError(self._missed(), "empty_result")
-        self._write(region)
-        self._tell(region)
-        return output.DONE
-
-    def _missed(self) -> str:
-        normal = ",".join(f"{number:g}" for number in self._normal)
-        return (
-            f"{shown(self._file)}: the plane with normal {normal} and offset {self._offset:g} does"
-            " not cut it, so nothing was written; bspcsg info shows the bounds."
-        )
-
-    def _write(self, region: "Region") -> None:
-        if self._target.suffix.lower() == ".svg":
-            region.to_svg(self._target)
-        else:
-            region.to_dxf(self._target)
-
-    def _tell(self, region: "Region") -> None:
         holes = sum(outline.is_hole for outline in region.outlines)
         count = len(region.outlines)
-        line = (
-            f"{shown(self._target)}  area {region.area:.9g}"
-            f"  {counted(count, 'outline')}, {counted(holes, 'hole')} among them"
-        )
-        document = {
-            "file": str(self._file),
-            "output": str(self._target),
+        values = {
             "normal": list(self._normal),
             "offset": self._offset,
             "area": region.area,
@@ -132,7 +87,21 @@ class _Section:
             "holes": holes,
             "bounds": None if region.bounds is None else region.bounds.tolist(),
         }
-        self._out.result(line, document)
+        words = f"{counted(count, 'outline')}, {counted(holes, 'hole')} among them"
+        return self._data(region), f"area {region.area:.9g}  {words}", values
+
+    def _data(self, region: "Region") -> bytes:
+        from ..bsp.drawing_dxf import dxf_data
+        from ..bsp.drawing_svg import svg_data
+
+        return svg_data(region) if self.suffix == ".svg" else dxf_data(region)
+
+    def _missed(self) -> str:
+        normal = ",".join(f"{number:g}" for number in self._normal)
+        return (
+            f"{shown(self.file)}: the plane with normal {normal} and offset {self._offset:g} does"
+            " not cut it, so nothing was written; bspcsg info shows the bounds."
+        )
 
 
 _PLANE = ("height", "normal", "offset")

@@ -9,7 +9,7 @@ import click
 from . import output
 from .files import Inputs, Target, expanded, shown
 from .job import mesh_values, summary
-from .options import CHECK, PATH, common, reading, sets, writing
+from .options import CHECK, PATH, common, numbers, reading, sets, writing
 from .output import Output
 
 if TYPE_CHECKING:
@@ -22,23 +22,6 @@ Examples:
   bspcsg split part.stl --plane 0,0,1,2.5 -o 'half-%.ply'
   bspcsg split part.stl --by cutter.stl -o 'side-%.ply'
 """
-
-
-def _as_plane(
-    context: click.Context, option: click.Parameter, value: str | None
-) -> tuple[float, ...] | None:
-    """Return the four numbers of a plane."""
-    if value is None:
-        return None
-    try:
-        numbers = tuple(float(word) for word in value.split(","))
-    except ValueError:
-        numbers = ()
-    finite = all(abs(number) < float("inf") for number in numbers)
-    if len(numbers) != 4 or not finite or not any(numbers[:3]):
-        wanted = "four numbers nx,ny,nz,d, the first three not all 0, as in 0,0,1,2.5"
-        raise click.BadParameter(f"{value!r} is no plane; it takes {wanted}.", context, option)
-    return numbers
 
 
 @click.command(
@@ -56,7 +39,10 @@ def _as_plane(
     help="Files to write; % stands for the number of each, else it goes before the suffix.",
 )
 @click.option(
-    "--plane", metavar="NX,NY,NZ,D", callback=_as_plane, help="Cut along nx x + ny y + nz z = d."
+    "--plane",
+    metavar="NX,NY,NZ,D",
+    callback=numbers("plane", "nx,ny,nz,d", "0,0,1,2.5"),
+    help="Cut along nx x + ny y + nz z = d.",
 )
 @click.option("--by", "cutter", type=PATH, help="Cut along the surface of another solid.")
 @writing

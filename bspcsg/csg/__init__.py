@@ -11,13 +11,17 @@ Examples
 True
 """
 
+from .drawn import graph, outline
 from .evaluator import evaluate, node_names
+from .from_solid import tree_of
 from .json_form import from_json, to_json
-from .loading import dump, dumps, load, loads, read_tree, tree_of
+from .loading import dump, dumps, load, loads, read_tree
 from .openscad import read_scad
-from .parser import parse
+from .parser import parse, value_of
 from .registry import CsgWarning
+from .simplified import simplified
 from .tree import Argument, CsgTree, Node, Place
+from .writer import written
 
 __all__ = [
     "Argument",
@@ -29,12 +33,17 @@ __all__ = [
     "dumps",
     "evaluate",
     "from_json",
+    "graph",
     "load",
     "loads",
     "node_names",
+    "outline",
     "parse",
     "read_scad",
     "read_tree",
+    "simplified",
     "to_json",
     "tree_of",
+    "value_of",
+    "written",
 ]

@@ -4,6 +4,7 @@ from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
 
 from ..bsp import Region
+from ..counting import counted
 from ..errors import BspcsgError, FormatError
 from ..solid import Solid
 from . import (
@@ -34,6 +35,7 @@ def node_names() -> tuple[str, ...]:
     return tuple(sorted(RECIPES))
 
 
+@counted
 def evaluate(tree: CsgTree, *, polish: bool = False, on_invalid: OnInvalid = "error") -> Geometry:
     """Return what a tree stands for: a solid, a region of the plane, or None if it is nothing.
 
@@ -46,9 +48,9 @@ def evaluate(tree: CsgTree, *, polish: bool = False, on_invalid: OnInvalid = "er
         largest coordinate, so that faces meet again that nearly did; faces of turned bodies may
         break where their corners move by as much. The model is evaluated once more to know its
         size.
-    on_invalid : {"error", "warn"}
+    on_invalid : {"error", "warn", "repair"}
         Whether polyhedra and imported meshes that are not closed are errors, or are left out with a
-        warning, as OpenSCAD does.
+        warning, as OpenSCAD does, or closed by `bspcsg.repair` with one.
 
     Raises
     ------

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from .._types import FloatArray
-from ..errors import FormatError
+from ..errors import FormatError, words_of
 from ..polygon import directed_edges
 from ..solid import Solid
 from ..sweep import strip
@@ -41,7 +41,7 @@ def _row(path: Path, number: int, line: str) -> list[float]:
     try:
         row = [float(word) for word in line.split()]
     except ValueError as error:
-        raise FormatError(f"{path}:{number}: {error}.", "syntax", [number]) from error
+        raise FormatError(f"{path}:{number}: {words_of(error)}.", "syntax", [number]) from error
     if not np.isfinite(row).all():
         raise FormatError(f"{path}:{number}: heights must be finite.", "non_finite", [number])
     return row

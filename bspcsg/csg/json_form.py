@@ -20,7 +20,9 @@ from .tree import Argument, CsgTree, Node, Value
 FORMAT = "bspcsg-csg"
 VERSION = 1
 
-#: Deeper trees are refused here; the text form holds any depth.
+#: Deeper trees are refused here; the text form holds any depth. Python's own reader of JSON, and
+#: what makes nodes of its answer, take up to three calls a node, and a program has 1000 to itself
+#: unless it asks for more: this leaves it a third.
 DEEPEST_NODE = 200
 
 _ODD = {"inf": math.inf, "-inf": -math.inf, "nan": math.nan}

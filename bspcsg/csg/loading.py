@@ -4,23 +4,25 @@ import os
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ..bsp import Region
+from ..counting import counted
 from ..errors import BspcsgError, FormatError
 from ..io.atomic import write_file
+from ..io.source import content_of
 from ..solid import Solid
 from .evaluator import evaluate
+from .from_solid import tree_of
 from .json_form import from_json
 from .parser import parse
 from .registry import Geometry, OnInvalid
-from .tree import Argument, CsgTree, Node
+from .tree import CsgTree
 from .writer import written
 
 #: Files larger than this are refused, in bytes.
 _LARGEST = 1 << 28
 
 
+@counted
 def load(
     path: str | os.PathLike[str],
     *,
@@ -37,7 +39,7 @@ def load(
         converts first (see `bspcsg.csg.read_tree`).
     polish : bool
         Undo OpenSCAD's rounding to six digits (see `bspcsg.csg.evaluate`).
-    on_invalid : {"error", "warn"}
+    on_invalid : {"error", "warn", "repair"}
         What to do about meshes that are not closed (see `bspcsg.csg.evaluate`).
     **options
         For `.scad`: ``defines``, a dict of variables.
@@ -59,6 +61,7 @@ def load(
     return _solid(evaluate(tree, polish=polish, on_invalid=on_invalid), tree.name)
 
 
+@counted
 def loads(
     text: str,
     *,
@@ -85,7 +88,7 @@ def read_tree(path: str | os.PathLike[str], **options: Any) -> CsgTree:
     Raises
     ------
     FormatError
-        If the file cannot be read, is empty, or is no such script.
+        If the file cannot be read or is no such script; an empty one is a model of nothing.
     """
     file, name = Path(path), os.fspath(path)
     suffix = file.suffix.lower()
@@ -105,7 +108,7 @@ def _text(file: Path, name: str) -> str:
     try:
         if file.stat().st_size > _LARGEST:
             raise FormatError(f"{name}: the file is larger than {_LARGEST:,} bytes.", "too_large")
-        return file.read_bytes().decode("utf-8")
+        return content_of(file).decode("utf-8")
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error
@@ -128,11 +131,18 @@ def _solid(body: Geometry, name: str) -> Solid:
     return body
 
 
-def dumps(model: Solid | CsgTree) -> str:
+def dumps(model: Solid | CsgTree, *, flat: bool = False) -> str:
     """Return a solid or a tree as the text of a `.csg` script.
 
-    A solid becomes one polyhedron, its reduced boundary, as it is saved to mesh files: corners in
-    double precision, which reading snaps to the lattice. A tree gives an equal tree again.
+    A solid becomes the expression that made it, with polyhedra as leaves, as far as it is
+    remembered (see `tree_of`): corners in double precision, which reading snaps to the lattice.
+    A tree gives an equal tree again.
+
+    Parameters
+    ----------
+    model : Solid or CsgTree
+    flat : bool
+        Write a solid as one polyhedron, its reduced boundary.
 
     Raises
     ------
@@ -143,23 +153,15 @@ def dumps(model: Solid | CsgTree) -> str:
     --------
     >>> import bspcsg as b
     >>> from bspcsg import csg
-    >>> csg.loads(csg.dumps(b.cube(3))).equals(b.cube(3))
+    >>> part = b.cube(3) - b.cube(1)
+    >>> csg.parse(csg.dumps(part)).nodes[0].name
+    'difference'
+    >>> csg.loads(csg.dumps(part)).equals(part)
     True
     """
-    return written(model if isinstance(model, CsgTree) else tree_of(model))
+    return written(model if isinstance(model, CsgTree) else tree_of(model, flat=flat))
 
 
-def tree_of(solid: Solid) -> CsgTree:
-    """Return the tree of one polyhedron that is the solid; an empty one has no nodes."""
-    if solid.is_empty:
-        return CsgTree(())
-    mesh = solid.normalized().to_mesh()
-    points = tuple(tuple(point) for point in mesh.vertices.tolist())
-    # Polyhedra list their corners clockwise, numbers are all doubles.
-    faces = tuple(tuple(face) for face in mesh.faces[:, ::-1].astype(np.float64).tolist())
-    return CsgTree((Node("polyhedron", (Argument("points", points), Argument("faces", faces))),))
-
-
-def dump(model: Solid | CsgTree, path: str | os.PathLike[str]) -> None:
+def dump(model: Solid | CsgTree, path: str | os.PathLike[str], *, flat: bool = False) -> None:
     """Write a `.csg` file (see `dumps`); it appears complete or not at all."""
-    write_file(path, [dumps(model).encode()])
+    write_file(path, [dumps(model, flat=flat).encode()])

@@ -62,6 +62,17 @@ def parse(text: str, name: str = "<csg>", folder: str | Path | None = None) -> C
     return CsgTree(_Parser(script).nodes(), name, script.folder)
 
 
+def value_of(text: str) -> Value:
+    """Return the value that a text stands for, such as ``1.5``, ``"text"`` or ``[1, 2]``.
+
+    Raises
+    ------
+    FormatError
+        If it stands for none.
+    """
+    return _Parser(Script(text, "<value>")).value()
+
+
 @dataclass
 class _Frame:
     """A node whose children are being read."""
@@ -83,6 +94,12 @@ class _Parser:
         self._places = script.places()
         self._words: Iterator[Token] = tokens(script)
         self._next = next(self._words)
+
+    def value(self) -> Value:
+        found = self._value()
+        if self._next.kind != "end":
+            raise self._error(f"expected the end, found {self._next}.")
+        return found
 
     def nodes(self) -> tuple[Node, ...]:
         top: list[Node] = []

@@ -8,6 +8,8 @@ from typing import Any, Literal, TypeAlias
 
 from ..bsp import Region
 from ..errors import InvalidMeshError
+from ..io import RawMesh
+from ..repair import repair
 from ..solid import Solid
 from .arguments import Arguments
 from .tree import Node
@@ -16,7 +18,7 @@ from .tree import Node
 Geometry: TypeAlias = Solid | Region | None
 
 
-OnInvalid: TypeAlias = Literal["error", "warn"]
+OnInvalid: TypeAlias = Literal["error", "warn", "repair"]
 
 
 class CsgWarning(UserWarning):
@@ -37,8 +39,8 @@ class Evaluation:
         Whether matrices are made exact rotations where they nearly are.
     pitch : int, optional
         The lattice for bodies as they are made, ``10**pitch`` units.
-    on_invalid : {"error", "warn"}
-        Whether polyhedra and imported meshes that are not closed are errors or left out.
+    on_invalid : {"error", "warn", "repair"}
+        Whether polyhedra and imported meshes that are not closed are errors, left out, or closed.
     """
 
     script: str = "<csg>"
@@ -60,13 +62,17 @@ class Evaluation:
     def closed_solid(self, node: Node, vertices: Any, faces: Any) -> Solid | None:
         """Return the solid of a mesh from outside, whichever way round it is oriented.
 
-        One that is not closed is an error, or left out with a warning.
+        One that is not closed is an error, or left out or closed with a warning.
         """
         try:
             return Solid(vertices, faces, winding="nonzero")
         except InvalidMeshError as error:
             if self.on_invalid == "error" or error.code != "not_closed":
                 raise
+            if self.on_invalid == "repair":
+                made = repair(RawMesh(vertices, faces)).mesh
+                self.warn(node, f"{error.message} It is repaired")
+                return Solid(made.vertices, made.faces, winding="nonzero")
             self.warn(node, f"{error.message} It is left out")
             return None
 

@@ -1,6 +1,7 @@
 """Trees as text."""
 
 import math
+from collections.abc import Mapping
 
 from .tokens import quoted
 from .tree import Argument, CsgTree, Node, Value
@@ -9,12 +10,24 @@ from .tree import Argument, CsgTree, Node, Value
 _DEEPEST_INDENT = 40
 
 
-def written(tree: CsgTree) -> str:
+#: Numbers that are no literals, as dumps of a tree have them, and as OpenSCAD's own language does.
+_IN_CSG = {math.inf: "inf", -math.inf: "-inf", math.nan: "nan"}
+_IN_SCAD = {math.inf: "1 / 0", -math.inf: "-1 / 0", math.nan: "0 / 0"}
+
+
+def written(tree: CsgTree, *, scad: bool = False) -> str:
     """Return a tree as a `.csg` script; reading it gives an equal tree.
 
     Numbers are written so that reading them gives the same doubles: OpenSCAD itself writes six
     digits, but reads all.
+
+    Parameters
+    ----------
+    tree : CsgTree
+    scad : bool
+        Write OpenSCAD's own language instead, in which infinity has no name.
     """
+    odd = _IN_SCAD if scad else _IN_CSG
     lines: list[str] = []
     waiting: list[Node | str] = list(reversed(tree.nodes))
     depth = 0
@@ -24,7 +37,7 @@ def written(tree: CsgTree) -> str:
             depth -= 1
             lines.append(_indent(depth) + node)
             continue
-        head = _indent(depth) + node.modifiers + _call(node)
+        head = _indent(depth) + node.modifiers + _call(node, odd)
         lines.append(head + (" {" if node.children else ";"))
         if node.children:
             depth += 1
@@ -37,26 +50,27 @@ def _indent(depth: int) -> str:
     return "\t" * min(depth, _DEEPEST_INDENT)
 
 
-def _call(node: Node) -> str:
-    return f"{node.name}({', '.join(map(_argument, node.arguments))})"
+def _call(node: Node, odd: Mapping[float, str]) -> str:
+    return f"{node.name}({', '.join(_argument(argument, odd) for argument in node.arguments)})"
 
 
-def _argument(argument: Argument) -> str:
-    value = value_text(argument.value)
+def _argument(argument: Argument, odd: Mapping[float, str]) -> str:
+    value = value_text(argument.value, odd)
     return value if argument.name is None else f"{argument.name} = {value}"
 
 
-def value_text(value: Value) -> str:
+def value_text(value: Value, odd: Mapping[float, str] = _IN_CSG) -> str:
     """Return a value as a script writes it."""
     if isinstance(value, tuple):
-        return f"[{', '.join(map(value_text, value))}]"
+        return f"[{', '.join(value_text(entry, odd) for entry in value)}]"
     if isinstance(value, bool) or value is None:
         return {True: "true", False: "false", None: "undef"}[value]
-    return quoted(value) if isinstance(value, str) else number_text(value)
+    return quoted(value) if isinstance(value, str) else number_text(value, odd)
 
 
-def number_text(value: float) -> str:
+def number_text(value: float, odd: Mapping[float, str] = _IN_CSG) -> str:
     """Return a number in as few digits as give the same double again."""
     if math.isfinite(value):
         return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)
-    return "nan" if math.isnan(value) else "-inf" if value < 0 else "inf"
+    # Not a number is not equal to itself, so it is no key to be found.
+    return odd[math.nan if math.isnan(value) else value]

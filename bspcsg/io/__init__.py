@@ -9,7 +9,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import BspcsgError, Finding
+from ..counting import counted
+from ..errors import BspcsgError, Finding, FormatError
 from .formats import (
     FORMATS,
     decoded,
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from ..solid import Solid
 
 #: Suffixes of scripts, which `load` evaluates.
-SCRIPTS = frozenset({".csg", ".scad"})
+SCRIPTS = frozenset({".csg", ".json", ".scad"})
 
 __all__ = [
     "FORMATS",
@@ -37,6 +38,7 @@ __all__ = [
     "encoder_of",
     "format_of",
     "load",
+    "loads",
     "read",
     "read_as",
     "save",
@@ -44,13 +46,15 @@ __all__ = [
 ]
 
 
+@counted
 def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
     """Read a mesh file or a script as a solid; the suffix names the format.
 
     Parameters
     ----------
     path : str or path
-        Ending in one of `FORMATS`, or a script: ``.csg`` or ``.scad`` (see `bspcsg.csg.load`).
+        Ending in one of `FORMATS`, or a script: ``.csg``, ``.json`` or ``.scad`` (see
+        `bspcsg.csg.load`).
         3MF and GLB come in millimetres, the other formats in whatever
         unit they were written in.
     **options
@@ -69,6 +73,36 @@ def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
 
         return csg.load(path, **options)
     return solid_of(read(path), path, **options)
+
+
+@counted
+def loads(data: Any, suffix: str | None, **options: Any) -> "Solid":
+    """Return the solid in the bytes of a mesh file, or in one that is open for reading bytes.
+
+    Parameters
+    ----------
+    data : bytes or file
+    suffix : str
+        One of `FORMATS`, with or without its dot.
+    **options
+        As for `Solid`.
+
+    Raises
+    ------
+    FormatError
+        If the format is not said (code "unknown_format"), or as for `load`.
+    """
+    named = f".{(suffix or '').lower().removeprefix('.')}"
+    if named not in FORMATS:
+        known = ", ".join(name[1:] for name in sorted(FORMATS))
+        message = f"To read bytes, say their format: one of {known}, not {suffix!r}."
+        raise FormatError(message, "unknown_format")
+    content = data.read() if hasattr(data, "read") else bytes(data)
+    if not isinstance(content, bytes):
+        raise FormatError("A mesh is read from bytes; open the file with mode 'rb'.", "unreadable")
+    name = getattr(data, "name", None)
+    called = name if isinstance(name, str) else "<bytes>"
+    return solid_of(decoded(called, content, named), called, **options)
 
 
 def solid_of(raw: RawMesh, path: str | os.PathLike[str], **options: Any) -> "Solid":
@@ -91,8 +125,8 @@ def save(
     ----------
     solid : Solid
     path : str or path
-        Ending in one of `FORMATS`. Binary STL and GLB hold single precision; 3MF and GLB take the
-        model as millimetres.
+        Ending in one of `FORMATS`, or in ``.csg`` for the expression (see `bspcsg.csg.dump`).
+        Binary STL and GLB hold single precision; 3MF and GLB take the model as millimetres.
     text : bool
         Write STL and PLY as text; OBJ and OFF always are.
 
@@ -108,5 +142,10 @@ def save(
     UnboundedError
         If the solid reaches to infinity.
     """
+    if Path(path).suffix.lower() == ".csg":
+        from .. import csg
+
+        csg.dump(solid, path)
+        return ()
     encoder_of(path, text)
     return write(solid.normalized().to_mesh(), path, text=text)

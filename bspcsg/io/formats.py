@@ -13,7 +13,7 @@ from ..mesh import Mesh
 from . import glb, obj, off, ply, stl, threemf, threemf_write, vtk
 from .atomic import write_file
 from .raw import RawMesh
-from .source import Source
+from .source import Source, content_of
 
 Encoder: TypeAlias = Callable[[Mesh | RawMesh], Iterator[bytes]]
 Losses: TypeAlias = Callable[[Mesh | RawMesh], tuple[Finding, ...]]
@@ -31,6 +31,8 @@ class Format:
         What the binary form cannot keep; raises OverflowError if it cannot hold the numbers.
     unit : str
         ``"mm"`` if files say how long a unit is, and are read and written in millimetres.
+    up : {"z", "y"}
+        Which axis is up in files; meshes in memory have z up.
     """
 
     read: Callable[[Source], RawMesh]
@@ -38,6 +40,7 @@ class Format:
     binary: Encoder | None = None
     losses: Losses | None = None
     unit: str = ""
+    up: str = "z"
 
 
 FORMATS = {
@@ -46,7 +49,7 @@ FORMATS = {
     ".ply": Format(ply.read, ply.text, ply.binary),
     ".off": Format(off.read, off.text),
     ".3mf": Format(threemf.read, None, threemf_write.binary, threemf_write.losses, "mm"),
-    ".glb": Format(glb.read, None, glb.binary, glb.losses, "mm"),
+    ".glb": Format(glb.read, None, glb.binary, glb.losses, "mm", "y"),
     ".vtk": Format(vtk.reader(".vtk"), None, vtk.writer(".vtk")),
     ".vtu": Format(vtk.reader(".vtu"), None, vtk.writer(".vtu")),
 }
@@ -63,7 +66,8 @@ _REFUSALS = {
     **dict.fromkeys((".iges", ".igs"), _BREP.format("IGES")),
     ".brep": _BREP.format("BREP"),
     ".amf": _NO_LIBRARY.format("AMF", "3MF"),
-    ".vtp": _NO_LIBRARY.format("VTP", "VTU"),
+    ".vtp": "VTP is read by VTK's own package only, of some hundred megabytes, which is left out"
+    " here; have VTU written instead, or pass what pyvista read to Solid.from_mesh.",
     ".gltf": "glTF with separate files is not read; pack it into one GLB file.",
 }
 
@@ -82,7 +86,7 @@ def format_of(path: str | os.PathLike[str]) -> Format:
     known = ", ".join(sorted(FORMATS))
     message = f"“{suffix}” is no known mesh format; known are {known}."
     if not suffix:
-        message = f"the name needs a suffix: {known}."
+        message = f"the name needs a suffix that says the format: {known}."
     raise FormatError(f"{os.fspath(path)}: {_REFUSALS.get(suffix, message)}", "unknown_format")
 
 
@@ -133,7 +137,7 @@ def read_as(path: str | os.PathLike[str], suffix: str) -> RawMesh:
     if suffix.lower() not in FORMATS:
         format_of(name)
     try:
-        data = Path(path).read_bytes()
+        data = content_of(Path(path))
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error

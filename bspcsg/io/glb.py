@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from .._types import FloatArray
-from ..errors import Finding
+from ..errors import Finding, words_of
 from ..mesh import Mesh
 from . import single
 from .glb_container import check_container
@@ -44,7 +44,7 @@ def read(source: Source) -> RawMesh:
         scene = _decoded(source.data)
         parts = [_placed(scene, node) for node in _nodes(scene)]
     except Exception as error:  # what trimesh raises on damaged files is of any kind
-        reason = f"{type(error).__name__}: {error}".splitlines()[0][:200]
+        reason = f"{type(error).__name__}: {words_of(error)}"
         raise source.error(f"this GLB cannot be decoded: {reason}.") from error
     mesh = joined([part for part in parts if part is not None])
     if not np.isfinite(mesh.vertices).all():
@@ -90,7 +90,8 @@ def _placed(scene: Any, node: str) -> RawMesh | None:
 def _moved(vertices: FloatArray, matrix: FloatArray) -> FloatArray:
     x, y, z = vertices.T
     # Not a matrix product: where a row has one entry, its result must be exact.
-    rows = [row[0] * x + row[1] * y + row[2] * z + row[3] for row in matrix[:3]]
+    with np.errstate(invalid="ignore"):  # what is infinite is refused later
+        rows = [row[0] * x + row[1] * y + row[2] * z + row[3] for row in matrix[:3]]
     return np.stack(rows, axis=1)
 
 

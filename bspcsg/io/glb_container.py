@@ -105,19 +105,31 @@ class _Claims:
             if any(word in extension.lower() for word in _GEOMETRIC):
                 message = f"the file needs the extension {extension}, which cannot be read here."
                 raise self._source.error(message, "unsupported")
-        for buffer in self._tree.get("buffers", []):
+        for number, buffer in enumerate(self._tree.get("buffers", [])):
             if "uri" in buffer:
                 message = "the data lies in another file; only self-contained GLB can be read."
                 raise self._source.error(message, "unsupported")
+            if number > 0 or not 0 <= buffer["byteLength"] <= self._held:
+                message = f"buffer {number} promises more than the {self._held} bytes of data."
+                raise self._source.error(message, "truncated")
         for number, accessor in enumerate(self._tree.get("accessors", [])):
             self._check_accessor(number, accessor)
         self._check_nodes(self._tree.get("nodes", []))
+
+    def _entry(self, kind: str, index: Any) -> dict[str, Any]:
+        """Return what an index names; negative ones name nothing, though Python counts back."""
+        entries: list[dict[str, Any]] = self._tree.get(kind, [])
+        if type(index) is not int or not 0 <= index < len(entries):
+            message = f"the description names {kind} {index}, and has {len(entries)} of them."
+            raise self._source.error(message, "index_out_of_range")
+        return entries[index]
 
     def _check_accessor(self, number: int, accessor: dict[str, Any]) -> None:
         if "sparse" in accessor or "bufferView" not in accessor:
             message = f"accessor {number} is sparse, which cannot be read here."
             raise self._source.error(message, "unsupported")
-        view = self._tree["bufferViews"][accessor["bufferView"]]
+        view = self._entry("bufferViews", accessor["bufferView"])
+        self._entry("buffers", view["buffer"])
         start, length = view.get("byteOffset", 0), view["byteLength"]
         element = _COMPONENT[accessor["componentType"]] * _ELEMENT[accessor["type"]]
         stride, count = view.get("byteStride") or element, accessor["count"]
@@ -152,14 +164,16 @@ class _Claims:
         if "mesh" not in node:
             return 0
         total = 0
-        for primitive in self._tree["meshes"][node["mesh"]]["primitives"]:
+        for primitive in self._entry("meshes", node["mesh"])["primitives"]:
             mode = primitive.get("mode", _TRIANGLES)
+            for accessor in primitive["attributes"].values():
+                self._entry("accessors", accessor)
             if mode == _FAN:
                 message = "triangle fans cannot be read here; write single triangles."
                 raise self._source.error(message, "unsupported")
             if mode in (_TRIANGLES, _STRIP):
                 corners = primitive.get("indices", primitive["attributes"]["POSITION"])
-                count = self._tree["accessors"][corners]["count"]
+                count = self._entry("accessors", corners)["count"]
                 total += count // 3 if mode == _TRIANGLES else count
         return total
 

@@ -8,7 +8,7 @@ import numpy as np
 from ..errors import Finding, FormatError
 from ..mesh import Mesh
 from .raw import Polygons, RawMesh, parts_of
-from .source import Source, quoted
+from .source import Source, quoted, whole
 
 #: Statements about what a mesh of triangles has no room for.
 _DROPPED = {
@@ -119,7 +119,7 @@ def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
 def _references(source: Source, number: int, words: list[bytes], known: int) -> list[int]:
     """Return the vertices of a face, from 0; negative numbers count back from the last vertex."""
     try:
-        references = [int(word.partition(b"/")[0]) for word in words[1:]]
+        references = [whole(word.partition(b"/")[0]) for word in words[1:]]
     except ValueError:
         message = f"expected vertex numbers, found {quoted(b' '.join(words[1:]))}."
         raise source.error(message, line=number) from None

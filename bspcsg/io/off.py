@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from ..errors import Finding
 from ..mesh import Mesh
 from .raw import Polygons, RawMesh
-from .source import Source, quoted
+from .source import Source, quoted, whole
 
 _KEYWORD = re.compile(rb"(ST)?C?N?(4?)(n?)(?:OFF|off)")
 
@@ -47,7 +47,7 @@ def _more_than_a_shape(points: list[_Line], polygons: list[_Line]) -> tuple[str,
     found = []
     if any(len(words) > 3 for _, words in points):
         found.append("data of vertices")
-    if any(len(words) > int(words[0]) + 1 for _, words in polygons):
+    if any(len(words) > whole(words[0]) + 1 for _, words in polygons):
         found.append("colours of faces")
     return tuple(found)
 
@@ -74,7 +74,7 @@ def _counts(source: Source, lines: list[_Line]) -> tuple[int, int, list[_Line]]:
     """Return the numbers of vertices and faces, and the lines after them."""
     number, words = lines[0] if lines else (1, [])
     try:
-        counts = [int(word) for word in words[:2]]
+        counts = [whole(word) for word in words[:2]]
     except ValueError:
         counts = []
     if len(counts) < 2 or min(counts) < 0:
@@ -86,8 +86,8 @@ def _counts(source: Source, lines: list[_Line]) -> tuple[int, int, list[_Line]]:
 def _corners(source: Source, number: int, words: list[bytes]) -> list[int]:
     """Return the vertex indices of a face; a colour may follow them."""
     try:
-        count = int(words[0])
-        indices = [int(word) for word in words[1 : count + 1]]
+        count = whole(words[0])
+        indices = [whole(word) for word in words[1 : count + 1]]
     except ValueError:
         message = f"expected a face of whole numbers, found {quoted(b' '.join(words))}."
         raise source.error(message, line=number) from None

@@ -11,7 +11,7 @@ from ..mesh import Mesh
 from .ply_header import Element, Header, Order, read_header
 from .ply_lists import read_mixed, read_uniform
 from .raw import Polygons, RawMesh
-from .source import Source, quoted
+from .source import Source, quoted, whole
 
 #: Both names of the list are in use.
 _FACE_LISTS = ("vertex_indices", "vertex_index")
@@ -35,6 +35,7 @@ def read(source: Source) -> RawMesh:
         If it is no PLY, is cut off, has no vertices or faces, or names a vertex that does not
         exist; names the line or the byte.
     """
+    source = source.without_mark()
     header = read_header(source)
     found = _Found()
     if header.order is None:
@@ -137,7 +138,7 @@ def _text_list(
     at, wanted = 0, []
     try:
         for position, prop in enumerate(element.properties):
-            length = int(words[at]) if prop.count is not None else 1
+            length = whole(words[at]) if prop.count is not None else 1
             at += prop.count is not None
             if length < 0 or at + length > len(words):
                 raise ValueError
@@ -153,7 +154,7 @@ def _text_list(
 
 
 def _index(word: bytes) -> int:
-    index = int(word)
+    index = whole(word)
     if not -(2**63) <= index < 2**63:
         raise ValueError
     return index

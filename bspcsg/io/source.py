@@ -1,14 +1,18 @@
 """A file's bytes with the name and the places that errors about it carry."""
 
+import errno
+import stat
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from .._types import FloatArray
 from ..errors import FormatError
 
-_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+#: What some editors put before a text.
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 #: How much of an offending word an error quotes.
 _QUOTED = 24
@@ -29,6 +33,10 @@ class Source:
     name: str
     data: bytes
 
+    def without_mark(self) -> "Source":
+        """Return the file without a byte order mark before it."""
+        return Source(self.name, self.data.removeprefix(BYTE_ORDER_MARK))
+
     def error(
         self,
         message: str,
@@ -46,7 +54,7 @@ class Source:
 
     def text_lines(self, comment: bytes = b"") -> Iterator[tuple[int, list[bytes]]]:
         """Yield number and words of each line that is not blank, without its comment."""
-        for number, line in enumerate(self.data.removeprefix(_BYTE_ORDER_MARK).splitlines(), 1):
+        for number, line in enumerate(self.without_mark().data.splitlines(), 1):
             words = (line.partition(comment)[0] if comment else line).split()
             if words:
                 yield number, words
@@ -61,6 +69,8 @@ class Source:
         """
         try:
             numbers = [(float(row[0]), float(row[1]), float(row[2])) for row in rows]
+            if b"_" in self.data and not all(map(_is_point, rows)):
+                raise ValueError
         except (ValueError, IndexError):
             raise self._bad_row(rows, lines) from None
         points = np.array(numbers, dtype=np.float64).reshape(-1, 3)
@@ -78,15 +88,32 @@ class Source:
         return self.error(message, line=lines[row])
 
 
+def content_of(path: Path) -> bytes:
+    """Return the bytes of a file or pipe; devices, some of which never end, raise OSError."""
+    mode = path.stat().st_mode
+    if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
+        raise OSError(errno.EINVAL, "it is a device")
+    return path.read_bytes()
+
+
 def quoted(words: bytes) -> str:
     """Return the beginning of some bytes in quotes, fit for a message."""
-    text = words.decode("utf-8", "replace")
+    decoded = words.decode("utf-8", "replace")
+    text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in decoded)
     short = text if len(text) <= _QUOTED else text[:_QUOTED] + "…"
     return f"“{short}”" if text else "nothing"
 
 
+def whole(word: bytes) -> int:
+    """Return a whole number; ``1_0``, which Python takes for 10, is none."""
+    if b"_" in word:
+        raise ValueError(word)
+    return int(word)
+
+
 def _is_point(words: Sequence[bytes]) -> bool:
     try:
-        return len([float(word) for word in words[:3]]) == 3
+        numbers = [float(word) for word in words[:3]]
     except ValueError:
         return False
+    return len(numbers) == 3 and not any(b"_" in word for word in words[:3])

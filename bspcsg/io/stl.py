@@ -15,7 +15,7 @@ from ..mesh import Mesh
 from ..weld import welded
 from . import single
 from .raw import RawMesh, parts_of
-from .source import Source, quoted
+from .source import BYTE_ORDER_MARK, Source, quoted
 
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -38,7 +38,9 @@ def read(source: Source) -> RawMesh:
 def _is_binary(data: bytes) -> bool:
     if len(data) >= _HEADER and len(data) == _HEADER + _RECORD.itemsize * _promised(data):
         return True
-    return data.lstrip()[:5].lower() != b"solid" or b"\0" in data[:1024]
+    return (
+        data.removeprefix(BYTE_ORDER_MARK).lstrip()[:5].lower() != b"solid" or b"\0" in data[:1024]
+    )
 
 
 def _promised(data: bytes) -> int:

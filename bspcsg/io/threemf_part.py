@@ -180,14 +180,24 @@ class PartReader:
 
 
 def _point(attributes: dict[str, str]) -> tuple[float, float, float]:
-    point = float(attributes["x"]), float(attributes["y"]), float(attributes["z"])
+    words = attributes["x"], attributes["y"], attributes["z"]
+    _refuse_underscores(words)
+    point = float(words[0]), float(words[1]), float(words[2])
     if not all(abs(value) < float("inf") for value in point):
         raise ValueError("coordinates must be finite")
     return point
 
 
+def _refuse_underscores(words: tuple[str, ...]) -> None:
+    """Refuse ``1_0``, which Python takes for 10."""
+    if "_" in "".join(words):
+        raise ValueError("a number must not contain “_”")
+
+
 def _triangle(attributes: dict[str, str]) -> tuple[int, int, int]:
-    corners = int(attributes["v1"]), int(attributes["v2"]), int(attributes["v3"])
+    words = attributes["v1"], attributes["v2"], attributes["v3"]
+    _refuse_underscores(words)
+    corners = int(words[0]), int(words[1]), int(words[2])
     if min(corners) < 0:
         raise ValueError("a vertex number must not be negative")
     return corners

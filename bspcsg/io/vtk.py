@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import Finding, missing_part
+from ..errors import Finding, missing_part, words_of
 from ..mesh import Mesh
 from .raw import Polygons, RawMesh
 from .source import Source
@@ -71,7 +71,7 @@ def _read(source: Source, suffix: str) -> RawMesh:
             ):
                 grid = meshio.read(path)
         except (Exception, SystemExit) as error:  # of any kind: meshio checks little itself
-            reason = f"{type(error).__name__}: {error}".splitlines()[0][:200]
+            reason = f"{type(error).__name__}: {words_of(error)}"
             reason = reason.replace(str(path), source.name)
             raise source.error(f"meshio cannot read this file ({reason}).") from error
     return _surface(source, grid)

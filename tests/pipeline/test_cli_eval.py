@@ -63,7 +63,7 @@ def test_a_sign_taken_for_a_part_of_the_name(folder: Path, capsys: Capture) -> N
         ("a.off | none.stl", 3, "none.stl: cannot read"),
         ("a.off | x.step", 3, "STEP"),
         ("a.off | nosuffix", 3, "needs a suffix"),
-        ("", 2, "found the end"),
+        ("", 2, "is empty"),
     ],
 )
 def test_refusals(folder: Path, capsys: Capture, formula: str, code: int, words: str) -> None:

@@ -68,7 +68,7 @@ def test_what_is_left_out_is_told(folder: Path, capsys: Capture) -> None:
     Path("open.csg").write_text(OPEN)
     code, _, err = ran(capsys, "run", "open.csg", "-o", "x.off")
     assert code == 4 and "open.csg:2:1: polyhedron()" in err and not Path("x.off").exists()
-    code, _, err = ran(capsys, "run", "open.csg", "-o", "x.off", "--skip-open", "--polish")
+    code, _, err = ran(capsys, "run", "open.csg", "-o", "x.off", "--on-invalid", "warn", "--polish")
     assert code == 0 and err.count("warning: open.csg:2:1: polyhedron()") == 1
     assert b.load("x.off").volume_exact == 1
 

@@ -17,7 +17,7 @@ def test_a_ring(folder: Path, capsys: Capture, name: str) -> None:
     put("hole.off", cuboid((0.5, 0.5, -1), (1.5, 1, 3)))
     assert ran(capsys, "difference", "a.off", "hole.off", "-o", "ring.off")[0] == 0
     code, out, _ = ran(capsys, "slice", "ring.off", "-o", name, "--z", "0.25")
-    assert (code, out) == (0, f"{name}  area 3.5  2 outlines, 1 hole among them\n")
+    assert code == 0 and out.startswith(f"{name}  area 3.5  2 outlines, 1 hole among them  ")
     read = Region.from_svg(name) if name == "x.svg" else Region.from_dxf(name)
     assert read.equals(Region.rectangle(2, 2) - Region.rectangle(1, 0.5).translate(0.5, 0.5))
 

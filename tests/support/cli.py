@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -32,13 +33,20 @@ def ran(capsys: Capture, *arguments: str) -> tuple[int, str, str]:
 
 
 def process(*arguments: str | bytes, **settings: Any) -> "subprocess.Popen[bytes]":
-    """Start a command as a process of its own."""
+    """Start a command as a process of its own; `before` is called in it first."""
     path = str(Path(bspcsg.__file__).parent.parent)
     environment = {**os.environ, "PYTHONPATH": path, **settings.pop("more", {})}
     command = [sys.executable, "-m", "bspcsg", *arguments]
-    heed = heed_interrupts if os.name == "posix" else None
-    # Between fork and exec this sets one signal; no lock of another thread is asked for.
-    return subprocess.Popen(command, env=environment, preexec_fn=heed, **settings)  # noqa: PLW1509
+    also: Callable[[], None] | None = settings.pop("before", None)
+
+    def heed() -> None:
+        # Between fork and exec this sets signals and limits; no lock of another thread is needed.
+        heed_interrupts()
+        if also is not None:
+            also()
+
+    first = heed if os.name == "posix" else None
+    return subprocess.Popen(command, env=environment, preexec_fn=first, **settings)  # noqa: PLW1509
 
 
 def heed_interrupts() -> None:
@@ -55,3 +63,16 @@ def finished(
     out, err = running.communicate(given, timeout=60)
     assert b"Traceback" not in (out or b"") + (err or b"")
     return running.returncode, out, err
+
+
+def script(name: str, *arguments: str) -> "subprocess.CompletedProcess[str]":
+    """Run one of the project's scripts with the interpreter of the tests."""
+    root = Path(__file__).resolve().parents[2]
+    return subprocess.run(
+        [str(root / "scripts" / name), *arguments],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHON": sys.executable},
+        timeout=280,
+        check=False,
+    )

@@ -74,7 +74,7 @@ def test_a_file_is_listed_once() -> None:
 @pytest.mark.parametrize(
     ("text", "column", "words"),
     [
-        ("", 0, "found the end"),
+        ("", 0, "is empty"),
         ("a -", 3, "found the end"),
         ("a | | b", 4, "found “|”"),
         ("a b", 2, "expected an operator"),

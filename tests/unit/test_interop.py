@@ -1,5 +1,6 @@
 """Meshes of other libraries, some of them by stand-ins with the same attributes."""
 
+import io
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -95,9 +96,30 @@ def shape(corners: list[Any]) -> Any:
     )
 
 
-def cadquery_like() -> Any:
-    corners = [SimpleNamespace(toTuple=lambda v=v: tuple(v)) for v in V]
-    return SimpleNamespace(val=lambda: shape(corners), plane=None)
+def cadquery_like(*origins: float) -> Any:
+    """Return a workplane with a shape at each place along x."""
+    shapes = [
+        shape([SimpleNamespace(toTuple=lambda v=v, x=x: (v[0] + x, v[1], v[2])) for v in V])
+        for x in origins or (0.0,)
+    ]
+    return SimpleNamespace(val=lambda: shapes[0], vals=lambda: shapes, plane=None)
+
+
+def shape_of_loose_faces() -> Any:
+    """Return a shape whose faces share no vertices, as kernels tessellate each face by itself."""
+    corners = [tuple(V[index]) for face in F for index in face]
+    faces = [tuple(range(k, k + 3)) for k in range(0, len(corners), 3)]
+    return SimpleNamespace(tessellate=lambda tolerance: (corners, faces), wrapped=None)
+
+
+def builder_like() -> Any:
+    made = shape([tuple(v) for v in V])
+    return SimpleNamespace(part=made, pending_faces=[], vertices=made.vertices, faces=made.faces)
+
+
+def meshio_mesh(kind: str, faces: Any) -> Any:
+    meshio = pytest.importorskip("meshio")
+    return meshio.Mesh(V, [(kind, np.array(faces))])
 
 
 SOURCES: dict[str, Callable[[], Any]] = {
@@ -139,9 +161,16 @@ SOURCES: dict[str, Callable[[], Any]] = {
             block("triangle", [[1, 5, 7], [1, 7, 3]]),
         ],
     ),
+    "meshio's own": lambda: meshio_mesh("triangle", F),
+    "meshio's own, quads": lambda: meshio_mesh("quad", QUADS),
     "vtk": VtkLike,
     "build123d": lambda: shape([tuple(v) for v in V]),
     "cadquery": cadquery_like,
+    "shape of loose faces": shape_of_loose_faces,
+    "build123d builder": builder_like,
+    "cadquery assembly": lambda: SimpleNamespace(
+        toCompound=shape_of_loose_faces, children=[], vertices=None
+    ),
 }
 
 
@@ -227,7 +256,73 @@ def test_solids_serve_as_meshes_of_other_libraries() -> None:
 
 
 def test_paths_are_read_as_files(tmp_path: Path) -> None:
-    pytest.importorskip("bspcsg.io")
     path = tmp_path / "box.off"
     b.box((1, 2, 3)).save(path)
     assert b.Solid.from_mesh(path).volume == b.Solid.from_mesh(str(path)).volume == 6
+
+
+@pytest.mark.parametrize("suffix", [".stl", "ply", "3MF", "glb"])
+def test_bytes_and_open_files(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"box.{suffix.lower().removeprefix('.')}"
+    b.box((1, 2, 3)).save(path)
+    data = path.read_bytes()
+    for source in (data, bytearray(data), memoryview(data), io.BytesIO(data)):
+        solid = b.Solid.from_mesh(source, format=suffix, pitch=-6)
+        assert solid.volume == 6 and solid.pitch == -6
+    with path.open("rb") as stream:
+        assert b.Solid.from_mesh(stream, format=suffix).volume == 6
+
+
+@pytest.mark.parametrize(
+    ("source", "suffix", "code", "said"),
+    [
+        (b"OFF", None, "unknown_format", "one of .*, not None"),
+        (b"OFF", "step", "unknown_format", "not 'step'"),
+        (io.StringIO("OFF"), "off", "unreadable", "mode 'rb'"),
+        (b"", "off", "empty_file", "<bytes>: the file is empty"),
+        (b"OFF", "off", "syntax", "<bytes>"),
+    ],
+)
+def test_bytes_that_are_no_mesh(source: Any, suffix: str | None, code: str, said: str) -> None:
+    with pytest.raises(b.FormatError, match=said) as caught:
+        b.Solid.from_mesh(source, format=suffix)
+    assert caught.value.code == code
+
+
+def test_all_shapes_of_a_workplane_count() -> None:
+    assert b.Solid.from_mesh(cadquery_like(0.0, 5.0)).volume == 12
+    assert b.Solid.from_mesh(cadquery_like(0.0, 0.5)).volume == 9
+
+
+def test_shapes_are_tessellated_as_finely_as_asked_for() -> None:
+    asked: list[float] = []
+
+    def tessellate(tolerance: float) -> Any:
+        asked.append(tolerance)
+        return V.tolist(), F.tolist()
+
+    made = SimpleNamespace(tessellate=tessellate, wrapped=None)
+    b.Solid.from_mesh(made)
+    b.Solid.from_mesh(SimpleNamespace(vals=lambda: [made], val=None, plane=None), tolerance=1.5)
+    assert asked == [interop.TESSELLATION_TOLERANCE, 1.5]
+
+
+def test_a_grid_is_told_how_to_become_a_surface() -> None:
+    grid = SimpleNamespace(points=V, cells=[], extract_surface=None)
+    with pytest.raises(b.InvalidMeshError, match=r"pass mesh\.extract_surface\(\)"):
+        b.Solid.from_mesh(grid)
+
+
+@pytest.mark.parametrize("through", ["to_trimesh", "to_manifold"])
+def test_what_goes_out_comes_back_the_same(through: str) -> None:
+    solid = b.cube(4, center=True) - b.prism(6, h=9, r=1, center=True)
+    once = b.Solid.from_mesh(getattr(solid, through)())
+    assert once.genus == solid.genus == 1
+    assert once.volume == pytest.approx(solid.volume, rel=1e-12)
+    lattice = b.cube(4) - b.cube(2).translate(1, 1, 3)
+    assert b.Solid.from_mesh(getattr(lattice, through)()).equals(lattice)
+
+
+def test_solids_are_no_arrays() -> None:
+    # Vertices or triangles: there is no telling which one somebody would mean.
+    assert not hasattr(b.Solid, "__array__") and np.asarray(b.cube(1)).shape == ()

@@ -117,7 +117,7 @@ REFUSED: dict[str, tuple[Edit, str]] = {
     "count": (set_at("accessors", 0, "count", value=10**12), "truncated"),
     "negative count": (set_at("accessors", 0, "count", value=-3), "truncated"),
     "view": (set_at("bufferViews", 0, "byteLength", value=10**9), "truncated"),
-    "view number": (set_at("accessors", 1, "bufferView", value=7), "syntax"),
+    "view number": (set_at("accessors", 1, "bufferView", value=7), "index_out_of_range"),
     "no view": (lambda tree: tree["accessors"][1].pop("bufferView"), "unsupported"),
     "kind": (set_at("accessors", 1, "componentType", value=1), "syntax"),
     "words": (set_at("accessors", 1, "count", value="many"), "syntax"),

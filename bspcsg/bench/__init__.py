@@ -1,0 +1,1 @@
+"""Timed comparisons with other engines: cases, engines, measuring, records, tables and plots."""

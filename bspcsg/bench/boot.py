@@ -1,0 +1,28 @@
+"""Starts a worker, on another build of the core if one is named: ``boot.py ROOT CORE TASK``.
+
+The package loads its core when it is first imported, so that this must not be a part of it.
+"""
+
+import sys
+from importlib.machinery import ExtensionFileLoader
+from importlib.util import module_from_spec, spec_from_file_location
+
+
+def put_in_place(core: str) -> None:
+    """Let the package find this file where it looks for its core."""
+    name = "bspcsg._core"
+    spec = spec_from_file_location(name, core, loader=ExtensionFileLoader(name, core))
+    assert spec is not None and spec.loader is not None
+    module = module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+
+
+if __name__ == "__main__":
+    root, core, task = sys.argv[1:]
+    sys.path.insert(0, root)
+    if core:
+        put_in_place(core)
+    from bspcsg.bench.worker import main
+
+    main(task)

@@ -1,0 +1,313 @@
+"""The engines that are compared, all behind one face: solids from arrays, sets, volumes, arrays."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from functools import reduce
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+
+from .facts import mesh_volume
+from .shapes import Arrays
+
+#: What engines are asked for; the first operand is the one that the others are taken from.
+Operation: TypeAlias = Literal["union", "difference", "intersection"]
+
+#: Largest relative distance by which a double is rounded.
+_DOUBLE = 2.0**-53
+_FLOAT = 2.0**-24
+
+
+class EngineError(Exception):
+    """An engine said that it cannot do what it was asked for."""
+
+
+class Engine(ABC):
+    """One engine; a solid is whatever it keeps between two operations."""
+
+    name: str
+
+    @abstractmethod
+    def solid(self, mesh: Arrays) -> Any:
+        """Return the solid that a mesh bounds, ready for operations."""
+
+    @abstractmethod
+    def combine(self, operation: Operation, solids: Sequence[Any]) -> Any:
+        """Combine solids; the engine may put the work off."""
+
+    @abstractmethod
+    def volume(self, solid: Any) -> float:
+        """Return the volume, which nothing that was put off can survive."""
+
+    @abstractmethod
+    def arrays(self, solid: Any) -> Arrays:
+        """Return the boundary as arrays."""
+
+    def resolution(self, size: float) -> float:
+        """Return how far the engine may move a vertex of a model with coordinates up to `size`."""
+        return 4 * _DOUBLE * size
+
+    def boolean(self, first: Arrays, second: Arrays, operation: Operation) -> Arrays:
+        """Combine two meshes, arrays in to arrays out, in the way that the engine advises."""
+        return self.arrays(self.combine(operation, [self.solid(first), self.solid(second)]))
+
+    def counters(self, solid: Any) -> dict[str, int]:
+        """Return what the engine counted while it made a solid."""
+        return {}
+
+
+class _Bspcsg(Engine):
+    """Our own, by the public functions of the package."""
+
+    name = "bspcsg"
+
+    def __init__(self) -> None:
+        import bspcsg
+
+        self._package = bspcsg
+
+    def solid(self, mesh: Arrays) -> Any:
+        return self._package.Solid(*mesh)
+
+    def combine(self, operation: Operation, solids: Sequence[Any]) -> Any:
+        return getattr(self._package, operation)(*solids)
+
+    def volume(self, solid: Any) -> float:
+        return float(solid.volume)
+
+    def arrays(self, solid: Any) -> Arrays:
+        vertices, faces = solid.to_mesh()
+        return vertices, faces
+
+    def resolution(self, size: float) -> float:
+        # The default lattice, of which a vertex is at most half a diagonal away.
+        return 3**0.5 / 2 * 1e-9 + super().resolution(size)
+
+    def boolean(self, first: Arrays, second: Arrays, operation: Operation) -> Arrays:
+        return self._package.boolean(*first, *second, operation)
+
+    def counters(self, solid: Any) -> dict[str, int]:
+        return dict(solid.tree.stats())
+
+
+class _Manifold(Engine):
+    """manifold3d in double precision; what it puts off is forced before a clock stops."""
+
+    name = "manifold3d"
+
+    def __init__(self) -> None:
+        import manifold3d
+
+        self._package = manifold3d
+
+    def solid(self, mesh: Arrays) -> Any:
+        made = self._package.Manifold(self._package.Mesh64(mesh[0], mesh[1].astype(np.uint64)))
+        self._refuse_errors(made)
+        return made
+
+    def combine(self, operation: Operation, solids: Sequence[Any]) -> Any:
+        kinds = self._package.OpType
+        kind = {
+            "union": kinds.Add,
+            "difference": kinds.Subtract,
+            "intersection": kinds.Intersect,
+        }[operation]
+        return self._package.Manifold.batch_boolean(list(solids), kind)
+
+    def volume(self, solid: Any) -> float:
+        return float(solid.volume())
+
+    def arrays(self, solid: Any) -> Arrays:
+        solid.num_tri()
+        self._refuse_errors(solid)
+        mesh = solid.to_mesh64()
+        return np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts)
+
+    def resolution(self, size: float) -> float:
+        # Its documented precision relative to the largest coordinate.
+        return 1e-12 * size
+
+    def _refuse_errors(self, solid: Any) -> None:
+        status = solid.status()
+        if status != self._package.Error.NoError:
+            raise EngineError(f"manifold3d says {status.name}")
+
+
+class _Trueform(Engine):
+    """trueform; a result becomes an operand again as a mesh."""
+
+    name = "trueform"
+
+    def __init__(self) -> None:
+        import trueform
+
+        self._package = trueform
+
+    def solid(self, mesh: Arrays) -> Any:
+        return self._package.Mesh(np.ascontiguousarray(mesh[1]), mesh[0])
+
+    def combine(self, operation: Operation, solids: Sequence[Any]) -> Any:
+        if len(solids) == 2:
+            made = getattr(self._package, f"boolean_{operation}")(*solids)
+            return self._package.Mesh(*made[0])
+        graph = self._package.CsgGraph(list(solids))
+        return self._package.Mesh(*graph.mesh(self._expression(operation, len(solids))))
+
+    def _expression(self, operation: Operation, count: int) -> Any:
+        terms = [self._package.op(k) for k in range(count)]
+        if operation == "intersection":
+            return reduce(lambda a, b: a & b, terms)
+        rest = reduce(lambda a, b: a | b, terms[1:])
+        return terms[0] | rest if operation == "union" else terms[0] - rest
+
+    def volume(self, solid: Any) -> float:
+        return float(self._package.signed_volume(solid))
+
+    def arrays(self, solid: Any) -> Arrays:
+        return np.asarray(solid.points), np.asarray(solid.faces)
+
+    def resolution(self, size: float) -> float:
+        # Its lattice is finer than that of coordinates with 30 bits.
+        return 2.0**-30 * size
+
+
+class _OfArrays(Engine):
+    """An engine that only combines two meshes; its solids are arrays."""
+
+    def solid(self, mesh: Arrays) -> Any:
+        return mesh
+
+    def combine(self, operation: Operation, solids: Sequence[Any]) -> Any:
+        return reduce(lambda a, b: self.boolean(a, b, operation), solids)
+
+    def volume(self, solid: Any) -> float:
+        return mesh_volume(solid).value
+
+    def arrays(self, solid: Any) -> Arrays:
+        return solid[0], solid[1]
+
+    def resolution(self, size: float) -> float:
+        # Single precision in, inside, or out.
+        return 8 * _FLOAT * size
+
+    @abstractmethod
+    def boolean(self, first: Arrays, second: Arrays, operation: Operation) -> Arrays:
+        """Combine two meshes."""
+
+
+class _Meshlib(_OfArrays):
+    """MeshLib."""
+
+    name = "meshlib"
+
+    def __init__(self) -> None:
+        from meshlib import mrmeshnumpy, mrmeshpy
+
+        self._package, self._arrays = mrmeshpy, mrmeshnumpy
+
+    def solid(self, mesh: Arrays) -> Any:
+        return self._arrays.meshFromFacesVerts(mesh[1], mesh[0])
+
+    def combine(self, operation: Operation, solids: Sequence[Any]) -> Any:
+        kinds = self._package.BooleanOperation
+        kind = {
+            "union": kinds.Union,
+            "difference": kinds.DifferenceAB,
+            "intersection": kinds.Intersection,
+        }[operation]
+        return reduce(lambda a, b: self._combined(a, b, kind), solids)
+
+    def _combined(self, first: Any, second: Any, kind: Any) -> Any:
+        result = self._package.boolean(first, second, kind)
+        if not result.valid():
+            raise EngineError(f"meshlib says: {result.errorString}")
+        return result.mesh
+
+    def volume(self, solid: Any) -> float:
+        return float(solid.volume())
+
+    def arrays(self, solid: Any) -> Arrays:
+        vertices = self._arrays.getNumpyVerts(solid)
+        return vertices, self._arrays.getNumpyFaces(solid.topology)
+
+    def boolean(self, first: Arrays, second: Arrays, operation: Operation) -> Arrays:
+        return Engine.boolean(self, first, second, operation)
+
+
+class _Pymeshlab(_OfArrays):
+    """pymeshlab, whose booleans are libigl's."""
+
+    name = "pymeshlab"
+
+    def __init__(self) -> None:
+        import pymeshlab
+
+        self._package = pymeshlab
+
+    def boolean(self, first: Arrays, second: Arrays, operation: Operation) -> Arrays:
+        meshes = self._package.MeshSet()
+        for vertices, faces in (first, second):
+            meshes.add_mesh(self._package.Mesh(vertices, faces))
+        combine = getattr(meshes, f"generate_boolean_{operation}")
+        combine(first_mesh=0, second_mesh=1)
+        made = meshes.current_mesh()
+        return made.vertex_matrix(), made.face_matrix()
+
+
+class _Vtk(_OfArrays):
+    """VTK's boolean filter for polygonal data."""
+
+    name = "vtk"
+
+    def __init__(self) -> None:
+        import vtk
+        from vtk.util import numpy_support
+
+        self._package, self._numpy = vtk, numpy_support
+
+    def boolean(self, first: Arrays, second: Arrays, operation: Operation) -> Arrays:
+        combine = self._package.vtkBooleanOperationPolyDataFilter()
+        getattr(combine, f"SetOperationTo{operation.capitalize()}")()
+        for port, mesh in enumerate((first, second)):
+            combine.SetInputData(port, self._polygons(mesh))
+        combine.Update()
+        made = combine.GetOutput()
+        points = self._numpy.vtk_to_numpy(made.GetPoints().GetData())
+        corners = self._numpy.vtk_to_numpy(made.GetPolys().GetConnectivityArray())
+        return points, corners.reshape(-1, 3)
+
+    def _polygons(self, mesh: Arrays) -> Any:
+        points, cells = self._package.vtkPoints(), self._package.vtkCellArray()
+        points.SetData(self._numpy.numpy_to_vtk(mesh[0], deep=True))
+        corners = self._numpy.numpy_to_vtkIdTypeArray(mesh[1].ravel().astype(np.int64), deep=True)
+        starts = np.arange(0, 3 * len(mesh[1]) + 1, 3, dtype=np.int64)
+        cells.SetData(self._numpy.numpy_to_vtkIdTypeArray(starts, deep=True), corners)
+        made = self._package.vtkPolyData()
+        made.SetPoints(points)
+        made.SetPolys(cells)
+        return made
+
+
+#: All engines, ours first, then those that answers are compared with, then by speed.
+ENGINES: dict[str, type[Engine]] = {
+    made.name: made for made in (_Bspcsg, _Manifold, _Trueform, _Meshlib, _Pymeshlab, _Vtk)
+}
+
+
+def installed() -> dict[str, str]:
+    """Return the engines that can be imported, with their versions."""
+    return {name: found for name in ENGINES if (found := version_of(name))}
+
+
+def version_of(name: str) -> str:
+    """Return the version of an installed package, or nothing."""
+    if name == _Bspcsg.name:
+        # Also of a checkout that is only on the path.
+        return str(import_module(name).__version__)
+    try:
+        return version(name) if find_spec(name) is not None else ""
+    except (PackageNotFoundError, ImportError, ValueError):
+        return ""

@@ -1,0 +1,69 @@
+"""Real data that lies beside a checkout: meshes of public projects, and a chain of swept tools."""
+
+import csv
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from .shapes import Arrays, generator, moved, random_rotation, scaled, turned, unit_vector
+
+#: Triangles of the meshes that are paired.
+_LEAST, _MOST = 10_000, 500_000
+
+#: How far apart the middles of two meshes are, in halves of their diagonals.
+_APART = 0.3
+
+
+def swept_capsules(shared: Path) -> tuple[Arrays, list[Arrays]]:
+    """Return the workpiece and the tools of the chain, in their order."""
+    with np.load(shared / "chains" / "swept-capsules-100.npz") as data:
+        vertices = np.split(data["v"].astype(np.float64), np.cumsum(data["nv"])[:-1])
+        faces = np.split(data["f"].astype(np.int64), np.cumsum(data["nf"])[:-1])
+    base, *tools = zip(vertices, faces, strict=True)
+    # The tools are stored inside out.
+    return base, [(points, triangles[:, ::-1].copy()) for points, triangles in tools]
+
+
+def posed_pair(shared: Path, number: int) -> tuple[Arrays, Arrays]:
+    """Return two of the meshes, both of half diagonal 1, turned and moved at random."""
+    random = generator(number)
+    names = solid_names(shared)
+    first, second = random.choice(len(names), size=2, replace=False)
+    posed = [
+        turned(_unit(shared / "meshes" / names[k]), random_rotation(random))
+        for k in (first, second)
+    ]
+    return posed[0], moved(posed[1], _APART * unit_vector(random))
+
+
+def pair_names(shared: Path, number: int) -> tuple[str, str]:
+    """Return which meshes a pair is made of."""
+    names = solid_names(shared)
+    first, second = generator(number).choice(len(names), size=2, replace=False)
+    return names[first], names[second]
+
+
+@cache
+def solid_names(shared: Path) -> list[str]:
+    """Return the meshes that every engine should take: closed, and free of self-intersection."""
+    with (shared / "meshes" / "MANIFEST.tsv").open(newline="") as lines:
+        rows = list(csv.DictReader(lines, delimiter="\t"))
+    return sorted(
+        row["file"]
+        for row in rows
+        if row["is_volume"] == "yes"
+        and row["self_intersecting"] == "0"
+        and row["manifold_status"] == "NoError"
+        and _LEAST <= int(row["n_triangles"]) <= _MOST
+    )
+
+
+def _unit(path: Path) -> Arrays:
+    from ..io import load
+
+    vertices, faces = (array.copy() for array in load(path).to_mesh())
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    return scaled(
+        moved((vertices, faces), -(low + high) / 2), 2 / float(np.linalg.norm(high - low))
+    )

@@ -1,0 +1,81 @@
+"""Records of runs: where, with what versions, and what was measured."""
+
+import json
+import os
+import platform
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from ..errors import FormatError
+from .engines import installed
+
+#: Raised whenever a field changes its meaning.
+SCHEMA = 1
+
+
+def record_of(rows: list[dict[str, Any]], runs: int, command: str) -> dict[str, Any]:
+    """Return a record of rows that were just measured."""
+    return {
+        "schema": SCHEMA,
+        "type": "bench",
+        "command": command,
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+        "machine": machine(),
+        "versions": {**installed(), "python": platform.python_version()},
+        "runs": runs,
+        "cases": rows,
+    }
+
+
+def machine() -> dict[str, Any]:
+    """Describe the machine; the load is that of all its users over the last five minutes."""
+    pages = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    return {
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+        "memory_gb": round(pages / 1e9, 1),
+        "system": f"{platform.system()} {platform.release()} {platform.machine()}",
+        "load": round(os.getloadavg()[1], 2),
+    }
+
+
+def write(record: dict[str, Any], path: Path) -> None:
+    """Write a record."""
+    path.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def read(path: Path) -> dict[str, Any]:
+    """Read a record.
+
+    Raises
+    ------
+    FormatError
+        If the file is none, or of another schema.
+    """
+    try:
+        record = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise FormatError(f"{path}: cannot be read as a record: {error}.", "unreadable") from error
+    if not isinstance(record, dict) or record.get("type") != "bench":
+        raise FormatError(f"{path}: not a record of bspcsg bench.", "unreadable")
+    if record.get("schema") != SCHEMA:
+        said = f"schema {record.get('schema')}, and this version reads {SCHEMA}"
+        raise FormatError(f"{path}: {said}; measure it again.", "unreadable")
+    return record
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.processor()
+    names = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+    return next(names, platform.processor())
+
+
+def seconds_text(seconds: float) -> str:
+    """Return a time with three digits and a unit that suits it."""
+    if seconds < 1e-3:
+        return f"{seconds * 1e6:.3g} µs"
+    return f"{seconds * 1e3:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"

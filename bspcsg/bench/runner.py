@@ -1,0 +1,315 @@
+"""Runs cases in child processes with a limit on each call, and gathers what they say."""
+
+import json
+import os
+import select
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from .cases import CASES, Case
+from .engines import ENGINES
+from .targets import OURS
+from .worker import Task
+
+#: The engine whose word is asked first.
+_REFEREE = "manifold3d"
+
+#: Seconds for making operands before the first call, and for ending after the last.
+_GRACE = 120.0
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+
+_BOOT = Path(__file__).with_name("boot.py")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How cases are run.
+
+    Parameters
+    ----------
+    engines : sequence of str
+        Those that take part where they can.
+    runs : int
+        Timed runs of each engine.
+    small : bool
+        Whether small items are taken.
+    limit : float or None
+        Seconds for one call; None for what suits the case.
+    budget : float
+        Seconds for all runs of an engine on an item.
+    shared : Path
+        Folder of shared data.
+    core : Path or None
+        Another build of the compiled core.
+    memory_gb : float
+        Address space of a worker.
+    steps : int
+        Steps of the dome; 0 for all.
+    """
+
+    engines: Sequence[str]
+    runs: int = 5
+    small: bool = False
+    limit: float | None = None
+    budget: float = 150.0
+    shared: Path = Path("../shared")
+    core: Path | None = None
+    memory_gb: float = 12.0
+    steps: int = 0
+
+
+#: Called with a line about what is under way.
+Progress = Callable[[str], None]
+
+
+def run_case(key: str, settings: Settings, progress: Progress) -> dict[str, Any]:
+    """Run one case and return its row of the record."""
+    case = CASES[key]
+    if case.needs and not (settings.shared / case.needs).exists():
+        missing = f"{settings.shared / case.needs} does not exist"
+        return {"case": key, "title": case.title, "left_out": missing, "items": []}
+    labels = case.small if settings.small else case.items
+    items = [_item(key, label, settings, progress) for label in labels]
+    return {"case": key, "title": case.title, "small": settings.small, "items": items}
+
+
+def _item(key: str, label: str, settings: Settings, progress: Progress) -> dict[str, Any]:
+    case = CASES[key]
+    taking_part = [name for name in settings.engines if not case.engines or name in case.engines]
+    task = Task(
+        case=key,
+        item=label,
+        small=settings.small,
+        engines=taking_part,
+        runs=settings.runs,
+        budget=settings.budget,
+        shared=str(settings.shared),
+        cores=case.cores,
+        memory_gb=settings.memory_gb,
+        steps=settings.steps,
+    )
+    gathered = Gathered(label)
+    for part in _parts(case, task):
+        _until_done(part, settings, gathered, progress)
+    row = gathered.row()
+    if case.checked_at_once and not _checked(row):
+        row["at_once"] = _at_once(task, settings, progress)
+    return judged(row)
+
+
+def _parts(case: Case, task: Task) -> list[Task]:
+    """Return one task for all engines, or one for each if each is to be alone."""
+    if not case.alone:
+        return [task]
+    return [replace(task, engines=[name]) for name in task.engines]
+
+
+def _checked(row: dict[str, Any]) -> bool:
+    return any("facts" in found for name, found in row["engines"].items() if name != OURS)
+
+
+def _at_once(task: Task, settings: Settings, progress: Progress) -> dict[str, Any]:
+    """Ask the referee for the set of a chain as one expression."""
+    gathered = Gathered(task.item)
+    asked = replace(task, engines=[_REFEREE], runs=0, at_once=True, cores=0)
+    _until_done(asked, settings, gathered, progress)
+    found: dict[str, Any] = gathered.row()["engines"].get(_REFEREE, {})
+    return found
+
+
+def _until_done(task: Task, settings: Settings, gathered: "Gathered", progress: Progress) -> None:
+    """Run workers until each engine is done or has failed; one that ends a worker is left out."""
+    engines = list(task.engines)
+    while engines:
+        culprit = _work(replace(task, engines=engines), settings, gathered, progress)
+        if culprit is None:
+            return
+        gathered.forget_unfinished(engines, culprit)
+        engines = [name for name in engines if not gathered.is_over(name)]
+
+
+def _work(task: Task, settings: Settings, gathered: "Gathered", progress: Progress) -> str | None:
+    """Run one worker; return the engine that was under way when it ended before its time."""
+    limit = CASES[task.case].limit if settings.limit is None else settings.limit
+    core = str(settings.core.resolve()) if settings.core else ""
+    command = [sys.executable, "-P", str(_BOOT), str(_PACKAGE.parent), core]
+    with subprocess.Popen(
+        [*command, json.dumps(asdict(task))],
+        stdout=subprocess.PIPE,
+        # Engines write there what they like; what is wrong is said on standard output.
+        stderr=subprocess.DEVNULL,
+        env={**os.environ, "PYTHONHASHSEED": "0"},
+    ) as child:
+        try:
+            under_way, reason = _listen(child, task, limit, gathered, progress)
+        finally:
+            child.kill()
+    if reason is None:
+        return None
+    gathered.ended(under_way or task.engines[0], reason)
+    return under_way or task.engines[0]
+
+
+def _listen(
+    child: "subprocess.Popen[bytes]",
+    task: Task,
+    limit: float,
+    gathered: "Gathered",
+    progress: Progress,
+) -> tuple[str | None, dict[str, Any] | None]:
+    """Take in what a worker says; return who was under way, and why it ended if not well."""
+    lines = _Lines(child)
+    under_way, began = None, time.monotonic()
+    while True:
+        line = lines.next(began + (limit if under_way else _GRACE + limit))
+        if line is None:
+            return under_way, {"state": "stopped", "stopped_after": time.monotonic() - began}
+        if not line:
+            reason = f"the process ended with code {child.wait()}"
+            return under_way, {"state": "crashed", "reason": reason}
+        said = json.loads(line)
+        gathered.take(said)
+        if said["say"] == "end":
+            return None, None
+        if said["say"] == "begin":
+            under_way, began = said["engine"], time.monotonic()
+            progress(f"{task.case}, {task.item}: {under_way}")
+        elif said["say"] in ("run", "failed"):
+            under_way, began = None, time.monotonic()
+
+
+class _Lines:
+    """What a process writes, line by line."""
+
+    def __init__(self, child: "subprocess.Popen[bytes]") -> None:
+        assert child.stdout is not None
+        self._descriptor = child.stdout.fileno()
+        self._waiting = b""
+
+    def next(self, deadline: float) -> bytes | None:
+        """Return a line, nothing at the end, or None when the deadline has passed."""
+        while b"\n" not in self._waiting:
+            left = deadline - time.monotonic()
+            if left <= 0 or not select.select([self._descriptor], [], [], left)[0]:
+                return None
+            chunk = os.read(self._descriptor, 1 << 16)
+            if not chunk:
+                return b""
+            self._waiting += chunk
+        line, _, self._waiting = self._waiting.partition(b"\n")
+        return line
+
+
+class Gathered:
+    """What workers said about one item."""
+
+    def __init__(self, label: str) -> None:
+        self._label = label
+        self._extent: dict[str, Any] = {}
+        self._engines: dict[str, dict[str, Any]] = {}
+
+    def take(self, said: dict[str, Any]) -> None:
+        """Take in one line."""
+        if said["say"] == "extent":
+            self._extent = {name: said[name] for name in ("area", "size", "triangles")}
+        elif said["say"] == "plan":
+            self._of(said)["planned"] = said["runs"]
+        elif said["say"] == "run":
+            self._add_run(self._of(said), said)
+        elif said["say"] == "step":
+            self._of(said)["steps_done"] = said["done"]
+        elif said["say"] == "failed":
+            self._of(said).update(state="failed", reason=said["reason"])
+
+    def _of(self, said: dict[str, Any]) -> dict[str, Any]:
+        return self._engines.setdefault(said["engine"], _nothing_yet())
+
+    def _add_run(self, found: dict[str, Any], said: dict[str, Any]) -> None:
+        found["seconds"].append(said["seconds"])
+        found["cpu_seconds"].append(said["cpu"])
+        found["memory_mb"] = max(found["memory_mb"], said["memory_mb"] or 0.0)
+        found["peak_mb"] = max(found.get("peak_mb", 0.0), said["peak_mb"])
+        found.setdefault("volumes", []).append(said["facts"]["volume"])
+        for name in ("parts", "windows", "counters", "facts"):
+            if name in said:
+                found[name] = said[name]
+
+    def ended(self, engine: str, reason: dict[str, Any]) -> None:
+        """Note that the worker ended while this engine was under way."""
+        self._engines.setdefault(engine, _nothing_yet()).update(reason)
+
+    def is_over(self, engine: str) -> bool:
+        """Whether an engine failed, or has all its runs."""
+        found = self._engines.get(engine, {})
+        wanted = found.get("planned", 0) + 1
+        return "state" in found or len(found.get("seconds", ())) >= wanted
+
+    def forget_unfinished(self, engines: Sequence[str], culprit: str) -> None:
+        """Forget the runs of engines that will start anew."""
+        for name in engines:
+            if name != culprit and not self.is_over(name):
+                self._engines.pop(name, None)
+
+    def row(self) -> dict[str, Any]:
+        """Return the item as it is kept."""
+        for found in self._engines.values():
+            found["median"] = _warm_median(found["seconds"])
+            found["cpu"] = _warm_median(found["cpu_seconds"])
+            found["runs"] = max(len(found["seconds"]) - 1, min(len(found["seconds"]), 1))
+            if "state" not in found:
+                found["state"] = "ok"
+            elif found["seconds"]:
+                found["median"] = None
+        return {"item": self._label, **self._extent, "engines": self._engines}
+
+
+def _nothing_yet() -> dict[str, Any]:
+    return {"seconds": [], "cpu_seconds": [], "memory_mb": 0.0}
+
+
+def _warm_median(times: list[float]) -> float | None:
+    """Return the median without the first, which warms caches, unless there is no other."""
+    return median(times[1:] or times) if times else None
+
+
+def judged(row: dict[str, Any]) -> dict[str, Any]:
+    """Compare the volumes of all answers with ours, within what rounding allows."""
+    ours = row["engines"].get(OURS, {})
+    if "facts" not in ours:
+        return row
+    others = {name: found for name, found in row["engines"].items() if name != OURS}
+    others |= {f"{_REFEREE}": row["at_once"]} if "facts" in row.get("at_once", {}) else {}
+    for name, found in others.items():
+        if "facts" in found:
+            found["difference"] = max(
+                abs(mine - theirs) for mine in ours["volumes"] for theirs in found["volumes"]
+            )
+            found["bound"] = _bound(row, ours, found, name)
+            found["agrees"] = found["difference"] <= found["bound"]
+            found["same_euler_number"] = (
+                found["facts"]["euler_number"] == ours["facts"]["euler_number"]
+            )
+    return row
+
+
+def _bound(row: dict[str, Any], ours: dict[str, Any], theirs: dict[str, Any], name: str) -> float:
+    """Return by how much two right volumes may differ.
+
+    An engine may move each vertex by its resolution; no wall of the answer is more than its part of
+    an operand's, so that the volume changes by at most the operands' area times that way.
+    """
+    ways = sum(_resolution(engine, row["size"]) for engine in (OURS, name))
+    roundings = ours["facts"]["volume_error"] + theirs["facts"]["volume_error"]
+    return float(row["area"] * ways + roundings)
+
+
+def _resolution(engine: str, size: float) -> float:
+    # Asked of the class: making an engine would load it.
+    return ENGINES[engine].resolution(ENGINES[engine].__new__(ENGINES[engine]), size)

@@ -1,0 +1,243 @@
+"""Meshes of the bench, as plain arrays that any engine takes."""
+
+from collections.abc import Iterator
+from typing import TypeAlias
+
+import numpy as np
+
+from .._types import FloatArray, IndexArray
+
+#: Vertices (n, 3) and faces (m, 3), counter-clockwise seen from outside.
+Arrays: TypeAlias = tuple[FloatArray, IndexArray]
+
+#: Seeds are arbitrary and fixed, so that two runs see the same arrays.
+_SEED = 7
+
+
+def generator(number: int = 0) -> np.random.Generator:
+    """Return the random numbers of one case."""
+    return np.random.default_rng([_SEED, number])
+
+
+def moved(mesh: Arrays, by: object) -> Arrays:
+    """Return the mesh shifted."""
+    return mesh[0] + np.asarray(by, dtype=np.float64), mesh[1]
+
+
+def scaled(mesh: Arrays, factor: float) -> Arrays:
+    """Return the mesh scaled about the origin."""
+    return mesh[0] * factor, mesh[1]
+
+
+def turned(mesh: Arrays, matrix: FloatArray) -> Arrays:
+    """Return the mesh with a 3 × 3 matrix applied to its vertices."""
+    return mesh[0] @ matrix.T, mesh[1]
+
+
+def rotation(axis: object, angle: float) -> FloatArray:
+    """Return the matrix of a turn by an angle in radians about an axis through the origin."""
+    x, y, z = (v := np.asarray(axis, dtype=np.float64)) / np.linalg.norm(v)
+    across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.asarray(np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * (across @ across))
+
+
+def random_rotation(random: np.random.Generator) -> FloatArray:
+    """Return a rotation, all equally likely."""
+    matrix, upper = np.linalg.qr(random.normal(size=(3, 3)))
+    matrix = matrix * np.sign(np.diag(upper))
+    return np.ascontiguousarray(matrix * np.linalg.det(matrix))
+
+
+def unit_vector(random: np.random.Generator) -> FloatArray:
+    """Return a direction, all equally likely."""
+    direction = random.normal(size=3)
+    return np.asarray(direction / np.linalg.norm(direction))
+
+
+def box(low: object, high: object) -> Arrays:
+    """Return the 12 triangles of an axis-parallel box."""
+    import trimesh
+
+    corners = np.array([low, high], dtype=np.float64)
+    mesh = trimesh.creation.box(bounds=corners)
+    # Which corner a vertex is, rather than where the library's sums put it.
+    nearest = mesh.vertices > corners.mean(axis=0)
+    return np.where(nearest, corners[1], corners[0]), np.asarray(mesh.faces, dtype=np.int64)
+
+
+def icosphere(level: int) -> Arrays:
+    """Return a unit sphere of 20 · 4^level triangles."""
+    import trimesh
+
+    mesh = trimesh.creation.icosphere(subdivisions=level)
+    return np.array(mesh.vertices, dtype=np.float64), np.array(mesh.faces, dtype=np.int64)
+
+
+def octasphere(n: int) -> Arrays:
+    """Return a unit sphere of 8 · n² triangles: an octahedron with each face divided evenly."""
+    rows = np.arange(-n, n + 1)
+    x, y = (a.ravel() for a in np.meshgrid(rows, rows, indexing="ij"))
+    # The diamond |x| + |y| ≤ n holds one half of the octahedron; its rim belongs to both halves.
+    inside = np.abs(x) + np.abs(y) <= n
+    x, y = x[inside], y[inside]
+    height = n - np.abs(x) - np.abs(y)
+    number = np.full((2 * n + 1, 2 * n + 1), -1)
+    number[x + n, y + n] = np.arange(len(x))
+    upper = np.column_stack([x, y, height])
+    open_part = height > 0
+    lower = upper[open_part] * (1, 1, -1)
+    below = number.copy()
+    below[x[open_part] + n, y[open_part] + n] = len(upper) + np.arange(len(lower))
+    top = _diamond_triangles(number, n)
+    faces = np.concatenate([top, _diamond_triangles(below, n)[:, ::-1]])
+    points = np.concatenate([upper, lower]).astype(np.float64)
+    return points / np.linalg.norm(points, axis=1)[:, None], np.ascontiguousarray(faces)
+
+
+def _diamond_triangles(number: IndexArray, n: int) -> IndexArray:
+    """Return the triangles of a diamond grid; in each quadrant the diagonals follow its rim."""
+    parts = []
+    for sx, sy in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
+        i, j = (a.ravel() for a in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
+        parts += [
+            _quadrant(number, n, (sx, sy), keep, corners)
+            for keep, corners in (
+                ((i + j < n), ((i, j), (i + 1, j), (i, j + 1))),
+                ((i + j < n - 1), ((i + 1, j), (i + 1, j + 1), (i, j + 1))),
+            )
+        ]
+    return np.concatenate(parts)
+
+
+def _quadrant(
+    number: IndexArray,
+    n: int,
+    signs: tuple[int, int],
+    keep: object,
+    corners: tuple[tuple[IndexArray, IndexArray], ...],
+) -> IndexArray:
+    kept = np.asarray(keep, dtype=bool)
+    triangles = np.column_stack(
+        [number[signs[0] * i[kept] + n, signs[1] * j[kept] + n] for i, j in corners]
+    )
+    # A mirrored quadrant turns its triangles around.
+    return triangles if signs[0] * signs[1] > 0 else triangles[:, ::-1]
+
+
+def cylinder(sides: int, radius: float, low: float, high: float) -> Arrays:
+    """Return a prism along z over a regular polygon, its caps divided as fans from a corner."""
+    angles = 2 * np.pi * np.arange(sides) / sides
+    ring = np.column_stack([radius * np.cos(angles), radius * np.sin(angles)])
+    points = np.concatenate([np.column_stack([ring, np.full(sides, z)]) for z in (low, high)])
+    i = np.arange(sides)
+    j = (i + 1) % sides
+    walls = np.concatenate(
+        [np.column_stack([i, j, j + sides]), np.column_stack([i, j + sides, i + sides])]
+    )
+    k = np.arange(1, sides - 1)
+    floor = np.column_stack([np.zeros_like(k), k + 1, k])
+    roof = np.column_stack([np.zeros_like(k), k, k + 1]) + sides
+    return points, np.concatenate([walls, floor, roof])
+
+
+def spheres_apart(ball: Arrays, number: int = 0) -> tuple[Arrays, Arrays]:
+    """Return a unit sphere and its copy, turned, with its centre on the first one's surface."""
+    random = generator(number)
+    return ball, moved(turned(ball, random_rotation(random)), unit_vector(random))
+
+
+def spheres_coincident(ball: Arrays) -> tuple[Arrays, Arrays]:
+    """Return a unit sphere and its copy that is 10⁻⁴ larger and turned by 0.01 radians."""
+    matrix = rotation(unit_vector(generator()), 0.01)
+    return ball, scaled(turned(ball, matrix), 1 + 1e-4)
+
+
+def needles(sides: int, length: float = 9450.0) -> tuple[Arrays, Arrays]:
+    """Return two rods askew, whose 4 · `sides` walls are needles, one shifted along its twin.
+
+    All boxes of walls overlap, since each wall runs along the whole rod: what finds candidates by
+    boxes finds every pair.
+    """
+    rod = cylinder(sides, 25.0, 0.0, length)
+    askew = rotation((1, -2, 0.5), 0.7)
+    twin = moved(turned(rod, rotation((0, 0, 1), np.pi / sides)), (8.0, 5.0, 40.0))
+    return turned(rod, askew), turned(turned(twin, rotation((1, 0, 0), 0.001)), askew)
+
+
+def drilled_cube(count: int) -> tuple[Arrays, list[Arrays]]:
+    """Return a unit cube and spheres of 128 triangles at random places in it."""
+    ball = scaled(octasphere(4), 0.03)
+    places = generator().random((count, 3))
+    return box((0, 0, 0), (1, 1, 1)), [moved(ball, at) for at in places]
+
+
+def drilled_plate(rows: int) -> tuple[Arrays, list[Arrays]]:
+    """Return a plate and `rows` · `rows` cylinders of 32 sides through it, none touching."""
+    drill = cylinder(32, 0.35, -1.0, 2.0)
+    places = [(x + 0.5, y + 0.5, 0.0) for x in range(rows) for y in range(rows)]
+    return box((0, 0, 0), (rows, rows, 1)), [moved(drill, at) for at in places]
+
+
+def random_boxes(count: int) -> list[Arrays]:
+    """Return axis-parallel boxes in the unit cube that overlap at random."""
+    random = generator()
+    low = random.random((count, 3))
+    size = 0.05 + 0.15 * random.random((count, 3))
+    return [box(a, a + s) for a, s in zip(low, size, strict=True)]
+
+
+def menger(depth: int) -> tuple[Arrays, list[list[Arrays]]]:
+    """Return the cube of a Menger sponge, and its holes along x, y and z.
+
+    The side is 3^depth, so that all coordinates are whole numbers.
+    """
+    side = 3**depth
+    squares = list(_squares(0, 0, side))
+    groups = []
+    for axis in range(3):
+        holes = []
+        for u, v, width in squares:
+            low, high = np.array([u, v, 0]), np.array([u + width, v + width, side])
+            holes.append(box(np.roll(low, axis), np.roll(high, axis)))
+        groups.append(holes)
+    return box((0, 0, 0), (side,) * 3), groups
+
+
+def _squares(u: int, v: int, side: int) -> Iterator[tuple[int, int, int]]:
+    """Yield corner and width of the holes in a square, the middle one first."""
+    third = side // 3
+    if third == 0:
+        return
+    yield u + third, v + third, third
+    for i in range(3):
+        for j in range(3):
+            if (i, j) != (1, 1):
+                yield from _squares(u + i * third, v + j * third, third)
+
+
+#: Steps of the whole dome; a shorter run carves the beginning of the same spiral.
+DOME_STEPS = 100_000
+
+
+def dome(steps: int) -> tuple[Arrays, Iterator[Arrays]]:
+    """Return a block, and the balls that carve a flat dome into its top, one after the other.
+
+    The balls follow a spiral outwards. Their distance along it is that of its windings, and each
+    overlaps its neighbours, so that a step meets what about eight earlier ones left.
+    """
+    spacing = np.sqrt(np.pi / DOME_STEPS)
+    radius = 1.2 * spacing
+    block = box((-1.1, -1.1, -0.2), (1.1, 1.1, 0.0))
+    return block, _dome_balls(steps, spacing, radius)
+
+
+def _dome_balls(steps: int, spacing: float, radius: float) -> Iterator[Arrays]:
+    ball = scaled(octasphere(4), radius)
+    random = generator()
+    for k in range(steps):
+        # An area of spacing² for each step; the angle follows from dθ = spacing / r.
+        r = spacing * np.sqrt((k + 0.5) / np.pi)
+        angle = 2 * np.sqrt(np.pi * (k + 0.5))
+        depth = radius * (0.4 - r * r)
+        at = (r * np.cos(angle), r * np.sin(angle), depth)
+        yield moved(turned(ball, random_rotation(random)), at)

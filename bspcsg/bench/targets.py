@@ -1,0 +1,225 @@
+"""What a row is to reach, and what it reached."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import exp, log
+from statistics import mean
+from typing import Any, Protocol
+
+import numpy as np
+
+#: The engine that the others are measured against.
+OURS = "bspcsg"
+
+#: Results by item and engine, as in the records.
+Items = Sequence[dict[str, Any]]
+
+
+@dataclass(frozen=True)
+class Reached:
+    """What a row reached of one target.
+
+    Parameters
+    ----------
+    value : float or None
+        None if an engine that it needs has no time.
+    text : str
+    met : bool or None
+        None if nothing can be said.
+    """
+
+    value: float | None
+    text: str
+    met: bool | None
+
+
+class Target(Protocol):
+    """One figure to reach."""
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+
+    def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
+
+
+@dataclass(frozen=True)
+class Faster:
+    """So many times faster than another engine, on each item."""
+
+    factor: float
+    engine: str = "manifold3d"
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return f"≥ {self.factor:g} × {self.engine}"
+
+    def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
+        ratios = [found for item in items if (found := ratio(item, self.engine)) is not None]
+        if not ratios:
+            return Reached(None, "—", None)
+        least = min(ratios, key=lambda found: found.value)
+        met = least.value >= self.factor
+        return Reached(least.value, least.text, met or (None if least.is_bound else False))
+
+
+@dataclass(frozen=True)
+class MeanFaster:
+    """So many times faster in the geometric mean over all items."""
+
+    factor: float
+    engine: str = "manifold3d"
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return f"mean ≥ {self.factor:g} × {self.engine}"
+
+    def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
+        ratios = [found.value for item in items if (found := ratio(item, self.engine)) is not None]
+        if not ratios:
+            return Reached(None, "—", None)
+        value = exp(mean(map(log, ratios)))
+        return Reached(value, f"{value:.3g} × over {len(ratios)}", value >= self.factor)
+
+
+@dataclass(frozen=True)
+class Within:
+    """Done in so many seconds, the median of each item."""
+
+    seconds: float
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return f"< {self.seconds:g} s"
+
+    def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
+        times = [result_of(item, OURS).get("median") for item in items]
+        known = [value for value in times if value is not None]
+        if not known:
+            return Reached(None, "unfinished", False)
+        return Reached(max(known), f"{max(known):.3g} s", max(known) < self.seconds)
+
+
+@dataclass(frozen=True)
+class MemoryWithin:
+    """Done in so much memory, that of the whole process."""
+
+    megabytes: float
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return f"< {self.megabytes:g} MB"
+
+    def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
+        peaks = [result_of(item, OURS).get("peak_mb") for item in items]
+        known = [value for value in peaks if value is not None]
+        if not known:
+            return Reached(None, "—", None)
+        return Reached(max(known), f"{max(known):.0f} MB", max(known) < self.megabytes)
+
+
+@dataclass(frozen=True)
+class SteadySteps:
+    """The last steps of a chain take at most so many times as long as the thousandth."""
+
+    factor: float
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return f"last steps ≤ {self.factor:g} × step 1 000"
+
+    def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
+        windows = [result_of(item, OURS).get("windows") or {} for item in items]
+        pairs = [(w["thousandth"], w["last"]) for w in windows if "thousandth" in w]
+        if not pairs:
+            return Reached(None, "—", None)
+        value = max(last / early for early, last in pairs)
+        return Reached(value, f"{value:.2f} ×", value <= self.factor)
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Time grows at most with this power of the number of triangles."""
+
+    exponent: float
+
+    @property
+    def text(self) -> str:
+        """What is asked for."""
+        return f"∝ n^{self.exponent:g}"
+
+    def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
+        value = exponent(items, OURS)
+        if value is None:
+            return Reached(None, "—", None)
+        return Reached(value, f"n^{value:.2f}", value <= self.exponent)
+
+
+def result_of(item: dict[str, Any], engine: str) -> dict[str, Any]:
+    """Return what an engine reached on an item; empty if it did not take part."""
+    found: dict[str, Any] = item["engines"].get(engine, {})
+    return found
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """How many times faster we are.
+
+    Parameters
+    ----------
+    value : float
+        Of the medians of wall time.
+    cpu : float or None
+        Of the medians of processor time of all threads, which other users of the machine disturb
+        less.
+    is_bound : bool
+        Whether the other engine was stopped before its end, so that the ratio is this or more.
+    """
+
+    value: float
+    cpu: float | None = None
+    is_bound: bool = False
+
+    @property
+    def text(self) -> str:
+        """The ratio in words."""
+        worked = "" if self.cpu is None else f" (processor {self.cpu:.3g} ×)"
+        return f"{'> ' if self.is_bound else ''}{self.value:.3g} ×{worked}"
+
+
+def ratio(item: dict[str, Any], engine: str) -> Ratio | None:
+    """Compare our time with another engine's; None if one of them has none, or answers differ."""
+    ours, theirs = result_of(item, OURS), result_of(item, engine)
+    if theirs.get("agrees") is False or not ours.get("median"):
+        return None
+    if theirs.get("median"):
+        worked = theirs["cpu"] / ours["cpu"] if ours["cpu"] and theirs["cpu"] else None
+        return Ratio(theirs["median"] / ours["median"], worked)
+    if theirs.get("state") == "stopped" and theirs["stopped_after"] > ours["median"]:
+        return Ratio(theirs["stopped_after"] / ours["median"], is_bound=True)
+    return None
+
+
+def exponent(items: Items, engine: str) -> float | None:
+    """Fit the power of the number of triangles that an engine's time grows with."""
+    points = [
+        (item["triangles"], found)
+        for item in items
+        if (found := result_of(item, engine).get("median"))
+    ]
+    if len(points) < 2:
+        return None
+    sizes, times = np.log(np.array(points)).T
+    return float(np.polyfit(sizes, times, 1)[0])

@@ -1,0 +1,225 @@
+"""What is timed: one thing to do for any engine, prepared outside the clock."""
+
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from .engines import Engine, Operation
+from .facts import area, size_of
+from .shapes import Arrays
+
+#: Called with the number of steps that are done; of chains only.
+Tell = Callable[[int], None]
+
+
+@dataclass
+class Outcome:
+    """What one run gave.
+
+    Parameters
+    ----------
+    mesh : (vertices, faces)
+    parts : dict
+        Seconds of what the run consists of, by name; what is not timed apart is left out.
+    step_seconds : list of float
+        Of each step of a chain.
+    solid : object
+        The engine's, for its counters; None if it made none.
+    """
+
+    mesh: Arrays
+    parts: dict[str, float] = field(default_factory=dict)
+    step_seconds: list[float] = field(default_factory=list)
+    solid: Any = None
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How much surface the operands have, and how far out it is; it bounds wrong volumes."""
+
+    area: float
+    size: float
+    triangles: int
+
+
+class Work(ABC):
+    """One thing to do."""
+
+    @abstractmethod
+    def extent(self) -> Extent:
+        """Measure the operands."""
+
+    def prepare(self, engine: Engine) -> Any:
+        """Return what the clock does not see."""
+        return None
+
+    @abstractmethod
+    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+        """Do it."""
+
+
+@dataclass(frozen=True)
+class Pair(Work):
+    """Two meshes, arrays in to arrays out."""
+
+    first: Arrays
+    second: Arrays
+    operation: Operation = "difference"
+
+    def extent(self) -> Extent:
+        """Add the operands up."""
+        return extent_of([self.first, self.second])
+
+    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+        """Do it."""
+        return Outcome(engine.boolean(self.first, self.second, self.operation))
+
+
+@dataclass(frozen=True)
+class BuiltPair(Pair):
+    """The same with operands that are built, anew for each run, before the clock starts."""
+
+    def prepare(self, engine: Engine) -> Any:
+        """Build both operands."""
+        return [engine.solid(self.first), engine.solid(self.second)]
+
+    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+        """Do it."""
+        made = engine.combine(self.operation, prepared)
+        return Outcome(engine.arrays(made), solid=made)
+
+
+@dataclass(frozen=True)
+class Expression(Work):
+    """A mesh and groups of others, in one expression: each group is united, then all combined."""
+
+    base: Arrays
+    groups: Sequence[Sequence[Arrays]]
+    operation: Operation = "difference"
+
+    def extent(self) -> Extent:
+        """Add the operands up."""
+        return extent_of([self.base, *(mesh for group in self.groups for mesh in group)])
+
+    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+        """Do it."""
+        laps = Laps()
+        operands = [engine.solid(self.base)]
+        for group in self.groups:
+            solids = [engine.solid(mesh) for mesh in group]
+            operands.append(solids[0] if len(solids) == 1 else engine.combine("union", solids))
+        laps.end("build")
+        made = engine.combine(self.operation, operands)
+        mesh = engine.arrays(made)
+        laps.end("combine and mesh out")
+        return Outcome(mesh, laps.seconds, solid=made)
+
+
+@dataclass(frozen=True)
+class Chain(Work):
+    """A mesh and others one after the other; the volume is read after each step."""
+
+    base: Arrays
+    tools: Sequence[Arrays]
+    operation: Operation = "difference"
+
+    def extent(self) -> Extent:
+        """Add the operands up."""
+        return extent_of([self.base, *self.tools])
+
+    def at_once(self) -> Expression:
+        """Return the same set as one expression."""
+        return Expression(self.base, [[tool] for tool in self.tools], self.operation)
+
+    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+        """Do it."""
+        laps = Laps()
+        solid = engine.solid(self.base)
+        tools = [engine.solid(tool) for tool in self.tools]
+        laps.end("build")
+        solid, steps = stepwise(engine, self.operation, solid, tools, tell)
+        laps.end("steps")
+        mesh = engine.arrays(solid)
+        laps.end("mesh out")
+        return Outcome(mesh, laps.seconds, steps, solid)
+
+
+@dataclass(frozen=True)
+class Carving(Work):
+    """A chain so long that its tools are made one at a time, outside the clock."""
+
+    base: Arrays
+    tools: Callable[[], Iterable[Arrays]]
+
+    def extent(self) -> Extent:
+        """Add the operands up."""
+        total = extent_of([self.base])
+        for tool in self.tools():
+            more = extent_of([tool])
+            total = Extent(
+                total.area + more.area,
+                max(total.size, more.size),
+                total.triangles + more.triangles,
+            )
+        return total
+
+    def at_once(self) -> Expression:
+        """Return the same set as one expression."""
+        return Expression(self.base, [[tool] for tool in self.tools()])
+
+    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+        """Do it."""
+        solid = engine.solid(self.base)
+        steps = []
+        for done, tool in enumerate(self.tools(), start=1):
+            began = time.perf_counter()
+            solid = engine.combine("difference", [solid, engine.solid(tool)])
+            engine.volume(solid)
+            steps.append(time.perf_counter() - began)
+            tell(done)
+        laps = Laps()
+        mesh = engine.arrays(solid)
+        laps.end("mesh out")
+        return Outcome(mesh, {"steps": sum(steps), **laps.seconds}, steps, solid)
+
+
+class Laps:
+    """A clock that is read at the end of each part."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self._last = time.perf_counter()
+
+    def end(self, name: str) -> None:
+        """Note the time since the last part ended."""
+        now = time.perf_counter()
+        self.seconds[name] = now - self._last
+        self._last = now
+
+
+def stepwise(
+    engine: Engine, operation: Operation, solid: Any, tools: Iterable[Any], tell: Tell
+) -> tuple[Any, list[float]]:
+    """Combine a solid with others one after the other and read each volume."""
+    steps = []
+    for done, tool in enumerate(tools, start=1):
+        began = time.perf_counter()
+        solid = engine.combine(operation, [solid, tool])
+        engine.volume(solid)
+        steps.append(time.perf_counter() - began)
+        tell(done)
+    return solid, steps
+
+
+def extent_of(meshes: Iterable[Arrays]) -> Extent:
+    """Add up meshes."""
+    listed = list(meshes)
+    return Extent(
+        area=float(np.sum([area(mesh) for mesh in listed])),
+        size=max(size_of(vertices) for vertices, _ in listed),
+        triangles=sum(len(faces) for _, faces in listed),
+    )

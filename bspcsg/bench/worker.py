@@ -1,0 +1,199 @@
+"""The child process: does one item with all its engines in turn, and says each figure at once.
+
+It writes one JSON document a line to standard output, so that what it said stays if it dies.
+"""
+
+import gc
+import json
+import os
+import resource
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from .cases import CASES, dome
+from .engines import ENGINES, Engine
+from .facts import facts_of
+from .memory import forget_peak, held_mb, peak_mb
+from .work import Carving, Chain, Outcome, Tell, Work
+
+#: Steps are told at most so often, in seconds.
+_TELL_EVERY = 0.5
+
+#: Half the steps around the thousandth, and the last steps, that the times of steps are taken over.
+_WINDOW = 100
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a worker is to do.
+
+    Parameters
+    ----------
+    case, item : str
+    small : bool
+        Which of the case's items are meant.
+    engines : list of str
+        In the order in which they take turns.
+    runs : int
+        Timed runs of each engine, after one that warms up.
+    budget : float
+        Seconds that an engine may use for all its runs; if it needs more, fewer runs are timed.
+    shared : str
+        Folder of the shared data.
+    cores : int
+        The process is confined to so many; 0 leaves it as it is.
+    memory_gb : float
+        Address space beyond which an allocation fails.
+    steps : int
+        Steps of the dome; 0 for all.
+    at_once : bool
+        Only ask for the set as one expression.
+    """
+
+    case: str
+    item: str
+    small: bool
+    engines: list[str]
+    runs: int
+    budget: float
+    shared: str
+    cores: int = 0
+    memory_gb: float = 0.0
+    steps: int = 0
+    at_once: bool = False
+
+
+def main(task: str) -> None:
+    """Do the task that a JSON document describes."""
+    perform(Task(**json.loads(task)), _say)
+
+
+def perform(task: Task, say: Callable[[dict[str, Any]], None]) -> None:
+    """Do a task; each figure is said as soon as it is known."""
+    _confine(task)
+    work = _work_of(task)
+    extent = work.extent()
+    say({"say": "extent", "area": extent.area, "size": extent.size, "triangles": extent.triangles})
+    turns = [_Turns(ENGINES[name](), work, task, say) for name in task.engines]
+    while any(turn.left for turn in turns):
+        for turn in turns:
+            if turn.left:
+                turn.take()
+    say({"say": "end", "peak_mb": peak_mb()})
+
+
+def _confine(task: Task) -> None:
+    if task.cores:
+        os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: task.cores])
+    if task.memory_gb:
+        bytes_allowed = int(task.memory_gb * 2**30)
+        resource.setrlimit(resource.RLIMIT_AS, (bytes_allowed, bytes_allowed))
+
+
+def _work_of(task: Task) -> Work:
+    case = CASES[task.case]
+    maker = (case.small if task.small else case.items)[task.item]
+    if task.steps and task.case == "dome":
+        maker = dome(task.steps)
+    work = maker(Path(task.shared))
+    if task.at_once and isinstance(work, Chain | Carving):
+        return work.at_once()
+    return work
+
+
+class _Turns:
+    """The runs of one engine on one item."""
+
+    def __init__(
+        self, engine: Engine, work: Work, task: Task, say: Callable[[dict[str, Any]], None]
+    ) -> None:
+        self.engine, self.work, self.task, self.say = engine, work, task, say
+        self.left = 1
+        self._warm = False
+
+    def take(self) -> None:
+        """Do one run and say what came out; an engine that fails has no further ones."""
+        name = self.engine.name
+        self.say({"say": "begin", "engine": name})
+        try:
+            seconds, cpu, outcome, memory = self._timed()
+        except MemoryError:
+            self._fail("out of memory")
+        except Exception as error:  # whatever an engine raises, the others go on
+            self._fail(f"{type(error).__name__}: {error}")
+        else:
+            first = not self._warm
+            self._plan(seconds)
+            self.say(
+                {
+                    "say": "run",
+                    "engine": name,
+                    "seconds": seconds,
+                    "cpu": cpu,
+                    "memory_mb": memory,
+                    "peak_mb": peak_mb(),
+                    **self._details(outcome, first),
+                }
+            )
+
+    def _timed(self) -> tuple[float, float, Outcome, float | None]:
+        prepared = self.work.prepare(self.engine)
+        gc.collect()
+        held = held_mb()
+        counted = forget_peak()
+        began, used = time.perf_counter(), time.process_time()
+        outcome = self.work.run(self.engine, prepared, self._teller())
+        seconds, cpu = time.perf_counter() - began, time.process_time() - used
+        memory = peak_mb() - held if counted else None
+        return sum(outcome.parts.values()) or seconds, cpu, outcome, memory
+
+    def _plan(self, seconds: float) -> None:
+        """Settle after the first run how many more fit into the budget."""
+        if self._warm:
+            self.left -= 1
+            return
+        self._warm = True
+        self.left = max(min(self.task.runs, int(self.task.budget / seconds) - 1), 0)
+        self.say({"say": "plan", "engine": self.engine.name, "runs": self.left})
+
+    def _details(self, outcome: Outcome, first: bool) -> dict[str, Any]:
+        details: dict[str, Any] = {"parts": outcome.parts, "facts": asdict(facts_of(outcome.mesh))}
+        if outcome.step_seconds:
+            details["windows"] = _windows(outcome.step_seconds)
+        if first and outcome.solid is not None:
+            details["counters"] = self.engine.counters(outcome.solid)
+        return details
+
+    def _fail(self, reason: str) -> None:
+        self.left = 0
+        self.say({"say": "failed", "engine": self.engine.name, "reason": reason})
+
+    def _teller(self) -> Tell:
+        last = time.perf_counter()
+
+        def tell(done: int) -> None:
+            nonlocal last
+            now = time.perf_counter()
+            if now - last >= _TELL_EVERY:
+                last = now
+                self.say({"say": "step", "engine": self.engine.name, "done": done})
+
+        return tell
+
+
+def _windows(steps: list[float]) -> dict[str, float]:
+    """Return the median times of the first, the thousandth and the last steps."""
+    found = {"first": median(steps[:_WINDOW]), "last": median(steps[-_WINDOW:])}
+    if len(steps) >= 1000 + _WINDOW:
+        found["thousandth"] = median(steps[1000 - _WINDOW : 1000 + _WINDOW])
+    return found
+
+
+def _say(document: dict[str, Any]) -> None:
+    sys.stdout.write(json.dumps(document) + "\n")
+    sys.stdout.flush()

@@ -1,0 +1,80 @@
+"""One drawing of one file, from reading to telling what came out."""
+
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ..errors import FormatError
+from . import output
+from .files import STREAM, Inputs, put, refuse_unwritable, shown
+from .output import Output
+
+
+class Drawing(ABC):
+    """A file, and where its drawing goes.
+
+    Subclasses say what to draw.
+
+    Parameters
+    ----------
+    file, target : Path
+    suffixes : sequence of str
+        Of the formats that can be written.
+    **settings
+        The other options, by their names.
+    """
+
+    def __init__(self, file: Path, target: Path, suffixes: Sequence[str], **settings: Any) -> None:
+        self.file = file
+        self.target = target
+        self.settings = settings
+        self._suffixes = suffixes
+        self.suffix = self._suffix(settings["to_format"])
+        self.out = Output.of(settings, self._is_stream)
+        self.inputs = Inputs.of(self.out, settings)
+
+    @abstractmethod
+    def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
+        """Return the bytes of the drawing, what to say of it, and its part of the document."""
+
+    def run(self) -> int:
+        """Do it, and return the exit code."""
+        from .. import set_threads
+
+        set_threads(self.settings["threads"])
+        began = time.perf_counter()
+        refuse_unwritable(self.target, self.settings["overwrite"])
+        self.inputs.refuse_early([self.file])
+        data, words, values = self.drawn()
+        put(self.target, [data], self.settings["overwrite"])
+        seconds = time.perf_counter() - began
+        names = {"file": str(self.file), "output": str(self.target)}
+        document = {**names, **values, "seconds": round(seconds, 4)}
+        self.out.result(f"{shown(self.target)}  {words}  {seconds:.2f} s", document)
+        return output.DONE
+
+    @property
+    def _is_stream(self) -> bool:
+        return str(self.target) == STREAM
+
+    def _suffix(self, form: str | None) -> str:
+        """Return the suffix of the format, as --to or the name says it."""
+        known = " or ".join(self._suffixes)
+        if form is not None:
+            suffix = f".{form.lower().removeprefix('.')}"
+            if suffix not in self._suffixes:
+                raise click.UsageError(f"--to: {form!r} cannot be drawn; it takes {known}.")
+        elif self._is_stream:
+            raise click.UsageError(f"to write to standard output, say the format: --to {known}.")
+        else:
+            suffix = self.target.suffix.lower()
+        if self._is_stream and self.settings["as_json"]:
+            raise click.UsageError("--json and a drawing cannot both go to standard output.")
+        if suffix not in self._suffixes:
+            message = f"{shown(self.target)}: the name must end in {known}."
+            raise FormatError(message, "unknown_format")
+        return suffix

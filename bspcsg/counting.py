@@ -1,0 +1,147 @@
+"""Which solids count in an open block, kept apart from what a solid is.
+
+A function that makes a solid for its caller is `counted`: while it runs nothing else counts, and
+what it returns takes the place of the solids that it was given. A query is `uncounted`: what it
+makes on the way concerns nobody. Outside blocks both cost one look at a context variable.
+"""
+
+import itertools
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import wraps
+from threading import Lock
+from typing import Any, ParamSpec, TypeVar
+
+from .measure import Measured
+
+_Parameters = ParamSpec("_Parameters")
+_Result = TypeVar("_Result")
+
+
+class Ledger:
+    """The solids that count in one block, in order, until it is closed.
+
+    Parameters
+    ----------
+    outer : Ledger or None
+        That of the block around it.
+    """
+
+    def __init__(self, outer: "Ledger | None") -> None:
+        self.outer = outer
+        self.is_open = True
+        # By identity: solids are compared as sets, not by where they came from.
+        self._kept: dict[int, tuple[int, Measured]] = {}
+        self._ranks = itertools.count()
+        # Tasks and threads started in a block may share it.
+        self._lock = Lock()
+
+    @property
+    def solids(self) -> tuple[Measured, ...]:
+        """What counts, each in the place of the first solid it was made of."""
+        with self._lock:
+            ranked = sorted(self._kept.values(), key=lambda entry: entry[0])
+        return tuple(solid for _, solid in ranked)
+
+    def discard(self, solids: Iterable[Measured]) -> int | None:
+        """Let solids no longer count; return the lowest place that got free."""
+        with self._lock:
+            gone = [self._kept.pop(id(solid), None) for solid in solids]
+        return min((entry[0] for entry in gone if entry is not None), default=None)
+
+    def put(self, solid: Measured, rank: int | None = None) -> None:
+        """Let a solid count, in a place or after all others; once, if it does already."""
+        with self._lock:
+            place = next(self._ranks) if rank is None else rank
+            self._kept.setdefault(id(solid), (place, solid))
+
+
+_current: ContextVar[Ledger | None] = ContextVar("bspcsg_block", default=None)
+
+
+def current() -> Ledger | None:
+    """Return the ledger of the innermost open block of this thread or task."""
+    ledger = _current.get()
+    # A task may outlive the block it was started in.
+    while ledger is not None and not ledger.is_open:
+        ledger = ledger.outer
+    return ledger
+
+
+def opened() -> Ledger:
+    """Open a ledger inside the current one, and make it the current one."""
+    ledger = Ledger(current())
+    _current.set(ledger)
+    return ledger
+
+
+def close(ledger: Ledger) -> None:
+    """Close a ledger; the one around it is the current one again."""
+    ledger.is_open = False
+    _current.set(ledger.outer)
+
+
+@contextmanager
+def _apart() -> Iterator[None]:
+    token = _current.set(None)
+    try:
+        yield
+    finally:
+        _current.reset(token)
+
+
+def count(made: Measured, operands: Iterable[Measured] = ()) -> None:
+    """Let a solid count in the current block, instead of those that it was made of."""
+    ledger = current()
+    if ledger is None:
+        return
+    given = list(operands)
+    rank = ledger.discard(given)
+    around = ledger.outer
+    while around is not None:
+        around.discard(given)
+        around = around.outer
+    ledger.put(made, rank)
+
+
+def counted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _Result]:
+    """Make a function's result, if it is a solid, count instead of the solids it is given."""
+
+    @wraps(function)
+    def counting(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
+        if _current.get() is None:
+            return function(*args, **kwargs)
+        with _apart():
+            result = function(*args, **kwargs)
+        if not isinstance(result, Measured):
+            return result
+        given = _solids_in((*args, *kwargs.values()))
+        # Using the operand once more must not use up what this call made of it.
+        made = result.alias() if any(result is solid for solid in given) else result
+        count(made, given)
+        return made
+
+    return counting
+
+
+def uncounted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _Result]:
+    """Make nothing count that a function makes while it runs."""
+
+    @wraps(function)
+    def silent(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
+        if _current.get() is None:
+            return function(*args, **kwargs)
+        with _apart():
+            return function(*args, **kwargs)
+
+    return silent
+
+
+def _solids_in(arguments: Iterable[Any]) -> list[Measured]:
+    """Return the solids among arguments and in lists among them."""
+    found: list[Measured] = []
+    for argument in arguments:
+        entries = argument if isinstance(argument, (list, tuple)) else (argument,)
+        found.extend(entry for entry in entries if isinstance(entry, Measured))
+    return found

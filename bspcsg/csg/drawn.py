@@ -1,0 +1,92 @@
+"""Trees for people: outlines in the terminal, and graphs for Graphviz."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from .tokens import quoted
+from .tree import Argument, CsgTree, Node, Value
+from .writer import value_text
+
+#: Letters of a value that are shown.
+_SHOWN = 64
+
+#: Levels that are indented; deeper nodes say their depth instead.
+_DEEPEST_INDENT = 40
+
+
+class _Place(NamedTuple):
+    """A node in the tree.
+
+    Parameters
+    ----------
+    node : Node
+    depth : int
+        From 1.
+    ended : tuple of bool
+        Of the outer nodes around it, whether they are the last of their siblings.
+    is_last : bool
+        Whether it is the last of its own.
+    """
+
+    node: Node
+    depth: int
+    ended: tuple[bool, ...]
+    is_last: bool
+
+
+def outline(tree: CsgTree) -> str:
+    """Return a line for each node, indented by its depth; long values are cut short."""
+    lines = [tree.name]
+    for place in _walk(tree):
+        indent = "".join("   " if last else "│  " for last in place.ended)
+        branch = "└─ " if place.is_last else "├─ "
+        number = f"({place.depth}) " if place.depth > _DEEPEST_INDENT else ""
+        lines.append(f"{indent}{branch}{number}{_label(place.node)}")
+    return "\n".join(lines) + "\n"
+
+
+def graph(tree: CsgTree) -> str:
+    """Return the tree in Graphviz's language; ``dot -Tsvg`` draws it."""
+    lines = ["digraph csg {", "  node [shape=box, fontname=monospace];"]
+    path: list[int] = []
+    for number, place in enumerate(_walk(tree)):
+        del path[place.depth - 1 :]
+        lines.append(f"  n{number} [label={quoted(_label(place.node))}];")
+        if path:
+            lines.append(f"  n{path[-1]} -> n{number};")
+        path.append(number)
+    return "\n".join([*lines, "}"]) + "\n"
+
+
+def _walk(tree: CsgTree) -> Iterator[_Place]:
+    """Yield the nodes in the order of the script; trees may be any depth."""
+    waiting = _siblings(tree.nodes, 1, ())
+    while waiting:
+        place = waiting.pop()
+        yield place
+        ended = (*place.ended, place.is_last)[:_DEEPEST_INDENT]
+        waiting += _siblings(place.node.children, place.depth + 1, ended)
+
+
+def _siblings(nodes: Sequence[Node], depth: int, ended: tuple[bool, ...]) -> list[_Place]:
+    """Return the places of some nodes, the first one last."""
+    last = len(nodes) - 1
+    return [_Place(nodes[k], depth, ended, k == last) for k in range(last, -1, -1)]
+
+
+def _label(node: Node) -> str:
+    return f"{node.modifiers}{node.name}({', '.join(map(_argument, node.arguments))})"
+
+
+def _argument(argument: Argument) -> str:
+    value = _short(argument.value)
+    return value if argument.name is None else f"{argument.name} = {value}"
+
+
+def _short(value: Value) -> str:
+    if isinstance(value, tuple) and len(value) > _SHOWN:
+        return f"[{len(value)} values]"
+    text = value_text(value)
+    if len(text) <= _SHOWN:
+        return text
+    return f"[{len(value)} values]" if isinstance(value, tuple) else text[: _SHOWN - 1] + "…"

@@ -1,0 +1,211 @@
+"""Solids as trees: the expression that a solid was made by, as far as it is remembered.
+
+A solid that has not been evaluated knows all of its expression; one that has knows the operation
+that made it, its operands and no further (see `Solid.last_operation`). Leaves become polyhedra,
+transforms multmatrix nodes. The language has no complement: a set whose complement is the smaller
+thing to write is carried as that, with a sign, until something bounded takes it away.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import expression
+from ..counting import uncounted
+from ..errors import UnboundedError
+from ..expression import Pending, Placed, Plan, make_plan
+from ..leaf import ConstantLeaf, PlaneLeaf, TreeLeaf
+from ..solid import Solid
+from ..transform import Factor, Factors
+from .tree import Argument, CsgTree, Node, Value
+
+#: Corners and triangles beyond which an expression is not written out but given up for one
+#: polyhedron: some 60 bytes each make half of the largest script that is read.
+_LARGEST = 2_000_000
+
+
+class _Body(NamedTuple):
+    """A set as nodes.
+
+    Parameters
+    ----------
+    node : Node or None
+        None for the empty set.
+    negated : bool
+        Whether it is everything outside the node.
+    size : int
+        Corners and triangles in it when it is written out.
+    """
+
+    node: Node | None
+    negated: bool = False
+    size: int = 0
+
+
+_NOTHING = _Body(None)
+
+
+@uncounted
+def tree_of(solid: Solid, *, flat: bool = False) -> CsgTree:
+    """Return a tree that evaluates to a solid; an empty one has no nodes.
+
+    Parameters
+    ----------
+    solid : Solid
+    flat : bool
+        Write one polyhedron, the reduced boundary, instead of the expression that made the solid.
+
+    Raises
+    ------
+    UnboundedError
+        If the solid reaches to infinity.
+
+    Notes
+    -----
+    The expression is given up for a polyhedron where it has no counterpart in the language, as
+    half-spaces have none, and where repeated parts, which are written out each time, would make it
+    larger than two million corners and triangles. Symmetric differences repeat both their operands.
+    """
+    body = _polyhedron(solid) if flat else _Reading().body(*solid.expression)
+    if body is None or body.size > _LARGEST or body.negated:
+        body = _polyhedron(solid)
+    if body is None or body.negated:
+        message = "A solid that reaches to infinity cannot be written as a script."
+        raise UnboundedError(message, "unbounded")
+    return CsgTree(() if body.node is None else (body.node,))
+
+
+def _polyhedron(solid: Solid) -> _Body | None:
+    """Return a solid or its complement as one polyhedron; None if both reach to infinity."""
+    negated = not solid.is_bounded
+    inner = ~solid if negated else solid
+    if not inner.is_bounded:
+        return None
+    if inner.is_empty:
+        return _Body(None, negated)
+    mesh = inner.normalized().to_mesh()
+    points = tuple(tuple(point) for point in mesh.vertices.tolist())
+    # Polyhedra list their corners clockwise, numbers are all doubles.
+    faces = tuple(tuple(face) for face in mesh.faces[:, ::-1].astype(np.float64).tolist())
+    node = Node("polyhedron", (Argument("points", points), Argument("faces", faces)))
+    return _Body(node, negated, len(points) + len(faces))
+
+
+class _Reading:
+    """The bodies of an expression's nodes, each found once; expressions may be any depth."""
+
+    def __init__(self) -> None:
+        self._known: dict[expression.Node, _Body | None] = {}
+
+    def body(self, root: expression.Node, factors: Factors) -> _Body | None:
+        """Return the body of a node under a transform; None if it cannot be written."""
+        waiting: list[tuple[expression.Node, Plan | None]] = [(root, None)]
+        while waiting:
+            node, plan = waiting.pop()
+            if node in self._known:
+                continue
+            if plan is not None:
+                self._known[node] = self._combined(node, plan)
+                continue
+            plan = _plan_of(node)
+            if plan is None:
+                self._known[node] = _leaf(node)
+                continue
+            waiting.append((node, plan))
+            waiting.extend((operand.node, None) for operand in plan.operands)
+        return _moved(self._known[root], factors)
+
+    def _combined(self, node: expression.Node, plan: Plan) -> _Body | None:
+        lines: list[_Body | None] = []
+        for operator, arguments in plan.program:
+            if operator == "leaf":
+                operand = plan.operands[arguments[0]]
+                lines.append(_moved(self._known[operand.node], operand.factors))
+            else:
+                lines.append(_operation(operator, [lines[line] for line in arguments]))
+        made = lines[-1]
+        if made is None or made.size > _LARGEST:
+            return _polyhedron(Solid.from_node(node))
+        return made
+
+
+def _plan_of(node: expression.Node) -> Plan | None:
+    """Return how a node was made; None for a leaf."""
+    content = node.content
+    if isinstance(content, Pending):
+        return make_plan(node)
+    if not isinstance(content, TreeLeaf) or content.record is None:
+        return None
+    record = content.record
+    return Plan(record.program, [Placed(expression.Node(leaf), ()) for leaf in record.leaves])
+
+
+def _leaf(node: expression.Node) -> _Body | None:
+    content = node.content
+    if isinstance(content, ConstantLeaf):
+        return _Body(None, content.full)
+    return None if isinstance(content, PlaneLeaf) else _polyhedron(Solid.from_node(node))
+
+
+def _moved(body: _Body | None, factors: Factors) -> _Body | None:
+    if body is None or body.node is None:
+        return body
+    node = body.node
+    for factor in reversed(factors):
+        node = Node("multmatrix", (_matrix(factor),), (node,))
+    return body._replace(node=node)
+
+
+def _matrix(factor: Factor) -> Argument:
+    rows: Value = tuple(tuple(row) for row in factor.matrix.tolist())
+    return Argument(None, rows)
+
+
+def _operation(operator: str, operands: Sequence[_Body | None]) -> _Body | None:
+    given = [operand for operand in operands if operand is not None]
+    if len(given) < len(operands):
+        return None
+    if operator == "not":
+        return given[0]._replace(negated=not given[0].negated)
+    if operator == "xor":
+        return _odd(given)
+    if operator == "and":
+        return _common(given)
+    # What is inside at least one is what is not outside all.
+    outside = _common([body._replace(negated=not body.negated) for body in given])
+    return outside._replace(negated=not outside.negated)
+
+
+def _common(bodies: Sequence[_Body]) -> _Body:
+    """Return what is inside all bodies."""
+    positive = [body for body in bodies if not body.negated]
+    negative = [body for body in bodies if body.negated]
+    if not positive:
+        return _joined("union", negative)._replace(negated=True)
+    first = _joined("intersection", positive)
+    rest = [body._replace(negated=False) for body in negative if body.node is not None]
+    return _joined("difference", [first, *rest])
+
+
+def _odd(bodies: Sequence[_Body]) -> _Body:
+    """Return what is inside an odd number of bodies; each complement among them flips that."""
+    made = _NOTHING
+    for body in bodies:
+        plain = body._replace(negated=False)
+        one, other = (_joined("difference", pair) for pair in ((made, plain), (plain, made)))
+        made = _joined("union", [one, other])
+        if made.size > _LARGEST:
+            break
+    return made._replace(negated=sum(body.negated for body in bodies) % 2 == 1)
+
+
+def _joined(name: str, bodies: Sequence[_Body]) -> _Body:
+    """Return the operation on nodes, which leaves out what the empty set among them settles."""
+    nodes = [body.node for body in bodies if body.node is not None]
+    size = sum(body.size for body in bodies)
+    if not nodes or (name == "intersection" and len(nodes) < len(bodies)):
+        return _NOTHING
+    if name == "difference" and bodies[0].node is None:
+        return _NOTHING
+    return _Body(nodes[0] if len(nodes) == 1 else Node(name, (), tuple(nodes)), size=size)

@@ -1,0 +1,25 @@
+"""Meshes turned about the x axis, by quarters: from one axis upwards to another."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from .raw import RawMesh
+
+
+def turned(raw: RawMesh, quarters: int) -> RawMesh:
+    """Return a mesh turned by quarters about x, exactly; one quarter takes y to z.
+
+    Parameters
+    ----------
+    raw : RawMesh
+    quarters : int
+        Of any sign.
+    """
+    count = quarters % 4
+    if count == 0:
+        return raw
+    x, y, z = raw.vertices.T
+    moved = {1: (x, -z, y), 2: (x, -y, -z), 3: (x, z, -y)}[count]
+    # Adding zero turns -0.0 into 0.0.
+    return replace(raw, vertices=np.ascontiguousarray(np.array(moved).T) + 0.0)

@@ -1,0 +1,124 @@
+"""A boolean engine of trimesh, which keeps double precision.
+
+trimesh itself rounds vertices to single precision before it asks manifold3d. One line makes
+scripts that are there already exact::
+
+    import bspcsg.trimesh_engine
+
+    bspcsg.trimesh_engine.register(default=True)
+
+trimesh has no public hook for engines: `register` writes into its table of engines.
+"""
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from .counting import uncounted
+from .errors import MissingPartError, invalid_parameter
+from .setops import difference, intersection, union
+from .solid import Solid
+
+if TYPE_CHECKING:
+    import trimesh
+
+#: What trimesh is to call this engine.
+NAME = "bspcsg"
+
+_OPERATIONS: dict[str, Callable[..., Solid]] = {
+    "difference": difference,
+    "intersection": intersection,
+    "union": union,
+}
+
+
+def register(default: bool = False) -> None:
+    """Make ``engine="bspcsg"`` known to trimesh; calling it again changes nothing.
+
+    Parameters
+    ----------
+    default : bool
+        Whether operations that name no engine are to use this one.
+
+    Raises
+    ------
+    MissingPartError
+        If this version of trimesh keeps its engines elsewhere; code ``"missing_part"``.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from bspcsg import trimesh_engine
+    >>> trimesh_engine.register()
+    >>> a = trimesh.creation.box((2, 2, 2))
+    >>> float(a.difference(trimesh.creation.box((1, 1, 4)), engine="bspcsg").volume)
+    6.0
+    """
+    import trimesh.boolean
+
+    engines = getattr(trimesh.boolean, "_engines", None)
+    available = getattr(trimesh.boolean, "engines_available", None)
+    if not isinstance(engines, dict) or not isinstance(available, set):
+        message = (
+            f"trimesh {trimesh.__version__} keeps no table of boolean engines to register in."
+            " Try: pip install 'trimesh>=5,<6'"
+        )
+        raise MissingPartError(message, "missing_part")
+    engines[NAME] = boolean
+    available.add(NAME)
+    if default:
+        engines[None] = boolean
+
+
+@uncounted
+def boolean(
+    meshes: "Iterable[trimesh.Trimesh]",
+    operation: str,
+    check_volume: bool = True,
+    **options: Any,
+) -> "trimesh.Trimesh":
+    """Combine meshes as trimesh asks its engines to.
+
+    Parameters
+    ----------
+    meshes : iterable of trimesh.Trimesh
+        Or anything else that `Solid.from_mesh` takes.
+    operation : {"difference", "intersection", "union"}
+        A difference takes all others from the first.
+    check_volume : bool
+        Refuse meshes whose ``is_volume`` is false: open, inconsistent or inside out. Without it,
+        meshes still have to be closed.
+    **options
+        As for `Solid`: ``pitch``, ``trusted``, ``winding``.
+
+    Returns
+    -------
+    trimesh.Trimesh
+        With float64 vertices; empty if nothing is left.
+
+    Raises
+    ------
+    InvalidMeshError
+        A ValueError, if a mesh is refused, the operation is another, or a difference is asked of
+        fewer than two meshes.
+    """
+    given = list(meshes)
+    if operation not in _OPERATIONS:
+        known = ", ".join(_OPERATIONS)
+        raise invalid_parameter(f"Unknown operation {operation!r}; this engine has {known}.")
+    if operation == "difference" and len(given) < 2:
+        raise invalid_parameter("A difference needs at least two meshes.")
+    if check_volume:
+        _refuse_surfaces(given)
+    solids = [Solid.from_mesh(mesh, **options) for mesh in given]
+    return _OPERATIONS[operation](*solids).to_trimesh()
+
+
+def _refuse_surfaces(meshes: list[Any]) -> None:
+    """Refuse what trimesh does not call a volume; what is no trimesh has nothing to ask."""
+    bad = [number for number, mesh in enumerate(meshes) if not getattr(mesh, "is_volume", True)]
+    if bad:
+        which = ", ".join(map(str, bad))
+        raise invalid_parameter(
+            f"Not all meshes are volumes: number {which} (from 0) is open, inconsistently oriented"
+            " or inside out; check_volume=False goes on if it is closed."
+        )

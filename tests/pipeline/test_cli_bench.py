@@ -1,0 +1,117 @@
+"""The verb bench, on small forms of its cases."""
+
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from bspcsg.bench import runner
+from bspcsg.bench.cases import CASES
+from support.cli import Capture, ran
+
+#: A worker of which one engine kills the process, and another never ends.
+_WORKER = """
+import json, os, sys, time
+task = json.loads(sys.argv[-1])
+def say(**what): print(json.dumps(what), flush=True)
+say(say="extent", area=1.0, size=1.0, triangles=24)
+facts = dict(triangles=12, euler_number=2, open_edges=0, volume=1.0, volume_error=0.0)
+for name in task["engines"]:
+    say(say="begin", engine=name)
+    if name == "manifold3d":
+        os.abort()
+    if name == "trueform":
+        say(say="step", engine=name, done=17)
+        time.sleep(60)
+    say(say="plan", engine=name, runs=0)
+    say(say="run", engine=name, seconds=0.5, cpu=0.4, memory_mb=1.0, peak_mb=9.0, facts=facts)
+say(say="end")
+"""
+
+
+def test_the_list_names_all_cases(capsys: Capture) -> None:
+    code, out, _ = ran(capsys, "bench", "--list")
+    assert code == 0
+    assert [line.split()[0] for line in out.splitlines()[2:]] == list(CASES)
+
+
+@pytest.mark.timeout(300)
+def test_cases_are_measured_recorded_and_shown_again(capsys: Capture, tmp_path: Path) -> None:
+    record_path, plot_path = tmp_path / "r.json", tmp_path / "sizes.svg"
+    cases = ["cubes", "drilled-steps", "sizes"]
+    code, out, err = ran(
+        capsys,
+        *["bench", *cases, "--quick", "--runs", "1", "--against", "manifold3d", "-q"],
+        *["--json", str(record_path), "--plot", str(plot_path)],
+    )
+    assert (code, err) == (0, ""), out
+    record = json.loads(record_path.read_text())
+    assert (record["schema"], record["type"]) == (1, "bench")
+    assert record["machine"]["cores"] >= 1
+    assert {"bspcsg", "manifold3d", "python"} <= set(record["versions"])
+    assert [row["case"] for row in record["cases"]] == cases
+    for item in (item for row in record["cases"] for item in row["items"]):
+        ours, theirs = item["engines"]["bspcsg"], item["engines"]["manifold3d"]
+        assert ours["state"] == theirs["state"] == "ok"
+        assert len(ours["seconds"]) == 2 and ours["median"] == ours["seconds"][1] > 0
+        assert theirs["agrees"] and theirs["difference"] <= theirs["bound"]
+        assert ours["facts"]["open_edges"] == 0 < ours["facts"]["triangles"]
+    chain = record["cases"][1]["items"][0]["engines"]["bspcsg"]
+    assert set(chain["parts"]) == {"build", "steps", "mesh out"}
+    assert record["cases"][0]["items"][0]["engines"]["bspcsg"]["peak_mb"] > 20
+    drawing = ElementTree.parse(plot_path)
+    assert len(drawing.findall(".//{*}circle")) == 2 * len(CASES["sizes"].small)
+    code, again, _ = ran(capsys, "bench", "--from", str(record_path))
+    assert (code, again) == (0, out)
+    code, table, _ = ran(capsys, "bench", "--from", str(record_path), "--format", "md")
+    assert code == 0 and "| two cubes (small: 2 × 12) | ≥ 1 × manifold3d |" in table
+
+
+def test_an_engine_that_crashes_or_hangs_is_left_out(
+    capsys: Capture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    worker = tmp_path / "worker.py"
+    worker.write_text(_WORKER)
+    monkeypatch.setattr(runner, "_BOOT", worker)
+    engines = ["bspcsg", "manifold3d", "trueform", "meshlib"]
+    row = runner.run_case("cubes", runner.Settings(engines, limit=0.5), lambda _: None)
+    found = row["items"][0]["engines"]
+    states = {name: found[name]["state"] for name in engines}
+    assert states == {
+        "bspcsg": "ok",
+        "manifold3d": "crashed",
+        "trueform": "stopped",
+        "meshlib": "ok",
+    }
+    assert found["trueform"]["steps_done"] == 17
+    assert found["trueform"]["stopped_after"] >= 0.5
+    assert found["meshlib"]["agrees"] and found["bspcsg"]["median"] == 0.5
+
+
+def test_cases_without_their_data_are_left_out(capsys: Capture, tmp_path: Path) -> None:
+    code, out, _ = ran(capsys, "bench", "capsules", "--quick", "--data", str(tmp_path), "-q")
+    assert code == 0
+    assert "left out" in out and "swept-capsules-100.npz does not exist" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (["cubs"], 2, "'cubs' is no case; see --list."),
+        (["cubes", "--against", "blender"], 2, "'blender' is no engine; known are manifold3d,"),
+        (["--from", "pyproject.toml"], 3, "pyproject.toml: cannot be read as a record"),
+        (["--from", "missing.json"], 3, "missing.json: cannot be read as a record"),
+    ],
+)
+def test_wrong_use_is_said(capsys: Capture, arguments: list[str], code: int, said: str) -> None:
+    found, _, err = ran(capsys, "bench", *arguments)
+    assert found == code
+    assert said in err
+
+
+def test_records_of_another_schema_are_refused(capsys: Capture, tmp_path: Path) -> None:
+    path = tmp_path / "old.json"
+    path.write_text('{"type": "bench", "schema": 0}')
+    code, _, err = ran(capsys, "bench", "--from", str(path))
+    assert code == 3 and "schema 0, and this version reads 1; measure it again." in err

@@ -1,0 +1,115 @@
+"""The manual is what happens: its code runs, its output is right, its links lead somewhere."""
+
+import doctest
+import re
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from bspcsg.cli.main import _VERBS
+from support.cli import script
+from support.documents import (
+    DOCS,
+    ROOT,
+    RUN,
+    SHOWN,
+    Session,
+    blocks,
+    exchanges,
+    expected_of,
+    page_files,
+    prepare,
+    same,
+)
+
+PAGES = page_files()
+ALL = sorted(DOCS.rglob("*.md"))
+
+
+def name(path: Path) -> str:
+    return str(path.relative_to(DOCS))
+
+
+@pytest.mark.parametrize("path", PAGES, ids=name)
+def test_pages_show_what_happens(
+    path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    prepare(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    session = Session()
+    for language, block in blocks(path.read_text()):
+        assert language in RUN + SHOWN
+        if language == "python":
+            assert session.python(block).splitlines() == expected_of(block)
+        if language == "console":
+            for command, shown in exchanges(block):
+                printed = session.command(command)
+                assert "Traceback" not in printed
+                assert same(printed, shown), f"$ {command}\n{printed}"
+
+
+def test_same_ignores_times_and_versions_only() -> None:
+    assert same("x  1.25 s\nmanifold3d 3.5.4\n", "x  0.1 s\nmanifold3d 3.6.0")
+    assert not same("x  1.25\n", "x  0.1")
+    assert same("a\nb\nc\nd\n", "a\n…\nd") and not same("a\nb\n", "a\n…\nd")
+    assert not same("a\n", "") and not same("", "a")
+
+
+def test_options_and_api_are_up_to_date() -> None:
+    done = script("manual", "--check")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_every_verb_has_a_page_with_an_example() -> None:
+    pages = {path.stem: path.read_text() for path in (DOCS / "verbs").glob("*.md")}
+    assert set(pages) == set(_VERBS)
+    for verb, text in pages.items():
+        consoles = [block for language, block in blocks(text) if language == "console"]
+        assert any(f"$ bspcsg {verb}" in block for block in consoles), verb
+
+
+def test_every_public_name_is_in_the_api() -> None:
+    text = "".join(path.read_text() for path in (DOCS / "api").glob("*.md"))
+    documented = set(re.findall(r"^## `([\w.]+)`$", text, re.MULTILINE))
+    values = {"__version__", "EDGE", "INTERIOR", "MISS", "VERTEX"}
+    for package in ("bspcsg", "bspcsg.bsp", "bspcsg.csg"):
+        public = set(import_module(package).__all__) - values
+        assert {f"{package}.{name}" for name in public} <= documented
+
+
+@pytest.mark.parametrize("path", ALL, ids=name)
+def test_links_lead_somewhere(path: Path) -> None:
+    for link in re.findall(r"\]\(([^)#:]+)\)", path.read_text()):
+        assert (path.parent / link).exists(), link
+
+
+def test_every_page_can_be_found_from_the_index() -> None:
+    found, waiting = set(), [DOCS / "index.md"]
+    while waiting:
+        path = waiting.pop().resolve()
+        if path not in found:
+            found.add(path)
+            links = re.findall(r"\]\(([^)#:]+\.md)\)", path.read_text())
+            waiting += [path.parent / link for link in links]
+    assert set(ALL) <= found
+
+
+def modules() -> list[str]:
+    """Return the modules of the package whose docstrings have examples."""
+    files = [path for path in (ROOT / "bspcsg").rglob("*.py") if ">>> " in path.read_text()]
+    names = [".".join(path.relative_to(ROOT).with_suffix("").parts) for path in files]
+    return sorted(name.removesuffix(".__init__") for name in names)
+
+
+@pytest.mark.parametrize("module", modules())
+def test_examples_of_docstrings(
+    module: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    failed, tried = doctest.testmod(import_module(module))
+    assert tried and not failed
+
+
+def test_the_readme_leads_to_the_manual() -> None:
+    assert "(docs/index.md)" in (ROOT / "README.md").read_text()

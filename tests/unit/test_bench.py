@@ -1,0 +1,119 @@
+"""What the bench is made of: its meshes, its bounds, and what counts as reached."""
+
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bspcsg.bench import real, shapes
+from bspcsg.bench.facts import facts_of, mesh_volume
+from bspcsg.bench.runner import judged
+from bspcsg.bench.targets import Faster, Growth, MeanFaster, SteadySteps, Within
+from bspcsg.bench.worker import Task, perform
+from support.shapes import exact_volume
+
+
+@pytest.mark.parametrize("n", [1, 2, 5])
+def test_octaspheres_are_closed_and_have_8_n_squared_triangles(n: int) -> None:
+    facts = facts_of(shapes.octasphere(n))
+    assert (facts.triangles, facts.euler_number, facts.open_edges) == (8 * n * n, 2, 0)
+    assert 0 < facts.volume < 4 / 3 * np.pi
+
+
+def test_all_shapes_are_closed() -> None:
+    block, balls = shapes.dome(3)
+    meshes = [block, *balls, *shapes.needles(20), *shapes.random_boxes(3)]
+    meshes += [shapes.icosphere(1), *shapes.drilled_plate(2)[1], *shapes.drilled_cube(2)[1]]
+    for mesh in meshes:
+        facts = facts_of(mesh)
+        assert facts.open_edges == 0 and facts.euler_number == 2
+        assert facts.volume > 0
+
+
+@pytest.mark.parametrize("depth", [1, 2, 3])
+def test_holes_of_the_sponge_are_disjoint_and_leave_20_of_27_each(depth: int) -> None:
+    cube, (along_x, along_y, along_z) = shapes.menger(depth)
+    side = 3**depth
+    left = np.ones((side,) * 3, dtype=bool)
+    for holes in (along_x, along_y, along_z):
+        assert len(holes) == (8**depth - 1) // 7
+        for vertices, _ in holes:
+            low, high = vertices.min(axis=0).astype(int), vertices.max(axis=0).astype(int)
+            left[tuple(slice(a, b) for a, b in zip(low, high, strict=True))] = False
+    assert Fraction(int(left.sum()), side**3) == Fraction(20, 27) ** depth
+    assert exact_volume(cube) == side**3
+
+
+def test_the_error_of_a_volume_is_bounded() -> None:
+    far = shapes.moved(shapes.octasphere(3), (1e3, -2e3, 5e2))
+    # Coordinates in steps of the lattice, so that the exact volume is that of the doubles.
+    far = np.round(far[0], 6), far[1]
+    found = mesh_volume(far)
+    assert abs(Fraction(found.value) - exact_volume(far)) <= Fraction(found.error)
+    assert found.error < 1e-9
+
+
+def test_tools_of_the_swept_chain_are_turned_right_side_out(shared_meshes: Path) -> None:
+    base, tools = real.swept_capsules(shared_meshes.parent)
+    assert mesh_volume(base).value == pytest.approx(1)
+    assert len(tools) == 100
+    assert all(mesh_volume(tool).value > 0 for tool in tools)
+
+
+def _result(seconds: float, volume: float = 1.0, **more: Any) -> dict[str, Any]:
+    facts = {"volume": volume, "volume_error": 1e-15, "euler_number": 2, "open_edges": 0}
+    return {
+        "state": "ok",
+        "median": seconds,
+        "cpu": seconds,
+        "volumes": [volume],
+        "facts": facts,
+    } | more
+
+
+def _item(ours: float, theirs: float, volume: float = 1.0, **more: Any) -> dict[str, Any]:
+    engines = {"bspcsg": _result(ours), "manifold3d": _result(theirs, volume)}
+    return judged({"item": "x", "area": 6.0, "size": 1.0, "engines": engines, **more})
+
+
+def test_ratios_count_only_if_answers_agree() -> None:
+    right, wrong = _item(1.0, 4.0), _item(1.0, 9.0, volume=1.0001)
+    assert right["engines"]["manifold3d"]["agrees"]
+    assert not wrong["engines"]["manifold3d"]["agrees"]
+    assert Faster(4).reached([right, wrong]).met
+    assert Faster(4).reached([right, wrong]).value == 4
+    assert Faster(4).reached([wrong]).value is None
+
+
+def test_the_least_ratio_counts_and_the_mean_is_geometric() -> None:
+    items = [_item(1.0, 2.0), _item(1.0, 8.0)]
+    assert Faster(3).reached(items).met is False
+    assert MeanFaster(4).reached(items).value == pytest.approx(4)
+
+
+def test_an_engine_that_was_stopped_gives_a_bound() -> None:
+    stopped = {"state": "stopped", "median": None, "stopped_after": 30.0}
+    item = {"engines": {"bspcsg": _result(1.0), "manifold3d": stopped}}
+    enough, too_little = Faster(20).reached([item]), Faster(50).reached([item])
+    assert (enough.met, enough.text) == (True, "> 30 ×")
+    assert too_little.met is None
+
+
+def test_times_and_their_growth() -> None:
+    items = [_item(1e-6 * n**1.1, 1.0, triangles=n) for n in (10_000, 40_000, 160_000)]
+    assert Growth(1.05).reached(items).value == pytest.approx(1.1)
+    assert Growth(1.05).reached(items).met is False
+    assert Within(1.0).reached(items).met
+    chain = _result(1.0, windows={"thousandth": 0.002, "last": 0.005})
+    steady = SteadySteps(2).reached([{"engines": {"bspcsg": chain}}])
+    assert (steady.value, steady.met) == (2.5, False)
+
+
+def test_an_engine_that_uses_up_its_budget_has_one_run() -> None:
+    said: list[dict[str, Any]] = []
+    task = Task("cubes", "2 × 12", True, ["bspcsg"], runs=5, budget=1e-9, shared=".")
+    perform(task, said.append)
+    assert [line["say"] for line in said] == ["extent", "begin", "plan", "run", "end"]
+    assert said[3]["facts"]["euler_number"] == 2
