@@ -30,6 +30,9 @@ class Engine(ABC):
 
     name: str
 
+    #: Whether `counters` has something to say.
+    counts = False
+
     @abstractmethod
     def solid(self, mesh: Arrays) -> Any:
         """Return the solid that a mesh bounds, ready for operations."""
@@ -63,6 +66,7 @@ class _Bspcsg(Engine):
     """Our own, by the public functions of the package."""
 
     name = "bspcsg"
+    counts = True
 
     def __init__(self) -> None:
         import bspcsg

@@ -77,7 +77,13 @@ def run_case(key: str, settings: Settings, progress: Progress) -> dict[str, Any]
         return {"case": key, "title": case.title, "left_out": missing, "items": []}
     labels = case.small if settings.small else case.items
     items = [_item(key, label, settings, progress) for label in labels]
-    return {"case": key, "title": case.title, "small": settings.small, "items": items}
+    # What is less than the whole says nothing about the targets.
+    small = settings.small or _is_cut(key, settings)
+    return {"case": key, "title": case.title, "small": small, "items": items}
+
+
+def _is_cut(key: str, settings: Settings) -> bool:
+    return key == "dome" and settings.steps > 0
 
 
 def _item(key: str, label: str, settings: Settings, progress: Progress) -> dict[str, Any]:
@@ -95,7 +101,7 @@ def _item(key: str, label: str, settings: Settings, progress: Progress) -> dict[
         memory_gb=settings.memory_gb,
         steps=settings.steps,
     )
-    gathered = Gathered(label)
+    gathered = Gathered(f"{settings.steps} steps" if _is_cut(key, settings) else label)
     for part in _parts(case, task):
         _until_done(part, settings, gathered, progress)
     row = gathered.row()

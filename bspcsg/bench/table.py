@@ -69,6 +69,19 @@ def markdown(record: dict[str, Any]) -> str:
     return "\n".join([about(record), "", *drawn, ""])
 
 
+def counter_lines(record: dict[str, Any]) -> list[list[str]]:
+    """Return a table of our counters: a line of columns' names, and one for each item."""
+    counted = [
+        (row["case"], item["item"], found)
+        for row in record["cases"]
+        for item in row["items"]
+        if (found := item["engines"].get(OURS, {}).get("counters"))
+    ]
+    names = list(dict.fromkeys(name for _, _, found in counted for name in found))
+    lines = [[case, item, *(str(found.get(n, "")) for n in names)] for case, item, found in counted]
+    return [["case", "item", *names], *lines]
+
+
 def about(record: dict[str, Any]) -> str:
     """Return a sentence about machine and versions."""
     machine = record["machine"]

@@ -61,6 +61,10 @@ class Work(ABC):
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
         """Do it."""
 
+    def counted(self, engine: Engine, outcome: Outcome) -> dict[str, int]:
+        """Return the engine's counters of a run, if it has any."""
+        return {} if outcome.solid is None else engine.counters(outcome.solid)
+
 
 @dataclass(frozen=True)
 class Pair(Work):
@@ -77,6 +81,13 @@ class Pair(Work):
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
         """Do it."""
         return Outcome(engine.boolean(self.first, self.second, self.operation))
+
+    def counted(self, engine: Engine, outcome: Outcome) -> dict[str, int]:
+        """Do it once more, since arrays have no counters."""
+        if not engine.counts:
+            return {}
+        operands = [engine.solid(self.first), engine.solid(self.second)]
+        return engine.counters(engine.combine(self.operation, operands))
 
 
 @dataclass(frozen=True)

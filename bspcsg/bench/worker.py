@@ -165,8 +165,8 @@ class _Turns:
         details: dict[str, Any] = {"parts": outcome.parts, "facts": asdict(facts_of(outcome.mesh))}
         if outcome.step_seconds:
             details["windows"] = _windows(outcome.step_seconds)
-        if first and outcome.solid is not None:
-            details["counters"] = self.engine.counters(outcome.solid)
+        if first:
+            details["counters"] = self.work.counted(self.engine, outcome)
         return details
 
     def _fail(self, reason: str) -> None:

@@ -115,6 +115,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     show_default=True,
     help="How the table is printed.",
 )
+@click.option("--counters", is_flag=True, help="Print what our core counted, too.")
 @click.option("-q", "--quiet", is_flag=True, help="Do not say what is under way.")
 @click.option("--debug", is_flag=True, help="Show where an error comes from.")
 def bench(cases: list[str], listed: bool, **given: Any) -> int:
@@ -133,6 +134,8 @@ def bench(cases: list[str], listed: bool, **given: Any) -> int:
 
     record = records.read(source) if source else _measured(cases, given)
     _show(record, given["style"])
+    if given["counters"]:
+        click.echo(_counters(record))
     _write(record, given["record_path"], given["plot_path"])
     return output.FOUND if _is_wrong(record) else output.DONE
 
@@ -204,6 +207,13 @@ def _show(record: dict[str, Any], style: str) -> None:
     head, *lines = table.lines_of(record, titles=False)
     click.echo(table_text(head, lines))
     click.echo(table.about(record))
+
+
+def _counters(record: dict[str, Any]) -> str:
+    from ..bench import table
+
+    head, *lines = table.counter_lines(record)
+    return table_text(head, lines, right=head[2:])
 
 
 def _write(record: dict[str, Any], record_path: Path | None, plot_path: Path | None) -> None:

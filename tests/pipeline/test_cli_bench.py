@@ -64,6 +64,8 @@ def test_cases_are_measured_recorded_and_shown_again(capsys: Capture, tmp_path: 
     assert len(drawing.findall(".//{*}circle")) == 2 * len(CASES["sizes"].small)
     code, again, _ = ran(capsys, "bench", "--from", str(record_path))
     assert (code, again) == (0, out)
+    code, counters, _ = ran(capsys, "bench", "--from", str(record_path), "--counters")
+    assert counters.startswith(out) and "nodes" in counters[len(out) :]
     code, table, _ = ran(capsys, "bench", "--from", str(record_path), "--format", "md")
     assert code == 0 and "| two cubes (small: 2 × 12) | ≥ 1 × manifold3d |" in table
 
