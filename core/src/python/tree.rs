@@ -9,7 +9,7 @@ use pyo3::types::{PyBytes, PyDict, PyType};
 
 use super::arrays::{array, rows};
 use super::errors::to_python;
-use super::run::run;
+use super::run::{run, SMALL};
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::collect::has_no_boundary;
 use crate::extract::round::{self, Mesh};
@@ -27,6 +27,7 @@ use crate::query::region::hyperplane::plane;
 use crate::query::region::section::section;
 use crate::tree::solid::Solid;
 use crate::tree::stats::{stats, Stats};
+use crate::tree::work::work;
 
 type Corners = ((f64, f64, f64), (f64, f64, f64));
 
@@ -54,7 +55,7 @@ impl Tree {
     }
 
     fn size(&self) -> usize {
-        self.solid.sources().iter().map(|s| s.face_count()).sum()
+        work(std::slice::from_ref(&self.solid), SMALL)
     }
 
     fn rounded(&self, py: Python<'_>, threads: usize) -> PyResult<Arc<Mesh>> {
@@ -128,9 +129,8 @@ impl Tree {
         let expression = terms
             .and_then(Expression::new)
             .map_err(|e| to_python(py, &e))?;
-        let size = operands.iter().map(|o| o.size()).sum();
         let solids: Vec<Solid> = operands.iter().map(|o| o.solid.clone()).collect();
-        let (solid, counters) = run(py, threads, size, |cancel| {
+        let (solid, counters) = run(py, threads, work(&solids, SMALL), |cancel| {
             evaluate(&expression, &solids, cancel)
         })?;
         Ok(Self {
@@ -160,11 +160,8 @@ impl Tree {
     /// Whether the elements are the reduced boundary; None if nobody has looked.
     #[getter]
     fn simple(&self) -> Option<bool> {
-        if self.solid.is_reduced() {
-            return Some(true);
-        }
-        let united = self.solid.united().get()?;
-        Some(Arc::ptr_eq(&united.root().node, &self.solid.root().node))
+        let known = self.solid.is_reduced() || self.solid.united().get().is_some();
+        known.then(|| self.solid.is_reduced())
     }
 
     #[pyo3(signature = (threads=0))]
