@@ -102,7 +102,8 @@ class Measured(ABC):
     @property
     def volume(self) -> float:
         """Volume of the set in cubic model units, rounded once."""
-        return float(self.volume_near)
+        volume = self.normalized().tree.volume_rounded()
+        return float(self.volume_near) if volume is None else volume
 
     @property
     def area(self) -> float:

@@ -23,6 +23,9 @@ pub const POINT_LIMBS: usize = 6;
 /// Limbs of a plane's value at a point where three planes meet.
 pub const PLANE_AT_POINT_LIMBS: usize = 8;
 
+/// Limbs of one plane's value at a corner times another's at such a point.
+pub const CORNER_TIMES_POINT_LIMBS: usize = 11;
+
 /// Limbs of a coordinate of one such point times the weight of another.
 pub const CROSS_LIMBS: usize = 12;
 
@@ -127,6 +130,19 @@ pub const fn plane_at_point(p: u32) -> u32 {
     det4([normal(p), normal(p), normal(p), offset(p)])
 }
 
+/// A corner against one plane times a point where three planes meet against another.
+pub const fn corner_times_point(p: u32) -> u32 {
+    sum(
+        plane_at_corner(p) + plane_at_point(p),
+        plane_at_corner(p) + plane_at_point(p),
+    )
+}
+
+/// The determinant of three differences between a lattice point and a doubled corner.
+pub const fn determinant_at_corner(p: u32) -> u32 {
+    det3([p + 2, p + 2, p + 2])
+}
+
 /// A numerator of one point where three planes meet times the weight of another.
 pub const fn numerator_times_weight(p: u32) -> u32 {
     point_numerator(p) + point_weight(p)
@@ -153,6 +169,8 @@ const _: () = {
     assert!(limbs_for(point_at_cut(P)) <= POINT_LIMBS);
     assert!(limbs_for(edge_point_at_plane(P)) <= POINT_LIMBS);
     assert!(limbs_for(plane_at_point(P)) <= PLANE_AT_POINT_LIMBS);
+    assert!(limbs_for(corner_times_point(P)) <= CORNER_TIMES_POINT_LIMBS);
+    assert!(limbs_for(determinant_at_corner(P)) <= OFFSET_LIMBS);
     assert!(limbs_for(numerator_times_weight(P) + 1) <= CROSS_LIMBS);
     assert!(limbs_for(point_orientation(P)) <= ORIENTATION_LIMBS);
 };

@@ -87,7 +87,7 @@ const NONE: u32 = u32::MAX;
 /// # Errors
 /// `Unbounded` if the solid reaches infinity.
 pub fn assemble(solid: &Solid) -> Result<ExactMesh> {
-    let sources = Sources::new(Arc::clone(solid.sources()));
+    let sources = Sources::new(solid.sources().clone());
     if solid.root().outside > 0 {
         return Err(unbounded());
     }

@@ -2,8 +2,6 @@
 
 use rustc_hash::FxHashSet as HashSet;
 
-use std::sync::Arc;
-
 use crate::geometry::cell::Cell;
 use crate::geometry::line::LineKey;
 use crate::geometry::outline::{cancel, OutlineEdge};
@@ -90,7 +88,8 @@ impl Collector<'_> {
             match &*branch.node {
                 Node::Leaf(_) => {}
                 Node::Deferred(leaf) => self.visit(&branch, leaf),
-                Node::Cut([minus, plus]) => {
+                Node::Cut(halves) => {
+                    let [minus, plus] = &halves.children;
                     open.push(branch.child(plus));
                     open.push(branch.child(minus));
                 }
@@ -223,7 +222,7 @@ fn part_edges(part: &Part, cell: &Cell) -> Vec<OutlineEdge> {
     if part.home == *cell {
         return part.edges.clone();
     }
-    let clipped = part.pieces().into_iter().filter_map(|p| p.clipped(cell));
+    let clipped = part.pieces().iter().filter_map(|p| p.clone().clipped(cell));
     cancel(
         clipped
             .flat_map(|p| OutlineEdge::all_of(&p).collect::<Vec<_>>())
@@ -263,11 +262,11 @@ fn covers(root: &Branch, source: &Source, face: u32, flip: bool) -> bool {
                     return false;
                 }
             }
-            Node::Cut(children) => {
+            Node::Cut(halves) => {
                 let Some(cut) = branch.cell.cut() else {
                     return false;
                 };
-                for (child, plus) in children.iter().zip([false, true]) {
+                for (child, plus) in halves.children.iter().zip([false, true]) {
                     let half = branch.cell.half(cut, plus);
                     let Some((a, b)) = overlap(&half, &low, &high) else {
                         continue;
@@ -305,7 +304,7 @@ pub fn has_no_boundary(solid: &Solid) -> bool {
     if solid.root().constant().is_some() {
         return true;
     }
-    let sources = Sources::new(Arc::clone(solid.sources()));
+    let sources = Sources::new(solid.sources().clone());
     let boundary = collect(solid, &sources);
     let gone = |fates: &Vec<Fate>| fates.iter().all(|f| !matches!(f, Fate::Whole(_)));
     boundary.cut.is_empty() && boundary.fates.iter().all(gone)

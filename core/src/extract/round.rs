@@ -1,7 +1,5 @@
 //! From exact vertices to doubles: the only rounding, and what it did.
 
-use std::sync::Arc;
-
 use super::assemble::{assemble, Corner, ExactMesh, TriangleFace};
 use super::unfold::{unfold, Unfolded};
 use crate::error::Result;
@@ -43,7 +41,7 @@ pub fn mesh(solid: &Solid) -> Result<Mesh> {
         origins: Vec::new(),
         findings: std::mem::take(&mut exact.findings),
     };
-    let sources = Sources::new(Arc::clone(solid.sources()));
+    let sources = Sources::new(solid.sources().clone());
     let unfolded = unfold(&mut mesh, &exact, &sources);
     report(&mut mesh, &unfolded);
     let origin = |f: TriangleFace| [f.slot, sources.get(f.slot as usize).number(f.face)];
@@ -55,7 +53,7 @@ fn position(solid: &Solid, exact: &ExactMesh, corner: Corner) -> [f64; 3] {
     match corner {
         Corner::Point(point) => solid.pitch().position(exact.table.point(point)),
         Corner::Source(slot, vertex) => {
-            let mesh = solid.sources()[slot as usize].mesh();
+            let mesh = solid.sources().get(slot as usize).mesh();
             mesh.map_or([0.0; 3], |m| m.doubles[vertex as usize])
         }
     }

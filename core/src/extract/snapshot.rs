@@ -172,7 +172,7 @@ fn bad_snapshot() -> Error {
 impl Snapshot {
     /// The exact boundary of a solid.
     pub fn of(solid: &Solid) -> Self {
-        let sources = Sources::new(Arc::clone(solid.sources()));
+        let sources = Sources::new(solid.sources().clone());
         let boundary = collect(solid, &sources);
         let mut wholes = Vec::new();
         for (slot, fates) in (0u32..).zip(&boundary.fates) {
@@ -248,7 +248,12 @@ impl Snapshot {
             complement: false,
             node,
         };
-        Ok(Solid::new(root, pitch, Arc::from(sources), self.reduced))
+        Ok(Solid::new(
+            root,
+            pitch,
+            sources.iter().collect(),
+            self.reduced,
+        ))
     }
 
     /// The image under a motion of the lattice, on a lattice of the given pitch.
@@ -422,12 +427,7 @@ impl PartData {
         if !is_balanced(&edges) {
             return Err(bad_snapshot());
         }
-        let part = Part {
-            source: Arc::clone(source),
-            face: self.face,
-            home,
-            edges,
-        };
+        let part = Part::new(Arc::clone(source), self.face, home, edges);
         Ok(PartElement {
             part: Arc::new(part),
             flip: self.flip,

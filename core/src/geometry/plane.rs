@@ -72,11 +72,14 @@ impl Plane {
     /// # Source
     /// Design review, F18: such planes are narrower than any plane through the edge and a normal.
     pub fn through_edge(a: &Lattice, b: &Lattice, axis: usize) -> Option<Self> {
-        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        let mut n = [0i128; 3];
-        n[u] = i128::from(b[v]) - i128::from(a[v]);
-        n[v] = i128::from(a[u]) - i128::from(b[u]);
+        let n = edge_normal(a, b, axis);
         Self::new(n, -dot_lattice(&n, a))
+    }
+
+    /// The same plane for questions about sides only: its coefficients may have a common divisor.
+    pub fn beside_edge(a: &Lattice, b: &Lattice, axis: usize) -> Self {
+        let n = edge_normal(a, b, axis);
+        Self::primitive(n, -dot_lattice(&n, a))
     }
 
     /// The plane with this normal through a lattice point; `None` if the normal is zero.
@@ -158,17 +161,27 @@ impl Plane {
         if sum.abs() > size * FILTER {
             return if sum > 0.0 { 1 } else { -1 };
         }
-        (dot_lattice(&self.n, p) + self.d).signum()
+        self.value_at(p).signum()
+    }
+
+    /// The plane's value at a lattice point.
+    pub fn value_at(&self, p: &Lattice) -> Int<3> {
+        dot_lattice(&self.n, p) + self.d
+    }
+
+    /// Twice the plane's value at half the given coordinates, in doubles, and a bound of its error.
+    pub fn near_value_at_doubled(&self, doubled: &Lattice) -> (f64, f64) {
+        let t = [0, 1, 2].map(|i| self.approx[i] * doubled[i] as f64);
+        let twice = 2.0 * self.approx[3];
+        let size = t[0].abs() + t[1].abs() + t[2].abs() + twice.abs();
+        (t[0] + t[1] + t[2] + twice, size * FILTER)
     }
 
     /// Sign of the plane's value at `doubled`/2 + (ε, ε², ε³); never zero.
     pub fn side_of_corner(&self, doubled: &Lattice) -> i32 {
-        let t = [0, 1, 2].map(|i| self.approx[i] * doubled[i] as f64);
-        let twice = 2.0 * self.approx[3];
-        let sum = t[0] + t[1] + t[2] + twice;
-        let size = t[0].abs() + t[1].abs() + t[2].abs() + twice.abs();
-        if sum.abs() > size * FILTER {
-            return if sum > 0.0 { 1 } else { -1 };
+        let (value, doubt) = self.near_value_at_doubled(doubled);
+        if value.abs() > doubt {
+            return if value > 0.0 { 1 } else { -1 };
         }
         let value = (self.value_at_doubled(doubled)).signum();
         if value != 0 {
@@ -219,6 +232,15 @@ pub fn normal(a: &Lattice, b: &Lattice, c: &Lattice) -> [i128; 3] {
         u[2] * v[0] - u[0] * v[2],
         u[0] * v[1] - u[1] * v[0],
     ]
+}
+
+/// The normal of the plane through an edge parallel to an axis.
+fn edge_normal(a: &Lattice, b: &Lattice, axis: usize) -> [i128; 3] {
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut n = [0i128; 3];
+    n[u] = i128::from(b[v]) - i128::from(a[v]);
+    n[v] = i128::from(a[u]) - i128::from(b[u]);
+    n
 }
 
 fn dot_lattice(n: &[i128; 3], p: &Lattice) -> Int<3> {

@@ -31,6 +31,23 @@ impl Carrier {
         }
     }
 
+    /// The same plane for questions about sides only.
+    pub fn rim(&self, support: &Plane) -> Plane {
+        match self {
+            Self::Edge(a, b) => {
+                let axis = support.main_axis();
+                let plane = Plane::beside_edge(a, b, axis);
+                if support.normal()[axis] < 0 {
+                    plane.flipped()
+                } else {
+                    plane
+                }
+            }
+            Self::Cut(plane, true) => plane.flipped(),
+            Self::Cut(plane, false) => (**plane).clone(),
+        }
+    }
+
     /// Whether this is the border of the universe, which cuts half-spaces off and nothing else.
     pub fn is_border(&self) -> bool {
         match self {
@@ -56,7 +73,7 @@ impl Carrier {
     /// The meet of this edge's line with a plane that crosses it.
     pub fn meet(&self, support: &Plane, cut: &Plane) -> Option<Vertex> {
         match self {
-            Self::Edge(a, b) => Vertex::meet(support, &edge_plane(a, b, support), cut),
+            Self::Edge(a, b) => Vertex::on_edge(a, b, cut),
             Self::Cut(plane, _) => Vertex::meet(support, plane, cut),
         }
     }
@@ -84,6 +101,17 @@ pub struct Corner {
 }
 
 type Corners = SmallVec<[Corner; 5]>;
+
+/// The sides of a plane on which the corners of a polygon lie.
+pub type Sides = SmallVec<[i32; 8]>;
+
+/// The ends of a segment inside a polygon.
+pub type Chord = SmallVec<[Arc<Vertex>; 2]>;
+
+/// Whether there are corners on the minus side, and on the plus side.
+pub fn straddle(sides: &[i32]) -> (bool, bool) {
+    (sides.iter().any(|s| *s < 0), sides.iter().any(|s| *s > 0))
+}
 
 /// A convex polygon of positive area, counterclockwise as seen from its support's plus side.
 #[derive(Clone, Debug)]
@@ -172,39 +200,67 @@ impl Polygon {
 
     /// Splits by a plane.
     pub fn split(&self, cut: &Arc<Plane>) -> PolygonSplit {
-        let sides: SmallVec<[i32; 8]> = self.corners.iter().map(|c| c.at.side_of(cut)).collect();
-        let minus = sides.iter().any(|s| *s < 0);
-        let plus = sides.iter().any(|s| *s > 0);
-        match (minus, plus) {
-            (true, true) => self.divide(cut, &sides),
+        let sides = self.sides(cut);
+        match straddle(&sides) {
+            (true, true) => {
+                let (minus, plus) = self.divided(cut, &sides, &self.chord(cut, &sides));
+                PolygonSplit::Both(minus, plus)
+            }
             (true, false) => PolygonSplit::Minus,
             (false, true) => PolygonSplit::Plus,
             (false, false) => PolygonSplit::Coplanar,
         }
     }
 
-    fn divide(&self, cut: &Arc<Plane>, sides: &[i32]) -> PolygonSplit {
+    /// The sides of a plane on which the corners lie.
+    pub fn sides(&self, cut: &Plane) -> Sides {
+        self.corners.iter().map(|c| c.at.side_of(cut)).collect()
+    }
+
+    /// The ends of the segment in which a plane with corners strictly on both sides cuts the
+    /// polygon, in the order in which its border meets them.
+    pub fn chord(&self, cut: &Plane, sides: &[i32]) -> Chord {
+        let n = self.corners.len();
+        let mut ends = Chord::new();
+        for i in 0..n {
+            if sides[i] == 0 {
+                ends.push(Arc::clone(&self.corners[i].at));
+            } else if sides[i] * sides[(i + 1) % n] < 0 {
+                let meet = self.corners[i].edge.meet(&self.support, cut);
+                let at = meet.expect("an edge with ends on both sides meets the plane");
+                ends.push(Arc::new(at));
+            }
+        }
+        ends
+    }
+
+    /// The pieces on the minus and on the plus side of a plane that cuts the polygon in a chord.
+    pub fn divided(&self, cut: &Arc<Plane>, sides: &[i32], chord: &Chord) -> (Self, Self) {
         let n = self.corners.len();
         let (mut minus, mut plus) = (Corners::new(), Corners::new());
+        let mut ends = chord.iter();
         for i in 0..n {
-            let j = (i + 1) % n;
+            let next = sides[(i + 1) % n];
             let corner = &self.corners[i];
             match sides[i] {
                 s if s < 0 => minus.push(corner.clone()),
                 s if s > 0 => plus.push(corner.clone()),
-                _ => push_touching(corner, sides[j], cut, &mut minus, &mut plus),
+                _ => {
+                    ends.next();
+                    push_touching(corner, next, cut, &mut minus, &mut plus);
+                }
             }
-            if sides[i] * sides[j] < 0 {
-                let meet = corner.edge.meet(&self.support, cut);
-                let at = Arc::new(meet.expect("an edge with ends on both sides meets the plane"));
-                push_crossing(&at, corner, sides[j], cut, &mut minus, &mut plus);
+            if sides[i] * next < 0 {
+                if let Some(at) = ends.next() {
+                    push_crossing(at, corner, next, cut, &mut minus, &mut plus);
+                }
             }
         }
         let with = |corners| Self {
             support: Arc::clone(&self.support),
             corners,
         };
-        PolygonSplit::Both(with(minus), with(plus))
+        (with(minus), with(plus))
     }
 
     /// The part on the minus side of a plane, if it has an area.

@@ -69,6 +69,25 @@ impl Vertex {
         }
     }
 
+    /// The meet of a lattice edge's line with a plane; `None` if they are parallel.
+    ///
+    /// # Bits
+    /// The denominator is a difference of two values at lattice points, far below that of three
+    /// planes.
+    pub fn on_edge(a: &Lattice, b: &Lattice, cut: &Plane) -> Option<Self> {
+        let (va, vb) = (cut.value_at(a), cut.value_at(b));
+        let w = vb - va;
+        let x = [0, 1, 2].map(|i| -> Int<6> {
+            let difference: Int<4> = vb.mul_i64::<4>(a[i]) - va.mul_i64::<4>(b[i]);
+            difference.widen()
+        });
+        match w.signum() {
+            0 => None,
+            1 => Some(Self::homogeneous(x, w.widen())),
+            _ => Some(Self::homogeneous(x.map(|c| -c), (-w).widen())),
+        }
+    }
+
     /// The meet of two planes with an axis-parallel one, by 2×2 determinants.
     fn meet_on_axis_cut(cut: &Plane, axis: usize, p: &Plane, q: &Plane) -> Option<Self> {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -135,12 +154,22 @@ impl Vertex {
         }
     }
 
-    fn filtered_side(&self, plane: &Plane) -> Option<i32> {
+    /// The plane's value here times a positive number, in doubles, and a bound of its error.
+    pub fn near_value(&self, plane: &Plane) -> (f64, f64) {
         let a = plane.approx();
         let t = [0, 1, 2, 3].map(|i| a[i] * self.approx[i]);
-        let sum = t[0] + t[1] + t[2] + t[3];
         let size = t[0].abs() + t[1].abs() + t[2].abs() + t[3].abs();
-        (sum.abs() > size * FILTER).then_some(if sum > 0.0 { 1 } else { -1 })
+        (t[0] + t[1] + t[2] + t[3], size * FILTER)
+    }
+
+    /// The plane's value here times the denominator.
+    pub fn value(&self, plane: &Plane) -> Int<8> {
+        exact_value(&self.coordinates(), plane)
+    }
+
+    fn filtered_side(&self, plane: &Plane) -> Option<i32> {
+        let (value, doubt) = self.near_value(plane);
+        (value.abs() > doubt).then_some(if value > 0.0 { 1 } else { -1 })
     }
 
     /// Order of two points by one coordinate.
@@ -183,9 +212,13 @@ fn meet_key(h: &Homogeneous) -> VertexKey {
 }
 
 fn exact_side(h: &Homogeneous, plane: &Plane) -> i32 {
+    exact_value(h, plane).signum()
+}
+
+fn exact_value(h: &Homogeneous, plane: &Plane) -> Int<8> {
     let term = |i: usize| -> Int<8> { h.x[i].mul(&Int::<2>::from_i128(plane.normal()[i])) };
     let last: Int<8> = h.w.mul(plane.offset());
-    (term(0) + term(1) + term(2) + last).signum()
+    term(0) + term(1) + term(2) + last
 }
 
 /// The cross product of two normals, exact: components below 2^217.

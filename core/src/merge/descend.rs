@@ -7,6 +7,9 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
+use super::bins::Bins;
 use super::expression::{Expression, Residual};
 use super::join;
 use super::leaf::{self, Rule};
@@ -21,6 +24,9 @@ use crate::tree::node::{Branch, Node};
 /// 3.1 billion at 12, 0.31 and 1.5 billion at 32.
 pub const LEAF: usize = 32;
 
+/// Lists that together hold at most this many are tried without local trees.
+const GENERAL: usize = 64;
+
 /// Lists at least this long are worth a task of their own.
 const TASK: usize = 512;
 
@@ -30,11 +36,21 @@ const ROUND: u32 = 3;
 /// Longer lists than this are halved on, stuck or not: the kernel's cost grows with their square.
 const STUCK: usize = 2048;
 
+/// Deferred leaves at least this long are sorted into bins instead of being halved.
+const MANY: usize = 1024;
+
+/// With so few entries in a cell the bins give way to a list.
+const FEW: usize = 2 * LEAF;
+
 /// Counts of what an evaluation did.
 #[derive(Debug, Default)]
 pub struct Counters {
     /// Cells visited.
     pub cells: AtomicU64,
+    /// Faces sorted into bins.
+    pub binned: AtomicU64,
+    /// Elements of lists that were halved, once for each halving.
+    pub halved: AtomicU64,
     /// Cells worked on by the leaf kernel.
     pub leaves: AtomicU64,
     /// Elements in these.
@@ -43,15 +59,15 @@ pub struct Counters {
 
 impl Counters {
     /// The counts with their names.
-    pub fn named(&self) -> [(&'static str, u64); 3] {
+    pub fn named(&self) -> [(&'static str, u64); 5] {
         [
-            ("cells", self.cells.load(Ordering::Relaxed)),
-            ("kernels", self.leaves.load(Ordering::Relaxed)),
-            (
-                "kernel_elements",
-                self.leaf_elements.load(Ordering::Relaxed),
-            ),
+            ("cells", &self.cells),
+            ("binned", &self.binned),
+            ("halved", &self.halved),
+            ("kernels", &self.leaves),
+            ("kernel_elements", &self.leaf_elements),
         ]
+        .map(|(name, count)| (name, count.load(Ordering::Relaxed)))
     }
 }
 
@@ -81,6 +97,8 @@ enum State {
     Tree(Branch),
     /// The elements that meet the cell.
     List(List),
+    /// Many faces, of which those of the cell are found by its place.
+    Bins(Arc<Bins>),
 }
 
 type States = Vec<(u32, State)>;
@@ -146,13 +164,19 @@ impl<'a> Descent<'a> {
             |k| self.rule.inside(roots[k as usize].outside),
             &mut scratch,
         );
-        let states = (0u32..).zip(roots.into_iter().map(State::Tree)).collect();
+        let mut states: States = (0u32..).zip(roots.into_iter().map(State::Tree)).collect();
+        states.iter_mut().for_each(|s| s.1.settle(&cell));
         let round = Round {
             depth: 0,
             start: usize::MAX / 8,
             stuck: false,
         };
-        let branch = self.cell(cell, Arc::new(expression), states, round)?;
+        let residual = if self.share || has_constant(&states) {
+            self.residual(&expression, &states)
+        } else {
+            Residual::Open(Arc::new(expression))
+        };
+        let branch = self.resolve(cell, residual, states, round)?;
         Ok(match branch.constant() {
             Some(w) => Branch::uniform(branch.cell, w),
             None => Branch {
@@ -162,30 +186,41 @@ impl<'a> Descent<'a> {
         })
     }
 
+    fn residual(&self, expression: &Expression, states: &States) -> Residual {
+        expression.residual(|k| match find(states, k) {
+            Some(State::Constant(w)) => Some(self.rule.inside(*w)),
+            _ => None,
+        })
+    }
+
+    /// A cell below one in which several operands mattered.
     fn cell(
         &self,
         cell: Cell,
         expression: Arc<Expression>,
-        states: States,
+        mut states: States,
         round: Round,
     ) -> Result<Branch> {
         if self.cancel.load(Ordering::Relaxed) {
             return Err(Error::new(ErrorKind::Cancelled, "stopped"));
         }
         self.counters.cells.fetch_add(1, Ordering::Relaxed);
-        let mut states: States = states
-            .into_iter()
-            .map(|(k, s)| (k, s.opened(&cell, self.sources)))
-            .collect();
-        let known = |k: u32| match find(&states, k) {
-            Some(State::Constant(w)) => Some(self.rule.inside(*w)),
-            _ => None,
-        };
-        let residual = if self.share || states.iter().any(|s| matches!(s.1, State::Constant(_))) {
-            expression.residual(known)
+        states.iter_mut().for_each(|s| s.1.settle(&cell));
+        let residual = if has_constant(&states) {
+            self.residual(&expression, &states)
         } else {
             Residual::Open(expression)
         };
+        self.resolve(cell, residual, states, round)
+    }
+
+    fn resolve(
+        &self,
+        cell: Cell,
+        residual: Residual,
+        mut states: States,
+        round: Round,
+    ) -> Result<Branch> {
         match residual {
             Residual::Constant(v) => Ok(Branch::uniform(cell, i32::from(v))),
             Residual::Literal(k, negate) if self.share => {
@@ -220,15 +255,37 @@ impl<'a> Descent<'a> {
                 },
             });
         }
-        let total: usize = states.iter().map(|s| s.1.len()).sum();
+        let states = self.opened(&cell, states);
+        let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
         let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
-        let cut = cell.cut();
-        match cut {
-            Some(cut) if !(listed && (total <= LEAF || is_stuck(&cell, &states, round, total))) => {
-                self.halves(cell, cut, &expression, states, round.next(total), total)
+        let stuck = listed && is_stuck(&cell, &states, round, total);
+        let small = total <= LEAF || stuck && total <= STUCK;
+        let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
+            return Ok(self.leaf(cell, &expression, states, total));
+        };
+        if listed && (total <= GENERAL || stuck) {
+            if let Some(branch) = self.in_general_position(cell, &expression, &states, total) {
+                return Ok(branch);
             }
-            _ => Ok(self.leaf(cell, &expression, states, total)),
         }
+        self.halves(cell, cut, &expression, states, round.next(total), total)
+    }
+
+    /// The states with the leaves of this cell opened.
+    fn opened(&self, cell: &Cell, states: States) -> States {
+        let open = |(k, state): (u32, State)| (k, state.opened(cell, self));
+        let heavy = |s: &(u32, State)| matches!(&s.1, State::Tree(b) if b.cell == *cell);
+        let total = || {
+            states
+                .iter()
+                .filter(|s| heavy(s))
+                .map(|s| s.1.len_in(cell))
+                .sum::<usize>()
+        };
+        if total() >= 8 * MANY {
+            return states.into_par_iter().map(open).collect();
+        }
+        states.into_iter().map(open).collect()
     }
 
     fn value_outside(&self, expression: &Expression, states: &States) -> bool {
@@ -248,6 +305,10 @@ impl<'a> Descent<'a> {
         round: Round,
         total: usize,
     ) -> Result<Branch> {
+        let halved = states.iter().map(|s| s.1.listed()).sum::<usize>();
+        self.counters
+            .halved
+            .fetch_add(halved as u64, Ordering::Relaxed);
         let mut below = Vec::with_capacity(states.len());
         let mut above = Vec::with_capacity(states.len());
         for (k, state) in states {
@@ -266,30 +327,58 @@ impl<'a> Descent<'a> {
         Ok(join::branch(cell, cut, minus?, plus?, self.sources))
     }
 
-    fn leaf(&self, cell: Cell, expression: &Expression, states: States, total: usize) -> Branch {
+    fn count_leaf(&self, total: usize) {
         self.counters.leaves.fetch_add(1, Ordering::Relaxed);
         self.counters
             .leaf_elements
             .fetch_add(total as u64, Ordering::Relaxed);
+    }
+
+    /// The result in a cell of a few more elements, if nothing there is special.
+    fn in_general_position(
+        &self,
+        cell: Cell,
+        expression: &Expression,
+        states: &States,
+        total: usize,
+    ) -> Option<Branch> {
+        let lists: Vec<(u32, &List)> = states
+            .iter()
+            .filter_map(|(k, s)| match s {
+                State::List(list) => Some((*k, list)),
+                State::Constant(_) | State::Tree(_) | State::Bins(_) => None,
+            })
+            .collect();
+        let node = leaf::in_general_position(&cell, expression, self.rule, &lists, self.sources)?;
+        self.count_leaf(total);
+        Some(branch_of(cell, node))
+    }
+
+    fn leaf(&self, cell: Cell, expression: &Expression, states: States, total: usize) -> Branch {
+        self.count_leaf(total);
         let lists = states
             .into_iter()
             .filter_map(|(k, s)| match s {
                 State::List(list) => Some((k, list)),
-                State::Constant(_) | State::Tree(_) => None,
+                State::Constant(_) | State::Tree(_) | State::Bins(_) => None,
             })
             .collect();
         let node = leaf::evaluate(&cell, expression, self.rule, lists, self.sources, |k| {
             self.overlaps[k as usize].store(true, Ordering::Relaxed);
         });
-        match node {
-            Node::Leaf(w) => Branch::uniform(cell, w),
-            node => Branch {
-                cell,
-                outside: 0,
-                complement: false,
-                node: Arc::new(node),
-            },
-        }
+        branch_of(cell, node)
+    }
+}
+
+fn branch_of(cell: Cell, node: Node) -> Branch {
+    match node {
+        Node::Leaf(w) => Branch::uniform(cell, w),
+        node => Branch {
+            cell,
+            outside: 0,
+            complement: false,
+            node: Arc::new(node),
+        },
     }
 }
 
@@ -298,9 +387,9 @@ impl<'a> Descent<'a> {
 fn is_stuck(cell: &Cell, states: &States, round: Round, total: usize) -> bool {
     let reaching = |s: &(u32, State)| match &s.1 {
         State::List(list) => list.reaching_out(cell),
-        State::Constant(_) | State::Tree(_) => 0,
+        State::Constant(_) | State::Tree(_) | State::Bins(_) => 0,
     };
-    round.stuck && total <= STUCK && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
+    round.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
 }
 
 fn find(states: &States, operand: u32) -> Option<&State> {
@@ -322,8 +411,12 @@ fn nested(cell: &Cell, states: &States) -> Option<Cell> {
     inner.filter(|c| c != cell)
 }
 
+fn has_constant(states: &States) -> bool {
+    states.iter().any(|s| matches!(s.1, State::Constant(_)))
+}
+
 impl State {
-    fn len(&self) -> usize {
+    fn len_in(&self, cell: &Cell) -> usize {
         match self {
             Self::Constant(_) => 0,
             Self::Tree(branch) => match &*branch.node {
@@ -332,25 +425,42 @@ impl State {
                 Node::Leaf(_) => 0,
             },
             Self::List(list) => list.len(),
+            Self::Bins(bins) => bins.len_in(cell),
         }
     }
 
-    /// The state with leaves of this cell opened.
-    fn opened(self, cell: &Cell, sources: &Sources) -> Self {
+    /// The number of elements that halving the state would move.
+    fn listed(&self) -> usize {
         match self {
-            Self::Tree(branch) => {
-                if let Some(w) = branch.constant() {
-                    return Self::Constant(w);
-                }
-                match &*branch.node {
-                    Node::Leaf(w) if branch.cell == *cell => Self::Constant(branch.oriented(*w)),
-                    Node::Deferred(leaf) if branch.cell == *cell => {
-                        Self::List(List::open(leaf, &branch, sources))
-                    }
-                    _ => Self::Tree(branch),
-                }
+            Self::List(list) => list.len(),
+            Self::Constant(_) | Self::Tree(_) | Self::Bins(_) => 0,
+        }
+    }
+
+    /// Becomes a constant if there is no boundary in the cell.
+    fn settle(&mut self, cell: &Cell) {
+        let constant = match self {
+            Self::Constant(_) => None,
+            Self::Tree(branch) => match (branch.constant(), &*branch.node) {
+                (Some(w), _) => Some(w),
+                (None, Node::Leaf(w)) if branch.cell == *cell => Some(branch.oriented(*w)),
+                (None, _) => None,
+            },
+            Self::List(list) => list.is_empty().then_some(list.corner),
+            Self::Bins(bins) => (bins.len_in(cell) == 0).then(|| bins.corner_of(cell)),
+        };
+        if let Some(w) = constant {
+            *self = Self::Constant(w);
+        }
+    }
+
+    /// The state with deferred leaves of this cell opened.
+    fn opened(self, cell: &Cell, descent: &Descent) -> Self {
+        match self {
+            Self::Tree(branch) if branch.cell == *cell => opened_leaf(branch, descent),
+            Self::Bins(bins) if !bins.divide(cell) || bins.len_in(cell) <= FEW => {
+                opened_leaf(bins.branch_in(cell), descent)
             }
-            Self::List(list) if list.is_empty() => Self::Constant(list.corner),
             other => other,
         }
     }
@@ -364,6 +474,7 @@ impl State {
                 (Self::List(minus), Self::List(plus))
             }
             Self::Tree(branch) => divide_tree(branch, cell, cut),
+            Self::Bins(bins) => (Self::Bins(Arc::clone(&bins)), Self::Bins(bins)),
         }
     }
 
@@ -371,13 +482,9 @@ impl State {
     fn shared(self, cell: Cell, negate: bool, sources: &Sources) -> Branch {
         match self {
             Self::Constant(w) => Branch::uniform(cell, if negate { 1 - w } else { w }),
-            Self::Tree(branch) => {
-                if negate {
-                    branch.complemented()
-                } else {
-                    branch
-                }
-            }
+            Self::Tree(branch) if negate => branch.complemented(),
+            Self::Tree(branch) => branch,
+            Self::Bins(bins) => Self::Tree(bins.branch_in(&cell)).shared(cell, negate, sources),
             Self::List(list) => match list.close(negate, sources) {
                 Node::Leaf(w) => Branch::uniform(cell, w),
                 node => Branch {
@@ -391,9 +498,28 @@ impl State {
     }
 }
 
+/// A branch of the cell at hand; a deferred leaf becomes bins or a list.
+fn opened_leaf(branch: Branch, descent: &Descent) -> State {
+    let Node::Deferred(leaf) = &*branch.node else {
+        return State::Tree(branch);
+    };
+    let bins = if leaf.len() >= MANY {
+        Bins::new(&branch)
+    } else {
+        None
+    };
+    if let Some(bins) = bins {
+        let count = leaf.len() as u64;
+        descent.counters.binned.fetch_add(count, Ordering::Relaxed);
+        return State::Bins(Arc::new(bins));
+    }
+    State::List(List::open(leaf, &branch, descent.sources))
+}
+
 fn divide_tree(branch: Branch, cell: &Cell, cut: Cut) -> (State, State) {
     if branch.cell == *cell {
-        if let Node::Cut([minus, plus]) = &*branch.node {
+        if let Node::Cut(halves) = &*branch.node {
+            let [minus, plus] = &halves.children;
             return (
                 State::Tree(branch.child(minus)),
                 State::Tree(branch.child(plus)),

@@ -1,7 +1,6 @@
 //! Expressions over solids.
 
 use std::sync::atomic::AtomicBool;
-use std::sync::Arc;
 
 use super::descend::{Counters, Descent};
 use super::expression::{Expression, Term};
@@ -10,8 +9,8 @@ use super::list::Sources;
 use super::simple::is_simple;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grid::Pitch;
-use crate::mesh::source::Source;
 use crate::tree::solid::Solid;
+use crate::tree::table::Table;
 
 /// The value of an expression whose operands are these solids.
 ///
@@ -38,10 +37,10 @@ pub fn evaluate(
         let root = descent.run(expression.clone(), roots)?;
         let overlaps = descent.overlapping();
         if overlaps.is_empty() {
-            let reduced = operands.iter().all(Solid::is_reduced);
-            let table = Arc::clone(sources.table());
+            let table = sources.table().clone();
             let named = operands.iter().map(Solid::named).max().unwrap_or(0);
-            let solid = Solid::new(root, pitch, table, reduced).outgrowing(named);
+            let solid = Solid::new(root, pitch, table, false).outgrowing(named);
+            let solid = solid.made_of(&operands);
             return Ok((solid, descent.counters));
         }
         for k in overlaps {
@@ -69,12 +68,29 @@ pub fn normalize(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid
     if let Some(known) = solid.united().get() {
         return Ok(known.clone());
     }
-    let united = unite(solid, rule, cancel)?;
+    let united = match is_made_of_simple(solid, cancel)? {
+        true => solid.clone().with_reduced(true),
+        false => unite(solid, rule, cancel)?,
+    };
     Ok(solid.united().get_or_init(|| united).clone())
 }
 
+/// Whether a solid is known to be reduced once the meshes it was made of have been checked.
+fn is_made_of_simple(solid: &Solid, cancel: &AtomicBool) -> Result<bool> {
+    let Some(doubts) = solid.doubts() else {
+        return Ok(false);
+    };
+    for mesh in doubts {
+        normalize(mesh, Rule::Positive, cancel)?;
+        if !mesh.is_reduced() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
 fn unite(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid> {
-    let sources = Sources::new(Arc::clone(solid.sources()));
+    let sources = Sources::new(solid.sources().clone());
     if is_simple(solid, &sources, cancel)? == Some(true) {
         return Ok(solid.clone().with_reduced(true));
     }
@@ -84,7 +100,7 @@ fn unite(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid> {
     if descent.overlapping().is_empty() {
         return Ok(solid.clone().with_reduced(true));
     }
-    let table = Arc::clone(sources.table());
+    let table = sources.table().clone();
     Ok(Solid::new(root, solid.pitch(), table, true))
 }
 
@@ -111,15 +127,13 @@ fn common_pitch(expression: &Expression, solids: &[Solid]) -> Result<Pitch> {
 }
 
 /// The operands' sources in the order of their first appearance.
-fn joint_table(solids: &[Solid]) -> Arc<[Arc<Source>]> {
-    if let [only] = solids {
-        return Arc::clone(only.sources());
-    }
-    let mut seen = std::collections::HashSet::new();
-    solids
-        .iter()
-        .flat_map(|s| s.sources().iter())
-        .filter(|s| seen.insert(s.id()))
-        .cloned()
-        .collect()
+fn joint_table(solids: &[Solid]) -> Table {
+    let tables = solids.iter().map(Solid::sources);
+    tables.fold(Table::default(), |all, one| {
+        if all.is_empty() {
+            one.clone()
+        } else {
+            all.joined(one)
+        }
+    })
 }

@@ -1,8 +1,8 @@
 //! Putting the two halves of a cell together again.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use super::leaf::is_whole;
+use super::kept::is_whole;
 use super::list::Sources;
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, triangle_change, Segment};
@@ -29,8 +29,8 @@ pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch, sources: &Sourc
         },
         _ => {
             let outside = minus.outside;
-            let node =
-                joined(&cell, cut, &minus, &plus, sources).unwrap_or(Node::Cut([minus, plus]));
+            let node = joined(&cell, cut, &minus, &plus, sources)
+                .unwrap_or_else(|| Node::cut(minus, plus));
             Branch {
                 cell,
                 outside,
@@ -80,6 +80,7 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
         parts: Vec::new(),
         corner,
         worked: a.worked || b.worked,
+        share: OnceLock::new(),
     }))
 }
 

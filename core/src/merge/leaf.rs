@@ -5,19 +5,16 @@
 //! merging the trees (which `merge::merge` does, and tests compare): it labels the same regions,
 //! but cuts only fragments, never regions.
 
-use std::sync::Arc;
-
 use super::expression::Expression;
+use super::general;
+use super::kept::{assemble, Kept};
 use super::list::{List, Sources};
 use super::local_tree::{LocalTree, Weighted};
 use super::overlay::{disjoint, Fragment};
 use crate::geometry::cell::Cell;
-use crate::geometry::line::LineKey;
-use crate::geometry::outline::{cancel, OutlineEdge};
-use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
-use crate::mesh::source::{Shape, Source};
-use crate::tree::node::{Deferred, Group, Node, Part, PartElement};
+use crate::tree::node::Node;
 
 /// Which winding numbers count as inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -57,18 +54,42 @@ struct Piece {
     plus: Vec<bool>,
 }
 
-/// What stays of one fragment with one orientation.
-struct Kept {
-    face: (u32, u32),
-    flip: bool,
-    intact: bool,
-    polygons: Vec<Polygon>,
-}
-
 /// Evaluates an expression in a cell: the node that describes the result there.
 ///
-/// `evidence` is told the operands that overlap themselves here.
+/// Operands in general position need no trees. `evidence` is told the operands that local trees
+/// show to overlap themselves here.
 pub fn evaluate(
+    cell: &Cell,
+    expression: &Expression,
+    rule: Rule,
+    lists: Vec<(u32, List)>,
+    sources: &Sources,
+    evidence: impl FnMut(u32),
+) -> Node {
+    let named: Vec<(u32, &List)> = lists.iter().map(|(k, list)| (*k, list)).collect();
+    in_general_position(cell, expression, rule, &named, sources)
+        .unwrap_or_else(|| by_trees(cell, expression, rule, lists, sources, evidence))
+}
+
+/// Evaluates an expression in a cell where nothing is special; `None` if something is.
+pub fn in_general_position(
+    cell: &Cell,
+    expression: &Expression,
+    rule: Rule,
+    lists: &[(u32, &List)],
+    sources: &Sources,
+) -> Option<Node> {
+    if rule != Rule::Positive {
+        return None;
+    }
+    let (kept, corner) = general::evaluate(cell, expression, lists, sources)?;
+    Some(assemble(kept, corner, cell, sources))
+}
+
+/// Evaluates an expression in a cell by the operands' local trees.
+///
+/// The result is the reduced boundary, whatever the operands are.
+pub fn by_trees(
     cell: &Cell,
     expression: &Expression,
     rule: Rule,
@@ -234,99 +255,13 @@ fn keep(
     [(same, false), (turned, true)]
         .into_iter()
         .filter(|(polygons, _)| !polygons.is_empty())
-        .map(|(polygons, flip)| Kept {
-            face: fragment.face,
-            flip,
-            intact: fragment.intact && polygons.len() == total,
-            polygons,
+        .map(|(polygons, flip)| {
+            if fragment.intact && polygons.len() == total {
+                Kept::whole(fragment.face, flip)
+            } else {
+                Kept::pieces(fragment.face, flip, polygons)
+            }
         })
-        .collect()
-}
-
-/// Joins the pieces of each face again and lists them.
-fn assemble(mut kept: Vec<Kept>, corner: i32, cell: &Cell, sources: &Sources) -> Node {
-    if kept.is_empty() {
-        return Node::Leaf(corner);
-    }
-    kept.sort_by_key(|k| (k.face.0, k.flip, k.face.1));
-    let mut leaf = Deferred {
-        corner,
-        worked: true,
-        ..Deferred::default()
-    };
-    for run in kept.chunk_by(|a, b| a.face == b.face && a.flip == b.flip) {
-        let (slot, face) = run[0].face;
-        let source = sources.get(slot as usize);
-        if run.len() == 1 && run[0].intact {
-            list_whole(&mut leaf.groups, source, face, run[0].flip);
-            continue;
-        }
-        let edges = run
-            .iter()
-            .flat_map(|k| &k.polygons)
-            .flat_map(OutlineEdge::all_of)
-            .collect();
-        let edges = cancel(edges);
-        if is_whole(&edges, source, face, cell) {
-            list_whole(&mut leaf.groups, source, face, run[0].flip);
-        } else {
-            let part = Part {
-                source: Arc::clone(source),
-                face,
-                home: *cell,
-                edges,
-            };
-            let part = Arc::new(part);
-            leaf.parts.push(PartElement {
-                part,
-                flip: run[0].flip,
-            });
-        }
-    }
-    Node::Deferred(leaf)
-}
-
-fn list_whole(groups: &mut Vec<Group>, source: &Arc<Source>, face: u32, flip: bool) {
-    match groups.last_mut() {
-        Some(g) if Arc::ptr_eq(&g.source, source) && g.flip == flip => g.faces.push(face),
-        _ => groups.push(Group {
-            source: Arc::clone(source),
-            flip,
-            faces: vec![face],
-        }),
-    }
-}
-
-/// Whether an outline runs only on the face's own edges and the cell's border: then it is the
-/// border of the whole face inside the cell, for a part of a connected set with no border of its
-/// own is all of it.
-pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: u32, cell: &Cell) -> bool {
-    let mut own: Vec<LineKey> = match source.shape() {
-        Shape::Mesh(mesh) => {
-            let c = mesh.corners(face);
-            (0..3)
-                .map(|i| LineKey::of_edge(&c[i], &c[(i + 1) % 3]))
-                .collect()
-        }
-        Shape::HalfSpace(_) => Vec::new(),
-    };
-    if edges.iter().all(|e| own.contains(&e.line)) {
-        return !edges.is_empty();
-    }
-    own.extend(border_lines(&source.plane(face), cell));
-    edges.iter().all(|e| own.contains(&e.line))
-}
-
-/// The lines in which a plane meets the planes of a cell's walls.
-fn border_lines(plane: &Plane, cell: &Cell) -> Vec<LineKey> {
-    let crossed = |wall: &Plane| {
-        let axis = wall.main_axis();
-        (0..3).any(|i| i != axis && plane.normal()[i] != 0)
-    };
-    cell.walls()
-        .iter()
-        .filter(|w| crossed(w))
-        .map(|w| LineKey::of_planes(plane, w))
         .collect()
 }
 

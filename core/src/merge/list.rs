@@ -1,15 +1,15 @@
 //! The list of elements that meet a cell, and its division at the cell's cut.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use rustc_hash::FxHashMap as HashMap;
-
+use super::separation::misses;
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, polygon_change, triangle_change, Segment};
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Branch, Deferred, Group, Node, PartElement};
+use crate::tree::table::Table;
 
 /// Coordinates relative to a cell, coarse enough for 32 bits.
 #[derive(Clone, Copy, Debug)]
@@ -87,39 +87,27 @@ pub struct List {
 
 /// The sources of an evaluation, in the order of the expression.
 #[derive(Debug)]
-pub struct Sources {
-    table: Arc<[Arc<Source>]>,
-    by_id: HashMap<u64, u32>,
-}
+pub struct Sources(Table);
 
 impl Sources {
-    /// A table; the first place of a source counts.
-    pub fn new(table: Arc<[Arc<Source>]>) -> Self {
-        let mut by_id = std::collections::HashMap::with_capacity_and_hasher(
-            table.len(),
-            rustc_hash::FxBuildHasher,
-        );
-        for (slot, source) in (0u32..).zip(table.iter()) {
-            by_id.entry(source.id()).or_insert(slot);
-        }
-        Self { table, by_id }
+    /// The sources of a table.
+    pub fn new(table: Table) -> Self {
+        Self(table)
     }
 
     /// The table.
-    pub fn table(&self) -> &Arc<[Arc<Source>]> {
-        &self.table
+    pub fn table(&self) -> &Table {
+        &self.0
     }
 
     /// The source in a slot.
     pub fn get(&self, slot: usize) -> &Arc<Source> {
-        &self.table[slot]
+        self.0.get(slot)
     }
 
     /// The slot of a source.
     pub fn slot(&self, source: &Source) -> usize {
-        self.by_id
-            .get(&source.id())
-            .map_or(usize::MAX, |s| *s as usize)
+        self.0.slot(source).unwrap_or(usize::MAX)
     }
 }
 
@@ -146,7 +134,7 @@ impl List {
         }
         for element in &leaf.parts {
             let flip = element.flip ^ branch.complement;
-            let pieces = Arc::new(element.part.pieces());
+            let pieces = Arc::clone(element.part.pieces());
             let part = Arc::clone(&element.part);
             list.parts
                 .push(frame.part_record(PartElement { part, flip }, pieces));
@@ -169,34 +157,36 @@ impl List {
         if !self.frame.resolves(cell) {
             self.reframe(cell, sources);
         }
-        let plus_corner = self.corner + self.change_along_edge(cell, cut, sources);
         let at = self.frame.index(cut.axis, cut.at);
-        let halves = [cell.half(cut, false), cell.half(cut, true)];
-        let mut plus = Self {
+        let change = self.change_along_edge(cell, cut, sources);
+        let plus = Self {
             frame: self.frame,
-            records: Vec::with_capacity(self.records.len() / 2 + 8),
-            parts: Vec::new(),
-            corner: plus_corner,
+            records: self.divide_records(cell, cut, sources),
+            parts: above(&self.parts, cut.axis, at),
+            corner: self.corner + change,
             worked: self.worked,
         };
-        let axis = cut.axis;
-        let (frame, records) = (self.frame, std::mem::take(&mut self.records));
-        let mut minus = Vec::with_capacity(records.len() / 2 + 8);
-        for r in records {
-            let (below, above) = (r.low[axis] < at, r.high[axis] >= at);
-            let large = below && above && frame.exceeds(&r, cell);
-            if below && !(large && misses(&r, &halves[0], sources)) {
-                minus.push(r);
-            }
-            if above && !(large && misses(&r, &halves[1], sources)) {
-                plus.records.push(r);
-            }
-        }
-        self.records = minus;
-        plus.parts
-            .extend(self.parts.iter().filter(|p| p.high[axis] >= at).cloned());
-        self.parts.retain(|p| p.low[axis] < at);
+        self.parts.retain(|p| p.low[cut.axis] < at);
         (self, plus)
+    }
+
+    /// Keeps the records of the minus half, in the memory they are in, and returns the others.
+    fn divide_records(&mut self, cell: &Cell, cut: Cut, sources: &Sources) -> Vec<Record> {
+        let (axis, at) = (cut.axis, self.frame.index(cut.axis, cut.at));
+        let halves = [cell.half(cut, false), cell.half(cut, true)];
+        let missed = |r: &Record, plus: usize| misses(sources.get(r.slot()), r.face, &halves[plus]);
+        let count = self.records.iter().filter(|r| r.high[axis] >= at).count();
+        let mut plus = Vec::with_capacity(count);
+        let frame = self.frame;
+        self.records.retain(|r| {
+            let (below, above) = (r.low[axis] < at, r.high[axis] >= at);
+            let large = below && above && frame.exceeds(r, cell);
+            if above && !(large && missed(r, 1)) {
+                plus.push(*r);
+            }
+            below && !(large && missed(r, 0))
+        });
+        plus
     }
 
     /// How many elements reach across the cell's border: these no halving can separate soon.
@@ -235,12 +225,9 @@ impl List {
             (0..3).all(|i| high[i] >= at[i] && low[i] < if i == cut.axis { end } else { at[i] })
         };
         let mut change = 0;
-        for r in &self.records {
+        for r in self.records.iter().filter(|r| near(&r.low, &r.high)) {
             let across = match sources.get(r.slot()).shape() {
-                Shape::Mesh(mesh) if near(&r.low, &r.high) => {
-                    triangle_change(&mesh.corners(r.face), &segment)
-                }
-                Shape::Mesh(_) => 0,
+                Shape::Mesh(mesh) => triangle_change(&mesh.corners(r.face), &segment),
                 Shape::HalfSpace(plane) => plane_change(plane, &segment),
             };
             change += if r.flip() { -across } else { across };
@@ -293,16 +280,32 @@ impl List {
             parts,
             corner,
             worked: self.worked,
+            share: OnceLock::new(),
         })
     }
 }
 
+fn above(parts: &[PartRecord], axis: usize, at: i32) -> Vec<PartRecord> {
+    parts
+        .iter()
+        .filter(|p| p.high[axis] >= at)
+        .cloned()
+        .collect()
+}
+
 impl Frame {
     fn record(&self, source: &Source, face: u32, slot_and_flip: u32) -> Record {
-        let (low, high) = source.face_box(face);
+        let (low, high) = match source.shape() {
+            Shape::Mesh(mesh) => {
+                let (low, high) = mesh.face_box(face);
+                let index = |p: &Lattice| [0, 1, 2].map(|i| self.index(i, p[i]));
+                (index(&low), index(&high))
+            }
+            Shape::HalfSpace(_) => ([i32::MIN; 3], [i32::MAX; 3]),
+        };
         Record {
-            low: [0, 1, 2].map(|i| self.index(i, low[i])),
-            high: [0, 1, 2].map(|i| self.index(i, high[i])),
+            low,
+            high,
             face,
             slot_and_flip,
         }
@@ -334,76 +337,4 @@ impl Frame {
             extent << self.shift >= 1i64 << size[i]
         })
     }
-}
-
-/// Whether a face certainly misses a closed cell; errs on no.
-///
-/// Separating axes: the face's normal, and each of its edges projected along each axis.
-fn misses(r: &Record, cell: &Cell, sources: &Sources) -> bool {
-    let source = sources.get(r.slot());
-    match source.shape() {
-        Shape::HalfSpace(plane) => {
-            let n = plane.approx();
-            let (center, half) = middle(cell, &[0; 3]);
-            let value = n[0] * center[0] + n[1] * center[1] + n[2] * center[2] + n[3];
-            let reach: f64 = (0..3).map(|i| n[i].abs() * half[i]).sum();
-            let size: f64 = (0..3).map(|i| n[i].abs() * center[i].abs()).sum::<f64>() + n[3].abs();
-            value.abs() > reach + (size + reach) * SLACK
-        }
-        Shape::Mesh(mesh) => {
-            let corners = mesh.corners(r.face);
-            let (center, half) = middle(cell, &corners[0]);
-            let local =
-                corners.map(|c| [0, 1, 2].map(|i| (c[i] - corners[0][i]) as f64 - center[i]));
-            separated(&local, &half)
-        }
-    }
-}
-
-/// Relative slack of the separating axis tests in doubles: far above their rounding.
-const SLACK: f64 = 1e-13;
-
-/// Center relative to `origin`, and half extents, of a closed cell.
-fn middle(cell: &Cell, origin: &Lattice) -> ([f64; 3], [f64; 3]) {
-    let (low, high) = (cell.low(), cell.high());
-    let center =
-        [0, 1, 2].map(|i| f64::midpoint((low[i] - origin[i]) as f64, (high[i] - origin[i]) as f64));
-    (
-        center,
-        [0, 1, 2].map(|i| (high[i] - low[i]) as f64 / 2.0 + 0.5),
-    )
-}
-
-fn separated(p: &[[f64; 3]; 3], half: &[f64; 3]) -> bool {
-    let e = [0, 1, 2].map(|i| {
-        let (a, b) = (p[i], p[(i + 1) % 3]);
-        [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
-    });
-    let cross = |a: &[f64; 3], b: &[f64; 3]| {
-        [
-            a[1] * b[2] - a[2] * b[1],
-            a[2] * b[0] - a[0] * b[2],
-            a[0] * b[1] - a[1] * b[0],
-        ]
-    };
-    let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let across = e
-        .iter()
-        .flat_map(|edge| unit.iter().map(|u| cross(u, edge)));
-    std::iter::once(cross(&e[0], &e[1]))
-        .chain(across)
-        .any(|axis| apart(p, half, &axis))
-}
-
-fn apart(p: &[[f64; 3]; 3], half: &[f64; 3], axis: &[f64; 3]) -> bool {
-    let value = |c: &[f64; 3]| c[0] * axis[0] + c[1] * axis[1] + c[2] * axis[2];
-    let values = [value(&p[0]), value(&p[1]), value(&p[2])];
-    let low = values[0].min(values[1]).min(values[2]);
-    let high = values[0].max(values[1]).max(values[2]);
-    let reach: f64 = (0..3).map(|i| half[i] * axis[i].abs()).sum();
-    let size: f64 = p
-        .iter()
-        .map(|c| (0..3).map(|i| (c[i] * axis[i]).abs()).sum::<f64>())
-        .fold(reach, f64::max);
-    low > reach + size * SLACK || high < -reach - size * SLACK
 }

@@ -1,10 +1,15 @@
 //! Set operations: one descent over trees and deferred leaves, and generic tree merging.
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
+mod bins;
+mod crossings;
+mod cutting;
 pub mod descend;
 pub mod evaluate;
 pub mod expression;
+mod general;
 mod join;
+mod kept;
 pub mod leaf;
 pub mod list;
 pub mod local_tree;
@@ -12,8 +17,11 @@ pub mod merge_trees;
 pub mod op;
 mod overlay;
 pub mod partition_tree;
+mod separation;
 pub mod simple;
 pub mod split_tree;
+mod sweep;
+mod window;
 
 pub use merge_trees::merge;
 pub use op::{Outcome, SetOp};

@@ -9,7 +9,7 @@ use pyo3::types::{PyBytes, PyDict, PyType};
 
 use super::arrays::{array, rows, wide};
 use super::errors::to_python;
-use super::run::run;
+use super::run::{run, SMALL};
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::collect::has_no_boundary;
 use crate::extract::round::{self, Mesh};
@@ -23,11 +23,12 @@ use crate::mesh::grid::{snap_point, Pitch};
 use crate::mesh::import::{half_space, import};
 use crate::mesh::source::TriangleMesh;
 use crate::query::classify::{classify, Location};
-use crate::query::measure::{volume, volume_near, volume_residues};
+use crate::query::measure::{volume, volume_near, volume_residues, volume_rounded};
 use crate::query::region::hyperplane::plane;
 use crate::query::region::section::section;
 use crate::tree::solid::Solid;
 use crate::tree::stats::{stats, Stats};
+use crate::tree::work::work;
 
 type Corners = ((f64, f64, f64), (f64, f64, f64));
 
@@ -80,7 +81,7 @@ impl Tree {
     }
 
     fn size(&self) -> usize {
-        self.solid.sources().iter().map(|s| s.face_count()).sum()
+        work(std::slice::from_ref(&self.solid), SMALL)
     }
 
     fn rounded(&self, py: Python<'_>, threads: usize) -> PyResult<&Rounded> {
@@ -170,9 +171,8 @@ impl Tree {
         let expression = terms
             .and_then(Expression::new)
             .map_err(|e| to_python(py, &e))?;
-        let size = operands.iter().map(|o| o.size()).sum();
         let solids: Vec<Solid> = operands.iter().map(|o| o.solid.clone()).collect();
-        let (solid, counters) = run(py, threads, size, |cancel| {
+        let (solid, counters) = run(py, threads, work(&solids, SMALL), |cancel| {
             evaluate(&expression, &solids, cancel)
         })?;
         Ok(Self {
@@ -202,11 +202,8 @@ impl Tree {
     /// Whether the elements are the reduced boundary; None if nobody has looked.
     #[getter]
     fn simple(&self) -> Option<bool> {
-        if self.solid.is_reduced() {
-            return Some(true);
-        }
-        let united = self.solid.united().get()?;
-        Some(Arc::ptr_eq(&united.root().node, &self.solid.root().node))
+        let known = self.solid.is_reduced() || self.solid.united().get().is_some();
+        known.then(|| self.solid.is_reduced())
     }
 
     #[pyo3(signature = (threads=0))]
@@ -247,7 +244,7 @@ impl Tree {
 
     #[getter]
     fn source_id(&self) -> Option<u64> {
-        self.solid.sources().first().map(|s| s.id())
+        self.solid.sources().iter().next().map(|s| s.id())
     }
 
     #[getter]
@@ -264,6 +261,11 @@ impl Tree {
     fn volume6_exact(&self, py: Python<'_>) -> PyResult<(BigInt, BigInt)> {
         let fraction = run(py, 0, self.size(), |_| volume(&self.solid))?;
         Ok((fraction.numerator, fraction.denominator))
+    }
+
+    /// The nearest double; None if the near volume has to decide.
+    fn volume_rounded(&self, py: Python<'_>) -> Option<f64> {
+        py.detach(|| volume_rounded(&self.solid))
     }
 
     fn volume_near(&self, py: Python<'_>) -> PyResult<(BigInt, BigInt)> {

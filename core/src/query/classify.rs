@@ -1,7 +1,5 @@
 //! Where lattice points lie.
 
-use std::sync::Arc;
-
 use crate::error::Result;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
@@ -32,7 +30,7 @@ const LEAF: usize = 20;
 /// # Errors
 /// None for points on the lattice; reserved for cancellation.
 pub fn classify(solid: &Solid, points: &[Lattice]) -> Result<Vec<Location>> {
-    let sources = Sources::new(Arc::clone(solid.sources()));
+    let sources = Sources::new(solid.sources().clone());
     let mut found = vec![Location::Outside; points.len()];
     let all: Vec<usize> = (0..points.len()).collect();
     let mut search = Search {
@@ -84,7 +82,8 @@ impl Search<'_> {
                     let list = List::open(leaf, &branch, self.sources);
                     self.list(branch.cell, list, points);
                 }
-                Node::Cut([minus, plus]) => {
+                Node::Cut(halves) => {
+                    let [minus, plus] = &halves.children;
                     if let Some(cut) = branch.cell.cut() {
                         let (below, above) = self.split(points, |p| p[cut.axis] < cut.at);
                         open.push((branch.child(minus), below));

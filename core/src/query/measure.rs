@@ -3,11 +3,13 @@
 use num_bigint::{BigInt, Sign};
 use num_integer::Integer;
 
-use crate::arith::{inv_mod, mul_mod, Int, P1, P2};
+use crate::arith::{inv_mod, mul_mod, ratio_to_f64, Int, P1, P2};
 use crate::error::Result;
 use crate::extract::assemble::{assemble, Corner, ExactMesh};
+use crate::geometry::fixed::FLUX_PLACES;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Homogeneous;
+use crate::tree::flux::share;
 use crate::tree::solid::Solid;
 
 /// An exact fraction, the denominator positive; in lowest terms unless it is very long.
@@ -37,6 +39,35 @@ pub fn volume(solid: &Solid) -> Result<Fraction> {
         denominator * 6,
         solid.pitch().exponent(),
     ))
+}
+
+/// The volume in cubic model units as the nearest double, from what the tree's nodes have kept.
+///
+/// The cost is that of what changed since a solid was asked that shares nodes with this one. `None`
+/// if the bound on the error leaves a choice of doubles, or if the boundary may be unbounded; then
+/// [`volume_near`] tells.
+pub fn volume_rounded(solid: &Solid) -> Option<f64> {
+    let share = share(solid.root());
+    if solid.root().outside > 0 || share.open {
+        return None;
+    }
+    let ends = share.flux.ends()?;
+    let [low, high] = ends.map(|flux| flux_in_units(&flux, solid.pitch().exponent()));
+    low.filter(|_| low == high)
+}
+
+/// A flux as a volume in model units, if no number gets too long.
+fn flux_in_units(flux: &Int<6>, exponent: i64) -> Option<f64> {
+    const LONGEST: u64 = 25;
+    let size = exponent.unsigned_abs();
+    let power = (0..3 * size.min(LONGEST)).fold(Int::<4>::ONE, |p, _| p.mul_i64(10));
+    let units = Int::<3>::from_limbs([0, 0, 6 << (FLUX_PLACES - 128)]);
+    let ratio = if exponent < 0 {
+        ratio_to_f64(flux, &units.mul::<4, 7>(&power))
+    } else {
+        ratio_to_f64(&flux.mul::<4, 10>(&power), &units)
+    };
+    (size <= LONGEST).then_some(ratio)
 }
 
 /// Binary places that [`volume_near`] keeps of each cut triangle's share, in cubic steps.
@@ -107,7 +138,7 @@ fn shares<'a>(
 fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Option<Lattice> {
     match mesh.vertices[vertex as usize] {
         Corner::Source(slot, index) => {
-            Some(solid.sources()[slot as usize].mesh()?.vertices[index as usize])
+            Some(solid.sources().get(slot as usize).mesh()?.vertices[index as usize])
         }
         Corner::Point(point) => mesh.table.point(point).as_lattice().copied(),
     }

@@ -1,7 +1,10 @@
 //! Partition trees: the nodes of solids, and generic trees in one, two and three dimensions.
 
+pub mod flux;
 pub mod fragments;
 pub mod node;
 pub mod partition;
 pub mod solid;
 pub mod stats;
+pub mod table;
+pub mod work;

@@ -1,7 +1,8 @@
 //! The partition tree of a solid: dyadic cuts above, deferred leaves below.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
+use super::flux::Share;
 use crate::geometry::cell::Cell;
 use crate::geometry::outline;
 use crate::geometry::outline::OutlineEdge;
@@ -17,8 +18,27 @@ pub enum Node {
     Leaf(i32),
     /// A preliminary leaf: its boundary is listed, not yet partitioned.
     Deferred(Deferred),
-    /// The cell's dyadic cut, minus half first.
-    Cut([Branch; 2]),
+    /// The cell's dyadic cut.
+    Cut(Halves),
+}
+
+impl Node {
+    /// A cut with these halves.
+    pub fn cut(minus: Branch, plus: Branch) -> Self {
+        Self::Cut(Halves {
+            children: [minus, plus],
+            share: OnceLock::new(),
+        })
+    }
+}
+
+/// The two halves of a node's cell.
+#[derive(Debug)]
+pub struct Halves {
+    /// Minus half first.
+    pub children: [Branch; 2],
+    /// What the node contributes to the volume, once somebody has asked.
+    pub share: OnceLock<Share>,
 }
 
 /// A subtree in its place.
@@ -102,6 +122,8 @@ pub struct Deferred {
     pub corner: i32,
     /// Whether several operands had boundary here: elements may touch each other.
     pub worked: bool,
+    /// What the node contributes to the volume, once somebody has asked.
+    pub share: OnceLock<Share>,
 }
 
 /// Whole faces of one source with one orientation.
@@ -137,15 +159,27 @@ pub struct Part {
     pub home: Cell,
     /// The outline, counterclockwise on the face.
     pub edges: Vec<OutlineEdge>,
+    pieces: OnceLock<Arc<Vec<Polygon>>>,
 }
 
 impl Part {
-    /// The convex pieces, derived from the outline.
-    pub fn pieces(&self) -> Vec<Polygon> {
-        match self.source.clip(self.face, &self.home) {
-            Some(polygon) => outline::pieces(polygon, &self.edges),
-            None => Vec::new(),
+    /// The part of a face that an outline bounds in a cell.
+    pub fn new(source: Arc<Source>, face: u32, home: Cell, edges: Vec<OutlineEdge>) -> Self {
+        Self {
+            source,
+            face,
+            home,
+            edges,
+            pieces: OnceLock::new(),
         }
+    }
+
+    /// The convex pieces, derived from the outline on first use.
+    pub fn pieces(&self) -> &Arc<Vec<Polygon>> {
+        self.pieces.get_or_init(|| {
+            let polygon = self.source.clip(self.face, &self.home);
+            Arc::new(polygon.map_or_else(Vec::new, |p| outline::pieces(p, &self.edges)))
+        })
     }
 }
 

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use rustc_hash::FxHashSet as HashSet;
 
 use super::node::{Branch, Deferred, Group, Node};
+use super::table::Table;
 use crate::geometry::cell::Cell;
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::{Shape, Source};
@@ -19,16 +20,18 @@ const SPARE: usize = 64;
 pub struct Solid {
     root: Branch,
     pitch: Pitch,
-    sources: Arc<[Arc<Source>]>,
+    sources: Table,
     /// How many sources the tree named when that was last counted.
     named: usize,
     reduced: bool,
+    /// Solids of meshes nobody has checked: if all are simple, this solid is reduced.
+    doubts: Option<Arc<[Solid]>>,
     united: Arc<OnceLock<Solid>>,
 }
 
 impl Solid {
     /// A solid from its parts; `reduced` says that its elements are the reduced boundary.
-    pub fn new(root: Branch, pitch: Pitch, sources: Arc<[Arc<Source>]>, reduced: bool) -> Self {
+    pub fn new(root: Branch, pitch: Pitch, sources: Table, reduced: bool) -> Self {
         let named = sources.len();
         Self {
             root,
@@ -36,8 +39,42 @@ impl Solid {
             sources,
             named,
             reduced,
+            doubts: None,
             united: Arc::default(),
         }
+    }
+
+    /// The solid that operations have made of these operands, reduced if they are.
+    ///
+    /// Where that is not known yet, the solid remembers the meshes that decide it, unless they are
+    /// many.
+    #[must_use]
+    pub fn made_of(mut self, operands: &[Self]) -> Self {
+        let open = || operands.iter().filter(|o| !o.is_reduced());
+        self.reduced = open().next().is_none();
+        if open().all(|o| o.doubts.is_some() || o.is_whole_mesh()) {
+            let doubts =
+                open().flat_map(|o| o.doubts.as_deref().unwrap_or(std::slice::from_ref(o)));
+            let doubts: Vec<Self> = doubts
+                .filter(|d| !d.is_reduced())
+                .take(SPARE + 1)
+                .cloned()
+                .collect();
+            self.doubts = (doubts.len() <= SPARE).then(|| doubts.into());
+        }
+        self
+    }
+
+    /// The meshes that decide whether the solid is reduced, where that is so.
+    pub fn doubts(&self) -> Option<&[Self]> {
+        self.doubts.as_deref()
+    }
+
+    /// Whether this is a mesh as it was given.
+    fn is_whole_mesh(&self) -> bool {
+        self.sources.len() == 1
+            && self.sources.get(0).mesh().is_some()
+            && matches!(&*self.root.node, Node::Deferred(leaf) if leaf.parts.is_empty() && leaf.len() == self.sources.get(0).face_count())
     }
 
     /// A solid made of operands of which none named more than `named` sources.
@@ -51,7 +88,7 @@ impl Solid {
         if self.sources.len() > 2 * named + SPARE {
             let names = names(&self.root);
             let kept = |s: &&Arc<Source>| names.contains(&s.id());
-            self.sources = self.sources.iter().filter(kept).cloned().collect();
+            self.sources = self.sources.iter().filter(kept).collect();
             self.named = self.sources.len();
         }
         self
@@ -66,7 +103,7 @@ impl Solid {
     pub fn uniform(pitch: Pitch, inside: bool) -> Self {
         let cell = Cell::around(&[0; 3], &[0; 3]);
         let root = Branch::uniform(cell, i32::from(inside));
-        Self::new(root, pitch, Arc::from([]), true)
+        Self::new(root, pitch, Table::default(), true)
     }
 
     /// The solid a source bounds: all its faces in one deferred leaf.
@@ -87,9 +124,8 @@ impl Solid {
         };
         let leaf = Deferred {
             groups: vec![group],
-            parts: Vec::new(),
             corner,
-            worked: false,
+            ..Deferred::default()
         };
         let node = Arc::new(Node::Deferred(leaf));
         let root = Branch {
@@ -98,7 +134,7 @@ impl Solid {
             complement: false,
             node,
         };
-        Self::new(root, pitch, Arc::from([source]), reduced)
+        Self::new(root, pitch, [&source].into_iter().collect(), reduced)
     }
 
     /// The root.
@@ -112,19 +148,23 @@ impl Solid {
     }
 
     /// The sources, in the order of the expression.
-    pub fn sources(&self) -> &Arc<[Arc<Source>]> {
+    pub fn sources(&self) -> &Table {
         &self.sources
     }
 
     /// Whether the elements are known to be the reduced boundary (promise G2).
     pub fn is_reduced(&self) -> bool {
-        self.reduced
+        let stays = |united: &Self| Arc::ptr_eq(&united.root.node, &self.root.node);
+        self.reduced || self.united.get().is_some_and(stays)
     }
 
     /// The same solid, its elements declared or found to be the reduced boundary.
     #[must_use]
     pub fn with_reduced(mut self, reduced: bool) -> Self {
         self.reduced = reduced;
+        self.doubts = None;
+        // Not the cache of the solid as it was: that is to hold this one.
+        self.united = Arc::default();
         self
     }
 
@@ -145,7 +185,7 @@ fn names(root: &Branch) -> HashSet<u64> {
                 names.extend(leaf.groups.iter().map(|g| g.source.id()));
                 names.extend(leaf.parts.iter().map(|p| p.part.source.id()));
             }
-            Node::Cut(children) => open.extend(children),
+            Node::Cut(halves) => open.extend(&halves.children),
         }
     }
     names

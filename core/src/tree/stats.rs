@@ -33,9 +33,9 @@ pub fn stats(solid: &Solid) -> Stats {
                 total.parts += leaf.parts.len();
                 total.elements += leaf.len() - leaf.parts.len();
             }
-            Node::Cut(children) => {
+            Node::Cut(halves) => {
                 total.nodes += 1;
-                open.extend(children.iter().map(|c| (c.node.clone(), depth + 1)));
+                open.extend(halves.children.iter().map(|c| (c.node.clone(), depth + 1)));
             }
         }
     }

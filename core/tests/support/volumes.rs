@@ -1,8 +1,12 @@
 //! Exact sums.
 
-use bspcsg::arith::{inv_mod, mul_mod, Int, P1, P2};
+use std::cmp::Ordering;
+
+use bspcsg::arith::{inv_mod, mantissa_and_exponent, mul_mod, Int, P1, P2};
+use bspcsg::geometry::fixed::FLUX_PLACES;
 use bspcsg::geometry::vertex::Homogeneous;
 use bspcsg::query::measure::{self, Fraction};
+use bspcsg::tree::flux::share;
 use bspcsg::tree::solid::Solid;
 use num_bigint::{BigInt, Sign};
 use num_integer::Integer;
@@ -38,6 +42,22 @@ impl Ratio {
         Self(fraction.numerator, fraction.denominator)
     }
 
+    /// A finite double, exactly.
+    pub fn of_double(x: f64) -> Self {
+        let (mantissa, exponent) = mantissa_and_exponent(x);
+        let power = BigInt::from(1) << exponent.unsigned_abs();
+        match exponent {
+            0.. => Self(BigInt::from(mantissa) * power, BigInt::from(1)),
+            _ => Self(BigInt::from(mantissa), power),
+        }
+    }
+
+    /// The absolute value.
+    #[must_use]
+    pub fn size(&self) -> Self {
+        Self(self.0.magnitude().clone().into(), self.1.clone())
+    }
+
     pub fn is_between_zero_and_one(&self) -> bool {
         self.0.sign() != Sign::Minus && self.0 < self.1
     }
@@ -51,15 +71,28 @@ impl Ratio {
     }
 }
 
+impl PartialOrd for Ratio {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some((&self.0 * &other.1).cmp(&(&other.0 * &self.1)))
+    }
+}
+
 impl PartialEq for Ratio {
     fn eq(&self, other: &Self) -> bool {
         &self.0 * &other.1 == &other.0 * &self.1
     }
 }
 
-/// The exact volume.
+/// The exact volume; what the nodes have kept must agree with it.
 pub fn volume(solid: &Solid) -> Ratio {
-    Ratio::of(measure::volume(solid).expect("a bounded solid"))
+    let exact = Ratio::of(measure::volume(solid).expect("a bounded solid"));
+    let exponent = u32::try_from(-3 * solid.pitch().exponent()).expect("steps are not long");
+    let units = (BigInt::from(6) << FLUX_PLACES) * BigInt::from(10).pow(exponent);
+    let ends = share(solid.root()).flux.ends().expect("a moderate error");
+    let [low, high] = ends.map(|end| big(&end) * &exact.1);
+    let middle = &exact.0 * units;
+    assert!(low <= middle && middle <= high, "the flux misses {exact:?}");
+    exact
 }
 
 /// Six times the volume of the tetrahedron from the origin to three points.

@@ -1,0 +1,102 @@
+//! How the winding number changes along a straight path from a cell's corner to an exact point.
+//!
+//! The path ends at a point of one surface, to learn on which side of others it lies. Unlike the
+//! segments between corners it is not made generic: where it runs through an edge, or ends on the
+//! surface it is counted against, the answer is `None`.
+
+use super::plane::{Lattice, Plane};
+use super::vertex::Vertex;
+use crate::arith::Int;
+
+/// Relative error bound of a determinant of three rows of rounded differences of integers.
+///
+/// A product of three has 3 roundings of factors and 2 of products, a sum of six at most 5: 10u,
+/// u = 2^-53, relative to the sum of magnitudes; 16u leaves room for the bound's own rounding.
+pub const DETERMINANT_FILTER: f64 = 16.0 / 9_007_199_254_740_992.0;
+
+/// The change of the winding number across a lattice triangle, from a doubled corner to a lattice
+/// point; `None` if the path is not generic.
+pub fn triangle_on_path(corners: &[Lattice; 3], from: &Lattice, to: &Lattice) -> Option<i32> {
+    let doubled = |p: &Lattice| [0, 1, 2].map(|i| 2 * p[i] - from[i]);
+    let [a, b, c] = [&corners[0], &corners[1], &corners[2]].map(doubled);
+    let end = doubled(to);
+    let turns = [(&a, &b), (&b, &c), (&c, &a)].map(|(p, q)| determinant(&end, p, q));
+    let certain = |s: i32| turns.iter().all(|t| *t == s);
+    if turns.contains(&0) {
+        return None;
+    }
+    if !certain(1) && !certain(-1) {
+        return Some(0);
+    }
+    let less = |p: &Lattice, q: &Lattice| [0, 1, 2].map(|i| p[i] - q[i]);
+    let (u, v) = (less(&b, &a), less(&c, &a));
+    let before = determinant(&less(&[0; 3], &a), &u, &v);
+    let after = determinant(&less(&end, &a), &u, &v);
+    if before == 0 || after == 0 {
+        return None;
+    }
+    Some((before - after) / 2)
+}
+
+/// Sign of the determinant of three rows.
+fn determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> i32 {
+    let [p, q, r] = [a, b, c].map(|row| row.map(|x| x as f64));
+    let minor = |i: usize, j: usize| (q[i] * r[j], q[j] * r[i]);
+    let minors = [minor(1, 2), minor(2, 0), minor(0, 1)];
+    let value: f64 = (0..3).map(|i| p[i] * (minors[i].0 - minors[i].1)).sum();
+    let size: f64 = (0..3)
+        .map(|i| p[i].abs() * (minors[i].0.abs() + minors[i].1.abs()))
+        .sum();
+    if value.abs() > size * DETERMINANT_FILTER {
+        return if value > 0.0 { 1 } else { -1 };
+    }
+    let minor = |i: usize, j: usize| {
+        i128::from(b[i]) * i128::from(c[j]) - i128::from(b[j]) * i128::from(c[i])
+    };
+    let term = |i: usize, m: i128| -> Int<3> { Int::<2>::from_i128(m).mul_i64(a[i]) };
+    (term(0, minor(1, 2)) + term(1, minor(2, 0)) + term(2, minor(0, 1))).signum()
+}
+
+/// The change of the winding number across a convex polygon, from a doubled corner to an exact
+/// point; `None` if the path is not generic.
+///
+/// The polygon is given by its plane and by the planes that bound it within that.
+pub fn polygon_on_path<'a>(
+    support: &Plane,
+    rims: impl FnOnce() -> &'a [Plane],
+    from: &Lattice,
+    to: &Vertex,
+) -> Option<i32> {
+    let (before, after) = (support.side_of_corner(from), to.side_of(support));
+    if after == 0 {
+        return None;
+    }
+    if before == after {
+        return Some(0);
+    }
+    for rim in rims() {
+        match before * cross(support, rim, from, to) {
+            0 => return None,
+            1.. => return Some(0),
+            ..=-1 => {}
+        }
+    }
+    Some((before - after) / 2)
+}
+
+/// Sign of b(c) e(x) − e(c) b(x): of `e` where the path from c to x meets the plane `b`, times the
+/// sign of b(c).
+fn cross(b: &Plane, e: &Plane, c: &Lattice, x: &Vertex) -> i32 {
+    let (bc, ec) = (b.near_value_at_doubled(c), e.near_value_at_doubled(c));
+    let (bx, ex) = (x.near_value(b), x.near_value(e));
+    let value = bc.0 * ex.0 - ec.0 * bx.0;
+    let doubt = |p: (f64, f64), q: (f64, f64)| {
+        (p.0.abs() + p.1) * q.1 + p.1 * q.0.abs() + p.0.abs() * q.0.abs() * 4.0 * f64::EPSILON
+    };
+    if value.abs() > 2.0 * (doubt(bc, ex) + doubt(ec, bx)) {
+        return if value > 0.0 { 1 } else { -1 };
+    }
+    let left: Int<11> = b.value_at_doubled(c).mul(&x.value(e));
+    let right: Int<11> = e.value_at_doubled(c).mul(&x.value(b));
+    (left - right).signum()
+}

@@ -1,0 +1,438 @@
+//! A long list's faces sorted into the cells of one level, so that no halving moves them.
+//!
+//! Above that level a cell only looks up how many faces it has and what its winding number is; the
+//! faces themselves are gathered where the descent ends or goes on with short lists.
+//!
+//! # Source
+//! Counting sort; integral images (Crow 1984) for the counts in boxes of cells.
+
+use std::sync::Arc;
+
+use super::crossings::{line_count, Crossings};
+use super::separation::triangle_misses;
+use super::window::{Span, Window};
+use crate::geometry::cell::Cell;
+use crate::geometry::plane::Lattice;
+use crate::mesh::source::TriangleMesh;
+use crate::tree::node::{Branch, Deferred, Group, Node};
+
+/// Faces for each cell, at least, on average.
+const DENSITY: usize = 4;
+
+/// Entries of a face, at most, on average: above that a coarser level is better.
+const ROWS: usize = 2;
+
+/// Faces looked at to estimate the number of entries.
+const SAMPLE: usize = 1024;
+
+/// Fewer cells than this are not worth the sorting.
+const LEAST: usize = 64;
+
+/// The faces of a deferred leaf by cells of a window.
+#[derive(Debug)]
+pub struct Bins {
+    home: Branch,
+    /// The number of each group's first element: elements are numbered through all groups.
+    firsts: Vec<u32>,
+    window: Window,
+    /// Where the entries of each cell start, and the end of the last.
+    starts: Vec<u32>,
+    /// The elements by cells.
+    entries: Vec<u32>,
+    /// By corner of the window, the number of entries below it on all axes.
+    below: Vec<u32>,
+    crossings: Crossings,
+}
+
+/// The faces of a group.
+struct Run<'a> {
+    mesh: &'a TriangleMesh,
+    faces: &'a [u32],
+    flip: bool,
+    first: u32,
+}
+
+/// The cells of elements: one of each, or several in a list of their own.
+struct Sorted {
+    /// The cell of each element, or `SPANS`.
+    cells: Vec<u32>,
+    spans: Vec<Span>,
+}
+
+const SPANS: u32 = u32::MAX;
+
+impl Bins {
+    /// The bins of a branch whose node is a deferred leaf.
+    ///
+    /// `None` if it does not hold faces of meshes only, or if most faces are so large beside the
+    /// region they fill that no level separates them.
+    pub fn new(home: &Branch) -> Option<Self> {
+        let Node::Deferred(leaf) = &*home.node else {
+            return None;
+        };
+        let runs = runs(leaf)?;
+        let mut window = plan(&runs, &home.cell, leaf.len())?;
+        loop {
+            if let Some(bins) = Self::sorted(home, &runs, window, leaf.len()) {
+                return Some(bins);
+            }
+            let (low, high) = bounds(&runs, &home.cell)?;
+            window = Window::around(&low, &high, window.size() + 1).filter(|w| w.len() >= LEAST)?;
+        }
+    }
+
+    fn sorted(home: &Branch, runs: &[Run], window: Window, total: usize) -> Option<Self> {
+        let sorted = Sorted::new(&window, runs, total);
+        let rows = rows(&window, runs, &sorted.spans, 2 * ROWS * total)?;
+        let (starts, entries) = distribute(&window, &sorted.cells, &rows);
+        let corners = |element: u32| {
+            let (run, face) = find(runs, element);
+            (run.mesh.corners(face), run.flip)
+        };
+        Some(Self {
+            home: home.clone(),
+            firsts: runs.iter().map(|r| r.first).collect(),
+            window,
+            below: integral(&window, &starts),
+            crossings: Crossings::new(window, &sorted.spans, corners),
+            starts,
+            entries,
+        })
+    }
+
+    /// Whether the halves of a cell are still made of whole cells of the window.
+    pub fn divide(&self, cell: &Cell) -> bool {
+        self.window.is_divided_in(cell)
+    }
+
+    /// The number of entries in a cell inside the home: zero if no face meets it.
+    pub fn len_in(&self, cell: &Cell) -> usize {
+        let [x, y, z] = self.window.covered(cell);
+        let [_, ny, nz] = self.window.count();
+        let at = |x: i32, y: i32, z: i32| self.below[((x * (ny + 1) + y) * (nz + 1) + z) as usize];
+        let row = |x: i32, y: i32| at(x, y, z.end) - at(x, y, z.start);
+        let slab = |x: i32| row(x, y.end) - row(x, y.start);
+        (slab(x.end) - slab(x.start)) as usize
+    }
+
+    /// The winding number at the low corner of a cell inside the home.
+    pub fn corner_of(&self, cell: &Cell) -> i32 {
+        let change = self.crossings.up_to(self.window.corner(cell));
+        self.home.oriented(self.leaf().corner + change)
+    }
+
+    /// The part of the home in a cell, as a deferred leaf.
+    pub fn branch_in(&self, cell: &Cell) -> Branch {
+        if *cell == self.home.cell {
+            return self.home.clone();
+        }
+        let leaf = Deferred {
+            groups: self.groups_in(cell),
+            parts: Vec::new(),
+            corner: self.corner_of(cell),
+            worked: self.leaf().worked,
+            ..Deferred::default()
+        };
+        Branch {
+            cell: *cell,
+            outside: 0,
+            complement: false,
+            node: Arc::new(Node::Deferred(leaf)),
+        }
+    }
+
+    fn leaf(&self) -> &Deferred {
+        match &*self.home.node {
+            Node::Deferred(leaf) => leaf,
+            Node::Leaf(_) | Node::Cut(_) => unreachable!("bins are made of deferred leaves"),
+        }
+    }
+
+    fn groups_in(&self, cell: &Cell) -> Vec<Group> {
+        let elements = self.elements_in(cell);
+        let mut rest = &elements[..];
+        let mut groups = Vec::new();
+        for (i, group) in self.leaf().groups.iter().enumerate() {
+            let first = self.firsts[i];
+            let end = self.firsts.get(i + 1).copied().unwrap_or(u32::MAX);
+            let (own, others) = rest.split_at(rest.partition_point(|e| *e < end));
+            rest = others;
+            if !own.is_empty() {
+                let face = |e: &u32| group.faces[(e - first) as usize];
+                groups.push(Group {
+                    source: Arc::clone(&group.source),
+                    flip: group.flip ^ self.home.complement,
+                    faces: own.iter().map(face).collect(),
+                });
+            }
+        }
+        groups
+    }
+
+    /// The elements in a cell, ascending.
+    fn elements_in(&self, cell: &Cell) -> Vec<u32> {
+        let [x, y, z] = self.window.covered(cell);
+        let mut elements = Vec::with_capacity(self.len_in(cell));
+        for (x, y) in x.flat_map(|x| y.clone().map(move |y| (x, y))) {
+            let row = self.window.index([x, y, z.start])..self.window.index([x, y, z.end]);
+            let entries = self.starts[row.start] as usize..self.starts[row.end] as usize;
+            elements.extend_from_slice(&self.entries[entries]);
+        }
+        ascending(elements, self.leaf().len())
+    }
+}
+
+/// Sorts numbers below a limit, and leaves out repetitions.
+fn ascending(mut numbers: Vec<u32>, limit: usize) -> Vec<u32> {
+    if numbers.len() < limit / 32 {
+        numbers.sort_unstable();
+        numbers.dedup();
+        return numbers;
+    }
+    let mut marks = vec![0u64; limit / 64 + 1];
+    for n in &numbers {
+        marks[*n as usize / 64] |= 1 << (n % 64);
+    }
+    numbers.clear();
+    for (i, mark) in (0u32..).zip(marks) {
+        let mut bits = mark;
+        while bits != 0 {
+            numbers.push(64 * i + bits.trailing_zeros());
+            bits &= bits - 1;
+        }
+    }
+    numbers
+}
+
+/// The faces by group; `None` if some are no triangles of a mesh.
+fn runs(leaf: &Deferred) -> Option<Vec<Run<'_>>> {
+    if !leaf.parts.is_empty() {
+        return None;
+    }
+    let mut runs = Vec::with_capacity(leaf.groups.len());
+    let mut first = 0;
+    for group in &leaf.groups {
+        runs.push(Run {
+            mesh: group.source.mesh()?,
+            faces: &group.faces,
+            flip: group.flip,
+            first,
+        });
+        first += group.faces.len() as u32;
+    }
+    Some(runs)
+}
+
+/// The run and the face of an element.
+fn find<'a, 'b>(runs: &'a [Run<'b>], element: u32) -> (&'a Run<'b>, u32) {
+    let run = &runs[runs.partition_point(|r| r.first <= element) - 1];
+    (run, run.faces[(element - run.first) as usize])
+}
+
+impl Run<'_> {
+    /// Whether it is worth while to look at all vertices of the mesh once.
+    fn is_most(&self) -> bool {
+        self.faces.len() >= self.mesh.vertices.len()
+    }
+
+    fn bounds(&self) -> Option<(Lattice, Lattice)> {
+        if self.is_most() {
+            return self.mesh.bounds();
+        }
+        self.faces
+            .iter()
+            .map(|f| self.mesh.face_box(*f))
+            .reduce(joint)
+    }
+}
+
+fn joint(a: (Lattice, Lattice), b: (Lattice, Lattice)) -> (Lattice, Lattice) {
+    (
+        [0, 1, 2].map(|i| a.0[i].min(b.0[i])),
+        [0, 1, 2].map(|i| a.1[i].max(b.1[i])),
+    )
+}
+
+/// The bounds of all faces, inside a cell.
+fn bounds(runs: &[Run], home: &Cell) -> Option<(Lattice, Lattice)> {
+    let (low, high) = runs.iter().filter_map(Run::bounds).reduce(joint)?;
+    let top = home.high();
+    let low = [0, 1, 2].map(|i| low[i].max(home.low()[i]));
+    let high = [0, 1, 2].map(|i| high[i].min(top[i]));
+    (0..3).all(|i| low[i] <= high[i]).then_some((low, high))
+}
+
+/// The finest window with enough faces for each cell and few enough entries for each face.
+fn plan(runs: &[Run], home: &Cell, total: usize) -> Option<Window> {
+    let (low, high) = bounds(runs, home)?;
+    let step = total.div_ceil(SAMPLE);
+    let sample: Vec<(Lattice, Lattice)> = (0..total as u32)
+        .step_by(step)
+        .map(|element| find(runs, element))
+        .map(|(run, face)| run.mesh.face_box(face))
+        .collect();
+    let coarsest = home.size().into_iter().min().map_or(0, u32::from);
+    (0..=coarsest)
+        .filter_map(|size| Window::around(&low, &high, size))
+        .filter(|w| w.len() * DENSITY <= total)
+        .find(|w| sample.iter().map(|b| entry_count(w, b)).sum::<usize>() <= ROWS * sample.len())
+        .filter(|w| w.len() >= LEAST)
+}
+
+/// In how many cells a face with these bounds is entered.
+fn entry_count(window: &Window, (low, high): &(Lattice, Lattice)) -> usize {
+    let [low, high] = [window.code(low), window.code(high)];
+    cell_count(window, &window.span(0, [low, high, high]))
+}
+
+fn cell_count(window: &Window, span: &Span) -> usize {
+    let product = |(low, high): ([i32; 3], [i32; 3])| {
+        (0..3).map(|i| (high[i] - low[i] + 1) as usize).product()
+    };
+    window.within(span).map_or(0, product)
+}
+
+impl Sorted {
+    fn new(window: &Window, runs: &[Run], total: usize) -> Self {
+        let mut sorted = Self {
+            cells: Vec::with_capacity(total),
+            spans: Vec::new(),
+        };
+        for run in runs {
+            let mesh = run.mesh;
+            if run.is_most() {
+                let codes: Vec<u32> = mesh.vertices.iter().map(|p| window.code(p)).collect();
+                let code = |f: u32| mesh.faces[f as usize].map(|v| codes[v as usize]);
+                sorted.add(window, run, code);
+            } else {
+                sorted.add(window, run, |f| mesh.corners(f).map(|p| window.code(&p)));
+            }
+        }
+        sorted
+    }
+
+    fn add(&mut self, window: &Window, run: &Run, codes: impl Fn(u32) -> [u32; 3]) {
+        for (element, face) in (run.first..).zip(run.faces) {
+            let [a, b, c] = codes(*face);
+            let cell = if a == b && b == c {
+                window.index_of(a)
+            } else {
+                self.spans.push(window.span(element, [a, b, c]));
+                None
+            };
+            self.cells.push(cell.unwrap_or(SPANS));
+        }
+    }
+}
+
+/// The entries of spanning faces as pairs of cell and element; `None` if they are too many.
+fn rows(window: &Window, runs: &[Run], spans: &[Span], limit: usize) -> Option<Vec<(u32, u32)>> {
+    let mut rows = Vec::with_capacity(2 * spans.len());
+    let mut lines = 0;
+    for span in spans {
+        lines += line_count(window, span);
+        let Some((low, high)) = window.within(span) else {
+            continue;
+        };
+        if (0..3).any(|i| high[i] - low[i] > 1) {
+            let (run, face) = find(runs, span.element);
+            let corners = run.mesh.corners(face);
+            spread(window, &corners, low, high, &mut |cell| {
+                rows.push((cell, span.element))
+            });
+        } else {
+            each_cell(window, low, high, &mut |cell| {
+                rows.push((cell, span.element))
+            });
+        }
+        if rows.len() + lines > limit {
+            return None;
+        }
+    }
+    Some(rows)
+}
+
+/// Calls a function with each cell of a box.
+fn each_cell(window: &Window, low: [i32; 3], high: [i32; 3], enter: &mut impl FnMut(u32)) {
+    for x in low[0]..=high[0] {
+        for y in low[1]..=high[1] {
+            for z in low[2]..=high[2] {
+                enter(window.index([x, y, z]) as u32);
+            }
+        }
+    }
+}
+
+/// Calls a function with the cells of a box that a triangle may meet.
+fn spread(
+    window: &Window,
+    corners: &[Lattice; 3],
+    low: [i32; 3],
+    high: [i32; 3],
+    enter: &mut impl FnMut(u32),
+) {
+    let mut open = vec![(low, high)];
+    while let Some((low, high)) = open.pop() {
+        let (a, b) = window.extent(&low, &high);
+        if triangle_misses(corners, &a, &b) {
+            continue;
+        }
+        let axis = (0..3).max_by_key(|i| high[*i] - low[*i]).unwrap_or(0);
+        if low[axis] == high[axis] {
+            enter(window.index(low) as u32);
+            continue;
+        }
+        let (mut end, mut start) = (high, low);
+        end[axis] = i32::midpoint(low[axis], high[axis]);
+        start[axis] = end[axis] + 1;
+        open.extend([(start, high), (low, end)]);
+    }
+}
+
+/// The entries sorted by cell, ascending within those of single cells, and where they start.
+fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0u32; window.len() + 2];
+    for cell in cells.iter().filter(|c| **c != SPANS) {
+        starts[*cell as usize + 2] += 1;
+    }
+    for (cell, _) in rows {
+        starts[*cell as usize + 2] += 1;
+    }
+    let mut sum = 0;
+    for start in &mut starts {
+        sum += *start;
+        *start = sum;
+    }
+    let mut entries = vec![0u32; sum as usize];
+    let mut enter = |cell: u32, element: u32| {
+        let end = &mut starts[cell as usize + 1];
+        entries[*end as usize] = element;
+        *end += 1;
+    };
+    for (element, cell) in (0u32..).zip(cells).filter(|(_, c)| **c != SPANS) {
+        enter(*cell, element);
+    }
+    rows.iter()
+        .for_each(|(cell, element)| enter(*cell, *element));
+    (starts, entries)
+}
+
+/// For each corner of the window the number of entries in the cells below it on all axes.
+fn integral(window: &Window, starts: &[u32]) -> Vec<u32> {
+    let [nx, ny, nz] = window.count().map(|c| c as usize);
+    let (row, slab) = (nz + 1, (ny + 1) * (nz + 1));
+    let mut below = vec![0u32; (nx + 1) * slab];
+    for x in 0..nx {
+        for y in 0..ny {
+            let first = (x * ny + y) * nz;
+            let to = (x + 1) * slab + (y + 1) * row;
+            for z in 1..=nz {
+                let in_row = starts[first + z] - starts[first];
+                let before =
+                    below[to - slab + z] + below[to - row + z] - below[to - slab - row + z];
+                below[to + z] = before + in_row;
+            }
+        }
+    }
+    below
+}

@@ -1,0 +1,161 @@
+//! How the winding number of a window's faces changes along the lines between its cells.
+//!
+//! From the low corner of the window the path to another corner runs along the first axis, then the
+//! second, then the third. Only faces that lie across lines of two axes can meet one of the third.
+
+use super::window::{Span, Window};
+use crate::geometry::crossing::{triangle_change, Segment};
+use crate::geometry::plane::Lattice;
+
+/// A line along an axis and a place on it in one word, ordered by line.
+type Key = u64;
+
+/// The changes along the lines of one axis, each with the sum of all before it and its own.
+#[derive(Debug, Default)]
+struct Along {
+    keys: Vec<Key>,
+    sums: Vec<i32>,
+}
+
+/// The crossings of faces with the paths to a window's corners.
+#[derive(Debug)]
+pub struct Crossings {
+    window: Window,
+    along: [Along; 3],
+}
+
+fn key(line: u32, place: i32) -> Key {
+    u64::from(line) << 32 | u64::from(place as u32)
+}
+
+impl Along {
+    fn new(mut changes: Vec<(Key, i32)>) -> Self {
+        changes.sort_unstable();
+        let mut sum = 0;
+        let sums = changes.iter().map(|(_, change)| {
+            sum += change;
+            sum
+        });
+        Self {
+            sums: sums.collect(),
+            keys: changes.iter().map(|(key, _)| *key).collect(),
+        }
+    }
+
+    /// The change along a line from its start to another line across it.
+    fn up_to(&self, line: u32, end: i32) -> i32 {
+        let before = |key: Key| {
+            let count = self.keys.partition_point(|k| *k < key);
+            count.checked_sub(1).map_or(0, |last| self.sums[last])
+        };
+        before(key(line, end)) - before(key(line, 0))
+    }
+}
+
+impl Crossings {
+    /// The crossings of spanning faces; `corners` tells a face's corners and whether it is turned
+    /// around.
+    pub fn new(
+        window: Window,
+        spans: &[Span],
+        corners: impl Fn(u32) -> ([Lattice; 3], bool),
+    ) -> Self {
+        let mut found = [Vec::new(), Vec::new(), Vec::new()];
+        for span in spans.iter().filter(|s| crosses_two(&window, s)) {
+            let (corners, flip) = corners(span.element);
+            let mut add = |axis: usize, x: i32, y: i32| {
+                let Some((place, change)) = crossing(&window, span, &corners, axis, [x, y]) else {
+                    return;
+                };
+                let line = number(&window, axis, x, y);
+                found[axis].push((key(line, place), if flip { -change } else { change }));
+            };
+            visit_lines(&window, span, &mut add);
+        }
+        Self {
+            window,
+            along: found.map(Along::new),
+        }
+    }
+
+    /// The change of the winding number from the window's low corner to another corner.
+    pub fn up_to(&self, corner: [i32; 3]) -> i32 {
+        let [x, y, z] = corner;
+        let line = |axis| number(&self.window, axis, x, y);
+        self.along[0].up_to(line(0), x)
+            + self.along[1].up_to(line(1), y)
+            + self.along[2].up_to(line(2), z)
+    }
+}
+
+/// How many lines a span may meet.
+pub fn line_count(window: &Window, span: &Span) -> usize {
+    let mut count = 0;
+    if crosses_two(window, span) {
+        visit_lines(window, span, &mut |_, _, _| count += 1);
+    }
+    count
+}
+
+/// Whether a face lies across lines of two axes.
+fn crosses_two(window: &Window, span: &Span) -> bool {
+    (0..3)
+        .filter(|i| !window.lines(span, *i).is_empty())
+        .count()
+        >= 2
+}
+
+/// Calls a function with each axis and line on which the span may be crossed.
+fn visit_lines(window: &Window, span: &Span, visit: &mut impl FnMut(usize, i32, i32)) {
+    let [x, y, z] = [0, 1, 2].map(|axis| window.lines(span, axis));
+    let starts = |lines: &std::ops::Range<i32>| lines.contains(&0);
+    if starts(&y) && starts(&z) {
+        visit(0, 0, 0);
+    }
+    for i in x {
+        if starts(&z) {
+            visit(1, i, 0);
+        }
+        y.clone().for_each(|j| visit(2, i, j));
+    }
+}
+
+/// The number of a line along an axis: there is one along the first, a row along the second.
+fn number(window: &Window, axis: usize, x: i32, y: i32) -> u32 {
+    match axis {
+        0 => 0,
+        1 => x as u32,
+        _ => (x * (window.count()[1] + 1) + y) as u32,
+    }
+}
+
+/// Where a face crosses a line inside the window, and the change of the winding number there.
+fn crossing(
+    window: &Window,
+    span: &Span,
+    corners: &[Lattice; 3],
+    axis: usize,
+    [x, y]: [i32; 2],
+) -> Option<(i32, i32)> {
+    let mut at = [x, y, 0];
+    at[axis..].fill(0);
+    let (low, high) = (i32::from(span.low[axis]), i32::from(span.high[axis]));
+    let (mut low, mut high) = (low.max(0), high.min(window.count()[axis] - 1));
+    let change = |low: i32, high: i32| {
+        let mut from = at;
+        from[axis] = low;
+        let from = [0, 1, 2].map(|i| window.line(i, from[i]));
+        let to = window.line(axis, high + 1);
+        triangle_change(corners, &Segment { from, axis, to })
+    };
+    let total = if low <= high { change(low, high) } else { 0 };
+    while low < high && total != 0 {
+        let middle = i32::midpoint(low, high);
+        if change(low, middle) == 0 {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    (total != 0).then_some((low, total))
+}

@@ -1,0 +1,331 @@
+//! A polygon cut up by the faces that truly cross it, and how winding numbers differ on the pieces.
+//!
+//! A planar autopartition: each cut is the supporting plane of a face that meets the piece at hand,
+//! so that a polygon is divided by what crosses it and by nothing else. Pieces on the two sides of
+//! a face are tied by the jump of the winding number across it; the ties connect all pieces.
+//!
+//! Everything is for general position. Faces that touch the polygon in edges, in one plane with it,
+//! or that meet it in one and the same segment are for the local trees: the answer is `None`.
+
+use std::borrow::Cow;
+use std::cell::OnceCell;
+use std::sync::Arc;
+
+use smallvec::SmallVec;
+
+use crate::geometry::path::polygon_on_path;
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::polygon::{straddle, Chord, Corner, Polygon, Sides};
+use crate::geometry::vertex::Vertex;
+
+/// A convex polygon and the planes that bound it within its own, once somebody asks for them.
+#[derive(Debug)]
+pub struct Face<'a> {
+    /// The polygon.
+    pub polygon: Cow<'a, Polygon>,
+    rims: OnceCell<Vec<Plane>>,
+}
+
+impl<'a> Face<'a> {
+    /// A face.
+    pub fn new(polygon: Cow<'a, Polygon>) -> Self {
+        let rims = OnceCell::new();
+        Self { polygon, rims }
+    }
+
+    fn rims(&self) -> &[Plane] {
+        let rim = |c: &Corner| c.edge.rim(self.polygon.support());
+        self.rims
+            .get_or_init(|| self.polygon.corners().iter().map(rim).collect())
+    }
+
+    /// The change of the winding number across the face along a path; see `geometry::path`.
+    pub fn on_path(&self, from: &Lattice, to: &Vertex) -> Option<i32> {
+        polygon_on_path(self.polygon.support(), || self.rims(), from, to)
+    }
+
+    /// Whether a segment in the plane of the face meets its interior, for a segment whose plane
+    /// has corners of the face strictly on both sides.
+    fn meets(&self, segment: &Chord) -> bool {
+        let beyond = |rim: &Plane| segment.iter().all(|end| end.side_of(rim) >= 0);
+        !self.rims().iter().any(beyond)
+    }
+
+    /// Whether a point in the plane of the face lies in it or on its border.
+    fn holds(&self, point: &Vertex) -> bool {
+        self.rims().iter().all(|rim| point.side_of(rim) <= 0)
+    }
+}
+
+/// A face of another operand.
+#[derive(Clone, Copy, Debug)]
+pub struct Cutter<'a> {
+    /// The face, or a convex piece of it.
+    pub face: &'a Face<'a>,
+    /// Whose it is.
+    pub operand: usize,
+    /// By how much the winding number on its minus side exceeds that on its plus side.
+    pub weight: i32,
+}
+
+/// The winding number of an operand on piece `plus` exceeds that on piece `minus` by `change`.
+#[derive(Clone, Copy, Debug)]
+pub struct Tie {
+    /// A piece.
+    pub minus: u32,
+    /// Another piece.
+    pub plus: u32,
+    /// The operand.
+    pub operand: usize,
+    /// The change.
+    pub change: i32,
+}
+
+/// The pieces of a polygon, and ties that connect them all.
+#[derive(Debug, Default)]
+pub struct Cutting {
+    /// The pieces.
+    pub pieces: Vec<Polygon>,
+    /// The ties.
+    pub ties: Vec<Tie>,
+}
+
+#[derive(Clone, Copy)]
+enum Child {
+    Knot(u32),
+    Piece(u32),
+}
+
+struct Knot {
+    children: [Child; 2],
+    chord: Chord,
+    cutter: u32,
+}
+
+type Cutters = SmallVec<[u32; 8]>;
+
+struct Task {
+    polygon: Polygon,
+    cutters: Cutters,
+    parent: Option<(u32, usize)>,
+}
+
+/// A cutter that divides a piece.
+struct Crossing {
+    cutter: u32,
+    sides: Sides,
+    chord: Chord,
+}
+
+struct Partition<'a> {
+    support: Arc<Plane>,
+    cutters: &'a [Cutter<'a>],
+    knots: Vec<Knot>,
+    pieces: Vec<Polygon>,
+}
+
+/// Cuts a polygon up by those of the given faces that cross it.
+pub fn cut_up(polygon: Polygon, cutters: &[Cutter]) -> Option<Cutting> {
+    let mut partition = Partition {
+        support: Arc::clone(polygon.support()),
+        cutters,
+        knots: Vec::new(),
+        pieces: Vec::new(),
+    };
+    let mut open = vec![Task {
+        polygon,
+        cutters: (0..cutters.len() as u32).collect(),
+        parent: None,
+    }];
+    while let Some(task) = open.pop() {
+        let parent = task.parent;
+        let child = partition.grow(task, &mut open)?;
+        if let Some((knot, side)) = parent {
+            partition.knots[knot as usize].children[side] = child;
+        }
+    }
+    let ties = partition.ties()?;
+    let pieces = partition.pieces;
+    Some(Cutting { pieces, ties })
+}
+
+impl Partition<'_> {
+    fn plane(&self, cutter: u32) -> &Arc<Plane> {
+        self.cutters[cutter as usize].face.polygon.support()
+    }
+
+    fn grow(&mut self, task: Task, open: &mut Vec<Task>) -> Option<Child> {
+        let mut rest = task.cutters;
+        let Some(found) = self.first_crossing(&task.polygon, &mut rest, task.parent.is_none())?
+        else {
+            self.pieces.push(task.polygon);
+            return Some(Child::Piece(self.pieces.len() as u32 - 1));
+        };
+        self.leave_coplanar(&found, &mut rest)?;
+        let cut = self.plane(found.cutter);
+        let (minus, plus) = task.polygon.divided(cut, &found.sides, &found.chord);
+        let knot = self.knots.len() as u32;
+        self.knots.push(Knot {
+            children: [Child::Piece(0); 2],
+            chord: found.chord,
+            cutter: found.cutter,
+        });
+        for (side, polygon) in [(1, plus), (0, minus)] {
+            open.push(Task {
+                polygon,
+                cutters: rest.clone(),
+                parent: Some((knot, side)),
+            });
+        }
+        Some(Child::Knot(knot))
+    }
+
+    /// The first cutter that divides a piece; those before it are taken off the list.
+    fn first_crossing(
+        &self,
+        piece: &Polygon,
+        list: &mut Cutters,
+        whole: bool,
+    ) -> Option<Option<Crossing>> {
+        while let Some(cutter) = list.pop() {
+            let plane = self.plane(cutter);
+            let sides = piece.sides(plane);
+            if straddle(&sides) != (true, true) {
+                // A face may run along a cut that another one made.
+                if !whole && sides.iter().filter(|s| **s == 0).count() > 1 {
+                    return None;
+                }
+                continue;
+            }
+            let chord = piece.chord(plane, &sides);
+            if self.cutters[cutter as usize].face.meets(&chord) {
+                return Some(Some(Crossing {
+                    cutter,
+                    sides,
+                    chord,
+                }));
+            }
+        }
+        Some(None)
+    }
+
+    /// Takes the cutters in the plane of a crossing off the list; they must not overlap it.
+    fn leave_coplanar(&self, crossing: &Crossing, list: &mut Cutters) -> Option<()> {
+        let cutter = self.cutters[crossing.cutter as usize];
+        let mut link = None;
+        let mut general = true;
+        list.retain(|other| {
+            let other = self.cutters[*other as usize];
+            let plane = other.face.polygon.support();
+            if plane.coincides(cutter.face.polygon.support()).is_none() {
+                return true;
+            }
+            if other.face.meets(&crossing.chord) {
+                let link = link.get_or_insert_with(|| self.link(crossing.cutter, &crossing.chord));
+                general &= other.operand == cutter.operand
+                    && link.as_ref().is_some_and(|l| !other.face.meets(l));
+            }
+            false
+        });
+        general.then_some(())
+    }
+
+    /// The part of a chord on its cutter.
+    fn link(&self, cutter: u32, chord: &Chord) -> Option<Chord> {
+        let face = self.cutters[cutter as usize].face;
+        let mut rims = face.rims().iter();
+        rims.try_fold(chord.clone(), |link, rim| {
+            self.clipped(link, face.polygon.support(), rim, true)
+        })
+    }
+
+    /// The part of a segment in a cutter's plane on one side of another plane.
+    fn clipped(&self, segment: Chord, plane: &Plane, cut: &Plane, minus: bool) -> Option<Chord> {
+        let inside = |v: &Vertex| (v.side_of(cut) < 0) == minus || v.side_of(cut) == 0;
+        let keep = [inside(&segment[0]), inside(&segment[1])];
+        if keep == [true, true] {
+            return Some(segment);
+        }
+        let at = Arc::new(Vertex::meet(&self.support, plane, cut)?);
+        match keep {
+            [true, false] => Some(Chord::from_buf([Arc::clone(&segment[0]), at])),
+            [false, true] => Some(Chord::from_buf([at, Arc::clone(&segment[1])])),
+            _ => None,
+        }
+    }
+
+    fn ties(&self) -> Option<Vec<Tie>> {
+        self.knots.iter().map(|knot| self.tie(knot)).collect()
+    }
+
+    fn tie(&self, knot: &Knot) -> Option<Tie> {
+        let cutter = self.cutters[knot.cutter as usize];
+        let [minus, plus] = match knot.children {
+            [Child::Piece(minus), Child::Piece(plus)] => [minus, plus],
+            children => {
+                let link = self.link(knot.cutter, &knot.chord)?;
+                let (minus, link) = self.beside(children[0], link, knot.cutter)?;
+                let (plus, _) = self.beside(children[1], link, knot.cutter)?;
+                [minus, plus]
+            }
+        };
+        Some(Tie {
+            minus,
+            plus,
+            operand: cutter.operand,
+            change: -cutter.weight,
+        })
+    }
+
+    /// A piece that some part of a link borders, and that part.
+    fn beside(&self, from: Child, link: Chord, cutter: u32) -> Option<(u32, Chord)> {
+        let (mut at, mut link) = (from, link);
+        loop {
+            let knot = match at {
+                Child::Piece(piece) => return Some((piece, link)),
+                Child::Knot(knot) => &self.knots[knot as usize],
+            };
+            let cut = self.plane(knot.cutter);
+            let sides = [link[0].side_of(cut), link[1].side_of(cut)];
+            match straddle(&sides) {
+                (false, false) => return None,
+                (false, true) => at = knot.children[1],
+                (minus, plus) => {
+                    if plus && minus {
+                        link = self.clipped(link, self.plane(cutter), cut, true)?;
+                    }
+                    at = knot.children[0];
+                }
+            }
+        }
+    }
+}
+
+/// How a face may meet a polygon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Contact {
+    /// Not in a way that matters.
+    None,
+    /// It may cross it.
+    Crossing,
+    /// Its position is special.
+    Special,
+}
+
+/// How a face may meet a polygon whose bounds it shares.
+pub fn contact(polygon: &Polygon, face: &Face<'_>) -> Contact {
+    let theirs = face.polygon.sides(polygon.support());
+    let crossed = straddle(&theirs) == (true, true);
+    if !crossed && theirs.iter().filter(|s| **s == 0).count() > 1 {
+        return Contact::Special;
+    }
+    let ours = polygon.sides(face.polygon.support());
+    let mut corners = ours.iter().zip(polygon.corners());
+    if corners.any(|(side, corner)| *side == 0 && face.holds(&corner.at)) {
+        return Contact::Special;
+    }
+    if crossed && straddle(&ours) == (true, true) {
+        return Contact::Crossing;
+    }
+    Contact::None
+}

@@ -1,0 +1,80 @@
+//! Whether a face misses a box, by separating axes in doubles.
+
+use crate::geometry::cell::Cell;
+use crate::geometry::plane::{Lattice, Plane};
+use crate::mesh::source::{Shape, Source};
+
+/// Relative slack of the separating axis tests in doubles: far above their rounding.
+const SLACK: f64 = 1e-13;
+
+/// Whether a face certainly misses a closed cell; errs on no.
+pub fn misses(source: &Source, face: u32, cell: &Cell) -> bool {
+    let (low, high) = (cell.low(), cell.high());
+    match source.shape() {
+        Shape::HalfSpace(plane) => plane_misses(plane, low, &high),
+        Shape::Mesh(mesh) => triangle_misses(&mesh.corners(face), low, &high),
+    }
+}
+
+fn plane_misses(plane: &Plane, low: &Lattice, high: &Lattice) -> bool {
+    let n = plane.approx();
+    let (center, half) = middle(low, high, &[0; 3]);
+    let value = n[0] * center[0] + n[1] * center[1] + n[2] * center[2] + n[3];
+    let reach: f64 = (0..3).map(|i| n[i].abs() * half[i]).sum();
+    let size: f64 = (0..3).map(|i| n[i].abs() * center[i].abs()).sum::<f64>() + n[3].abs();
+    value.abs() > reach + (size + reach) * SLACK
+}
+
+/// Whether a lattice triangle certainly misses the box half a step around lattice points; errs on
+/// no.
+///
+/// Separating axes: the face's normal, and each of its edges projected along each axis.
+pub fn triangle_misses(corners: &[Lattice; 3], low: &Lattice, high: &Lattice) -> bool {
+    let (center, half) = middle(low, high, &corners[0]);
+    let local = corners.map(|c| [0, 1, 2].map(|i| (c[i] - corners[0][i]) as f64 - center[i]));
+    separated(&local, &half)
+}
+
+/// Center relative to `origin`, and half extents, of a closed box.
+fn middle(low: &Lattice, high: &Lattice, origin: &Lattice) -> ([f64; 3], [f64; 3]) {
+    let center =
+        [0, 1, 2].map(|i| f64::midpoint((low[i] - origin[i]) as f64, (high[i] - origin[i]) as f64));
+    (
+        center,
+        [0, 1, 2].map(|i| (high[i] - low[i]) as f64 / 2.0 + 0.5),
+    )
+}
+
+fn separated(p: &[[f64; 3]; 3], half: &[f64; 3]) -> bool {
+    let e = [0, 1, 2].map(|i| {
+        let (a, b) = (p[i], p[(i + 1) % 3]);
+        [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
+    });
+    let cross = |a: &[f64; 3], b: &[f64; 3]| {
+        [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ]
+    };
+    let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let across = e
+        .iter()
+        .flat_map(|edge| unit.iter().map(|u| cross(u, edge)));
+    std::iter::once(cross(&e[0], &e[1]))
+        .chain(across)
+        .any(|axis| apart(p, half, &axis))
+}
+
+fn apart(p: &[[f64; 3]; 3], half: &[f64; 3], axis: &[f64; 3]) -> bool {
+    let value = |c: &[f64; 3]| c[0] * axis[0] + c[1] * axis[1] + c[2] * axis[2];
+    let values = [value(&p[0]), value(&p[1]), value(&p[2])];
+    let low = values[0].min(values[1]).min(values[2]);
+    let high = values[0].max(values[1]).max(values[2]);
+    let reach: f64 = (0..3).map(|i| half[i] * axis[i].abs()).sum();
+    let size: f64 = p
+        .iter()
+        .map(|c| (0..3).map(|i| (c[i] * axis[i]).abs()).sum::<f64>())
+        .fold(reach, f64::max);
+    low > reach + size * SLACK || high < -reach - size * SLACK
+}

@@ -1,0 +1,150 @@
+//! A window on one level of the hierarchy of cells: a box of equal cells, and the places in it.
+
+use std::ops::Range;
+
+use crate::geometry::cell::Cell;
+use crate::geometry::plane::Lattice;
+
+/// Cells along one axis: a place and those next to the window's ends fit into ten bits.
+const PLACES: i64 = 1022;
+
+/// Equal cells of the hierarchy, counted from the lowest one.
+///
+/// A coordinate's *place* on an axis is the number of its cell there, −1 below the window and the
+/// count above it. The *lines* number the planes between the cells, from 0 to the count.
+#[derive(Clone, Copy, Debug)]
+pub struct Window {
+    /// The binary logarithm of the cells' extent, the same on all axes.
+    size: u32,
+    first: Lattice,
+    count: [i32; 3],
+}
+
+/// The places that a face's bounds reach, with those beyond the window.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
+    /// The element.
+    pub element: u32,
+    /// The lowest places.
+    pub low: [i16; 3],
+    /// The highest places.
+    pub high: [i16; 3],
+}
+
+impl Window {
+    /// The cells of extent 2^size that a lattice box meets; `None` if they are too many on an axis.
+    pub fn around(low: &Lattice, high: &Lattice, size: u32) -> Option<Self> {
+        let first = low.map(|k| k >> size);
+        let count = [0, 1, 2].map(|i| (high[i] >> size) - first[i] + 1);
+        count
+            .iter()
+            .all(|c| (1..=PLACES).contains(c))
+            .then(|| Self {
+                size,
+                first,
+                count: count.map(|c| c as i32),
+            })
+    }
+
+    /// The binary logarithm of the cells' extent.
+    pub fn size(&self) -> u32 {
+        self.size
+    }
+
+    /// The numbers of cells along the axes.
+    pub fn count(&self) -> [i32; 3] {
+        self.count
+    }
+
+    /// The number of cells.
+    pub fn len(&self) -> usize {
+        self.count.iter().map(|c| *c as usize).product()
+    }
+
+    fn place(&self, axis: usize, k: i64) -> i32 {
+        ((k >> self.size) - self.first[axis]).clamp(-1, i64::from(self.count[axis])) as i32
+    }
+
+    /// The places of a lattice point in one word; those of a cell's points are equal.
+    pub fn code(&self, p: &Lattice) -> u32 {
+        let field = |i: usize| (self.place(i, p[i]) + 1) as u32;
+        field(0) << 20 | field(1) << 10 | field(2)
+    }
+
+    /// The number of a cell among all, the last axis first.
+    pub fn index(&self, at: [i32; 3]) -> usize {
+        let count = self.count;
+        ((at[0] * count[1] + at[1]) * count[2] + at[2]) as usize
+    }
+
+    /// The number of the cell with this code; `None` beyond the window.
+    pub fn index_of(&self, code: u32) -> Option<u32> {
+        let at = [20, 10, 0].map(|shift| ((code >> shift) & 0x3ff) as i32 - 1);
+        let inside = (0..3).all(|i| (0..self.count[i]).contains(&at[i]));
+        inside.then(|| self.index(at) as u32)
+    }
+
+    /// The coordinate of a line in half steps.
+    pub fn line(&self, axis: usize, line: i32) -> i64 {
+        2 * ((self.first[axis] + i64::from(line)) << self.size) - 1
+    }
+
+    /// The lattice box of a box of cells, both ends included.
+    pub fn extent(&self, low: &[i32; 3], high: &[i32; 3]) -> (Lattice, Lattice) {
+        let start = |i: usize, place: i32| (self.first[i] + i64::from(place)) << self.size;
+        (
+            [0, 1, 2].map(|i| start(i, low[i])),
+            [0, 1, 2].map(|i| start(i, high[i] + 1) - 1),
+        )
+    }
+
+    /// The places that a larger cell covers.
+    pub fn covered(&self, cell: &Cell) -> [Range<i32>; 3] {
+        let high = cell.high();
+        [0, 1, 2].map(|i| {
+            let low = self.place(i, cell.low()[i]).max(0);
+            low..(self.place(i, high[i]) + 1).clamp(low, self.count[i])
+        })
+    }
+
+    /// The lines through the low corner of a larger cell.
+    pub fn corner(&self, cell: &Cell) -> [i32; 3] {
+        [0, 1, 2].map(|i| self.place(i, cell.low()[i]).max(0))
+    }
+
+    /// Whether a cell's cut lies between cells of the window.
+    pub fn is_divided_in(&self, cell: &Cell) -> bool {
+        cell.size().iter().any(|s| u32::from(*s) > self.size)
+    }
+
+    /// The places of a face's corners, packed as `code` does.
+    pub fn span(&self, element: u32, codes: [u32; 3]) -> Span {
+        let field = |code: u32, i: usize| ((code >> (20 - 10 * i)) & 0x3ff) as i16 - 1;
+        let ends = |pick: fn(i16, i16) -> i16| {
+            [0, 1, 2].map(|i| {
+                codes
+                    .map(|c| field(c, i))
+                    .into_iter()
+                    .reduce(pick)
+                    .unwrap_or(0)
+            })
+        };
+        Span {
+            element,
+            low: ends(i16::min),
+            high: ends(i16::max),
+        }
+    }
+
+    /// The cells of the window in a span: the lowest and the highest places; `None` without any.
+    pub fn within(&self, span: &Span) -> Option<([i32; 3], [i32; 3])> {
+        let low = span.low.map(|p| i32::from(p).max(0));
+        let high = [0, 1, 2].map(|i| i32::from(span.high[i]).min(self.count[i] - 1));
+        (0..3).all(|i| low[i] <= high[i]).then_some((low, high))
+    }
+
+    /// The lines on an axis that a span lies across.
+    pub fn lines(&self, span: &Span, axis: usize) -> Range<i32> {
+        i32::from(span.low[axis]) + 1..i32::from(span.high[axis]) + 1
+    }
+}

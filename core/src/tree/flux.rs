@@ -1,0 +1,219 @@
+//! The volume of a tree as a sum over its leaves, kept at the nodes.
+//!
+//! The volume of a bounded solid is the flux of (0, 0, z) through its boundary, so each node stands
+//! for the flux through the boundary in its cell, and a chain of operations sums anew only what it
+//! changed.
+
+use std::sync::Arc;
+
+use smallvec::SmallVec;
+
+use super::node::{Branch, Deferred, Node, Part};
+use crate::arith::Int;
+use crate::geometry::cell::Cell;
+use crate::geometry::fixed::{
+    minor, of_cubic_steps, of_vertex, sixfold_flux, through, through_ring, Fixed, Flux, Reach,
+    Ring, Triangle, Walls,
+};
+use crate::geometry::plane::Lattice;
+use crate::geometry::vertex::Vertex;
+use crate::mesh::source::{Shape, Source};
+
+/// What a node's boundary contributes to the volume.
+#[derive(Clone, Copy, Debug)]
+pub struct Share {
+    /// Six times the flux through the boundary in the node's cell.
+    pub flux: Flux,
+    /// Whether the boundary may reach infinity, so that the flux means nothing.
+    pub open: bool,
+}
+
+impl Share {
+    const NONE: Self = Self {
+        flux: Flux::ZERO,
+        open: false,
+    };
+
+    fn add(&mut self, other: &Self, negative: bool) {
+        self.flux.add(&other.flux, negative);
+        self.open |= other.open;
+    }
+}
+
+/// What a branch contributes; computed where no operation before has left it.
+pub fn share(root: &Branch) -> Share {
+    for branch in unknown(root).into_iter().rev() {
+        match &*branch.node {
+            Node::Leaf(_) => {}
+            Node::Deferred(leaf) => {
+                leaf.share.get_or_init(|| leaf_share(leaf, &branch.cell));
+            }
+            Node::Cut(halves) => {
+                halves.share.get_or_init(|| {
+                    let mut sum = Share::NONE;
+                    for child in &halves.children {
+                        sum.add(&known(child).unwrap_or(Share::NONE), child.complement);
+                    }
+                    sum
+                });
+            }
+        }
+    }
+    let mut sum = Share::NONE;
+    sum.add(&known(root).unwrap_or(Share::NONE), root.complement);
+    sum
+}
+
+/// The share of a branch's node, which the branch's complement bit has not turned yet.
+fn known(branch: &Branch) -> Option<Share> {
+    match &*branch.node {
+        Node::Leaf(_) => Some(Share::NONE),
+        Node::Deferred(leaf) => leaf.share.get().copied(),
+        Node::Cut(halves) => halves.share.get().copied(),
+    }
+}
+
+/// The branches whose shares are not known, each before those below it.
+fn unknown(root: &Branch) -> Vec<&Branch> {
+    let mut found = Vec::new();
+    let mut open = vec![root];
+    while let Some(branch) = open.pop() {
+        if known(branch).is_some() {
+            continue;
+        }
+        found.push(branch);
+        if let Node::Cut(halves) = &*branch.node {
+            open.extend(&halves.children);
+        }
+    }
+    found
+}
+
+/// The sum over the elements of a leaf.
+struct Sum {
+    walls: Walls,
+    cell: Cell,
+    /// Six times the flux through faces inside the cell, in cubic steps.
+    inside: Int<4>,
+    /// That through everything else.
+    rest: Share,
+}
+
+fn leaf_share(leaf: &Deferred, cell: &Cell) -> Share {
+    let mut sum = Sum {
+        walls: Walls::of(cell),
+        cell: *cell,
+        inside: Int::ZERO,
+        rest: Share::NONE,
+    };
+    for group in &leaf.groups {
+        match group.source.shape() {
+            Shape::Mesh(mesh) => {
+                for face in &group.faces {
+                    sum.add_face(&mesh.corners(*face), group.flip);
+                }
+            }
+            Shape::HalfSpace(_) => sum.add_plane(&group.source, group.flip),
+        }
+    }
+    for element in &leaf.parts {
+        sum.add_part(&element.part, element.flip);
+    }
+    sum.rest.flux.value += of_cubic_steps(&sum.inside);
+    sum.rest
+}
+
+impl Sum {
+    /// The part of a whole face in the cell.
+    fn add_face(&mut self, corners: &[Lattice; 3], flip: bool) {
+        let area = minor(corners, 0, 1);
+        if area == 0 {
+            return;
+        }
+        if corners.iter().all(|c| self.cell.holds_box(c, c)) {
+            let flux = sixfold_flux(corners);
+            self.inside += if flip { -flux } else { flux };
+            return;
+        }
+        let normal = [minor(corners, 1, 2), minor(corners, 2, 0), area];
+        if let Some(ring) = Triangle::new(corners, normal).clipped(&self.walls) {
+            let error = Reach::of_triangle(corners).error(ring.len(), 1, slope(&normal));
+            let value = through_ring(&ring);
+            self.rest.flux.add(&Flux { value, error }, flip);
+        }
+    }
+
+    /// The part of a half-space's border in the cell.
+    fn add_plane(&mut self, source: &Source, flip: bool) {
+        let Some(polygon) = source.clip(0, &self.cell) else {
+            return;
+        };
+        self.rest.open |= polygon.edges().any(|(_, _, carrier)| carrier.is_border());
+        let ring: Ring = polygon.corners().iter().map(|c| of_vertex(&c.at)).collect();
+        let error = Reach::of(&ring).error(ring.len(), 1, 0.0);
+        let value = through_ring(&ring);
+        self.rest.flux.add(&Flux { value, error }, flip);
+    }
+
+    /// The part of a part in the cell: signed triangles from one corner to all edges.
+    fn add_part(&mut self, part: &Part, flip: bool) {
+        let Some(slope) = part_slope(part) else {
+            return;
+        };
+        let bounded = part.source.mesh().is_some();
+        self.rest.open |= !bounded && part.edges.iter().any(|e| e.carrier.is_border());
+        let ends = fixed_ends(part);
+        let Some([apex, _]) = ends.first() else {
+            return;
+        };
+        let inside = part.home == self.cell || self.walls.hold(ends.iter().flatten());
+        let mut rounds = 1;
+        let mut value = Int::ZERO;
+        for [from, to] in &ends {
+            if inside {
+                value += through(apex, from, to);
+            } else if from != apex && to != apex {
+                let mut ring: Ring = [*apex, *from, *to].into_iter().collect();
+                rounds = rounds.max(1 + self.walls.clip(&mut ring));
+                value += through_ring(&ring);
+            }
+        }
+        let error = Reach::of(ends.as_flattened()).error(9 * ends.len(), rounds, slope);
+        self.rest.flux.add(&Flux { value, error }, flip);
+    }
+}
+
+/// The edges of a part's outline; each corner is computed once.
+fn fixed_ends(part: &Part) -> SmallVec<[[Fixed; 2]; 8]> {
+    let mut seen: SmallVec<[(&Arc<Vertex>, Fixed); 8]> = SmallVec::new();
+    let mut fixed = |vertex| {
+        if let Some((_, at)) = seen.iter().find(|(v, _)| Arc::ptr_eq(v, vertex)) {
+            return *at;
+        }
+        let at = of_vertex(vertex);
+        seen.push((vertex, at));
+        at
+    };
+    let edges = part.edges.iter();
+    edges.map(|e| [fixed(&e.from), fixed(&e.to)]).collect()
+}
+
+/// |z| / max(|x|, |y|) of a face's normal; 0 for faces that no wall across z cuts.
+fn slope([x, y, z]: &[i128; 3]) -> f64 {
+    match x.unsigned_abs().max(y.unsigned_abs()) {
+        0 => 0.0,
+        flat => z.unsigned_abs() as f64 / flat as f64,
+    }
+}
+
+/// The slope of a part's plane; `None` if it stands upright, where the field has no flux.
+fn part_slope(part: &Part) -> Option<f64> {
+    let normal = match part.source.shape() {
+        Shape::Mesh(mesh) => {
+            let c = mesh.corners(part.face);
+            [minor(&c, 1, 2), minor(&c, 2, 0), minor(&c, 0, 1)]
+        }
+        Shape::HalfSpace(plane) => *plane.normal(),
+    };
+    (normal[2] != 0).then(|| slope(&normal))
+}

@@ -1,0 +1,148 @@
+//! Tables of sources: what grows by one source from step to step costs one source to grow.
+
+use std::sync::{Arc, OnceLock, PoisonError, RwLock};
+
+use rustc_hash::FxHashMap as HashMap;
+
+use crate::mesh::source::Source;
+
+/// The sources of a solid or an evaluation, in the order of the expression.
+///
+/// A table is the beginning of a log that others may share and continue. Who is first to continue
+/// it, or continues it in the same way, shares it on; else the beginning is copied.
+#[derive(Clone, Debug)]
+pub struct Table {
+    log: Arc<Log>,
+    len: usize,
+}
+
+/// Sources that are only ever added.
+#[derive(Debug, Default)]
+struct Log {
+    /// Chunk k has room for 2^k sources, so that none ever moves.
+    chunks: [OnceLock<Box<[OnceLock<Arc<Source>>]>>; 31],
+    /// The slots by the sources' ids; whoever adds holds this.
+    slots: RwLock<HashMap<u64, u32>>,
+}
+
+impl Log {
+    fn place(slot: usize) -> (usize, usize) {
+        let chunk = (slot + 1).ilog2() as usize;
+        (chunk, slot + 1 - (1 << chunk))
+    }
+
+    fn get(&self, slot: usize) -> Option<&Arc<Source>> {
+        let (chunk, at) = Self::place(slot);
+        self.chunks.get(chunk)?.get()?.get(at)?.get()
+    }
+
+    fn push(&self, slots: &mut HashMap<u64, u32>, source: &Arc<Source>) {
+        let (chunk, at) = Self::place(slots.len());
+        let room = || (0..1usize << chunk).map(|_| OnceLock::new()).collect();
+        let places = self.chunks[chunk].get_or_init(room);
+        places[at].get_or_init(|| Arc::clone(source));
+        slots.insert(source.id(), slots.len() as u32);
+    }
+
+    fn slot(&self, source: &Source) -> Option<usize> {
+        let slots = self.slots.read().unwrap_or_else(PoisonError::into_inner);
+        slots.get(&source.id()).map(|s| *s as usize)
+    }
+}
+
+impl Default for Table {
+    fn default() -> Self {
+        Self {
+            log: Arc::default(),
+            len: 0,
+        }
+    }
+}
+
+impl<'a> FromIterator<&'a Arc<Source>> for Table {
+    /// A table of these sources; the first place of each counts.
+    fn from_iter<I: IntoIterator<Item = &'a Arc<Source>>>(sources: I) -> Self {
+        Self::default().extended(sources)
+    }
+}
+
+impl Table {
+    /// The number of sources.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there are no sources.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The source in a slot.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn get(&self, slot: usize) -> &Arc<Source> {
+        self.log.get(slot).expect("a slot of the table")
+    }
+
+    /// The slot of a source.
+    pub fn slot(&self, source: &Source) -> Option<usize> {
+        self.log.slot(source).filter(|s| *s < self.len)
+    }
+
+    /// The sources in order.
+    pub fn iter(&self) -> impl Iterator<Item = &Arc<Source>> {
+        (0..self.len).map(|slot| self.get(slot))
+    }
+
+    /// This table and after it the sources of another that it does not have.
+    #[must_use]
+    pub fn joined(&self, other: &Self) -> Self {
+        if Arc::ptr_eq(&self.log, &other.log) {
+            return if self.len < other.len { other } else { self }.clone();
+        }
+        self.extended(other.iter())
+    }
+
+    /// This table and after it the given sources that it does not have.
+    fn extended<'a>(&self, sources: impl IntoIterator<Item = &'a Arc<Source>>) -> Self {
+        let mut table = self.clone();
+        for source in sources {
+            if !table.add(source) {
+                table = Self {
+                    log: Arc::new(table.log.copied(table.len)),
+                    len: table.len,
+                };
+                table.add(source);
+            }
+        }
+        table
+    }
+
+    /// Adds a source if it is new; false if the log goes on with another one.
+    fn add(&mut self, source: &Arc<Source>) -> bool {
+        let slots = &self.log.slots;
+        let mut slots = slots.write().unwrap_or_else(PoisonError::into_inner);
+        match slots.get(&source.id()) {
+            Some(slot) if (*slot as usize) < self.len => return true,
+            Some(slot) if *slot as usize == self.len => {}
+            None if slots.len() == self.len => self.log.push(&mut slots, source),
+            _ => return false,
+        }
+        self.len += 1;
+        true
+    }
+}
+
+impl Log {
+    /// A log of the first sources of this one.
+    fn copied(&self, len: usize) -> Self {
+        let copy = Self::default();
+        let mut slots = copy.slots.write().unwrap_or_else(PoisonError::into_inner);
+        for source in (0..len).filter_map(|slot| self.get(slot)) {
+            copy.push(&mut slots, source);
+        }
+        drop(slots);
+        copy
+    }
+}
