@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import manifold3d
     import trimesh
 
-#: What a reader returns: vertices and faces, in any form that `own_arrays` takes.
+#: What a reader returns: vertices and faces, in any form that `mesh_arrays` takes.
 Arrays: TypeAlias = tuple[Any, Any]
 
 _Array = TypeVar("_Array", FloatArray, IndexArray)
@@ -66,8 +66,8 @@ def _advice(mesh: Any) -> str:
     return ""
 
 
-def own_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
-    """Return vertices (n, 3) float64 and triangles (m, 3) int64 that nobody else can change.
+def mesh_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
+    """Return vertices (n, 3) float64 and triangles (m, 3) int64: the given ones if they are so.
 
     Raises
     ------
@@ -75,7 +75,12 @@ def own_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
         If the shapes are others, or the indices are no whole numbers.
     """
     points = points_array(vertices)
-    triangles = face_array(faces, points)
+    return points, face_array(faces, points)
+
+
+def own_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
+    """Return the arrays of `mesh_arrays` such that nobody else can change them."""
+    points, triangles = mesh_arrays(vertices, faces)
     return _own(points, vertices), _own(triangles, faces)
 
 

@@ -38,6 +38,7 @@ class MeshLeaf:
     ----------
     vertices : (n, 3) float64, in model units
     faces : (m, 3) int64, indices of `vertices`
+        Both may belong to somebody else until `disown` is called.
     pitch : int or None
         Exponent of the lattice step; None lets the core choose it from the size.
     trusted : bool
@@ -54,8 +55,7 @@ class MeshLeaf:
         trusted: bool = False,
         winding: WindingRule = "positive",
     ) -> None:
-        self.vertices = vertices
-        self.faces = faces
+        self._arrays: tuple[FloatArray, IndexArray] | None = (vertices, faces)
         self._chosen_pitch = pitch
         self._trusted = trusted
         self._winding = winding
@@ -70,6 +70,17 @@ class MeshLeaf:
     def extent(self) -> "Extent":
         """A closed mesh is bounded."""
         return True
+
+    def arrays(self) -> tuple[FloatArray, IndexArray]:
+        """Return vertices and faces as they were given."""
+        return self.own_tree().given_arrays() if self._arrays is None else self._arrays
+
+    def disown(self) -> None:
+        """Let go of the given arrays: the tree holds them, or else they are copied."""
+        if self._arrays is not None:
+            vertices, faces = self._arrays
+            held = self.own_tree().holds_given
+            self._arrays = None if held else (vertices.copy(), faces.copy())
 
     def own_tree(self) -> Tree:
         """Return the tree on the leaf's own lattice, made on first use."""
@@ -87,13 +98,13 @@ class MeshLeaf:
 
     def transformed(self, factors: Factors) -> "MeshLeaf":
         """Return the leaf of the mesh whose vertices the factors have moved."""
-        vertices, faces = transformed_arrays(self.vertices, self.faces, factors)
+        vertices, faces = transformed_arrays(*self.arrays(), factors)
         # Rounding may make faces cross, so the word given for the original no longer counts.
         return MeshLeaf(vertices, faces, self._chosen_pitch, winding=self._winding)
 
     def _grow(self) -> Tree:
         with core_errors():
-            tree = Tree.from_mesh(self.vertices, self.faces, self._chosen_pitch, self._trusted)
+            tree = Tree.from_mesh(*self.arrays(), self._chosen_pitch, self._trusted)
             if self._winding != "positive":
                 tree = tree.normalized(self._winding)
         return tree
@@ -317,7 +328,7 @@ def _power_of_two_near(value: Fraction) -> Fraction:
 
 def _moved_output(tree: Tree, factors: Factors) -> MeshLeaf:
     with core_errors():
-        vertices, faces, _ = tree.to_mesh()
+        vertices, faces = tree.to_mesh()
     return MeshLeaf(*transformed_arrays(vertices, faces, factors))
 
 

@@ -147,7 +147,7 @@ def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, 
     pitch = min(tree.pitch for tree in trees)
     operands = [at_pitch(tree, pitch) for tree in trees]
     with core_errors():
-        vertices, faces, _ = Tree.evaluate(_PROGRAMS[op], operands).to_mesh()
+        vertices, faces = Tree.evaluate(_PROGRAMS[op], operands).to_mesh()
     return vertices, faces
 
 

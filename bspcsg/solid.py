@@ -24,7 +24,7 @@ from .errors import core_errors, invalid_parameter
 from .expression import Node, Operator, Placed, complement, evaluate, operation
 from .leaf import ConstantLeaf, Leaf, MeshLeaf, TreeLeaf, tree_of
 from .measure import Measured
-from .mesh import Mesh
+from .mesh import Mesh, TracedMesh
 from .transform import Factors, common_prefix
 
 if TYPE_CHECKING:
@@ -86,10 +86,11 @@ class Solid(Measured):
     ) -> None:
         if winding not in ("positive", "nonzero", "even-odd"):
             raise invalid_parameter(f"Unknown winding rule {winding!r}.")
-        arrays = interop.own_arrays(vertices, faces)
+        arrays = interop.mesh_arrays(vertices, faces)
         leaf = MeshLeaf(*arrays, pitch=pitch, trusted=trusted, winding=winding)
         # Errors in a mesh belong to the line that gave it, not to the first query.
         leaf.own_tree()
+        leaf.disown()
         self._set(Node(leaf), ())
         count(self)
 
@@ -299,7 +300,8 @@ class Solid(Measured):
         """
         if self._mesh is None:
             with core_errors():
-                self._mesh = Mesh(*self.tree.to_mesh()).frozen()
+                tree = self.tree
+                self._mesh = TracedMesh(*tree.to_mesh(), tree.origins().array)
         return self._mesh
 
     def normalized(self) -> "Solid":

@@ -66,6 +66,8 @@ class Factor:
 
 _IDENTITY_KEY = np.eye(4).tobytes()
 
+_UNIT_ROWS = np.eye(3).tolist()
+
 #: A transform: factors, outermost first.
 Factors: TypeAlias = tuple[Factor, ...]
 
@@ -169,6 +171,8 @@ def common_prefix(transforms: Sequence[Factors]) -> Factors:
 
 def product(factors: Factors) -> FloatArray:
     """Return the product of the factors, each entry of each product rounded once."""
+    if len(factors) == 1:
+        return factors[0].matrix
     result = np.eye(4)
     for factor in factors:
         columns = factor.matrix.T.tolist()
@@ -191,6 +195,8 @@ def apply(matrix: FloatArray, points: FloatArray) -> FloatArray:
 
 def determinant_sign(matrix: FloatArray) -> int:
     """Return the exact sign of the linear part's determinant."""
+    if matrix[:3, :3].tolist() == _UNIT_ROWS:
+        return 1
     linear = exact_linear(matrix)
     value = exact_dot(linear[0], cofactors(linear)[0])
     return (value > 0) - (value < 0)
@@ -300,11 +306,23 @@ def whole_steps(length: float, pitch: int) -> int | None:
     A double counts as the decimal it was written as: 0.1 is 10**8 steps of 10**-9, because that
     decimal's nearest double is 0.1.
     """
-    step = Fraction(10) ** pitch
-    steps = round(Fraction(length) / step)
-    if abs(steps) >= LATTICE_REACH or float(steps * step) != length:
-        return None
-    return steps
+    numerator, denominator = length.as_integer_ratio()
+    scale = 10 ** abs(pitch)
+    # Whole numbers throughout: the quotient of two ints is rounded once, as that of fractions is.
+    if pitch < 0:
+        steps = _nearest(numerator * scale, denominator)
+        fits = abs(steps) < LATTICE_REACH and steps / scale == length
+    else:
+        steps = _nearest(numerator, denominator * scale)
+        fits = abs(steps) < LATTICE_REACH and float(steps * scale) == length
+    return steps if fits else None
+
+
+def _nearest(numerator: int, denominator: int) -> int:
+    """Return the whole number nearest to a quotient of positive denominator, ties to even."""
+    floor, rest = divmod(numerator, denominator)
+    above = 2 * rest - denominator
+    return floor + (above > 0 or (above == 0 and floor % 2 == 1))
 
 
 def _from_linear(linear: FloatArray) -> Factor:

@@ -6,9 +6,11 @@ use std::sync::Arc;
 use super::collect::{collect, Fate};
 use super::contacts;
 use super::origin::Owners;
-use super::planes::{frontier, group, half_edge_ends, FrontierEdge, PlaneGroup};
+use super::planes::{group, PlaneGroup};
+use super::rim::{half_edge_ends, FrontierEdge, Rims};
 use super::seams::{find_touching, subdivisions, Edge, LinePoints};
 use super::triangulate::{triangulate, Planar};
+use super::untouched::{Untouched, WholeFaces};
 use super::vertices::{Projection, VertexTable};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::line::LineKey;
@@ -26,10 +28,10 @@ pub struct ExactMesh {
     pub vertices: Vec<Corner>,
     /// Triangles, counterclockwise as seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// For each triangle the source's slot and the number of the face in its input.
-    pub origins: Vec<[u32; 2]>,
     /// For each triangle the face it lies in.
     pub faces: Vec<TriangleFace>,
+    /// How many triangles at the start are faces of sources as they came.
+    pub untouched: usize,
     /// The constructed points that [`Corner::Point`] names.
     pub table: VertexTable,
     /// What was noticed on the way.
@@ -58,14 +60,14 @@ pub(super) struct Assembly<'a> {
     pub(super) vertices: Vec<Corner>,
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) faces: Vec<TriangleFace>,
-    /// Output vertices that lie where something was cut or touches.
-    pub(super) special: Vec<bool>,
+    /// The triangles, at the start, that are faces of sources as they came.
+    untouched: Untouched,
     /// Whether to compare areas, because faces of one plane might overlap.
     verify: bool,
 }
 
 /// The face a triangle lies in, as the source has it, and whether it is turned around.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct TriangleFace {
     /// The source's slot.
     pub slot: u32,
@@ -104,13 +106,13 @@ pub fn assemble(solid: &Solid) -> Result<ExactMesh> {
 fn attempt(solid: &Solid, sources: &Sources, join: bool) -> Result<ExactMesh> {
     let mut boundary = collect(solid, sources);
     let near = std::mem::take(&mut boundary.near);
-    let (fates, groups) = group(boundary, sources, join);
+    let (fates, groups, rims) = group(boundary, sources, join);
     if groups.iter().any(reaches_infinity) {
         return Err(unbounded());
     }
     let mut assembly = Assembly::new(sources, &fates);
     assembly.verify = join && !solid.is_reduced();
-    assembly.run(&fates, &groups, &near)?;
+    assembly.run(&fates, &groups, &rims, &near)?;
     let findings = contacts::split(&mut assembly)?;
     Ok(assembly.finish(findings))
 }
@@ -140,7 +142,7 @@ impl<'a> Assembly<'a> {
             vertices: Vec::new(),
             triangles: Vec::new(),
             faces: Vec::new(),
-            special: Vec::new(),
+            untouched: Untouched::default(),
             verify: false,
         }
     }
@@ -149,11 +151,12 @@ impl<'a> Assembly<'a> {
         &mut self,
         fates: &[Vec<Fate>],
         groups: &[PlaneGroup],
+        rims: &Rims,
         near: &[(u32, u32)],
     ) -> Result<()> {
         self.mark_irregular(fates);
         self.identify_near(near, fates);
-        let frontier = frontier(fates, self.sources);
+        let frontier = rims.frontier(fates, self.sources);
         let mut edges = Vec::new();
         for group in groups {
             for e in &group.edges {
@@ -174,7 +177,7 @@ impl<'a> Assembly<'a> {
         let offset: usize = groups.iter().map(|g| g.edges.len()).sum();
         let split = split_faces(&frontier, &inner[offset..]);
         self.identify_corners(&split);
-        self.emit_whole(fates, &split);
+        self.emit_whole(fates, rims, &order_of(&split));
         for (slot, face) in order_of(&split) {
             self.emit_split(slot, face, fates, &split)?;
         }
@@ -242,17 +245,6 @@ impl<'a> Assembly<'a> {
         if *image == NONE {
             *image = self.vertices.len() as u32;
             self.vertices.push(Corner::Point(point));
-            self.special.push(true);
-        }
-        *image
-    }
-
-    fn image_of(&mut self, slot: u32, vertex: u32) -> u32 {
-        let image = &mut self.images[slot as usize][vertex as usize];
-        if *image == NONE {
-            *image = self.vertices.len() as u32;
-            self.vertices.push(Corner::Source(slot, vertex));
-            self.special.push(false);
         }
         *image
     }
@@ -281,7 +273,7 @@ impl<'a> Assembly<'a> {
             let (Some(mesh), false) = (source.mesh(), fates.is_empty()) else {
                 continue;
             };
-            let irregular = source.topology().map_or(&[][..], |t| t.irregular());
+            let irregular = source.joints().map_or(&[][..], |j| &j.irregular);
             for &vertex in irregular {
                 self.point_of(slot, mesh, vertex);
             }
@@ -300,25 +292,41 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    fn emit_whole(&mut self, fates: &[Vec<Fate>], split: &HashMap<(u32, u32), [Vec<u32>; 3]>) {
-        for (slot, fates) in (0u32..).zip(fates) {
-            let source = Arc::clone(self.sources.get(slot as usize));
-            let Some(mesh) = source.mesh() else {
-                continue;
-            };
-            for (face, fate) in (0u32..).zip(fates) {
-                let Fate::Whole(flip) = *fate else {
-                    continue;
-                };
-                if !split.is_empty() && split.contains_key(&(slot, face)) {
-                    continue;
+    /// Emits the whole faces that are not split, and the vertices that only they have.
+    fn emit_whole(&mut self, fates: &[Vec<Fate>], rims: &Rims, split: &[(u32, u32)]) {
+        let first = self.vertices.len() as u32;
+        for (slot, images) in (0u32..).zip(&mut self.images) {
+            let rim = rims.get(slot);
+            for (vertex, image) in (0u32..).zip(images) {
+                if *image == NONE && rim.is_used(vertex) {
+                    *image = self.vertices.len() as u32;
+                    self.vertices.push(Corner::Source(slot, vertex));
                 }
-                let [a, b, c] = mesh.faces[face as usize].map(|v| self.image_of(slot, v));
-                self.triangles
-                    .push(if flip { [a, c, b] } else { [a, b, c] });
-                self.faces.push(TriangleFace { slot, face, flip });
             }
         }
+        self.untouched = Untouched::new(first..self.vertices.len() as u32);
+        for (slot, fates) in (0u32..).zip(fates) {
+            let source = self.sources.get(slot as usize);
+            let (Some(mesh), images) = (source.mesh(), &self.images[slot as usize]) else {
+                continue;
+            };
+            let range = |key: u32| split.partition_point(|s| s.0 < key);
+            let split = &split[range(slot)..range(slot + 1)];
+            let whole = WholeFaces { slot, fates, split };
+            let (triangles, faces) = (&mut self.triangles, &mut self.faces);
+            self.untouched.emit(mesh, images, &whole, triangles, faces);
+        }
+    }
+
+    /// The triangles with a special vertex.
+    pub(super) fn special_triangles(&self) -> impl Iterator<Item = u32> + '_ {
+        let last = self.untouched.count as u32..self.triangles.len() as u32;
+        self.untouched.special.iter().copied().chain(last)
+    }
+
+    /// Whether an output vertex lies where something was cut or may touch.
+    pub(super) fn is_special(&self, vertex: u32) -> bool {
+        !self.untouched.vertices.contains(&vertex)
     }
 
     /// Triangulates a whole face that received vertices on its edges.
@@ -404,8 +412,6 @@ impl<'a> Assembly<'a> {
     }
 
     fn finish(mut self, findings: Vec<Finding>) -> ExactMesh {
-        let origin = |f: &TriangleFace| [f.slot, self.sources.get(f.slot as usize).number(f.face)];
-        let origins = self.faces.iter().map(origin).collect();
         for vertex in &mut self.vertices {
             if let Corner::Point(point) = *vertex {
                 if let Some((slot, index)) = self.names.get(&point) {
@@ -417,8 +423,8 @@ impl<'a> Assembly<'a> {
         ExactMesh {
             vertices: self.vertices,
             triangles: self.triangles,
-            origins,
             faces: self.faces,
+            untouched: self.untouched.count,
             table: self.table,
             findings,
         }
@@ -426,9 +432,13 @@ impl<'a> Assembly<'a> {
 
     /// Leaves out vertices that no triangle uses; the others keep their order.
     fn drop_unused(&mut self) {
-        let mut used = vec![false; self.vertices.len()];
-        for vertex in self.triangles.iter().flatten() {
-            used[*vertex as usize] = true;
+        let mut used: Vec<bool> = (0..self.vertices.len() as u32)
+            .map(|v| !self.is_special(v))
+            .collect();
+        for triangle in self.special_triangles() {
+            for vertex in self.triangles[triangle as usize] {
+                used[vertex as usize] = true;
+            }
         }
         if used.iter().all(|u| *u) {
             return;

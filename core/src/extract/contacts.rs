@@ -13,7 +13,7 @@ use crate::mesh::source::Shape;
 /// Splits contacts, so that every directed edge has exactly one opposite by index and every vertex
 /// one fan; reports them.
 pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>> {
-    let special = special_triangles(assembly);
+    let special: Vec<u32> = assembly.special_triangles().collect();
     if is_manifold(assembly, &special)? {
         return Ok(Vec::new());
     }
@@ -58,16 +58,6 @@ pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>> {
     Ok(findings)
 }
 
-/// The triangles with a special vertex.
-fn special_triangles(assembly: &Assembly) -> Vec<u32> {
-    let touches = |t: &[u32; 3]| t.iter().any(|v| assembly.special[*v as usize]);
-    (0u32..)
-        .zip(&assembly.triangles)
-        .filter(|(_, t)| touches(t))
-        .map(|(i, _)| i)
-        .collect()
-}
-
 /// Whether the triangles around special vertices form one closed fan each.
 ///
 /// # Errors
@@ -82,7 +72,7 @@ fn is_manifold(assembly: &Assembly, triangles: &[u32]) -> Result<bool> {
         for i in 0..3 {
             let (a, b, c) = (t[i], t[(i + 1) % 3], t[(i + 2) % 3]);
             single &= directed.insert((a, b));
-            if assembly.special[a as usize] {
+            if assembly.is_special(a) {
                 fans.entry(a).or_default().push((b, c));
             }
         }

@@ -3,13 +3,12 @@
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::collect::{Boundary, CutFace, Fate};
+use super::rim::{half_edge_ends, FrontierEdge, Rims};
 use crate::geometry::line::LineKey;
 use crate::geometry::outline::{cancel, OutlineEdge};
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::Polygon;
 use crate::merge::list::Sources;
-use crate::mesh::source::TriangleMesh;
-use crate::mesh::topology::NONE;
 
 /// All boundary in one oriented plane that is not left as it came.
 #[derive(Debug)]
@@ -22,15 +21,6 @@ pub struct PlaneGroup {
     pub edges: Vec<OutlineEdge>,
 }
 
-/// An edge of a whole face whose mate is not a whole face of the same orientation.
-#[derive(Clone, Copy, Debug)]
-pub struct FrontierEdge {
-    /// The source's slot.
-    pub slot: u32,
-    /// The half-edge.
-    pub half: u32,
-}
-
 /// Groups in the making.
 struct Grouping<'a> {
     sources: &'a Sources,
@@ -39,19 +29,21 @@ struct Grouping<'a> {
     groups: Vec<PlaneGroup>,
     by_plane: HashMap<Plane, usize>,
     open: Vec<(u32, u32, bool, usize)>,
+    rims: Rims,
 }
 
-/// Joins cut faces by plane; returns the fates that remain and the groups.
+/// Joins cut faces by plane; returns the fates that remain, the groups, and where whole faces end.
 ///
 /// Without `join` each cut face stays on its own, as it must where faces of one plane may overlap.
 pub fn group(
     boundary: Boundary,
     sources: &Sources,
     join: bool,
-) -> (Vec<Vec<Fate>>, Vec<PlaneGroup>) {
+) -> (Vec<Vec<Fate>>, Vec<PlaneGroup>, Rims) {
     let mut grouping = Grouping {
         sources,
         join,
+        rims: Rims::of(&boundary.fates, sources),
         fates: boundary.fates,
         groups: Vec::new(),
         by_plane: HashMap::default(),
@@ -71,7 +63,7 @@ pub fn group(
         group.faces.sort_unstable();
     }
     groups.retain(|g| !g.edges.is_empty());
-    (grouping.fates, groups)
+    (grouping.fates, groups, grouping.rims)
 }
 
 impl Grouping<'_> {
@@ -121,6 +113,7 @@ impl Grouping<'_> {
             return;
         };
         self.fates[slot as usize][face as usize] = Fate::Cut;
+        self.rims.outdated(slot);
         let polygon = Polygon::triangle(&mesh.corners(face), source.plane(face));
         let edges = OutlineEdge::all_of(&polygon);
         self.groups[group].faces.push((slot, face));
@@ -136,27 +129,22 @@ impl Grouping<'_> {
     /// Absorbs the whole faces that continue a group's faces across an edge in the same plane.
     fn spread(&mut self) {
         while let Some((slot, face, flip, group)) = self.open.pop() {
-            let source = self.sources.get(slot as usize);
-            let Some(topology) = source.topology() else {
-                continue;
-            };
-            for corner in 0..3 {
-                let mate = topology.mates()[3 * face as usize + corner];
-                if mate == NONE {
+            for half in 3 * face..3 * face + 3 {
+                let Some(next) = self.rims.across(slot, half, self.sources) else {
                     continue;
-                }
-                let next = mate / 3;
+                };
                 let whole = self.fates[slot as usize][next as usize] == Fate::Whole(flip);
                 if whole && self.oriented_plane(slot, next, flip) == self.groups[group].plane {
                     self.absorb(slot, next, flip, group);
                 }
             }
         }
+        self.rims.renew(&self.fates, self.sources);
     }
 
     /// Absorbs whole faces that share a line and a plane with others of another source or part.
     fn absorb_seams(&mut self) {
-        let frontier = frontier(&self.fates, self.sources);
+        let frontier = self.rims.frontier(&self.fates, self.sources);
         let mut seen: HashMap<(usize, LineKey), (u32, u32)> = HashMap::default();
         let mut candidates = Vec::new();
         for edge in &frontier {
@@ -200,40 +188,4 @@ impl Grouping<'_> {
             },
         )
     }
-}
-
-/// The end vertices of a half-edge.
-pub fn half_edge_ends(mesh: &TriangleMesh, half: u32) -> [u32; 2] {
-    let face = &mesh.faces[half as usize / 3];
-    let corner = half as usize % 3;
-    [face[corner], face[(corner + 1) % 3]]
-}
-
-/// The frontier: half-edges of whole faces whose mates are not whole and turned alike.
-pub fn frontier(fates: &[Vec<Fate>], sources: &Sources) -> Vec<FrontierEdge> {
-    let mut found = Vec::new();
-    for (slot, fates) in (0u32..).zip(fates) {
-        let source = sources.get(slot as usize);
-        if fates.is_empty() {
-            continue;
-        }
-        let Some(topology) = source.topology() else {
-            continue;
-        };
-        for (face, fate) in fates.iter().enumerate() {
-            if !matches!(fate, Fate::Whole(_)) {
-                continue;
-            }
-            for half in 3 * face..3 * face + 3 {
-                let mate = topology.mates()[half];
-                if mate == NONE || fates[mate as usize / 3] != *fate {
-                    found.push(FrontierEdge {
-                        slot,
-                        half: half as u32,
-                    });
-                }
-            }
-        }
-    }
-    found
 }

@@ -1,10 +1,11 @@
 //! From exact vertices to doubles: the only rounding, and what it did.
 
-use super::assemble::{assemble, Corner, ExactMesh};
+use super::assemble::{assemble, Corner, ExactMesh, TriangleFace};
 use super::unfold::{unfold, Unfolded};
 use crate::error::Result;
 use crate::merge::list::Sources;
 use crate::mesh::finding::{Finding, Severity};
+use crate::mesh::tasks::fill_chunks;
 use crate::tree::solid::Solid;
 
 /// A triangle mesh in doubles.
@@ -27,21 +28,24 @@ pub struct Mesh {
 /// # Errors
 /// `Unbounded`.
 pub fn mesh(solid: &Solid) -> Result<Mesh> {
-    let exact = assemble(solid)?;
-    let vertices = exact
-        .vertices
-        .iter()
-        .map(|c| position(solid, &exact, *c))
-        .collect();
+    let mut exact = assemble(solid)?;
+    let mut vertices = vec![[0.0; 3]; exact.vertices.len()];
+    fill_chunks(&exact.vertices, &mut vertices, |_, corners, out| {
+        for (corner, place) in corners.iter().zip(out) {
+            *place = position(solid, &exact, *corner);
+        }
+    });
     let mut mesh = Mesh {
         vertices,
-        triangles: exact.triangles.clone(),
-        origins: exact.origins.clone(),
-        findings: exact.findings.clone(),
+        triangles: std::mem::take(&mut exact.triangles),
+        origins: Vec::new(),
+        findings: std::mem::take(&mut exact.findings),
     };
     let sources = Sources::new(solid.sources().clone());
     let unfolded = unfold(&mut mesh, &exact, &sources);
     report(&mut mesh, &unfolded);
+    let origin = |f: TriangleFace| [f.slot, sources.get(f.slot as usize).number(f.face)];
+    mesh.origins = exact.faces.into_iter().map(origin).collect();
     Ok(mesh)
 }
 

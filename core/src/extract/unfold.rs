@@ -35,7 +35,7 @@ pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded
         t.iter()
             .any(|v| matches!(exact.vertices[*v as usize], Corner::Point(_)))
     };
-    let turned: Vec<usize> = (0..mesh.triangles.len())
+    let turned: Vec<usize> = (exact.untouched..mesh.triangles.len())
         .filter(|&t| constructed(&mesh.triangles[t]) && planes.is_turned(mesh, t))
         .collect();
     if turned.is_empty() {

@@ -93,8 +93,13 @@ impl Cell {
 
     /// Whether the cells share lattice points.
     pub fn meets(&self, other: &Self) -> bool {
-        let (top, other_top) = (self.high(), other.high());
-        (0..3).all(|i| self.low[i] <= other_top[i] && other.low[i] <= top[i])
+        self.meets_box(other.low(), &other.high())
+    }
+
+    /// Whether the cell shares lattice points with a box.
+    pub fn meets_box(&self, low: &Lattice, high: &Lattice) -> bool {
+        let top = self.high();
+        (0..3).all(|i| self.low[i] <= high[i] && low[i] <= top[i])
     }
 
     /// The smallest cell of the hierarchy that holds both.

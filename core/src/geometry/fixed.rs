@@ -68,23 +68,68 @@ pub fn of_lattice(p: &Lattice) -> Fixed {
     p.map(|c| i128::from(c) << PLACES)
 }
 
-/// An exact point, each coordinate to within [`slack`].
+/// An exact point, each coordinate to within `slack`.
 pub fn of_vertex(vertex: &Vertex) -> Fixed {
     match vertex.as_lattice() {
         Some(p) => of_lattice(p),
         None => {
             let h = vertex.coordinates();
-            h.x.map(|x| place(&x, &h.w))
+            let near = vertex.approx();
+            [0, 1, 2].map(|i| place(&h.x[i], &h.w, near[i]))
         }
     }
 }
 
-/// x / w in units of 2^-`PLACES`.
-fn place(x: &Int<6>, w: &Int<6>) -> i128 {
-    quotient(&x.mul_i128::<8>(1 << PLACES), w, |q| w.mul_i128(q))
+/// x / w in units of 2^-`PLACES`, near a double that is off by a few units in its last place.
+///
+/// Of w the leading 120 bits count, and as many less of x: an error of 2^-119 of the quotient.
+fn place(x: &Int<6>, w: &Int<6>, near: f64) -> i128 {
+    let shift = w.bit_length().saturating_sub(120) as i32;
+    let divisor: Int<2> = window(w, shift);
+    let dividend: Int<4> = window(x, shift - PLACES as i32);
+    let first = (near * UNIT) as i128;
+    let rest = dividend - divisor.mul_i128(first);
+    first + (rest.to_f64() / divisor.to_f64()) as i128
 }
 
-/// A quotient by two steps of long division in doubles, each of 50 bits and more.
+/// The floor of a number over 2^shift, in limbs that hold it.
+fn window<const N: usize>(number: &Int<6>, shift: i32) -> Int<N> {
+    let sign = if number.is_negative() { u64::MAX } else { 0 };
+    let limb = |i: i32| match usize::try_from(i) {
+        Ok(i) => number.limbs().get(i).copied().unwrap_or(sign),
+        Err(_) => 0,
+    };
+    let (index, offset) = (shift.div_euclid(64), shift.rem_euclid(64));
+    Int::from_limbs(std::array::from_fn(|i| {
+        let at = index + i as i32;
+        let pair = u128::from(limb(at + 1)) << 64 | u128::from(limb(at));
+        (pair >> offset) as u64
+    }))
+}
+
+/// A step in units.
+const UNIT: f64 = (1u128 << PLACES) as f64;
+
+/// A fraction in units of 2^-`PLACES`, by two steps of long division in doubles.
+fn fraction(n: i128, d: i128) -> i128 {
+    if n.unsigned_abs() >= 1 << 104 || d.unsigned_abs() >= 1 << 120 {
+        return long_fraction(&Int::from_i128(n), d);
+    }
+    let first = (n as f64 / d as f64 * UNIT) as i128;
+    // The remainder fits, being 2^-50 of the numerator; what overflows cancels.
+    let rest = (n << PLACES).wrapping_sub(first.wrapping_mul(d));
+    first.saturating_add((rest as f64 / d as f64) as i128)
+}
+
+fn long_fraction(n: &Int<3>, d: i128) -> i128 {
+    quotient(
+        &n.mul_i128::<5>(1 << PLACES),
+        &Int::<2>::from_i128(d),
+        |q| Int::<2>::from_i128(q).mul_i128(d),
+    )
+}
+
+/// A quotient by two steps of long division in doubles.
 fn quotient<const N: usize, const M: usize>(
     n: &Int<N>,
     d: &Int<M>,
@@ -93,69 +138,81 @@ fn quotient<const N: usize, const M: usize>(
     let reciprocal = 1.0 / d.to_f64();
     let first = (n.to_f64() * reciprocal) as i128;
     let rest = *n - times(first);
-    first + (rest.to_f64() * reciprocal).round() as i128
+    first.saturating_add((rest.to_f64() * reciprocal) as i128)
 }
 
 /// How far a coordinate can be from the true one after a quotient, if none exceeds `size`.
 ///
-/// The first step leaves 2^-51 of the quotient, the second as much of that, and one for rounding.
-pub fn slack(size: f64) -> f64 {
-    1.0 + size * 2f64.powi(-101)
+/// The first step leaves 2^-50 of the quotient, the second as much of that, and one for rounding.
+fn slack(size: f64) -> f64 {
+    1.0 + size * 2f64.powi(-99)
 }
 
 /// The walls of a cell.
 #[derive(Clone, Copy, Debug)]
 pub struct Walls {
-    low: Fixed,
-    high: Fixed,
+    /// In half steps: below and above on each axis.
+    doubled: [i64; 6],
+    /// The same in units.
+    at: [i128; 6],
 }
 
 impl Walls {
     /// The walls of a cell, half a step outside its lattice points.
     pub fn of(cell: &Cell) -> Self {
-        let half = |doubled: i64| i128::from(doubled) << (PLACES - 1);
-        let high = cell.high();
+        let (low, high) = (cell.low(), cell.high());
+        let doubled = std::array::from_fn(|wall| match wall % 2 {
+            0 => 2 * low[wall / 2] - 1,
+            _ => 2 * high[wall / 2] + 1,
+        });
         Self {
-            low: cell.low().map(|c| half(2 * c - 1)),
-            high: high.map(|c| half(2 * c + 1)),
+            doubled,
+            at: doubled.map(|half| i128::from(half) << (PLACES - 1)),
+        }
+    }
+
+    /// How far a point lies beyond a wall.
+    fn excess(&self, wall: usize, p: &Fixed) -> i128 {
+        let over = p[wall / 2] - self.at[wall];
+        if wall % 2 == 0 {
+            -over
+        } else {
+            over
         }
     }
 
     /// Whether all points lie inside.
     pub fn hold<'a>(&self, mut points: impl Iterator<Item = &'a Fixed>) -> bool {
-        points.all(|p| (0..3).all(|i| self.low[i] <= p[i] && p[i] <= self.high[i]))
+        points.all(|p| (0..6).all(|wall| self.excess(wall, p) <= 0))
     }
 
     /// The part of a polygon inside; how many walls cut it.
     pub fn clip(&self, ring: &mut Ring) -> u32 {
         let mut cuts = 0;
-        for axis in 0..3 {
-            for (wall, sign) in [(self.low[axis], -1), (self.high[axis], 1)] {
-                if ring.iter().any(|p| sign * p[axis] > sign * wall) {
-                    *ring = below(ring, axis, wall, sign);
-                    cuts += 1;
-                }
+        for wall in 0..6 {
+            if ring.iter().any(|p| self.excess(wall, p) > 0) {
+                *ring = self.inner(ring, wall);
+                cuts += 1;
             }
         }
         cuts
     }
-}
 
-/// The part of a polygon that lies below a wall, or above it if `sign` is −1.
-fn below(ring: &Ring, axis: usize, wall: i128, sign: i128) -> Ring {
-    let mut kept = Ring::new();
-    let over = |p: &Fixed| sign * (p[axis] - wall);
-    for (i, p) in ring.iter().enumerate() {
-        let q = &ring[(i + 1) % ring.len()];
-        let (a, b) = (over(p), over(q));
-        if a <= 0 {
-            kept.push(*p);
+    /// The part of a polygon on the inner side of a wall.
+    fn inner(&self, ring: &Ring, wall: usize) -> Ring {
+        let mut kept = Ring::new();
+        for (i, p) in ring.iter().enumerate() {
+            let q = &ring[(i + 1) % ring.len()];
+            let (a, b) = (self.excess(wall, p), self.excess(wall, q));
+            if a <= 0 {
+                kept.push(*p);
+            }
+            if (a < 0 && b > 0) || (a > 0 && b < 0) {
+                kept.push(crossing(p, q, wall / 2, self.at[wall]));
+            }
         }
-        if (a < 0 && b > 0) || (a > 0 && b < 0) {
-            kept.push(crossing(p, q, axis, wall));
-        }
+        kept
     }
-    kept
 }
 
 /// Where an edge with ends on both sides meets a wall.
@@ -176,6 +233,117 @@ fn crossing(p: &Fixed, q: &Fixed, axis: usize, wall: i128) -> Fixed {
     at
 }
 
+/// A lattice triangle to be cut by the walls of cells.
+///
+/// Each new corner is computed from the triangle's own corners and walls, so that errors do not add.
+#[derive(Debug)]
+pub struct Triangle<'a> {
+    corners: &'a [Lattice; 3],
+    normal: [i128; 3],
+}
+
+/// A corner of what is left of a triangle, and what the edge that leaves it lies on: an edge of the
+/// triangle by its first corner, or 3 and more a wall.
+type Cut = (Fixed, usize);
+
+impl<'a> Triangle<'a> {
+    /// A triangle with its normal, which need not be coprime.
+    pub fn new(corners: &'a [Lattice; 3], normal: [i128; 3]) -> Self {
+        Self { corners, normal }
+    }
+
+    /// The part inside a cell; `None` if that has no area.
+    pub fn clipped(&self, walls: &Walls) -> Option<Ring> {
+        let mut ring: SmallVec<[Cut; 12]> =
+            (0..3).map(|i| (of_lattice(&self.corners[i]), i)).collect();
+        let mut spare = SmallVec::new();
+        for wall in 0..6 {
+            let beyond = |p: &Lattice| walls.excess(wall, &of_lattice(p)) > 0;
+            match self.corners.iter().filter(|p| beyond(p)).count() {
+                0 => {}
+                3 => return None,
+                _ => {
+                    self.cut(&ring, walls, wall, &mut spare);
+                    std::mem::swap(&mut ring, &mut spare);
+                }
+            }
+        }
+        (ring.len() >= 3).then(|| ring.into_iter().map(|c| c.0).collect())
+    }
+
+    fn cut(&self, ring: &[Cut], walls: &Walls, wall: usize, kept: &mut SmallVec<[Cut; 12]>) {
+        kept.clear();
+        let Some(mut from) = ring.last() else {
+            return;
+        };
+        let mut before = walls.excess(wall, &from.0);
+        for to in ring {
+            let after = walls.excess(wall, &to.0);
+            if (before < 0 && after > 0) || (before > 0 && after < 0) {
+                let at = self.crossing(from, &to.0, walls, wall);
+                kept.push((at, if after > 0 { 3 + wall } else { from.1 }));
+            } else if before == 0 && after > 0 {
+                if let Some(corner) = kept.last_mut() {
+                    corner.1 = 3 + wall;
+                }
+            }
+            if after <= 0 {
+                kept.push(*to);
+            }
+            (from, before) = (to, after);
+        }
+    }
+
+    /// Where an edge meets a wall, between its ends.
+    fn crossing(&self, from: &Cut, to: &Fixed, walls: &Walls, wall: usize) -> Fixed {
+        let axis = wall / 2;
+        let mut at = from.0;
+        at[axis] = walls.at[wall];
+        for i in [(axis + 1) % 3, (axis + 2) % 3] {
+            let exact = match from.1.checked_sub(3) {
+                None => Some(self.on_edge(from.1, i, walls, wall)),
+                Some(other) if other / 2 == i => None,
+                Some(other) => self.on_walls(i, walls, [wall, other]),
+            };
+            let (low, high) = (from.0[i].min(to[i]), from.0[i].max(to[i]));
+            at[i] = exact.unwrap_or(from.0[i]).clamp(low, high);
+        }
+        at
+    }
+
+    /// The coordinate along `axis` of the point in which an edge of the triangle meets a wall.
+    fn on_edge(&self, edge: usize, axis: usize, walls: &Walls, wall: usize) -> i128 {
+        let (a, b) = (&self.corners[edge], &self.corners[(edge + 1) % 3]);
+        let across = wall / 2;
+        let run = 2 * i128::from(b[across] - a[across]);
+        let part = i128::from(walls.doubled[wall] - 2 * a[across]);
+        let rise = i128::from(b[axis] - a[axis]);
+        (i128::from(a[axis]) << PLACES) + fraction(rise * part, run)
+    }
+
+    /// The coordinate along `axis` of the point in which the plane meets walls across the others.
+    fn on_walls(&self, axis: usize, walls: &Walls, pair: [usize; 2]) -> Option<i128> {
+        let a = &self.corners[0];
+        let divisor = 2 * self.normal[axis];
+        let [p, q] = pair.map(|wall| {
+            let across = wall / 2;
+            let part = walls.doubled[wall] - 2 * a[across];
+            (self.normal[across], i128::from(part))
+        });
+        if divisor == 0 {
+            return None;
+        }
+        let short = |n: i128| n.unsigned_abs() < 1 << 64;
+        let offset = if short(p.0) && short(q.0) {
+            fraction(p.0 * p.1 + q.0 * q.1, divisor)
+        } else {
+            let product = |(n, part): (i128, i128)| Int::<2>::from_i128(n).mul_i128::<3>(part);
+            long_fraction(&(product(p) + product(q)), divisor)
+        };
+        (i128::from(a[axis]) << PLACES).checked_sub(offset)
+    }
+}
+
 /// Six times the flux through the triangle of three points.
 pub fn through(a: &Fixed, b: &Fixed, c: &Fixed) -> Int<6> {
     let product = |x: i128, y: i128| -> Int<4> { Int::<2>::from_i128(x).mul_i128(y) };
@@ -193,6 +361,19 @@ pub fn through_ring(ring: &Ring) -> Int<6> {
         sum += through(&ring[0], &ring[i - 1], &ring[i]);
     }
     sum
+}
+
+/// Six times the flux through a lattice triangle, in cubic steps.
+pub fn sixfold_flux(corners: &[Lattice; 3]) -> Int<4> {
+    let height = corners[0][2] + corners[1][2] + corners[2][2];
+    Int::<2>::from_i128(minor(corners, 0, 1)).mul_i64(height)
+}
+
+/// A component of the normal of a triangle, from the projection along the remaining axis.
+pub fn minor(corners: &[Lattice; 3], u: usize, v: usize) -> i128 {
+    let [a, b, c] = corners;
+    let d = |p: &Lattice, i: usize| i128::from(p[i] - a[i]);
+    d(b, u) * d(c, v) - d(c, u) * d(b, v)
 }
 
 /// The lattice's units in those of a [`Flux`].
@@ -226,6 +407,19 @@ impl Reach {
         Self {
             size: size.max().unwrap_or(0) as f64,
             extent: extent.max().unwrap_or(0) as f64,
+        }
+    }
+
+    /// Of the corners of a lattice triangle.
+    pub fn of_triangle(corners: &[Lattice; 3]) -> Self {
+        let size = corners.iter().flatten().map(|c| c.unsigned_abs()).max();
+        let spread = |i: usize| {
+            let c = corners.map(|p| p[i]);
+            c.iter().max().unwrap_or(&0) - c.iter().min().unwrap_or(&0)
+        };
+        Self {
+            size: size.unwrap_or(0) as f64 * UNIT,
+            extent: spread(0).max(spread(1)).max(spread(2)) as f64 * UNIT,
         }
     }
 

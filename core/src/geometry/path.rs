@@ -5,7 +5,6 @@
 //! surface it is counted against, the answer is `None`.
 
 use super::plane::{Lattice, Plane};
-use super::polygon::Polygon;
 use super::vertex::Vertex;
 use crate::arith::Int;
 
@@ -60,8 +59,14 @@ fn determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> i32 {
 
 /// The change of the winding number across a convex polygon, from a doubled corner to an exact
 /// point; `None` if the path is not generic.
-pub fn polygon_on_path(polygon: &Polygon, from: &Lattice, to: &Vertex) -> Option<i32> {
-    let support = polygon.support();
+///
+/// The polygon is given by its plane and by the planes that bound it within that.
+pub fn polygon_on_path<'a>(
+    support: &Plane,
+    rims: impl FnOnce() -> &'a [Plane],
+    from: &Lattice,
+    to: &Vertex,
+) -> Option<i32> {
     let (before, after) = (support.side_of_corner(from), to.side_of(support));
     if after == 0 {
         return None;
@@ -69,9 +74,8 @@ pub fn polygon_on_path(polygon: &Polygon, from: &Lattice, to: &Vertex) -> Option
     if before == after {
         return Some(0);
     }
-    for corner in polygon.corners() {
-        let rim = corner.edge.rim(support);
-        match before * cross(support, &rim, from, to) {
+    for rim in rims() {
+        match before * cross(support, rim, from, to) {
             0 => return None,
             1.. => return Some(0),
             ..=-1 => {}

@@ -13,7 +13,8 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use crate::geometry::plane::Plane;
+use crate::geometry::path::polygon_on_path;
+use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{straddle, Chord, Corner, Polygon, Sides};
 use crate::geometry::vertex::Vertex;
 
@@ -36,6 +37,11 @@ impl<'a> Face<'a> {
         let rim = |c: &Corner| c.edge.rim(self.polygon.support());
         self.rims
             .get_or_init(|| self.polygon.corners().iter().map(rim).collect())
+    }
+
+    /// The change of the winding number across the face along a path; see `geometry::path`.
+    pub fn on_path(&self, from: &Lattice, to: &Vertex) -> Option<i32> {
+        polygon_on_path(self.polygon.support(), || self.rims(), from, to)
     }
 
     /// Whether a segment in the plane of the face meets its interior, for a segment whose plane

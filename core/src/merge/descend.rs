@@ -258,11 +258,12 @@ impl<'a> Descent<'a> {
         let states = self.opened(&cell, states);
         let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
         let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
-        let small = total <= LEAF || is_stuck(&cell, &states, round, total);
+        let stuck = listed && is_stuck(&cell, &states, round, total);
+        let small = total <= LEAF || stuck && total <= STUCK;
         let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
             return Ok(self.leaf(cell, &expression, states, total));
         };
-        if listed && total <= GENERAL {
+        if listed && (total <= GENERAL || stuck) {
             if let Some(branch) = self.in_general_position(cell, &expression, &states, total) {
                 return Ok(branch);
             }
@@ -388,7 +389,7 @@ fn is_stuck(cell: &Cell, states: &States, round: Round, total: usize) -> bool {
         State::List(list) => list.reaching_out(cell),
         State::Constant(_) | State::Tree(_) | State::Bins(_) => 0,
     };
-    round.stuck && total <= STUCK && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
+    round.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
 }
 
 fn find(states: &States, operand: u32) -> Option<&State> {

@@ -37,10 +37,10 @@ pub fn evaluate(
         let root = descent.run(expression.clone(), roots)?;
         let overlaps = descent.overlapping();
         if overlaps.is_empty() {
-            let reduced = operands.iter().all(Solid::is_reduced);
             let table = sources.table().clone();
             let named = operands.iter().map(Solid::named).max().unwrap_or(0);
-            let solid = Solid::new(root, pitch, table, reduced).outgrowing(named);
+            let solid = Solid::new(root, pitch, table, false).outgrowing(named);
+            let solid = solid.made_of(&operands);
             return Ok((solid, descent.counters));
         }
         for k in overlaps {
@@ -68,8 +68,25 @@ pub fn normalize(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid
     if let Some(known) = solid.united().get() {
         return Ok(known.clone());
     }
-    let united = unite(solid, rule, cancel)?;
+    let united = match is_made_of_simple(solid, cancel)? {
+        true => solid.clone().with_reduced(true),
+        false => unite(solid, rule, cancel)?,
+    };
     Ok(solid.united().get_or_init(|| united).clone())
+}
+
+/// Whether a solid is known to be reduced once the meshes it was made of have been checked.
+fn is_made_of_simple(solid: &Solid, cancel: &AtomicBool) -> Result<bool> {
+    let Some(doubts) = solid.doubts() else {
+        return Ok(false);
+    };
+    for mesh in doubts {
+        normalize(mesh, Rule::Positive, cancel)?;
+        if !mesh.is_reduced() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 fn unite(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid> {

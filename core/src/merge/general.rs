@@ -16,10 +16,11 @@ use super::cutting::{contact, cut_up, Contact, Cutter, Cutting, Face};
 use super::expression::Expression;
 use super::kept::Kept;
 use super::list::{List, Sources};
+use super::sweep::{pairs, Swept};
 use crate::geometry::cell::Cell;
-use crate::geometry::path::{polygon_on_path, triangle_on_path, DETERMINANT_FILTER};
+use crate::geometry::path::{triangle_on_path, DETERMINANT_FILTER};
 use crate::geometry::plane::Lattice;
-use crate::geometry::polygon::{Corner, Polygon};
+use crate::geometry::polygon::{Carrier, Corner, Polygon};
 use crate::geometry::vertex::Vertex;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
@@ -91,14 +92,14 @@ struct Scene<'a> {
 }
 
 /// What became of an element.
-enum Fate<'a> {
+enum Fate {
     /// It does not meet the cell.
     Absent,
-    /// Nothing crosses it, and it has this anchor.
-    Uncut(Anchor<'a>),
+    /// Nothing crosses it, and it has these anchors, at least one.
+    Uncut(Anchors),
     /// It was cut up; the numbers of the pieces follow from that of a piece with this corner, which
     /// is also the given anchor, if it is one.
-    Cut(Cutting, Arc<Vertex>, Option<Anchor<'a>>),
+    Cut(Cutting, Arc<Vertex>, Option<Anchor>),
 }
 
 /// What stays of an element on one side.
@@ -187,32 +188,20 @@ impl<'a> Scene<'a> {
         &self.elements[start..self.ends[operand]]
     }
 
-    /// For each element those of other operands that may meet it inside the cell.
-    fn neighbours(&self) -> Vec<Vec<u32>> {
-        let (low, high) = (self.cell.low(), self.cell.high());
-        let boxes: Vec<(Lattice, Lattice)> = self
-            .elements
-            .iter()
-            .map(|e| {
-                let a = [0, 1, 2].map(|i| e.low[i].max(low[i] - 1));
-                (a, [0, 1, 2].map(|i| e.high[i].min(high[i] + 1)))
-            })
-            .collect();
+    /// For each element those of other operands that may meet it inside the cell; `None` if they
+    /// are too many to be found by a sweep.
+    fn neighbours(&self) -> Option<Vec<Vec<u32>>> {
+        let swept: Vec<Swept> = self.elements.iter().map(|e| e.swept(self.cell)).collect();
         let mut found = vec![Vec::new(); self.elements.len()];
-        for (operand, end) in self.ends.iter().enumerate() {
-            let start = end - self.of_operand(operand).len();
-            for i in start..*end {
-                for j in *end..self.elements.len() {
-                    let (a, b) = (&boxes[i], &boxes[j]);
-                    let apart = (0..3).any(|k| a.0[k] > b.1[k] || b.0[k] > a.1[k]);
-                    if !apart && !self.separated(i, j) {
-                        found[i].push(j as u32);
-                        found[j].push(i as u32);
-                    }
-                }
+        pairs(&swept, |i, j| {
+            if !self.separated(i, j) {
+                found[i].push(j as u32);
+                found[j].push(i as u32);
             }
-        }
-        found
+        })?;
+        // The sweep's order is not that of the elements.
+        found.iter_mut().for_each(|list| list.sort_unstable());
+        Some(found)
     }
 
     /// Whether one of two triangles certainly lies strictly on one side of the other's plane.
@@ -225,27 +214,33 @@ impl<'a> Scene<'a> {
         }
     }
 
-    fn fates(&self) -> Option<Vec<Fate<'_>>> {
-        let neighbours = self.neighbours();
+    fn fates(&self) -> Option<Vec<Fate>> {
+        let neighbours = self.neighbours()?;
         (0..self.elements.len())
             .map(|i| self.fate(i, &neighbours[i]))
             .collect()
     }
 
-    fn fate(&self, i: usize, neighbours: &[u32]) -> Option<Fate<'_>> {
+    fn fate(&self, i: usize, neighbours: &[u32]) -> Option<Fate> {
         let element = &self.elements[i];
-        let anchor = element.anchors(self.cell).first().copied();
-        if let (Some(anchor), true) = (anchor, neighbours.is_empty()) {
-            return Some(Fate::Uncut(anchor));
+        let anchors = element.anchors(self.cell);
+        if !anchors.is_empty() && neighbours.is_empty() {
+            return Some(Fate::Uncut(anchors));
         }
         let Some(polygon) = element.polygon_in(self.cell) else {
             return Some(Fate::Absent);
         };
+        let anchors = if anchors.is_empty() {
+            element.anchors_at_walls(&polygon)
+        } else {
+            anchors
+        };
         let cutters = self.cutters(&polygon, neighbours)?;
-        if let (Some(anchor), true) = (anchor, cutters.is_empty()) {
-            return Some(Fate::Uncut(anchor));
+        if !anchors.is_empty() && cutters.is_empty() {
+            return Some(Fate::Uncut(anchors));
         }
-        let corner = |c: &&Corner| anchor.is_none_or(|a| a.is_at(&c.at));
+        let anchor = anchors.into_iter().next();
+        let corner = |c: &&Corner| anchor.as_ref().is_none_or(|a| a.is_at(&c.at));
         let base = Arc::clone(&polygon.corners().iter().find(corner)?.at);
         Some(Fate::Cut(cut_up(polygon, &cutters)?, base, anchor))
     }
@@ -270,14 +265,14 @@ impl<'a> Scene<'a> {
 
     /// For each element the labels of the other operands on its pieces.
     fn labels(&self, fates: &[Fate]) -> Option<Vec<Vec<Labels>>> {
-        let mut anchors = Anchors::new(self, fates);
+        let mut known = Known::new(self, fates);
         let label = |(element, fate): (&Element, &Fate)| {
             Some(match fate {
                 Fate::Absent => Vec::new(),
-                Fate::Uncut(anchor) => vec![anchors.label(self, element.operand, *anchor)?],
+                Fate::Uncut(anchors) => vec![known.label(self, element.operand, &anchors[0])?],
                 Fate::Cut(cutting, base, anchor) => {
                     let start = match anchor {
-                        Some(anchor) => anchors.label(self, element.operand, *anchor)?,
+                        Some(anchor) => known.label(self, element.operand, anchor)?,
                         None => self.count(element.operand, base)?,
                     };
                     let is_base = |c: &Corner| Arc::ptr_eq(&c.at, base);
@@ -292,7 +287,7 @@ impl<'a> Scene<'a> {
 
     /// The labels of all operands but one at an exact point of that one's boundary.
     fn count(&self, own: usize, point: &Vertex) -> Option<Labels> {
-        let across = |e: &Element| polygon_on_path(e.polygon(), &self.corner, point);
+        let across = |e: &Element| e.shape().on_path(&self.corner, point);
         let near = point.approx();
         let (low, high) = (
             near.map(|x| x.floor() as i64),
@@ -306,7 +301,7 @@ impl<'a> Scene<'a> {
         let exact = Vertex::lattice(*point);
         let across = |e: &Element| match &e.place {
             Place::Face(t) => triangle_on_path(&t.corners, &self.corner, point),
-            _ => polygon_on_path(e.polygon(), &self.corner, &exact),
+            _ => e.shape().on_path(&self.corner, &exact),
         };
         self.count_by(own, point, point, across)
     }
@@ -403,6 +398,20 @@ impl<'a> Scene<'a> {
 }
 
 impl<'a> Element<'a> {
+    fn swept(&self, cell: &Cell) -> Swept {
+        let (low, high) = (cell.low(), cell.high());
+        let relative = |p: &Lattice| [0, 1, 2].map(|i| (p[i] - low[i]) as f64);
+        Swept {
+            operand: self.operand,
+            low: [0, 1, 2].map(|i| self.low[i].max(low[i] - 1)),
+            high: [0, 1, 2].map(|i| self.high[i].min(high[i] + 1)),
+            corners: match &self.place {
+                Place::Face(t) => Some([0, 1, 2].map(|i| relative(&t.corners[i]))),
+                Place::Plane(..) | Place::Piece(..) => None,
+            },
+        }
+    }
+
     fn shape(&self) -> &Face<'a> {
         match &self.place {
             Place::Face(t) => t.shape.get_or_init(|| {
@@ -422,12 +431,12 @@ impl<'a> Element<'a> {
     }
 
     /// The corners inside the cell that other elements of the operand may share.
-    fn anchors(&self, cell: &Cell) -> SmallVec<[Anchor<'_>; 4]> {
+    fn anchors(&self, cell: &Cell) -> Anchors {
         match &self.place {
             Place::Face(t) => (0..3)
                 .filter(|i| cell.holds_box(&t.corners[*i], &t.corners[*i]))
                 .map(|i| Anchor {
-                    name: (u64::from(t.slot), u64::from(t.vertices[i])),
+                    name: Name::Vertex(t.slot, t.vertices[i]),
                     place: Spot::Lattice(t.corners[i]),
                 })
                 .collect(),
@@ -435,11 +444,36 @@ impl<'a> Element<'a> {
                 let corners = shape.polygon.corners().iter().map(|c| &c.at);
                 corners
                     .filter(|v| is_well_inside(v, cell))
-                    .map(Anchor::of_vertex)
+                    .map(Anchor::of_corner)
                     .collect()
             }
             Place::Plane(..) => SmallVec::new(),
         }
+    }
+
+    /// The points in which a face's own edges leave the cell: its neighbours share them.
+    fn anchors_at_walls(&self, clipped: &Polygon) -> Anchors {
+        let Place::Face(triangle) = &self.place else {
+            return SmallVec::new();
+        };
+        let corners = clipped.corners();
+        let n = corners.len();
+        (0..n)
+            .filter_map(|i| {
+                let (edge, wall) = match (&corners[(i + n - 1) % n].edge, &corners[i].edge) {
+                    (Carrier::Edge(a, b), Carrier::Cut(wall, _))
+                    | (Carrier::Cut(wall, _), Carrier::Edge(a, b)) => ((*a, *b), wall),
+                    _ => return None,
+                };
+                let axis = wall.only_axis()?;
+                let wall = (axis, wall.normal()[axis] > 0);
+                let ends = (edge.0.min(edge.1), edge.0.max(edge.1));
+                Some(Anchor {
+                    name: Name::Crossing(triangle.slot, ends, wall),
+                    place: Spot::Exact(Arc::clone(&corners[i].at)),
+                })
+            })
+            .collect()
     }
 
     /// What stays in the element's own orientation, and what stays turned.
@@ -489,31 +523,44 @@ fn stays_of_pieces(fate: Fate, sides: &[Option<usize>]) -> [Stays; 2] {
     })
 }
 
-/// A vertex of an operand's boundary inside the cell.
-#[derive(Clone, Copy)]
-struct Anchor<'a> {
-    name: (u64, u64),
-    place: Spot<'a>,
+/// A point of an operand's boundary inside the cell.
+#[derive(Clone)]
+struct Anchor {
+    name: Name,
+    place: Spot,
 }
 
-#[derive(Clone, Copy)]
-enum Spot<'a> {
+type Anchors = SmallVec<[Anchor; 4]>;
+
+/// What tells points apart that several elements may have in common.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Name {
+    /// A vertex of a source.
+    Vertex(u32, u32),
+    /// A corner of a part: pieces that share the corner share the object at this address.
+    Corner(usize),
+    /// The point in which an edge of a source leaves the cell: the axis of the wall, and whether
+    /// it is the upper one.
+    Crossing(u32, (Lattice, Lattice), (usize, bool)),
+}
+
+#[derive(Clone)]
+enum Spot {
     Lattice(Lattice),
-    Exact(&'a Arc<Vertex>),
+    Exact(Arc<Vertex>),
 }
 
-impl<'a> Anchor<'a> {
-    /// A corner of a piece: pieces that share the corner share the object.
-    fn of_vertex(vertex: &'a Arc<Vertex>) -> Self {
+impl Anchor {
+    fn of_corner(vertex: &Arc<Vertex>) -> Self {
         Self {
-            name: (u64::MAX, Arc::as_ptr(vertex) as usize as u64),
-            place: Spot::Exact(vertex),
+            name: Name::Corner(Arc::as_ptr(vertex) as usize),
+            place: Spot::Exact(Arc::clone(vertex)),
         }
     }
 
     fn is_at(&self, corner: &Arc<Vertex>) -> bool {
-        match self.place {
-            Spot::Lattice(p) => corner.as_lattice() == Some(&p),
+        match &self.place {
+            Spot::Lattice(p) => corner.as_lattice() == Some(p),
             Spot::Exact(vertex) => Arc::ptr_eq(vertex, corner),
         }
     }
@@ -528,53 +575,55 @@ fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
     })
 }
 
-/// Vertices with what is known of the other operands there. Vertices of elements that nothing
+/// Anchors with what is known of the other operands there. Those of an element that nothing
 /// crosses have the same labels.
-struct Anchors {
-    numbers: HashMap<(usize, u64, u64), u32>,
+struct Known {
+    numbers: HashMap<(usize, Name), u32>,
     parents: Vec<u32>,
     labels: Vec<Option<Labels>>,
 }
 
-impl Anchors {
+impl Known {
     fn new(scene: &Scene, fates: &[Fate]) -> Self {
-        let mut anchors = Self {
+        let mut known = Self {
             numbers: HashMap::default(),
             parents: Vec::new(),
             labels: Vec::new(),
         };
         for (element, fate) in scene.elements.iter().zip(fates) {
-            if let Fate::Uncut(first) = fate {
-                for other in element.anchors(scene.cell) {
-                    let a = anchors.root(element.operand, *first);
-                    let b = anchors.root(element.operand, other);
-                    anchors.parents[b.max(a) as usize] = a.min(b);
-                }
+            if let Fate::Uncut(anchors) = fate {
+                let first = known.root(element.operand, &anchors[0]);
+                anchors[1..].iter().fold(first, |a, other| {
+                    let b = known.root(element.operand, other);
+                    known.parents[b.max(a) as usize] = a.min(b);
+                    a.min(b)
+                });
             }
         }
-        anchors
+        known
     }
 
-    fn root(&mut self, operand: usize, anchor: Anchor) -> u32 {
+    fn root(&mut self, operand: usize, anchor: &Anchor) -> u32 {
         let next = self.parents.len() as u32;
-        let (kind, vertex) = anchor.name;
-        let mut at = *self.numbers.entry((operand, kind, vertex)).or_insert(next);
+        let mut at = *self.numbers.entry((operand, anchor.name)).or_insert(next);
         if at == next {
             self.parents.push(next);
             self.labels.push(None);
         }
         while self.parents[at as usize] != at {
-            at = self.parents[at as usize];
+            let above = self.parents[self.parents[at as usize] as usize];
+            self.parents[at as usize] = above;
+            at = above;
         }
         at
     }
 
-    /// The labels of all operands but one at a vertex of that one.
-    fn label(&mut self, scene: &Scene, operand: usize, anchor: Anchor) -> Option<Labels> {
+    /// The labels of all operands but one at an anchor of that one.
+    fn label(&mut self, scene: &Scene, operand: usize, anchor: &Anchor) -> Option<Labels> {
         let root = self.root(operand, anchor) as usize;
         if self.labels[root].is_none() {
-            self.labels[root] = Some(match anchor.place {
-                Spot::Lattice(point) => scene.count_at_lattice(operand, &point)?,
+            self.labels[root] = Some(match &anchor.place {
+                Spot::Lattice(point) => scene.count_at_lattice(operand, point)?,
                 Spot::Exact(point) => scene.count(operand, point)?,
             });
         }

@@ -20,6 +20,7 @@ pub mod partition_tree;
 mod separation;
 pub mod simple;
 pub mod split_tree;
+mod sweep;
 mod window;
 
 pub use merge_trees::merge;

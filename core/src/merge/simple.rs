@@ -11,8 +11,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::descend::LEAF;
 use super::leaf::LeafTree;
 use super::list::{List, Sources};
+use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::Cell;
+use crate::geometry::fixed::sixfold_flux;
 use crate::geometry::plane::Lattice;
 use crate::mesh::source::{Source, TriangleMesh};
 use crate::mesh::topology::NONE;
@@ -58,7 +60,11 @@ pub fn is_simple(solid: &Solid, sources: &Sources, cancel: &AtomicBool) -> Resul
         mesh,
         shells,
         irregular: irregular(source, mesh),
-        seen: (0..count).map(|_| AtomicBool::new(false)).collect(),
+        // A single shell whose faces keep clear of each other has one number on either side of all
+        // of them, and which is 0 is plain from the sign of its volume.
+        seen: (0..count)
+            .map(|_| AtomicBool::new(count == 1 && is_outward(mesh)))
+            .collect(),
         overlap: AtomicBool::new(false),
         cancel,
     };
@@ -67,6 +73,15 @@ pub fn is_simple(solid: &Solid, sources: &Sources, cancel: &AtomicBool) -> Resul
         return Err(Error::new(ErrorKind::Cancelled, "stopped"));
     }
     Ok(Some(!check.overlap.load(Ordering::Relaxed)))
+}
+
+/// Whether the faces enclose more inside than outside.
+fn is_outward(mesh: &TriangleMesh) -> bool {
+    let mut volume = Int::<4>::ZERO;
+    for face in 0..mesh.faces.len() {
+        volume += sixfold_flux(&mesh.corners(face as u32));
+    }
+    volume.signum() > 0
 }
 
 /// For each face the number of its edge-connected component.

@@ -1,9 +1,6 @@
 //! Whether the boundary of a surface vanishes, without looking for pairs.
 
-use rayon::prelude::*;
-
-/// Faces of one task.
-const CHUNK: usize = 1 << 14;
+use super::tasks::each_chunk;
 
 /// Whether every directed edge occurs as often as its opposite.
 ///
@@ -11,9 +8,9 @@ const CHUNK: usize = 1 << 14;
 /// subtracted for the other, modulo 2^128. A closed surface sums to zero, whatever its order. An
 /// open one sums to a number that is zero by chance 2^-128.
 pub fn is_closed(faces: &[[u32; 3]]) -> bool {
-    let chunk_sum = |faces: &[[u32; 3]]| faces.iter().map(boundary).fold(0, u128::wrapping_add);
-    let sum = faces.par_chunks(CHUNK).map(chunk_sum);
-    sum.reduce(|| 0, u128::wrapping_add) == 0
+    let sum = |_, faces: &[[u32; 3]]| faces.iter().map(boundary).fold(0, u128::wrapping_add);
+    let sums = each_chunk(faces, sum);
+    sums.into_iter().fold(0, u128::wrapping_add) == 0
 }
 
 fn boundary([a, b, c]: &[u32; 3]) -> u128 {

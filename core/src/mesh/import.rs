@@ -3,21 +3,17 @@
 use rustc_hash::FxHashMap as HashMap;
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::finding::{Finding, Severity};
 use super::grid::{snap_point, Pitch};
 use super::joints::Joints;
 use super::snap::snap_all;
-use super::source::{Shape, Source, TriangleMesh};
+use super::source::{Shape, Source, TriangleMesh, WELDED};
+use super::tasks::{each_chunk, fill_chunks};
 use super::topology::{open_edges, Topology};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Plane;
 use crate::geometry::plane::{normal, Lattice};
-
-/// Rows of one task.
-const CHUNK: usize = 1 << 14;
 
 /// Reads a closed triangle mesh onto the lattice.
 ///
@@ -32,10 +28,10 @@ pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -
     let faces = check_indices(faces, vertices.len())?;
     let bounds = Bounds::of(vertices)?;
     let pitch = choose_pitch(&bounds, pitch, &mut findings)?;
-    let (lattice, doubles) = snap_all(vertices, pitch)?;
+    let lattice = snap_all(vertices, pitch)?;
     let mut mesh = TriangleMesh {
         vertices: lattice,
-        doubles,
+        doubles: vertices.to_vec(),
         faces,
         numbers: None,
     };
@@ -147,12 +143,10 @@ fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[u32; 3]>> {
         ));
     }
     let mut narrow = vec![[0; 3]; faces.len()];
-    let good = narrow
-        .par_chunks_mut(CHUNK)
-        .zip(faces.par_chunks(CHUNK))
-        .map(|(narrow, faces)| narrow_all(faces, limit, narrow))
-        .reduce(|| true, |a, b| a & b);
-    if good {
+    let good = fill_chunks(faces, &mut narrow, |_, faces, narrow| {
+        narrow_all(faces, limit, narrow)
+    });
+    if good.iter().all(|g| *g) {
         return Ok(narrow);
     }
     let bad = |face: &[i64; 3]| face.iter().any(|v| !(0..i64::from(limit)).contains(v));
@@ -189,8 +183,8 @@ impl Bounds {
     };
 
     fn of(points: &[[f64; 3]]) -> Result<Self> {
-        let chunks = points.par_chunks(CHUNK).map(Self::of_chunk);
-        let found = chunks.reduce(|| Some(Self::NOTHING), |a, b| Some(a?.with(&b?)));
+        let mut chunks = each_chunk(points, |_, points| Self::of_chunk(points)).into_iter();
+        let found = chunks.try_fold(Self::NOTHING, |all, chunk| Some(all.with(&chunk?)));
         found.ok_or_else(|| {
             let bad = |p: &[f64; 3]| p.iter().any(|c| !c.is_finite());
             let row = points.iter().position(bad).unwrap_or(0);
@@ -264,12 +258,10 @@ fn choose_pitch(
 /// The sum is in doubles, about the first vertex, in the order of the faces.
 fn weigh(mesh: &TriangleMesh) -> (f64, Vec<u32>) {
     let origin = mesh.vertices.first().copied().unwrap_or_default();
-    let (volumes, flat): (Vec<f64>, Vec<Vec<u32>>) = mesh
-        .faces
-        .par_chunks(CHUNK)
-        .enumerate()
-        .map(|(chunk, faces)| weigh_chunk(faces, &mesh.vertices, &origin, chunk * CHUNK))
-        .unzip();
+    let weigh =
+        |first: usize, faces: &[[u32; 3]]| weigh_chunk(faces, &mesh.vertices, &origin, first);
+    let (volumes, flat): (Vec<f64>, Vec<Vec<u32>>) =
+        each_chunk(&mesh.faces, weigh).into_iter().unzip();
     (volumes.iter().sum(), flat.concat())
 }
 
@@ -341,7 +333,7 @@ fn close(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Joints>
     if let Some(welded) = weld(mesh) {
         mesh.faces = welded;
         findings.push(Finding::about(
-            "welded",
+            WELDED,
             Severity::Note,
             &[0],
             "vertices at the same place were welded to close the mesh",

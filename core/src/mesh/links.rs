@@ -3,13 +3,10 @@
 //! The link of a vertex has a directed edge for each face around it: from the corner after the
 //! vertex to the one before it. The faces make one fan if the link is one cycle.
 
-use rayon::prelude::*;
+use super::tasks::each_chunk;
 
 /// Edges that a [`Short`] link holds; around most vertices of most meshes there are six.
 const ROOM: usize = 8;
-
-/// Vertices of one task.
-const CHUNK: usize = 1 << 14;
 
 /// The starts, then the ends of a link's edges; zero where there is none.
 ///
@@ -44,11 +41,14 @@ fn doubtful(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
             *count = count.saturating_add(1);
         }
     }
-    let in_doubt = |(vertex, (link, count)): (usize, (&Short, &u8))| {
-        (*count > 0 && !is_cycle(link, usize::from(*count))).then_some(vertex as u32)
+    let doubtful = |first: usize, links: &[Short]| {
+        let rows = (first as u32..).zip(links.iter().zip(&counts[first..]));
+        let doubt = |(vertex, (link, count)): (u32, (&Short, &u8))| {
+            (*count > 0 && !is_cycle(link, usize::from(*count))).then_some(vertex)
+        };
+        rows.filter_map(doubt).collect::<Vec<u32>>()
     };
-    let rows = links.par_iter().zip(&counts).enumerate();
-    rows.with_min_len(CHUNK).filter_map(in_doubt).collect()
+    each_chunk(&links, doubtful).concat()
 }
 
 fn label(vertex: u32) -> u16 {

@@ -16,4 +16,5 @@ pub mod joints;
 mod links;
 mod snap;
 pub mod source;
+pub mod tasks;
 pub mod topology;

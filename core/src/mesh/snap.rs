@@ -1,13 +1,9 @@
 //! Many points onto the lattice at once, to the same places as one by one.
 
-use rayon::prelude::*;
-
 use super::grid::{snap_point, Pitch};
+use super::tasks::fill_chunks;
 use crate::error::{Error, Result};
 use crate::geometry::plane::Lattice;
-
-/// Rows of one task.
-const CHUNK: usize = 1 << 13;
 
 /// Among the doubles around 1.5·2^52 are the integers and nothing else: adding it rounds.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
@@ -15,25 +11,18 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0;
 /// Below this magnitude the sum with [`ROUNDER`] stays among them.
 const REACH: f64 = (1u64 << 51) as f64;
 
-/// The lattice points nearest to points in model units, and copies of these.
+/// The lattice points nearest to points in model units.
 ///
 /// # Errors
 /// As [`Pitch::snap`], with the first row that does not fit.
-pub fn snap_all(points: &[[f64; 3]], pitch: Pitch) -> Result<(Vec<Lattice>, Vec<[f64; 3]>)> {
+pub fn snap_all(points: &[[f64; 3]], pitch: Pitch) -> Result<Vec<Lattice>> {
     let mut lattice = vec![[0; 3]; points.len()];
-    let mut doubles = vec![[0.0; 3]; points.len()];
-    let chunks: Vec<Result<()>> = lattice
-        .par_chunks_mut(CHUNK)
-        .zip(doubles.par_chunks_mut(CHUNK))
-        .zip(points.par_chunks(CHUNK))
-        .enumerate()
-        .map(|(chunk, ((lattice, doubles), points))| {
-            doubles.copy_from_slice(points);
-            snap_chunk(doubles, pitch, chunk * CHUNK, lattice)
-        })
-        .collect();
+    let snap = |first: usize, points: &[[f64; 3]], lattice: &mut [Lattice]| {
+        snap_chunk(points, pitch, first, lattice)
+    };
+    let chunks = fill_chunks(points, &mut lattice, snap);
     chunks.into_iter().collect::<Result<()>>()?;
-    Ok((lattice, doubles))
+    Ok(lattice)
 }
 
 fn snap_chunk(
@@ -106,10 +95,7 @@ mod tests {
             let pitch = Pitch::new(exponent).unwrap();
             let singly: Result<Vec<_>, _> = rows.iter().map(|p| snap_point(pitch, p)).collect();
             match (snap_all(&rows, pitch), singly) {
-                (Ok((lattice, doubles)), Ok(expected)) => {
-                    prop_assert_eq!(lattice, expected);
-                    prop_assert_eq!(doubles, rows);
-                }
+                (Ok(lattice), Ok(expected)) => prop_assert_eq!(lattice, expected),
                 (Err(e), Err(expected)) => prop_assert_eq!(e.kind(), expected.kind()),
                 (all, singly) => prop_assert!(false, "{:?} against {:?}", all, singly),
             }

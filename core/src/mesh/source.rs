@@ -45,6 +45,9 @@ pub struct TriangleMesh {
     pub numbers: Option<Vec<u32>>,
 }
 
+/// The code of the finding that vertices were welded.
+pub(super) const WELDED: &str = "welded";
+
 static NEXT_ID: AtomicU64 = AtomicU64::new(0);
 
 impl Source {
@@ -112,6 +115,12 @@ impl Source {
     pub fn joints(&self) -> Option<&Joints> {
         let mesh = self.mesh()?;
         Some(self.joints.get_or_init(|| Joints::of(mesh)))
+    }
+
+    /// Whether no face was left out and no vertex welded at import.
+    pub fn is_as_given(&self) -> bool {
+        let welded = self.findings.iter().any(|f| f.code == WELDED);
+        !welded && self.mesh().is_some_and(|m| m.numbers.is_none())
     }
 
     /// The half-edges' mates, paired on first use; `None` for a half-space.

@@ -1,39 +1,46 @@
 //! Numpy arrays to rows and back.
 
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use std::borrow::Cow;
+
+use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::tasks::fill_chunks;
 
-/// The rows of an (n, 3) array.
-pub fn rows<T: numpy::Element + Copy>(
-    array: &PyReadonlyArray2<'_, T>,
+/// The rows of an (n, 3) array: the array's own memory, or a copy if they are not contiguous.
+pub fn rows<'a, T: Element + Copy>(
+    array: &'a PyReadonlyArray2<'_, T>,
     name: &str,
-) -> Result<Vec<[T; 3]>> {
+) -> Result<Cow<'a, [[T; 3]]>> {
     let view = array.as_array();
     if view.ncols() != 3 {
         let text = format!("{name} must have shape (n, 3), not {:?}", view.shape());
         return Err(Error::new(ErrorKind::Shape, text));
     }
-    if let Some(flat) = view.as_slice() {
-        let row = |r: &[T]| [r[0], r[1], r[2]];
-        return Ok(flat.chunks_exact(3).map(row).collect());
+    if let Ok(flat) = array.as_slice() {
+        return Ok(Cow::Borrowed(flat.as_chunks().0));
     }
-    Ok(view
-        .rows()
-        .into_iter()
-        .map(|r| [r[0], r[1], r[2]])
-        .collect())
+    let row = |r: numpy::ndarray::ArrayView1<'_, T>| [r[0], r[1], r[2]];
+    Ok(Cow::Owned(view.rows().into_iter().map(row).collect()))
 }
 
-/// An (n, k) array from rows.
-pub fn array<T, const K: usize>(
+/// Indices as Python has them.
+pub fn wide<const K: usize>(rows: &[[u32; K]]) -> Vec<[i64; K]> {
+    let mut wide = vec![[0; K]; rows.len()];
+    fill_chunks(rows, &mut wide, |_, rows, wide| {
+        for (row, wide) in rows.iter().zip(wide) {
+            *wide = row.map(i64::from);
+        }
+    });
+    wide
+}
+
+/// An (n, k) array of the same memory as the rows.
+pub fn array<T: Element, const K: usize>(
     py: Python<'_>,
     rows: Vec<[T; K]>,
-) -> PyResult<Bound<'_, PyArray2<T>>>
-where
-    T: numpy::Element,
-{
+) -> PyResult<Bound<'_, PyArray2<T>>> {
     let count = rows.len();
-    PyArray1::from_vec(py, rows.into_iter().flatten().collect()).reshape([count, K])
+    PyArray1::from_vec(py, rows.into_flattened()).reshape([count, K])
 }

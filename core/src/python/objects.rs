@@ -1,5 +1,7 @@
 //! The class `ObjectTree`: an immutable partition tree with in and out leaves, of any dimension.
 
+use std::borrow::Cow;
+
 use std::sync::{Arc, OnceLock};
 
 use num_bigint::BigInt;
@@ -92,7 +94,8 @@ impl ObjectTree {
     ) -> PyResult<Self> {
         let fail = |e| to_python(py, &e);
         let pitch = Pitch::new(pitch).map_err(fail)?;
-        let faces = faces.map(|f| super::arrays::rows(&f, "faces"));
+        let own = |f| super::arrays::rows(f, "faces").map(Cow::into_owned);
+        let faces = faces.as_ref().map(own);
         let input = Input {
             facets: rows(&facets),
             faces: faces.transpose().map_err(fail)?.unwrap_or_default(),

@@ -3,13 +3,13 @@
 use std::sync::{Arc, OnceLock};
 
 use num_bigint::BigInt;
-use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 
-use super::arrays::{array, rows};
+use super::arrays::{array, rows, wide};
 use super::errors::to_python;
-use super::run::run;
+use super::run::{run, SMALL};
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::collect::has_no_boundary;
 use crate::extract::round::{self, Mesh};
@@ -21,27 +21,46 @@ use crate::merge::leaf::Rule;
 use crate::mesh::finding::Finding;
 use crate::mesh::grid::{snap_point, Pitch};
 use crate::mesh::import::{half_space, import};
+use crate::mesh::source::TriangleMesh;
 use crate::query::classify::{classify, Location};
 use crate::query::measure::{volume, volume_near, volume_residues, volume_rounded};
 use crate::query::region::hyperplane::plane;
 use crate::query::region::section::section;
 use crate::tree::solid::Solid;
 use crate::tree::stats::{stats, Stats};
+use crate::tree::work::work;
 
 type Corners = ((f64, f64, f64), (f64, f64, f64));
 
-type MeshArrays<'py> = (
-    Bound<'py, PyArray2<f64>>,
-    Bound<'py, PyArray2<i64>>,
-    Bound<'py, PyArray2<i64>>,
-);
+type MeshArrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>);
 
 /// An immutable exact solid: a partition tree. See `_core.pyi`.
 #[pyclass(frozen, module = "bspcsg._core")]
 pub struct Tree {
     solid: Solid,
     counters: Option<Counters>,
-    mesh: OnceLock<Arc<Mesh>>,
+    rounded: OnceLock<Rounded>,
+}
+
+/// The mesh of a tree, as Python has it.
+struct Rounded {
+    vertices: Py<PyArray2<f64>>,
+    triangles: Py<PyArray2<i64>>,
+    origins: Py<Origins>,
+    findings: Vec<Finding>,
+}
+
+/// Where the triangles of a mesh came from. See `_core.pyi`.
+#[pyclass(frozen, module = "bspcsg._core")]
+pub struct Origins {
+    rows: Vec<[u32; 2]>,
+}
+
+#[pymethods]
+impl Origins {
+    fn array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        array(py, wide(&self.rows))
+    }
 }
 
 impl Tree {
@@ -49,20 +68,44 @@ impl Tree {
         Self {
             solid,
             counters: None,
-            mesh: OnceLock::new(),
+            rounded: OnceLock::new(),
         }
+    }
+
+    fn given(&self) -> Option<&TriangleMesh> {
+        let mut sources = self.solid.sources().iter();
+        let (Some(source), None) = (sources.next(), sources.next()) else {
+            return None;
+        };
+        source.mesh().filter(|_| source.is_as_given())
     }
 
     fn size(&self) -> usize {
-        self.solid.sources().iter().map(|s| s.face_count()).sum()
+        work(std::slice::from_ref(&self.solid), SMALL)
     }
 
-    fn rounded(&self, py: Python<'_>, threads: usize) -> PyResult<Arc<Mesh>> {
-        if let Some(mesh) = self.mesh.get() {
-            return Ok(Arc::clone(mesh));
+    fn rounded(&self, py: Python<'_>, threads: usize) -> PyResult<&Rounded> {
+        if let Some(rounded) = self.rounded.get() {
+            return Ok(rounded);
         }
-        let mesh = run(py, threads, self.size(), |_| round::mesh(&self.solid))?;
-        Ok(Arc::clone(self.mesh.get_or_init(|| Arc::new(mesh))))
+        let (mesh, triangles) = run(py, threads, self.size(), |_| {
+            let mesh = round::mesh(&self.solid)?;
+            let triangles = wide(&mesh.triangles);
+            Ok((mesh, triangles))
+        })?;
+        let Mesh {
+            vertices,
+            origins,
+            findings,
+            ..
+        } = mesh;
+        let rounded = Rounded {
+            vertices: array(py, vertices)?.unbind(),
+            triangles: array(py, triangles)?.unbind(),
+            origins: Py::new(py, Origins { rows: origins })?,
+            findings,
+        };
+        Ok(self.rounded.get_or_init(|| rounded))
     }
 }
 
@@ -128,9 +171,8 @@ impl Tree {
         let expression = terms
             .and_then(Expression::new)
             .map_err(|e| to_python(py, &e))?;
-        let size = operands.iter().map(|o| o.size()).sum();
         let solids: Vec<Solid> = operands.iter().map(|o| o.solid.clone()).collect();
-        let (solid, counters) = run(py, threads, size, |cancel| {
+        let (solid, counters) = run(py, threads, work(&solids, SMALL), |cancel| {
             evaluate(&expression, &solids, cancel)
         })?;
         Ok(Self {
@@ -160,22 +202,38 @@ impl Tree {
     /// Whether the elements are the reduced boundary; None if nobody has looked.
     #[getter]
     fn simple(&self) -> Option<bool> {
-        if self.solid.is_reduced() {
-            return Some(true);
-        }
-        let united = self.solid.united().get()?;
-        Some(Arc::ptr_eq(&united.root().node, &self.solid.root().node))
+        let known = self.solid.is_reduced() || self.solid.united().get().is_some();
+        known.then(|| self.solid.is_reduced())
     }
 
     #[pyo3(signature = (threads=0))]
     fn to_mesh<'py>(&self, py: Python<'py>, threads: usize) -> PyResult<MeshArrays<'py>> {
         let mesh = self.rounded(py, threads)?;
-        let triangles = mesh.triangles.iter().map(|t| t.map(i64::from)).collect();
-        let origins = mesh.origins.iter().map(|o| o.map(i64::from)).collect();
         Ok((
-            array(py, mesh.vertices.clone())?,
-            array(py, triangles)?,
-            array(py, origins)?,
+            mesh.vertices.bind(py).clone(),
+            mesh.triangles.bind(py).clone(),
+        ))
+    }
+
+    fn origins(&self, py: Python<'_>) -> PyResult<Py<Origins>> {
+        Ok(self.rounded(py, 0)?.origins.clone_ref(py))
+    }
+
+    /// Whether the tree holds the arrays it was made from, each face as it was.
+    #[getter]
+    fn holds_given(&self) -> bool {
+        self.given().is_some()
+    }
+
+    /// The arrays the tree was made from.
+    fn given_arrays<'py>(&self, py: Python<'py>) -> PyResult<MeshArrays<'py>> {
+        let mesh = self.given().ok_or_else(|| {
+            let text = "the tree does not hold the arrays of one mesh as they were given";
+            to_python(py, &Error::internal(text))
+        })?;
+        Ok((
+            array(py, mesh.doubles.clone())?,
+            array(py, wide(&mesh.faces))?,
         ))
     }
 
@@ -281,13 +339,13 @@ impl Tree {
 
     #[getter]
     fn bounds(&self, py: Python<'_>) -> PyResult<Option<Corners>> {
-        let mesh = self.rounded(py, 0)?;
-        let mut used = mesh.vertices.iter();
-        let Some(first) = used.next() else {
+        let vertices = self.rounded(py, 0)?.vertices.bind(py).readonly();
+        let rows = rows(&vertices, "vertices").map_err(|e| to_python(py, &e))?;
+        let Some(first) = rows.first() else {
             return Ok(None);
         };
         let (mut low, mut high) = (*first, *first);
-        for p in used {
+        for p in rows.iter() {
             low = [0, 1, 2].map(|i| low[i].min(p[i]));
             high = [0, 1, 2].map(|i| high[i].max(p[i]));
         }

@@ -12,7 +12,8 @@ use super::node::{Branch, Deferred, Node, Part};
 use crate::arith::Int;
 use crate::geometry::cell::Cell;
 use crate::geometry::fixed::{
-    of_cubic_steps, of_lattice, of_vertex, through, through_ring, Fixed, Flux, Reach, Ring, Walls,
+    minor, of_cubic_steps, of_vertex, sixfold_flux, through, through_ring, Fixed, Flux, Reach,
+    Ring, Triangle, Walls,
 };
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
@@ -130,16 +131,13 @@ impl Sum {
             return;
         }
         if corners.iter().all(|c| self.cell.holds_box(c, c)) {
-            let height = corners[0][2] + corners[1][2] + corners[2][2];
-            let share = Int::<2>::from_i128(if flip { -area } else { area }).mul_i64(height);
-            self.inside += share;
+            let flux = sixfold_flux(corners);
+            self.inside += if flip { -flux } else { flux };
             return;
         }
-        let whole: Ring = corners.iter().map(of_lattice).collect();
-        let mut ring = whole.clone();
-        let rounds = self.walls.clip(&mut ring);
-        if ring.len() >= 3 {
-            let error = Reach::of(&whole).error(ring.len(), rounds, slope(corners, area));
+        let normal = [minor(corners, 1, 2), minor(corners, 2, 0), area];
+        if let Some(ring) = Triangle::new(corners, normal).clipped(&self.walls) {
+            let error = Reach::of_triangle(corners).error(ring.len(), 1, slope(&normal));
             let value = through_ring(&ring);
             self.rest.flux.add(&Flux { value, error }, flip);
         }
@@ -200,19 +198,8 @@ fn fixed_ends(part: &Part) -> SmallVec<[[Fixed; 2]; 8]> {
     edges.map(|e| [fixed(&e.from), fixed(&e.to)]).collect()
 }
 
-/// A component of the normal of a triangle, from the projection along the remaining axis.
-fn minor(corners: &[Lattice; 3], u: usize, v: usize) -> i128 {
-    let [a, b, c] = corners;
-    let d = |p: &Lattice, i: usize| i128::from(p[i] - a[i]);
-    d(b, u) * d(c, v) - d(c, u) * d(b, v)
-}
-
 /// |z| / max(|x|, |y|) of a face's normal; 0 for faces that no wall across z cuts.
-fn slope(corners: &[Lattice; 3], area: i128) -> f64 {
-    ratio(area, minor(corners, 1, 2), minor(corners, 2, 0))
-}
-
-fn ratio(z: i128, x: i128, y: i128) -> f64 {
+fn slope([x, y, z]: &[i128; 3]) -> f64 {
     match x.unsigned_abs().max(y.unsigned_abs()) {
         0 => 0.0,
         flat => z.unsigned_abs() as f64 / flat as f64,
@@ -221,12 +208,12 @@ fn ratio(z: i128, x: i128, y: i128) -> f64 {
 
 /// The slope of a part's plane; `None` if it stands upright, where the field has no flux.
 fn part_slope(part: &Part) -> Option<f64> {
-    let [x, y, z] = match part.source.shape() {
+    let normal = match part.source.shape() {
         Shape::Mesh(mesh) => {
             let c = mesh.corners(part.face);
             [minor(&c, 1, 2), minor(&c, 2, 0), minor(&c, 0, 1)]
         }
         Shape::HalfSpace(plane) => *plane.normal(),
     };
-    (z != 0).then(|| ratio(z, x, y))
+    (normal[2] != 0).then(|| slope(&normal))
 }

@@ -7,3 +7,4 @@ pub mod partition;
 pub mod solid;
 pub mod stats;
 pub mod table;
+pub mod work;

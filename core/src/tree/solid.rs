@@ -24,6 +24,8 @@ pub struct Solid {
     /// How many sources the tree named when that was last counted.
     named: usize,
     reduced: bool,
+    /// Solids of meshes nobody has checked: if all are simple, this solid is reduced.
+    doubts: Option<Arc<[Solid]>>,
     united: Arc<OnceLock<Solid>>,
 }
 
@@ -37,8 +39,42 @@ impl Solid {
             sources,
             named,
             reduced,
+            doubts: None,
             united: Arc::default(),
         }
+    }
+
+    /// The solid that operations have made of these operands, reduced if they are.
+    ///
+    /// Where that is not known yet, the solid remembers the meshes that decide it, unless they are
+    /// many.
+    #[must_use]
+    pub fn made_of(mut self, operands: &[Self]) -> Self {
+        let open = || operands.iter().filter(|o| !o.is_reduced());
+        self.reduced = open().next().is_none();
+        if open().all(|o| o.doubts.is_some() || o.is_whole_mesh()) {
+            let doubts =
+                open().flat_map(|o| o.doubts.as_deref().unwrap_or(std::slice::from_ref(o)));
+            let doubts: Vec<Self> = doubts
+                .filter(|d| !d.is_reduced())
+                .take(SPARE + 1)
+                .cloned()
+                .collect();
+            self.doubts = (doubts.len() <= SPARE).then(|| doubts.into());
+        }
+        self
+    }
+
+    /// The meshes that decide whether the solid is reduced, where that is so.
+    pub fn doubts(&self) -> Option<&[Self]> {
+        self.doubts.as_deref()
+    }
+
+    /// Whether this is a mesh as it was given.
+    fn is_whole_mesh(&self) -> bool {
+        self.sources.len() == 1
+            && self.sources.get(0).mesh().is_some()
+            && matches!(&*self.root.node, Node::Deferred(leaf) if leaf.parts.is_empty() && leaf.len() == self.sources.get(0).face_count())
     }
 
     /// A solid made of operands of which none named more than `named` sources.
@@ -118,13 +154,17 @@ impl Solid {
 
     /// Whether the elements are known to be the reduced boundary (promise G2).
     pub fn is_reduced(&self) -> bool {
-        self.reduced
+        let stays = |united: &Self| Arc::ptr_eq(&united.root.node, &self.root.node);
+        self.reduced || self.united.get().is_some_and(stays)
     }
 
     /// The same solid, its elements declared or found to be the reduced boundary.
     #[must_use]
     pub fn with_reduced(mut self, reduced: bool) -> Self {
         self.reduced = reduced;
+        self.doubts = None;
+        // Not the cache of the solid as it was: that is to hold this one.
+        self.united = Arc::default();
         self
     }
 

@@ -1,6 +1,8 @@
 //! Exact sums.
 
-use bspcsg::arith::{inv_mod, mul_mod, Int, P1, P2};
+use std::cmp::Ordering;
+
+use bspcsg::arith::{inv_mod, mantissa_and_exponent, mul_mod, Int, P1, P2};
 use bspcsg::geometry::fixed::FLUX_PLACES;
 use bspcsg::geometry::vertex::Homogeneous;
 use bspcsg::query::measure::{self, Fraction};
@@ -40,6 +42,22 @@ impl Ratio {
         Self(fraction.numerator, fraction.denominator)
     }
 
+    /// A finite double, exactly.
+    pub fn of_double(x: f64) -> Self {
+        let (mantissa, exponent) = mantissa_and_exponent(x);
+        let power = BigInt::from(1) << exponent.unsigned_abs();
+        match exponent {
+            0.. => Self(BigInt::from(mantissa) * power, BigInt::from(1)),
+            _ => Self(BigInt::from(mantissa), power),
+        }
+    }
+
+    /// The absolute value.
+    #[must_use]
+    pub fn size(&self) -> Self {
+        Self(self.0.magnitude().clone().into(), self.1.clone())
+    }
+
     pub fn is_between_zero_and_one(&self) -> bool {
         self.0.sign() != Sign::Minus && self.0 < self.1
     }
@@ -50,6 +68,12 @@ impl Ratio {
             let of = |n: &BigInt| u64::try_from(n.mod_floor(&BigInt::from(p))).expect("below p");
             mul_mod(of(&self.0), inv_mod(of(&self.1), p), p)
         })
+    }
+}
+
+impl PartialOrd for Ratio {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some((&self.0 * &other.1).cmp(&(&other.0 * &self.1)))
     }
 }
 

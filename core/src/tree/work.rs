@@ -1,0 +1,52 @@
+//! How much an operation may have to look at.
+
+use super::node::{Branch, Node};
+use super::solid::Solid;
+use crate::geometry::plane::Lattice;
+
+/// Cuts and elements that an operation on solids may have to look at, counted up to a limit.
+///
+/// Of two operands only what lies near the other one counts.
+pub fn work(solids: &[Solid], limit: usize) -> usize {
+    let mut sum = 0;
+    for (k, solid) in solids.iter().enumerate() {
+        let other = match solids.len() {
+            2 => Some(extent(&solids[1 - k], limit)),
+            _ => None,
+        };
+        sum += count(solid.root(), other.as_ref(), limit - sum);
+        if sum >= limit {
+            break;
+        }
+    }
+    sum
+}
+
+/// A box around a solid's boundary: that of a small mesh, or else the root's cell.
+fn extent(solid: &Solid, limit: usize) -> (Lattice, Lattice) {
+    let cell = solid.root().cell;
+    let only = (solid.sources().len() == 1).then(|| solid.sources().get(0));
+    let mesh = only.and_then(|source| source.mesh());
+    mesh.filter(|m| m.faces.len() < limit)
+        .and_then(|m| m.bounds())
+        .unwrap_or((*cell.low(), cell.high()))
+}
+
+fn count(root: &Branch, near: Option<&(Lattice, Lattice)>, limit: usize) -> usize {
+    let mut sum = 0;
+    let mut open = vec![root];
+    while let (Some(branch), true) = (open.pop(), sum < limit) {
+        if near.is_some_and(|(low, high)| !branch.cell.meets_box(low, high)) {
+            continue;
+        }
+        match &*branch.node {
+            Node::Leaf(_) => {}
+            Node::Deferred(leaf) => sum += leaf.len(),
+            Node::Cut(halves) => {
+                sum += 1;
+                open.extend(&halves.children);
+            }
+        }
+    }
+    sum.min(limit)
+}
