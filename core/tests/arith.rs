@@ -72,7 +72,7 @@ fn is_nearest(value: f64, numerator: &BigInt, denominator: &BigInt) -> bool {
     let target = BigInt::from(numerator.magnitude().clone()) << 1075u32;
     let middle =
         |low: u64| (double_in_least_steps(low) + double_in_least_steps(low + 1)) * denominator;
-    let tie_is_ours = bits % 2 == 0;
+    let tie_is_ours = bits.is_multiple_of(2);
     let above = bits == 0 || middle(bits - 1) < target || tie_is_ours && middle(bits - 1) == target;
     let below =
         value.is_infinite() || target < middle(bits) || tie_is_ours && middle(bits) == target;

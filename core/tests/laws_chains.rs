@@ -2,6 +2,8 @@
 
 mod support;
 
+use std::sync::Arc;
+
 use bspcsg::merge::leaf::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
@@ -23,7 +25,7 @@ fn any_tool(numbers: &mut Numbers) -> Solid {
             let source = half_space(normal, offset, pitch);
             source.map_or_else(
                 |_| Solid::uniform(pitch, true),
-                |plane| Solid::of_source(std::sync::Arc::new(plane), true),
+                |plane| Solid::of_source(Arc::new(plane), true),
             )
         }
         _ => Shape::any_tetrahedron(numbers, 60).solid(),
@@ -93,14 +95,41 @@ fn results_of_simple_meshes_are_reduced_once_these_are_checked() {
         assert!(solid.is_reduced() && same.is_reduced());
         assert_eq!(volume(&same), volume(&solid));
     }
-    let twice = Shape::cuboid([1; 3], [20; 3]).with(Shape::cuboid([10; 3], [30; 3]));
+    // Nothing else is near where this one overlaps itself, so that no visited cell shows it.
+    let twice = Shape::cuboid([50; 3], [300; 3]).with(Shape::cuboid([250; 3], [400; 3]));
     let raw = applied(SetOp::Union, &solid, &twice.unchecked());
+    assert!(!raw.is_reduced());
     let clean = normalized(&raw, Rule::Positive);
     assert!(!raw.is_reduced() && clean.is_reduced());
     assert_eq!(
         volume(&clean),
         volume(&applied(SetOp::Union, &solid, &twice.united()))
     );
+}
+
+/// An operand that is united with itself on the way leaves nothing to check.
+#[test]
+fn results_are_reduced_where_a_visited_cell_shows_the_overlap() {
+    let solid = Shape::cuboid([0; 3], [60; 3]).unchecked();
+    normalized(&solid, Rule::Positive);
+    let twice = Shape::cuboid([1; 3], [20; 3]).with(Shape::cuboid([10; 3], [30; 3]));
+    let result = applied(SetOp::Difference, &solid, &twice.unchecked());
+    assert!(result.is_reduced());
+    let expected = applied(SetOp::Difference, &solid, &twice.united());
+    assert_eq!(volume(&result), volume(&expected));
+}
+
+/// A solid whose united form is the solid itself does not keep itself alive.
+#[test]
+fn checked_solids_are_freed() {
+    let mesh = Shape::cuboid([0; 3], [60; 3]).unchecked();
+    let tool = Shape::cuboid([20; 3], [90; 3]).unchecked();
+    let result = applied(SetOp::Difference, &mesh, &tool);
+    let same = normalized(&result, Rule::Positive);
+    assert!(mesh.is_reduced() && tool.is_reduced() && result.is_reduced());
+    let nodes = [&mesh, &tool, &result].map(|s| Arc::downgrade(&s.root().node));
+    drop((mesh, tool, result, same));
+    assert!(nodes.iter().all(|node| node.upgrade().is_none()));
 }
 
 /// Sources stay in the order of the expression, whoever continues a table first.

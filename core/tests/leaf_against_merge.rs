@@ -130,8 +130,8 @@ fn flux_of_node(node: &Node, cell: &Cell, first: impl Fn(&Source) -> u64) -> Flu
     }
     for element in &leaf.parts {
         let part = &element.part;
-        for piece in part.pieces().iter().cloned() {
-            add(&part.source, part.face, element.flip, &piece);
+        for piece in part.pieces().iter() {
+            add(&part.source, part.face, element.flip, piece);
         }
     }
     without_zeros(flux)

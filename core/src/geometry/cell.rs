@@ -129,7 +129,7 @@ impl Cell {
         let high = self.high();
         let wall = |i: usize| {
             let axis = i / 2;
-            if i % 2 == 0 {
+            if i.is_multiple_of(2) {
                 Plane::axis_cut(axis, 2 * self.low[axis] - 1).flipped()
             } else {
                 Plane::axis_cut(axis, 2 * high[axis] + 1)

@@ -43,11 +43,13 @@ impl Flux {
 
     /// The least and the largest value that the error allows; `None` if it is beyond all bounds.
     pub fn ends(&self) -> Option<[Int<6>; 2]> {
-        let limbs = (0..4).find(|k| self.error * 2f64.powi(-64 * k) < 2f64.powi(100))?;
-        let rounded = (self.error * 2f64.powi(-64 * limbs)) as i128 + 1;
+        let in_limbs = |k: u8| self.error * 2f64.powi(-64 * i32::from(k));
+        let limbs = (0..4).find(|k| in_limbs(*k) < 2f64.powi(100))?;
+        let rounded = (in_limbs(limbs) as i128 + 1).cast_unsigned();
+        let limbs = usize::from(limbs);
         let mut error = [0; 6];
-        error[limbs as usize] = rounded as u64;
-        error[limbs as usize + 1] = (rounded >> 64) as u64;
+        error[limbs] = rounded as u64;
+        error[limbs + 1] = (rounded >> 64) as u64;
         let error = Int::from_limbs(error);
         Some([self.value - error, self.value + error])
     }
@@ -70,23 +72,21 @@ pub fn of_lattice(p: &Lattice) -> Fixed {
 
 /// An exact point, each coordinate to within `slack`.
 pub fn of_vertex(vertex: &Vertex) -> Fixed {
-    match vertex.as_lattice() {
-        Some(p) => of_lattice(p),
-        None => {
-            let h = vertex.coordinates();
-            let near = vertex.approx();
-            [0, 1, 2].map(|i| place(&h.x[i], &h.w, near[i]))
-        }
+    if let Some(p) = vertex.as_lattice() {
+        return of_lattice(p);
     }
+    let h = vertex.coordinates();
+    let near = vertex.approx();
+    [0, 1, 2].map(|i| place(&h.x[i], &h.w, near[i]))
 }
 
 /// x / w in units of 2^-`PLACES`, near a double that is off by a few units in its last place.
 ///
 /// Of w the leading 120 bits count, and as many less of x: an error of 2^-119 of the quotient.
 fn place(x: &Int<6>, w: &Int<6>, near: f64) -> i128 {
-    let shift = w.bit_length().saturating_sub(120) as i32;
+    let shift = w.bit_length().saturating_sub(120).cast_signed();
     let divisor: Int<2> = window(w, shift);
-    let dividend: Int<4> = window(x, shift - PLACES as i32);
+    let dividend: Int<4> = window(x, shift - PLACES.cast_signed());
     let first = (near * UNIT) as i128;
     let rest = dividend - divisor.mul_i128(first);
     first + (rest.to_f64() / divisor.to_f64()) as i128
@@ -99,10 +99,10 @@ fn window<const N: usize>(number: &Int<6>, shift: i32) -> Int<N> {
         Ok(i) => number.limbs().get(i).copied().unwrap_or(sign),
         Err(_) => 0,
     };
-    let (index, offset) = (shift.div_euclid(64), shift.rem_euclid(64));
-    Int::from_limbs(std::array::from_fn(|i| {
-        let at = index + i as i32;
+    let (mut at, offset) = (shift.div_euclid(64), shift.rem_euclid(64));
+    Int::from_limbs(std::array::from_fn(|_| {
         let pair = u128::from(limb(at + 1)) << 64 | u128::from(limb(at));
+        at += 1;
         (pair >> offset) as u64
     }))
 }
@@ -174,7 +174,7 @@ impl Walls {
     /// How far a point lies beyond a wall.
     fn excess(&self, wall: usize, p: &Fixed) -> i128 {
         let over = p[wall / 2] - self.at[wall];
-        if wall % 2 == 0 {
+        if wall.is_multiple_of(2) {
             -over
         } else {
             over

@@ -226,12 +226,16 @@ impl Polygon {
             if sides[i] == 0 {
                 ends.push(Arc::clone(&self.corners[i].at));
             } else if sides[i] * sides[(i + 1) % n] < 0 {
-                let meet = self.corners[i].edge.meet(&self.support, cut);
-                let at = meet.expect("an edge with ends on both sides meets the plane");
-                ends.push(Arc::new(at));
+                ends.push(self.crossing(i, cut));
             }
         }
         ends
+    }
+
+    /// Where the edge from a corner crosses a plane that has its ends on both sides.
+    fn crossing(&self, corner: usize, cut: &Plane) -> Arc<Vertex> {
+        let meet = self.corners[corner].edge.meet(&self.support, cut);
+        Arc::new(meet.expect("an edge with ends on both sides meets the plane"))
     }
 
     /// The pieces on the minus and on the plus side of a plane that cuts the polygon in a chord.

@@ -5,6 +5,8 @@
 //!
 //! # Source
 //! Counting sort; integral images (Crow 1984) for the counts in boxes of cells.
+// Places inside the window, and numbers of its cells, are never negative.
+#![allow(clippy::cast_sign_loss)]
 
 use std::sync::Arc;
 
@@ -282,7 +284,7 @@ fn plan(runs: &[Run], home: &Cell, total: usize) -> Option<Window> {
 /// In how many cells a face with these bounds is entered.
 fn entry_count(window: &Window, (low, high): &(Lattice, Lattice)) -> usize {
     let [low, high] = [window.code(low), window.code(high)];
-    cell_count(window, &window.span(0, [low, high, high]))
+    cell_count(window, &Span::new(0, [low, high, high]))
 }
 
 fn cell_count(window: &Window, span: &Span) -> usize {
@@ -317,7 +319,7 @@ impl Sorted {
             let cell = if a == b && b == c {
                 window.index_of(a)
             } else {
-                self.spans.push(window.span(element, [a, b, c]));
+                self.spans.push(Span::new(element, [a, b, c]));
                 None
             };
             self.cells.push(cell.unwrap_or(SPANS));
@@ -330,7 +332,7 @@ fn rows(window: &Window, runs: &[Run], spans: &[Span], limit: usize) -> Option<V
     let mut rows = Vec::with_capacity(2 * spans.len());
     let mut lines = 0;
     for span in spans {
-        lines += line_count(window, span);
+        lines += line_count(span);
         let Some((low, high)) = window.within(span) else {
             continue;
         };
@@ -338,11 +340,11 @@ fn rows(window: &Window, runs: &[Run], spans: &[Span], limit: usize) -> Option<V
             let (run, face) = find(runs, span.element);
             let corners = run.mesh.corners(face);
             spread(window, &corners, low, high, &mut |cell| {
-                rows.push((cell, span.element))
+                rows.push((cell, span.element));
             });
         } else {
             each_cell(window, low, high, &mut |cell| {
-                rows.push((cell, span.element))
+                rows.push((cell, span.element));
             });
         }
         if rows.len() + lines > limit {
@@ -412,8 +414,9 @@ fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>,
     for (element, cell) in (0u32..).zip(cells).filter(|(_, c)| **c != SPANS) {
         enter(*cell, element);
     }
-    rows.iter()
-        .for_each(|(cell, element)| enter(*cell, *element));
+    for (cell, element) in rows {
+        enter(*cell, *element);
+    }
     (starts, entries)
 }
 

@@ -2,6 +2,8 @@
 //!
 //! From the low corner of the window the path to another corner runs along the first axis, then the
 //! second, then the third. Only faces that lie across lines of two axes can meet one of the third.
+// Lines, and places inside the window, are never negative.
+#![allow(clippy::cast_sign_loss)]
 
 use super::window::{Span, Window};
 use crate::geometry::crossing::{triangle_change, Segment};
@@ -61,7 +63,7 @@ impl Crossings {
         corners: impl Fn(u32) -> ([Lattice; 3], bool),
     ) -> Self {
         let mut found = [Vec::new(), Vec::new(), Vec::new()];
-        for span in spans.iter().filter(|s| crosses_two(&window, s)) {
+        for span in spans.iter().filter(|s| crosses_two(s)) {
             let (corners, flip) = corners(span.element);
             let mut add = |axis: usize, x: i32, y: i32| {
                 let Some((place, change)) = crossing(&window, span, &corners, axis, [x, y]) else {
@@ -70,7 +72,7 @@ impl Crossings {
                 let line = number(&window, axis, x, y);
                 found[axis].push((key(line, place), if flip { -change } else { change }));
             };
-            visit_lines(&window, span, &mut add);
+            visit_lines(span, &mut add);
         }
         Self {
             window,
@@ -89,25 +91,22 @@ impl Crossings {
 }
 
 /// How many lines a span may meet.
-pub fn line_count(window: &Window, span: &Span) -> usize {
+pub fn line_count(span: &Span) -> usize {
     let mut count = 0;
-    if crosses_two(window, span) {
-        visit_lines(window, span, &mut |_, _, _| count += 1);
+    if crosses_two(span) {
+        visit_lines(span, &mut |_, _, _| count += 1);
     }
     count
 }
 
 /// Whether a face lies across lines of two axes.
-fn crosses_two(window: &Window, span: &Span) -> bool {
-    (0..3)
-        .filter(|i| !window.lines(span, *i).is_empty())
-        .count()
-        >= 2
+fn crosses_two(span: &Span) -> bool {
+    (0..3).filter(|i| !span.lines(*i).is_empty()).count() >= 2
 }
 
 /// Calls a function with each axis and line on which the span may be crossed.
-fn visit_lines(window: &Window, span: &Span, visit: &mut impl FnMut(usize, i32, i32)) {
-    let [x, y, z] = [0, 1, 2].map(|axis| window.lines(span, axis));
+fn visit_lines(span: &Span, visit: &mut impl FnMut(usize, i32, i32)) {
+    let [x, y, z] = [0, 1, 2].map(|axis| span.lines(axis));
     let starts = |lines: &std::ops::Range<i32>| lines.contains(&0);
     if starts(&y) && starts(&z) {
         visit(0, 0, 0);

@@ -117,6 +117,9 @@ struct Crossing {
     chord: Chord,
 }
 
+/// A face runs along a cut that another one made.
+struct Special;
+
 struct Partition<'a> {
     support: Arc<Plane>,
     cutters: &'a [Cutter<'a>],
@@ -156,8 +159,9 @@ impl Partition<'_> {
 
     fn grow(&mut self, task: Task, open: &mut Vec<Task>) -> Option<Child> {
         let mut rest = task.cutters;
-        let Some(found) = self.first_crossing(&task.polygon, &mut rest, task.parent.is_none())?
-        else {
+        let whole = task.parent.is_none();
+        let found = self.first_crossing(&task.polygon, &mut rest, whole);
+        let Some(found) = found.ok()? else {
             self.pieces.push(task.polygon);
             return Some(Child::Piece(self.pieces.len() as u32 - 1));
         };
@@ -186,27 +190,26 @@ impl Partition<'_> {
         piece: &Polygon,
         list: &mut Cutters,
         whole: bool,
-    ) -> Option<Option<Crossing>> {
+    ) -> Result<Option<Crossing>, Special> {
         while let Some(cutter) = list.pop() {
             let plane = self.plane(cutter);
             let sides = piece.sides(plane);
             if straddle(&sides) != (true, true) {
-                // A face may run along a cut that another one made.
                 if !whole && sides.iter().filter(|s| **s == 0).count() > 1 {
-                    return None;
+                    return Err(Special);
                 }
                 continue;
             }
             let chord = piece.chord(plane, &sides);
             if self.cutters[cutter as usize].face.meets(&chord) {
-                return Some(Some(Crossing {
+                return Ok(Some(Crossing {
                     cutter,
                     sides,
                     chord,
                 }));
             }
         }
-        Some(None)
+        Ok(None)
     }
 
     /// Takes the cutters in the plane of a crossing off the list; they must not overlap it.

@@ -165,7 +165,9 @@ impl<'a> Descent<'a> {
             &mut scratch,
         );
         let mut states: States = (0u32..).zip(roots.into_iter().map(State::Tree)).collect();
-        states.iter_mut().for_each(|s| s.1.settle(&cell));
+        for (_, state) in &mut states {
+            state.settle(&cell);
+        }
         let round = Round {
             depth: 0,
             start: usize::MAX / 8,
@@ -205,7 +207,9 @@ impl<'a> Descent<'a> {
             return Err(Error::new(ErrorKind::Cancelled, "stopped"));
         }
         self.counters.cells.fetch_add(1, Ordering::Relaxed);
-        states.iter_mut().for_each(|s| s.1.settle(&cell));
+        for (_, state) in &mut states {
+            state.settle(&cell);
+        }
         let residual = if has_constant(&states) {
             self.residual(&expression, &states)
         } else {

@@ -68,9 +68,10 @@ pub fn normalize(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid
     if let Some(known) = solid.united().get() {
         return Ok(known.clone());
     }
-    let united = match is_made_of_simple(solid, cancel)? {
-        true => solid.clone().with_reduced(true),
-        false => unite(solid, rule, cancel)?,
+    let united = if is_made_of_simple(solid, cancel)? {
+        solid.clone().with_reduced(true)
+    } else {
+        unite(solid, rule, cancel)?
     };
     Ok(solid.united().get_or_init(|| united).clone())
 }

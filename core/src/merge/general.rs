@@ -200,7 +200,9 @@ impl<'a> Scene<'a> {
             }
         })?;
         // The sweep's order is not that of the elements.
-        found.iter_mut().for_each(|list| list.sort_unstable());
+        for list in &mut found {
+            list.sort_unstable();
+        }
         Some(found)
     }
 
@@ -326,7 +328,7 @@ impl<'a> Scene<'a> {
             if !(0..=1).contains(&w) {
                 return None;
             }
-            labels |= (w as Labels) << operand;
+            labels |= Labels::from(w == 1) << operand;
         }
         Some(labels)
     }
@@ -530,7 +532,7 @@ struct Anchor {
     place: Spot,
 }
 
-type Anchors = SmallVec<[Anchor; 4]>;
+type Anchors = SmallVec<[Anchor; 3]>;
 
 /// What tells points apart that several elements may have in common.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]

@@ -1,4 +1,6 @@
 //! A window on one level of the hierarchy of cells: a box of equal cells, and the places in it.
+// Counts and the places of cells are never negative, and places beyond the window exceed -2.
+#![allow(clippy::cast_sign_loss)]
 
 use std::ops::Range;
 
@@ -29,6 +31,32 @@ pub struct Span {
     pub low: [i16; 3],
     /// The highest places.
     pub high: [i16; 3],
+}
+
+impl Span {
+    /// The places of a face's corners, packed as `Window::code` does.
+    pub fn new(element: u32, codes: [u32; 3]) -> Self {
+        let field = |code: u32, i: usize| ((code >> (20 - 10 * i)) & 0x3ff) as i16 - 1;
+        let ends = |pick: fn(i16, i16) -> i16| {
+            [0, 1, 2].map(|i| {
+                codes
+                    .map(|c| field(c, i))
+                    .into_iter()
+                    .reduce(pick)
+                    .unwrap_or(0)
+            })
+        };
+        Self {
+            element,
+            low: ends(i16::min),
+            high: ends(i16::max),
+        }
+    }
+
+    /// The lines on an axis that it lies across.
+    pub fn lines(&self, axis: usize) -> Range<i32> {
+        i32::from(self.low[axis]) + 1..i32::from(self.high[axis]) + 1
+    }
 }
 
 impl Window {
@@ -79,7 +107,7 @@ impl Window {
 
     /// The number of the cell with this code; `None` beyond the window.
     pub fn index_of(&self, code: u32) -> Option<u32> {
-        let at = [20, 10, 0].map(|shift| ((code >> shift) & 0x3ff) as i32 - 1);
+        let at = [20, 10, 0].map(|shift| ((code >> shift) & 0x3ff).cast_signed() - 1);
         let inside = (0..3).all(|i| (0..self.count[i]).contains(&at[i]));
         inside.then(|| self.index(at) as u32)
     }
@@ -117,34 +145,10 @@ impl Window {
         cell.size().iter().any(|s| u32::from(*s) > self.size)
     }
 
-    /// The places of a face's corners, packed as `code` does.
-    pub fn span(&self, element: u32, codes: [u32; 3]) -> Span {
-        let field = |code: u32, i: usize| ((code >> (20 - 10 * i)) & 0x3ff) as i16 - 1;
-        let ends = |pick: fn(i16, i16) -> i16| {
-            [0, 1, 2].map(|i| {
-                codes
-                    .map(|c| field(c, i))
-                    .into_iter()
-                    .reduce(pick)
-                    .unwrap_or(0)
-            })
-        };
-        Span {
-            element,
-            low: ends(i16::min),
-            high: ends(i16::max),
-        }
-    }
-
     /// The cells of the window in a span: the lowest and the highest places; `None` without any.
     pub fn within(&self, span: &Span) -> Option<([i32; 3], [i32; 3])> {
         let low = span.low.map(|p| i32::from(p).max(0));
         let high = [0, 1, 2].map(|i| i32::from(span.high[i]).min(self.count[i] - 1));
         (0..3).all(|i| low[i] <= high[i]).then_some((low, high))
-    }
-
-    /// The lines on an axis that a span lies across.
-    pub fn lines(&self, span: &Span, axis: usize) -> Range<i32> {
-        i32::from(span.low[axis]) + 1..i32::from(span.high[axis]) + 1
     }
 }

@@ -274,7 +274,7 @@ fn build(dimension: usize, flat: &[f64], pitch: Option<Pitch>) -> Result<Facets>
 }
 
 pub(super) fn facets<const D: usize>(flat: &[f64]) -> Result<Vec<[[f64; D]; D]>> {
-    if flat.len() % (D * D) != 0 {
+    if !flat.len().is_multiple_of(D * D) {
         let text = format!("facets must have shape (n, {D}, {D})");
         return Err(Error::new(ErrorKind::Shape, text));
     }

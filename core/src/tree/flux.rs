@@ -199,6 +199,8 @@ fn fixed_ends(part: &Part) -> SmallVec<[[Fixed; 2]; 8]> {
 }
 
 /// |z| / max(|x|, |y|) of a face's normal; 0 for faces that no wall across z cuts.
+// A factor of an error bound, which rounding changes by less than the bound's own slack.
+#[allow(clippy::cast_precision_loss)]
 fn slope([x, y, z]: &[i128; 3]) -> f64 {
     match x.unsigned_abs().max(y.unsigned_abs()) {
         0 => 0.0,

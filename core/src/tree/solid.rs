@@ -50,11 +50,12 @@ impl Solid {
     /// many.
     #[must_use]
     pub fn made_of(mut self, operands: &[Self]) -> Self {
-        let open = || operands.iter().filter(|o| !o.is_reduced());
-        self.reduced = open().next().is_none();
-        if open().all(|o| o.doubts.is_some() || o.is_whole_mesh()) {
-            let doubts =
-                open().flat_map(|o| o.doubts.as_deref().unwrap_or(std::slice::from_ref(o)));
+        let open: Vec<&Self> = operands.iter().filter(|o| !o.is_reduced()).collect();
+        self.reduced = open.is_empty();
+        if !self.reduced && open.iter().all(|o| o.doubts.is_some() || o.is_whole_mesh()) {
+            let doubts = open
+                .iter()
+                .flat_map(|o| o.doubts.as_deref().unwrap_or(std::slice::from_ref(*o)));
             let doubts: Vec<Self> = doubts
                 .filter(|d| !d.is_reduced())
                 .take(SPARE + 1)
@@ -116,9 +117,10 @@ impl Solid {
             Shape::Mesh(_) => (0, trusted),
             Shape::HalfSpace(plane) => (i32::from(plane.side_of_corner(&cell.corner()) < 0), true),
         };
+        let sources = [&source].into_iter().collect();
         let faces = (0..source.face_count() as u32).collect();
         let group = Group {
-            source: Arc::clone(&source),
+            source,
             flip: false,
             faces,
         };
@@ -134,7 +136,7 @@ impl Solid {
             complement: false,
             node,
         };
-        Self::new(root, pitch, [&source].into_iter().collect(), reduced)
+        Self::new(root, pitch, sources, reduced)
     }
 
     /// The root.

@@ -10,19 +10,21 @@ use crate::mesh::source::Source;
 ///
 /// A table is the beginning of a log that others may share and continue. Who is first to continue
 /// it, or continues it in the same way, shares it on; else the beginning is copied.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Table {
     log: Arc<Log>,
     len: usize,
 }
 
+type Chunk = Box<[OnceLock<Arc<Source>>]>;
+
 /// Sources that are only ever added.
 #[derive(Debug, Default)]
 struct Log {
     /// Chunk k has room for 2^k sources, so that none ever moves.
-    chunks: [OnceLock<Box<[OnceLock<Arc<Source>>]>>; 31],
+    chunks: [OnceLock<Chunk>; 31],
     /// The slots by the sources' ids; whoever adds holds this.
-    slots: RwLock<HashMap<u64, u32>>,
+    slots: RwLock<HashMap<u64, usize>>,
 }
 
 impl Log {
@@ -36,26 +38,17 @@ impl Log {
         self.chunks.get(chunk)?.get()?.get(at)?.get()
     }
 
-    fn push(&self, slots: &mut HashMap<u64, u32>, source: &Arc<Source>) {
+    fn push(&self, slots: &mut HashMap<u64, usize>, source: &Arc<Source>) {
         let (chunk, at) = Self::place(slots.len());
         let room = || (0..1usize << chunk).map(|_| OnceLock::new()).collect();
         let places = self.chunks[chunk].get_or_init(room);
         places[at].get_or_init(|| Arc::clone(source));
-        slots.insert(source.id(), slots.len() as u32);
+        slots.insert(source.id(), slots.len());
     }
 
     fn slot(&self, source: &Source) -> Option<usize> {
         let slots = self.slots.read().unwrap_or_else(PoisonError::into_inner);
-        slots.get(&source.id()).map(|s| *s as usize)
-    }
-}
-
-impl Default for Table {
-    fn default() -> Self {
-        Self {
-            log: Arc::default(),
-            len: 0,
-        }
+        slots.get(&source.id()).copied()
     }
 }
 
@@ -124,8 +117,8 @@ impl Table {
         let slots = &self.log.slots;
         let mut slots = slots.write().unwrap_or_else(PoisonError::into_inner);
         match slots.get(&source.id()) {
-            Some(slot) if (*slot as usize) < self.len => return true,
-            Some(slot) if *slot as usize == self.len => {}
+            Some(slot) if *slot < self.len => return true,
+            Some(slot) if *slot == self.len => {}
             None if slots.len() == self.len => self.log.push(&mut slots, source),
             _ => return false,
         }

@@ -3,6 +3,7 @@
 use super::node::{Branch, Node};
 use super::solid::Solid;
 use crate::geometry::plane::Lattice;
+use crate::mesh::source::TriangleMesh;
 
 /// Cuts and elements that an operation on solids may have to look at, counted up to a limit.
 ///
@@ -28,7 +29,7 @@ fn extent(solid: &Solid, limit: usize) -> (Lattice, Lattice) {
     let only = (solid.sources().len() == 1).then(|| solid.sources().get(0));
     let mesh = only.and_then(|source| source.mesh());
     mesh.filter(|m| m.faces.len() < limit)
-        .and_then(|m| m.bounds())
+        .and_then(TriangleMesh::bounds)
         .unwrap_or((*cell.low(), cell.high()))
 }
 

@@ -41,7 +41,7 @@ impl Rays<'_> {
         scene: &Scene<D>,
         answer: impl Fn(usize, [i64; D], [f64; D]) -> Result<T> + Sync,
     ) -> Result<Vec<T>> {
-        if self.origins.len() != self.heads.len() || self.origins.len() % D != 0 {
+        if self.origins.len() != self.heads.len() || !self.origins.len().is_multiple_of(D) {
             let text = format!("origins and directions must both have shape (n, {D})");
             return Err(Error::new(ErrorKind::Shape, text));
         }

@@ -42,7 +42,7 @@ fn rays<S: Cast<D>, const D: usize>(
     origins: &[f64],
     directions: &[f64],
 ) -> Result<Vec<Ray<D>>> {
-    if origins.len() != directions.len() || origins.len() % D != 0 {
+    if origins.len() != directions.len() || !origins.len().is_multiple_of(D) {
         let text = format!("origins and directions must both have shape (n, {D})");
         return Err(Error::new(ErrorKind::Shape, text));
     }
