@@ -24,6 +24,9 @@ STREAM = "-"
 #: Millimetres in each unit that ``--unit`` takes.
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "ft": 304.8, "um": 0.001}
 
+#: What can be done where a mesh is refused because it is not closed.
+ON_INVALID = "  --on-invalid repair fills it; --on-invalid warn goes on without it."
+
 
 @dataclass(frozen=True)
 class Inputs:
@@ -132,10 +135,7 @@ class Inputs:
                 return self._left_out(error)
             if self.on_invalid == "repair":
                 return self._repaired(raw, path)
-            message = (
-                f"{error.message}\n  Try: {repair_command(path)}"
-                "\n  --on-invalid repair fills it; --on-invalid warn goes on without it."
-            )
+            message = f"{error.message}\n  Try: {repair_command(path)}\n{ON_INVALID}"
             raise InvalidMeshError(message, error.code, error.where) from error
 
     def _solid_of(self, raw: "RawMesh", path: Path) -> "Solid":

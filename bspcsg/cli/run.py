@@ -2,15 +2,16 @@
 
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
 
-from ..errors import FormatError
-from .files import shown
+from ..errors import FormatError, InvalidMeshError
+from .files import ON_INVALID, shown
 from .job import Job
 from .options import TIMEOUT, common, making
 
@@ -155,13 +156,25 @@ class _Run(Job):
 
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", csg.CsgWarning)
-            solid = csg.load(
-                self._script,
-                polish=self.settings["polish"],
-                on_invalid=self.settings["on_invalid"],
-                **options,
-            )
+            with self._advised():
+                solid = csg.load(
+                    self._script,
+                    polish=self.settings["polish"],
+                    on_invalid=self.settings["on_invalid"],
+                    **options,
+                )
         # A polished model is evaluated twice, and warns as often.
         for said in dict.fromkeys(str(warning.message) for warning in caught):
             self.out.warning(said)
         return solid
+
+    @contextmanager
+    def _advised(self) -> Iterator[None]:
+        """Add to the refusal of a mesh that is not closed what can be done about it."""
+        try:
+            yield
+        except InvalidMeshError as error:
+            if error.code != "not_closed" or self.settings["on_invalid"] != "error":
+                raise
+            message = f"{error.message}\n{ON_INVALID}"
+            raise InvalidMeshError(message, error.code, error.where) from error

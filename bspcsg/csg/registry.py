@@ -71,9 +71,9 @@ class Evaluation:
                 raise
             if self.on_invalid == "repair":
                 made = repair(RawMesh(vertices, faces)).mesh
-                self.warn(node, f"{error.message} It is repaired")
+                self.warn(node, f"{error.message} It is repaired.")
                 return Solid(made.vertices, made.faces, winding="nonzero")
-            self.warn(node, f"{error.message} It is left out")
+            self.warn(node, f"{error.message} It is left out.")
             return None
 
     def same_kind(

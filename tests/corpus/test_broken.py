@@ -1,6 +1,7 @@
 """Every broken file ends in its exit code and one clear line, with nothing written."""
 
 import os
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -48,17 +49,27 @@ def test_there_are_many_cases_with_different_names() -> None:
     assert {case.code for case in cases} == {UNREADABLE, REFUSED}
 
 
+def hints(line: str, arguments: tuple[str, ...]) -> list[str]:
+    """Return what must stand below an error: what closes an open mesh, whose hole is named."""
+    if "the mesh is not closed" not in line:
+        return []
+    assert re.search(r"\d edges have no .* belongs to face \d+ and runs from \(.*\) to \(", line)
+    advice = "  --on-invalid repair fills it; --on-invalid warn goes on without it."
+    if arguments[0] == "run":
+        return [advice]
+    name = Path(next(word for word in arguments if f" {word}: " in line))
+    return [f"  Try: bspcsg repair {name} -o {name.stem}-fixed{name.suffix}", advice]
+
+
 def refused(capsys: Capture, code: int, *arguments: str) -> str:
     """Assert that a command writes nothing and says one line; return it."""
     before = sorted(os.listdir())
     found, out, err = ran(capsys, *arguments)
-    lines = [
-        line
-        for line in err.splitlines()
-        if not line.startswith(("note: ", "warning: ", "  Try: bspcsg repair "))
-    ]
+    told = [line for line in err.splitlines() if not line.startswith(("note: ", "warning: "))]
+    lines = [line for line in told if not line.startswith("  ")]
     assert (found, out) == (code, ""), err
     assert len(lines) == 1 and lines[0].startswith("bspcsg: error: "), err
+    assert told == lines + hints(lines[0], arguments), err
     assert lines[0].endswith((".", "…")) and 30 < len(lines[0]) < 500
     assert sorted(os.listdir()) == before
     return lines[0]
