@@ -20,8 +20,9 @@ def describe(node: Node, factors: Factors, mesh: Mesh | None) -> str:
         count = len(make_plan(node).operands)
         return f"pending: {count} operand{'' if count == 1 else 's'}{moved}"
     if isinstance(content, MeshLeaf):
-        bounds = np.array([content.vertices.min(axis=0), content.vertices.max(axis=0)])
-        return _size(len(content.faces), bounds) + moved
+        vertices, faces = content.arrays()
+        bounds = np.array([vertices.min(axis=0), vertices.max(axis=0)])
+        return _size(len(faces), bounds) + moved
     if isinstance(content, PlaneLeaf):
         return "half-space" + moved
     if isinstance(content, ConstantLeaf):

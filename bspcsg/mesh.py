@@ -4,9 +4,8 @@ This layer knows arrays only; it does not know how a mesh was made.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -146,40 +145,6 @@ class Mesh:
     def _edges(self) -> IndexArray:
         ends = np.sort(self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
         return np.unique(ends[:, 0] * np.int64(len(self.vertices)) + ends[:, 1])
-
-
-class TracedMesh(Mesh):
-    """A mesh that asks where its faces came from when somebody wants to know.
-
-    Parameters
-    ----------
-    vertices : (n, 3) float64
-    faces : (m, 3) int64
-    origins : callable
-        Returns `source`, (m, 2) int64; called once at most.
-    """
-
-    def __init__(
-        self, vertices: FloatArray, faces: IndexArray, origins: Callable[[], IndexArray]
-    ) -> None:
-        for array in (vertices, faces):
-            array.flags.writeable = False
-        vars(self).update(vertices=vertices, faces=faces, _origins=origins)
-
-    def __reduce__(self) -> tuple[type[Mesh], tuple[Any, ...]]:
-        """Pickle and copy as a plain mesh."""
-        return Mesh, (self.vertices, self.faces, self.source)
-
-    def frozen(self) -> Mesh:
-        """Return this mesh, whose arrays are read-only from the start."""
-        return self
-
-    @cached_property
-    def source(self) -> IndexArray:  # type: ignore[override]
-        """Where each face came from, (m, 2) int64, read-only."""
-        source: IndexArray = vars(self).pop("_origins")()
-        source.flags.writeable = False
-        return source
 
 
 def surfaces_of(faces: IndexArray, vertex_count: int) -> IndexArray:

@@ -24,7 +24,7 @@ from .errors import core_errors, invalid_parameter
 from .expression import Node, Operator, Placed, complement, evaluate, operation
 from .leaf import ConstantLeaf, Leaf, MeshLeaf, TreeLeaf, tree_of
 from .measure import Measured
-from .mesh import Mesh, TracedMesh
+from .mesh import Mesh
 from .transform import Factors, common_prefix
 
 if TYPE_CHECKING:
@@ -301,7 +301,7 @@ class Solid(Measured):
         if self._mesh is None:
             with core_errors():
                 tree = self.tree
-                self._mesh = TracedMesh(*tree.to_mesh(), tree.origins().array)
+                self._mesh = Mesh(*tree.to_mesh(), tree.origins()).frozen()
         return self._mesh
 
     def normalized(self) -> "Solid":

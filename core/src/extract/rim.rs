@@ -19,11 +19,13 @@ use crate::mesh::topology::NONE;
 const KEPT: u8 = 1;
 const TURNED: u8 = 2;
 const OTHER: u8 = 4;
+/// The vertex lies on edges that cancel along lines only, and have no opposite by index.
+const OPEN: u8 = 8;
 
 /// The rims of all sources, by slot.
 #[derive(Debug)]
 pub struct Rims {
-    rims: Vec<Rim>,
+    by_slot: Vec<Rim>,
     /// The half-edges near a rim by their ends, found on first use.
     by_ends: Vec<OnceLock<HashMap<[u32; 2], u32>>>,
     /// Slots of which fates have changed.
@@ -46,7 +48,7 @@ impl Rims {
         let rim = |slot: &usize| Rim::of(sources.get(*slot), &fates[*slot]);
         let large = fates.iter().map(Vec::len).sum::<usize>() > CHUNK;
         Self {
-            rims: if large {
+            by_slot: if large {
                 slots.par_iter().map(rim).collect()
             } else {
                 slots.iter().map(rim).collect()
@@ -65,20 +67,20 @@ impl Rims {
     pub fn renew(&mut self, fates: &[Vec<Fate>], sources: &Sources) {
         for slot in std::mem::take(&mut self.outdated) {
             let slot = slot as usize;
-            self.rims[slot] = Rim::of(sources.get(slot), &fates[slot]);
+            self.by_slot[slot] = Rim::of(sources.get(slot), &fates[slot]);
             self.by_ends[slot] = OnceLock::new();
         }
     }
 
     /// The rim of a source.
     pub fn get(&self, slot: u32) -> &Rim {
-        &self.rims[slot as usize]
+        &self.by_slot[slot as usize]
     }
 
     /// The frontier: half-edges of whole faces whose mates are not whole and turned alike.
     pub fn frontier(&self, fates: &[Vec<Fate>], sources: &Sources) -> Vec<FrontierEdge> {
         let mut found = Vec::new();
-        for ((slot, rim), fates) in (0u32..).zip(&self.rims).zip(fates) {
+        for ((slot, rim), fates) in (0u32..).zip(&self.by_slot).zip(fates) {
             if let Some(mesh) = sources.get(slot as usize).mesh() {
                 let halves = rim.half_edges(mesh, fates).into_iter();
                 found.extend(halves.map(|half| FrontierEdge { slot, half }));
@@ -93,7 +95,7 @@ impl Rims {
     pub fn across(&self, slot: u32, half: u32, sources: &Sources) -> Option<u32> {
         let source = sources.get(slot as usize);
         let mesh = source.mesh()?;
-        let rim = &self.rims[slot as usize];
+        let rim = &self.by_slot[slot as usize];
         let [a, b] = half_edge_ends(mesh, half);
         if !rim.is_used(a) || !rim.is_used(b) {
             return None;
@@ -126,9 +128,8 @@ impl Rim {
             touch: touch(mesh, fates),
             near: Vec::new(),
         };
-        // Edges that cancel along lines only have no opposite by index.
         for vertex in source.joints().map_or(&[][..], |j| &j.open) {
-            rim.touch[*vertex as usize] |= KEPT | TURNED;
+            rim.touch[*vertex as usize] |= OPEN;
         }
         if (0..mesh.vertices.len() as u32).any(|v| rim.is_mixed(v)) {
             let near = |(_, (corners, fate)): &(u32, (&[u32; 3], &Fate))| {

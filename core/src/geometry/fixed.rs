@@ -273,24 +273,16 @@ impl<'a> Triangle<'a> {
 
     fn cut(&self, ring: &[Cut], walls: &Walls, wall: usize, kept: &mut SmallVec<[Cut; 12]>) {
         kept.clear();
-        let Some(mut from) = ring.last() else {
-            return;
-        };
-        let mut before = walls.excess(wall, &from.0);
-        for to in ring {
-            let after = walls.excess(wall, &to.0);
-            if (before < 0 && after > 0) || (before > 0 && after < 0) {
-                let at = self.crossing(from, &to.0, walls, wall);
-                kept.push((at, if after > 0 { 3 + wall } else { from.1 }));
-            } else if before == 0 && after > 0 {
-                if let Some(corner) = kept.last_mut() {
-                    corner.1 = 3 + wall;
-                }
+        for (i, p) in ring.iter().enumerate() {
+            let q = &ring[(i + 1) % ring.len()];
+            let (a, b) = (walls.excess(wall, &p.0), walls.excess(wall, &q.0));
+            if a <= 0 {
+                kept.push((p.0, if a == 0 && b > 0 { 3 + wall } else { p.1 }));
             }
-            if after <= 0 {
-                kept.push(*to);
+            if (a < 0 && b > 0) || (a > 0 && b < 0) {
+                let at = self.crossing(p, &q.0, walls, wall);
+                kept.push((at, if b > 0 { 3 + wall } else { p.1 }));
             }
-            (from, before) = (to, after);
         }
     }
 
@@ -434,5 +426,42 @@ impl Reach {
         let product = (self.extent + 8.0 * s) * (self.size + self.extent) * (1.0 + slope);
         let count = corners as f64 * f64::from(rounds);
         1.0 + 64.0 * count * s * product * 2f64.powi(-64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn point(reach: i64) -> impl Strategy<Value = Lattice> {
+        [-reach..=reach, -reach..=reach, -reach..=reach]
+    }
+
+    fn sixfold(ring: &Ring) -> f64 {
+        through_ring(ring).to_f64() / 2f64.powi(FLUX_PLACES.cast_signed())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        /// Few coordinates, so that edges meet where walls do.
+        #[test]
+        fn triangles_clipped_from_their_corners_are_those_clipped_wall_by_wall(
+            corners in [point(9), point(9), point(9)],
+            [p, q] in [point(9), point(9)],
+        ) {
+            let low = [0, 1, 2].map(|i| i64::min(p[i], q[i]));
+            let high = [0, 1, 2].map(|i| i64::max(p[i], q[i]));
+            let walls = Walls::of(&Cell::around(&low, &high));
+            let normal = [(1, 2), (2, 0), (0, 1)].map(|(u, v)| minor(&corners, u, v));
+            prop_assume!(normal[2] != 0);
+            let once = Triangle::new(&corners, normal).clipped(&walls);
+            let mut ring: Ring = corners.iter().map(of_lattice).collect();
+            walls.clip(&mut ring);
+            let gap = once.map_or(0.0, |ring| sixfold(&ring)) - sixfold(&ring);
+            prop_assert!(gap.abs() < 1e-9, "{} apart", gap);
+        }
     }
 }

@@ -44,7 +44,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("CoreError", module.py().get_type::<errors::CoreError>())?;
     module.add_class::<tree::Tree>()?;
-    module.add_class::<tree::Origins>()?;
     module.add_class::<fragments::PyFragmentTree>()?;
     module.add_class::<objects::ObjectTree>()?;
     module.add_class::<ray_tree::RayTree>()?;

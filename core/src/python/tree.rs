@@ -46,21 +46,8 @@ pub struct Tree {
 struct Rounded {
     vertices: Py<PyArray2<f64>>,
     triangles: Py<PyArray2<i64>>,
-    origins: Py<Origins>,
+    origins: Vec<[u32; 2]>,
     findings: Vec<Finding>,
-}
-
-/// Where the triangles of a mesh came from. See `_core.pyi`.
-#[pyclass(frozen, module = "bspcsg._core")]
-pub struct Origins {
-    rows: Vec<[u32; 2]>,
-}
-
-#[pymethods]
-impl Origins {
-    fn array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
-        array(py, wide(&self.rows))
-    }
 }
 
 impl Tree {
@@ -102,7 +89,7 @@ impl Tree {
         let rounded = Rounded {
             vertices: array(py, vertices)?.unbind(),
             triangles: array(py, triangles)?.unbind(),
-            origins: Py::new(py, Origins { rows: origins })?,
+            origins,
             findings,
         };
         Ok(self.rounded.get_or_init(|| rounded))
@@ -215,8 +202,9 @@ impl Tree {
         ))
     }
 
-    fn origins(&self, py: Python<'_>) -> PyResult<Py<Origins>> {
-        Ok(self.rounded(py, 0)?.origins.clone_ref(py))
+    /// For each triangle of the mesh its source and face.
+    fn origins<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        array(py, wide(&self.rounded(py, 0)?.origins))
     }
 
     /// Whether the tree holds the arrays it was made from, each face as it was.
