@@ -69,6 +69,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
 )
 @click.option(
     "--runs",
+    metavar="N",
     type=click.IntRange(1),
     default=5,
     show_default=True,
@@ -77,22 +78,28 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
 @click.option("--quick", is_flag=True, help="Small forms of the cases, in seconds.")
 @click.option(
     "--limit",
+    metavar="SECONDS",
     type=click.FloatRange(0, min_open=True),
     help="Seconds after which a call is stopped; by default 300, and 900 for the dome.",
 )
 @click.option(
     "--budget",
+    metavar="SECONDS",
     type=click.FloatRange(0, min_open=True),
     default=150.0,
     show_default=True,
     help="Seconds for all runs of an engine; slow ones are timed fewer times.",
 )
 @click.option(
-    "--steps", type=click.IntRange(1), help="Steps of the dome that are carved; by default all."
+    "--steps",
+    metavar="N",
+    type=click.IntRange(1),
+    help="Steps of the dome that are carved; by default all.",
 )
 @click.option(
     "--memory",
     "memory_gb",
+    metavar="GIB",
     type=click.FloatRange(0),
     default=12.0,
     show_default=True,
@@ -101,6 +108,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
 @click.option(
     "--data",
     "shared",
+    metavar="FOLDER",
     type=click.Path(path_type=Path, file_okay=False),
     default=Path("../shared"),
     show_default=True,
