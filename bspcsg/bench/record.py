@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import FormatError
+from ..io.atomic import write_file
 from .engines import installed
 
 #: Raised whenever a field changes its meaning.
@@ -41,8 +42,15 @@ def machine() -> dict[str, Any]:
 
 
 def write(record: dict[str, Any], path: Path) -> None:
-    """Write a record."""
-    path.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    """Write a record.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be written; code ``"unwritable"``.
+    """
+    text = json.dumps(record, indent=1, ensure_ascii=False) + "\n"
+    write_file(path, [text.encode("utf-8")])
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -54,11 +62,17 @@ def read(path: Path) -> dict[str, Any]:
         If the file is none, or of another schema.
     """
     try:
-        record = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise FormatError(f"{path}: cannot be read as a record: {error}.", "unreadable") from error
+        data = path.read_bytes()
+    except OSError as error:
+        message = f"{path}: cannot read this file: {error.strerror}."
+        raise FormatError(message, "unreadable") from error
+    try:
+        record = json.loads(data)
+    except (ValueError, RecursionError):
+        record = None
     if not isinstance(record, dict) or record.get("type") != "bench":
-        raise FormatError(f"{path}: not a record of bspcsg bench.", "unreadable")
+        message = f"{path}: this is no record; bspcsg bench --json writes such files."
+        raise FormatError(message, "unreadable")
     if record.get("schema") != SCHEMA:
         said = f"schema {record.get('schema')}, and this version reads {SCHEMA}"
         raise FormatError(f"{path}: {said}; measure it again.", "unreadable")

@@ -7,6 +7,7 @@ close first.
 
 import json
 import os
+import sys
 import threading
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -14,6 +15,9 @@ from pathlib import Path
 from typing import Any, Literal, NotRequired, Self, TypedDict, cast
 
 from ..errors import FormatError
+
+#: The name that stands for standard input.
+STREAM = "-"
 
 #: Version of the lines.
 SCHEMA = 1
@@ -192,7 +196,7 @@ class Results:
 
 
 def read_results(paths: Iterable[str | os.PathLike[str]]) -> Results:
-    """Read results files, such as the shards of one campaign.
+    """Read results files, such as the shards of one campaign; ``-`` is standard input.
 
     Raises
     ------
@@ -213,9 +217,11 @@ def read_results(paths: Iterable[str | os.PathLike[str]]) -> Results:
 
 def _lines(path: Path) -> list[dict[str, Any]]:
     try:
-        text = path.read_text(encoding="utf-8", errors="replace")
+        # Meshes kept beside a file that comes as a stream are looked for where it is read.
+        data = sys.stdin.buffer.read() if str(path) == STREAM else path.read_bytes()
     except OSError as error:
         raise FormatError(f"{path}: cannot read: {error.strerror}.", "unreadable") from error
+    text = data.decode("utf-8", errors="replace")
     *whole, _torn = text.split("\n")
     return [_parsed(line, path, number) for number, line in enumerate(whole, 1) if line.strip()]
 

@@ -1,6 +1,8 @@
 """The verb that measures: bench."""
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -8,6 +10,7 @@ import click
 
 from ..errors import FormatError
 from . import output
+from .files import refuse_folder
 from .tables import table_text
 
 if TYPE_CHECKING:
@@ -66,6 +69,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
 )
 @click.option(
     "--runs",
+    metavar="N",
     type=click.IntRange(1),
     default=5,
     show_default=True,
@@ -74,22 +78,28 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
 @click.option("--quick", is_flag=True, help="Small forms of the cases, in seconds.")
 @click.option(
     "--limit",
+    metavar="SECONDS",
     type=click.FloatRange(0, min_open=True),
     help="Seconds after which a call is stopped; by default 300, and 900 for the dome.",
 )
 @click.option(
     "--budget",
+    metavar="SECONDS",
     type=click.FloatRange(0, min_open=True),
     default=150.0,
     show_default=True,
     help="Seconds for all runs of an engine; slow ones are timed fewer times.",
 )
 @click.option(
-    "--steps", type=click.IntRange(1), help="Steps of the dome that are carved; by default all."
+    "--steps",
+    metavar="N",
+    type=click.IntRange(1),
+    help="Steps of the dome that are carved; by default all.",
 )
 @click.option(
     "--memory",
     "memory_gb",
+    metavar="GIB",
     type=click.FloatRange(0),
     default=12.0,
     show_default=True,
@@ -98,6 +108,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
 @click.option(
     "--data",
     "shared",
+    metavar="FOLDER",
     type=click.Path(path_type=Path, file_okay=False),
     default=Path("../shared"),
     show_default=True,
@@ -129,15 +140,42 @@ def bench(cases: list[str], listed: bool, **given: Any) -> int:
     if listed:
         click.echo(_listing(cases))
         return output.DONE
+    _refuse_early(given)
     source: Path | None = given["source"]
     from ..bench import record as records
 
     record = records.read(source) if source else _measured(cases, given)
-    _show(record, given["style"])
-    if given["counters"]:
-        click.echo(_counters(record))
-    _write(record, given["record_path"], given["plot_path"])
-    return output.FOUND if _is_wrong(record) else output.DONE
+    with _whole_record(source):
+        text = _table(record, given["style"])
+        if given["counters"]:
+            text += _counters(record) + "\n"
+        plotted = _plot(record) if given["plot_path"] else ""
+        code = output.FOUND if _is_wrong(record) else output.DONE
+    click.echo(text, nl=False)
+    _write(record, plotted, given["record_path"], given["plot_path"])
+    return code
+
+
+def _refuse_early(given: dict[str, Any]) -> None:
+    """Refuse what would fail only after everything was measured."""
+    for path in (given["record_path"], given["plot_path"]):
+        if path:
+            refuse_folder(path)
+    core: Path | None = given["core"]
+    if core and not core.exists():
+        raise FormatError(f"{core}: there is no such build of the core.", "unreadable")
+
+
+@contextmanager
+def _whole_record(source: Path | None) -> Iterator[None]:
+    """Say which file lacks something, if a record was read and is not what we once wrote."""
+    try:
+        yield
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        if source is None:
+            raise
+        message = f"{source}: this record is damaged; measure it again."
+        raise FormatError(message, "malformed") from error
 
 
 def _listing(cases: list[str]) -> str:
@@ -198,15 +236,13 @@ def _tell(line: str) -> None:
         click.echo(f"\r\033[K{line}", nl=False, err=True)
 
 
-def _show(record: dict[str, Any], style: str) -> None:
+def _table(record: dict[str, Any], style: str) -> str:
     from ..bench import table
 
     if style == "md":
-        click.echo(table.markdown(record), nl=False)
-        return
+        return table.markdown(record)
     head, *lines = table.lines_of(record, titles=False)
-    click.echo(table_text(head, lines))
-    click.echo(table.about(record))
+    return f"{table_text(head, lines)}\n{table.about(record)}\n"
 
 
 def _counters(record: dict[str, Any]) -> str:
@@ -216,18 +252,22 @@ def _counters(record: dict[str, Any]) -> str:
     return table_text(head, lines, right=head[2:])
 
 
-def _write(record: dict[str, Any], record_path: Path | None, plot_path: Path | None) -> None:
-    from ..bench import record as records
+def _plot(record: dict[str, Any]) -> str:
     from ..bench.plot import plot
 
-    try:
-        if record_path:
-            records.write(record, record_path)
-        if plot_path:
-            plot_path.write_text(plot(record), encoding="utf-8")
-    except OSError as error:
-        message = f"{error.filename}: cannot be written: {error.strerror}."
-        raise FormatError(message, "unwritable") from error
+    return plot(record)
+
+
+def _write(
+    record: dict[str, Any], plotted: str, record_path: Path | None, plot_path: Path | None
+) -> None:
+    from ..bench import record as records
+    from ..io.atomic import write_file
+
+    if record_path:
+        records.write(record, record_path)
+    if plot_path:
+        write_file(plot_path, [plotted.encode("utf-8")])
 
 
 def _is_wrong(record: dict[str, Any]) -> bool:

@@ -35,10 +35,11 @@ _MANY = 4
     "-o",
     "--output",
     "target",
+    metavar="FILE",
     type=PATH,
     help="File to write; with several inputs, % stands for the name of each.",
 )
-@click.option("--outdir", type=PATH, help="Folder for the files, with --to.")
+@click.option("--outdir", metavar="FOLDER", type=PATH, help="Folder for the files, with --to.")
 @writing
 @click.option(
     "--up",

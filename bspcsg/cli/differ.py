@@ -27,17 +27,21 @@ Example:
 @click.argument("b", type=PATH)
 @click.option(
     "--tol",
+    metavar="DISTANCE",
     type=click.FloatRange(min=0),
     default=0.0,
     help="Distance of the surfaces, in model units, up to which they count as the same.",
 )
 @click.option(
     "--samples",
+    metavar="N",
     type=click.IntRange(min=0),
     default=10_000,
     help="Points on the difference to measure distances from; 0 for none.",
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, help="Of the random points.")
+@click.option(
+    "--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Of the random points."
+)
 @reading
 @sets
 @common

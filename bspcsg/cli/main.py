@@ -146,7 +146,7 @@ def run(arguments: Sequence[str]) -> int:
             _discard_output()
             message = f"standard output: cannot write: {error.strerror}."
             return output.tell_error(FormatError(message, "unwritable"), as_json=False)
-        return _failed(error, "--json" in arguments)
+        return _failed(error, _asks_for_json(arguments))
 
 
 def _as_it_came(error: UnicodeError) -> tuple[str | bytes, int]:
@@ -181,6 +181,11 @@ def _usage_error(error: click.ClickException) -> int:
     if context is not None:
         click.echo(f"  Try: {context.command_path} --help", err=True)
     return error.exit_code
+
+
+def _asks_for_json(arguments: Sequence[str]) -> bool:
+    """Whether a document is wanted on standard output; bench names a file with the option."""
+    return "--json" in arguments and arguments[0] != "bench"
 
 
 def _failed(error: Exception, as_json: bool) -> int:

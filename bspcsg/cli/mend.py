@@ -36,18 +36,21 @@ _DEFECTS = {
 @writing
 @click.option(
     "--steps",
+    metavar="STEPS",
     default="weld,dedup,split,orient,fill",
     show_default=True,
     help="Which steps to take, apart by commas.",
 )
 @click.option(
     "--weld",
+    metavar="DISTANCE",
     type=click.FloatRange(min=0),
     default=0.0,
     help="Join vertices up to this distance, in model units; equal ones are joined anyway.",
 )
 @click.option(
     "--max-hole",
+    metavar="N",
     type=click.IntRange(min=3),
     default=1000,
     show_default=True,

@@ -21,6 +21,7 @@ _THREADS = click.option(
     "--jobs",
     "--threads",
     "threads",
+    metavar="N",
     type=click.IntRange(0, _MOST_THREADS),
     default=0,
     help="Number of threads; 0, the default, for all cores.",
@@ -72,6 +73,7 @@ _SETS = [
     ),
     click.option(
         "--pitch",
+        metavar="PITCH",
         type=click.IntRange(-22, 22),
         help="Lattice step 10^PITCH units; by default -9, or what the size asks for.",
     ),
@@ -95,6 +97,7 @@ _WRITING = [
     click.option("--ascii", "text", is_flag=True, help="Write STL and PLY as text."),
     click.option(
         "--digits",
+        metavar="N",
         type=click.IntRange(1, 17),
         help="Significant digits of coordinates; by default as many as give the same doubles.",
     ),
@@ -111,6 +114,7 @@ _DRAWING = [
         "--output",
         "target",
         required=True,
+        metavar="FILE",
         type=PATH,
         help="File to write, its format by its suffix; - for standard output.",
     ),
@@ -131,7 +135,10 @@ CHECK = click.option(
 )
 
 TIMEOUT = click.option(
-    "--timeout", type=click.FloatRange(min=0, min_open=True), help="Seconds to give it."
+    "--timeout",
+    metavar="SECONDS",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Seconds to give it.",
 )
 
 

@@ -39,6 +39,7 @@ _FORMATS = ("html", "md", "json", "junit")
     "--output",
     "target",
     required=True,
+    metavar="FILE",
     type=PATH,
     help="File to write; - for standard output.",
 )
@@ -50,12 +51,15 @@ _FORMATS = ("html", "md", "json", "junit")
 )
 @click.option(
     "--cards",
+    metavar="N",
     type=click.IntRange(0),
     default=40,
     show_default=True,
     help="Cases shown with pictures and all numbers, failures first.",
 )
-@click.option("--title", default="Validation report", show_default=True, help="Of the page.")
+@click.option(
+    "--title", metavar="TITLE", default="Validation report", show_default=True, help="Of the page."
+)
 @common
 def report(files: tuple[Path, ...], target: Path, **given: Any) -> int:
     """Make one page of the results of bspcsg validate; nothing is computed again.

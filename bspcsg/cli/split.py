@@ -35,6 +35,7 @@ Examples:
     "--output",
     "target",
     required=True,
+    metavar="FILE",
     type=PATH,
     help="Files to write; % stands for the number of each, else it goes before the suffix.",
 )
@@ -44,7 +45,9 @@ Examples:
     callback=numbers("plane", "nx,ny,nz,d", "0,0,1,2.5"),
     help="Cut along nx x + ny y + nz z = d.",
 )
-@click.option("--by", "cutter", type=PATH, help="Cut along the surface of another solid.")
+@click.option(
+    "--by", "cutter", metavar="FILE", type=PATH, help="Cut along the surface of another solid."
+)
 @writing
 @CHECK
 @reading

@@ -39,7 +39,12 @@ _FORMS = {
 @click.command("tree", short_help="Show or convert the tree of an OpenSCAD script.", epilog=_EPILOG)
 @click.argument("file", type=PATH, metavar="FILE")
 @click.option(
-    "-o", "--output", "target", type=PATH, help="File to write; standard output by default."
+    "-o",
+    "--output",
+    "target",
+    metavar="FILE",
+    type=PATH,
+    help="File to write; standard output by default.",
 )
 @click.option(
     "--to",

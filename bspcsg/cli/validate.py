@@ -56,6 +56,7 @@ _FILE = click.Path(path_type=Path, readable=False)
 )
 @click.option(
     "--poses",
+    metavar="N",
     type=click.IntRange(min=1),
     help="Draw so many pairs, half in random and half in coincident poses.",
 )
@@ -65,9 +66,12 @@ _FILE = click.Path(path_type=Path, readable=False)
     callback=as_pose,
     help=f"Place the second of each pair so ({', '.join(POSES)}); a number for one draw.",
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, help="Of the random draws.")
+@click.option(
+    "--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Of the random draws."
+)
 @click.option(
     "--max-triangles",
+    metavar="N",
     type=click.IntRange(min=1),
     help="Leave larger files out; files that are no solids are left out of --poses too.",
 )
@@ -79,14 +83,24 @@ _FILE = click.Path(path_type=Path, readable=False)
     help="Ask these in every case besides manifold3d: pymeshlab, openscad. By default they are"
     " asked where manifold3d disagrees or has no answer, and openscad about scripts.",
 )
-@click.option("--results", type=_FILE, help="JSON lines to append each finished case to.")
-@click.option("--junit", type=_FILE, help="JUnit XML to write at the end.")
-@click.option("--markdown", type=_FILE, help="Markdown summary to write at the end.")
 @click.option(
-    "-j", "--jobs", type=click.IntRange(0, 1024), default=0, help="Cases at once; 0 for all cores."
+    "--results", metavar="FILE", type=_FILE, help="JSON lines to append each finished case to."
+)
+@click.option("--junit", metavar="FILE", type=_FILE, help="JUnit XML to write at the end.")
+@click.option(
+    "--markdown", metavar="FILE", type=_FILE, help="Markdown summary to write at the end."
+)
+@click.option(
+    "-j",
+    "--jobs",
+    metavar="N",
+    type=click.IntRange(0, 1024),
+    default=0,
+    help="Cases at once; 0 for all cores.",
 )
 @click.option(
     "--timeout",
+    metavar="SECONDS",
     type=click.FloatRange(min=0, min_open=True),
     default=300.0,
     show_default=True,
@@ -115,6 +129,7 @@ _FILE = click.Path(path_type=Path, readable=False)
 )
 @click.option(
     "--samples",
+    metavar="N",
     type=click.IntRange(min=0),
     default=500,
     show_default=True,

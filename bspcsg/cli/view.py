@@ -36,6 +36,7 @@ _LARGE = 20_000_000
     "-o",
     "--output",
     "target",
+    metavar="FILE",
     type=click.Path(path_type=Path, readable=False),
     help="Page to write; by default one in the folder for temporary files.",
 )

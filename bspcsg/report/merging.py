@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from ..campaign.record import (
@@ -17,7 +17,7 @@ from ..errors import FormatError
 from .conformity import departure
 
 
-def merged(paths: Iterable[str | os.PathLike[str]]) -> Results:
+def merged(paths: Sequence[str | os.PathLike[str]]) -> Results:
     """Read results files as one; the order in which they are named does not matter.
 
     Of several lines about one case the last counts; of several files the one that was started last.
@@ -33,7 +33,8 @@ def merged(paths: Iterable[str | os.PathLike[str]]) -> Results:
         everything.cases.update(results.cases)
         everything.folders.update(results.folders)
     if not everything.cases:
-        raise FormatError("There is no case in these results; nothing to report.", "empty_results")
+        names = ", ".join(str(path) for path in paths)
+        raise FormatError(f"{names}: there is no case in these results.", "empty_results")
     return everything
 
 

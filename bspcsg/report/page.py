@@ -11,7 +11,7 @@ from .cards import Purse, cards_of, picked
 from .charts import Chart, share_below
 from .merging import ordered, versions_of
 from .table import table
-from .wording import milliseconds, number, tone, vector, whole
+from .wording import meaning, milliseconds, number, tone, vector, whole
 
 #: Characters of one card beside its pictures and its view, about.
 _CARD_TEXT = 4_000
@@ -64,7 +64,10 @@ def report_page(
         title=title,
         lead=_lead(results),
         failed=any(map(is_failure, cases)),
-        verdicts=[(name, count, tone(name)) for name, count in counts_by_verdict(cases).items()],
+        verdicts=[
+            (name, count, tone(name), meaning(name))
+            for name, count in counts_by_verdict(cases).items()
+        ],
         charts=_charts(results),
         runs=results.runs,
         versions=versions_of(results.runs),
@@ -113,11 +116,13 @@ def _charts(results: Results) -> list[tuple[str, str, Chart]]:
         found, bounds = case["set_difference"], case["bounds"]
         if found and bounds and bounds["same_set"] > 0:
             ratios.append(found["thickness"] / bounds["same_set"])
+    # Some engines are asked about the hard cases only, so their curves are of few.
+    timed = [(f"{name}, {whole(len(found))} cases", found) for name, found in times.items()]
     drawn = (
-        ("Time of the operation", "seconds", share_below(list(times.items()))),
+        ("Time of the operation", "seconds", share_below(timed)),
         (
             "Thickness of the difference",
-            "thickness / bound for the same set",
+            "thickness / bound; up to 1 it is the same set",
             share_below([("bspcsg and oracle", ratios)]),
         ),
     )

@@ -90,7 +90,7 @@ COLUMNS = (
     Column("hausdorff", "Hausdorff", "number", _distance),
     Column("euler", "Euler", "number", _euler),
     Column("parts", "surfaces", "number", _parts),
-    Column("ours", "ours ms", "number", lambda case: milliseconds(case["seconds"]["ours"])),
+    Column("ours", "bspcsg ms", "number", lambda case: milliseconds(case["seconds"]["ours"])),
     Column("oracle", "oracle ms", "number", _oracle_time),
     Column("memory", "MB", "number", _memory),
 )

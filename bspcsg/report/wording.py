@@ -13,6 +13,20 @@ _TONES = {
     "refused": "mute",
 }
 
+#: What each verdict means, for whoever sees one for the first time.
+_MEANINGS = {
+    "agree": "the same set and the same topology",
+    "same set, other topology": "the same set; surfaces that touch are joined in another way",
+    "within rounding": "the sets differ by a film as thin as rounding explains",
+    "oracle refused": "the oracle takes an operand for no solid",
+    "oracle failed": "the oracle's result is proven wrong by exact counts of crossings",
+    "refused": "an operand is no solid, so there is nothing to compare",
+    "DISAGREE": "a failure: the sets differ by more than rounding explains",
+    "subject failed": "a failure: our result is not sound by itself",
+    "timeout": "a failure: the case took longer than it was given",
+    "crash": "a failure: the process of the case ended before its time",
+}
+
 #: What stands where there is no number.
 NOTHING = "–"
 
@@ -26,6 +40,11 @@ _PLAIN = (-4, 9)
 def tone(verdict: str) -> str:
     """Return good, near, warn, mute or bad; an unknown verdict is bad."""
     return _TONES.get(verdict, "bad")
+
+
+def meaning(verdict: str) -> str:
+    """Return what a verdict means; nothing for an unknown one."""
+    return _MEANINGS.get(verdict, "")
 
 
 def number(value: float | None, digits: int = 6) -> str:

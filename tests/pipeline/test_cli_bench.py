@@ -102,14 +102,28 @@ def test_cases_without_their_data_are_left_out(capsys: Capture, tmp_path: Path) 
     [
         (["cubs"], 2, "'cubs' is no case; see --list."),
         (["cubes", "--against", "blender"], 2, "'blender' is no engine; known are manifold3d,"),
-        (["--from", "pyproject.toml"], 3, "pyproject.toml: cannot be read as a record"),
-        (["--from", "missing.json"], 3, "missing.json: cannot be read as a record"),
+        (["--from", "pyproject.toml"], 3, "pyproject.toml: this is no record; bspcsg bench --json"),
+        (["--from", "missing.json"], 3, "missing.json: cannot read this file: No such file or"),
+        (["cubes", "--json", "no/such/x.json"], 5, "no/such/x.json: there is no folder no/such"),
+        (["cubes", "--plot", "no/such/x.svg"], 5, "no/such/x.svg: there is no folder no/such"),
+        (["cubes", "--core", "none.so"], 3, "none.so: there is no such build of the core."),
     ],
 )
 def test_wrong_use_is_said(capsys: Capture, arguments: list[str], code: int, said: str) -> None:
-    found, _, err = ran(capsys, "bench", *arguments)
-    assert found == code
-    assert said in err
+    found, out, err = ran(capsys, "bench", *arguments)
+    assert (found, out) == (code, "")
+    assert said in err and err.count("bspcsg: error: ") == 1
+
+
+@pytest.mark.parametrize("left", ["{}", '{"cases": [{"case": "cubes"}]}', '{"cases": 3}'])
+def test_damaged_records_are_refused(capsys: Capture, tmp_path: Path, left: str) -> None:
+    path = tmp_path / "r.json"
+    path.write_text(json.dumps({"type": "bench", "schema": 1, **json.loads(left)}))
+    code, out, err = ran(capsys, "bench", "--from", str(path))
+    assert (code, out) == (
+        3,
+        "",
+    ) and err == f"bspcsg: error: {path}: this record is damaged; measure it again.\n"
 
 
 def test_records_of_another_schema_are_refused(capsys: Capture, tmp_path: Path) -> None:

@@ -52,6 +52,13 @@ def test_junit_by_suffix_and_markdown_to_a_stream(shards: Path, capsys: Capture)
     assert (code, err) == (0, b"") and out.startswith(b"# Validation") and b"| agree |" in out
 
 
+def test_results_from_a_stream(shards: Path) -> None:
+    both = Path("r-1.jsonl").read_bytes() + Path("r-2.jsonl").read_bytes()
+    arguments = ("report", "-", "-o", "-", "--format", "md")
+    code, out, _ = finished(*arguments, cwd=shards, given=both)
+    assert code == 0 and b"1 of 2 cases failed" in out
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "words"),
     [
@@ -66,11 +73,14 @@ def test_junit_by_suffix_and_markdown_to_a_stream(shards: Path, capsys: Capture)
         (["-o", "r.html"], 2, "RESULTS"),
         (["bad.jsonl", "-o", "r.html"], 3, "bad.jsonl:1: this is no line of a results file"),
         (["short.jsonl", "-o", "r.html"], 3, "short.jsonl: case has no 'bounds'"),
+        (["void.jsonl", "-o", "r.html"], 3, "void.jsonl: there is no case in these results."),
+        (["void.jsonl", "void.jsonl", "-o", "r.md"], 3, "void.jsonl, void.jsonl: there is no case"),
     ],
 )
 def test_refusals(
     shards: Path, capsys: Capture, arguments: list[str], code: int, words: str
 ) -> None:
+    Path("void.jsonl").touch()
     Path("bad.jsonl").write_bytes(b"\xff\x00\n")
     write_results(Path("short.jsonl"), [{"schema": 1, "type": "case", "key": "k"}])
     before = sorted(shards.iterdir())

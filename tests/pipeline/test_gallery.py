@@ -26,3 +26,14 @@ def test_every_picture_is_written_by_an_example_that_is_named() -> None:
     named = re.findall(r"\]\((\d\d_\w+)\.py\)", SHOWN)
     written = set().union(*(WRITES[name] for name in named))
     assert {Path(picture).name for picture in PICTURES} == written
+
+
+def test_the_report_that_is_linked_is_there_and_of_so_many_cases() -> None:
+    pages = {EXAMPLES / "GALLERY.md", EXAMPLES.parent / "README.md"}
+    pages.add(EXAMPLES.parent / "docs" / "tasks" / "validate.md")
+    for page in pages:
+        (link,) = re.findall(r"\]\(([^)]*campaign_report\.html)\)", page.read_text())
+        report = (page.parent / link).resolve()
+        assert report == EXAMPLES / "campaign_report.html" and " 2120 " in page.read_text()
+    text = report.read_text(encoding="utf-8")
+    assert "2\N{NARROW NO-BREAK SPACE}120 cases, no failure" in text and len(text) < 1_500_000

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg.campaign.record import Results
+from bspcsg.campaign.record import VERDICTS, Results
 from bspcsg.report import cards
 from bspcsg.report.cards import Card, Purse, cards_of
 from bspcsg.report.charts import share_below
 from bspcsg.report.merging import merged
 from bspcsg.report.page import report_page
-from bspcsg.report.wording import milliseconds, number, tone, vector, whole
+from bspcsg.report.wording import meaning, milliseconds, number, tone, vector, whole
 from support.results import case, header, keep_meshes, records, write_results
 from support.shapes import icosphere
 
@@ -38,7 +38,15 @@ def test_all_cases_are_in_the_table_and_failures_come_first(page: str) -> None:
     assert len(rows) == 9 and "DISAGREE" in rows[0]
     assert "9 cases, 1 failure" in page
     assert attributes(page, "data-verdict") == ["DISAGREE", "agree"]
-    assert "bspcsg validate a.stl b.stl --seed 7" in page and "a processor, 2 cores" in page
+    read = re.sub("<[^>]+>", "", page)
+    assert "commandbspcsg validate a.stl b.stl --seed 7 " in read and "a processor, 2 cores" in read
+
+
+def test_every_verdict_has_a_meaning_and_those_that_occur_are_explained(page: str) -> None:
+    assert all(map(meaning, VERDICTS)) and meaning("unheard of") == ""
+    explained = re.findall(r'<dt class="tone-\w+">([^<]+)</dt><dd>([^<]+)</dd>', page)
+    assert explained == [(name, meaning(name)) for name in ("DISAGREE", "agree")]
+    assert "makes of the same operands" in page and "up to 1 it is the same set" in page
 
 
 def test_cards_show_pictures_numbers_and_the_command(page: str) -> None:
