@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap as HashMap;
 use super::collect::Fate;
 use crate::merge::list::Sources;
 use crate::mesh::source::{Source, TriangleMesh};
-use crate::mesh::tasks::CHUNK;
+use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::mesh::topology::NONE;
 
 /// What meets at a vertex: a whole face, one turned around, another one.
@@ -46,7 +46,7 @@ impl Rims {
     pub fn of(fates: &[Vec<Fate>], sources: &Sources) -> Self {
         let slots: Vec<usize> = (0..fates.len()).collect();
         let rim = |slot: &usize| Rim::of(sources.get(*slot), &fates[*slot]);
-        let large = fates.iter().map(Vec::len).sum::<usize>() > CHUNK;
+        let large = in_pool() && fates.iter().map(Vec::len).sum::<usize>() > CHUNK;
         Self {
             by_slot: if large {
                 slots.par_iter().map(rim).collect()

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::assemble::TriangleFace;
 use super::collect::Fate;
 use crate::mesh::source::TriangleMesh;
-use crate::mesh::tasks::{each_chunk, CHUNK};
+use crate::mesh::tasks::{each_chunk, in_pool, CHUNK};
 
 /// The triangles at the start of a mesh that are faces of sources as they came.
 #[derive(Debug, Default)]
@@ -80,7 +80,7 @@ impl Untouched {
             first_triangle += count as u32;
         }
         let emit = |task: Task| task.run(mesh, images, whole, &self.vertices);
-        let special: Vec<Vec<u32>> = if tasks.len() > 1 {
+        let special: Vec<Vec<u32>> = if in_pool() && tasks.len() > 1 {
             tasks.into_par_iter().map(emit).collect()
         } else {
             tasks.into_iter().map(emit).collect()

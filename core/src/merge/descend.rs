@@ -16,6 +16,7 @@ use super::leaf::{self, Rule};
 use super::list::{List, Sources};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
+use crate::mesh::tasks::{both, in_pool};
 use crate::tree::node::{Branch, Node};
 
 /// Lists that together hold at most this many elements are worked on by the leaf kernel.
@@ -286,7 +287,7 @@ impl<'a> Descent<'a> {
                 .map(|s| s.1.len_in(cell))
                 .sum::<usize>()
         };
-        if total() >= 8 * MANY {
+        if in_pool() && total() >= 8 * MANY {
             return states.into_par_iter().map(open).collect();
         }
         states.into_iter().map(open).collect()
@@ -323,11 +324,7 @@ impl<'a> Descent<'a> {
         let half = |plus: bool, states: States| {
             self.cell(cell.half(cut, plus), Arc::clone(expression), states, round)
         };
-        let (minus, plus) = if total >= TASK {
-            rayon::join(|| half(false, below), || half(true, above))
-        } else {
-            (half(false, below), half(true, above))
-        };
+        let (minus, plus) = both(total >= TASK, || half(false, below), || half(true, above));
         Ok(join::branch(cell, cut, minus?, plus?, self.sources))
     }
 

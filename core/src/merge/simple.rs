@@ -17,6 +17,7 @@ use crate::geometry::cell::Cell;
 use crate::geometry::fixed::sixfold_flux;
 use crate::geometry::plane::Lattice;
 use crate::mesh::source::{Source, TriangleMesh};
+use crate::mesh::tasks::both;
 use crate::mesh::topology::NONE;
 use crate::tree::node::Node;
 use crate::tree::solid::Solid;
@@ -134,12 +135,7 @@ impl Check<'_> {
         let (minus, plus) = list.divide(&cell, cut, self.sources);
         let below = || self.cell(cell.half(cut, false), minus);
         let above = || self.cell(cell.half(cut, true), plus);
-        if total >= TASK {
-            rayon::join(below, above);
-        } else {
-            below();
-            above();
-        }
+        both(total >= TASK, below, above);
     }
 
     fn leaf(&self, cell: &Cell, list: &List) {

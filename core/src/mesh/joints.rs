@@ -3,7 +3,7 @@
 use super::chain::is_closed;
 use super::links;
 use super::source::TriangleMesh;
-use super::tasks::both;
+use super::tasks::{both, CHUNK};
 use super::topology::{ends, Topology};
 
 /// Vertices where faces do not meet two at each edge and in one fan.
@@ -28,7 +28,7 @@ impl Joints {
     pub fn of_closed(mesh: &TriangleMesh) -> Option<Self> {
         let faces = &mesh.faces;
         let links = || links::irregular(faces, mesh.vertices.len());
-        let (closed, irregular) = both(faces.len(), || is_closed(faces), links);
+        let (closed, irregular) = both(faces.len() > CHUNK, || is_closed(faces), links);
         closed.then_some(Self {
             irregular,
             open: Vec::new(),

@@ -5,12 +5,17 @@ use rayon::prelude::*;
 /// Elements of one task: some 50 µs of work, far above what handing it over costs.
 pub const CHUNK: usize = 1 << 14;
 
+/// Whether work may be shared: outside of a pool, handing it over costs more than most calls.
+pub fn in_pool() -> bool {
+    rayon::current_thread_index().is_some()
+}
+
 /// A value for each chunk of an array, in order; `value` gets the index of the chunk's first element.
 pub fn each_chunk<T: Sync, R: Send>(
     items: &[T],
     value: impl Fn(usize, &[T]) -> R + Sync,
 ) -> Vec<R> {
-    if items.len() <= CHUNK {
+    if items.len() <= CHUNK || !in_pool() {
         return vec![value(0, items)];
     }
     let chunks = items.par_chunks(CHUNK).enumerate();
@@ -23,7 +28,7 @@ pub fn fill_chunks<T: Sync, U: Send, R: Send>(
     out: &mut [U],
     value: impl Fn(usize, &[T], &mut [U]) -> R + Sync,
 ) -> Vec<R> {
-    if items.len() <= CHUNK {
+    if items.len() <= CHUNK || !in_pool() {
         return vec![value(0, items, out)];
     }
     let chunks = items.par_chunks(CHUNK).zip(out.par_chunks_mut(CHUNK));
@@ -33,15 +38,15 @@ pub fn fill_chunks<T: Sync, U: Send, R: Send>(
         .collect()
 }
 
-/// Two values that take a pass over `count` elements each, at the same time if that pays.
+/// Two values, made at the same time where that pays.
 pub fn both<A: Send, B: Send>(
-    count: usize,
+    pays: bool,
     a: impl FnOnce() -> A + Send,
     b: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    if count <= CHUNK {
-        (a(), b())
-    } else {
+    if pays && in_pool() {
         rayon::join(a, b)
+    } else {
+        (a(), b())
     }
 }

@@ -10,6 +10,7 @@
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use super::scene::Facet;
+use crate::mesh::tasks::both;
 
 /// Candidate cuts on each axis.
 const BINS: usize = 32;
@@ -161,12 +162,8 @@ impl<const D: usize> Node<D> {
             return;
         };
         let [minus, plus] = &**children;
-        if list > PARALLEL {
-            rayon::join(|| minus.complete(facets), || plus.complete(facets));
-        } else {
-            minus.complete(facets);
-            plus.complete(facets);
-        }
+        let half = |node: &Self| node.complete(facets);
+        both(list > PARALLEL, || half(minus), || half(plus));
     }
 }
 
