@@ -241,6 +241,10 @@ def _parsed(line: str, path: Path, number: int) -> dict[str, Any]:
     return cast(dict[str, Any], found)
 
 
+#: How every line begins.
+_START = b'{"schema": '
+
+
 class Journal:
     """A results file that is being written; lines may come from several threads.
 
@@ -252,7 +256,7 @@ class Journal:
     Raises
     ------
     FormatError
-        If the file cannot be written.
+        If the file cannot be written, or is there and none of results.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -291,6 +295,10 @@ class Journal:
         if not self.path.exists():
             return
         with self.path.open("r+b") as file:
+            start = file.read(len(_START))
+            if start != _START[: len(start)]:
+                message = f"{self.path}: this is no results file, so nothing is added to it."
+                raise FormatError(message, "unwritable")
             size = file.seek(0, os.SEEK_END)
             file.truncate(_end_of_last_line(self.path, size))
 

@@ -37,6 +37,8 @@ def counts_by_verdict(cases: Sequence[CaseRecord]) -> dict[str, int]:
 def conclusion(cases: Sequence[CaseRecord]) -> str:
     """Return the sentence at the end."""
     failed = sum(map(is_failure, cases))
+    if len(cases) == 1:
+        return "The one case failed." if failed else "The one case did not fail."
     if failed:
         return f"{failed} of {len(cases)} cases failed."
     return f"None of {len(cases)} cases failed."

@@ -10,7 +10,7 @@ import click
 
 from ..errors import FormatError
 from . import output
-from .files import refuse_folder
+from .files import STREAM, refuse_folder
 from .tables import table_text
 
 if TYPE_CHECKING:
@@ -159,6 +159,8 @@ def bench(cases: list[str], listed: bool, **given: Any) -> int:
 def _refuse_early(given: dict[str, Any]) -> None:
     """Refuse what would fail only after everything was measured."""
     for path in (given["record_path"], given["plot_path"]):
+        if path and str(path) == STREAM:
+            raise click.UsageError("--json and --plot take names of files, not streams.")
         if path:
             refuse_folder(path)
     core: Path | None = given["core"]

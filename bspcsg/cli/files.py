@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import Finding, FormatError, InvalidMeshError
-from .output import Output, counted
+from .output import Output, counted, discard_output
 
 if TYPE_CHECKING:
     from ..io import RawMesh
@@ -264,8 +264,24 @@ def put(path: Path, chunks: Iterable[bytes], overwrite: bool = True) -> None:
     except BrokenPipeError:
         raise
     except OSError as error:
+        discard_output()
         message = f"standard output: cannot write: {error.strerror}."
         raise FormatError(message, "unwritable") from error
+
+
+def stream_text() -> str:
+    """Read standard input as text.
+
+    Raises
+    ------
+    FormatError
+        If it is not UTF-8.
+    """
+    try:
+        return sys.stdin.buffer.read().decode("utf-8")
+    except UnicodeDecodeError as error:
+        message = f"{STREAM}: this is no text: byte {error.start} is no UTF-8."
+        raise FormatError(message, "syntax", [error.start]) from error
 
 
 def refuse_unwritable(path: Path, overwrite: bool = True) -> None:
@@ -284,6 +300,11 @@ def refuse_folder(path: Path) -> None:
     if not folder.is_dir() or not os.access(folder, os.W_OK):
         message = f"{path}: there is no folder {folder} that can be written to."
         raise FormatError(message, "unwritable")
+
+
+def is_among(path: Path, others: Iterable[Path]) -> bool:
+    """Whether a file is there and one of others, by whatever name."""
+    return any(path.exists() and other.exists() and path.samefile(other) for other in others)
 
 
 def shown(path: Path) -> str:

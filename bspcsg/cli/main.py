@@ -65,6 +65,9 @@ _VERBS = {
 #: Other names of verbs, which the help leaves out.
 _ALIASES = {"cut": "difference"}
 
+#: What writing to standard output fails with when it is full, broken or closed.
+_NO_OUTPUT = (errno.ENOSPC, errno.EIO, errno.EBADF)
+
 _COMPLETE = "_BSPCSG_COMPLETE"
 
 
@@ -115,10 +118,24 @@ def commands() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and end the process with its exit code."""
+    _fill_closed_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors=_ERRORS)
     sys.exit(run(sys.argv[1:] if arguments is None else arguments))
+
+
+def _fill_closed_streams() -> None:
+    """Give standard streams that were closed a file each, so that no other file takes their place.
+
+    Reading finds nothing, and writing to standard output fails as it does on a full disk.
+    """
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:
+            # The lowest number that is free is the one that was closed.
+            handle = os.open(os.devnull, os.O_WRONLY if name == "stderr" else os.O_RDONLY)
+            if handle == number:
+                setattr(sys, name, os.fdopen(handle, "w" if number else "r", encoding="utf-8"))
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -128,7 +145,7 @@ def run(arguments: Sequence[str]) -> int:
         sys.stdout.flush()
         return code
     except BrokenPipeError:
-        _discard_output()
+        output.discard_output()
         return output.CLOSED_PIPE
     except (KeyboardInterrupt, click.Abort):
         return output.INTERRUPTED
@@ -142,8 +159,8 @@ def run(arguments: Sequence[str]) -> int:
     except Exception as error:
         if "--debug" in arguments:
             raise
-        if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EIO):
-            _discard_output()
+        if isinstance(error, OSError) and error.errno in _NO_OUTPUT:
+            output.discard_output()
             message = f"standard output: cannot write: {error.strerror}."
             return output.tell_error(FormatError(message, "unwritable"), as_json=False)
         return _failed(error, _asks_for_json(arguments))
@@ -194,8 +211,3 @@ def _failed(error: Exception, as_json: bool) -> int:
     said = "out of memory" if isinstance(error, MemoryError) else f"{type(error).__name__}: {error}"
     message = f"{said}. This is a defect of bspcsg; run it again with --debug to see where."
     return output.tell_error(InternalError(message), as_json)
-
-
-def _discard_output() -> None:
-    """Point standard output at nothing, so that nothing is flushed into the closed pipe."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

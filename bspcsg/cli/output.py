@@ -1,6 +1,7 @@
 """What goes to which stream, and which exit code a failure has."""
 
 import json
+import os
 import sys
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -126,6 +127,11 @@ def tell_error(error: BspcsgError, as_json: bool) -> int:
         said = {"code": error.code, "message": error.message, "where": list(error.where)}
         click.echo(json.dumps({"schema": SCHEMA, "error": said, "exit": code}))
     return code
+
+
+def discard_output() -> None:
+    """Point standard output at nothing, so that what is left is not flushed where it failed."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def finding_values(findings: tuple[Finding, ...]) -> list[dict[str, Any]]:

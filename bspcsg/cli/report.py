@@ -10,7 +10,7 @@ import click
 
 from ..errors import FormatError
 from . import output
-from .files import STREAM, refuse_folder, shown
+from .files import STREAM, is_among, refuse_folder, shown
 from .options import PATH, common
 from .output import Output, counted
 
@@ -123,8 +123,12 @@ class _Reporting:
             raise FormatError(message, "unknown_format")
         if self._is_stream and self._out.as_json:
             raise click.UsageError("--json and a report cannot both go to standard output.")
-        if not self._is_stream:
-            refuse_folder(self._target)
+        if self._is_stream:
+            return
+        refuse_folder(self._target)
+        if is_among(self._target, self._files):
+            message = f"the report would overwrite {self._target}, which is to be read."
+            raise click.UsageError(message)
 
     def _text(self, results: "Results") -> str:
         if self._form == "html":

@@ -11,7 +11,7 @@ import click
 from click.core import ParameterSource
 
 from ..errors import FormatError, InvalidMeshError
-from .files import ON_INVALID, shown
+from .files import ON_INVALID, STREAM, shown, stream_text
 from .job import Job
 from .options import TIMEOUT, common, making
 
@@ -107,10 +107,10 @@ _NOT_FOR = {
 def run(script: Path, **given: Any) -> int:
     """Evaluate a script and write the solid it makes.
 
-    A .csg file is read as OpenSCAD writes it, a .json file is the same tree (see bspcsg tree), a
-    .scad file needs the program openscad. A .py file
-    leaves its solid in the variable result, or calls bspcsg.show; it runs with all your rights, and
-    what it prints goes to standard error.
+    A .csg file is read as OpenSCAD writes it, and so is standard input, for which - stands. A
+    .json file is the same tree (see bspcsg tree), a .scad file needs the program openscad. A .py
+    file leaves its solid in the variable result, or calls bspcsg.show; it runs with all your
+    rights, and what it prints goes to standard error.
     """
     return _Run(script, **given).run()
 
@@ -121,7 +121,7 @@ class _Run(Job):
     def __init__(self, script: Path, **settings: Any) -> None:
         super().__init__("run", **settings)
         self._script = script
-        self._suffix = script.suffix.lower()
+        self._suffix = ".csg" if str(script) == STREAM else script.suffix.lower()
 
     def paths(self) -> Sequence[Path]:
         return [self._script]
@@ -156,13 +156,12 @@ class _Run(Job):
 
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", csg.CsgWarning)
+            options |= {name: self.settings[name] for name in ("polish", "on_invalid")}
             with self._advised():
-                solid = csg.load(
-                    self._script,
-                    polish=self.settings["polish"],
-                    on_invalid=self.settings["on_invalid"],
-                    **options,
-                )
+                if str(self._script) == STREAM:
+                    solid = csg.loads(stream_text(), name=STREAM, **options)
+                else:
+                    solid = csg.load(self._script, **options)
         # A polished model is evaluated twice, and warns as often.
         for said in dict.fromkeys(str(warning.message) for warning in caught):
             self.out.warning(said)

@@ -1,6 +1,5 @@
 """The verb that shows and converts scripts: tree."""
 
-import sys
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
@@ -10,7 +9,7 @@ import click
 
 from ..errors import FormatError
 from . import output
-from .files import STREAM, put, refuse_unwritable, shown
+from .files import STREAM, put, refuse_unwritable, shown, stream_text
 from .options import OVERWRITE, PATH, TIMEOUT, common
 from .output import Output, counted
 
@@ -157,13 +156,8 @@ def _form_of(target: Path | None) -> str:
 def _from_stream(source: str) -> "CsgTree":
     from ..csg import from_json, parse
 
-    try:
-        text = sys.stdin.buffer.read().decode("utf-8")
-    except UnicodeDecodeError as error:
-        message = f"-: this is no text: byte {error.start} is no UTF-8."
-        raise FormatError(message, "syntax", [error.start]) from error
     reader: Callable[[str, str], CsgTree] = from_json if source == "json" else parse
-    return reader(text, STREAM)
+    return reader(stream_text(), STREAM)
 
 
 def _written(tree: "CsgTree", form: str) -> str:

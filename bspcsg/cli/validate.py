@@ -21,7 +21,7 @@ from .campaign_options import (
     as_pose,
     as_shard,
 )
-from .files import refuse_folder, shown
+from .files import STREAM, is_among, refuse_folder, shown
 from .options import telling
 from .output import Output, counted
 from .tables import table_text
@@ -41,6 +41,9 @@ Examples:
 
 #: How many failures are named at the end; the results file has all.
 _NAMED = 20
+
+#: Why operands were refused is told as often without -v.
+_REASONS = 3
 
 _FILE = click.Path(path_type=Path, readable=False)
 
@@ -179,8 +182,16 @@ class _Validation:
 
     def _refuse_early(self) -> None:
         for name in ("results", "junit", "markdown"):
-            if self._settings[name] is not None:
-                refuse_folder(self._settings[name])
+            path: Path | None = self._settings[name]
+            if path is None:
+                continue
+            if str(path) == STREAM:
+                raise click.UsageError(f"--{name} takes the name of a file, not a stream.")
+            refuse_folder(path)
+            if is_among(path, self._paths):
+                raise click.UsageError(f"--{name} would overwrite {path}, which is to be read.")
+        if Path(STREAM) in self._paths:
+            raise click.UsageError("validate reads files, not standard input.")
 
     def _answering(self) -> "Answering":
         from ..campaign.cluster import Cluster
@@ -330,7 +341,19 @@ class _Validation:
         from ..campaign.summary import summary_of
 
         document = summary_of(records) if self._out.as_json else {}
+        self._tell_refused(records)
         self._out.result("" if self._out.as_json else self._text(records), document)
+
+    def _tell_refused(self, records: "Sequence[CaseRecord]") -> None:
+        """Say why nothing was compared in some cases, each reason once."""
+        refused = [record["reason"] for record in records if record["verdict"] == "refused"]
+        reasons = list(dict.fromkeys(refused))
+        for reason in reasons[:_REASONS]:
+            self._out.note(f"refused: {reason.rstrip('.')}.")
+        if len(reasons) > _REASONS:
+            self._out.note(
+                f"refused for other reasons as well ({len(reasons)} in all); -v tells them"
+            )
 
     def _text(self, records: "Sequence[CaseRecord]") -> str:
         from ..campaign.record import is_failure

@@ -150,8 +150,13 @@ class _Cache:
 
 def unsupported(node: Node, script: str) -> FormatError:
     """Return the error for a node that cannot be evaluated."""
-    hint = " Convert it to paths, or leave it out." if node.name == "text" else ""
-    message = f"{node.name}() is not supported.{hint} Supported: {' '.join(node_names())}."
+    if node.name == "text":
+        message = (
+            "text() needs fonts, which bspcsg does not read. Export it from OpenSCAD as SVG and"
+            " import() that file, or leave it out."
+        )
+    else:
+        message = f"{node.name}() is not supported. Supported: {' '.join(node_names())}."
     return error_at(script, node.place, message, "unsupported")
 
 

@@ -105,6 +105,7 @@ def test_cases_without_their_data_are_left_out(capsys: Capture, tmp_path: Path) 
         (["--from", "pyproject.toml"], 3, "pyproject.toml: this is no record; bspcsg bench --json"),
         (["--from", "missing.json"], 3, "missing.json: cannot read this file: No such file or"),
         (["cubes", "--json", "no/such/x.json"], 5, "no/such/x.json: there is no folder no/such"),
+        (["cubes", "--json", "-"], 2, "--json and --plot take names of files, not streams."),
         (["cubes", "--plot", "no/such/x.svg"], 5, "no/such/x.svg: there is no folder no/such"),
         (["cubes", "--core", "none.so"], 3, "none.so: there is no such build of the core."),
     ],

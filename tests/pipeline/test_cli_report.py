@@ -71,6 +71,7 @@ def test_results_from_a_stream(shards: Path) -> None:
         (["r-1.jsonl", "-o", "r.html", "--format", "pdf"], 2, "pdf"),
         (["r-1.jsonl"], 2, "-o"),
         (["-o", "r.html"], 2, "RESULTS"),
+        (["r-1.jsonl", "-o", "r-1.jsonl", "--format", "md"], 2, "would overwrite r-1.jsonl"),
         (["bad.jsonl", "-o", "r.html"], 3, "bad.jsonl:1: this is no line of a results file"),
         (["short.jsonl", "-o", "r.html"], 3, "short.jsonl: case has no 'bounds'"),
         (["void.jsonl", "-o", "r.html"], 3, "void.jsonl: there is no case in these results."),

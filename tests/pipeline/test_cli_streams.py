@@ -123,6 +123,62 @@ def test_a_full_output(folder: Path, arguments: list[str]) -> None:
     assert err == b"bspcsg: error: standard output: cannot write: No space left on device.\n"
 
 
+def closed(number: int) -> Any:
+    """Return what closes a standard stream of a process before it starts."""
+    return lambda: os.close(number)
+
+
+@POSIX
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["union", "-", "a.off", "--from", "off", "-o", "x.ply"], b"-: the file is empty.\n"),
+        (["info", "-", "--from", "stl"], b"-: the file is empty.\n"),
+        (["render", "-", "--from", "stl", "-o", "x.svg"], b"-: the file is empty.\n"),
+        (["report", "-", "-o", "x.md"], b"-: there is no case in these results.\n"),
+    ],
+)
+def test_a_closed_input_is_an_empty_one(folder: Path, arguments: list[str], said: bytes) -> None:
+    before = sorted(os.listdir())
+    code, out, err = finished(*arguments, before=closed(0))
+    assert (code, out, err) == (3, b"", b"bspcsg: error: " + said)
+    assert sorted(os.listdir()) == before
+
+
+@POSIX
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["info", "a.off"],
+        ["doctor"],
+        ["tree", "m.csg"],
+        ["union", "a.off", "c.stl", "-o-", "--to", "off", "-q"],
+        ["render", "a.off", "-o-", "--to", "svg", "-q"],
+    ],
+)
+def test_a_closed_output_is_one_that_cannot_be_written(folder: Path, arguments: list[str]) -> None:
+    Path("m.csg").write_text("cube(1);")
+    code, out, err = finished(*arguments, before=closed(1))
+    assert (code, out) == (5, b"")
+    assert err == b"bspcsg: error: standard output: cannot write: Bad file descriptor.\n"
+
+
+@POSIX
+def test_no_output_file_takes_the_place_of_a_closed_stream(folder: Path) -> None:
+    code, out, err = finished("union", "a.off", "c.stl", "-o", "x.off", before=closed(2))
+    assert code == 0 and out.startswith(b"x.off  ") and err == b""
+    assert volume_of(Path("x.off").read_bytes(), "off") == 15
+
+
+def test_scripts_from_a_stream(folder: Path) -> None:
+    arguments = ("run", "-", "-o", "-", "--to", "off", "-q")
+    code, out, _ = finished(*arguments, given=b"cube(3);")
+    assert code == 0 and volume_of(out, "off") == 27
+    code, _, err = finished(*arguments, given=b"cube(3);\n\n  roof();")
+    assert code == 3 and err.startswith(b"bspcsg: error: -:3:3: roof() is not supported. ")
+    assert finished(*arguments, given=b"\xff")[0] == 3
+
+
 @pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="nothing is forbidden to root")
 def test_no_permission(folder: Path, capsys: Capture) -> None:
     Path("a.off").chmod(0)

@@ -155,7 +155,7 @@ def test_shards_are_the_whole(folder: Path, capsys: Capture) -> None:
 def test_time_and_memory_limits_are_failures(folder: Path, capsys: Capture) -> None:
     given = ["validate", "a.off", "c.stl", "-j", "1", "--op", "union"]
     code, out, _ = ran(capsys, *given, "--timeout", "0.0001")
-    assert code == 1 and "1 of 1 cases failed." in out and "timeout" in out
+    assert code == 1 and "The one case failed." in out and "timeout" in out
     assert "Again: bspcsg validate a.off c.stl --op union" in out
     code, out, _ = ran(capsys, *given, "--memory", "1M")
     assert code == 1 and "crash" in out
@@ -163,7 +163,7 @@ def test_time_and_memory_limits_are_failures(folder: Path, capsys: Capture) -> N
 
 def test_fail_fast_stops_at_the_first_failure(folder: Path, capsys: Capture) -> None:
     given = ["validate", "a.off", "c.stl", "-j", "1", "--timeout", "0.0001"]
-    assert "1 of 1 cases failed." in ran(capsys, *given, "--fail-fast")[1]
+    assert "The one case failed." in ran(capsys, *given, "--fail-fast")[1]
     assert "4 of 4 cases failed." in ran(capsys, *given, "--keep-going")[1]
 
 
@@ -267,8 +267,38 @@ def test_interrupt_is_quiet(folder: Path) -> None:
 
 def test_broken_file_costs_its_cases_only(folder: Path, capsys: Capture) -> None:
     Path("cut.stl").write_bytes(b"\0" * 84 + b"\1")
-    code, out, _ = ran(capsys, "validate", "a.off", "c.stl", "cut.stl", "-j", "1", "--op", "union")
+    given = ["validate", "a.off", "c.stl", "cut.stl", "-j", "1", "--op", "union"]
+    code, out, err = ran(capsys, *given)
     assert code == 0 and "refused" in out and "None of 3 cases failed." in out
+    # Two cases were refused for one reason, which is told once.
+    assert err.startswith("note: refused: cut.stl: ") and err.count("note: ") == 1
+    assert ran(capsys, *given, "-q")[2] == ""
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--results", "-"], "--results takes the name of a file, not a stream."),
+        (["--junit", "-"], "--junit takes the name of a file, not a stream."),
+        (["--markdown", "./a.off"], "--markdown would overwrite a.off, which is to be read."),
+        (["--results", "c.stl"], "--results would overwrite c.stl, which is to be read."),
+        (["-"], "validate reads files, not standard input."),
+    ],
+)
+def test_files_that_cannot_be(folder: Path, capsys: Capture, options: list[str], said: str) -> None:
+    before = {path: path.read_bytes() for path in folder.iterdir()}
+    code, out, err = ran(capsys, "validate", "a.off", "c.stl", *options)
+    assert (code, out) == (2, "") and err.startswith(f"bspcsg: error: {said}\n")
+    assert {path: path.read_bytes() for path in folder.iterdir()} == before
+
+
+@pytest.mark.parametrize("data", [b"mine", b"mine\nand mine", b"{}\n"])
+def test_what_is_no_results_file_stays_as_it_is(folder: Path, capsys: Capture, data: bytes) -> None:
+    Path("notes.txt").write_bytes(data)
+    given = ["validate", "a.off", "c.stl", "-j", "1", "--op", "xor", "--results", "notes.txt"]
+    code, out, err = ran(capsys, *given)
+    assert (code, out) == (5, "") and Path("notes.txt").read_bytes() == data
+    assert err == "bspcsg: error: notes.txt: this is no results file, so nothing is added to it.\n"
 
 
 def test_help_has_an_example(capsys: Capture) -> None:

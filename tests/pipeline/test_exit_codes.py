@@ -345,7 +345,7 @@ def test_code_5_when_standard_output_is_full(
         raise OSError(number, "no more")
 
     monkeypatch.setattr("bspcsg.cli.output.click.echo", full)
-    monkeypatch.setattr("bspcsg.cli.main._discard_output", monkeypatch.undo)
+    monkeypatch.setattr("bspcsg.cli.output.discard_output", monkeypatch.undo)
     assert run(["info", "a.off"]) == 5
     assert "standard output: cannot write: no more." in capsys.readouterr().err
 
