@@ -2,6 +2,7 @@
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
 pub mod affine;
+pub mod apart;
 pub mod axis;
 pub mod cell;
 pub mod crossing;

@@ -12,7 +12,7 @@ use crate::arith::Int;
 ///
 /// A product of three has 3 roundings of factors and 2 of products, a sum of six at most 5: 10u,
 /// u = 2^-53, relative to the sum of magnitudes; 16u leaves room for the bound's own rounding.
-pub const DETERMINANT_FILTER: f64 = 16.0 / 9_007_199_254_740_992.0;
+const DETERMINANT_FILTER: f64 = 16.0 / 9_007_199_254_740_992.0;
 
 /// The change of the winding number across a lattice triangle, from a doubled corner to a lattice
 /// point; `None` if the path is not generic.
@@ -38,17 +38,48 @@ pub fn triangle_on_path(corners: &[Lattice; 3], from: &Lattice, to: &Lattice) ->
     Some((before - after) / 2)
 }
 
+/// Sign of the determinant of three rows, by doubles; 0 if that leaves it in doubt.
+pub fn near_determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> i32 {
+    NearCross::of(b, c).side_of(a)
+}
+
+/// A cross product in doubles, to be multiplied with many.
+pub struct NearCross {
+    value: [f64; 3],
+    /// The magnitudes of the products it is made of.
+    size: [f64; 3],
+}
+
+impl NearCross {
+    /// The cross product of two rows.
+    #[inline]
+    pub fn of(b: &Lattice, c: &Lattice) -> Self {
+        let [q, r] = [b, c].map(|row| row.map(|x| x as f64));
+        let minor = |i: usize, j: usize| (q[i] * r[j], q[j] * r[i]);
+        let minors = [minor(1, 2), minor(2, 0), minor(0, 1)];
+        Self {
+            value: minors.map(|m| m.0 - m.1),
+            size: minors.map(|m| m.0.abs() + m.1.abs()),
+        }
+    }
+
+    /// The sign of its product with a row; 0 if doubles leave it in doubt.
+    #[inline]
+    pub fn side_of(&self, a: &Lattice) -> i32 {
+        let p = a.map(|x| x as f64);
+        let value = p[0] * self.value[0] + p[1] * self.value[1] + p[2] * self.value[2];
+        let size =
+            p[0].abs() * self.size[0] + p[1].abs() * self.size[1] + p[2].abs() * self.size[2];
+        let doubt = size * DETERMINANT_FILTER;
+        i32::from(value > doubt) - i32::from(value < -doubt)
+    }
+}
+
 /// Sign of the determinant of three rows.
 fn determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> i32 {
-    let [p, q, r] = [a, b, c].map(|row| row.map(|x| x as f64));
-    let minor = |i: usize, j: usize| (q[i] * r[j], q[j] * r[i]);
-    let minors = [minor(1, 2), minor(2, 0), minor(0, 1)];
-    let value: f64 = (0..3).map(|i| p[i] * (minors[i].0 - minors[i].1)).sum();
-    let size: f64 = (0..3)
-        .map(|i| p[i].abs() * (minors[i].0.abs() + minors[i].1.abs()))
-        .sum();
-    if value.abs() > size * DETERMINANT_FILTER {
-        return if value > 0.0 { 1 } else { -1 };
+    let near = near_determinant(a, b, c);
+    if near != 0 {
+        return near;
     }
     let minor = |i: usize, j: usize| {
         i128::from(b[i]) * i128::from(c[j]) - i128::from(b[j]) * i128::from(c[i])

@@ -17,10 +17,11 @@ use super::expression::Expression;
 use super::kept::Kept;
 use super::list::{List, Sources};
 use super::sweep::{pairs, Swept};
+use crate::geometry::apart::are_apart;
 use crate::geometry::cell::Cell;
-use crate::geometry::path::{triangle_on_path, DETERMINANT_FILTER};
+use crate::geometry::path::triangle_on_path;
 use crate::geometry::plane::Lattice;
-use crate::geometry::polygon::{Carrier, Corner, Polygon};
+use crate::geometry::polygon::{Carrier, Polygon};
 use crate::geometry::vertex::Vertex;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
@@ -97,9 +98,8 @@ enum Fate {
     Absent,
     /// Nothing crosses it, and it has these anchors, at least one.
     Uncut(Anchors),
-    /// It was cut up; the numbers of the pieces follow from that of a piece with this corner, which
-    /// is also the given anchor, if it is one.
-    Cut(Cutting, Arc<Vertex>, Option<Anchor>),
+    /// It was cut up; it has these anchors, and this corner if it has none.
+    Cut(Cutting, Arc<Vertex>, Anchors),
 }
 
 /// What stays of an element on one side.
@@ -206,12 +206,10 @@ impl<'a> Scene<'a> {
         Some(found)
     }
 
-    /// Whether one of two triangles certainly lies strictly on one side of the other's plane.
+    /// Whether two elements certainly do not touch.
     fn separated(&self, i: usize, j: usize) -> bool {
         match (&self.elements[i].place, &self.elements[j].place) {
-            (Place::Face(a), Place::Face(b)) => {
-                beyond(&a.corners, &b.corners) || beyond(&b.corners, &a.corners)
-            }
+            (Place::Face(a), Place::Face(b)) => are_apart(&a.corners, &b.corners),
             _ => false,
         }
     }
@@ -241,10 +239,8 @@ impl<'a> Scene<'a> {
         if !anchors.is_empty() && cutters.is_empty() {
             return Some(Fate::Uncut(anchors));
         }
-        let anchor = anchors.into_iter().next();
-        let corner = |c: &&Corner| anchor.as_ref().is_none_or(|a| a.is_at(&c.at));
-        let base = Arc::clone(&polygon.corners().iter().find(corner)?.at);
-        Some(Fate::Cut(cut_up(polygon, &cutters)?, base, anchor))
+        let base = Arc::clone(&polygon.corners()[0].at);
+        Some(Fate::Cut(cut_up(polygon, &cutters)?, base, anchors))
     }
 
     /// Those neighbours that may cross a polygon; `None` if one touches it in a special way.
@@ -266,25 +262,59 @@ impl<'a> Scene<'a> {
     }
 
     /// For each element the labels of the other operands on its pieces.
+    ///
+    /// They spread from piece to piece and, at anchors, from element to element; only where nothing
+    /// is known yet they are counted.
     fn labels(&self, fates: &[Fate]) -> Option<Vec<Vec<Labels>>> {
         let mut known = Known::new(self, fates);
-        let label = |(element, fate): (&Element, &Fate)| {
-            Some(match fate {
-                Fate::Absent => Vec::new(),
-                Fate::Uncut(anchors) => vec![known.label(self, element.operand, &anchors[0])?],
-                Fate::Cut(cutting, base, anchor) => {
-                    let start = match anchor {
-                        Some(anchor) => known.label(self, element.operand, anchor)?,
-                        None => self.count(element.operand, base)?,
-                    };
-                    let is_base = |c: &Corner| Arc::ptr_eq(&c.at, base);
-                    let has = |p: &Polygon| p.corners().iter().any(is_base);
-                    let first = cutting.pieces.iter().position(has)?;
-                    spread(cutting, first, start)?
+        let mut labels: Vec<Vec<Labels>> = vec![Vec::new(); fates.len()];
+        for (i, fate) in fates.iter().enumerate() {
+            if let (Fate::Cut(cutting, base, anchors), true) = (fate, labels[i].is_empty()) {
+                let operand = self.elements[i].operand;
+                let (piece, start) = match anchors.first() {
+                    Some(anchor) => (anchor.piece(cutting)?, known.label(self, operand, anchor)?),
+                    None => (
+                        piece_with(cutting, |at| Arc::ptr_eq(at, base))?,
+                        self.count(operand, base)?,
+                    ),
+                };
+                self.flood(fates, (i, piece, start), &mut known, &mut labels)?;
+            }
+        }
+        for ((element, fate), labels) in self.elements.iter().zip(fates).zip(&mut labels) {
+            if let Fate::Uncut(anchors) = fate {
+                labels.push(known.label(self, element.operand, &anchors[0])?);
+            }
+        }
+        Some(labels)
+    }
+
+    /// Labels the pieces of a cut element from one of them, and of all cut elements that share
+    /// anchors with it.
+    fn flood(
+        &self,
+        fates: &[Fate],
+        start: (usize, usize, Labels),
+        known: &mut Known,
+        labels: &mut [Vec<Labels>],
+    ) -> Option<()> {
+        let mut open = vec![start];
+        while let Some((i, piece, start)) = open.pop() {
+            let (Fate::Cut(cutting, _, anchors), true) = (&fates[i], labels[i].is_empty()) else {
+                continue;
+            };
+            labels[i] = spread(cutting, piece, start)?;
+            for anchor in anchors {
+                let label = labels[i][anchor.piece(cutting)?];
+                let root = known.root(self.elements[i].operand, anchor) as usize;
+                match known.labels[root].replace(label) {
+                    Some(other) if other != label => return None,
+                    Some(_) => {}
+                    None => open.extend(known.cut_at(root, fates, label)?),
                 }
-            })
-        };
-        self.elements.iter().zip(fates).map(label).collect()
+            }
+        }
+        Some(())
     }
 
     /// The labels of all operands but one at an exact point of that one's boundary.
@@ -560,6 +590,11 @@ impl Anchor {
         }
     }
 
+    /// A piece that has the anchor as a corner.
+    fn piece(&self, cutting: &Cutting) -> Option<usize> {
+        piece_with(cutting, |corner| self.is_at(corner))
+    }
+
     fn is_at(&self, corner: &Arc<Vertex>) -> bool {
         match &self.place {
             Spot::Lattice(p) => corner.as_lattice() == Some(p),
@@ -577,12 +612,20 @@ fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
     })
 }
 
+fn piece_with(cutting: &Cutting, is_it: impl Fn(&Arc<Vertex>) -> bool) -> Option<usize> {
+    let has = |piece: &Polygon| piece.corners().iter().any(|c| is_it(&c.at));
+    cutting.pieces.iter().position(has)
+}
+
 /// Anchors with what is known of the other operands there. Those of an element that nothing
 /// crosses have the same labels.
 struct Known {
     numbers: HashMap<(usize, Name), u32>,
     parents: Vec<u32>,
     labels: Vec<Option<Labels>>,
+    /// The cut elements at the anchors that stand for others: the anchor, the element, and the
+    /// anchor's place among the element's.
+    cuts: Vec<(u32, u32, u8)>,
 }
 
 impl Known {
@@ -591,6 +634,7 @@ impl Known {
             numbers: HashMap::default(),
             parents: Vec::new(),
             labels: Vec::new(),
+            cuts: Vec::new(),
         };
         for (element, fate) in scene.elements.iter().zip(fates) {
             if let Fate::Uncut(anchors) = fate {
@@ -602,7 +646,37 @@ impl Known {
                 });
             }
         }
+        for (i, (element, fate)) in scene.elements.iter().zip(fates).enumerate() {
+            if let Fate::Cut(_, _, anchors) = fate {
+                for (place, anchor) in anchors.iter().enumerate() {
+                    let root = known.root(element.operand, anchor);
+                    known.cuts.push((root, i as u32, place as u8));
+                }
+            }
+        }
+        known.cuts.sort_unstable();
         known
+    }
+
+    /// The cut elements at an anchor, with the piece there and its labels.
+    fn cut_at(
+        &self,
+        root: usize,
+        fates: &[Fate],
+        label: Labels,
+    ) -> Option<Vec<(usize, usize, Labels)>> {
+        let start = self.cuts.partition_point(|c| (c.0 as usize) < root);
+        let here = self.cuts[start..]
+            .iter()
+            .take_while(|c| c.0 as usize == root);
+        here.map(|(_, i, place)| {
+            let Fate::Cut(cutting, _, anchors) = &fates[*i as usize] else {
+                return None;
+            };
+            let piece = anchors[usize::from(*place)].piece(cutting)?;
+            Some((*i as usize, piece, label))
+        })
+        .collect()
     }
 
     fn root(&mut self, operand: usize, anchor: &Anchor) -> u32 {
@@ -667,25 +741,4 @@ fn bits(values: impl Iterator<Item = bool>) -> Labels {
     values
         .enumerate()
         .fold(0, |all, (i, v)| all | Labels::from(v) << i)
-}
-
-/// Whether a triangle certainly lies strictly on one side of the plane of another.
-fn beyond(triangle: &[Lattice; 3], plane: &[Lattice; 3]) -> bool {
-    let less = |p: &Lattice, q: &Lattice| [0, 1, 2].map(|i| (p[i] - q[i]) as f64);
-    let (u, v) = (less(&plane[1], &plane[0]), less(&plane[2], &plane[0]));
-    let products = |i: usize, j: usize| (u[i] * v[j], u[j] * v[i]);
-    let minors = [products(1, 2), products(2, 0), products(0, 1)];
-    let normal = minors.map(|m| m.0 - m.1);
-    let size = minors.map(|m| m.0.abs() + m.1.abs());
-    let sides = [0, 1, 2].map(|k| {
-        let d = less(&triangle[k], &plane[0]);
-        let value = d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2];
-        let doubt = d[0].abs() * size[0] + d[1].abs() * size[1] + d[2].abs() * size[2];
-        if value.abs() > doubt * DETERMINANT_FILTER {
-            value.signum()
-        } else {
-            0.0
-        }
-    });
-    (sides[0] + sides[1] + sides[2]).abs() > 2.5
 }

@@ -1,0 +1,123 @@
+//! Whether two triangles keep clear of each other, by signs of determinants in doubles.
+
+use super::path::{near_determinant, NearCross};
+use super::plane::Lattice;
+
+type Triangle = [Lattice; 3];
+
+/// Whether two lattice triangles certainly have no point in common; errs on no.
+///
+/// They do not if one lies on one side of the other's plane, or else if the stretches in which they
+/// cover the line that both planes share are apart (Möller 1997; in signs alone as Guigue and
+/// Devillers 2003).
+pub fn are_apart(p: &Triangle, q: &Triangle) -> bool {
+    let (Some(of_p), Some(of_q)) = (Sides::of(p, q), Sides::of(q, p)) else {
+        return false;
+    };
+    match (of_p.alone, of_q.alone) {
+        (Some(i), Some(k)) => stretches_are_apart(p, i, q, k),
+        _ => true,
+    }
+}
+
+/// On which sides of a plane the corners of a triangle lie.
+struct Sides {
+    /// The corner that is alone on its side; `None` if all lie on one.
+    alone: Option<usize>,
+}
+
+impl Sides {
+    /// `None` if that is not certain, or a corner may lie in the plane.
+    fn of(triangle: &Triangle, plane: &Triangle) -> Option<Self> {
+        let [a, b, c] = plane;
+        let normal = NearCross::of(&less(b, a), &less(c, a));
+        let sides = [0, 1, 2].map(|i| normal.side_of(&less(&triangle[i], a)));
+        if sides.contains(&0) {
+            return None;
+        }
+        let alone = match sides.map(|s| s == sides[0]) {
+            [_, true, true] => None,
+            [_, false, false] => Some(0),
+            [_, false, true] => Some(1),
+            [_, true, false] => Some(2),
+        };
+        Some(Self { alone })
+    }
+}
+
+/// Whether the edges at the lone corner `p[i]` cross the other plane all before or all behind the
+/// points in which those at `q[k]` cross the first.
+///
+/// Which of two edges of different triangles comes first is the sign of the volume they span, up to
+/// a sign that is the same for all four pairs.
+fn stretches_are_apart(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
+    let (from, other) = (&p[i], &q[k]);
+    let toward = less(other, from);
+    let edges = |t: &Triangle, at: usize| [1, 2].map(|step| less(&t[(at + step) % 3], &t[at]));
+    let (ours, theirs) = (edges(p, i), edges(q, k));
+    let order = |our: &Lattice, their: &Lattice| near_determinant(&toward, our, their);
+    let first = order(&ours[0], &theirs[0]);
+    let same = |our: &Lattice| theirs.iter().all(|their| order(our, their) == first);
+    first != 0 && ours.iter().all(same)
+}
+
+#[inline]
+fn less(p: &Lattice, q: &Lattice) -> Lattice {
+    [0, 1, 2].map(|i| p[i] - q[i])
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn corner(reach: i64) -> impl Strategy<Value = Lattice> {
+        [-reach..=reach, -reach..=reach, -reach..=reach]
+    }
+
+    /// Whether some point of an edge of `p` lies in `q`, by exact determinants.
+    fn pierces(p: &Triangle, q: &Triangle) -> bool {
+        let volume = |a: &Lattice, b: &Lattice, c: &Lattice, d: &Lattice| {
+            let (u, v, w) = (less(b, a), less(c, a), less(d, a));
+            u[0] * (v[1] * w[2] - v[2] * w[1])
+                + u[1] * (v[2] * w[0] - v[0] * w[2])
+                + u[2] * (v[0] * w[1] - v[1] * w[0])
+        };
+        (0..3).any(|e| {
+            let (a, b) = (&p[e], &p[(e + 1) % 3]);
+            let across =
+                volume(a, &q[0], &q[1], &q[2]).signum() * volume(b, &q[0], &q[1], &q[2]).signum();
+            let turns = [0, 1, 2].map(|i| volume(a, b, &q[i], &q[(i + 1) % 3]).signum());
+            across < 0 && (turns == [1; 3] || turns == [-1; 3])
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn triangles_that_pierce_each_other_are_not_apart(
+            p in [corner(4), corner(4), corner(4)],
+            q in [corner(4), corner(4), corner(4)],
+        ) {
+            let meet = pierces(&p, &q) || pierces(&q, &p);
+            prop_assert!(!(meet && are_apart(&p, &q)));
+        }
+
+        /// In general position nothing small is in doubt.
+        #[test]
+        fn triangles_in_general_position_are_apart_or_pierce_each_other(
+            p in [corner(99), corner(99), corner(99)],
+            q in [corner(99), corner(99), corner(99)],
+        ) {
+            prop_assume!(Sides::of(&p, &q).is_some() && Sides::of(&q, &p).is_some());
+            let edges = |t: &Triangle| [0, 1, 2].map(|i| (t[i], t[(i + 1) % 3]));
+            let flat = edges(&p).iter().any(|(a, b)| edges(&q).iter().any(|(c, d)| {
+                near_determinant(&less(b, a), &less(c, a), &less(d, a)) == 0
+            }));
+            prop_assume!(!flat);
+            prop_assert_eq!(are_apart(&p, &q), !(pierces(&p, &q) || pierces(&q, &p)));
+        }
+    }
+}
