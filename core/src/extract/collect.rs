@@ -1,14 +1,18 @@
 //! What a tree says of each face: kept whole, cut, or gone.
 
+use rayon::prelude::*;
 use rustc_hash::FxHashSet as HashSet;
 
+use super::leaves::{listed, Listed, Spanning};
 use crate::geometry::cell::Cell;
 use crate::geometry::line::LineKey;
 use crate::geometry::outline::{cancel, OutlineEdge};
 use crate::geometry::plane::Lattice;
 use crate::merge::list::Sources;
+use crate::merge::separation::misses;
 use crate::mesh::source::{Shape, Source};
-use crate::tree::node::{Branch, Deferred, Node, Part};
+use crate::mesh::tasks::in_pool;
+use crate::tree::node::{Branch, Deferred, Node};
 use crate::tree::solid::Solid;
 
 /// The fate of a face.
@@ -47,111 +51,43 @@ pub struct Boundary {
     pub near: Vec<(u32, u32)>,
 }
 
-/// A face that reaches out of a leaf that lists it.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Spanning {
-    slot: u32,
-    face: u32,
-    flip: bool,
-    leaf: u32,
-}
+/// Fewer faces than this are looked at on one thread.
+const MANY: usize = 256;
 
 struct Collector<'a> {
     sources: &'a Sources,
     root: &'a Branch,
-    fates: Vec<Vec<Fate>>,
-    spanning: Vec<Spanning>,
-    parts: Vec<CutFace>,
-    cells: Vec<Cell>,
-    near: Vec<(u32, u32)>,
+    listed: Listed,
 }
 
 /// Collects the boundary of a solid.
 pub fn collect(solid: &Solid, sources: &Sources) -> Boundary {
-    let mut collector = Collector {
+    let collector = Collector {
         sources,
         root: solid.root(),
-        fates: vec![Vec::new(); sources.table().len()],
-        spanning: Vec::new(),
-        parts: Vec::new(),
-        cells: Vec::new(),
-        near: Vec::new(),
+        listed: listed(solid.root(), sources),
     };
-    collector.visit_leaves();
     collector.settle()
 }
 
 impl Collector<'_> {
-    fn visit_leaves(&mut self) {
-        let mut open = vec![self.root.clone()];
-        while let Some(branch) = open.pop() {
-            match &*branch.node {
-                Node::Leaf(_) => {}
-                Node::Deferred(leaf) => self.visit(&branch, leaf),
-                Node::Cut(halves) => {
-                    let [minus, plus] = &halves.children;
-                    open.push(branch.child(plus));
-                    open.push(branch.child(minus));
-                }
-            }
-        }
-    }
-
-    fn visit(&mut self, branch: &Branch, leaf: &Deferred) {
-        let number = self.cells.len() as u32;
-        self.cells.push(branch.cell);
-        for group in &leaf.groups {
-            let slot = self.sources.slot(&group.source);
-            let flip = group.flip ^ branch.complement;
-            let fates = fates_of(&mut self.fates[slot], &group.source);
-            let bounded = group.source.mesh().is_some();
-            let inside = bounded && group.source.cell().is_some_and(|c| branch.cell.holds(&c));
-            if leaf.worked {
-                self.near
-                    .extend(group.faces.iter().map(|f| (slot as u32, *f)));
-            }
-            for &face in &group.faces {
-                if inside || bounded && holds_face(&branch.cell, &group.source, face) {
-                    fates[face as usize] = Fate::Whole(flip);
-                } else {
-                    self.spanning.push(Spanning {
-                        slot: slot as u32,
-                        face,
-                        flip,
-                        leaf: number,
-                    });
-                }
-            }
-        }
-        for element in &leaf.parts {
-            let part = &element.part;
-            let edges = part_edges(part, &branch.cell);
-            if edges.is_empty() {
-                continue;
-            }
-            let slot = self.sources.slot(&part.source);
-            fates_of(&mut self.fates[slot], &part.source)[part.face as usize] = Fate::Cut;
-            self.parts.push(CutFace {
-                slot: slot as u32,
-                face: part.face,
-                flip: element.flip ^ branch.complement,
-                edges,
-            });
-        }
-    }
-
     /// Decides the faces that span leaves, and outlines the cut ones.
     fn settle(mut self) -> Boundary {
-        self.spanning.sort_unstable();
-        let spanning = std::mem::take(&mut self.spanning);
+        let mut spanning = std::mem::take(&mut self.listed.spanning);
+        spanning.sort_unstable();
+        let runs: Vec<&[Spanning]> = spanning
+            .chunk_by(|a, b| (a.slot, a.face) == (b.slot, b.face))
+            .collect();
+        let whole = |run: &&[Spanning]| self.is_whole(run);
+        let whole: Vec<bool> = if in_pool() && runs.len() > MANY {
+            runs.par_iter().map(whole).collect()
+        } else {
+            runs.iter().map(whole).collect()
+        };
         let mut open: Vec<&[Spanning]> = Vec::new();
-        for run in spanning.chunk_by(|a, b| (a.slot, a.face) == (b.slot, b.face)) {
-            let (slot, face) = (run[0].slot as usize, run[0].face);
-            let one_side = run.iter().all(|s| s.flip == run[0].flip);
-            let fate = &mut self.fates[slot][face as usize];
-            let bounded = self.sources.get(slot).mesh().is_some();
-            let uncut = bounded && *fate == Fate::Gone && one_side;
-            if uncut && covers(self.root, self.sources.get(slot), face, run[0].flip) {
+        for (run, whole) in runs.into_iter().zip(whole) {
+            let fate = &mut self.listed.fates[run[0].slot as usize][run[0].face as usize];
+            if whole {
                 *fate = Fate::Whole(run[0].flip);
             } else {
                 *fate = Fate::Cut;
@@ -159,20 +95,30 @@ impl Collector<'_> {
             }
         }
         let cut = self.outline(&open);
-        self.near.sort_unstable();
-        self.near.dedup();
-        Boundary {
-            fates: self.fates,
-            cut,
-            near: self.near,
-        }
+        let Listed {
+            fates, mut near, ..
+        } = self.listed;
+        near.sort_unstable();
+        near.dedup();
+        Boundary { fates, cut, near }
+    }
+
+    /// Whether all of a face that spans leaves is boundary, and turned one way.
+    fn is_whole(&self, run: &[Spanning]) -> bool {
+        let first = &run[0];
+        let source = self.sources.get(first.slot as usize);
+        let fate = self.listed.fates[first.slot as usize][first.face as usize];
+        fate == Fate::Gone
+            && source.mesh().is_some()
+            && run.iter().all(|s| s.flip == first.flip)
+            && covers(self.root, source, first.face, first.flip)
     }
 
     fn outline(&mut self, open: &[&[Spanning]]) -> Vec<CutFace> {
         let mut pieces: Vec<CutFace> = Vec::new();
         for s in open.iter().flat_map(|run| run.iter()) {
             let source = self.sources.get(s.slot as usize);
-            if let Some(polygon) = source.clip(s.face, &self.cells[s.leaf as usize]) {
+            if let Some(polygon) = source.clip(s.face, &self.listed.cells[s.leaf as usize]) {
                 let edges = OutlineEdge::all_of(&polygon).collect();
                 pieces.push(CutFace {
                     slot: s.slot,
@@ -182,7 +128,7 @@ impl Collector<'_> {
                 });
             }
         }
-        pieces.append(&mut self.parts);
+        pieces.append(&mut self.listed.parts);
         pieces.sort_by_key(|p| (p.slot, p.face, p.flip));
         let mut cut: Vec<CutFace> = Vec::new();
         for piece in pieces {
@@ -197,37 +143,12 @@ impl Collector<'_> {
             c.edges = cancel(std::mem::take(&mut c.edges));
             let whole = is_full_face(c, self.sources.get(c.slot as usize));
             if whole {
-                self.fates[c.slot as usize][c.face as usize] = Fate::Whole(c.flip);
+                self.listed.fates[c.slot as usize][c.face as usize] = Fate::Whole(c.flip);
             }
             !whole && !c.edges.is_empty()
         });
         cut
     }
-}
-
-fn fates_of<'a>(fates: &'a mut Vec<Fate>, source: &Source) -> &'a mut Vec<Fate> {
-    if fates.is_empty() {
-        fates.resize(source.face_count(), Fate::Gone);
-    }
-    fates
-}
-
-fn holds_face(cell: &Cell, source: &Source, face: u32) -> bool {
-    let (low, high) = source.face_box(face);
-    cell.holds_box(&low, &high)
-}
-
-/// The outline of a part inside a leaf's cell.
-fn part_edges(part: &Part, cell: &Cell) -> Vec<OutlineEdge> {
-    if part.home == *cell {
-        return part.edges.clone();
-    }
-    let clipped = part.pieces().iter().filter_map(|p| p.clone().clipped(cell));
-    cancel(
-        clipped
-            .flat_map(|p| OutlineEdge::all_of(&p).collect::<Vec<_>>())
-            .collect(),
-    )
 }
 
 /// Whether an outline is the face's own triangle.
@@ -247,18 +168,17 @@ fn covers(root: &Branch, source: &Source, face: u32, flip: bool) -> bool {
     if !root.cell.holds_box(&low, &high) {
         return false;
     }
-    let mut open = vec![root.clone()];
-    while let Some(branch) = open.pop() {
+    let mut open = vec![(root, root.complement)];
+    while let Some((branch, complement)) = open.pop() {
         match &*branch.node {
             Node::Leaf(_) => {
-                if source.clip(face, &branch.cell).is_some() {
+                if enters(source, face, &branch.cell) {
                     return false;
                 }
             }
             Node::Deferred(leaf) => {
-                if !lists(leaf, &branch, source, face, flip)
-                    && source.clip(face, &branch.cell).is_some()
-                {
+                let listed = lists(leaf, source, face, flip ^ complement);
+                if !listed && enters(source, face, &branch.cell) {
                     return false;
                 }
             }
@@ -274,12 +194,17 @@ fn covers(root: &Branch, source: &Source, face: u32, flip: bool) -> bool {
                     if !child.cell.holds_box(&a, &b) {
                         return false;
                     }
-                    open.push(branch.child(child));
+                    open.push((child, complement ^ child.complement));
                 }
             }
         }
     }
     true
+}
+
+/// Whether a face has area in a cell.
+fn enters(source: &Source, face: u32, cell: &Cell) -> bool {
+    !misses(source, face, cell) && source.clip(face, cell).is_some()
 }
 
 fn overlap(cell: &Cell, low: &Lattice, high: &Lattice) -> Option<(Lattice, Lattice)> {
@@ -289,11 +214,9 @@ fn overlap(cell: &Cell, low: &Lattice, high: &Lattice) -> Option<(Lattice, Latti
     (0..3).all(|i| a[i] <= b[i]).then_some((a, b))
 }
 
-fn lists(leaf: &Deferred, branch: &Branch, source: &Source, face: u32, flip: bool) -> bool {
+fn lists(leaf: &Deferred, source: &Source, face: u32, flip: bool) -> bool {
     leaf.groups.iter().any(|g| {
-        g.source.id() == source.id()
-            && g.flip ^ branch.complement == flip
-            && g.faces.binary_search(&face).is_ok()
+        g.source.id() == source.id() && g.flip == flip && g.faces.binary_search(&face).is_ok()
     })
 }
 

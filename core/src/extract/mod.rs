@@ -5,6 +5,7 @@ pub mod assemble;
 pub mod collect;
 mod contacts;
 pub mod fans;
+mod leaves;
 mod origin;
 pub mod planes;
 pub mod rim;

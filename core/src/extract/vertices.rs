@@ -4,6 +4,8 @@ use rustc_hash::FxHashMap as HashMap;
 use std::cmp::Ordering;
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use super::triangulate::Planar;
 use crate::arith::Int;
 use crate::geometry::plane::{Lattice, Plane};
@@ -13,7 +15,7 @@ use crate::geometry::vertex::{Vertex, VertexKey};
 #[derive(Debug, Default)]
 pub struct VertexTable {
     points: Vec<Arc<Vertex>>,
-    by_key: HashMap<VertexKey, Vec<u32>>,
+    by_key: HashMap<VertexKey, SmallVec<[u32; 1]>>,
     by_address: HashMap<usize, u32>,
 }
 

@@ -17,7 +17,7 @@ pub mod merge_trees;
 pub mod op;
 mod overlay;
 pub mod partition_tree;
-mod separation;
+pub mod separation;
 pub mod simple;
 pub mod split_tree;
 mod sweep;
