@@ -1,0 +1,133 @@
+//! Anchors: points of an operand's boundary that its elements have in common.
+//!
+//! What is known of the other operands at an anchor holds for all elements that share it: the
+//! vertices of a mesh, the corners of a part's pieces, and the points in which edges leave the cell.
+
+use std::sync::Arc;
+
+use smallvec::SmallVec;
+
+use super::super::cutting::Cutting;
+use super::scene::{Element, Place, Triangle};
+use crate::geometry::cell::Cell;
+use crate::geometry::plane::Lattice;
+use crate::geometry::polygon::{Carrier, Corner, Polygon};
+use crate::geometry::vertex::Vertex;
+
+/// A point of an operand's boundary inside the cell.
+#[derive(Clone)]
+pub(super) struct Anchor {
+    pub(super) name: Name,
+    pub(super) place: Spot,
+}
+
+pub(super) type Anchors = SmallVec<[Anchor; 3]>;
+
+/// What tells points apart that several elements may have in common.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Name {
+    /// A vertex of a source.
+    Vertex(u32, u32),
+    /// A corner of a part: pieces that share the corner share the object at this address.
+    Corner(usize),
+    /// The point in which an edge of a source leaves the cell: the axis of the wall, and whether
+    /// it is the upper one.
+    Crossing(u32, (Lattice, Lattice), (usize, bool)),
+}
+
+/// Where an anchor is.
+#[derive(Clone)]
+pub(super) enum Spot {
+    Lattice(Lattice),
+    Exact(Arc<Vertex>),
+}
+
+impl Element<'_> {
+    /// The corners inside the cell that other elements of the operand may share.
+    pub(super) fn anchors(&self, cell: &Cell) -> Anchors {
+        match &self.place {
+            Place::Face(triangle) => (0..3)
+                .filter(|i| cell.holds_box(&triangle.corners[*i], &triangle.corners[*i]))
+                .map(|i| Anchor::at_vertex(triangle, i))
+                .collect(),
+            Place::Piece(_, shape) => {
+                let corners = shape.polygon.corners().iter().map(|c| &c.at);
+                corners
+                    .filter(|v| is_well_inside(v, cell))
+                    .map(Anchor::of_corner)
+                    .collect()
+            }
+            Place::Plane(..) => SmallVec::new(),
+        }
+    }
+
+    /// The points in which a face's own edges leave the cell: its neighbours share them.
+    pub(super) fn anchors_at_walls(&self, clipped: &Polygon) -> Anchors {
+        let Place::Face(triangle) = &self.place else {
+            return SmallVec::new();
+        };
+        let corners = clipped.corners();
+        let n = corners.len();
+        let at_wall = |i: usize| Anchor::at_wall(triangle, &corners[(i + n - 1) % n], &corners[i]);
+        (0..n).filter_map(at_wall).collect()
+    }
+}
+
+impl Anchor {
+    fn at_vertex(triangle: &Triangle, corner: usize) -> Self {
+        Self {
+            name: Name::Vertex(triangle.slot, triangle.vertices[corner]),
+            place: Spot::Lattice(triangle.corners[corner]),
+        }
+    }
+
+    fn of_corner(vertex: &Arc<Vertex>) -> Self {
+        Self {
+            name: Name::Corner(Arc::as_ptr(vertex) as usize),
+            place: Spot::Exact(Arc::clone(vertex)),
+        }
+    }
+
+    /// The corner of a clipped face at which one of its own edges and a wall of the cell meet.
+    fn at_wall(triangle: &Triangle, before: &Corner, corner: &Corner) -> Option<Self> {
+        let (edge, wall) = match (&before.edge, &corner.edge) {
+            (Carrier::Edge(a, b), Carrier::Cut(wall, _))
+            | (Carrier::Cut(wall, _), Carrier::Edge(a, b)) => ((*a, *b), wall),
+            _ => return None,
+        };
+        let axis = wall.only_axis()?;
+        let wall = (axis, wall.normal()[axis] > 0);
+        let ends = (edge.0.min(edge.1), edge.0.max(edge.1));
+        Some(Self {
+            name: Name::Crossing(triangle.slot, ends, wall),
+            place: Spot::Exact(Arc::clone(&corner.at)),
+        })
+    }
+
+    /// A piece that has the anchor as a corner.
+    pub(super) fn piece(&self, cutting: &Cutting) -> Option<usize> {
+        piece_with(cutting, |corner| self.is_at(corner))
+    }
+
+    fn is_at(&self, corner: &Arc<Vertex>) -> bool {
+        match &self.place {
+            Spot::Lattice(p) => corner.as_lattice() == Some(p),
+            Spot::Exact(vertex) => Arc::ptr_eq(vertex, corner),
+        }
+    }
+}
+
+/// The first piece that has such a corner.
+pub(super) fn piece_with(cutting: &Cutting, is_it: impl Fn(&Arc<Vertex>) -> bool) -> Option<usize> {
+    let has = |piece: &Polygon| piece.corners().iter().any(|c| is_it(&c.at));
+    cutting.pieces.iter().position(has)
+}
+
+/// Whether a point certainly lies in a cell.
+fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
+    let (p, low, high) = (vertex.approx(), cell.low(), cell.high());
+    (0..3).all(|i| {
+        let slack = p[i].abs() * 4.0 * f64::EPSILON;
+        p[i] - slack >= low[i] as f64 && p[i] + slack <= high[i] as f64
+    })
+}

@@ -1,0 +1,175 @@
+//! The elements of a cell: whole faces, faces of half-spaces, and convex pieces of parts.
+
+use std::borrow::Cow;
+use std::cell::OnceCell;
+use std::sync::Arc;
+
+use super::super::cutting::Face;
+use super::super::list::{List, Record, Sources};
+use super::super::sweep::Swept;
+use super::Labels;
+use crate::geometry::cell::Cell;
+use crate::geometry::plane::Lattice;
+use crate::geometry::polygon::Polygon;
+use crate::mesh::source::{Shape, Source};
+use crate::tree::node::Part;
+
+/// All operands in a cell.
+pub(super) struct Scene<'a> {
+    pub(super) cell: &'a Cell,
+    /// The cell's low corner, doubled.
+    pub(super) corner: Lattice,
+    /// The operands' winding numbers there.
+    pub(super) corners: Vec<i32>,
+    /// The elements by operand.
+    pub(super) elements: Vec<Element<'a>>,
+    /// For each operand where its elements end.
+    ends: Vec<usize>,
+    /// The parts that pieces belong to, and the slots of their sources.
+    pub(super) parts: Vec<(&'a Arc<Part>, u32)>,
+}
+
+/// A whole face or a convex piece of a part.
+pub(super) struct Element<'a> {
+    pub(super) operand: usize,
+    /// By how much the winding number behind the face exceeds that in front of it.
+    pub(super) weight: i32,
+    pub(super) place: Place<'a>,
+    pub(super) low: Lattice,
+    pub(super) high: Lattice,
+}
+
+/// What an element is, and where.
+pub(super) enum Place<'a> {
+    Face(Triangle<'a>),
+    /// The face of a half-space: its slot, and its part in the cell.
+    Plane(u32, Face<'a>),
+    /// A piece of a part: the part's number in the scene.
+    Piece(usize, Face<'a>),
+}
+
+/// A whole face.
+pub(super) struct Triangle<'a> {
+    source: &'a Source,
+    pub(super) slot: u32,
+    pub(super) face: u32,
+    pub(super) vertices: [u32; 3],
+    pub(super) corners: [Lattice; 3],
+    shape: OnceCell<Face<'a>>,
+}
+
+impl<'a> Scene<'a> {
+    pub(super) fn new(cell: &'a Cell, lists: &[(u32, &'a List)], sources: &'a Sources) -> Self {
+        let mut scene = Self {
+            cell,
+            corner: cell.corner(),
+            corners: lists.iter().map(|l| l.1.corner).collect(),
+            elements: Vec::with_capacity(lists.iter().map(|l| l.1.len()).sum()),
+            ends: Vec::with_capacity(lists.len()),
+            parts: Vec::new(),
+        };
+        for (operand, (_, list)) in lists.iter().enumerate() {
+            let faces = list.records.iter();
+            let faces = faces.filter_map(|r| Element::of_record(operand, r, cell, sources));
+            scene.elements.extend(faces);
+            scene.add_parts(operand, list, sources);
+            scene.ends.push(scene.elements.len());
+        }
+        scene
+    }
+
+    fn add_parts(&mut self, operand: usize, list: &'a List, sources: &Sources) {
+        for p in &list.parts {
+            let part = self.parts.len();
+            let slot = sources.slot(&p.element.part.source) as u32;
+            self.parts.push((&p.element.part, slot));
+            for piece in p.pieces.iter() {
+                let (low, high) = piece.bounds();
+                self.elements.push(Element {
+                    operand,
+                    weight: if p.element.flip { -1 } else { 1 },
+                    place: Place::Piece(part, Face::new(Cow::Borrowed(piece))),
+                    low: low.map(|x| x.floor() as i64),
+                    high: high.map(|x| x.ceil() as i64),
+                });
+            }
+        }
+    }
+
+    /// The labels at the cell's low corner.
+    pub(super) fn at_corner(&self) -> Labels {
+        let numbers = self.corners.iter().enumerate();
+        numbers.fold(0, |all, (i, w)| all | Labels::from(*w > 0) << i)
+    }
+
+    pub(super) fn of_operand(&self, operand: usize) -> &[Element<'a>] {
+        let start = match operand {
+            0 => 0,
+            _ => self.ends[operand - 1],
+        };
+        &self.elements[start..self.ends[operand]]
+    }
+}
+
+impl<'a> Element<'a> {
+    /// A listed face; `None` for the face of a half-space that misses the cell.
+    fn of_record(
+        operand: usize,
+        record: &Record,
+        cell: &Cell,
+        sources: &'a Sources,
+    ) -> Option<Self> {
+        let source = sources.get(record.slot());
+        let place = match source.shape() {
+            Shape::Mesh(mesh) => Place::Face(Triangle {
+                source,
+                slot: record.slot() as u32,
+                face: record.face,
+                vertices: mesh.faces[record.face as usize],
+                corners: mesh.corners(record.face),
+                shape: OnceCell::new(),
+            }),
+            Shape::HalfSpace(plane) => {
+                let polygon = Polygon::span(plane, cell)?;
+                Place::Plane(record.slot() as u32, Face::new(Cow::Owned(polygon)))
+            }
+        };
+        let (low, high) = source.face_box(record.face);
+        Some(Self {
+            operand,
+            weight: if record.flip() { -1 } else { 1 },
+            place,
+            low,
+            high,
+        })
+    }
+
+    /// The element as the sweep sees it.
+    pub(super) fn swept(&self, cell: &Cell) -> Swept {
+        let (low, high) = (cell.low(), cell.high());
+        let relative = |p: &Lattice| [0, 1, 2].map(|i| (p[i] - low[i]) as f64);
+        Swept {
+            operand: self.operand,
+            low: [0, 1, 2].map(|i| self.low[i].max(low[i] - 1)),
+            high: [0, 1, 2].map(|i| self.high[i].min(high[i] + 1)),
+            corners: match &self.place {
+                Place::Face(t) => Some([0, 1, 2].map(|i| relative(&t.corners[i]))),
+                Place::Plane(..) | Place::Piece(..) => None,
+            },
+        }
+    }
+
+    pub(super) fn shape(&self) -> &Face<'a> {
+        match &self.place {
+            Place::Face(t) => t.shape.get_or_init(|| {
+                let plane = t.source.plane(t.face);
+                Face::new(Cow::Owned(Polygon::triangle(&t.corners, plane)))
+            }),
+            Place::Plane(_, shape) | Place::Piece(_, shape) => shape,
+        }
+    }
+
+    pub(super) fn polygon_in(&self, cell: &Cell) -> Option<Polygon> {
+        self.shape().polygon.as_ref().clone().clipped(cell)
+    }
+}
