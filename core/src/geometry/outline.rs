@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::line::LineKey;
 use super::plane::Plane;
-use super::polygon::{Carrier, Polygon, PolygonSplit};
+use super::polygon::{Carrier, Corner, Polygon, PolygonSplit};
 use super::vertex::Vertex;
 
 /// A directed edge with the region it bounds on its left, in the plane it lies in.
@@ -127,6 +127,36 @@ fn emit(
             line: like.line,
         });
     }
+}
+
+/// The polygon that an outline bounds, if it is one convex loop, with the outline's own corners.
+///
+/// Edges on the face's own edges are taken as bounding it: the outline is that of a part of the
+/// face.
+pub fn convex_loop(support: &Arc<Plane>, edges: &[OutlineEdge]) -> Option<Polygon> {
+    let start = edges.first()?;
+    let mut at = start;
+    let mut ring = Vec::with_capacity(edges.len());
+    for _ in edges {
+        ring.push(Corner {
+            at: Arc::clone(&at.from),
+            edge: at.carrier.clone(),
+        });
+        let next = edges.iter().find(|e| Arc::ptr_eq(&e.from, &at.to))?;
+        if next.line == at.line {
+            return None;
+        }
+        at = next;
+    }
+    let bounds = |edge: &OutlineEdge| match &edge.carrier {
+        Carrier::Edge(..) => true,
+        Carrier::Cut(plane, plus) => {
+            let beyond = if *plus { -1 } else { 1 };
+            edges.iter().all(|e| e.from.side_of(plane) != beyond)
+        }
+    };
+    let closed = std::ptr::eq(at, start) && ring.len() >= 3;
+    (closed && edges.iter().all(bounds)).then(|| Polygon::of_corners(ring, Arc::clone(support)))
 }
 
 /// The convex pieces of the region that an outline bounds inside a convex polygon.

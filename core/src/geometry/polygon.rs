@@ -142,6 +142,12 @@ impl Polygon {
         Self::convex(points, support)
     }
 
+    /// The convex polygon with these corners in this supporting plane, counterclockwise.
+    pub fn of_corners(corners: Vec<Corner>, support: Arc<Plane>) -> Self {
+        let corners = corners.into_iter().collect();
+        Self { support, corners }
+    }
+
     /// The convex polygon of lattice points in this supporting plane, counterclockwise.
     pub fn convex(points: &[Lattice], support: Arc<Plane>) -> Self {
         let corners = (0..points.len())

@@ -69,7 +69,7 @@ pub struct PartRecord {
     /// The part.
     pub element: PartElement,
     /// Its convex pieces.
-    pub pieces: Arc<Vec<Polygon>>,
+    pub pieces: Arc<[Polygon]>,
 }
 
 /// The elements of one operand that meet a cell, and its winding number at the low corner.
@@ -311,7 +311,7 @@ impl Frame {
         }
     }
 
-    fn part_record(&self, element: PartElement, pieces: Arc<Vec<Polygon>>) -> PartRecord {
+    fn part_record(&self, element: PartElement, pieces: Arc<[Polygon]>) -> PartRecord {
         let mut low = [i32::MAX; 3];
         let mut high = [i32::MIN; 3];
         for piece in pieces.iter() {

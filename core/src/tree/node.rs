@@ -159,12 +159,13 @@ pub struct Part {
     pub home: Cell,
     /// The outline, counterclockwise on the face.
     pub edges: Vec<OutlineEdge>,
-    pieces: OnceLock<Arc<Vec<Polygon>>>,
+    pieces: OnceLock<Arc<[Polygon]>>,
 }
 
 impl Part {
     /// The part of a face that an outline bounds in a cell.
-    pub fn new(source: Arc<Source>, face: u32, home: Cell, edges: Vec<OutlineEdge>) -> Self {
+    pub fn new(source: Arc<Source>, face: u32, home: Cell, mut edges: Vec<OutlineEdge>) -> Self {
+        edges.shrink_to_fit();
         Self {
             source,
             face,
@@ -175,10 +176,16 @@ impl Part {
     }
 
     /// The convex pieces, derived from the outline on first use.
-    pub fn pieces(&self) -> &Arc<Vec<Polygon>> {
+    pub fn pieces(&self) -> &Arc<[Polygon]> {
         self.pieces.get_or_init(|| {
+            if let Some(whole) = outline::convex_loop(&self.source.plane(self.face), &self.edges) {
+                return Arc::new([whole]);
+            }
             let polygon = self.source.clip(self.face, &self.home);
-            Arc::new(polygon.map_or_else(Vec::new, |p| outline::pieces(p, &self.edges)))
+            polygon.map_or_else(
+                || Arc::new([]) as Arc<[Polygon]>,
+                |p| outline::pieces(p, &self.edges).into(),
+            )
         })
     }
 }
