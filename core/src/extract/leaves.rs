@@ -209,7 +209,7 @@ fn part_edges(part: &Part, cell: &Cell) -> Vec<OutlineEdge> {
     if part.home == *cell {
         return part.edges.clone();
     }
-    let clipped = part.pieces().iter().filter_map(|p| p.clone().clipped(cell));
+    let clipped = part.pieces().into_iter().filter_map(|p| p.clipped(cell));
     cancel(
         clipped
             .flat_map(|p| OutlineEdge::all_of(&p).collect::<Vec<_>>())

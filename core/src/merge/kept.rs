@@ -53,7 +53,7 @@ impl Kept {
         match &self.what {
             What::Whole => source.clip(self.face.1, cell).into_iter().collect(),
             What::Part(part) => {
-                let clipped = part.pieces().iter().filter_map(|p| p.clone().clipped(cell));
+                let clipped = part.pieces().into_iter().filter_map(|p| p.clipped(cell));
                 clipped.collect()
             }
             What::Pieces(pieces) => pieces.clone(),

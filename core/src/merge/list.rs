@@ -134,7 +134,7 @@ impl List {
         }
         for element in &leaf.parts {
             let flip = element.flip ^ branch.complement;
-            let pieces = Arc::clone(element.part.pieces());
+            let pieces = element.part.pieces().into();
             let part = Arc::clone(&element.part);
             list.parts
                 .push(frame.part_record(PartElement { part, flip }, pieces));

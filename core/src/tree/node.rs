@@ -159,7 +159,6 @@ pub struct Part {
     pub home: Cell,
     /// The outline, counterclockwise on the face.
     pub edges: Vec<OutlineEdge>,
-    pieces: OnceLock<Arc<[Polygon]>>,
 }
 
 impl Part {
@@ -171,22 +170,18 @@ impl Part {
             face,
             home,
             edges,
-            pieces: OnceLock::new(),
         }
     }
 
-    /// The convex pieces, derived from the outline on first use.
-    pub fn pieces(&self) -> &Arc<[Polygon]> {
-        self.pieces.get_or_init(|| {
-            if let Some(whole) = outline::convex_loop(&self.source.plane(self.face), &self.edges) {
-                return Arc::new([whole]);
-            }
-            let polygon = self.source.clip(self.face, &self.home);
-            polygon.map_or_else(
-                || Arc::new([]) as Arc<[Polygon]>,
-                |p| outline::pieces(p, &self.edges).into(),
-            )
-        })
+    /// The convex pieces, derived from the outline.
+    ///
+    /// They are not kept: they take more room than the part, and a part is rarely asked twice.
+    pub fn pieces(&self) -> Vec<Polygon> {
+        if let Some(whole) = outline::convex_loop(&self.source.plane(self.face), &self.edges) {
+            return vec![whole];
+        }
+        let polygon = self.source.clip(self.face, &self.home);
+        polygon.map_or_else(Vec::new, |p| outline::pieces(p, &self.edges))
     }
 }
 
