@@ -130,7 +130,7 @@ fn flux_of_node(node: &Node, cell: &Cell, first: impl Fn(&Source) -> u64) -> Flu
     }
     for element in &leaf.parts {
         let part = &element.part;
-        for piece in part.pieces().iter() {
+        for piece in &part.pieces() {
             add(&part.source, part.face, element.flip, piece);
         }
     }
