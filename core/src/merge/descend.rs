@@ -26,7 +26,7 @@ use crate::tree::node::{Branch, Node};
 pub const LEAF: usize = 32;
 
 /// Lists that together hold at most this many are tried without local trees.
-const GENERAL: usize = 128;
+const GENERAL: usize = 64;
 
 /// Lists at least this long are worth a task of their own.
 const TASK: usize = 512;

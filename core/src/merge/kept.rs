@@ -7,7 +7,7 @@ use crate::geometry::cell::Cell;
 use crate::geometry::line::LineKey;
 use crate::geometry::outline::{cancel, OutlineEdge};
 use crate::geometry::plane::Plane;
-use crate::geometry::polygon::Polygon;
+use crate::geometry::polygon::{Carrier, Polygon};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Deferred, Group, Node, Part, PartElement};
 
@@ -124,7 +124,7 @@ fn list_whole(groups: &mut Vec<Group>, source: &Arc<Source>, face: u32, flip: bo
 /// border of the whole face inside the cell, for a part of a connected set with no border of its
 /// own is all of it.
 pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: u32, cell: &Cell) -> bool {
-    let mut own: Vec<LineKey> = match source.shape() {
+    let own: Vec<LineKey> = match source.shape() {
         Shape::Mesh(mesh) => {
             let c = mesh.corners(face);
             (0..3)
@@ -133,11 +133,18 @@ pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: u32, cell: &Cell) 
         }
         Shape::HalfSpace(_) => Vec::new(),
     };
-    if edges.iter().all(|e| own.contains(&e.line)) {
+    let foreign = |e: &&OutlineEdge| !own.contains(&e.line);
+    let others: Vec<&OutlineEdge> = edges.iter().filter(foreign).collect();
+    if others.is_empty() {
         return !edges.is_empty();
     }
-    own.extend(border_lines(&source.plane(face), cell));
-    edges.iter().all(|e| own.contains(&e.line))
+    // No wall is slanted.
+    let is_slanted = |e: &&OutlineEdge| matches!(&e.carrier, Carrier::Cut(plane, _) if plane.only_axis().is_none());
+    if others.iter().any(is_slanted) {
+        return false;
+    }
+    let border = border_lines(&source.plane(face), cell);
+    others.iter().all(|e| border.contains(&e.line))
 }
 
 /// The lines in which a plane meets the planes of a cell's walls.

@@ -21,6 +21,9 @@ pub struct Swept {
 /// Up to this many elements are compared all with all.
 const FEW: usize = 48;
 
+/// Among fewer elements than this other lines than the axes are not worth finding.
+const MANY: usize = 512;
+
 /// Projections are widened by this share of the largest coordinate, far above their rounding.
 const SLACK: f64 = 1e-14;
 
@@ -66,9 +69,12 @@ impl Sweep {
             let span = |e: &Swept| [e.low[axis] as f64, e.high[axis] as f64];
             elements.iter().map(span).collect::<Vec<Span>>()
         });
-        let across = directions_across(elements)
-            .into_iter()
-            .filter_map(|d| projections(elements, &d));
+        let directions = if elements.len() > MANY {
+            directions_across(elements)
+        } else {
+            Vec::new()
+        };
+        let across = directions.iter().filter_map(|d| projections(elements, d));
         let mut lines: Vec<(f64, Vec<Span>)> = axes
             .into_iter()
             .chain(across)

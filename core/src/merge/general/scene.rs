@@ -35,6 +35,8 @@ pub(super) struct Element<'a> {
     /// By how much the winding number behind the face exceeds that in front of it.
     pub(super) weight: i32,
     pub(super) place: Place<'a>,
+    /// Whether all of it is known to lie in the cell.
+    inside: bool,
     pub(super) low: Lattice,
     pub(super) high: Lattice,
 }
@@ -83,12 +85,14 @@ impl<'a> Scene<'a> {
             let part = self.parts.len();
             let slot = sources.slot(&p.element.part.source) as u32;
             self.parts.push((&p.element.part, slot));
+            let inside = self.cell.holds(&p.element.part.home);
             for piece in p.pieces.iter() {
                 let (low, high) = piece.bounds();
                 self.elements.push(Element {
                     operand,
                     weight: if p.element.flip { -1 } else { 1 },
                     place: Place::Piece(part, Face::new(Cow::Borrowed(piece))),
+                    inside,
                     low: low.map(|x| x.floor() as i64),
                     high: high.map(|x| x.ceil() as i64),
                 });
@@ -139,6 +143,7 @@ impl<'a> Element<'a> {
             operand,
             weight: if record.flip() { -1 } else { 1 },
             place,
+            inside: cell.holds_box(&low, &high),
             low,
             high,
         })
@@ -170,6 +175,10 @@ impl<'a> Element<'a> {
     }
 
     pub(super) fn polygon_in(&self, cell: &Cell) -> Option<Polygon> {
-        self.shape().polygon.as_ref().clone().clipped(cell)
+        let polygon = self.shape().polygon.as_ref().clone();
+        if self.inside {
+            return Some(polygon);
+        }
+        polygon.clipped(cell)
     }
 }
