@@ -25,8 +25,12 @@ use crate::tree::node::{Branch, Node};
 /// 3.1 billion at 12, 0.31 and 1.5 billion at 32.
 pub const LEAF: usize = 32;
 
-/// Lists that together hold at most this many are tried without local trees.
+/// Lists that together hold at most this many are tried without local trees: in larger leaves the
+/// next operation has more to do again, in smaller ones more faces are cut by walls.
 const GENERAL: usize = 64;
+
+/// The same, where no list is an operation's result, and the next operation may never come.
+const FRESH: usize = 4 * GENERAL;
 
 /// Lists at least this long are worth a task of their own.
 const TASK: usize = 512;
@@ -268,7 +272,7 @@ impl<'a> Descent<'a> {
         let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
             return Ok(self.leaf(cell, &expression, states, total));
         };
-        if listed && (total <= GENERAL || stuck) {
+        if listed && (total <= most_in_general_position(&states) || stuck) {
             if let Some(branch) = self.in_general_position(cell, &expression, &states, total) {
                 return Ok(branch);
             }
@@ -368,6 +372,16 @@ impl<'a> Descent<'a> {
             self.overlaps[k as usize].store(true, Ordering::Relaxed);
         });
         branch_of(cell, node)
+    }
+}
+
+/// The longest lists that are tried without local trees.
+fn most_in_general_position(states: &States) -> usize {
+    let worked = |s: &(u32, State)| matches!(&s.1, State::List(list) if list.worked());
+    if states.iter().any(worked) {
+        GENERAL
+    } else {
+        FRESH
     }
 }
 

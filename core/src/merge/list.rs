@@ -147,6 +147,11 @@ impl List {
         self.records.len() + self.parts.len()
     }
 
+    /// Whether the elements are an operation's result.
+    pub fn worked(&self) -> bool {
+        self.worked
+    }
+
     /// Whether no element is listed.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
