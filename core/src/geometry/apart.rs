@@ -66,6 +66,24 @@ fn less(p: &Lattice, q: &Lattice) -> Lattice {
     [0, 1, 2].map(|i| p[i] - q[i])
 }
 
+/// Whether some point of an edge of `p` lies in `q`, by exact determinants.
+#[cfg(test)]
+pub fn pierces(p: &Triangle, q: &Triangle) -> bool {
+    let volume = |a: &Lattice, b: &Lattice, c: &Lattice, d: &Lattice| {
+        let (u, v, w) = (less(b, a), less(c, a), less(d, a));
+        u[0] * (v[1] * w[2] - v[2] * w[1])
+            + u[1] * (v[2] * w[0] - v[0] * w[2])
+            + u[2] * (v[0] * w[1] - v[1] * w[0])
+    };
+    (0..3).any(|e| {
+        let (a, b) = (&p[e], &p[(e + 1) % 3]);
+        let across =
+            volume(a, &q[0], &q[1], &q[2]).signum() * volume(b, &q[0], &q[1], &q[2]).signum();
+        let turns = [0, 1, 2].map(|i| volume(a, b, &q[i], &q[(i + 1) % 3]).signum());
+        across < 0 && (turns == [1; 3] || turns == [-1; 3])
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -74,23 +92,6 @@ mod tests {
 
     fn corner(reach: i64) -> impl Strategy<Value = Lattice> {
         [-reach..=reach, -reach..=reach, -reach..=reach]
-    }
-
-    /// Whether some point of an edge of `p` lies in `q`, by exact determinants.
-    fn pierces(p: &Triangle, q: &Triangle) -> bool {
-        let volume = |a: &Lattice, b: &Lattice, c: &Lattice, d: &Lattice| {
-            let (u, v, w) = (less(b, a), less(c, a), less(d, a));
-            u[0] * (v[1] * w[2] - v[2] * w[1])
-                + u[1] * (v[2] * w[0] - v[0] * w[2])
-                + u[2] * (v[0] * w[1] - v[1] * w[0])
-        };
-        (0..3).any(|e| {
-            let (a, b) = (&p[e], &p[(e + 1) % 3]);
-            let across =
-                volume(a, &q[0], &q[1], &q[2]).signum() * volume(b, &q[0], &q[1], &q[2]).signum();
-            let turns = [0, 1, 2].map(|i| volume(a, b, &q[i], &q[(i + 1) % 3]).signum());
-            across < 0 && (turns == [1; 3] || turns == [-1; 3])
-        })
     }
 
     proptest! {

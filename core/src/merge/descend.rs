@@ -264,6 +264,7 @@ impl<'a> Descent<'a> {
                 },
             });
         }
+        let opening: usize = states.iter().map(|s| s.1.len_to_open(&cell)).sum();
         let states = self.opened(&cell, states);
         let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
         let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
@@ -272,7 +273,9 @@ impl<'a> Descent<'a> {
         let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
             return Ok(self.leaf(cell, &expression, states, total));
         };
-        if listed && (total <= most_in_general_position(&states) || stuck) {
+        // No level of bins suited these faces, so halving will not separate them either.
+        let long = opening >= MANY;
+        if listed && (long || stuck || total <= most_in_general_position(&states)) {
             if let Some(branch) = self.in_general_position(cell, &expression, &states, total) {
                 return Ok(branch);
             }
@@ -441,6 +444,17 @@ impl State {
             },
             Self::List(list) => list.len(),
             Self::Bins(bins) => bins.len_in(cell),
+        }
+    }
+
+    /// The number of elements in a deferred leaf of this very cell.
+    fn len_to_open(&self, cell: &Cell) -> usize {
+        match self {
+            Self::Tree(branch) if branch.cell == *cell => match &*branch.node {
+                Node::Deferred(leaf) => leaf.len(),
+                Node::Cut(_) | Node::Leaf(_) => 0,
+            },
+            Self::Constant(_) | Self::Tree(_) | Self::List(_) | Self::Bins(_) => 0,
         }
     }
 

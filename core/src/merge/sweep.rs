@@ -1,7 +1,8 @@
 //! Pairs of elements of different operands that may meet, by a sweep along a line.
 //!
 //! The line is a coordinate axis, or one across the direction in which most elements are long:
-//! needles overlap in every box, but hardly in a projection across them.
+//! needles overlap in every box, but hardly in a projection across them. In the plane of the two best
+//! lines also the edges of triangles tell them from boxes.
 
 use crate::geometry::plane::Lattice;
 
@@ -10,11 +11,11 @@ use crate::geometry::plane::Lattice;
 pub struct Swept {
     /// The operand.
     pub operand: usize,
-    /// The lowest coordinates inside the cell.
+    /// The lowest coordinates inside the cell, relative to its low corner.
     pub low: Lattice,
-    /// The highest coordinates inside the cell.
+    /// The highest coordinates inside the cell, relative to its low corner.
     pub high: Lattice,
-    /// Three corners of a triangle, relative to the cell; nothing if only the box is known.
+    /// Three corners of a triangle, relative to the same; nothing if only the box is known.
     pub corners: Option<[[f64; 3]; 3]>,
 }
 
@@ -30,15 +31,33 @@ const SLACK: f64 = 1e-14;
 /// A sweep that compares more pairs, at about a nanosecond each, costs more than halving the cell.
 const CROWDED: f64 = 3e8;
 
+/// Lines closer than this cosine are nearly one: their plane shows little.
+const PARALLEL: f64 = 0.8;
+
 /// Lowest and highest place along a line.
 type Span = [f64; 2];
 
 /// Calls `meet` for all pairs of different operands whose extents overlap along every line, the
 /// lower index first; gives up with `None` where too many elements lie above each other on each.
 pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<()> {
-    if elements.len() > FEW {
-        return Sweep::of(elements).run(meet);
+    if elements.len() <= FEW {
+        compare_all(elements, &mut meet);
+        return Some(());
     }
+    let sweeps: Vec<Sweep> = parties(elements)
+        .into_iter()
+        .map(|numbers| Sweep::of(elements, numbers))
+        .collect();
+    if sweeps.iter().map(Sweep::cost).sum::<f64>() > CROWDED {
+        return None;
+    }
+    for sweep in sweeps {
+        sweep.run(&mut meet);
+    }
+    Some(())
+}
+
+fn compare_all(elements: &[Swept], meet: &mut impl FnMut(usize, usize)) {
     for (i, a) in elements.iter().enumerate() {
         for (j, b) in elements.iter().enumerate().skip(i + 1) {
             let apart = || (0..3).any(|k| a.low[k] > b.high[k] || b.low[k] > a.high[k]);
@@ -47,7 +66,39 @@ pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<(
             }
         }
     }
-    Some(())
+}
+
+/// The elements, all together or, if two operands have many, as pairs of groups that suit different
+/// lines: each operand's long elements and its short ones against the other's.
+fn parties(elements: &[Swept]) -> Vec<Vec<usize>> {
+    let own = elements[0].operand;
+    let (ours, others): (Vec<usize>, Vec<usize>) =
+        (0..elements.len()).partition(|i| elements[*i].operand == own);
+    let alike = |k: &usize| elements[*k].operand == elements[others[0]].operand;
+    if elements.len() <= MANY || others.is_empty() || !others.iter().all(alike) {
+        return vec![(0..elements.len()).collect()];
+    }
+    let (ours, others) = (by_length(elements, ours), by_length(elements, others));
+    let joint = |a: &Vec<usize>, b: &Vec<usize>| [a.as_slice(), b].concat();
+    ours.iter()
+        .flat_map(|a| others.iter().map(move |b| joint(a, b)))
+        .collect()
+}
+
+/// Those at least half as long as the longest, and the others.
+fn by_length(elements: &[Swept], numbers: Vec<usize>) -> Vec<Vec<usize>> {
+    let length = |i: &usize| {
+        let edge = elements[*i].corners.as_ref().and_then(longest_edge);
+        edge.map_or(0.0, |e| dot(&e, &e).sqrt())
+    };
+    let longest = numbers.iter().map(length).fold(0.0, f64::max);
+    let (long, short): (Vec<usize>, Vec<usize>) = numbers
+        .into_iter()
+        .partition(|i| 2.0 * length(i) >= longest);
+    [long, short]
+        .into_iter()
+        .filter(|group| !group.is_empty())
+        .collect()
 }
 
 /// The elements in their order along the line on which they overlap least.
@@ -58,52 +109,62 @@ struct Sweep {
     second: Vec<Span>,
     /// Along the others.
     others: Vec<Vec<Span>>,
+    /// What bounds each element in the plane of the two best lines.
+    rims: Vec<[HalfPlane; 3]>,
     operands: Vec<usize>,
     numbers: Vec<usize>,
     crowding: f64,
 }
 
+/// A line, given by its direction, and the elements along it.
+struct Line {
+    direction: [f64; 3],
+    spans: Vec<Span>,
+    crowding: f64,
+}
+
+/// The points of the plane for which normal · point is at most the limit.
+#[derive(Clone, Copy)]
+struct HalfPlane {
+    normal: [f64; 2],
+    limit: f64,
+}
+
 impl Sweep {
-    fn of(elements: &[Swept]) -> Self {
-        let axes = [0, 1, 2].map(|axis| {
-            let span = |e: &Swept| [e.low[axis] as f64, e.high[axis] as f64];
-            elements.iter().map(span).collect::<Vec<Span>>()
-        });
-        let directions = if elements.len() > MANY {
-            directions_across(elements)
-        } else {
-            Vec::new()
+    fn of(elements: &[Swept], mut numbers: Vec<usize>) -> Self {
+        let swept: Vec<&Swept> = numbers.iter().map(|i| &elements[*i]).collect();
+        let mut lines = Line::all(&swept);
+        lines.sort_by(|a, b| a.crowding.total_cmp(&b.crowding));
+        let first = lines.remove(0);
+        let across = |line: &Line| dot(&line.direction, &first.direction).abs() < PARALLEL;
+        let second = lines.remove(lines.iter().position(across).unwrap_or(0));
+        let plane = [first.direction, second.direction];
+        let size = largest_coordinate(&swept);
+        let mut order: Vec<usize> = (0..numbers.len()).collect();
+        let low = |i: usize| first.spans[i][0];
+        order.sort_unstable_by(|a, b| low(*a).total_cmp(&low(*b)).then(a.cmp(b)));
+        let ordered = |line: &Line| order.iter().map(|i| line.spans[*i]).collect::<Vec<Span>>();
+        let rim = |i: &usize| rims(swept[*i].corners.as_ref(), &plane, size);
+        let sweep = Self {
+            first: ordered(&first),
+            second: ordered(&second),
+            others: lines.iter().map(ordered).collect(),
+            rims: order.iter().map(rim).collect(),
+            operands: order.iter().map(|i| swept[*i].operand).collect(),
+            numbers: Vec::new(),
+            crowding: first.crowding,
         };
-        let across = directions.iter().filter_map(|d| projections(elements, d));
-        let mut lines: Vec<(f64, Vec<Span>)> = axes
-            .into_iter()
-            .chain(across)
-            .map(|spans| (crowding(&spans), spans))
-            .collect();
-        lines.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut numbers: Vec<usize> = (0..elements.len()).collect();
-        let low = |i: usize| lines[0].1[i][0];
-        numbers.sort_unstable_by(|a, b| low(*a).total_cmp(&low(*b)).then(a.cmp(b)));
-        let crowding = lines[0].0;
-        let mut ordered = lines
-            .iter()
-            .map(|line| numbers.iter().map(|i| line.1[*i]).collect::<Vec<Span>>());
-        Self {
-            first: ordered.next().unwrap_or_default(),
-            second: ordered.next().unwrap_or_default(),
-            others: ordered.collect(),
-            operands: numbers.iter().map(|i| elements[*i].operand).collect(),
-            numbers,
-            crowding,
-        }
+        numbers = order.iter().map(|i| numbers[*i]).collect();
+        Self { numbers, ..sweep }
     }
 
-    fn run(&self, mut meet: impl FnMut(usize, usize)) -> Option<()> {
-        let count = self.numbers.len();
-        if self.crowding * count as f64 > CROWDED {
-            return None;
-        }
-        for at in 0..count {
+    /// About how many pairs are compared.
+    fn cost(&self) -> f64 {
+        self.crowding * self.numbers.len() as f64
+    }
+
+    fn run(&self, meet: &mut impl FnMut(usize, usize)) {
+        for at in 0..self.numbers.len() {
             let [_, high] = self.first[at];
             let end = at + 1 + self.first[at + 1..].partition_point(|span| span[0] <= high);
             let [low, high] = self.second[at];
@@ -114,13 +175,104 @@ impl Sweep {
                 }
             }
         }
-        Some(())
     }
 
     fn may_meet(&self, a: usize, b: usize) -> bool {
         let overlap = |line: &Vec<Span>| line[a][0] <= line[b][1] && line[b][0] <= line[a][1];
-        self.operands[a] != self.operands[b] && self.others.iter().all(overlap)
+        let beyond = |a: usize, b: usize| {
+            let spans = [self.first[b], self.second[b]];
+            self.rims[a].iter().any(|rim| rim.excludes(&spans))
+        };
+        self.operands[a] != self.operands[b]
+            && !beyond(a, b)
+            && !beyond(b, a)
+            && self.others.iter().all(overlap)
     }
+}
+
+impl Line {
+    /// The axes and, among many elements, lines along and across the directions in which they are
+    /// long.
+    fn all(elements: &[&Swept]) -> Vec<Self> {
+        let mut lines: Vec<Self> = (0..3).map(|axis| Self::axis(elements, axis)).collect();
+        if elements.len() > MANY {
+            let slanted = directions(elements);
+            lines.extend(slanted.iter().filter_map(|d| Self::slanted(elements, d)));
+        }
+        lines
+    }
+
+    fn axis(elements: &[&Swept], axis: usize) -> Self {
+        let mut direction = [0.0; 3];
+        direction[axis] = 1.0;
+        let span = |e: &&Swept| [e.low[axis] as f64, e.high[axis] as f64];
+        Self::new(direction, elements.iter().map(span).collect())
+    }
+
+    /// `None` if an element has no corners.
+    fn slanted(elements: &[&Swept], direction: &[f64; 3]) -> Option<Self> {
+        let spans = projections(elements, direction)?;
+        Some(Self::new(*direction, spans))
+    }
+
+    fn new(direction: [f64; 3], spans: Vec<Span>) -> Self {
+        let crowding = crowding(&spans);
+        Self {
+            direction,
+            spans,
+            crowding,
+        }
+    }
+}
+
+impl HalfPlane {
+    /// All of the plane.
+    const ALL: Self = Self {
+        normal: [0.0; 2],
+        limit: f64::INFINITY,
+    };
+
+    /// What holds the points `corners` and ends along the line through the first two of them.
+    ///
+    /// Any normal will do, so that only products with it are rounded: by a few units in the last
+    /// place of coordinates up to `size`, well below the slack.
+    fn beside(corners: [[f64; 2]; 3], size: f64) -> Self {
+        let [a, b, c] = corners;
+        let across = [b[1] - a[1], a[0] - b[0]];
+        let dot = |p: &[f64; 2]| across[0] * p[0] + across[1] * p[1];
+        let out = if dot(&c) > dot(&a) { -1.0 } else { 1.0 };
+        let normal = across.map(|x| out * x);
+        let most = corners
+            .iter()
+            .map(|p| out * dot(p))
+            .fold(f64::MIN, f64::max);
+        let slack = (normal[0].abs() + normal[1].abs()) * size * SLACK;
+        Self {
+            normal,
+            limit: most + slack,
+        }
+    }
+
+    /// Whether a box lies outside.
+    fn excludes(&self, spans: &[Span; 2]) -> bool {
+        let least = |i: usize| self.normal[i] * spans[i][usize::from(self.normal[i] < 0.0)];
+        least(0) + least(1) > self.limit
+    }
+}
+
+/// The half-planes beside the edges of a triangle's projection.
+fn rims(corners: Option<&[[f64; 3]; 3]>, plane: &[[f64; 3]; 2], size: f64) -> [HalfPlane; 3] {
+    let Some(corners) = corners else {
+        return [HalfPlane::ALL; 3];
+    };
+    let [a, b, c] = corners.map(|p| [dot(&p, &plane[0]), dot(&p, &plane[1])]);
+    [[a, b, c], [b, c, a], [c, a, b]].map(|corners| HalfPlane::beside(corners, size))
+}
+
+fn largest_coordinate(elements: &[&Swept]) -> f64 {
+    let corners = elements.iter().filter_map(|e| e.corners.as_ref());
+    let coordinates = corners.flatten().flatten();
+    coordinates.fold(1.0f64, |m, x| m.max(x.abs()))
 }
 
 /// The sum of extents relative to the whole: how many elements overlap at a point.
@@ -131,37 +283,35 @@ fn crowding(spans: &[Span]) -> f64 {
     sum / (high - low).max(1.0)
 }
 
-/// Directions across the one in which the elements are long: across that of all, and across those
-/// of the first operand and of the others at once.
-fn directions_across(elements: &[Swept]) -> Vec<[f64; 3]> {
+/// For the first operand and for the others the direction in which their elements are long and two
+/// across it, and the one across both.
+fn directions(elements: &[&Swept]) -> Vec<[f64; 3]> {
     let own = elements.first().map_or(0, |e| e.operand);
     let (first, others): (Vec<&Swept>, Vec<&Swept>) =
         elements.iter().partition(|e| e.operand == own);
-    let (long, [a, b]) = (
-        direction_along(elements.iter()),
-        [first, others].map(|part| direction_along(part.into_iter())),
-    );
-    let Some(long) = long else {
-        return Vec::new();
-    };
+    let long = [direction_along(&first), direction_along(&others)];
+    let mut found: Vec<[f64; 3]> = long.iter().flatten().flat_map(frame).collect();
+    if let [Some(a), Some(b)] = long {
+        found.push(cross(&a, &b));
+    }
+    found.iter().filter_map(unit).collect()
+}
+
+/// A direction and two across it.
+fn frame(long: &[f64; 3]) -> [[f64; 3]; 3] {
     let thin = (0..3).min_by(|i, j| long[*i].abs().total_cmp(&long[*j].abs()));
     let mut axis = [0.0; 3];
     axis[thin.unwrap_or(0)] = 1.0;
-    let any = cross(&long, &axis);
-    let both = a.zip(b).map(|(a, b)| cross(&a, &b));
-    [Some(any), Some(cross(&long, &any)), both]
-        .iter()
-        .flatten()
-        .filter_map(unit)
-        .collect()
+    let any = cross(long, &axis);
+    [*long, any, cross(long, &any)]
 }
 
 /// The direction in which elements are long.
-fn direction_along<'a>(elements: impl Iterator<Item = &'a Swept>) -> Option<[f64; 3]> {
+fn direction_along(elements: &[&Swept]) -> Option<[f64; 3]> {
     let mut long = [0.0f64; 3];
-    for edge in elements.filter_map(|e| longest_edge(e.corners.as_ref()?)) {
-        let along: f64 = (0..3).map(|i| edge[i] * long[i]).sum();
-        let sign = if along < 0.0 { -1.0 } else { 1.0 };
+    let corners = elements.iter().filter_map(|e| e.corners.as_ref());
+    for edge in corners.filter_map(longest_edge) {
+        let sign = if dot(&edge, &long) < 0.0 { -1.0 } else { 1.0 };
         (0..3).for_each(|i| long[i] += sign * edge[i]);
     }
     unit(&long)
@@ -172,13 +322,17 @@ fn longest_edge(corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
         let (a, b) = (&corners[i], &corners[(i + 1) % 3]);
         [0, 1, 2].map(|k| b[k] - a[k])
     };
-    let size = |e: &[f64; 3]| e.iter().map(|x| x * x).sum::<f64>();
-    (0..3).map(edge).max_by(|a, b| size(a).total_cmp(&size(b)))
+    let longer = |a: &[f64; 3], b: &[f64; 3]| dot(a, a).total_cmp(&dot(b, b));
+    (0..3).map(edge).max_by(longer)
 }
 
 fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
-    let size = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let size = dot(v, v).sqrt();
     (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
@@ -190,15 +344,84 @@ fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
 }
 
 /// The extents along a direction, widened by their rounding; `None` if an element has no corners.
-fn projections(elements: &[Swept], direction: &[f64; 3]) -> Option<Vec<Span>> {
+fn projections(elements: &[&Swept], direction: &[f64; 3]) -> Option<Vec<Span>> {
     elements
         .iter()
         .map(|e| {
             let corners = e.corners.as_ref()?;
-            let at = corners.map(|p| (0..3).map(|i| p[i] * direction[i]).sum::<f64>());
+            let at = corners.map(|p| dot(&p, direction));
             let size = corners.iter().flatten().fold(1.0f64, |m, x| m.max(x.abs()));
             let low = at[0].min(at[1]).min(at[2]) - size * SLACK - 1.0;
             Some([low, at[0].max(at[1]).max(at[2]) + size * SLACK + 1.0])
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::geometry::apart::pierces;
+
+    const REACH: i64 = 2000;
+
+    /// A triangle along a direction, within a few steps beside it.
+    fn needle(along: Lattice) -> impl Strategy<Value = [Lattice; 3]> {
+        let near = || [-99..=99i64, -99..=99i64, -99..=99i64];
+        (near(), near(), near(), 0..=9i64).prop_map(move |(a, b, c, length)| {
+            let far = [0, 1, 2].map(|i| b[i] + length * along[i]);
+            [a, far, c]
+        })
+    }
+
+    fn swept(operand: usize, corners: &[Lattice; 3]) -> Swept {
+        let end = |i: usize, most: fn(i64, i64) -> i64| {
+            corners.iter().map(|p| p[i]).reduce(most).unwrap_or(0)
+        };
+        Swept {
+            operand,
+            low: [0, 1, 2].map(|i| end(i, i64::min).max(-REACH)),
+            high: [0, 1, 2].map(|i| end(i, i64::max).min(REACH)),
+            corners: Some(corners.map(|p| p.map(|x| x as f64))),
+        }
+    }
+
+    fn scene(operands: usize) -> impl Strategy<Value = Vec<(usize, [Lattice; 3])>> {
+        let direction = || [-200..=200i64, -200..=200i64, -200..=200i64];
+        let all = move |(a, b)| {
+            let one = prop_oneof![needle(a), needle(b)];
+            proptest::collection::vec((0..operands, one), MANY + 1..MANY + 90)
+        };
+        (direction(), direction()).prop_flat_map(all)
+    }
+
+    fn misses_nothing(scene: &[(usize, [Lattice; 3])]) -> bool {
+        let elements: Vec<Swept> = scene.iter().map(|(k, t)| swept(*k, t)).collect();
+        let mut found = std::collections::HashSet::new();
+        let done = pairs(&elements, |i, j| {
+            found.insert((i, j));
+        });
+        let meet = |i: usize, j: usize| {
+            let (a, b) = (&scene[i], &scene[j]);
+            a.0 != b.0 && (pierces(&a.1, &b.1) || pierces(&b.1, &a.1))
+        };
+        let rows = 0..scene.len();
+        let mut all = rows.flat_map(|i| (i + 1..scene.len()).map(move |j| (i, j)));
+        done.is_some() && all.all(|(i, j)| found.contains(&(i, j)) || !meet(i, j))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        #[test]
+        fn needles_of_two_operands_that_cross_are_found(scene in scene(2)) {
+            prop_assert!(misses_nothing(&scene));
+        }
+
+        #[test]
+        fn needles_of_several_operands_that_cross_are_found(scene in scene(4)) {
+            prop_assert!(misses_nothing(&scene));
+        }
+    }
 }

@@ -155,8 +155,8 @@ impl<'a> Element<'a> {
         let relative = |p: &Lattice| [0, 1, 2].map(|i| (p[i] - low[i]) as f64);
         Swept {
             operand: self.operand,
-            low: [0, 1, 2].map(|i| self.low[i].max(low[i] - 1)),
-            high: [0, 1, 2].map(|i| self.high[i].min(high[i] + 1)),
+            low: [0, 1, 2].map(|i| self.low[i].max(low[i] - 1) - low[i]),
+            high: [0, 1, 2].map(|i| self.high[i].min(high[i] + 1) - low[i]),
             corners: match &self.place {
                 Place::Face(t) => Some([0, 1, 2].map(|i| relative(&t.corners[i]))),
                 Place::Plane(..) | Place::Piece(..) => None,
