@@ -10,7 +10,7 @@ use crate::geometry::outline::{cancel, OutlineEdge};
 use crate::merge::list::Sources;
 use crate::mesh::source::{Source, TriangleMesh};
 use crate::mesh::tasks::{in_pool, CHUNK};
-use crate::tree::node::{Branch, Deferred, Group, Node, Part};
+use crate::tree::node::{Branch, Deferred, Group, Node, Part, Work};
 
 /// A face that reaches out of a leaf that lists it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -148,7 +148,7 @@ impl Leaf<'_> {
         let mut found = Found::default();
         for group in &self.content.groups {
             let slot = sources.slot(&group.source);
-            if self.content.worked {
+            if self.content.work == Work::Trees {
                 let faces = group.faces.iter();
                 found.near.extend(faces.map(|f| (slot as u32, *f)));
             }

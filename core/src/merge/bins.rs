@@ -132,7 +132,7 @@ impl Bins {
             groups: self.groups_in(cell),
             parts: Vec::new(),
             corner: self.corner_of(cell),
-            worked: self.leaf().worked,
+            work: self.leaf().work,
             ..Deferred::default()
         };
         Branch {

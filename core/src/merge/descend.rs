@@ -17,7 +17,7 @@ use super::list::{List, Sources};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
 use crate::mesh::tasks::{both, in_pool};
-use crate::tree::node::{Branch, Node};
+use crate::tree::node::{Branch, Node, Work};
 
 /// Lists that together hold at most this many elements are worked on by the leaf kernel.
 ///
@@ -380,7 +380,7 @@ impl<'a> Descent<'a> {
 
 /// The longest lists that are tried without local trees.
 fn most_in_general_position(states: &States) -> usize {
-    let worked = |s: &(u32, State)| matches!(&s.1, State::List(list) if list.worked());
+    let worked = |s: &(u32, State)| matches!(&s.1, State::List(list) if list.work() != Work::Given);
     if states.iter().any(worked) {
         GENERAL
     } else {

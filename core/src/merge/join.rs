@@ -79,7 +79,7 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
         groups: grouped(faces),
         parts: Vec::new(),
         corner,
-        worked: a.worked || b.worked,
+        work: a.work.max(b.work),
         share: OnceLock::new(),
     }))
 }

@@ -9,7 +9,7 @@ use crate::geometry::outline::{cancel, OutlineEdge};
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::{Carrier, Polygon};
 use crate::mesh::source::{Shape, Source};
-use crate::tree::node::{Deferred, Group, Node, Part, PartElement};
+use crate::tree::node::{Deferred, Group, Node, Part, PartElement, Work};
 
 /// What stays of one element with one orientation.
 #[derive(Debug)]
@@ -61,15 +61,21 @@ impl Kept {
     }
 }
 
-/// Joins the pieces of each face again and lists them.
-pub fn assemble(mut kept: Vec<Kept>, corner: i32, cell: &Cell, sources: &Sources) -> Node {
+/// Joins the pieces of each face again and lists them, as the work of a kernel.
+pub fn assemble(
+    mut kept: Vec<Kept>,
+    corner: i32,
+    work: Work,
+    cell: &Cell,
+    sources: &Sources,
+) -> Node {
     if kept.is_empty() {
         return Node::Leaf(corner);
     }
     kept.sort_by_key(|k| (k.face.0, k.flip, k.face.1));
     let mut leaf = Deferred {
         corner,
-        worked: true,
+        work,
         ..Deferred::default()
     };
     for run in kept.chunk_by(|a, b| a.face == b.face && a.flip == b.flip) {

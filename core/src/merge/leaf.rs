@@ -14,7 +14,7 @@ use super::overlay::{disjoint, Fragment};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
-use crate::tree::node::Node;
+use crate::tree::node::{Node, Work};
 
 /// Which winding numbers count as inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -83,7 +83,14 @@ pub fn in_general_position(
         return None;
     }
     let (kept, corner) = general::evaluate(cell, expression, lists, sources)?;
-    Some(assemble(kept, corner, cell, sources))
+    let before = lists.iter().map(|l| l.1.work()).max().unwrap_or_default();
+    Some(assemble(
+        kept,
+        corner,
+        before.max(Work::General),
+        cell,
+        sources,
+    ))
 }
 
 /// Evaluates an expression in a cell by the operands' local trees.
@@ -121,7 +128,7 @@ pub fn by_trees(
             kept.extend(keep(fragment, i, pieces, &mut value));
         }
     }
-    assemble(kept, corner, cell, sources)
+    assemble(kept, corner, Work::Trees, cell, sources)
 }
 
 impl Operand {

@@ -8,7 +8,7 @@ use crate::geometry::crossing::{plane_change, polygon_change, triangle_change, S
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
 use crate::mesh::source::{Shape, Source};
-use crate::tree::node::{Branch, Deferred, Group, Node, PartElement};
+use crate::tree::node::{Branch, Deferred, Group, Node, PartElement, Work};
 use crate::tree::table::Table;
 
 /// Coordinates relative to a cell, coarse enough for 32 bits.
@@ -82,7 +82,7 @@ pub struct List {
     pub parts: Vec<PartRecord>,
     /// The winding number at the cell's low corner.
     pub corner: i32,
-    worked: bool,
+    work: Work,
 }
 
 /// The sources of an evaluation, in the order of the expression.
@@ -120,7 +120,7 @@ impl List {
             records: Vec::with_capacity(leaf.groups.iter().map(|g| g.faces.len()).sum()),
             parts: Vec::with_capacity(leaf.parts.len()),
             corner: branch.oriented(leaf.corner),
-            worked: leaf.worked,
+            work: leaf.work,
         };
         for group in &leaf.groups {
             let slot = sources.slot(&group.source) as u32;
@@ -147,9 +147,9 @@ impl List {
         self.records.len() + self.parts.len()
     }
 
-    /// Whether the elements are an operation's result.
-    pub fn worked(&self) -> bool {
-        self.worked
+    /// Which kernel the elements went through.
+    pub fn work(&self) -> Work {
+        self.work
     }
 
     /// Whether no element is listed.
@@ -169,7 +169,7 @@ impl List {
             records: self.divide_records(cell, cut, sources),
             parts: above(&self.parts, cut.axis, at),
             corner: self.corner + change,
-            worked: self.worked,
+            work: self.work,
         };
         self.parts.retain(|p| p.low[cut.axis] < at);
         (self, plus)
@@ -284,7 +284,7 @@ impl List {
             groups,
             parts,
             corner,
-            worked: self.worked,
+            work: self.work,
             share: OnceLock::new(),
         })
     }

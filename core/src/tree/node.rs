@@ -120,10 +120,22 @@ pub struct Deferred {
     pub parts: Vec<PartElement>,
     /// The winding number at the cell's low corner.
     pub corner: i32,
-    /// Whether several operands had boundary here: elements may touch each other.
-    pub worked: bool,
+    /// What several operands' boundaries here went through.
+    pub work: Work,
     /// What the node contributes to the volume, once somebody has asked.
     pub share: OnceLock<Share>,
+}
+
+/// Which kernel made a leaf; the later ones leave more open.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Work {
+    /// None: it is an operand's boundary, as it was.
+    #[default]
+    Given,
+    /// That for general position: elements touch only where one was cut.
+    General,
+    /// Local trees: elements may touch each other anywhere.
+    Trees,
 }
 
 /// Whole faces of one source with one orientation.
