@@ -11,38 +11,51 @@ type Triangle = [Lattice; 3];
 /// cover the line that both planes share are apart (Möller 1997; in signs alone as Guigue and
 /// Devillers 2003).
 pub fn are_apart(p: &Triangle, q: &Triangle) -> bool {
-    let (Some(of_p), Some(of_q)) = (Sides::of(p, q), Sides::of(q, p)) else {
-        return false;
-    };
-    match (of_p.alone, of_q.alone) {
+    let of_p = sides(p, q);
+    if is_beside(&of_p) {
+        return true;
+    }
+    let of_q = sides(q, p);
+    if is_beside(&of_q) {
+        return true;
+    }
+    match (alone(&of_p), alone(&of_q)) {
         (Some(i), Some(k)) => stretches_are_apart(p, i, q, k),
-        _ => true,
+        _ => false,
     }
 }
 
-/// On which sides of a plane the corners of a triangle lie.
-struct Sides {
-    /// The corner that is alone on its side; `None` if all lie on one.
-    alone: Option<usize>,
+/// On which sides of a triangle's plane the corners of another lie; 0 where that is not certain.
+#[inline]
+fn sides(triangle: &Triangle, plane: &Triangle) -> [i32; 3] {
+    let [a, b, c] = plane;
+    let normal = NearCross::of(&less(b, a), &less(c, a));
+    let [x, y, z] = triangle;
+    [
+        normal.side_of(&less(x, a)),
+        normal.side_of(&less(y, a)),
+        normal.side_of(&less(z, a)),
+    ]
 }
 
-impl Sides {
-    /// `None` if that is not certain, or a corner may lie in the plane.
-    fn of(triangle: &Triangle, plane: &Triangle) -> Option<Self> {
-        let [a, b, c] = plane;
-        let normal = NearCross::of(&less(b, a), &less(c, a));
-        let sides = [0, 1, 2].map(|i| normal.side_of(&less(&triangle[i], a)));
-        if sides.contains(&0) {
-            return None;
-        }
-        let alone = match sides.map(|s| s == sides[0]) {
-            [_, true, true] => None,
-            [_, false, false] => Some(0),
-            [_, false, true] => Some(1),
-            [_, true, false] => Some(2),
-        };
-        Some(Self { alone })
+/// Whether all corners certainly lie on one side.
+fn is_beside(sides: &[i32; 3]) -> bool {
+    sides[0] != 0 && sides[1] == sides[0] && sides[2] == sides[0]
+}
+
+/// The corner that is alone on its side; `None` if that is not certain.
+fn alone(sides: &[i32; 3]) -> Option<usize> {
+    let [a, b, c] = *sides;
+    if a == 0 || b == 0 || c == 0 {
+        return None;
     }
+    Some(if b == c {
+        0
+    } else if a == c {
+        1
+    } else {
+        2
+    })
 }
 
 /// Whether the edges at the lone corner `p[i]` cross the other plane all before or all behind the
@@ -112,7 +125,7 @@ mod tests {
             p in [corner(99), corner(99), corner(99)],
             q in [corner(99), corner(99), corner(99)],
         ) {
-            prop_assume!(Sides::of(&p, &q).is_some() && Sides::of(&q, &p).is_some());
+            prop_assume!(!sides(&p, &q).contains(&0) && !sides(&q, &p).contains(&0));
             let edges = |t: &Triangle| [0, 1, 2].map(|i| (t[i], t[(i + 1) % 3]));
             let flat = edges(&p).iter().any(|(a, b)| edges(&q).iter().any(|(c, d)| {
                 near_determinant(&less(b, a), &less(c, a), &less(d, a)) == 0
