@@ -5,8 +5,8 @@ sentence that says what is wrong and what to do.
 """
 
 import math
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any
 
@@ -117,13 +117,25 @@ def from_core(error: "_core.CoreError") -> BaseException:
     return kind(f"{sentence}. {advice}".rstrip(), error.code, error.where)
 
 
-@contextmanager
-def core_errors() -> Iterator[None]:
+class _CoreErrors:
+    """The context of `core_errors`: without state, so that one serves all."""
+
+    __slots__ = ()
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
+        if isinstance(error, _core.CoreError):
+            raise from_core(error) from error
+
+
+_CORE_ERRORS = _CoreErrors()
+
+
+def core_errors() -> AbstractContextManager[None]:
     """Turn the core's errors inside the block into exceptions of this package."""
-    try:
-        yield
-    except _core.CoreError as error:
-        raise from_core(error) from error
+    return _CORE_ERRORS
 
 
 def words_of(error: BaseException) -> str:

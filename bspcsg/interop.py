@@ -122,9 +122,12 @@ def _whole(array: Any) -> IndexArray:
     """Return indices as int64; what is not an integer below 2**63 is refused, not wrapped."""
     if array.dtype.kind not in "iuf":
         raise InvalidMeshError(f"Face indices must be integers, not {array.dtype}.", "shape")
+    if array.dtype.kind == "i":
+        integers: IndexArray = array.astype(np.int64, copy=False)
+        return integers
     with np.errstate(invalid="ignore"):  # NaN, which the comparison finds
-        indices: IndexArray = array.astype(np.int64, copy=False)
-    if array.dtype.kind != "i" and not (indices == array).all():
+        indices: IndexArray = array.astype(np.int64)
+    if not (indices == array).all():
         raise InvalidMeshError("Face indices must be whole numbers below 2**63.", "shape")
     return indices
 

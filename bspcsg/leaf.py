@@ -27,8 +27,10 @@ _COMPLEMENT: list[ProgramLine] = [("leaf", [0]), ("not", [0])]
 
 def at_pitch(tree: Tree, pitch: int) -> Tree:
     """Return the same solid on the lattice of this pitch, which must not be coarser."""
+    if tree.pitch == pitch:
+        return tree
     with core_errors():
-        return tree if tree.pitch == pitch else tree.refined(pitch)
+        return tree.refined(pitch)
 
 
 class MeshLeaf:

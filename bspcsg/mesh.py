@@ -5,7 +5,7 @@ This layer knows arrays only; it does not know how a mesh was made.
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -55,8 +55,8 @@ class Mesh:
 
     def frozen(self) -> "Mesh":
         """Return this mesh after making its arrays read-only."""
-        for field in fields(self):
-            getattr(self, field.name).flags.writeable = False
+        for array in (self.vertices, self.faces, self.source):
+            array.flags.writeable = False
         return self
 
     @property

@@ -171,6 +171,16 @@ impl Walls {
         }
     }
 
+    /// How far a lattice point lies beyond a wall, in half steps.
+    pub fn beyond(&self, wall: usize, p: &Lattice) -> i64 {
+        let over = 2 * p[wall / 2] - self.doubled[wall];
+        if wall.is_multiple_of(2) {
+            -over
+        } else {
+            over
+        }
+    }
+
     /// How far a point lies beyond a wall.
     fn excess(&self, wall: usize, p: &Fixed) -> i128 {
         let over = p[wall / 2] - self.at[wall];
@@ -258,8 +268,8 @@ impl<'a> Triangle<'a> {
             (0..3).map(|i| (of_lattice(&self.corners[i]), i)).collect();
         let mut spare = SmallVec::new();
         for wall in 0..6 {
-            let beyond = |p: &Lattice| walls.excess(wall, &of_lattice(p)) > 0;
-            match self.corners.iter().filter(|p| beyond(p)).count() {
+            let beyond = |p: &&Lattice| walls.beyond(wall, p) > 0;
+            match self.corners.iter().filter(beyond).count() {
                 0 => {}
                 3 => return None,
                 _ => {
@@ -340,9 +350,13 @@ impl<'a> Triangle<'a> {
 pub fn through(a: &Fixed, b: &Fixed, c: &Fixed) -> Int<6> {
     let product = |x: i128, y: i128| -> Int<4> { Int::<2>::from_i128(x).mul_i128(y) };
     let area = product(b[0] - a[0], c[1] - a[1]) - product(c[0] - a[0], b[1] - a[1]);
-    let whole: Int<6> = area.mul_i128(a[2] + b[2] + c[2]);
-    let mut limbs = [if whole.is_negative() { u64::MAX } else { 0 }; 6];
-    limbs[..5].copy_from_slice(&whole.limbs()[1..]);
+    over_limb(&area.mul_i128(a[2] + b[2] + c[2]))
+}
+
+/// A number over 2^64, rounded down.
+pub fn over_limb(number: &Int<6>) -> Int<6> {
+    let mut limbs = [if number.is_negative() { u64::MAX } else { 0 }; 6];
+    limbs[..5].copy_from_slice(&number.limbs()[1..]);
     Int::from_limbs(limbs)
 }
 

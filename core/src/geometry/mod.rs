@@ -18,4 +18,5 @@ pub mod polygon;
 mod residue;
 pub mod side;
 pub mod space;
+pub mod trim;
 pub mod vertex;

@@ -65,29 +65,36 @@ pub fn normalize(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid
     if rule != Rule::Positive {
         return unite(solid, rule, cancel);
     }
-    if let Some(known) = solid.united().get() {
-        return Ok(known.clone());
+    if let Some(known) = settled(solid, cancel)? {
+        return Ok(known);
     }
-    let united = if is_made_of_simple(solid, cancel)? {
-        solid.clone().with_reduced(true)
-    } else {
-        unite(solid, rule, cancel)?
-    };
+    let united = unite(solid, rule, cancel)?;
     Ok(solid.united().get_or_init(|| united).clone())
 }
 
-/// Whether a solid is known to be reduced once the meshes it was made of have been checked.
-fn is_made_of_simple(solid: &Solid, cancel: &AtomicBool) -> Result<bool> {
+/// The solid united with itself, if that is known, or once the meshes it was made of have been
+/// checked.
+///
+/// # Errors
+/// `Cancelled`.
+pub fn settled(solid: &Solid, cancel: &AtomicBool) -> Result<Option<Solid>> {
+    if solid.is_reduced() {
+        return Ok(Some(solid.clone()));
+    }
+    if let Some(known) = solid.united().get() {
+        return Ok(Some(known.clone()));
+    }
     let Some(doubts) = solid.doubts() else {
-        return Ok(false);
+        return Ok(None);
     };
     for mesh in doubts {
         normalize(mesh, Rule::Positive, cancel)?;
         if !mesh.is_reduced() {
-            return Ok(false);
+            return Ok(None);
         }
     }
-    Ok(true)
+    let reduced = || solid.clone().with_reduced(true);
+    Ok(Some(solid.united().get_or_init(reduced).clone()))
 }
 
 fn unite(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid> {

@@ -20,6 +20,7 @@ pub mod partition_tree;
 pub mod separation;
 pub mod simple;
 pub mod split_tree;
+mod star;
 mod sweep;
 mod window;
 

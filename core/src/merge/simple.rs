@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::descend::LEAF;
 use super::leaf::LeafTree;
 use super::list::{List, Sources};
+use super::star::is_star_shaped;
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::Cell;
@@ -54,6 +55,15 @@ pub fn is_simple(solid: &Solid, sources: &Sources, cancel: &AtomicBool) -> Resul
     else {
         return Ok(None);
     };
+    let all = leaf.groups[0]
+        .faces
+        .iter()
+        .copied()
+        .eq(0..mesh.faces.len() as u32);
+    let closed = || source.joints().is_some_and(|j| j.open.is_empty());
+    if all && closed() && is_star_shaped(mesh) {
+        return Ok(Some(true));
+    }
     let shells = shells(source, mesh.faces.len());
     let count = shells.iter().map(|s| *s as usize + 1).max().unwrap_or(0);
     let check = Check {

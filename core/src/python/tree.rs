@@ -15,7 +15,7 @@ use crate::extract::collect::has_no_boundary;
 use crate::extract::round::{self, Mesh};
 use crate::extract::snapshot::{Motion, Snapshot};
 use crate::merge::descend::Counters;
-use crate::merge::evaluate::{evaluate, normalize};
+use crate::merge::evaluate::{evaluate, normalize, settled};
 use crate::merge::expression::{Expression, Term};
 use crate::merge::leaf::Rule;
 use crate::mesh::finding::Finding;
@@ -28,7 +28,7 @@ use crate::query::region::hyperplane::plane;
 use crate::query::region::section::section;
 use crate::tree::solid::Solid;
 use crate::tree::stats::{stats, Stats};
-use crate::tree::work::work;
+use crate::tree::work::{work, work_to_settle};
 
 type Corners = ((f64, f64, f64), (f64, f64, f64));
 
@@ -180,6 +180,12 @@ impl Tree {
                 return Err(to_python(py, &Error::new(ErrorKind::Shape, text)));
             }
         };
+        if rule == Rule::Positive {
+            let size = work_to_settle(&self.solid);
+            if let Some(solid) = run(py, threads, size, |c| settled(&self.solid, c))? {
+                return Ok(Self::of(solid));
+            }
+        }
         let solid = run(py, threads, self.size(), |cancel| {
             normalize(&self.solid, rule, cancel)
         })?;

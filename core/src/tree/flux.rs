@@ -16,6 +16,7 @@ use crate::geometry::fixed::{
     Ring, Triangle, Walls,
 };
 use crate::geometry::plane::Lattice;
+use crate::geometry::trim::{trimmed, Rest};
 use crate::geometry::vertex::Vertex;
 use crate::mesh::source::{Shape, Source};
 
@@ -130,11 +131,19 @@ impl Sum {
         if area == 0 {
             return;
         }
-        if corners.iter().all(|c| self.cell.holds_box(c, c)) {
-            let flux = sixfold_flux(corners);
-            self.inside += if flip { -flux } else { flux };
-            return;
+        match trimmed(corners, area, &self.walls) {
+            Rest::All => {
+                let flux = sixfold_flux(corners);
+                self.inside += if flip { -flux } else { flux };
+            }
+            Rest::Some(flux) => self.rest.flux.add(&flux, flip),
+            Rest::Nothing => {}
+            Rest::Open => self.add_clipped(corners, area, flip),
         }
+    }
+
+    /// The part of a whole face in the cell, cut by walls across several axes.
+    fn add_clipped(&mut self, corners: &[Lattice; 3], area: i128, flip: bool) {
         let normal = [minor(corners, 1, 2), minor(corners, 2, 0), area];
         if let Some(ring) = Triangle::new(corners, normal).clipped(&self.walls) {
             let error = Reach::of_triangle(corners).error(ring.len(), 1, slope(&normal));

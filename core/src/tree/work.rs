@@ -23,6 +23,13 @@ pub fn work(solids: &[Solid], limit: usize) -> usize {
     sum
 }
 
+/// Faces that have to be looked at to know whether a solid is reduced, where few meshes decide that.
+pub fn work_to_settle(solid: &Solid) -> usize {
+    let open = solid.doubts().filter(|_| !solid.is_reduced());
+    let faces = |mesh: &Solid| mesh.sources().iter().map(|s| s.face_count()).sum::<usize>();
+    open.map_or(0, |doubts| doubts.iter().map(faces).sum())
+}
+
 /// A box around a solid's boundary: that of a small mesh, or else the root's cell.
 fn extent(solid: &Solid, limit: usize) -> (Lattice, Lattice) {
     let cell = solid.root().cell;

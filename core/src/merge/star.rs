@@ -1,0 +1,113 @@
+//! Whether a closed mesh is star-shaped: a point sees all of its faces from behind, each once.
+//!
+//! Let a point lie strictly behind the planes of all faces. Seen from there, each face covers its
+//! part of the sphere of directions once, and all turn the same way. The surface has no border, so
+//! as many faces cover one side of an edge as the other. Hence a ray from the point meets the same
+//! number of faces in every direction, if it meets no edge. If one ray meets a single face, all do:
+//! no two faces overlap or cross, and the winding number is 1 up to them and 0 beyond.
+//!
+//! All convex meshes are star-shaped about the mean of their vertices, but for slivers whose mean
+//! is rounded out of them, however their flat sides are divided.
+//!
+//! # Source
+//! Mehlhorn, Näher, Seel, Seidel, Schilz, Schirra, Uhrig: *Checking geometric programs or
+//! verification of geometric structures*, 1999. The ray tells one covering from several.
+
+use crate::geometry::crossing::{triangle_change, Segment};
+use crate::geometry::path::near_determinant;
+use crate::geometry::plane::Lattice;
+use crate::mesh::source::TriangleMesh;
+
+/// Whether a mesh that closes by index is star-shaped about the mean of its vertices; errs on no.
+pub fn is_star_shaped(mesh: &TriangleMesh) -> bool {
+    let Some(eye) = mean(&mesh.vertices) else {
+        return false;
+    };
+    let mut corners = (0..mesh.faces.len() as u32).map(|f| mesh.corners(f));
+    corners.all(|c| is_behind(&eye, &c)) && faces_ahead(mesh, &eye) == Some(1)
+}
+
+/// The mean of points, each coordinate rounded down.
+fn mean(points: &[Lattice]) -> Option<Lattice> {
+    let sum = points.iter().fold([0; 3], |sum: [i128; 3], p| {
+        [0, 1, 2].map(|i| sum[i] + i128::from(p[i]))
+    });
+    let count = i128::try_from(points.len()).ok().filter(|n| *n > 0)?;
+    Some(sum.map(|s| s.div_euclid(count) as i64))
+}
+
+/// Whether a point lies strictly behind a face's plane; errs on no.
+fn is_behind(point: &Lattice, corners: &[Lattice; 3]) -> bool {
+    let [a, b, c] = corners.map(|corner| [0, 1, 2].map(|i| corner[i] - point[i]));
+    near_determinant(&a, &b, &c) > 0
+}
+
+/// How many faces a ray along x meets, beside a point that lies behind all of them.
+fn faces_ahead(mesh: &TriangleMesh, eye: &Lattice) -> Option<i32> {
+    let (_, high) = mesh.bounds()?;
+    let ray = Segment {
+        from: eye.map(|c| 2 * c),
+        axis: 0,
+        to: 2 * high[0] + 1,
+    };
+    let change = |face| triangle_change(&mesh.corners(face), &ray);
+    Some(-(0..mesh.faces.len() as u32).map(change).sum::<i32>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tetrahedron() -> TriangleMesh {
+        TriangleMesh {
+            vertices: vec![[0, 0, 0], [90, 0, 0], [0, 90, 0], [0, 0, 90]],
+            faces: vec![[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]],
+            ..TriangleMesh::default()
+        }
+    }
+
+    /// Double cones over a ring: an edge of the ring ends `step` corners on.
+    fn cone(ring: u32, step: u32) -> TriangleMesh {
+        let corner = |i: u32| {
+            let turn = f64::from(i) * std::f64::consts::TAU / f64::from(ring);
+            [(1e6 * turn.cos()) as i64, (1e6 * turn.sin()) as i64, 0]
+        };
+        let ends = |i: u32| (2 + i, 2 + (i + step) % ring);
+        let faces = |i: u32| [[0, ends(i).0, ends(i).1], [1, ends(i).1, ends(i).0]];
+        TriangleMesh {
+            vertices: [[0, 0, 1_000_000], [0, 0, -1_000_000]]
+                .into_iter()
+                .chain((0..ring).map(corner))
+                .collect(),
+            faces: (0..ring).flat_map(faces).collect(),
+            ..TriangleMesh::default()
+        }
+    }
+
+    #[test]
+    fn convex_meshes_are_star_shaped() {
+        assert!(is_star_shaped(&tetrahedron()));
+        assert!(is_star_shaped(&cone(7, 1)));
+    }
+
+    #[test]
+    fn meshes_turned_inside_out_are_not() {
+        let mut mesh = tetrahedron();
+        mesh.faces.iter_mut().for_each(|f| f.swap(1, 2));
+        assert!(!is_star_shaped(&mesh));
+    }
+
+    /// Convex at every edge and around the eye, but wound twice or thrice around two vertices.
+    #[test]
+    fn surfaces_that_wind_around_the_eye_more_than_once_are_not() {
+        assert!(!is_star_shaped(&cone(7, 2)));
+        assert!(!is_star_shaped(&cone(7, 3)));
+    }
+
+    #[test]
+    fn surfaces_that_are_there_twice_are_not() {
+        let mut mesh = tetrahedron();
+        mesh.faces.extend(mesh.faces.clone());
+        assert!(!is_star_shaped(&mesh));
+    }
+}
