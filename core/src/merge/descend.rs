@@ -4,6 +4,7 @@
 //! Naylor, Amanatides, Thibault 1990 (merging: a leaf decides, a common cut is descended);
 //! design review F12 (residual expressions), F14 (one hierarchy for all solids).
 
+use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::Arc;
 
@@ -13,7 +14,7 @@ use super::bins::Bins;
 use super::expression::{Expression, Residual};
 use super::join;
 use super::leaf::{self, Rule};
-use super::list::{List, Sources};
+use super::list::{List, PartRecord, Record, Sources};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
 use crate::mesh::tasks::{both, in_pool};
@@ -31,6 +32,9 @@ const GENERAL: usize = 64;
 
 /// The same, where no list is an operation's result, and the next operation may never come.
 const FRESH: usize = 4 * GENERAL;
+
+/// States that together hold at most this many, all perpendicular to axes, are worked on at once.
+const ORTHOGONAL: usize = 256;
 
 /// Lists at least this long are worth a task of their own.
 const TASK: usize = 512;
@@ -267,6 +271,11 @@ impl<'a> Descent<'a> {
         let opening: usize = states.iter().map(|s| s.1.len_to_open(&cell)).sum();
         let states = self.opened(&cell, states);
         let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
+        if total <= ORTHOGONAL {
+            if let Some(branch) = self.among_orthogonal(cell, &expression, &states, total) {
+                return Ok(branch);
+            }
+        }
         let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
         let stuck = listed && is_stuck(&cell, &states, round, total);
         let small = total <= LEAF || stuck && total <= STUCK;
@@ -358,6 +367,26 @@ impl<'a> Descent<'a> {
             })
             .collect();
         let node = leaf::in_general_position(&cell, expression, self.rule, &lists, self.sources)?;
+        self.count_leaf(total);
+        Some(branch_of(cell, node))
+    }
+
+    /// The result in a cell of which all faces are perpendicular to axes.
+    fn among_orthogonal(
+        &self,
+        cell: Cell,
+        expression: &Expression,
+        states: &States,
+        total: usize,
+    ) -> Option<Branch> {
+        if !states.iter().all(|s| s.1.is_orthogonal(self.sources)) {
+            return None;
+        }
+        let lists = states.iter().map(|s| s.1.list_in(&cell, self.sources));
+        let lists: Vec<Cow<List>> = lists.collect::<Option<_>>()?;
+        let named = states.iter().map(|s| s.0).zip(&lists);
+        let lists: Vec<(u32, &List)> = named.map(|(k, list)| (k, &**list)).collect();
+        let node = leaf::among_orthogonal(&cell, expression, &lists, self.sources)?;
         self.count_leaf(total);
         Some(branch_of(cell, node))
     }
@@ -463,6 +492,32 @@ impl State {
         match self {
             Self::List(list) => list.len(),
             Self::Constant(_) | Self::Tree(_) | Self::Bins(_) => 0,
+        }
+    }
+
+    /// Whether all elements are known, and perpendicular to axes.
+    fn is_orthogonal(&self, sources: &Sources) -> bool {
+        match self {
+            Self::List(list) => {
+                let flat = |r: &Record| sources.get(r.slot()).is_orthogonal(r.face);
+                let part =
+                    |p: &PartRecord| p.element.part.source.is_orthogonal(p.element.part.face);
+                list.records.iter().all(flat) && list.parts.iter().all(part)
+            }
+            Self::Tree(branch) => match &*branch.node {
+                Node::Deferred(leaf) => leaf.is_orthogonal(),
+                Node::Leaf(_) | Node::Cut(_) => false,
+            },
+            Self::Constant(_) | Self::Bins(_) => false,
+        }
+    }
+
+    /// The elements as a list of the cell, if nothing reaches out of the part they are listed for.
+    fn list_in(&self, cell: &Cell, sources: &Sources) -> Option<Cow<'_, List>> {
+        match self {
+            Self::List(list) => Some(Cow::Borrowed(list)),
+            Self::Tree(branch) => List::lifted(branch, cell, sources).map(Cow::Owned),
+            Self::Constant(_) | Self::Bins(_) => None,
         }
     }
 

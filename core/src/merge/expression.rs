@@ -100,6 +100,23 @@ impl Expression {
         scratch.last().copied().unwrap_or(false)
     }
 
+    /// The values for 64 cases at once: a bit of each word is one case.
+    pub fn words(&self, operand: impl Fn(u32) -> u64, scratch: &mut Vec<u64>) -> u64 {
+        scratch.clear();
+        for term in &self.terms {
+            let at = |i: &u32| scratch[*i as usize];
+            let word = match term {
+                Term::Operand(k) => operand(*k),
+                Term::Not(a) => !at(a),
+                Term::And(list) => list.iter().fold(u64::MAX, |all, i| all & at(i)),
+                Term::Or(list) => list.iter().fold(0, |all, i| all | at(i)),
+                Term::Xor(list) => list.iter().fold(0, |all, i| all ^ at(i)),
+            };
+            scratch.push(word);
+        }
+        scratch.last().copied().unwrap_or(0)
+    }
+
     /// Puts in what is known and folds constants.
     pub fn residual(&self, known: impl Fn(u32) -> Option<bool>) -> Residual {
         let mut folded = Vec::with_capacity(self.terms.len());

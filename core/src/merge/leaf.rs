@@ -10,6 +10,7 @@ use super::general;
 use super::kept::{assemble, Kept};
 use super::list::{List, Sources};
 use super::local_tree::{LocalTree, Weighted};
+use super::orthogonal;
 use super::overlay::{disjoint, Fragment};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
@@ -67,7 +68,8 @@ pub fn evaluate(
     evidence: impl FnMut(u32),
 ) -> Node {
     let named: Vec<(u32, &List)> = lists.iter().map(|(k, list)| (*k, list)).collect();
-    in_general_position(cell, expression, rule, &named, sources)
+    among_orthogonal(cell, expression, &named, sources)
+        .or_else(|| in_general_position(cell, expression, rule, &named, sources))
         .unwrap_or_else(|| by_trees(cell, expression, rule, lists, sources, evidence))
 }
 
@@ -91,6 +93,18 @@ pub fn in_general_position(
         cell,
         sources,
     ))
+}
+
+/// Evaluates an expression in a cell where all faces are perpendicular to axes; `None` if some are
+/// not, or an operand overlaps itself.
+pub fn among_orthogonal(
+    cell: &Cell,
+    expression: &Expression,
+    lists: &[(u32, &List)],
+    sources: &Sources,
+) -> Option<Node> {
+    let (kept, corner) = orthogonal::evaluate(cell, expression, lists, sources)?;
+    Some(assemble(kept, corner, cell, sources))
 }
 
 /// Evaluates an expression in a cell by the operands' local trees.

@@ -142,6 +142,28 @@ impl List {
         list
     }
 
+    /// Opens a deferred leaf as a list of a larger cell; `None` if an element reaches out of the
+    /// leaf's own cell, where it may not be boundary.
+    pub fn lifted(branch: &Branch, cell: &Cell, sources: &Sources) -> Option<Self> {
+        let Node::Deferred(leaf) = &*branch.node else {
+            return None;
+        };
+        let held = |source: &Source, face: &u32| {
+            let (low, high) = source.face_box(*face);
+            branch.cell.holds_box(&low, &high)
+        };
+        let faces = |g: &Group| g.faces.iter().all(|face| held(&g.source, face));
+        let parts = |p: &PartElement| branch.cell.holds(&p.part.home);
+        if !(leaf.groups.iter().all(faces) && leaf.parts.iter().all(parts)) {
+            return None;
+        }
+        let mut list = Self::open(leaf, branch, sources);
+        if branch.cell.low() != cell.low() {
+            list.corner = branch.outside;
+        }
+        Some(list)
+    }
+
     /// The number of elements.
     pub fn len(&self) -> usize {
         self.records.len() + self.parts.len()

@@ -15,12 +15,14 @@ pub mod list;
 pub mod local_tree;
 pub mod merge_trees;
 pub mod op;
+mod orthogonal;
 mod overlay;
 pub mod partition_tree;
 pub mod separation;
 pub mod simple;
 pub mod split_tree;
 mod star;
+mod stays;
 mod sweep;
 mod window;
 

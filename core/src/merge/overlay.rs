@@ -120,7 +120,7 @@ fn part_of(fragment: &Fragment, polygon: Polygon) -> Fragment {
 }
 
 /// Whether an edge of one polygon has the other entirely beyond it; both lie in one plane.
-fn separated(a: &Polygon, b: &Polygon) -> bool {
+pub fn separated(a: &Polygon, b: &Polygon) -> bool {
     beyond_an_edge(a, b) || beyond_an_edge(b, a)
 }
 

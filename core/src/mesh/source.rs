@@ -147,6 +147,17 @@ impl Source {
         }
     }
 
+    /// Whether a face is perpendicular to an axis.
+    pub fn is_orthogonal(&self, face: u32) -> bool {
+        match &self.shape {
+            Shape::Mesh(mesh) => {
+                let [a, b, c] = mesh.corners(face);
+                (0..3).any(|i| a[i] == b[i] && b[i] == c[i])
+            }
+            Shape::HalfSpace(plane) => plane.only_axis().is_some(),
+        }
+    }
+
     /// The part of a face inside a cell, if it has an area.
     pub fn clip(&self, face: u32, cell: &Cell) -> Option<Polygon> {
         match &self.shape {

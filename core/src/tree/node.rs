@@ -203,6 +203,13 @@ impl Deferred {
         self.parts.len() + self.groups.iter().map(|g| g.faces.len()).sum::<usize>()
     }
 
+    /// Whether all elements are perpendicular to axes.
+    pub fn is_orthogonal(&self) -> bool {
+        let faces = |g: &Group| g.faces.iter().all(|f| g.source.is_orthogonal(*f));
+        let part = |p: &PartElement| p.part.source.is_orthogonal(p.part.face);
+        self.groups.iter().all(faces) && self.parts.iter().all(part)
+    }
+
     /// Whether nothing is listed.
     pub fn is_empty(&self) -> bool {
         self.len() == 0

@@ -1,0 +1,132 @@
+//! Where in the grid an operand is inside.
+
+use std::ops::Range;
+
+use super::facet::{Facet, ACROSS};
+use super::grid::{mask, Grid};
+
+/// The coarser grid of one operand's own planes, and its winding numbers there.
+struct Own<'a> {
+    grid: &'a Grid,
+    /// On each axis the numbers of the grid's lines at which the operand's intervals begin, and the
+    /// number of intervals in the grid.
+    starts: [Vec<usize>; 3],
+    numbers: Vec<i32>,
+}
+
+/// The columns of the grid with a bit for each region inside an operand; `None` if a winding
+/// number is neither 0 nor 1.
+pub(super) fn field(grid: &Grid, facets: &[Facet], corner: i32) -> Option<Vec<u64>> {
+    let mut own = Own::new(grid, facets);
+    own.numbers[0] = corner;
+    for facet in facets {
+        own.enter(facet);
+    }
+    own.add_up();
+    let simple = own.numbers.iter().all(|w| (0..=1).contains(w));
+    simple.then(|| own.field())
+}
+
+impl<'a> Own<'a> {
+    fn new(grid: &'a Grid, facets: &[Facet]) -> Self {
+        let starts = [0, 1, 2].map(|axis| {
+            let perpendicular = facets.iter().filter(|f| f.axis == axis);
+            let mut starts = vec![0, grid.count(axis)];
+            starts.extend(perpendicular.map(|f| grid.find(axis, f.at)));
+            starts.sort_unstable();
+            starts.dedup();
+            starts
+        });
+        let numbers = vec![0; starts.iter().map(|s| s.len() - 1).product()];
+        Self {
+            grid,
+            starts,
+            numbers,
+        }
+    }
+
+    fn count(&self, axis: usize) -> usize {
+        self.starts[axis].len() - 1
+    }
+
+    fn place(&self, [x, y, z]: [usize; 3]) -> usize {
+        (x * self.count(1) + y) * self.count(2) + z
+    }
+
+    /// The operand's intervals that begin inside a range of the grid's.
+    fn within(&self, axis: usize, range: &Range<usize>) -> Range<usize> {
+        let starts = &self.starts[axis][..self.count(axis)];
+        let first = starts.partition_point(|s| *s < range.start);
+        first..starts.partition_point(|s| *s < range.end)
+    }
+
+    /// Notes the change across a facet: everywhere for those across z, at the bottom for those
+    /// across y, and in one row for those across x.
+    fn enter(&mut self, facet: &Facet) {
+        let axis = facet.axis;
+        let line = self.grid.find(axis, facet.at);
+        let at = self.starts[axis].partition_point(|s| *s < line);
+        let (row, bit) = ACROSS[axis];
+        let cross = |own: &Self, along: usize| {
+            let all = own.within(along, &facet.range(own.grid, along));
+            if along > axis {
+                all.start..all.end.min(1)
+            } else {
+                all
+            }
+        };
+        let (rows, bits) = (cross(self, row), cross(self, bit));
+        for r in rows {
+            for b in bits.clone() {
+                let corner = [(row, r), (bit, b)]
+                    .map(|(axis, i)| self.grid.line(axis, self.starts[axis][i]));
+                if facet.holds(corner) {
+                    let mut place = [at; 3];
+                    (place[row], place[bit]) = (r, b);
+                    let place = self.place(place);
+                    self.numbers[place] += facet.change();
+                }
+            }
+        }
+    }
+
+    /// Makes numbers of changes: along x, from there along y, from there along z.
+    fn add_up(&mut self) {
+        let [nx, ny, nz] = [0, 1, 2].map(|i| self.count(i));
+        for x in 1..nx {
+            self.numbers[x * ny * nz] += self.numbers[(x - 1) * ny * nz];
+        }
+        for x in 0..nx {
+            for y in 1..ny {
+                self.numbers[(x * ny + y) * nz] += self.numbers[(x * ny + y - 1) * nz];
+            }
+        }
+        for column in self.numbers.chunks_mut(nz) {
+            for z in 1..nz {
+                column[z] += column[z - 1];
+            }
+        }
+    }
+
+    fn interval(&self, axis: usize, i: usize) -> Range<usize> {
+        self.starts[axis][i]..self.starts[axis][i + 1]
+    }
+
+    /// The numbers as bits of the grid's columns.
+    fn field(&self) -> Vec<u64> {
+        let mut field = vec![0; self.grid.columns()];
+        for x in 0..self.count(0) {
+            for y in 0..self.count(1) {
+                let inside = |z: &usize| self.numbers[self.place([x, y, *z])] == 1;
+                let bits = (0..self.count(2)).filter(inside);
+                let word = bits.fold(0, |all, z| all | mask(&self.interval(2, z)));
+                for i in self.interval(0, x) {
+                    let columns = self.interval(1, y);
+                    let row = self.grid.column(i, 0);
+                    field[row + columns.start..row + columns.end].fill(word);
+                }
+            }
+        }
+        field
+    }
+}

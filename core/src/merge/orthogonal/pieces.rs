@@ -1,0 +1,119 @@
+//! A facet cut into the pieces that stay.
+
+use super::facet::{Facet, ACROSS};
+use super::grid::Grid;
+use crate::geometry::cell::Cell;
+use crate::geometry::polygon::{Polygon, PolygonSplit};
+
+/// The pieces of a facet that cover those of the rectangles it touches that stay.
+///
+/// The rectangles are given by rows, from row `first` on, as bits. Rows that may be alike become one
+/// slab, and each run of bits in a slab one piece.
+pub(super) fn pieces(
+    cell: &Cell,
+    grid: &Grid,
+    facet: &Facet,
+    first: usize,
+    touched: &[u64],
+    stay: &[u64],
+) -> Vec<Polygon> {
+    let (row, bit) = ACROSS[facet.axis];
+    let mut found = Vec::new();
+    let mut rest = facet.polygon_in(cell);
+    let mut start = 0;
+    while start < stay.len() {
+        let slab = Slab::new(&touched[start..], &stay[start..]);
+        let end = start + slab.rows;
+        let below = if end < stay.len() {
+            take_below(&mut rest, grid, row, first + end)
+        } else {
+            rest.take()
+        };
+        if slab.stay != 0 {
+            cut_slab(below, grid, bit, &slab, &mut found);
+        }
+        start = end;
+    }
+    found
+}
+
+/// Rows that are alike wherever the facet touches them.
+struct Slab {
+    rows: usize,
+    stay: u64,
+    go: u64,
+}
+
+impl Slab {
+    /// The first rows that may be alike.
+    fn new(touched: &[u64], kept: &[u64]) -> Self {
+        let (mut stay, mut go) = (kept[0], touched[0] & !kept[0]);
+        let more = touched[1..].iter().zip(&kept[1..]);
+        let alike = more.take_while(|(touched, kept)| {
+            let both = (stay | **kept, go | **touched & !**kept);
+            let alike = both.0 & both.1 == 0;
+            if alike {
+                (stay, go) = both;
+            }
+            alike
+        });
+        let rows = 1 + alike.count();
+        Self { rows, stay, go }
+    }
+
+    /// The next run of bits from one on: where it starts, and where a bit goes again.
+    fn run(&self, from: u32) -> Option<(u32, u32)> {
+        let rest = self.stay & u64::MAX.checked_shl(from)?;
+        if rest == 0 {
+            return None;
+        }
+        let start = rest.trailing_zeros();
+        let end = (self.go & (u64::MAX << start)).trailing_zeros();
+        Some((start, end))
+    }
+}
+
+/// The runs of bits in the part of a facet in a slab.
+fn cut_slab(
+    polygon: Option<Polygon>,
+    grid: &Grid,
+    bit: usize,
+    slab: &Slab,
+    found: &mut Vec<Polygon>,
+) {
+    let mut rest = polygon;
+    let mut from = 0;
+    while let Some((start, end)) = slab.run(from) {
+        // A bit that goes lies before the run, unless it is the first.
+        if slab.go & ((1 << start) - 1) != 0 {
+            take_below(&mut rest, grid, bit, start as usize);
+        }
+        found.extend(if slab.go.checked_shr(end).unwrap_or(0) != 0 {
+            take_below(&mut rest, grid, bit, end as usize)
+        } else {
+            rest.take()
+        });
+        from = end;
+    }
+}
+
+/// Cuts off what lies below a line.
+fn take_below(
+    rest: &mut Option<Polygon>,
+    grid: &Grid,
+    axis: usize,
+    line: usize,
+) -> Option<Polygon> {
+    let polygon = rest.take()?;
+    match polygon.split(grid.plane(axis, line)) {
+        PolygonSplit::Minus | PolygonSplit::Coplanar => Some(polygon),
+        PolygonSplit::Plus => {
+            *rest = Some(polygon);
+            None
+        }
+        PolygonSplit::Both(minus, plus) => {
+            *rest = Some(plus);
+            Some(minus)
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! What stays of faces and of the pieces of parts, as a kernel's result.
+
+use std::sync::Arc;
+
+use super::kept::Kept;
+use crate::geometry::polygon::Polygon;
+use crate::tree::node::Part;
+
+/// What stays of an element on one side.
+pub enum Stays {
+    /// Nothing.
+    Nothing,
+    /// All of it that lies in the cell.
+    All,
+    /// These pieces.
+    Pieces(Vec<Polygon>),
+}
+
+/// Whose an element is.
+pub enum Owner {
+    /// All of a face: its slot and number.
+    Face((u32, u32)),
+    /// A piece of the part with this number.
+    Part(usize),
+}
+
+/// An element that meets the cell, by its number, whose it is, and what stays of it as the source
+/// has it and turned.
+pub type Settled = (usize, Owner, [Stays; 2]);
+
+impl Stays {
+    /// What is left as pieces.
+    pub fn of(pieces: Vec<Polygon>) -> Self {
+        if pieces.is_empty() {
+            Self::Nothing
+        } else {
+            Self::Pieces(pieces)
+        }
+    }
+
+    fn kept(self, face: (u32, u32), flip: bool) -> Option<Kept> {
+        match self {
+            Self::Nothing => None,
+            Self::All => Some(Kept::whole(face, flip)),
+            Self::Pieces(polygons) => Some(Kept::pieces(face, flip, polygons)),
+        }
+    }
+}
+
+/// What stays of all elements, given the parts with their slots, and the polygon of an element.
+pub fn kept(
+    settled: impl Iterator<Item = Settled>,
+    parts: &[(&Arc<Part>, u32)],
+    polygon: impl Fn(usize) -> Option<Polygon>,
+) -> Vec<Kept> {
+    let mut kept = Vec::new();
+    let mut pieces: Vec<[Vec<(usize, Stays)>; 2]> = Vec::new();
+    pieces.resize_with(parts.len(), Default::default);
+    for (i, owner, stays) in settled {
+        let sides = stays.into_iter().zip([false, true]);
+        match owner {
+            Owner::Face(face) => {
+                kept.extend(sides.filter_map(|(stays, flip)| stays.kept(face, flip)));
+            }
+            Owner::Part(part) => {
+                sides.for_each(|(stays, flip)| pieces[part][usize::from(flip)].push((i, stays)));
+            }
+        }
+    }
+    for (part, sides) in parts.iter().zip(pieces) {
+        let sides = sides.into_iter().zip([false, true]);
+        kept.extend(sides.filter_map(|(pieces, flip)| kept_part(*part, pieces, flip, &polygon)));
+    }
+    kept
+}
+
+/// A part as it is if all its pieces stay, else what stays of its pieces.
+fn kept_part(
+    (part, slot): (&Arc<Part>, u32),
+    pieces: Vec<(usize, Stays)>,
+    flip: bool,
+    polygon: impl Fn(usize) -> Option<Polygon>,
+) -> Option<Kept> {
+    let face = (slot, part.face);
+    if !pieces.is_empty() && pieces.iter().all(|p| matches!(p.1, Stays::All)) {
+        return Some(Kept::part(face, flip, Arc::clone(part)));
+    }
+    let polygons = pieces.into_iter().flat_map(|(i, stays)| match stays {
+        Stays::Nothing => Vec::new(),
+        Stays::All => polygon(i).into_iter().collect(),
+        Stays::Pieces(polygons) => polygons,
+    });
+    Stays::of(polygons.collect()).kept(face, flip)
+}
