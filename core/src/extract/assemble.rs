@@ -1,6 +1,6 @@
 //! From a boundary to a closed triangle mesh.
 
-use rustc_hash::FxHashMap as HashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 use std::sync::Arc;
 
 use super::collect::{collect, Fate};
@@ -14,11 +14,11 @@ use super::untouched::{Untouched, WholeFaces};
 use super::vertices::{Projection, VertexTable};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::line::LineKey;
-use crate::geometry::plane::Plane;
+use crate::geometry::plane::{normal, Plane};
 use crate::geometry::vertex::Vertex;
 use crate::merge::list::Sources;
 use crate::mesh::finding::Finding;
-use crate::mesh::source::TriangleMesh;
+use crate::mesh::source::{Shape, TriangleMesh};
 use crate::tree::solid::Solid;
 
 /// A closed triangle mesh with exact vertices.
@@ -67,7 +67,7 @@ pub(super) struct Assembly<'a> {
 }
 
 /// The face a triangle lies in, as the source has it, and whether it is turned around.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct TriangleFace {
     /// The source's slot.
     pub slot: u32,
@@ -75,6 +75,24 @@ pub struct TriangleFace {
     pub face: u32,
     /// Whether the triangle faces the other way.
     pub flip: bool,
+}
+
+impl TriangleFace {
+    /// The outward normal of the face, up to a positive factor.
+    pub fn normal(&self, sources: &Sources) -> [i128; 3] {
+        let n = match sources.get(self.slot as usize).shape() {
+            Shape::Mesh(mesh) => {
+                let [a, b, c] = mesh.corners(self.face);
+                normal(&a, &b, &c)
+            }
+            Shape::HalfSpace(plane) => *plane.normal(),
+        };
+        if self.flip {
+            n.map(|c| -c)
+        } else {
+            n
+        }
+    }
 }
 
 const NONE: u32 = u32::MAX;
@@ -107,7 +125,7 @@ fn attempt(solid: &Solid, sources: &Sources, join: bool) -> Result<ExactMesh> {
     let mut boundary = collect(solid, sources);
     let near = std::mem::take(&mut boundary.near);
     let (fates, groups, rims) = group(boundary, sources, join);
-    if groups.iter().any(reaches_infinity) {
+    if groups.iter().any(|g| reaches_infinity(g, sources)) {
         return Err(unbounded());
     }
     let mut assembly = Assembly::new(sources, &fates);
@@ -123,8 +141,10 @@ fn unbounded() -> Error {
 }
 
 /// Whether an outline runs on the border of the universe, where only half-spaces reach.
-fn reaches_infinity(group: &PlaneGroup) -> bool {
-    group.edges.iter().any(|e| e.carrier.is_border())
+fn reaches_infinity(group: &PlaneGroup, sources: &Sources) -> bool {
+    let mut faces = group.faces.iter();
+    faces.any(|f| sources.get(f.slot as usize).mesh().is_none())
+        && group.edges.iter().any(|e| e.carrier.is_border())
 }
 
 impl<'a> Assembly<'a> {
@@ -159,14 +179,7 @@ impl<'a> Assembly<'a> {
         let frontier = rims.frontier(fates, self.sources);
         let mut edges = Vec::new();
         for group in groups {
-            for e in &group.edges {
-                let (from, to) = (self.table.number(&e.from), self.table.number(&e.to));
-                edges.push(Edge {
-                    from,
-                    to,
-                    line: e.line,
-                });
-            }
+            self.number_edges(group, &mut edges);
         }
         for e in &frontier {
             edges.extend(self.frontier_edge(*e, fates));
@@ -188,6 +201,21 @@ impl<'a> Assembly<'a> {
             self.emit_group(group, &edges[range.clone()], &inner[range])?;
         }
         Ok(())
+    }
+
+    /// Numbers the ends of a group's edges; those that two edges share are looked up once.
+    fn number_edges(&mut self, group: &PlaneGroup, edges: &mut Vec<Edge>) {
+        let mut known = HashMap::with_capacity_and_hasher(group.edges.len(), FxBuildHasher);
+        let table = &mut self.table;
+        let mut number = |at: &Arc<Vertex>| {
+            let entry = known.entry(Arc::as_ptr(at));
+            *entry.or_insert_with(|| table.number(at))
+        };
+        edges.extend(group.edges.iter().map(|e| Edge {
+            from: number(&e.from),
+            to: number(&e.to),
+            line: e.line,
+        }));
     }
 
     /// For each line the points at which a polygon touches or crosses an edge of its own.
@@ -228,9 +256,11 @@ impl<'a> Assembly<'a> {
 
     /// The table number of a source's vertex; from now on the vertex is that point.
     fn point_of(&mut self, slot: u32, mesh: &TriangleMesh, vertex: u32) -> u32 {
-        let point = self
-            .table
-            .number(&Arc::new(Vertex::lattice(mesh.vertices[vertex as usize])));
+        let image = self.images[slot as usize][vertex as usize];
+        if let Some(Corner::Point(point)) = self.vertices.get(image as usize) {
+            return *point;
+        }
+        let point = self.table.number_at(mesh.vertices[vertex as usize]);
         self.names.entry(point).or_insert((slot, vertex));
         let image = self.image_of_point(point);
         self.images[slot as usize][vertex as usize] = image;
@@ -325,8 +355,33 @@ impl<'a> Assembly<'a> {
     }
 
     /// Whether an output vertex lies where something was cut or may touch.
-    pub(super) fn is_special(&self, vertex: u32) -> bool {
+    fn is_special(&self, vertex: u32) -> bool {
         !self.untouched.vertices.contains(&vertex)
+    }
+
+    /// How many vertices are special.
+    pub(super) fn special_count(&self) -> usize {
+        self.vertices.len() - self.untouched.vertices.len()
+    }
+
+    /// The place of a vertex among the special ones, if it is one.
+    pub(super) fn special_place(&self, vertex: u32) -> Option<u32> {
+        let others = &self.untouched.vertices;
+        if vertex < others.start {
+            Some(vertex)
+        } else {
+            (vertex >= others.end).then(|| vertex - others.len() as u32)
+        }
+    }
+
+    /// The special vertex in a place.
+    pub(super) fn special_vertex(&self, place: u32) -> u32 {
+        let others = &self.untouched.vertices;
+        if place < others.start {
+            place
+        } else {
+            place + others.len() as u32
+        }
     }
 
     /// Triangulates a whole face that received vertices on its edges.
@@ -383,13 +438,12 @@ impl<'a> Assembly<'a> {
         let triangles = self.triangulated(&group.plane, &chain)?;
         let view = Projection::onto(&group.plane, &self.table);
         let owners = Owners::new(group, &view, self.sources);
-        let faces: Vec<(u32, u32)> = triangles
+        let faces: Vec<TriangleFace> = triangles
             .iter()
             .map(|t| owners.at_centre(*t, &view))
             .collect();
-        for (triangle, (slot, face)) in triangles.into_iter().zip(faces) {
-            let flip = *self.sources.get(slot as usize).plane(face) != group.plane;
-            self.push(triangle, TriangleFace { slot, face, flip });
+        for (triangle, face) in triangles.into_iter().zip(faces) {
+            self.push(triangle, face);
         }
         Ok(())
     }

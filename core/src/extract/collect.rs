@@ -1,13 +1,14 @@
 //! What a tree says of each face: kept whole, cut, or gone.
 
 use rayon::prelude::*;
-use rustc_hash::FxHashSet as HashSet;
+use smallvec::{smallvec, SmallVec};
 
 use super::leaves::{listed, Listed, Spanning};
-use crate::geometry::cell::Cell;
+use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::line::LineKey;
 use crate::geometry::outline::{cancel, OutlineEdge};
 use crate::geometry::plane::Lattice;
+use crate::geometry::vertex::Vertex;
 use crate::merge::list::Sources;
 use crate::merge::separation::misses;
 use crate::mesh::source::{Shape, Source};
@@ -156,10 +157,55 @@ fn is_full_face(cut: &CutFace, source: &Source) -> bool {
     let Shape::Mesh(mesh) = source.shape() else {
         return false;
     };
+    let [p, q, r] = &cut.edges[..] else {
+        return false;
+    };
     let c = mesh.corners(cut.face);
+    let near = |edge: &OutlineEdge| c.iter().any(|corner| is_near(&edge.from, corner));
+    if ![p, q, r].into_iter().all(near) {
+        return false;
+    }
+    let lines = [p.line, q.line, r.line];
     let own = [0, 1, 2].map(|i| LineKey::of_edge(&c[i], &c[(i + 1) % 3]));
-    let lines: HashSet<LineKey> = cut.edges.iter().map(|e| e.line).collect();
-    cut.edges.len() == 3 && lines.len() == 3 && own.iter().all(|k| lines.contains(k))
+    let distinct = p.line != q.line && q.line != r.line && r.line != p.line;
+    distinct && own.iter().all(|k| lines.contains(k))
+}
+
+/// Whether a vertex may be a lattice point; errs on yes.
+fn is_near(vertex: &Vertex, place: &Lattice) -> bool {
+    let at = vertex.approx();
+    (0..3).all(|i| {
+        let c = place[i] as f64;
+        (at[i] - c).abs() <= c.abs() * 4.0 * f64::EPSILON
+    })
+}
+
+/// A subtree to look through for a face, and the face's box in it.
+struct Place<'a> {
+    branch: &'a Branch,
+    complement: bool,
+    low: Lattice,
+    high: Lattice,
+}
+
+impl<'a> Place<'a> {
+    /// The same for a child, which has one side of a cut; `None` if the box is on the other.
+    ///
+    /// The cut is one of the cell that holds the box, so that its axis alone matters.
+    fn child(&self, child: &'a Branch, cut: Cut, plus: bool) -> Option<Self> {
+        let (mut low, mut high) = (self.low, self.high);
+        if plus {
+            low[cut.axis] = low[cut.axis].max(cut.at);
+        } else {
+            high[cut.axis] = high[cut.axis].min(cut.at - 1);
+        }
+        (low[cut.axis] <= high[cut.axis]).then_some(Self {
+            branch: child,
+            complement: self.complement ^ child.complement,
+            low,
+            high,
+        })
+    }
 }
 
 /// Whether every leaf that a face meets lists it; errs on no.
@@ -168,8 +214,14 @@ fn covers(root: &Branch, source: &Source, face: u32, flip: bool) -> bool {
     if !root.cell.holds_box(&low, &high) {
         return false;
     }
-    let mut open = vec![(root, root.complement)];
-    while let Some((branch, complement)) = open.pop() {
+    let mut open: SmallVec<[Place; 8]> = smallvec![Place {
+        branch: root,
+        complement: root.complement,
+        low,
+        high
+    }];
+    while let Some(place) = open.pop() {
+        let branch = place.branch;
         match &*branch.node {
             Node::Leaf(_) => {
                 if enters(source, face, &branch.cell) {
@@ -177,7 +229,7 @@ fn covers(root: &Branch, source: &Source, face: u32, flip: bool) -> bool {
                 }
             }
             Node::Deferred(leaf) => {
-                let listed = lists(leaf, source, face, flip ^ complement);
+                let listed = lists(leaf, source, face, flip ^ place.complement);
                 if !listed && enters(source, face, &branch.cell) {
                     return false;
                 }
@@ -187,14 +239,13 @@ fn covers(root: &Branch, source: &Source, face: u32, flip: bool) -> bool {
                     return false;
                 };
                 for (child, plus) in halves.children.iter().zip([false, true]) {
-                    let half = branch.cell.half(cut, plus);
-                    let Some((a, b)) = overlap(&half, &low, &high) else {
+                    let Some(part) = place.child(child, cut, plus) else {
                         continue;
                     };
-                    if !child.cell.holds_box(&a, &b) {
+                    if !child.cell.holds_box(&part.low, &part.high) {
                         return false;
                     }
-                    open.push((child, complement ^ child.complement));
+                    open.push(part);
                 }
             }
         }
@@ -205,13 +256,6 @@ fn covers(root: &Branch, source: &Source, face: u32, flip: bool) -> bool {
 /// Whether a face has area in a cell.
 fn enters(source: &Source, face: u32, cell: &Cell) -> bool {
     !misses(source, face, cell) && source.clip(face, cell).is_some()
-}
-
-fn overlap(cell: &Cell, low: &Lattice, high: &Lattice) -> Option<(Lattice, Lattice)> {
-    let top = cell.high();
-    let a = [0, 1, 2].map(|i| low[i].max(cell.low()[i]));
-    let b = [0, 1, 2].map(|i| high[i].min(top[i]));
-    (0..3).all(|i| a[i] <= b[i]).then_some((a, b))
 }
 
 fn lists(leaf: &Deferred, source: &Source, face: u32, flip: bool) -> bool {

@@ -1,14 +1,12 @@
 //! Where a solid touches itself: edges of four or more faces, vertices of several fans.
 
-use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use rustc_hash::FxHashSet as HashSet;
 
 use super::assemble::Assembly;
 use super::fans::{split_fans, Radial};
 use super::vertices::direction;
 use crate::error::{Error, Result};
-use crate::geometry::plane::normal;
 use crate::mesh::finding::{Finding, Severity};
-use crate::mesh::source::Shape;
 
 /// Splits contacts, so that every directed edge has exactly one opposite by index and every vertex
 /// one fan; reports them.
@@ -63,30 +61,70 @@ pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>> {
 /// # Errors
 /// `Internal` if an edge at a special vertex has no opposite: the assembly is not closed.
 fn is_manifold(assembly: &Assembly, triangles: &[u32]) -> Result<bool> {
-    let mut fans: HashMap<u32, Vec<(u32, u32)>> = HashMap::default();
-    let mut directed: HashSet<(u32, u32)> =
-        HashSet::with_capacity_and_hasher(3 * triangles.len(), rustc_hash::FxBuildHasher);
-    let mut single = true;
-    for triangle in triangles {
-        let t = assembly.triangles[*triangle as usize];
-        for i in 0..3 {
-            let (a, b, c) = (t[i], t[(i + 1) % 3], t[(i + 2) % 3]);
-            single &= directed.insert((a, b));
-            if assembly.is_special(a) {
-                fans.entry(a).or_default().push((b, c));
-            }
+    let mut fans = Fans::of(assembly, triangles);
+    let mut single = fans.edges_apart_are_single();
+    for place in 0..fans.starts.len() - 1 {
+        let fan = &mut fans.corners[fans.starts[place]..fans.starts[place + 1]];
+        if !is_single_fan(fan) {
+            balanced(assembly.special_vertex(place as u32), fan)?;
+            single = false;
         }
     }
-    for (vertex, fan) in &fans {
-        balanced(*vertex, fan)?;
+    Ok(single)
+}
+
+/// The corners at special vertices, by vertex: where their triangles go on, and come from.
+struct Fans {
+    starts: Vec<usize>,
+    corners: Vec<[u32; 2]>,
+    /// Directed edges between other vertices, of triangles that have a special one.
+    apart: Vec<[u32; 2]>,
+}
+
+impl Fans {
+    fn of(assembly: &Assembly, triangles: &[u32]) -> Self {
+        let mut starts = vec![0; assembly.special_count() + 1];
+        let corners = || triangles.iter().map(|t| assembly.triangles[*t as usize]);
+        let places = |t: [u32; 3]| t.map(|v| assembly.special_place(v));
+        for place in corners().flat_map(places).flatten() {
+            starts[place as usize] += 1;
+        }
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut fans = Self {
+            corners: vec![[0; 2]; sum],
+            apart: Vec::new(),
+            starts,
+        };
+        for t in corners() {
+            let place = places(t);
+            for i in 0..3 {
+                let (b, c) = ((i + 1) % 3, (i + 2) % 3);
+                if let Some(a) = place[i] {
+                    fans.starts[a as usize] -= 1;
+                    fans.corners[fans.starts[a as usize]] = [t[b], t[c]];
+                } else if place[b].is_none() {
+                    fans.apart.push([t[i], t[b]]);
+                }
+            }
+        }
+        fans
     }
-    Ok(single && fans.values().all(|fan| is_single_fan(fan)))
+
+    /// Whether no directed edge between vertices that are not special occurs twice.
+    fn edges_apart_are_single(&mut self) -> bool {
+        self.apart.sort_unstable();
+        self.apart.windows(2).all(|pair| pair[0] != pair[1])
+    }
 }
 
 /// Checks that as many triangles leave along each edge at a vertex as arrive.
-fn balanced(vertex: u32, fan: &[(u32, u32)]) -> Result<()> {
-    let mut starts: Vec<u32> = fan.iter().map(|c| c.0).collect();
-    let mut ends: Vec<u32> = fan.iter().map(|c| c.1).collect();
+fn balanced(vertex: u32, fan: &[[u32; 2]]) -> Result<()> {
+    let mut starts: Vec<u32> = fan.iter().map(|c| c[0]).collect();
+    let mut ends: Vec<u32> = fan.iter().map(|c| c[1]).collect();
     starts.sort_unstable();
     ends.sort_unstable();
     if starts == ends {
@@ -97,38 +135,30 @@ fn balanced(vertex: u32, fan: &[(u32, u32)]) -> Result<()> {
     )))
 }
 
-fn is_single_fan(fan: &[(u32, u32)]) -> bool {
-    let mut next = fan[0].1;
-    for step in 1..fan.len() {
-        if next == fan[0].0 {
-            return step == fan.len();
-        }
-        match fan.iter().find(|c| c.0 == next) {
-            Some(corner) => next = corner.1,
-            None => return false,
+/// Whether corners are one closed fan that leaves along each edge once; sorts them.
+fn is_single_fan(fan: &mut [[u32; 2]]) -> bool {
+    fan.sort_unstable();
+    if fan.windows(2).any(|pair| pair[0][0] == pair[1][0]) {
+        return false;
+    }
+    let Some([first, mut next]) = fan.first().copied() else {
+        return true;
+    };
+    for _ in 1..fan.len() {
+        let corner = fan.binary_search_by_key(&next, |c| c[0]);
+        match corner {
+            Ok(at) if next != first => next = fan[at][1],
+            _ => return false,
         }
     }
-    next == fan[0].0
+    next == first
 }
 
 struct Geometry<'a, 'b>(&'a Assembly<'b>);
 
 impl Radial for Geometry<'_, '_> {
     fn normal(&self, triangle: u32) -> [i128; 3] {
-        let face = self.0.faces[triangle as usize];
-        let source = self.0.sources.get(face.slot as usize);
-        let n = match source.shape() {
-            Shape::Mesh(mesh) => {
-                let [a, b, c] = mesh.corners(face.face);
-                normal(&a, &b, &c)
-            }
-            Shape::HalfSpace(plane) => *plane.normal(),
-        };
-        if face.flip {
-            n.map(|c| -c)
-        } else {
-            n
-        }
+        self.0.faces[triangle as usize].normal(self.0.sources)
     }
 
     fn direction(&self, a: u32, b: u32) -> [i32; 3] {

@@ -1,5 +1,6 @@
 //! Which source face a new triangle of a joined polygon comes from.
 
+use super::assemble::TriangleFace;
 use super::planes::PlaneGroup;
 use super::triangulate::Planar;
 use super::vertices::Projection;
@@ -16,7 +17,7 @@ pub struct Owners {
 }
 
 struct Owner {
-    face: (u32, u32),
+    face: TriangleFace,
     rank: usize,
     corners: Option<[[f64; 2]; 3]>,
     low: f64,
@@ -37,7 +38,7 @@ impl Owners {
     }
 
     /// The face at the centre of a triangle, or the first face if rounding finds none.
-    pub fn at_centre(&self, triangle: [u32; 3], view: &Projection) -> (u32, u32) {
+    pub fn at_centre(&self, triangle: [u32; 3], view: &Projection) -> TriangleFace {
         let corners = triangle.map(|p| view.approx(p));
         let centre = [0, 1].map(|i| corners.iter().map(|c| c[i]).sum::<f64>() / 3.0);
         let end = self.faces.partition_point(|f| f.low <= centre[0]);
@@ -47,14 +48,14 @@ impl Owners {
             .filter(|f| f.holds(centre))
             .min_by_key(|f| f.rank)
             .or_else(|| self.faces.iter().min_by_key(|f| f.rank))
-            .map_or((0, 0), |f| f.face)
+            .map_or_else(TriangleFace::default, |f| f.face)
     }
 }
 
 impl Owner {
-    fn new(face: (u32, u32), rank: usize, view: &Projection, sources: &Sources) -> Self {
-        let corners = match sources.get(face.0 as usize).shape() {
-            Shape::Mesh(mesh) => Some(mesh.corners(face.1).map(|p| view.flat(&p))),
+    fn new(face: TriangleFace, rank: usize, view: &Projection, sources: &Sources) -> Self {
+        let corners = match sources.get(face.slot as usize).shape() {
+            Shape::Mesh(mesh) => Some(mesh.corners(face.face).map(|p| view.flat(&p))),
             Shape::HalfSpace(_) => None,
         };
         let low = corners.map_or(f64::NEG_INFINITY, |c| c[0][0].min(c[1][0]).min(c[2][0]));

@@ -2,6 +2,7 @@
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
+use super::assemble::TriangleFace;
 use super::collect::{Boundary, CutFace, Fate};
 use super::rim::{half_edge_ends, FrontierEdge, Rims};
 use crate::geometry::line::LineKey;
@@ -15,8 +16,8 @@ use crate::merge::list::Sources;
 pub struct PlaneGroup {
     /// The plane, inside on its minus side.
     pub plane: Plane,
-    /// The faces that lie in it, slot and face, as they were joined.
-    pub faces: Vec<(u32, u32)>,
+    /// The faces that lie in it, ascending.
+    pub faces: Vec<TriangleFace>,
     /// The outline, counterclockwise as seen from outside.
     pub edges: Vec<OutlineEdge>,
 }
@@ -87,7 +88,10 @@ impl Grouping<'_> {
     fn add_cut(&mut self, cut: CutFace) {
         let plane = self.oriented_plane(cut.slot, cut.face, cut.flip);
         let at = self.group_of(plane);
-        self.groups[at].faces.push((cut.slot, cut.face));
+        let (slot, face, flip) = (cut.slot, cut.face, cut.flip);
+        self.groups[at]
+            .faces
+            .push(TriangleFace { slot, face, flip });
         let edges = &mut self.groups[at].edges;
         if cut.flip {
             edges.extend(cut.edges.iter().map(OutlineEdge::reversed));
@@ -116,7 +120,8 @@ impl Grouping<'_> {
         self.rims.outdated(slot);
         let polygon = Polygon::triangle(&mesh.corners(face), source.plane(face));
         let edges = OutlineEdge::all_of(&polygon);
-        self.groups[group].faces.push((slot, face));
+        let faces = &mut self.groups[group].faces;
+        faces.push(TriangleFace { slot, face, flip });
         let target = &mut self.groups[group].edges;
         if flip {
             target.extend(edges.map(|e| e.reversed()));

@@ -81,18 +81,20 @@ impl Planes<'_> {
     }
 
     fn is_turned(&self, mesh: &Mesh, triangle: usize) -> bool {
-        is_turned(mesh, &mesh.triangles[triangle], &self.of(triangle))
+        let normal = self.exact.faces[triangle].normal(self.sources);
+        is_turned(mesh, &mesh.triangles[triangle], &normal)
     }
 }
 
-/// Whether a rounded triangle does not face as its plane does, seen along the plane's main axis.
-fn is_turned(mesh: &Mesh, corners: &[u32; 3], plane: &Plane) -> bool {
-    let axis = plane.main_axis();
+/// Whether a rounded triangle does not face as its plane does, seen along its main axis.
+fn is_turned(mesh: &Mesh, corners: &[u32; 3], normal: &[i128; 3]) -> bool {
+    let axis = (0..3).rev().max_by_key(|i| normal[*i].unsigned_abs());
+    let axis = axis.unwrap_or(0);
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let points = corners
         .map(|c| mesh.vertices[c as usize])
         .map(|p| [p[u], p[v]]);
-    let facing = if plane.normal()[axis] > 0 { 1 } else { -1 };
+    let facing = if normal[axis] > 0 { 1 } else { -1 };
     turn(points) != facing
 }
 
@@ -159,7 +161,7 @@ impl<'a> Surface<'a> {
         let before = pair.iter().filter(|t| self.is_turned(**t)).count();
         let after = made
             .iter()
-            .filter(|t| is_turned(self.mesh, t, &plane))
+            .filter(|t| is_turned(self.mesh, t, plane.normal()))
             .count();
         (after < before).then(|| self.replace(pair, made))
     }

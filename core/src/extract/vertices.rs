@@ -1,52 +1,64 @@
 //! Exact vertex identity: one number for each point, whatever it was made from.
 
-use rustc_hash::FxHashMap as HashMap;
 use std::cmp::Ordering;
+use std::collections::hash_map::Entry;
+use std::hash::BuildHasher;
 use std::sync::Arc;
 
-use smallvec::SmallVec;
+use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
 use super::triangulate::Planar;
 use crate::arith::Int;
 use crate::geometry::plane::{Lattice, Plane};
-use crate::geometry::vertex::{Vertex, VertexKey};
+use crate::geometry::vertex::Vertex;
 
 /// Numbered points; equal points have equal numbers.
 #[derive(Debug, Default)]
 pub struct VertexTable {
     points: Vec<Arc<Vertex>>,
-    by_key: HashMap<VertexKey, SmallVec<[u32; 1]>>,
-    by_address: HashMap<usize, u32>,
+    /// By fingerprint the last point that has it.
+    last: HashMap<u64, u32>,
+    /// For each point the one before it that has the same fingerprint, or [`NONE`].
+    previous: Vec<u32>,
 }
+
+const NONE: u32 = u32::MAX;
 
 impl VertexTable {
     /// The number of a point, found by fingerprint and confirmed exactly.
     pub fn number(&mut self, vertex: &Arc<Vertex>) -> u32 {
-        let address = Arc::as_ptr(vertex) as usize;
-        if let Some(id) = self.by_address.get(&address) {
-            return *id;
+        self.enter(vertex, || Arc::clone(vertex))
+    }
+
+    /// The number of a lattice point.
+    pub fn number_at(&mut self, place: Lattice) -> u32 {
+        self.enter(&Vertex::lattice(place), || Arc::new(Vertex::lattice(place)))
+    }
+
+    fn enter(&mut self, vertex: &Vertex, shared: impl FnOnce() -> Arc<Vertex>) -> u32 {
+        let next = self.points.len() as u32;
+        let (previous, points) = (&self.previous, &self.points);
+        match self.last.entry(fingerprint(vertex)) {
+            Entry::Vacant(entry) => {
+                entry.insert(next);
+                self.previous.push(NONE);
+            }
+            Entry::Occupied(mut entry) => {
+                let known = among(points, previous, *entry.get(), vertex);
+                if let Some(id) = known {
+                    return id;
+                }
+                self.previous.push(entry.insert(next));
+            }
         }
-        let same_key = self.by_key.entry(vertex.key()).or_default();
-        let known = same_key
-            .iter()
-            .find(|id| self.points[**id as usize].same(vertex));
-        if let Some(id) = known {
-            return *id;
-        }
-        let id = self.points.len() as u32;
-        same_key.push(id);
-        self.points.push(Arc::clone(vertex));
-        self.by_address.insert(address, id);
-        id
+        self.points.push(shared());
+        next
     }
 
     /// The number of a point that is in the table.
     pub fn find(&self, vertex: &Vertex) -> Option<u32> {
-        let same_key = self.by_key.get(&vertex.key())?;
-        same_key
-            .iter()
-            .copied()
-            .find(|id| self.points[*id as usize].same(vertex))
+        let last = self.last.get(&fingerprint(vertex))?;
+        among(&self.points, &self.previous, *last, vertex)
     }
 
     /// The point with this number.
@@ -63,6 +75,17 @@ impl VertexTable {
     pub fn len(&self) -> usize {
         self.points.len()
     }
+}
+
+/// A fingerprint that equal points share; unequal points differ but for chance 2^-64.
+fn fingerprint(vertex: &Vertex) -> u64 {
+    FxBuildHasher.hash_one(vertex.key())
+}
+
+/// The point that is this vertex, among those with one fingerprint.
+fn among(points: &[Arc<Vertex>], previous: &[u32], last: u32, vertex: &Vertex) -> Option<u32> {
+    let before = |id: &u32| Some(previous[*id as usize]).filter(|p| *p != NONE);
+    std::iter::successors(Some(last), before).find(|id| points[*id as usize].same(vertex))
 }
 
 /// The table's points as seen along the main axis of a plane's normal, from its plus side.
