@@ -104,7 +104,7 @@ pub fn among_orthogonal(
     sources: &Sources,
 ) -> Option<Node> {
     let (kept, corner) = orthogonal::evaluate(cell, expression, lists, sources)?;
-    Some(assemble(kept, corner, cell, sources))
+    Some(assemble(kept, corner, Work::Trees, cell, sources))
 }
 
 /// Evaluates an expression in a cell by the operands' local trees.

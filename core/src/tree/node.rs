@@ -134,7 +134,7 @@ pub enum Work {
     Given,
     /// That for general position: elements touch only where one was cut.
     General,
-    /// Local trees: elements may touch each other anywhere.
+    /// Local trees or a grid: elements may touch each other anywhere.
     Trees,
 }
 
