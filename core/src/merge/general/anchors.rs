@@ -30,9 +30,9 @@ pub(super) enum Name {
     Vertex(u32, u32),
     /// A corner of a part: pieces that share the corner share the object at this address.
     Corner(usize),
-    /// The point in which an edge of a source leaves the cell: the axis of the wall, and whether
-    /// it is the upper one.
-    Crossing(u32, (Lattice, Lattice), (usize, bool)),
+    /// The point in which an edge of a source leaves the cell: the edge's ends, and twice the axis
+    /// of the wall, with one more for the upper one.
+    Crossing(u32, [u32; 2], u8),
 }
 
 /// Where an anchor is.
@@ -96,10 +96,10 @@ impl Anchor {
             _ => return None,
         };
         let axis = wall.only_axis()?;
-        let wall = (axis, wall.normal()[axis] > 0);
-        let ends = (edge.0.min(edge.1), edge.0.max(edge.1));
+        let wall = 2 * axis as u8 + u8::from(wall.normal()[axis] > 0);
+        let [a, b] = triangle.ends_of(&edge)?;
         Some(Self {
-            name: Name::Crossing(triangle.slot, ends, wall),
+            name: Name::Crossing(triangle.slot, [a.min(b), a.max(b)], wall),
             place: Spot::Exact(Arc::clone(&corner.at)),
         })
     }

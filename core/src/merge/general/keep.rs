@@ -5,6 +5,7 @@ use smallvec::SmallVec;
 use super::super::kept::Kept;
 use super::super::stays::{kept, Owner, Stays};
 use super::fates::Fate;
+use super::labels::PieceLabels;
 use super::scene::{Element, Place, Scene};
 use super::Labels;
 
@@ -13,7 +14,7 @@ impl Scene<'_> {
     pub(super) fn keep(
         &self,
         fates: Vec<Fate>,
-        labels: &[Vec<Labels>],
+        labels: &[PieceLabels],
         value: &mut impl FnMut(Labels) -> bool,
     ) -> Vec<Kept> {
         let present = fates.into_iter().enumerate();

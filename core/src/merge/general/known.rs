@@ -1,6 +1,6 @@
 //! What is known of the other operands at anchors.
 
-use rustc_hash::FxHashMap as HashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
 use super::anchors::{Anchor, Name, Spot};
 use super::fates::Fate;
@@ -10,7 +10,7 @@ use super::Labels;
 /// Anchors with what is known of the other operands there. Those of an element that nothing
 /// crosses have the same labels.
 pub(super) struct Known {
-    numbers: HashMap<(usize, Name), u32>,
+    numbers: HashMap<(u32, Name), u32>,
     parents: Vec<u32>,
     /// By anchor that stands for others.
     pub(super) labels: Vec<Option<Labels>>,
@@ -22,10 +22,12 @@ pub(super) struct Known {
 impl Known {
     /// Nothing is known yet but which anchors are alike.
     pub(super) fn new(scene: &Scene, fates: &[Fate]) -> Self {
+        // A closed surface has half as many vertices as triangles.
+        let count = scene.elements.len();
         let mut known = Self {
-            numbers: HashMap::default(),
-            parents: Vec::new(),
-            labels: Vec::new(),
+            numbers: HashMap::with_capacity_and_hasher(count, FxBuildHasher),
+            parents: Vec::with_capacity(count),
+            labels: Vec::with_capacity(count),
             cuts: Vec::new(),
         };
         for (element, fate) in scene.elements.iter().zip(fates) {
@@ -58,7 +60,10 @@ impl Known {
     /// The number of the anchor that stands for this one.
     pub(super) fn root(&mut self, operand: usize, anchor: &Anchor) -> u32 {
         let next = self.parents.len() as u32;
-        let mut at = *self.numbers.entry((operand, anchor.name)).or_insert(next);
+        let mut at = *self
+            .numbers
+            .entry((operand as u32, anchor.name))
+            .or_insert(next);
         if at == next {
             self.parents.push(next);
             self.labels.push(None);

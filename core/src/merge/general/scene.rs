@@ -115,6 +115,14 @@ impl<'a> Scene<'a> {
     }
 }
 
+impl Triangle<'_> {
+    /// The vertices at the ends of an edge that is given by its places.
+    pub(super) fn ends_of(&self, edge: &(Lattice, Lattice)) -> Option<[u32; 2]> {
+        let at = |place: &Lattice| self.corners.iter().position(|c| c == place);
+        Some([self.vertices[at(&edge.0)?], self.vertices[at(&edge.1)?]])
+    }
+}
+
 impl<'a> Element<'a> {
     /// A listed face; `None` for the face of a half-space that misses the cell.
     fn of_record(
