@@ -11,6 +11,7 @@ use super::line::Ray;
 use super::scene::Scene;
 use crate::error::{Error, ErrorKind, Result};
 use crate::merge::leaf::Rule;
+use crate::mesh::tasks::in_pool;
 
 /// Rays that one thread takes at a time.
 const CHUNK: usize = 512;
@@ -53,11 +54,12 @@ impl Rays<'_> {
             answer(i, origin, point(self.heads, i))
         };
         let count = self.origins.len() / D;
-        let answers: Vec<Result<T>> = (0..count)
-            .into_par_iter()
-            .with_min_len(CHUNK)
-            .map(one)
-            .collect();
+        let answers: Vec<Result<T>> = if in_pool() {
+            let rays = (0..count).into_par_iter();
+            rays.with_min_len(CHUNK).map(one).collect()
+        } else {
+            (0..count).map(one).collect()
+        };
         // The first error in the order of the rays, whatever the threads did.
         let numbered = answers.into_iter().enumerate();
         numbered
