@@ -196,6 +196,15 @@ impl Walls {
         points.all(|p| (0..6).all(|wall| self.excess(wall, p) <= 0))
     }
 
+    /// Whether a point lies inside, of which each coordinate is off by some units in its last place.
+    pub fn surely_hold(&self, near: &[f64; 3]) -> bool {
+        (0..3).all(|i| {
+            let [low, high] = [2 * i, 2 * i + 1].map(|wall| self.doubled[wall] as f64 / 2.0);
+            let doubt = 2f64.powi(-48) * (near[i].abs() + low.abs() + high.abs());
+            low + doubt <= near[i] && near[i] <= high - doubt
+        })
+    }
+
     /// The part of a polygon inside; how many walls cut it.
     pub fn clip(&self, ring: &mut Ring) -> u32 {
         let mut cuts = 0;

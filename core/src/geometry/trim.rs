@@ -157,7 +157,7 @@ mod tests {
             };
             let gap = (flux.value - expected).to_f64().abs();
             // The clipped ring's corners are rounded to 2^-72 steps.
-            let rounding = 2f64.powi(FLUX_PLACES as i32 - 60) * (1.0 + shift as f64);
+            let rounding = 2f64.powi(FLUX_PLACES.cast_signed() - 60) * (1.0 + shift as f64);
             prop_assert!(gap <= flux.error + rounding, "{} apart, {}", gap, flux.error);
         }
     }

@@ -164,32 +164,52 @@ impl Sum {
         self.rest.flux.add(&Flux { value, error }, flip);
     }
 
-    /// The part of a part in the cell: signed triangles from one corner to all edges.
+    /// The part of a part in the cell.
     fn add_part(&mut self, part: &Part, flip: bool) {
-        let Some(slope) = part_slope(part) else {
-            return;
-        };
         let bounded = part.source.mesh().is_some();
         self.rest.open |= !bounded && part.edges.iter().any(|e| e.carrier.is_border());
-        let ends = fixed_ends(part);
-        let Some([apex, _]) = ends.first() else {
-            return;
-        };
-        let inside = part.home == self.cell || self.walls.hold(ends.iter().flatten());
-        let mut rounds = 1;
-        let mut value = Int::ZERO;
-        for [from, to] in &ends {
-            if inside {
-                value += through(apex, from, to);
-            } else if from != apex && to != apex {
-                let mut ring: Ring = [*apex, *from, *to].into_iter().collect();
-                rounds = rounds.max(1 + self.walls.clip(&mut ring));
-                value += through_ring(&ring);
-            }
+        if self.surely_holds(part) {
+            let flux = part.flux.get_or_init(|| part_flux(part));
+            self.rest.flux.add(flux, flip);
+        } else if let Some(slope) = part_slope(part) {
+            let flux = fan_flux(&fixed_ends(part), Some(&self.walls), slope);
+            self.rest.flux.add(&flux, flip);
         }
-        let error = Reach::of(ends.as_flattened()).error(9 * ends.len(), rounds, slope);
-        self.rest.flux.add(&Flux { value, error }, flip);
     }
+
+    /// Whether all of a part lies in the cell; errs on no.
+    fn surely_holds(&self, part: &Part) -> bool {
+        self.cell.holds(&part.home) || {
+            let mut corners = part.edges.iter().map(|e| e.from.approx());
+            corners.all(|p| self.walls.surely_hold(&p))
+        }
+    }
+}
+
+/// The flux through all of a part.
+fn part_flux(part: &Part) -> Flux {
+    part_slope(part).map_or(Flux::ZERO, |slope| fan_flux(&fixed_ends(part), None, slope))
+}
+
+/// The flux through what walls leave of an outline: signed triangles from one corner to all edges.
+fn fan_flux(ends: &[[Fixed; 2]], walls: Option<&Walls>, slope: f64) -> Flux {
+    let Some([apex, _]) = ends.first() else {
+        return Flux::ZERO;
+    };
+    let walls = walls.filter(|w| !w.hold(ends.iter().flatten()));
+    let mut rounds = 1;
+    let mut value = Int::ZERO;
+    for [from, to] in ends.iter().filter(|e| !e.contains(apex)) {
+        if let Some(walls) = walls {
+            let mut ring: Ring = [*apex, *from, *to].into_iter().collect();
+            rounds = rounds.max(1 + walls.clip(&mut ring));
+            value += through_ring(&ring);
+        } else {
+            value += through(apex, from, to);
+        }
+    }
+    let error = Reach::of(ends.as_flattened()).error(9 * ends.len(), rounds, slope);
+    Flux { value, error }
 }
 
 /// The edges of a part's outline; each corner is computed once.

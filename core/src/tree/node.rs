@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::flux::Share;
 use crate::geometry::cell::Cell;
+use crate::geometry::fixed::Flux;
 use crate::geometry::outline;
 use crate::geometry::outline::OutlineEdge;
 use crate::geometry::polygon::Polygon;
@@ -171,6 +172,8 @@ pub struct Part {
     pub home: Cell,
     /// The outline, counterclockwise on the face.
     pub edges: Vec<OutlineEdge>,
+    /// The flux through the part, once somebody has asked.
+    pub flux: OnceLock<Flux>,
 }
 
 impl Part {
@@ -182,6 +185,7 @@ impl Part {
             face,
             home,
             edges,
+            flux: OnceLock::new(),
         }
     }
 
