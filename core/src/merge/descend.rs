@@ -29,8 +29,14 @@ pub const LEAF: usize = 32;
 /// Lists that together hold at most this many are tried without local trees.
 const GENERAL: usize = 64;
 
-/// States that together hold at most this many, all perpendicular to axes, are worked on at once.
-const ORTHOGONAL: usize = 256;
+/// States that together hold at most this many for each operand are worked on at once, if all faces
+/// are perpendicular to axes.
+///
+/// Few operands are as a rule a step of a chain: the next one cuts the leaf up again.
+const ORTHOGONAL: usize = 32;
+
+/// More elements than this are halved even so, to be shared among threads.
+const CROWD: usize = 512;
 
 /// Lists at least this long are worth a task of their own.
 const TASK: usize = 512;
@@ -266,7 +272,7 @@ impl<'a> Descent<'a> {
         }
         let states = self.opened(&cell, states);
         let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
-        if total <= ORTHOGONAL {
+        if total <= (ORTHOGONAL * states.len()).min(CROWD) {
             if let Some(branch) = self.among_orthogonal(cell, &expression, &states, total) {
                 return Ok(branch);
             }
