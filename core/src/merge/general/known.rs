@@ -1,6 +1,6 @@
 //! What is known of the other operands at anchors.
 
-use rustc_hash::FxHashMap as HashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
 use super::anchors::{Anchor, Name, Spot};
 use super::fates::Fate;
@@ -23,7 +23,7 @@ impl Known {
     /// Nothing is known yet but which anchors are alike.
     pub(super) fn new(scene: &Scene, fates: &[Fate]) -> Self {
         let mut known = Self {
-            numbers: HashMap::default(),
+            numbers: HashMap::with_capacity_and_hasher(fates.len(), FxBuildHasher),
             parents: Vec::new(),
             labels: Vec::new(),
             cuts: Vec::new(),

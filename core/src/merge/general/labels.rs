@@ -10,16 +10,16 @@ use super::anchors::{piece_with, Anchors};
 use super::fates::Fate;
 use super::known::Known;
 use super::scene::{Element, Place, Scene};
-use super::Labels;
+use super::{Labels, OnPieces};
 use crate::geometry::path::triangle_on_path;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
 
 impl Scene<'_> {
     /// For each element the labels of the other operands on its pieces.
-    pub(super) fn labels(&self, fates: &[Fate]) -> Option<Vec<Vec<Labels>>> {
+    pub(super) fn labels(&self, fates: &[Fate]) -> Option<Vec<OnPieces>> {
         let mut known = Known::new(self, fates);
-        let mut labels: Vec<Vec<Labels>> = vec![Vec::new(); fates.len()];
+        let mut labels = vec![OnPieces::new(); fates.len()];
         for (i, fate) in fates.iter().enumerate() {
             if let (Fate::Cut(cutting, base, anchors), true) = (fate, labels[i].is_empty()) {
                 let operand = self.elements[i].operand;
@@ -58,7 +58,7 @@ impl Scene<'_> {
         fates: &[Fate],
         start: (usize, usize, Labels),
         known: &mut Known,
-        labels: &mut [Vec<Labels>],
+        labels: &mut [OnPieces],
     ) -> Option<()> {
         let mut open = vec![start];
         while let Some((i, piece, start)) = open.pop() {
@@ -129,7 +129,7 @@ impl Scene<'_> {
 
 /// The labels of all pieces from those of one; `None` if the ties contradict each other, or a
 /// number is neither 0 nor 1.
-fn spread(cutting: &Cutting, first: usize, start: Labels) -> Option<Vec<Labels>> {
+fn spread(cutting: &Cutting, first: usize, start: Labels) -> Option<OnPieces> {
     let mut labels: Vec<Option<Labels>> = vec![None; cutting.pieces.len()];
     labels[first] = Some(start);
     let mut changed = true;

@@ -18,7 +18,7 @@ use facet::{Extent, Facets};
 use grid::Grid;
 use keep::Scene;
 
-/// Words of all operands' columns, at most: two megabytes.
+/// Words of all operands' columns, at most: two megabytes, which stay in a cache.
 const MOST: usize = 1 << 18;
 
 /// What stays of the operands' boundaries in a cell, and the winding number at its corner; `None`
