@@ -32,7 +32,7 @@ impl Cubes {
         let value = |(a, b): (&bool, &bool)| match op {
             SetOp::Union => a | b,
             SetOp::Intersection => a & b,
-            SetOp::Difference => a & !b,
+            SetOp::Difference => *a && !b,
             SetOp::SymmetricDifference => a ^ b,
         };
         Self(self.0.iter().zip(&other.0).map(value).collect())
