@@ -1,5 +1,6 @@
 //! Oriented planes with canonical integer coefficients.
 
+use super::cell::REACH;
 use crate::arith::{gcd_u128, Int};
 
 /// A lattice point, in steps of the pitch; each coordinate below 2^53 in magnitude.
@@ -136,6 +137,18 @@ impl Plane {
             [_, 0, 0] => Some(0),
             [0, _, 0] => Some(1),
             [0, 0, _] => Some(2),
+            _ => None,
+        }
+    }
+
+    /// The lattice coordinate of a plane perpendicular to this axis, if it has one.
+    pub fn lattice_coordinate(&self, axis: usize) -> Option<i64> {
+        let at = -self.d.to_f64();
+        // Below 2^53 in magnitude the double is exact.
+        let exact = at.abs() < (1u64 << REACH) as f64;
+        match self.n[axis] {
+            1 if exact => Some(at as i64),
+            -1 if exact => Some(-at as i64),
             _ => None,
         }
     }

@@ -46,6 +46,9 @@ impl Vertex {
 
     /// The meet of three planes; `None` if they have no single common point.
     pub fn meet(a: &Plane, b: &Plane, c: &Plane) -> Option<Self> {
+        if let Some(point) = meet_on_lattice([a, b, c]) {
+            return Some(Self::lattice(point));
+        }
         for (cut, p, q) in [(c, a, b), (b, a, c), (a, b, c)] {
             if let Some(axis) = cut.only_axis() {
                 return Self::meet_on_axis_cut(cut, axis, p, q);
@@ -200,6 +203,16 @@ impl Vertex {
             Place::Meet(h) => meet_key(h),
         }
     }
+}
+
+/// The meet of three planes perpendicular to the three axes, if it is a lattice point.
+fn meet_on_lattice(planes: [&Plane; 3]) -> Option<Lattice> {
+    let mut point = [None; 3];
+    for plane in planes {
+        let axis = plane.only_axis()?;
+        point[axis] = Some(plane.lattice_coordinate(axis)?);
+    }
+    Some([point[0]?, point[1]?, point[2]?])
 }
 
 fn meet_key(h: &Homogeneous) -> VertexKey {

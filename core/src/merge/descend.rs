@@ -31,8 +31,14 @@ const GENERAL: usize = 64;
 /// The same, where no list is an operation's result, and the next operation may never come.
 const FRESH: usize = 4 * GENERAL;
 
-/// States that together hold at most this many, all perpendicular to axes, are worked on at once.
-const ORTHOGONAL: usize = 256;
+/// States that together hold at most this many for each operand are worked on at once, if all faces
+/// are perpendicular to axes.
+///
+/// Few operands are as a rule a step of a chain: the next one cuts the leaf up again.
+const ORTHOGONAL: usize = 32;
+
+/// More elements than this are halved even so, to be shared among threads.
+const CROWD: usize = 512;
 
 /// Lists at least this long are worth a task of their own.
 const TASK: usize = 512;
@@ -269,7 +275,7 @@ impl<'a> Descent<'a> {
         let opening: usize = states.iter().map(|s| s.1.len_to_open(&cell)).sum();
         let states = self.opened(&cell, states);
         let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
-        if total <= ORTHOGONAL {
+        if total <= (ORTHOGONAL * states.len()).min(CROWD) {
             if let Some(branch) = self.among_orthogonal(cell, &expression, &states, total) {
                 return Ok(branch);
             }

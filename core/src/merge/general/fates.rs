@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use super::super::cutting::{contact, cut_up, Contact, Cutter, Cutting};
 use super::super::sweep::{pairs, Swept};
 use super::anchors::Anchors;
@@ -9,6 +11,9 @@ use super::scene::{Place, Scene};
 use crate::geometry::apart::are_apart;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
+
+/// Elements that may meet another one, by number: rarely more than six.
+type Neighbours = SmallVec<[u32; 6]>;
 
 /// What became of an element.
 pub(super) enum Fate {
@@ -31,9 +36,9 @@ impl Scene<'_> {
 
     /// For each element those of other operands that may meet it inside the cell; `None` if they
     /// are too many to be found by a sweep.
-    fn neighbours(&self) -> Option<Vec<Vec<u32>>> {
+    fn neighbours(&self) -> Option<Vec<Neighbours>> {
         let swept: Vec<Swept> = self.elements.iter().map(|e| e.swept(self.cell)).collect();
-        let mut found = vec![Vec::new(); self.elements.len()];
+        let mut found = vec![Neighbours::new(); self.elements.len()];
         pairs(&swept, |i, j| {
             if !self.separated(i, j) {
                 found[i].push(j as u32);

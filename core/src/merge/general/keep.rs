@@ -5,16 +5,15 @@ use smallvec::SmallVec;
 use super::super::kept::Kept;
 use super::super::stays::{kept, Owner, Stays};
 use super::fates::Fate;
-use super::labels::PieceLabels;
 use super::scene::{Element, Place, Scene};
-use super::Labels;
+use super::{Labels, OnPieces};
 
 impl Scene<'_> {
     /// What stays of all elements, given their labels and the expression's value for labels.
     pub(super) fn keep(
         &self,
         fates: Vec<Fate>,
-        labels: &[PieceLabels],
+        labels: &[OnPieces],
         value: &mut impl FnMut(Labels) -> bool,
     ) -> Vec<Kept> {
         let present = fates.into_iter().enumerate();

@@ -5,26 +5,21 @@
 
 use std::sync::Arc;
 
-use smallvec::SmallVec;
-
 use super::super::cutting::{Cutting, Tie};
 use super::anchors::{piece_with, Anchors};
 use super::fates::Fate;
 use super::known::Known;
 use super::scene::{Element, Place, Scene};
-use super::Labels;
+use super::{Labels, OnPieces};
 use crate::geometry::path::triangle_on_path;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
 
-/// The labels of an element's pieces: mostly it is one.
-pub(super) type PieceLabels = SmallVec<[Labels; 1]>;
-
 impl Scene<'_> {
     /// For each element the labels of the other operands on its pieces.
-    pub(super) fn labels(&self, fates: &[Fate]) -> Option<Vec<PieceLabels>> {
+    pub(super) fn labels(&self, fates: &[Fate]) -> Option<Vec<OnPieces>> {
         let mut known = Known::new(self, fates);
-        let mut labels: Vec<PieceLabels> = vec![PieceLabels::new(); fates.len()];
+        let mut labels = vec![OnPieces::new(); fates.len()];
         for (i, fate) in fates.iter().enumerate() {
             if let (Fate::Cut(cutting, base, anchors), true) = (fate, labels[i].is_empty()) {
                 let operand = self.elements[i].operand;
@@ -63,7 +58,7 @@ impl Scene<'_> {
         fates: &[Fate],
         start: (usize, usize, Labels),
         known: &mut Known,
-        labels: &mut [PieceLabels],
+        labels: &mut [OnPieces],
     ) -> Option<()> {
         let mut open = vec![start];
         while let Some((i, piece, start)) = open.pop() {
@@ -134,7 +129,7 @@ impl Scene<'_> {
 
 /// The labels of all pieces from those of one; `None` if the ties contradict each other, or a
 /// number is neither 0 nor 1.
-fn spread(cutting: &Cutting, first: usize, start: Labels) -> Option<PieceLabels> {
+fn spread(cutting: &Cutting, first: usize, start: Labels) -> Option<OnPieces> {
     let mut labels: Vec<Option<Labels>> = vec![None; cutting.pieces.len()];
     labels[first] = Some(start);
     let mut changed = true;

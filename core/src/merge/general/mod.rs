@@ -12,6 +12,8 @@ mod known;
 mod labels;
 mod scene;
 
+use smallvec::SmallVec;
+
 use super::expression::Expression;
 use super::kept::Kept;
 use super::list::{List, Sources};
@@ -23,6 +25,9 @@ const MOST: usize = 64;
 
 /// For each operand of the cell whether a region is inside it, as bits.
 type Labels = u64;
+
+/// The labels of an element's pieces: of one that nothing cuts, or of a few.
+type OnPieces = SmallVec<[Labels; 2]>;
 
 /// What stays of the operands' boundaries in a cell, and the winding number at its corner; `None`
 /// if their position is special.

@@ -1,17 +1,15 @@
 //! The elements of a cell as rectangles of which slanted edges cut something off.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use smallvec::SmallVec;
 
 use super::super::list::{List, PartRecord, Record, Sources};
 use super::super::stays::Owner;
-use super::grid::Grid;
+use super::grid::{Grid, Reach};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
-use crate::geometry::vertex::Vertex;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
 
@@ -29,7 +27,17 @@ pub(super) struct Facet<'a> {
     /// By how much the winding number behind it exceeds that in front of it.
     weight: i32,
     slants: SmallVec<[Slant; 1]>,
-    pub(super) place: Place<'a>,
+    place: Place<'a>,
+}
+
+/// Where a facet lies in a grid.
+pub(super) struct Extent {
+    /// The number of the line that is its plane.
+    pub(super) line: usize,
+    /// Its rows.
+    pub(super) rows: Reach,
+    /// Its bits.
+    pub(super) bits: Reach,
 }
 
 /// Where a facet comes from.
@@ -204,20 +212,26 @@ impl<'a> Facet<'a> {
         }
     }
 
-    /// The intervals of the grid along an axis that the facet's bounds share.
-    pub(super) fn range(&self, grid: &Grid, axis: usize) -> Range<usize> {
+    /// Where the facet's bounds lie on an axis.
+    fn reach(&self, grid: &Grid, axis: usize) -> Reach {
         match &self.place {
             Place::Face(_, _, _, corners) => {
                 let along = corners.map(|p| 2 * p[axis]);
                 let [a, b, c] = along;
                 grid.between(axis, a.min(b).min(c), a.max(b).max(c))
             }
-            Place::Plane(..) => 0..grid.count(axis),
-            Place::Piece(_, polygon) => {
-                let corners: SmallVec<[&Vertex; 8]> =
-                    polygon.corners().iter().map(|c| &*c.at).collect();
-                grid.between_vertices(axis, &corners)
-            }
+            Place::Plane(..) => Reach::all(grid.count(axis)),
+            Place::Piece(_, polygon) => grid.under(axis, polygon),
+        }
+    }
+
+    /// Where the facet lies in a grid.
+    pub(super) fn extent(&self, grid: &Grid) -> Extent {
+        let (row, bit) = ACROSS[self.axis];
+        Extent {
+            line: grid.find(self.axis, self.at),
+            rows: self.reach(grid, row),
+            bits: self.reach(grid, bit),
         }
     }
 
@@ -251,14 +265,8 @@ impl<'a> Facet<'a> {
 /// points upward.
 fn upright(plane: &Plane) -> Option<(usize, i64, bool)> {
     let axis = plane.only_axis()?;
-    let normal = plane.normal()[axis];
-    // Exact: below 2^53 in magnitude wherever it may lie in a cell.
-    let at = -plane.offset().to_f64() as i64;
-    match normal {
-        1 => Some((axis, at, true)),
-        -1 => Some((axis, -at, false)),
-        _ => None,
-    }
+    let at = plane.lattice_coordinate(axis)?;
+    Some((axis, at, plane.normal()[axis] > 0))
 }
 
 /// Twice the signed area of a triangle.

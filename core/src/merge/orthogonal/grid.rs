@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::facet::Facets;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Plane;
+use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 
 /// Intervals on each axis, at most: the regions above a rectangle are the bits of one word.
@@ -58,22 +59,38 @@ impl Grid {
         self.lines[axis].partition_point(|l| *l < 2 * at)
     }
 
-    /// The intervals that share more than a point with the one between two doubled coordinates.
-    pub(super) fn between(&self, axis: usize, low: i64, high: i64) -> Range<usize> {
+    /// Where the interval between two doubled coordinates lies.
+    pub(super) fn between(&self, axis: usize, low: i64, high: i64) -> Reach {
         let lines = &self.lines[axis];
-        let up_to = lines.partition_point(|l| *l <= low);
-        let below = lines.partition_point(|l| *l < high);
-        up_to.max(1) - 1..below.min(lines.len() - 1)
+        let below = |at: i64| lines.partition_point(|l| *l < at);
+        let low = below(low)..lines.partition_point(|l| *l <= low);
+        Reach::new(&low, below(high), self.count(axis))
     }
 
-    /// The intervals between the lowest and the highest of some points.
-    pub(super) fn between_vertices(&self, axis: usize, points: &[&Vertex]) -> Range<usize> {
-        let planes = &self.planes[axis];
-        let at_most = |p: &Vertex, line: &Arc<Plane>| p.side_of(line) >= 0;
-        let below = |p: &Vertex, line: &Arc<Plane>| p.side_of(line) > 0;
-        let low = planes.partition_point(|l| points.iter().all(|p| at_most(p, l)));
-        let high = planes.partition_point(|l| points.iter().any(|p| below(p, l)));
-        low.max(1) - 1..high.min(planes.len() - 1)
+    /// Where the bounds of a polygon lie.
+    pub(super) fn under(&self, axis: usize, polygon: &Polygon) -> Reach {
+        let (mut low, mut below) = (usize::MAX..usize::MAX, 0);
+        for corner in polygon.corners() {
+            let place = self.place(axis, &corner.at);
+            low = low.start.min(place.start)..low.end.min(place.end);
+            below = below.max(place.start);
+        }
+        Reach::new(&low, below, self.count(axis))
+    }
+
+    /// From the number of lines below a point to that of lines not above it.
+    fn place(&self, axis: usize, point: &Vertex) -> Range<usize> {
+        let lines = &self.lines[axis];
+        if let Some(p) = point.as_lattice() {
+            let at = 2 * p[axis];
+            return lines.partition_point(|l| *l < at)..lines.partition_point(|l| *l <= at);
+        }
+        let near = 2.0 * point.approx()[axis];
+        let slack = near.abs() * 4.0 * f64::EPSILON;
+        let below = lines.partition_point(|l| (*l as f64) < near - slack);
+        let side = |line: &Arc<Plane>| point.side_of(line);
+        let start = below + count(&self.planes[axis][below..], |line| side(line) > 0);
+        start..start + count(&self.planes[axis][start..], |line| side(line) == 0)
     }
 
     /// The number of columns along z.
@@ -101,6 +118,44 @@ impl Grid {
             }
         }
     }
+}
+
+/// The intervals of an axis that bounds share.
+pub(super) struct Reach {
+    /// Those that share more than a point with the bounds.
+    pub(super) touched: Range<usize>,
+    /// The first one that begins inside the bounds.
+    first: usize,
+}
+
+impl Reach {
+    /// Bounds from a place, given by the number of lines below it and that of lines not above it, to
+    /// another one with so many lines below it, among this many intervals.
+    fn new(low: &Range<usize>, below: usize, count: usize) -> Self {
+        let end = below.min(count);
+        Self {
+            touched: (low.end.max(1) - 1).min(end)..end,
+            first: low.start,
+        }
+    }
+
+    /// All of this many intervals.
+    pub(super) fn all(count: usize) -> Self {
+        Self {
+            touched: 0..count,
+            first: 0,
+        }
+    }
+
+    /// The intervals that begin inside the bounds.
+    pub(super) fn begun(&self) -> Range<usize> {
+        self.first.min(self.touched.end)..self.touched.end
+    }
+}
+
+/// How many lines a condition holds for from the first on.
+fn count(planes: &[Arc<Plane>], holds: impl Fn(&Arc<Plane>) -> bool) -> usize {
+    planes.iter().take_while(|line| holds(line)).count()
 }
 
 /// The bits of a range.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::super::kept::Kept;
 use super::super::overlay::separated;
 use super::super::stays::{kept, Settled, Stays};
-use super::facet::{Facet, Facets, ACROSS};
+use super::facet::{Extent, Facet, Facets, ACROSS};
 use super::grid::{mask, Grid};
 use super::pieces::pieces;
 use crate::geometry::cell::Cell;
@@ -15,6 +15,8 @@ pub(super) struct Scene<'a> {
     pub(super) cell: &'a Cell,
     pub(super) grid: &'a Grid,
     pub(super) facets: &'a Facets<'a>,
+    /// Where the facets lie in the grid.
+    pub(super) extents: &'a [Extent],
     /// By operand the columns of the grid.
     pub(super) fields: &'a [Vec<u64>],
     /// The columns of the expression's value.
@@ -48,44 +50,47 @@ impl Scene<'_> {
             if self.overlap(own) {
                 return None;
             }
-            let line = self.grid.find(facet.axis, facet.at);
-            let mut owned = Vec::with_capacity(free.len());
-            for (row, free) in free.iter_mut().enumerate() {
-                let sides = |field: &[u64]| self.grid.sides(field, facet.axis, line, row);
-                let [below, above] = sides(&self.fields[all[own[0]].operand]);
-                let differs = (below ^ above) & *free;
-                *free &= !differs;
-                let [below, above] = if differs == 0 {
-                    [0; 2]
-                } else {
-                    sides(self.value)
-                };
-                owned.push([below & !above & differs, above & !below & differs]);
-            }
+            let owned = self.owned(own[0], &mut free);
             settled.extend(own.iter().filter_map(|i| self.settled(*i, &owned)));
         }
         Some(())
     }
 
+    /// The free rectangles of a facet's plane across which its operand's label and the expression
+    /// change, row by row: those with the inside below, and above. They are free no more.
+    fn owned(&self, i: usize, free: &mut [u64]) -> Vec<[u64; 2]> {
+        let (facet, line) = (&self.facets.all[i], self.extents[i].line);
+        let owned = free.iter_mut().enumerate().map(|(row, free)| {
+            let sides = |field: &[u64]| self.grid.sides(field, facet.axis, line, row);
+            let [below, above] = sides(&self.fields[facet.operand]);
+            let differs = (below ^ above) & *free;
+            if differs == 0 {
+                return [0; 2];
+            }
+            *free &= !differs;
+            let [below, above] = sides(self.value);
+            [below & !above & differs, above & !below & differs]
+        });
+        owned.collect()
+    }
+
     /// Whether facets of one operand and plane that face different ways overlap. Those that face
     /// the same way do not where winding numbers are 0 and 1.
     fn overlap(&self, own: &[usize]) -> bool {
-        let facets = own.iter().map(|i| &self.facets.all[*i]);
-        let (up, down): (Vec<&Facet>, Vec<&Facet>) = facets.partition(|f| f.change() > 0);
+        let rises = |i: &&usize| self.facets.all[**i].change() > 0;
+        let (up, down): (Vec<&usize>, Vec<&usize>) = own.iter().partition(rises);
         up.iter()
-            .any(|a| down.iter().any(|b| self.two_overlap(a, b)))
+            .any(|a| down.iter().any(|b| self.two_overlap(**a, **b)))
     }
 
-    fn two_overlap(&self, a: &Facet, b: &Facet) -> bool {
-        let (row, bit) = ACROSS[a.axis];
-        let apart = |axis: usize| {
-            let (a, b) = (a.range(self.grid, axis), b.range(self.grid, axis));
-            a.end <= b.start || b.end <= a.start
-        };
-        if apart(row) || apart(bit) {
+    fn two_overlap(&self, a: usize, b: usize) -> bool {
+        let (p, q) = (&self.extents[a], &self.extents[b]);
+        let apart = |p: &Range<usize>, q: &Range<usize>| p.end <= q.start || q.end <= p.start;
+        if apart(&p.rows.touched, &q.rows.touched) || apart(&p.bits.touched, &q.bits.touched) {
             return false;
         }
-        match (a.polygon_in(self.cell), b.polygon_in(self.cell)) {
+        let polygon = |i: usize| self.facets.all[i].polygon_in(self.cell);
+        match (polygon(a), polygon(b)) {
             (Some(a), Some(b)) => !separated(&a, &b),
             _ => false,
         }
@@ -94,39 +99,66 @@ impl Scene<'_> {
     /// What stays of a facet, given the rectangles of its plane that stay with the inside below and
     /// above; `None` if it does not meet the cell.
     fn settled(&self, i: usize, owned: &[[u64; 2]]) -> Option<Settled> {
-        let facet = &self.facets.all[i];
-        let (row, bit) = ACROSS[facet.axis];
-        let rows = facet.range(self.grid, row);
-        let held = self.held(facet, &rows, &facet.range(self.grid, bit));
-        let side = |turned: bool| {
-            let side = usize::from(turned == facet.upward);
-            let kept = rows.clone().map(|r| owned[r][side]);
-            let kept: Vec<u64> = kept.zip(&held).map(|(kept, held)| kept & held).collect();
-            if kept.iter().all(|k| *k == 0) {
-                Stays::Nothing
-            } else if kept == held {
-                Stays::All
-            } else {
-                Stays::of(pieces(
-                    self.cell, self.grid, facet, rows.start, &held, &kept,
-                ))
-            }
+        let (facet, extent) = (&self.facets.all[i], &self.extents[i]);
+        let owned = &owned[extent.rows.touched.clone()];
+        let below = usize::from(!facet.upward);
+        let sides = [below, 1 - below];
+        let alike = sides.map(|side| all_alike(owned, side, mask(&extent.bits.touched)));
+        let stays = if let [Some(same), Some(turned)] = alike {
+            let present = self.touched(facet, extent).any(|held| held != 0);
+            present.then(|| [same, turned].map(|all| if all { Stays::All } else { Stays::Nothing }))
+        } else {
+            let held: Vec<u64> = self.touched(facet, extent).collect();
+            let side =
+                |side: usize| self.side(facet, extent.rows.touched.start, &held, owned, side);
+            let present = held.iter().any(|h| *h != 0);
+            present.then(|| sides.map(side))
         };
-        let present = held.iter().any(|h| *h != 0);
-        present.then(|| (i, facet.owner(), [side(false), side(true)]))
+        Some((i, facet.owner(), stays?))
+    }
+
+    /// What stays of a facet on one side, of the rectangles that it touches from a row on.
+    fn side(
+        &self,
+        facet: &Facet,
+        first: usize,
+        held: &[u64],
+        owned: &[[u64; 2]],
+        side: usize,
+    ) -> Stays {
+        let kept: Vec<u64> = owned.iter().zip(held).map(|(o, h)| o[side] & h).collect();
+        if kept == held {
+            return Stays::All;
+        }
+        if kept.iter().all(|k| *k == 0) {
+            return Stays::Nothing;
+        }
+        Stays::of(pieces(self.cell, self.grid, facet, first, held, &kept))
     }
 
     /// The rectangles that a facet touches, row by row.
-    fn held(&self, facet: &Facet, rows: &Range<usize>, bits: &Range<usize>) -> Vec<u64> {
-        if facet.is_rectangle() {
-            return vec![mask(bits); rows.len()];
-        }
+    fn touched<'b>(
+        &'b self,
+        facet: &'b Facet,
+        extent: &'b Extent,
+    ) -> impl Iterator<Item = u64> + 'b {
         let (row, bit) = ACROSS[facet.axis];
-        let line = |i: usize, j: usize| [self.grid.line(row, i), self.grid.line(bit, j)];
-        let touched = |r: usize| {
+        let line = move |i: usize, j: usize| [self.grid.line(row, i), self.grid.line(bit, j)];
+        extent.rows.touched.clone().map(move |r| {
+            if facet.is_rectangle() {
+                return mask(&extent.bits.touched);
+            }
             let touched = |b: &usize| facet.touches(line(r, *b), line(r + 1, b + 1));
-            bits.clone().filter(touched).fold(0, |all, b| all | 1 << b)
-        };
-        rows.clone().map(touched).collect()
+            let touched = extent.bits.touched.clone().filter(touched);
+            touched.fold(0, |all, b| all | 1 << b)
+        })
     }
+}
+
+/// Whether all bits of a mask are set on one side of every row, or none; `None` if they differ.
+fn all_alike(owned: &[[u64; 2]], side: usize, mask: u64) -> Option<bool> {
+    let mut bits = owned.iter().map(|o| o[side] & mask);
+    let first = bits.next()?;
+    let alike = (first == 0 || first == mask) && bits.all(|b| b == first);
+    alike.then_some(first != 0)
 }

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::facet::{Facet, ACROSS};
-use super::grid::{mask, Grid};
+use super::facet::{Extent, Facet, ACROSS};
+use super::grid::{mask, Grid, Reach};
 
 /// The coarser grid of one operand's own planes, and its winding numbers there.
 struct Own<'a> {
@@ -16,11 +16,15 @@ struct Own<'a> {
 
 /// The columns of the grid with a bit for each region inside an operand; `None` if a winding
 /// number is neither 0 nor 1.
-pub(super) fn field(grid: &Grid, facets: &[Facet], corner: i32) -> Option<Vec<u64>> {
-    let mut own = Own::new(grid, facets);
+pub(super) fn field<'b>(
+    grid: &Grid,
+    facets: impl Iterator<Item = (&'b Facet<'b>, &'b Extent)> + Clone,
+    corner: i32,
+) -> Option<Vec<u64>> {
+    let mut own = Own::new(grid, facets.clone());
     own.numbers[0] = corner;
-    for facet in facets {
-        own.enter(facet);
+    for (facet, extent) in facets {
+        own.enter(facet, extent);
     }
     own.add_up();
     let simple = own.numbers.iter().all(|w| (0..=1).contains(w));
@@ -28,15 +32,15 @@ pub(super) fn field(grid: &Grid, facets: &[Facet], corner: i32) -> Option<Vec<u6
 }
 
 impl<'a> Own<'a> {
-    fn new(grid: &'a Grid, facets: &[Facet]) -> Self {
-        let starts = [0, 1, 2].map(|axis| {
-            let perpendicular = facets.iter().filter(|f| f.axis == axis);
-            let mut starts = vec![0, grid.count(axis)];
-            starts.extend(perpendicular.map(|f| grid.find(axis, f.at)));
+    fn new<'b>(grid: &'a Grid, facets: impl Iterator<Item = (&'b Facet<'b>, &'b Extent)>) -> Self {
+        let mut starts = [0, 1, 2].map(|axis| vec![0, grid.count(axis)]);
+        for (facet, extent) in facets {
+            starts[facet.axis].push(extent.line);
+        }
+        for starts in &mut starts {
             starts.sort_unstable();
             starts.dedup();
-            starts
-        });
+        }
         let numbers = vec![0; starts.iter().map(|s| s.len() - 1).product()];
         Self {
             grid,
@@ -62,20 +66,19 @@ impl<'a> Own<'a> {
 
     /// Notes the change across a facet: everywhere for those across z, at the bottom for those
     /// across y, and in one row for those across x.
-    fn enter(&mut self, facet: &Facet) {
+    fn enter(&mut self, facet: &Facet, extent: &Extent) {
         let axis = facet.axis;
-        let line = self.grid.find(axis, facet.at);
-        let at = self.starts[axis].partition_point(|s| *s < line);
+        let at = self.starts[axis].partition_point(|s| *s < extent.line);
         let (row, bit) = ACROSS[axis];
-        let cross = |own: &Self, along: usize| {
-            let all = own.within(along, &facet.range(own.grid, along));
+        let cross = |along: usize, reach: &Reach| {
+            let all = self.within(along, &reach.begun());
             if along > axis {
                 all.start..all.end.min(1)
             } else {
                 all
             }
         };
-        let (rows, bits) = (cross(self, row), cross(self, bit));
+        let (rows, bits) = (cross(row, &extent.rows), cross(bit, &extent.bits));
         for r in rows {
             for b in bits.clone() {
                 let corner = [(row, r), (bit, b)]

@@ -14,11 +14,11 @@ use super::expression::Expression;
 use super::kept::Kept;
 use super::list::{List, Sources};
 use crate::geometry::cell::Cell;
-use facet::{Facet, Facets};
+use facet::{Extent, Facets};
 use grid::Grid;
 use keep::Scene;
 
-/// Words of all operands' columns, at most: two megabytes.
+/// Words of all operands' columns, at most: two megabytes, which stay in a cache.
 const MOST: usize = 1 << 18;
 
 /// What stays of the operands' boundaries in a cell, and the winding number at its corner; `None`
@@ -34,12 +34,14 @@ pub fn evaluate(
     if lists.len() * grid.columns() > MOST {
         return None;
     }
-    let fields = fields(&grid, &facets, lists)?;
+    let extents: Vec<Extent> = facets.all.iter().map(|f| f.extent(&grid)).collect();
+    let fields = fields(&grid, &facets, &extents, lists)?;
     let value = value(expression, lists, &fields, grid.columns());
     let scene = Scene {
         cell,
         grid: &grid,
         facets: &facets,
+        extents: &extents,
         fields: &fields,
         value: &value,
     };
@@ -48,17 +50,20 @@ pub fn evaluate(
 }
 
 /// Where each operand is inside.
-fn fields(grid: &Grid, facets: &Facets, lists: &[(u32, &List)]) -> Option<Vec<Vec<u64>>> {
-    let mut rest = &facets.all[..];
-    let mut of_operand = |operand: usize| -> &[Facet] {
-        let (own, others) = rest.split_at(rest.partition_point(|f| f.operand <= operand));
-        rest = others;
-        own
+fn fields(
+    grid: &Grid,
+    facets: &Facets,
+    extents: &[Extent],
+    lists: &[(u32, &List)],
+) -> Option<Vec<Vec<u64>>> {
+    let mut start = 0;
+    let field = |(operand, (_, list)): (usize, &(u32, &List))| {
+        let end = facets.all.partition_point(|f| f.operand <= operand);
+        let own = std::mem::replace(&mut start, end)..end;
+        let facets = facets.all[own.clone()].iter().zip(&extents[own]);
+        labels::field(grid, facets, list.corner)
     };
-    let numbered = lists.iter().enumerate();
-    numbered
-        .map(|(i, (_, list))| labels::field(grid, of_operand(i), list.corner))
-        .collect()
+    lists.iter().enumerate().map(field).collect()
 }
 
 /// Where an expression is true.

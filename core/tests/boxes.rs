@@ -1,0 +1,103 @@
+//! Chains and expressions of boxes on a coarse lattice, against sets of unit cubes.
+//!
+//! Faces lie in common planes, edges in faces, and what earlier steps left meets new boxes in parts.
+
+mod support;
+
+use bspcsg::geometry::plane::Lattice;
+use bspcsg::merge::expression::Term;
+use bspcsg::merge::SetOp;
+use bspcsg::tree::solid::Solid;
+
+use support::{applied, combined, inside, manifold_mesh, volume, Numbers, Ratio, Shape};
+
+/// Cubes along an edge of the region.
+const SIDE: i64 = 11;
+
+/// A set of cubes of side 2, the first at the origin.
+#[derive(Clone)]
+struct Cubes(Vec<bool>);
+
+fn places() -> impl Iterator<Item = Lattice> {
+    (0..SIDE.pow(3)).map(|i| [i / (SIDE * SIDE), i / SIDE % SIDE, i % SIDE])
+}
+
+impl Cubes {
+    fn of(low: Lattice, high: Lattice) -> Self {
+        let within = |p: Lattice| (0..3).all(|i| (low[i]..high[i]).contains(&p[i]));
+        Self(places().map(within).collect())
+    }
+
+    fn combined(&self, op: SetOp, other: &Self) -> Self {
+        let value = |(a, b): (&bool, &bool)| match op {
+            SetOp::Union => a | b,
+            SetOp::Intersection => a & b,
+            SetOp::Difference => *a && !b,
+            SetOp::SymmetricDifference => a ^ b,
+        };
+        Self(self.0.iter().zip(&other.0).map(value).collect())
+    }
+
+    fn check(&self, solid: &Solid, context: &str) {
+        let centers: Vec<Lattice> = places().map(|p| p.map(|c| 2 * c + 1)).collect();
+        assert_eq!(inside(solid, &centers), self.0, "{context}");
+        let count = self.0.iter().filter(|c| **c).count();
+        let count = i64::try_from(count).expect("few cubes");
+        assert_eq!(volume(solid), Ratio::whole(8 * count), "{context}");
+        manifold_mesh(solid, context);
+    }
+}
+
+/// A box of at least `least` cubes along each edge.
+fn any_box(numbers: &mut Numbers, least: i64) -> (Solid, Cubes) {
+    let low = [0; 3].map(|_| numbers.below(SIDE - least + 1));
+    let high = low.map(|c| c + least + numbers.below(SIDE - least - c + 1));
+    let shape = Shape::cuboid(low.map(|c| 2 * c), high.map(|c| 2 * c));
+    (shape.solid(), Cubes::of(low, high))
+}
+
+#[test]
+fn chains_of_boxes_are_sets_of_cubes() {
+    let mut numbers = Numbers::new(11);
+    for round in 0..24 {
+        let (mut solid, mut cubes) = any_box(&mut numbers, 5);
+        for step in 0..24 {
+            let (tool, tool_cubes) = any_box(&mut numbers, 1);
+            let op = match numbers.below(5) {
+                0 => SetOp::SymmetricDifference,
+                1 | 2 => SetOp::Difference,
+                _ => SetOp::Union,
+            };
+            solid = applied(op, &solid, &tool);
+            cubes = cubes.combined(op, &tool_cubes);
+            cubes.check(&solid, &format!("round {round}, step {step}, {op:?}"));
+        }
+    }
+}
+
+#[test]
+fn expressions_of_many_boxes_are_sets_of_cubes() {
+    let mut numbers = Numbers::new(12);
+    for round in 0..24 {
+        let count = 12 + 4 * (round % 8);
+        let boxes: Vec<_> = (0..count).map(|_| any_box(&mut numbers, 1)).collect();
+        let solids: Vec<Solid> = boxes.iter().map(|b| b.0.clone()).collect();
+        let mut lines = Vec::new();
+        let mut cubes = boxes[0].1.clone();
+        let mut last = 0;
+        for i in 1..count {
+            let line = count + u32::try_from(lines.len()).expect("few lines");
+            let of_box = &boxes[i as usize].1;
+            if i % 3 == 0 {
+                lines.extend([Term::Not(i), Term::And(vec![last, line])]);
+                cubes = cubes.combined(SetOp::Difference, of_box);
+                last = line + 1;
+            } else {
+                lines.push(Term::Or(vec![last, i]));
+                cubes = cubes.combined(SetOp::Union, of_box);
+                last = line;
+            }
+        }
+        cubes.check(&combined(&solids, lines), &format!("round {round}"));
+    }
+}
