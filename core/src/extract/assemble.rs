@@ -388,7 +388,7 @@ impl<'a> Assembly<'a> {
             .map(|t| owners.at_centre(*t, &view))
             .collect();
         for (triangle, (slot, face)) in triangles.into_iter().zip(faces) {
-            let flip = *self.sources.get(slot as usize).plane(face) != group.plane;
+            let flip = self.sources.get(slot as usize).plane(face) != group.plane;
             self.push(triangle, TriangleFace { slot, face, flip });
         }
         Ok(())

@@ -1,5 +1,7 @@
 //! Cut faces and their coplanar neighbours joined into polygons with holes.
 
+use std::sync::Arc;
+
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::collect::{Boundary, CutFace, Fate};
@@ -14,7 +16,7 @@ use crate::merge::list::Sources;
 #[derive(Debug)]
 pub struct PlaneGroup {
     /// The plane, inside on its minus side.
-    pub plane: Plane,
+    pub plane: Arc<Plane>,
     /// The faces that lie in it, slot and face, as they were joined.
     pub faces: Vec<(u32, u32)>,
     /// The outline, counterclockwise as seen from outside.
@@ -27,7 +29,7 @@ struct Grouping<'a> {
     join: bool,
     fates: Vec<Vec<Fate>>,
     groups: Vec<PlaneGroup>,
-    by_plane: HashMap<Plane, usize>,
+    by_plane: HashMap<Arc<Plane>, usize>,
     open: Vec<(u32, u32, bool, usize)>,
     rims: Rims,
 }
@@ -67,10 +69,10 @@ pub fn group(
 }
 
 impl Grouping<'_> {
-    fn group_of(&mut self, plane: Plane) -> usize {
+    fn group_of(&mut self, plane: Arc<Plane>) -> usize {
         let next = self.groups.len();
         let at = if self.join {
-            *self.by_plane.entry(plane.clone()).or_insert(next)
+            *self.by_plane.entry(Arc::clone(&plane)).or_insert(next)
         } else {
             next
         };
@@ -97,12 +99,12 @@ impl Grouping<'_> {
         self.open.push((cut.slot, cut.face, cut.flip, at));
     }
 
-    fn oriented_plane(&self, slot: u32, face: u32, flip: bool) -> Plane {
+    fn oriented_plane(&self, slot: u32, face: u32, flip: bool) -> Arc<Plane> {
         let plane = self.sources.get(slot as usize).plane(face);
         if flip {
-            plane.flipped()
+            Arc::new(plane.flipped())
         } else {
-            (*plane).clone()
+            plane
         }
     }
 
