@@ -20,6 +20,22 @@ pub const OFFSET_LIMBS: usize = 3;
 /// Limbs of each of the homogeneous coordinates of a point where three planes meet.
 pub const POINT_LIMBS: usize = 6;
 
+/// Normals of short planes are below 2^`SHORT_NORMAL_BITS`: products of two fit a machine word.
+pub const SHORT_NORMAL_BITS: u32 = 62;
+
+/// Offsets of short planes are below 2^`SHORT_OFFSET_BITS`: values at lattice points fit a machine
+/// word.
+pub const SHORT_OFFSET_BITS: u32 = 124;
+
+/// Limbs of each of the homogeneous coordinates of a point where three short planes meet.
+pub const SHORT_POINT_LIMBS: usize = 4;
+
+/// Limbs of a short plane's value at such a point.
+pub const SHORT_PLANE_AT_POINT_LIMBS: usize = 6;
+
+/// Limbs of a coordinate of one such point times the weight of another.
+pub const SHORT_CROSS_LIMBS: usize = 8;
+
 /// Limbs of a plane's value at a point where three planes meet.
 pub const PLANE_AT_POINT_LIMBS: usize = 8;
 
@@ -173,4 +189,24 @@ const _: () = {
     assert!(limbs_for(determinant_at_corner(P)) <= OFFSET_LIMBS);
     assert!(limbs_for(numerator_times_weight(P) + 1) <= CROSS_LIMBS);
     assert!(limbs_for(point_orientation(P)) <= ORIENTATION_LIMBS);
+};
+
+const _: () = {
+    const N: u32 = SHORT_NORMAL_BITS;
+    const D: u32 = SHORT_OFFSET_BITS;
+    const P: u32 = COORDINATE_BITS;
+    const WORDS: usize = 2;
+    let value = sum(N + P + 2, D);
+    let reduced = sum(D + 1, 64 + N);
+    let numerator = det3([N, N, D]);
+    let weight = det3([N, N, N]);
+    assert!(limbs_for(det2([N, N]) + 1) <= WORDS);
+    assert!(limbs_for(sum(value, value)) <= WORDS);
+    assert!(limbs_for(reduced) <= WORDS);
+    assert!(limbs_for(sum(value + P, value + P)) <= SHORT_POINT_LIMBS);
+    assert!(limbs_for(sum(reduced + N, reduced + N)) <= SHORT_POINT_LIMBS);
+    assert!(limbs_for(numerator) <= SHORT_POINT_LIMBS);
+    assert!(limbs_for(weight) <= SHORT_POINT_LIMBS);
+    assert!(limbs_for(det4([N, N, N, D])) <= SHORT_PLANE_AT_POINT_LIMBS);
+    assert!(limbs_for(numerator + weight) <= SHORT_CROSS_LIMBS);
 };

@@ -207,7 +207,7 @@ fn holder<'a>(mesh: &'a TriangleMesh, cell: &Cell) -> impl Fn(u32) -> bool + 'a 
 /// The outline of a part inside a leaf's cell.
 fn part_edges(part: &Part, cell: &Cell) -> Vec<OutlineEdge> {
     if part.home == *cell {
-        return part.edges.clone();
+        return part.outline();
     }
     let clipped = part.pieces().into_iter().filter_map(|p| p.clipped(cell));
     cancel(

@@ -1,5 +1,7 @@
 //! Cut faces and their coplanar neighbours joined into polygons with holes.
 
+use std::sync::Arc;
+
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::assemble::TriangleFace;
@@ -15,7 +17,7 @@ use crate::merge::list::Sources;
 #[derive(Debug)]
 pub struct PlaneGroup {
     /// The plane, inside on its minus side.
-    pub plane: Plane,
+    pub plane: Arc<Plane>,
     /// The faces that lie in it, ascending.
     pub faces: Vec<TriangleFace>,
     /// The outline, counterclockwise as seen from outside.
@@ -28,7 +30,7 @@ struct Grouping<'a> {
     join: bool,
     fates: Vec<Vec<Fate>>,
     groups: Vec<PlaneGroup>,
-    by_plane: HashMap<Plane, usize>,
+    by_plane: HashMap<Arc<Plane>, usize>,
     open: Vec<(u32, u32, bool, usize)>,
     rims: Rims,
 }
@@ -68,10 +70,10 @@ pub fn group(
 }
 
 impl Grouping<'_> {
-    fn group_of(&mut self, plane: Plane) -> usize {
+    fn group_of(&mut self, plane: Arc<Plane>) -> usize {
         let next = self.groups.len();
         let at = if self.join {
-            *self.by_plane.entry(plane.clone()).or_insert(next)
+            *self.by_plane.entry(Arc::clone(&plane)).or_insert(next)
         } else {
             next
         };
@@ -101,12 +103,12 @@ impl Grouping<'_> {
         self.open.push((cut.slot, cut.face, cut.flip, at));
     }
 
-    fn oriented_plane(&self, slot: u32, face: u32, flip: bool) -> Plane {
+    fn oriented_plane(&self, slot: u32, face: u32, flip: bool) -> Arc<Plane> {
         let plane = self.sources.get(slot as usize).plane(face);
         if flip {
-            plane.flipped()
+            Arc::new(plane.flipped())
         } else {
-            (*plane).clone()
+            plane
         }
     }
 

@@ -83,7 +83,7 @@ pub fn find_touching(
         }
     }
     for (a, b) in crossings {
-        let cut = b.carrier.plane(&group.plane);
+        let cut = Arc::new(b.carrier.plane(&group.plane));
         if let Some(vertex) = a.carrier.meet(&group.plane, &cut) {
             let point = table.number(&Arc::new(vertex));
             touching.entry(a.line).or_default().push(point);

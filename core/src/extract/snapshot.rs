@@ -9,6 +9,8 @@ use crate::arith::bounds::{self, COORDINATE_BITS};
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, REACH};
+use crate::geometry::edge::LatticeEdge;
+use crate::geometry::line::LineKey;
 use crate::geometry::outline::OutlineEdge;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
@@ -438,7 +440,10 @@ impl PartData {
 impl EdgeData {
     fn of(edge: &OutlineEdge) -> Self {
         let carrier = match &edge.carrier {
-            Carrier::Edge(a, b) => CarrierData::Edge(*a, *b),
+            Carrier::Edge(edge) => {
+                let (a, b) = edge.ends();
+                CarrierData::Edge(*a, *b)
+            }
             Carrier::Cut(plane, flip) => CarrierData::Cut(PlaneData::of(plane), *flip),
         };
         Self {
@@ -454,7 +459,7 @@ impl EdgeData {
         if !carries(&carrier, support, &from, &to) {
             return Err(bad_snapshot());
         }
-        let line = carrier.line(support);
+        let line = LineKey::of(&carrier.line(support));
         Ok(OutlineEdge {
             from: Arc::new(from),
             to: Arc::new(to),
@@ -483,7 +488,7 @@ impl EdgeData {
 impl CarrierData {
     fn carrier(&self) -> Result<Carrier> {
         Ok(match self {
-            Self::Edge(a, b) => Carrier::Edge(*a, *b),
+            Self::Edge(a, b) => Carrier::Edge(LatticeEdge::new(*a, *b)),
             Self::Cut(plane, flip) => Carrier::Cut(Arc::new(plane.plane()?), *flip),
         })
     }
@@ -498,7 +503,8 @@ fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bo
             .any(|c| !c.is_zero())
     };
     let carried = match carrier {
-        Carrier::Edge(a, b) => {
+        Carrier::Edge(edge) => {
+            let (a, b) = edge.ends();
             let near = [a, b]
                 .iter()
                 .all(|p| p.iter().all(|k| k.unsigned_abs() < 1 << REACH));

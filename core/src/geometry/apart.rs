@@ -76,7 +76,7 @@ fn stretches_are_apart(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
 
 #[inline]
 fn less(p: &Lattice, q: &Lattice) -> Lattice {
-    [0, 1, 2].map(|i| p[i] - q[i])
+    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
 }
 
 /// Whether some point of an edge of `p` lies in `q`, by exact determinants.

@@ -39,8 +39,10 @@ impl Cell {
     }
 
     /// The largest lattice point.
+    #[inline]
     pub fn high(&self) -> Lattice {
-        [0, 1, 2].map(|i| self.low[i] + (1i64 << self.size[i]) - 1)
+        let high = |i: usize| self.low[i] + (1i64 << self.size[i]) - 1;
+        [high(0), high(1), high(2)]
     }
 
     /// The binary logarithms of the extents.
@@ -50,7 +52,8 @@ impl Cell {
 
     /// The low corner in half steps.
     pub fn corner(&self) -> Lattice {
-        self.low.map(|c| 2 * c - 1)
+        let [x, y, z] = self.low;
+        [2 * x - 1, 2 * y - 1, 2 * z - 1]
     }
 
     /// The cut through the middle, across the longest axis; `None` for a single lattice point.

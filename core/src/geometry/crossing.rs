@@ -106,7 +106,10 @@ pub fn polygon_change(polygon: &Polygon, segment: &Segment) -> i32 {
         -1
     };
     let inside = polygon.corners().iter().all(|corner| match &corner.edge {
-        Carrier::Edge(a, b) => turn_at_corner(a, b, &segment.from, u, v) == upward,
+        Carrier::Edge(edge) => {
+            let (a, b) = edge.ends();
+            turn_at_corner(a, b, &segment.from, u, v) == upward
+        }
         Carrier::Cut(plane, flip) => {
             let side = side_where_met(support, plane, segment) * upward;
             side == if *flip { 1 } else { -1 }

@@ -1,5 +1,7 @@
 //! Names for lines that do not depend on which planes or edges they were made from.
 
+use smallvec::SmallVec;
+
 use super::plane::{Lattice, Plane};
 use super::residue::residue;
 use crate::arith::{inv_mod, mul_mod, P1};
@@ -14,29 +16,92 @@ use crate::arith::{inv_mod, mul_mod, P1};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LineKey([u64; 6]);
 
-impl LineKey {
+/// Plücker coordinates of a line modulo the prime, at any scale.
+#[derive(Clone, Copy, Debug)]
+pub struct Line {
+    direction: [u64; 3],
+    moment: [u64; 3],
+}
+
+impl Line {
     /// The line through two lattice points.
     pub fn of_edge(a: &Lattice, b: &Lattice) -> Self {
-        let (p, q) = (a.map(|c| residue(c.into())), b.map(|c| residue(c.into())));
-        let direction = [0, 1, 2].map(|i| sub(q[i], p[i]));
-        Self::normalized(direction, cross(&p, &q))
+        let residue = |c: i64| residue(c.into());
+        let residues = |[x, y, z]: &Lattice| [residue(*x), residue(*y), residue(*z)];
+        let (p, q) = (residues(a), residues(b));
+        Self {
+            direction: [sub(q[0], p[0]), sub(q[1], p[1]), sub(q[2], p[2])],
+            moment: cross(&p, &q),
+        }
     }
 
     /// The line in which two planes meet.
     pub fn of_planes(a: &Plane, b: &Plane) -> Self {
-        let n = a.normal().map(residue);
-        let m = b.normal().map(residue);
+        let residues = |[x, y, z]: &[i128; 3]| [residue(*x), residue(*y), residue(*z)];
+        let (n, m) = (residues(a.normal()), residues(b.normal()));
         let (d, e) = (a.offset().rem_u61(P1), b.offset().rem_u61(P1));
-        let moment = [0, 1, 2].map(|i| sub(mul_mod(d, m[i], P1), mul_mod(e, n[i], P1)));
-        Self::normalized(cross(&n, &m), moment)
+        let moment = |i: usize| sub(mul_mod(d, m[i], P1), mul_mod(e, n[i], P1));
+        Self {
+            direction: cross(&n, &m),
+            moment: [moment(0), moment(1), moment(2)],
+        }
     }
 
-    fn normalized(direction: [u64; 3], moment: [u64; 3]) -> Self {
-        let lead = direction.iter().copied().find(|c| *c != 0).unwrap_or(1);
-        let scale = inv_mod(lead, P1);
-        let [u, v, w] = direction.map(|c| mul_mod(c, scale, P1));
-        let [x, y, z] = moment.map(|c| mul_mod(c, scale, P1));
-        Self([u, v, w, x, y, z])
+    /// The first component of the direction that is not zero.
+    fn lead(&self) -> u64 {
+        let lead = self.direction.iter().find(|c| **c != 0);
+        lead.copied().unwrap_or(1)
+    }
+
+    /// The key, for the inverse of the lead.
+    fn scaled(&self, scale: u64) -> LineKey {
+        let ([u, v, w], [x, y, z]) = (self.direction, self.moment);
+        let scaled = |c| mul_mod(c, scale, P1);
+        LineKey([
+            scaled(u),
+            scaled(v),
+            scaled(w),
+            scaled(x),
+            scaled(y),
+            scaled(z),
+        ])
+    }
+}
+
+impl LineKey {
+    /// The line through two lattice points.
+    pub fn of_edge(a: &Lattice, b: &Lattice) -> Self {
+        Self::of(&Line::of_edge(a, b))
+    }
+
+    /// The line in which two planes meet.
+    pub fn of_planes(a: &Plane, b: &Plane) -> Self {
+        Self::of(&Line::of_planes(a, b))
+    }
+
+    /// The key of a line.
+    pub fn of(line: &Line) -> Self {
+        line.scaled(inv_mod(line.lead(), P1))
+    }
+
+    /// The keys of several lines, for one inversion modulo the prime.
+    pub fn of_all(lines: impl Iterator<Item = Line>) -> SmallVec<[Self; 8]> {
+        let mut product = 1;
+        let before: SmallVec<[(Line, u64); 8]> = lines
+            .map(|line| {
+                let so_far = product;
+                product = mul_mod(product, line.lead(), P1);
+                (line, so_far)
+            })
+            .collect();
+        let mut inverse = inv_mod(product, P1);
+        let mut keys: SmallVec<[Self; 8]> = SmallVec::with_capacity(before.len());
+        for (line, so_far) in before.iter().rev() {
+            keys.push(line.scaled(mul_mod(inverse, *so_far, P1)));
+            inverse = mul_mod(inverse, line.lead(), P1);
+        }
+        keys.reverse();
+        keys
     }
 
     /// The first axis the line is not perpendicular to: points on it are ordered by this coordinate.

@@ -3,6 +3,8 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use super::line::LineKey;
 use super::plane::Plane;
 use super::polygon::{Carrier, Corner, Polygon, PolygonSplit};
@@ -21,15 +23,58 @@ pub struct OutlineEdge {
     pub line: LineKey,
 }
 
+/// A directed edge without the key of its line, as it is kept.
+#[derive(Clone, Debug)]
+pub struct BareEdge {
+    /// Start.
+    pub from: Arc<Vertex>,
+    /// End.
+    pub to: Arc<Vertex>,
+    /// What it lies on, beside the support.
+    pub carrier: Carrier,
+}
+
+impl From<OutlineEdge> for BareEdge {
+    fn from(edge: OutlineEdge) -> Self {
+        Self {
+            from: edge.from,
+            to: edge.to,
+            carrier: edge.carrier,
+        }
+    }
+}
+
+impl BareEdge {
+    fn keyed(self, line: LineKey) -> OutlineEdge {
+        OutlineEdge {
+            from: self.from,
+            to: self.to,
+            carrier: self.carrier,
+            line,
+        }
+    }
+}
+
 impl OutlineEdge {
     /// The edges of a polygon.
     pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
-        polygon.edges().map(|(from, to, carrier)| Self {
+        let carriers = polygon.edges().map(|(_, _, carrier)| carrier);
+        let lines = lines(carriers, polygon.support());
+        let bare = polygon.edges().map(|(from, to, carrier)| BareEdge {
             from: Arc::clone(from),
             to: Arc::clone(to),
             carrier: carrier.clone(),
-            line: carrier.line(polygon.support()),
-        })
+        });
+        bare.zip(lines).map(|(edge, line)| edge.keyed(line))
+    }
+
+    /// Edges in a plane with the keys of their lines.
+    pub fn keyed(edges: &[BareEdge], support: &Plane) -> Vec<Self> {
+        let lines = lines(edges.iter().map(|e| &e.carrier), support);
+        let bare = edges.iter().cloned();
+        bare.zip(lines)
+            .map(|(edge, line)| edge.keyed(line))
+            .collect()
     }
 
     /// The same edge run backwards.
@@ -45,6 +90,13 @@ impl OutlineEdge {
     fn is_forward(&self) -> bool {
         order_along(&self.from, &self.to, self.line.axis()) == Ordering::Less
     }
+}
+
+fn lines<'a>(
+    carriers: impl Iterator<Item = &'a Carrier>,
+    support: &Plane,
+) -> SmallVec<[LineKey; 8]> {
+    LineKey::of_all(carriers.map(|carrier| carrier.line(support)))
 }
 
 /// Order of two points of one line.
@@ -133,7 +185,7 @@ fn emit(
 ///
 /// Edges on the face's own edges are taken as bounding it: the outline is that of a part of the
 /// face.
-pub fn convex_loop(support: &Arc<Plane>, edges: &[OutlineEdge]) -> Option<Polygon> {
+pub fn convex_loop(support: &Arc<Plane>, edges: &[BareEdge]) -> Option<Polygon> {
     let start = edges.first()?;
     let mut at = start;
     let mut ring = Vec::with_capacity(edges.len());
@@ -143,20 +195,39 @@ pub fn convex_loop(support: &Arc<Plane>, edges: &[OutlineEdge]) -> Option<Polygo
             edge: at.carrier.clone(),
         });
         let next = edges.iter().find(|e| Arc::ptr_eq(&e.from, &at.to))?;
-        if next.line == at.line {
+        if continues(&at.carrier, &next.carrier) {
             return None;
         }
         at = next;
     }
-    let bounds = |edge: &OutlineEdge| match &edge.carrier {
-        Carrier::Edge(..) => true,
-        Carrier::Cut(plane, plus) => {
-            let beyond = if *plus { -1 } else { 1 };
-            edges.iter().all(|e| e.from.side_of(plane) != beyond)
-        }
-    };
     let closed = std::ptr::eq(at, start) && ring.len() >= 3;
-    (closed && edges.iter().all(bounds)).then(|| Polygon::of_corners(ring, Arc::clone(support)))
+    (closed && edges.iter().all(|e| bounds(&e.carrier, edges)))
+        .then(|| Polygon::of_corners(ring, Arc::clone(support)))
+}
+
+/// Whether two edges of a face that meet lie on one line.
+fn continues(first: &Carrier, second: &Carrier) -> bool {
+    match (first, second) {
+        (Carrier::Edge(first), Carrier::Edge(second)) => first.is_parallel(second),
+        _ => false,
+    }
+}
+
+/// Whether all of an outline lies on the inner side of an edge, and only its ends in its line.
+fn bounds(carrier: &Carrier, edges: &[BareEdge]) -> bool {
+    let Carrier::Cut(plane, plus) = carrier else {
+        return true;
+    };
+    let beyond = if *plus { -1 } else { 1 };
+    let mut ends = 0;
+    for edge in edges {
+        match edge.from.side_of(plane) {
+            0 => ends += 1,
+            side if side == beyond => return false,
+            _ => {}
+        }
+    }
+    ends == 2
 }
 
 /// The convex pieces of the region that an outline bounds inside a convex polygon.
@@ -165,7 +236,7 @@ pub fn convex_loop(support: &Arc<Plane>, edges: &[OutlineEdge]) -> Option<Polygo
 ///
 /// # Source
 /// Lecture notes, autopartition; design review F9.
-pub fn pieces(polygon: Polygon, edges: &[OutlineEdge]) -> Vec<Polygon> {
+pub fn pieces(polygon: Polygon, edges: &[BareEdge]) -> Vec<Polygon> {
     let mut inside = Vec::new();
     let mut open = vec![(polygon, edges.to_vec())];
     while let Some((polygon, mut edges)) = open.pop() {
@@ -192,10 +263,10 @@ pub fn pieces(polygon: Polygon, edges: &[OutlineEdge]) -> Vec<Polygon> {
 }
 
 fn divide_edges(
-    edges: Vec<OutlineEdge>,
-    support: &Plane,
-    cut: &Plane,
-) -> (Vec<OutlineEdge>, Vec<OutlineEdge>) {
+    edges: Vec<BareEdge>,
+    support: &Arc<Plane>,
+    cut: &Arc<Plane>,
+) -> (Vec<BareEdge>, Vec<BareEdge>) {
     let (mut minus, mut plus) = (Vec::new(), Vec::new());
     for edge in edges {
         match (edge.from.side_of(cut), edge.to.side_of(cut)) {
@@ -219,12 +290,12 @@ fn divide_edges(
     (minus, plus)
 }
 
-fn cut_edge(edge: &OutlineEdge, at: &Arc<Vertex>) -> (OutlineEdge, OutlineEdge) {
-    let first = OutlineEdge {
+fn cut_edge(edge: &BareEdge, at: &Arc<Vertex>) -> (BareEdge, BareEdge) {
+    let first = BareEdge {
         to: Arc::clone(at),
         ..edge.clone()
     };
-    let second = OutlineEdge {
+    let second = BareEdge {
         from: Arc::clone(at),
         ..edge.clone()
     };

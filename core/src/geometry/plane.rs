@@ -1,6 +1,7 @@
 //! Oriented planes with canonical integer coefficients.
 
 use super::cell::REACH;
+use crate::arith::bounds::{SHORT_NORMAL_BITS, SHORT_OFFSET_BITS};
 use crate::arith::{gcd_u128, Int};
 
 /// A lattice point, in steps of the pitch; each coordinate below 2^53 in magnitude.
@@ -17,6 +18,25 @@ pub struct Plane {
     n: [i128; 3],
     d: Int<3>,
     approx: [f64; 4],
+}
+
+/// The coefficients of a plane that is narrower than planes may be, as nearly all are.
+///
+/// # Bits
+/// |n| < 2^62, |d| < 2^124 (`arith::bounds`).
+#[derive(Clone, Copy, Debug)]
+pub struct ShortPlane {
+    /// The normal.
+    pub n: [i64; 3],
+    /// The constant term.
+    pub d: i128,
+}
+
+impl ShortPlane {
+    /// The plane's value at a lattice point.
+    pub fn value_at(&self, p: &Lattice) -> i128 {
+        dot_short(&self.n, p) + self.d
+    }
 }
 
 impl PartialEq for Plane {
@@ -56,7 +76,7 @@ impl Plane {
     }
 
     fn primitive(n: [i128; 3], d: Int<3>) -> Self {
-        let approx = [n[0] as f64, n[1] as f64, n[2] as f64, d.to_f64()];
+        let approx = [near(n[0]), near(n[1]), near(n[2]), d.to_f64()];
         Self { n, d, approx }
     }
 
@@ -107,6 +127,16 @@ impl Plane {
         &self.d
     }
 
+    /// The coefficients in machine words, if they are short.
+    pub fn short(&self) -> Option<ShortPlane> {
+        let fits = |c: &i128, bits: u32| c.unsigned_abs() < 1 << bits;
+        let d = self.d.to_i128().filter(|d| fits(d, SHORT_OFFSET_BITS))?;
+        let [x, y, z] = &self.n;
+        let short = [x, y, z].iter().all(|c| fits(c, SHORT_NORMAL_BITS));
+        let n = [*x as i64, *y as i64, *z as i64];
+        short.then_some(ShortPlane { n, d })
+    }
+
     /// The coefficients rounded to doubles, each within one half unit in the last place.
     pub fn approx(&self) -> &[f64; 4] {
         &self.approx
@@ -153,6 +183,16 @@ impl Plane {
         }
     }
 
+    /// Twice the coordinate at which the plane crosses an axis that it is perpendicular to, if it
+    /// lies on the lattice or halfway between its planes.
+    pub fn doubled_place(&self, axis: usize) -> Option<i64> {
+        let lead = self.n[axis];
+        let short = lead.unsigned_abs() <= 2 && self.only_axis() == Some(axis);
+        let offset = short.then(|| self.d.narrow::<1>()).flatten()?;
+        let doubled = -2 * offset.to_i128()? / lead;
+        i64::try_from(doubled).ok()
+    }
+
     /// The axis along which the normal is largest.
     pub fn main_axis(&self) -> usize {
         let size = |i: usize| self.n[i].unsigned_abs();
@@ -168,7 +208,8 @@ impl Plane {
     ///
     /// -1 on the minus side (inside), 0 on the plane, +1 on the plus side.
     pub fn side_of_lattice(&self, p: &Lattice) -> i32 {
-        let t = [0, 1, 2].map(|i| self.approx[i] * p[i] as f64);
+        let a = &self.approx;
+        let t = [a[0] * p[0] as f64, a[1] * p[1] as f64, a[2] * p[2] as f64];
         let sum = t[0] + t[1] + t[2] + self.approx[3];
         let size = t[0].abs() + t[1].abs() + t[2].abs() + self.approx[3].abs();
         if sum.abs() > size * FILTER {
@@ -179,12 +220,16 @@ impl Plane {
 
     /// The plane's value at a lattice point.
     pub fn value_at(&self, p: &Lattice) -> Int<3> {
-        dot_lattice(&self.n, p) + self.d
+        match self.short() {
+            Some(short) => Int::from_i128(short.value_at(p)),
+            None => dot_lattice(&self.n, p) + self.d,
+        }
     }
 
     /// Twice the plane's value at half the given coordinates, in doubles, and a bound of its error.
     pub fn near_value_at_doubled(&self, doubled: &Lattice) -> (f64, f64) {
-        let t = [0, 1, 2].map(|i| self.approx[i] * doubled[i] as f64);
+        let (a, p) = (&self.approx, doubled);
+        let t = [a[0] * p[0] as f64, a[1] * p[1] as f64, a[2] * p[2] as f64];
         let twice = 2.0 * self.approx[3];
         let size = t[0].abs() + t[1].abs() + t[2].abs() + twice.abs();
         (t[0] + t[1] + t[2] + twice, size * FILTER)
@@ -238,13 +283,15 @@ pub fn first_sign(n: &[i128; 3]) -> i32 {
 
 /// (b − a) × (c − a) in lattice steps.
 pub fn normal(a: &Lattice, b: &Lattice, c: &Lattice) -> [i128; 3] {
-    let u = [0, 1, 2].map(|i| i128::from(b[i] - a[i]));
-    let v = [0, 1, 2].map(|i| i128::from(c[i] - a[i]));
-    [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ]
+    let (u, v) = (step(a, b), step(a, c));
+    let minor = |i: usize, j: usize| {
+        i128::from(u[i]) * i128::from(v[j]) - i128::from(u[j]) * i128::from(v[i])
+    };
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
+
+fn step(from: &Lattice, to: &Lattice) -> [i64; 3] {
+    [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
 }
 
 /// The normal of the plane through an edge parallel to an axis.
@@ -256,7 +303,21 @@ fn edge_normal(a: &Lattice, b: &Lattice, axis: usize) -> [i128; 3] {
     n
 }
 
+/// The nearest double, by one machine instruction for short numbers.
+fn near(value: i128) -> f64 {
+    i64::try_from(value).map_or_else(|_| value as f64, |short| short as f64)
+}
+
 fn dot_lattice(n: &[i128; 3], p: &Lattice) -> Int<3> {
+    if let (Ok(x), Ok(y), Ok(z)) = (n[0].try_into(), n[1].try_into(), n[2].try_into()) {
+        return Int::from_i128(dot_short(&[x, y, z], p));
+    }
     let term = |i: usize| Int::<2>::from_i128(n[i]).mul::<1, 3>(&Int::from_i64(p[i]));
+    term(0) + term(1) + term(2)
+}
+
+/// Below 2^119: 63 bits of a normal's component, 54 of a doubled coordinate, a sum of three.
+fn dot_short(n: &[i64; 3], p: &Lattice) -> i128 {
+    let term = |i: usize| i128::from(n[i]) * i128::from(p[i]);
     term(0) + term(1) + term(2)
 }

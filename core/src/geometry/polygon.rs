@@ -8,7 +8,8 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use super::cell::Cell;
-use super::line::LineKey;
+use super::edge::{LatticeEdge, Ring};
+use super::line::Line;
 use super::plane::{Lattice, Plane};
 use super::vertex::Vertex;
 
@@ -16,7 +17,7 @@ use super::vertex::Vertex;
 #[derive(Clone, Debug)]
 pub enum Carrier {
     /// A lattice edge of a face, in the face's own direction.
-    Edge(Lattice, Lattice),
+    Edge(LatticeEdge),
     /// A plane; the polygon lies on its minus side, or on its plus side if the flag is set.
     Cut(Arc<Plane>, bool),
 }
@@ -25,7 +26,7 @@ impl Carrier {
     /// The plane through the edge that has the polygon on its minus side.
     pub fn plane(&self, support: &Plane) -> Plane {
         match self {
-            Self::Edge(a, b) => edge_plane(a, b, support),
+            Self::Edge(edge) => edge_plane(edge, support),
             Self::Cut(plane, true) => plane.flipped(),
             Self::Cut(plane, false) => (**plane).clone(),
         }
@@ -34,7 +35,8 @@ impl Carrier {
     /// The same plane for questions about sides only.
     pub fn rim(&self, support: &Plane) -> Plane {
         match self {
-            Self::Edge(a, b) => {
+            Self::Edge(edge) => {
+                let (a, b) = edge.ends();
                 let axis = support.main_axis();
                 let plane = Plane::beside_edge(a, b, axis);
                 if support.normal()[axis] < 0 {
@@ -62,25 +64,29 @@ impl Carrier {
         }
     }
 
-    /// The key of the line this carrier and the support have in common.
-    pub fn line(&self, support: &Plane) -> LineKey {
+    /// The line this carrier and the support have in common.
+    pub fn line(&self, support: &Plane) -> Line {
         match self {
-            Self::Edge(a, b) => LineKey::of_edge(a, b),
-            Self::Cut(plane, _) => LineKey::of_planes(support, plane),
+            Self::Edge(edge) => {
+                let (a, b) = edge.ends();
+                Line::of_edge(a, b)
+            }
+            Self::Cut(plane, _) => Line::of_planes(support, plane),
         }
     }
 
     /// The meet of this edge's line with a plane that crosses it.
-    pub fn meet(&self, support: &Plane, cut: &Plane) -> Option<Vertex> {
+    pub fn meet(&self, support: &Arc<Plane>, cut: &Arc<Plane>) -> Option<Vertex> {
         match self {
-            Self::Edge(a, b) => Vertex::on_edge(a, b, cut),
+            Self::Edge(edge) => Vertex::on_edge(edge, cut),
             Self::Cut(plane, _) => Vertex::meet(support, plane, cut),
         }
     }
 }
 
 /// The axis-parallel plane through a face's edge, the face on its minus side.
-fn edge_plane(a: &Lattice, b: &Lattice, support: &Plane) -> Plane {
+fn edge_plane(edge: &LatticeEdge, support: &Plane) -> Plane {
+    let (a, b) = edge.ends();
     let axis = support.main_axis();
     let plane = Plane::through_edge(a, b, axis)
         .expect("an edge is not parallel to the main axis of its face's normal");
@@ -150,12 +156,12 @@ impl Polygon {
 
     /// The convex polygon of lattice points in this supporting plane, counterclockwise.
     pub fn convex(points: &[Lattice], support: Arc<Plane>) -> Self {
-        let corners = (0..points.len())
-            .map(|i| Corner {
-                at: Arc::new(Vertex::lattice(points[i])),
-                edge: Carrier::Edge(points[i], points[(i + 1) % points.len()]),
-            })
-            .collect();
+        let ring = Arc::new(Ring::from_slice(points));
+        let corner = |(i, point): (u32, &Lattice)| Corner {
+            at: Arc::new(Vertex::lattice(*point)),
+            edge: Carrier::Edge(LatticeEdge::of_ring(&ring, i)),
+        };
+        let corners = (0..).zip(points).map(corner).collect();
         Self { support, corners }
     }
 
@@ -225,7 +231,7 @@ impl Polygon {
 
     /// The ends of the segment in which a plane with corners strictly on both sides cuts the
     /// polygon, in the order in which its border meets them.
-    pub fn chord(&self, cut: &Plane, sides: &[i32]) -> Chord {
+    pub fn chord(&self, cut: &Arc<Plane>, sides: &[i32]) -> Chord {
         let n = self.corners.len();
         let mut ends = Chord::new();
         for i in 0..n {
@@ -239,7 +245,7 @@ impl Polygon {
     }
 
     /// Where the edge from a corner crosses a plane that has its ends on both sides.
-    fn crossing(&self, corner: usize, cut: &Plane) -> Arc<Vertex> {
+    fn crossing(&self, corner: usize, cut: &Arc<Plane>) -> Arc<Vertex> {
         let meet = self.corners[corner].edge.meet(&self.support, cut);
         Arc::new(meet.expect("an edge with ends on both sides meets the plane"))
     }
@@ -352,7 +358,7 @@ impl Polygon {
 
 fn reversed(edge: &Carrier) -> Carrier {
     match edge {
-        Carrier::Edge(a, b) => Carrier::Edge(*b, *a),
+        Carrier::Edge(edge) => Carrier::Edge(edge.reversed()),
         cut @ Carrier::Cut(..) => cut.clone(),
     }
 }

@@ -1,12 +1,19 @@
 //! Exact points: lattice points and meets of three planes, in homogeneous coordinates.
 
 use std::cmp::Ordering;
+use std::sync::Arc;
 
+use super::coordinates::Coordinates;
+pub use super::coordinates::{cross, Homogeneous};
+use super::edge::LatticeEdge;
 use super::plane::{Lattice, Plane, FILTER};
 use super::residue::residue;
-use crate::arith::{inv_mod, mul_mod, Int, P1};
+use crate::arith::Int;
 
 /// An exact point (x/w, y/w, z/w) with w > 0.
+///
+/// A constructed point is kept as what it was constructed from, and its coordinates are computed
+/// anew where doubles do not settle a question: they are wide, and rarely asked for.
 ///
 /// # Bits
 /// x, y, z below 2^379, w below 2^326 (`arith::bounds`).
@@ -19,16 +26,9 @@ pub struct Vertex {
 #[derive(Clone, Debug)]
 enum Place {
     Lattice(Lattice),
-    Meet(Box<Homogeneous>),
-}
-
-/// Homogeneous coordinates, w > 0.
-#[derive(Clone, Debug)]
-pub struct Homogeneous {
-    /// x, y and z times w.
-    pub x: [Int<6>; 3],
-    /// The positive denominator.
-    pub w: Int<6>,
+    OnEdge(LatticeEdge, Arc<Plane>),
+    Meet([Arc<Plane>; 3]),
+    Given(Box<Homogeneous>),
 }
 
 /// A fingerprint that equal points share; unequal points differ but for chance 2^-183.
@@ -45,80 +45,27 @@ impl Vertex {
     }
 
     /// The meet of three planes; `None` if they have no single common point.
-    pub fn meet(a: &Plane, b: &Plane, c: &Plane) -> Option<Self> {
+    pub fn meet(a: &Arc<Plane>, b: &Arc<Plane>, c: &Arc<Plane>) -> Option<Self> {
         if let Some(point) = meet_on_lattice([a, b, c]) {
             return Some(Self::lattice(point));
         }
-        for (cut, p, q) in [(c, a, b), (b, a, c), (a, b, c)] {
-            if let Some(axis) = cut.only_axis() {
-                return Self::meet_on_axis_cut(cut, axis, p, q);
-            }
-        }
-        let bc = cross(b.normal(), c.normal());
-        let ca = cross(c.normal(), a.normal());
-        let ab = cross(a.normal(), b.normal());
-        let term = |i: usize| -> Int<6> { Int::<2>::from_i128(a.normal()[i]).mul(&bc[i]) };
-        let w = term(0) + term(1) + term(2);
-        let x = [0, 1, 2].map(|i| {
-            let p: Int<6> = a.offset().mul(&bc[i]);
-            let q: Int<6> = b.offset().mul(&ca[i]);
-            let r: Int<6> = c.offset().mul(&ab[i]);
-            p + q + r
-        });
-        match w.signum() {
-            0 => None,
-            1 => Some(Self::homogeneous(x.map(|v| -v), w)),
-            _ => Some(Self::homogeneous(x, -w)),
-        }
+        let approx = Coordinates::of_planes(a, b, c)?.approx();
+        let place = Place::Meet([a, b, c].map(Arc::clone));
+        Some(Self { place, approx })
     }
 
     /// The meet of a lattice edge's line with a plane; `None` if they are parallel.
-    ///
-    /// # Bits
-    /// The denominator is a difference of two values at lattice points, far below that of three
-    /// planes.
-    pub fn on_edge(a: &Lattice, b: &Lattice, cut: &Plane) -> Option<Self> {
-        let (va, vb) = (cut.value_at(a), cut.value_at(b));
-        let w = vb - va;
-        let x = [0, 1, 2].map(|i| -> Int<6> {
-            let difference: Int<4> = vb.mul_i64::<4>(a[i]) - va.mul_i64::<4>(b[i]);
-            difference.widen()
-        });
-        match w.signum() {
-            0 => None,
-            1 => Some(Self::homogeneous(x, w.widen())),
-            _ => Some(Self::homogeneous(x.map(|c| -c), (-w).widen())),
-        }
-    }
-
-    /// The meet of two planes with an axis-parallel one, by 2×2 determinants.
-    fn meet_on_axis_cut(cut: &Plane, axis: usize, p: &Plane, q: &Plane) -> Option<Self> {
-        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        let lead = cut.normal()[axis];
-        let reduced = |plane: &Plane| -> Int<5> {
-            let here: Int<5> = plane.offset().mul_i128(lead);
-            let there: Int<5> = cut.offset().mul_i128(plane.normal()[axis]);
-            here - there
-        };
-        let (d, e) = (reduced(p), reduced(q));
-        let (n, m) = (p.normal(), q.normal());
-        let minor = product(n[u], m[v]) - product(n[v], m[u]);
-        let w: Int<6> = minor.mul_i128(lead);
-        let mut x = [Int::<6>::ZERO; 3];
-        x[axis] = cut.offset().mul(&minor);
-        x[u] = d.mul_i128::<6>(m[v]) - e.mul_i128::<6>(n[v]);
-        x[v] = e.mul_i128::<6>(n[u]) - d.mul_i128::<6>(m[u]);
-        match w.signum() {
-            0 => None,
-            1 => Some(Self::homogeneous(x.map(|c| -c), w)),
-            _ => Some(Self::homogeneous(x, -w)),
-        }
+    pub fn on_edge(edge: &LatticeEdge, cut: &Arc<Plane>) -> Option<Self> {
+        let approx = Coordinates::on_edge(edge, cut)?.approx();
+        let place = Place::OnEdge(edge.clone(), Arc::clone(cut));
+        Some(Self { place, approx })
     }
 
     /// The vertex with these homogeneous coordinates; w must be positive.
     pub fn homogeneous(x: [Int<6>; 3], w: Int<6>) -> Self {
-        let approx = [x[0].to_f64(), x[1].to_f64(), x[2].to_f64(), w.to_f64()];
-        let place = Place::Meet(Box::new(Homogeneous { x, w }));
+        let given = Homogeneous { x, w };
+        let approx = given.approx();
+        let place = Place::Given(Box::new(given));
         Self { place, approx }
     }
 
@@ -126,19 +73,27 @@ impl Vertex {
     pub fn as_lattice(&self) -> Option<&Lattice> {
         match &self.place {
             Place::Lattice(p) => Some(p),
-            Place::Meet(_) => None,
+            _ => None,
         }
     }
 
     /// The homogeneous coordinates.
     pub fn coordinates(&self) -> Homogeneous {
-        match &self.place {
-            Place::Lattice(p) => Homogeneous {
-                x: p.map(Int::from_i64),
-                w: Int::ONE,
-            },
-            Place::Meet(h) => (**h).clone(),
+        match self.exact() {
+            Coordinates::Short(h) => h.widened(),
+            Coordinates::Long(h) => h,
         }
+    }
+
+    /// The coordinates, computed from what the point was constructed from.
+    fn exact(&self) -> Coordinates {
+        let known = match &self.place {
+            Place::Lattice(p) => return Coordinates::of_lattice(p),
+            Place::Given(h) => return Coordinates::Long((**h).clone()),
+            Place::OnEdge(edge, cut) => Coordinates::on_edge(edge, cut),
+            Place::Meet([a, b, c]) => Coordinates::of_planes(a, b, c),
+        };
+        known.expect("what met when the point was made still meets")
     }
 
     /// The point in doubles, each coordinate within two units in the last place.
@@ -151,23 +106,26 @@ impl Vertex {
     pub fn side_of(&self, plane: &Plane) -> i32 {
         match &self.place {
             Place::Lattice(p) => plane.side_of_lattice(p),
-            Place::Meet(h) => self
-                .filtered_side(plane)
-                .unwrap_or_else(|| exact_side(h, plane)),
+            _ => match self.filtered_side(plane) {
+                Some(side) => side,
+                None if self.is_made_in(plane) => 0,
+                None => self.exact().side_of(plane),
+            },
         }
     }
 
     /// The plane's value here times a positive number, in doubles, and a bound of its error.
     pub fn near_value(&self, plane: &Plane) -> (f64, f64) {
         let a = plane.approx();
-        let t = [0, 1, 2, 3].map(|i| a[i] * self.approx[i]);
+        let x = &self.approx;
+        let t = [a[0] * x[0], a[1] * x[1], a[2] * x[2], a[3] * x[3]];
         let size = t[0].abs() + t[1].abs() + t[2].abs() + t[3].abs();
         (t[0] + t[1] + t[2] + t[3], size * FILTER)
     }
 
     /// The plane's value here times the denominator.
     pub fn value(&self, plane: &Plane) -> Int<8> {
-        exact_value(&self.coordinates(), plane)
+        self.coordinates().value(plane)
     }
 
     fn filtered_side(&self, plane: &Plane) -> Option<i32> {
@@ -175,32 +133,69 @@ impl Vertex {
         (value.abs() > doubt).then_some(if value > 0.0 { 1 } else { -1 })
     }
 
+    /// Whether the point was constructed in this very plane.
+    fn is_made_in(&self, plane: &Plane) -> bool {
+        let is_it = |own: &Arc<Plane>| std::ptr::eq(Arc::as_ptr(own), plane);
+        match &self.place {
+            Place::OnEdge(_, cut) => is_it(cut),
+            Place::Meet(planes) => planes.iter().any(is_it),
+            _ => false,
+        }
+    }
+
     /// Order of two points by one coordinate.
     pub fn compare(&self, other: &Self, axis: usize) -> Ordering {
         if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
             return p[axis].cmp(&q[axis]);
         }
+        if let Some(order) = self.near_order(other, axis) {
+            return order;
+        }
+        if let (Some(p), Some(q)) = (self.doubled(axis), other.doubled(axis)) {
+            return p.cmp(&q);
+        }
+        self.exact().compare(&other.exact(), axis)
+    }
+
+    /// The order by one coordinate where doubles tell it.
+    fn near_order(&self, other: &Self, axis: usize) -> Option<Ordering> {
         let left = self.approx[axis] * other.approx[3];
         let right = other.approx[axis] * self.approx[3];
-        if (left - right).abs() > (left.abs() + right.abs()) * FILTER {
-            return left.partial_cmp(&right).unwrap_or(Ordering::Equal);
-        }
-        let (p, q) = (self.coordinates(), other.coordinates());
-        let left: Int<12> = p.x[axis].mul(&q.w);
-        let right: Int<12> = q.x[axis].mul(&p.w);
-        left.cmp(&right)
+        let certain = (left - right).abs() > (left.abs() + right.abs()) * FILTER;
+        certain.then(|| left.total_cmp(&right))
     }
 
     /// Whether two vertices are the same point.
     pub fn same(&self, other: &Self) -> bool {
-        (0..3).all(|axis| self.compare(other, axis) == Ordering::Equal)
+        if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
+            return p == q;
+        }
+        if (0..3).any(|axis| self.near_order(other, axis).is_some()) {
+            return false;
+        }
+        let (p, q) = (self.exact(), other.exact());
+        (0..3).all(|axis| p.compare(&q, axis) == Ordering::Equal)
+    }
+
+    /// Twice a coordinate, where the point was constructed with one on the lattice or halfway.
+    fn doubled(&self, axis: usize) -> Option<i64> {
+        match &self.place {
+            Place::Lattice(p) => Some(2 * p[axis]),
+            Place::OnEdge(edge, cut) => {
+                let (a, b) = edge.ends();
+                let along = (a[axis] == b[axis]).then(|| 2 * a[axis]);
+                along.or_else(|| cut.doubled_place(axis))
+            }
+            Place::Meet(planes) => planes.iter().find_map(|p| p.doubled_place(axis)),
+            Place::Given(_) => None,
+        }
     }
 
     /// The key shared by all representations of this point.
     pub fn key(&self) -> VertexKey {
         match &self.place {
             Place::Lattice(p) => VertexKey(p.map(|c| residue(c.into()))),
-            Place::Meet(h) => meet_key(h),
+            _ => VertexKey(self.exact().residues()),
         }
     }
 }
@@ -213,40 +208,4 @@ fn meet_on_lattice(planes: [&Plane; 3]) -> Option<Lattice> {
         point[axis] = Some(plane.lattice_coordinate(axis)?);
     }
     Some([point[0]?, point[1]?, point[2]?])
-}
-
-fn meet_key(h: &Homogeneous) -> VertexKey {
-    let w = h.w.rem_u61(P1);
-    if w == 0 {
-        return VertexKey([u64::MAX; 3]);
-    }
-    let inverse = inv_mod(w, P1);
-    VertexKey([0, 1, 2].map(|i| mul_mod(h.x[i].rem_u61(P1), inverse, P1)))
-}
-
-fn exact_side(h: &Homogeneous, plane: &Plane) -> i32 {
-    exact_value(h, plane).signum()
-}
-
-fn exact_value(h: &Homogeneous, plane: &Plane) -> Int<8> {
-    let term = |i: usize| -> Int<8> { h.x[i].mul(&Int::<2>::from_i128(plane.normal()[i])) };
-    let last: Int<8> = h.w.mul(plane.offset());
-    term(0) + term(1) + term(2) + last
-}
-
-/// The cross product of two normals, exact: components below 2^217.
-pub fn cross(a: &[i128; 3], b: &[i128; 3]) -> [Int<4>; 3] {
-    [
-        product(a[1], b[2]) - product(a[2], b[1]),
-        product(a[2], b[0]) - product(a[0], b[2]),
-        product(a[0], b[1]) - product(a[1], b[0]),
-    ]
-}
-
-/// The product of two normal components; one machine multiplication where both are short.
-fn product(a: i128, b: i128) -> Int<4> {
-    match (i64::try_from(a), i64::try_from(b)) {
-        (Ok(a), Ok(b)) => Int::from_i128(i128::from(a) * i128::from(b)),
-        _ => Int::<2>::from_i128(a).mul(&Int::<2>::from_i128(b)),
-    }
 }

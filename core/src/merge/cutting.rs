@@ -243,13 +243,20 @@ impl Partition<'_> {
     }
 
     /// The part of a segment in a cutter's plane on one side of another plane.
-    fn clipped(&self, segment: Chord, plane: &Plane, cut: &Plane, minus: bool) -> Option<Chord> {
+    fn clipped(
+        &self,
+        segment: Chord,
+        plane: &Arc<Plane>,
+        cut: &Plane,
+        minus: bool,
+    ) -> Option<Chord> {
         let inside = |v: &Vertex| (v.side_of(cut) < 0) == minus || v.side_of(cut) == 0;
         let keep = [inside(&segment[0]), inside(&segment[1])];
         if keep == [true, true] {
             return Some(segment);
         }
-        let at = Arc::new(Vertex::meet(&self.support, plane, cut)?);
+        let cut = Arc::new(cut.clone());
+        let at = Arc::new(Vertex::meet(&self.support, plane, &cut)?);
         match keep {
             [true, false] => Some(Chord::from_buf([Arc::clone(&segment[0]), at])),
             [false, true] => Some(Chord::from_buf([at, Arc::clone(&segment[1])])),

@@ -6,7 +6,7 @@ use super::flux::Share;
 use crate::geometry::cell::Cell;
 use crate::geometry::fixed::Flux;
 use crate::geometry::outline;
-use crate::geometry::outline::OutlineEdge;
+use crate::geometry::outline::{BareEdge, OutlineEdge};
 use crate::geometry::polygon::Polygon;
 use crate::mesh::source::Source;
 
@@ -171,22 +171,27 @@ pub struct Part {
     /// The cell the outline describes.
     pub home: Cell,
     /// The outline, counterclockwise on the face.
-    pub edges: Vec<OutlineEdge>,
+    pub edges: Box<[BareEdge]>,
     /// The flux through the part, once somebody has asked.
     pub flux: OnceLock<Flux>,
 }
 
 impl Part {
     /// The part of a face that an outline bounds in a cell.
-    pub fn new(source: Arc<Source>, face: u32, home: Cell, mut edges: Vec<OutlineEdge>) -> Self {
-        edges.shrink_to_fit();
+    pub fn new(source: Arc<Source>, face: u32, home: Cell, edges: Vec<OutlineEdge>) -> Self {
         Self {
             source,
             face,
             home,
-            edges,
+            edges: edges.into_iter().map(BareEdge::from).collect(),
             flux: OnceLock::new(),
         }
+    }
+
+    /// The outline with the keys of its lines.
+    pub fn outline(&self) -> Vec<OutlineEdge> {
+        let support = self.source.plane(self.face);
+        OutlineEdge::keyed(&self.edges, &support)
     }
 
     /// The convex pieces, derived from the outline.

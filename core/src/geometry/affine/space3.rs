@@ -66,9 +66,9 @@ impl Affine for Dim3 {
 
     fn original(piece: &Polygon, facet: &[Lattice], seams: &[bool]) -> Vec<bool> {
         let on_edge = |carrier: &Carrier| match carrier {
-            Carrier::Edge(from, _) => facet
+            Carrier::Edge(edge) => facet
                 .iter()
-                .position(|corner| corner == from)
+                .position(|corner| corner == edge.ends().0)
                 .is_some_and(|edge| !seams.get(edge).copied().unwrap_or(false)),
             Carrier::Cut(..) => false,
         };

@@ -91,13 +91,13 @@ impl Anchor {
     /// The corner of a clipped face at which one of its own edges and a wall of the cell meet.
     fn at_wall(triangle: &Triangle, before: &Corner, corner: &Corner) -> Option<Self> {
         let (edge, wall) = match (&before.edge, &corner.edge) {
-            (Carrier::Edge(a, b), Carrier::Cut(wall, _))
-            | (Carrier::Cut(wall, _), Carrier::Edge(a, b)) => ((*a, *b), wall),
+            (Carrier::Edge(edge), Carrier::Cut(wall, _))
+            | (Carrier::Cut(wall, _), Carrier::Edge(edge)) => (edge.ends(), wall),
             _ => return None,
         };
         let axis = wall.only_axis()?;
         let wall = 2 * axis as u8 + u8::from(wall.normal()[axis] > 0);
-        let [a, b] = triangle.ends_of(&edge)?;
+        let [a, b] = triangle.ends_of([edge.0, edge.1])?;
         Some(Self {
             name: Name::Crossing(triangle.slot, [a.min(b), a.max(b)], wall),
             place: Spot::Exact(Arc::clone(&corner.at)),

@@ -117,9 +117,9 @@ impl<'a> Scene<'a> {
 
 impl Triangle<'_> {
     /// The vertices at the ends of an edge that is given by its places.
-    pub(super) fn ends_of(&self, edge: &(Lattice, Lattice)) -> Option<[u32; 2]> {
+    pub(super) fn ends_of(&self, edge: [&Lattice; 2]) -> Option<[u32; 2]> {
         let at = |place: &Lattice| self.corners.iter().position(|c| c == place);
-        Some([self.vertices[at(&edge.0)?], self.vertices[at(&edge.1)?]])
+        Some([self.vertices[at(edge[0])?], self.vertices[at(edge[1])?]])
     }
 }
 

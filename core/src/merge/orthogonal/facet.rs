@@ -160,11 +160,11 @@ impl<'a> Facet<'a> {
         let mut slants = SmallVec::new();
         for corner in piece.corners() {
             match &corner.edge {
-                Carrier::Edge(a, b) => slants.extend(Slant::new(
-                    [a[row], a[bit]],
-                    [b[row], b[bit]],
-                    counterclockwise,
-                )),
+                Carrier::Edge(edge) => {
+                    let (a, b) = edge.ends();
+                    let (a, b) = ([a[row], a[bit]], [b[row], b[bit]]);
+                    slants.extend(Slant::new(a, b, counterclockwise));
+                }
                 Carrier::Cut(plane, _) => {
                     plane.only_axis()?;
                 }

@@ -1,0 +1,64 @@
+//! Lattice edges of faces.
+
+use std::sync::Arc;
+
+use smallvec::SmallVec;
+
+use super::plane::Lattice;
+
+/// The corners of a face, in order.
+pub type Ring = SmallVec<[Lattice; 3]>;
+
+/// A directed edge between lattice points; the edges of a face share the face's corners.
+#[derive(Clone, Debug)]
+pub struct LatticeEdge {
+    ring: Arc<Ring>,
+    start: u32,
+    reversed: bool,
+}
+
+impl LatticeEdge {
+    /// The edge from one point to another.
+    pub fn new(from: Lattice, to: Lattice) -> Self {
+        Self::of_ring(&Arc::new(SmallVec::from_slice(&[from, to])), 0)
+    }
+
+    /// The edge that leaves a corner of a face.
+    pub fn of_ring(ring: &Arc<Ring>, start: u32) -> Self {
+        Self {
+            ring: Arc::clone(ring),
+            start,
+            reversed: false,
+        }
+    }
+
+    /// Start and end.
+    pub fn ends(&self) -> (&Lattice, &Lattice) {
+        let (at, n) = (self.start as usize, self.ring.len());
+        let (from, to) = (&self.ring[at], &self.ring[(at + 1) % n]);
+        if self.reversed {
+            (to, from)
+        } else {
+            (from, to)
+        }
+    }
+
+    /// Whether two edges have one direction, or opposite ones.
+    pub fn is_parallel(&self, other: &Self) -> bool {
+        let ((a, b), (c, d)) = (self.ends(), other.ends());
+        let step = |p: &Lattice, q: &Lattice, i: usize| i128::from(q[i] - p[i]);
+        (0..3).all(|i| {
+            let j = (i + 1) % 3;
+            step(a, b, i) * step(c, d, j) == step(a, b, j) * step(c, d, i)
+        })
+    }
+
+    /// The same edge run backwards.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self {
+            reversed: !self.reversed,
+            ..self.clone()
+        }
+    }
+}
