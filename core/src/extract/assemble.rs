@@ -1,20 +1,18 @@
 //! From a boundary to a closed triangle mesh.
 
-use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 use std::sync::Arc;
+
+use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
 use super::collect::{collect, Fate};
 use super::contacts;
-use super::origin::Owners;
 use super::planes::{group, PlaneGroup};
 use super::rim::{half_edge_ends, FrontierEdge, Rims};
-use super::seams::{find_touching, subdivisions, Edge, LinePoints};
-use super::triangulate::{triangulate, Planar};
+use super::seams::{find_touching, subdivisions, Edge, InnerPoints, LinePoints};
 use super::untouched::{Untouched, WholeFaces};
-use super::vertices::{Projection, VertexTable};
+use super::vertices::VertexTable;
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::line::LineKey;
-use crate::geometry::plane::{normal, Plane};
+use crate::geometry::plane::normal;
 use crate::geometry::vertex::Vertex;
 use crate::merge::list::Sources;
 use crate::mesh::finding::Finding;
@@ -63,7 +61,7 @@ pub(super) struct Assembly<'a> {
     /// The triangles, at the start, that are faces of sources as they came.
     untouched: Untouched,
     /// Whether to compare areas, because faces of one plane might overlap.
-    verify: bool,
+    pub(super) verify: bool,
 }
 
 /// The face a triangle lies in, as the source has it, and whether it is turned around.
@@ -130,7 +128,7 @@ fn attempt(solid: &Solid, sources: &Sources, join: bool) -> Result<ExactMesh> {
     }
     let mut assembly = Assembly::new(sources, &fates);
     assembly.verify = join && !solid.is_reduced();
-    assembly.run(&fates, &groups, &rims, &near)?;
+    assembly.run(&fates, groups, &rims, &near)?;
     let findings = contacts::split(&mut assembly)?;
     Ok(assembly.finish(findings))
 }
@@ -170,7 +168,7 @@ impl<'a> Assembly<'a> {
     fn run(
         &mut self,
         fates: &[Vec<Fate>],
-        groups: &[PlaneGroup],
+        groups: Vec<PlaneGroup>,
         rims: &Rims,
         near: &[(u32, u32)],
     ) -> Result<()> {
@@ -178,29 +176,33 @@ impl<'a> Assembly<'a> {
         self.identify_near(near, fates);
         let frontier = rims.frontier(fates, self.sources);
         let mut edges = Vec::new();
-        for group in groups {
+        let mut starts = Vec::with_capacity(groups.len());
+        for group in &groups {
+            starts.push(edges.len());
             self.number_edges(group, &mut edges);
         }
+        let offset = edges.len();
         for e in &frontier {
             edges.extend(self.frontier_edge(*e, fates));
         }
         self.name_cut_corners(fates);
-        let touching = self.touching(groups, &edges);
-        let inner = subdivisions(&edges, &touching, &self.table);
-        let offset: usize = groups.iter().map(|g| g.edges.len()).sum();
-        let split = split_faces(&frontier, &inner[offset..]);
+        let touching = self.touching(&groups, &edges);
+        let line = |i: usize| {
+            if i >= offset {
+                return frontier[i - offset].line(self.sources);
+            }
+            let group = starts.partition_point(|start| *start <= i) - 1;
+            groups[group].edges[i - starts[group]].line
+        };
+        let inner = subdivisions(&edges, line, &touching, &self.table);
+        let split = split_faces(&frontier, offset, &inner);
         self.identify_corners(&split);
         self.emit_whole(fates, rims, &order_of(&split));
         for (slot, face) in order_of(&split) {
             self.emit_split(slot, face, fates, &split)?;
         }
-        let mut start = 0;
-        for group in groups {
-            let range = start..start + group.edges.len();
-            start = range.end;
-            self.emit_group(group, &edges[range.clone()], &inner[range])?;
-        }
-        Ok(())
+        edges.truncate(offset);
+        self.emit_groups(groups, &edges, &inner)
     }
 
     /// Numbers the ends of a group's edges; those that two edges share are looked up once.
@@ -214,7 +216,6 @@ impl<'a> Assembly<'a> {
         edges.extend(group.edges.iter().map(|e| Edge {
             from: number(&e.from),
             to: number(&e.to),
-            line: e.line,
         }));
     }
 
@@ -246,16 +247,14 @@ impl<'a> Assembly<'a> {
     fn frontier_edge(&mut self, e: FrontierEdge, fates: &[Vec<Fate>]) -> Option<Edge> {
         let mesh = self.sources.get(e.slot as usize).mesh()?;
         let ends = half_edge_ends(mesh, e.half);
-        let [a, b] = ends.map(|v| mesh.vertices[v as usize]);
-        let line = LineKey::of_edge(&a, &b);
         let [p, q] = ends.map(|v| self.point_of(e.slot, mesh, v));
         let turned = fates[e.slot as usize][e.half as usize / 3] == Fate::Whole(true);
         let (from, to) = if turned { (q, p) } else { (p, q) };
-        Some(Edge { from, to, line })
+        Some(Edge { from, to })
     }
 
     /// The table number of a source's vertex; from now on the vertex is that point.
-    fn point_of(&mut self, slot: u32, mesh: &TriangleMesh, vertex: u32) -> u32 {
+    pub(super) fn point_of(&mut self, slot: u32, mesh: &TriangleMesh, vertex: u32) -> u32 {
         let image = self.images[slot as usize][vertex as usize];
         if let Some(Corner::Point(point)) = self.vertices.get(image as usize) {
             return *point;
@@ -384,82 +383,8 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Triangulates a whole face that received vertices on its edges.
-    fn emit_split(
-        &mut self,
-        slot: u32,
-        face: u32,
-        fates: &[Vec<Fate>],
-        split: &HashMap<(u32, u32), [Vec<u32>; 3]>,
-    ) -> Result<()> {
-        let source = Arc::clone(self.sources.get(slot as usize));
-        let Some(mesh) = source.mesh() else {
-            return Ok(());
-        };
-        let flip = fates[slot as usize][face as usize] == Fate::Whole(true);
-        let corners = mesh.faces[face as usize].map(|v| self.point_of(slot, mesh, v));
-        let mut ring = Vec::new();
-        for i in 0..3 {
-            ring.push(corners[i]);
-            let inner = split[&(slot, face)][i].iter();
-            if flip {
-                ring.extend(inner.rev());
-            } else {
-                ring.extend(inner);
-            }
-        }
-        if flip {
-            ring.reverse();
-        }
-        let edges: Vec<(u32, u32)> = (0..ring.len())
-            .map(|i| (ring[i], ring[(i + 1) % ring.len()]))
-            .collect();
-        let plane = source.plane(face);
-        let plane = if flip {
-            plane.flipped()
-        } else {
-            (*plane).clone()
-        };
-        for triangle in self.triangulated(&plane, &edges)? {
-            self.push(triangle, TriangleFace { slot, face, flip });
-        }
-        Ok(())
-    }
-
-    fn emit_group(&mut self, group: &PlaneGroup, edges: &[Edge], inner: &[Vec<u32>]) -> Result<()> {
-        let mut chain = Vec::with_capacity(edges.len());
-        for (edge, inner) in edges.iter().zip(inner) {
-            let mut at = edge.from;
-            for next in inner.iter().chain(std::iter::once(&edge.to)) {
-                chain.push((at, *next));
-                at = *next;
-            }
-        }
-        let triangles = self.triangulated(&group.plane, &chain)?;
-        let view = Projection::onto(&group.plane, &self.table);
-        let owners = Owners::new(group, &view, self.sources);
-        let faces: Vec<TriangleFace> = triangles
-            .iter()
-            .map(|t| owners.at_centre(*t, &view))
-            .collect();
-        for (triangle, face) in triangles.into_iter().zip(faces) {
-            self.push(triangle, face);
-        }
-        Ok(())
-    }
-
-    fn triangulated(&self, plane: &Plane, edges: &[(u32, u32)]) -> Result<Vec<[u32; 3]>> {
-        let view = Projection::onto(plane, &self.table);
-        let triangles = triangulate(&view, edges)
-            .map_err(|e| Error::internal(format!("an outline could not be triangulated: {e}")))?;
-        if self.verify && !covers_once(&view, edges, &triangles) {
-            return Err(Error::internal("faces of one plane overlap"));
-        }
-        Ok(triangles)
-    }
-
     /// Emits a triangle of table points.
-    fn push(&mut self, triangle: [u32; 3], face: TriangleFace) {
+    pub(super) fn push(&mut self, triangle: [u32; 3], face: TriangleFace) {
         let triangle = triangle.map(|p| self.image_of_point(p));
         self.triangles.push(triangle);
         self.faces.push(face);
@@ -526,40 +451,21 @@ impl<'a> Assembly<'a> {
     }
 }
 
-/// The points inserted on the three edges of each whole face that received any.
+/// The points inserted on the three edges of each whole face that received any; the frontier's
+/// edges are numbered from `offset` on.
 fn split_faces(
     frontier: &[FrontierEdge],
-    inner: &[Vec<u32>],
+    offset: usize,
+    inner: &InnerPoints,
 ) -> HashMap<(u32, u32), [Vec<u32>; 3]> {
     let mut split: HashMap<(u32, u32), [Vec<u32>; 3]> = HashMap::default();
-    for (edge, points) in frontier.iter().zip(inner) {
-        if !points.is_empty() {
+    for (edge, i) in frontier.iter().zip(offset..) {
+        if let Some(points) = inner.get(&i) {
             let face = split.entry((edge.slot, edge.half / 3)).or_default();
             face[edge.half as usize % 3].clone_from(points);
         }
     }
     split
-}
-
-/// Whether the triangles' area is the one the outline encloses, as far as doubles can tell.
-fn covers_once(view: &Projection, edges: &[(u32, u32)], triangles: &[[u32; 3]]) -> bool {
-    let Some(origin) = edges.first().map(|e| view.approx(e.0)) else {
-        return true;
-    };
-    let at = |p: u32| {
-        let [x, y] = view.approx(p);
-        [x - origin[0], y - origin[1]]
-    };
-    let turn = |a: u32, b: u32| {
-        let (p, q) = (at(a), at(b));
-        p[0] * q[1] - p[1] * q[0]
-    };
-    let enclosed: f64 = edges.iter().map(|e| turn(e.0, e.1)).sum();
-    let covered: f64 = triangles
-        .iter()
-        .map(|t| turn(t[0], t[1]) + turn(t[1], t[2]) + turn(t[2], t[0]))
-        .sum();
-    (enclosed - covered).abs() <= 1e-6 * covered.abs()
 }
 
 fn order_of(split: &HashMap<(u32, u32), [Vec<u32>; 3]>) -> Vec<(u32, u32)> {

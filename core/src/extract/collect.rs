@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 use smallvec::{smallvec, SmallVec};
 
-use super::leaves::{listed, Listed, Spanning};
-use crate::geometry::cell::{Cell, Cut};
+use super::leaves::{fill, listed, Listed, Piece, Spanning};
+use crate::geometry::cell::Cell;
 use crate::geometry::line::LineKey;
 use crate::geometry::outline::{cancel, OutlineEdge};
 use crate::geometry::plane::Lattice;
@@ -58,7 +58,7 @@ const MANY: usize = 256;
 struct Collector<'a> {
     sources: &'a Sources,
     root: &'a Branch,
-    listed: Listed,
+    listed: Listed<'a>,
 }
 
 /// Collects the boundary of a solid.
@@ -112,44 +112,64 @@ impl Collector<'_> {
         fate == Fate::Gone
             && source.mesh().is_some()
             && run.iter().all(|s| s.flip == first.flip)
-            && covers(self.root, source, first.face, first.flip)
+            && (self.fill_box(run, source) || covers(self.root, source, first.face, first.flip))
     }
 
+    /// Whether the cells of the leaves that list a face make up its box; errs on no.
+    fn fill_box(&self, run: &[Spanning], source: &Source) -> bool {
+        let leaves = run.chunk_by(|a, b| a.leaf == b.leaf).map(|s| s[0].leaf);
+        fill(source.face_box(run[0].face), leaves, &self.listed.cells)
+    }
+
+    /// The outlines of the faces that are not whole, or gone.
     fn outline(&mut self, open: &[&[Spanning]]) -> Vec<CutFace> {
-        let mut pieces: Vec<CutFace> = Vec::new();
-        for s in open.iter().flat_map(|run| run.iter()) {
-            let source = self.sources.get(s.slot as usize);
-            if let Some(polygon) = source.clip(s.face, &self.listed.cells[s.leaf as usize]) {
-                let edges = OutlineEdge::all_of(&polygon).collect();
-                pieces.push(CutFace {
-                    slot: s.slot,
-                    face: s.face,
-                    flip: s.flip,
-                    edges,
-                });
-            }
-        }
+        let spans = open.iter().flat_map(|run| run.iter()).map(Piece::from);
+        let mut pieces: Vec<Piece> = spans.collect();
         pieces.append(&mut self.listed.parts);
         pieces.sort_by_key(|p| (p.slot, p.face, p.flip));
-        let mut cut: Vec<CutFace> = Vec::new();
-        for piece in pieces {
-            match cut.last_mut() {
-                Some(c) if (c.slot, c.face, c.flip) == (piece.slot, piece.face, piece.flip) => {
-                    c.edges.extend(piece.edges);
-                }
-                _ => cut.push(piece),
+        let same = |a: &Piece, b: &Piece| (a.slot, a.face, a.flip) == (b.slot, b.face, b.flip);
+        let runs: Vec<&mut [Piece]> = pieces.chunk_by_mut(same).collect();
+        let joined = |run: &mut [Piece]| self.joined(run);
+        let found: Vec<CutFace> = if in_pool() && runs.len() > MANY {
+            runs.into_par_iter().map(joined).collect()
+        } else {
+            runs.into_iter().map(joined).collect()
+        };
+        let mut cut = Vec::new();
+        for c in found {
+            if is_full_face(&c, self.sources.get(c.slot as usize)) {
+                self.listed.fates[c.slot as usize][c.face as usize] = Fate::Whole(c.flip);
+            } else if !c.edges.is_empty() {
+                cut.push(c);
             }
         }
-        cut.retain_mut(|c| {
-            c.edges = cancel(std::mem::take(&mut c.edges));
-            let whole = is_full_face(c, self.sources.get(c.slot as usize));
-            if whole {
-                self.listed.fates[c.slot as usize][c.face as usize] = Fate::Whole(c.flip);
-            }
-            !whole && !c.edges.is_empty()
-        });
         cut
     }
+
+    /// One face of its pieces.
+    fn joined(&self, run: &mut [Piece]) -> CutFace {
+        let cells = &self.listed.cells;
+        let mut edges = run[0].take_edges(self.sources, cells);
+        for piece in &mut run[1..] {
+            edges.append(&mut piece.take_edges(self.sources, cells));
+        }
+        CutFace {
+            slot: run[0].slot,
+            face: run[0].face,
+            flip: run[0].flip,
+            edges: maximal(edges),
+        }
+    }
+}
+
+/// The edges that remain when opposite ones cancel, as [`cancel`] has them, in no more memory.
+pub(super) fn maximal(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
+    if edges.is_sorted_by(|a, b| a.line < b.line) {
+        return edges;
+    }
+    let mut kept = cancel(edges);
+    kept.shrink_to_fit();
+    kept
 }
 
 /// Whether an outline is the face's own triangle.
@@ -181,6 +201,7 @@ fn is_near(vertex: &Vertex, place: &Lattice) -> bool {
 }
 
 /// A subtree to look through for a face, and the face's box in it.
+#[derive(Clone, Copy)]
 struct Place<'a> {
     branch: &'a Branch,
     complement: bool,
@@ -189,22 +210,19 @@ struct Place<'a> {
 }
 
 impl<'a> Place<'a> {
-    /// The same for a child, which has one side of a cut; `None` if the box is on the other.
-    ///
-    /// The cut is one of the cell that holds the box, so that its axis alone matters.
-    fn child(&self, child: &'a Branch, cut: Cut, plus: bool) -> Option<Self> {
-        let (mut low, mut high) = (self.low, self.high);
-        if plus {
-            low[cut.axis] = low[cut.axis].max(cut.at);
-        } else {
-            high[cut.axis] = high[cut.axis].min(cut.at - 1);
+    /// Goes to a child; false if the box is not in its cell.
+    fn enter(&mut self, child: &'a Branch) -> bool {
+        self.branch = child;
+        self.complement ^= child.complement;
+        child.cell.holds_box(&self.low, &self.high)
+    }
+
+    /// Whether this is a leaf that lists the face.
+    fn is_listed(&self, source: &Source, face: u32, flip: bool) -> bool {
+        match &*self.branch.node {
+            Node::Deferred(leaf) => lists(leaf, source, face, flip ^ self.complement),
+            Node::Leaf(_) | Node::Cut(_) => false,
         }
-        (low[cut.axis] <= high[cut.axis]).then_some(Self {
-            branch: child,
-            complement: self.complement ^ child.complement,
-            low,
-            high,
-        })
     }
 }
 
@@ -220,34 +238,34 @@ fn covers(root: &Branch, source: &Source, face: u32, flip: bool) -> bool {
         low,
         high
     }];
-    while let Some(place) = open.pop() {
-        let branch = place.branch;
-        match &*branch.node {
-            Node::Leaf(_) => {
-                if enters(source, face, &branch.cell) {
+    while let Some(mut place) = open.pop() {
+        while let Node::Cut(halves) = &*place.branch.node {
+            let Some(cut) = place.branch.cell.cut() else {
+                return false;
+            };
+            let [minus, plus] = &halves.children;
+            let reaches = (place.low[cut.axis] < cut.at, place.high[cut.axis] >= cut.at);
+            let mut above = place;
+            if reaches.1 {
+                above.low[cut.axis] = above.low[cut.axis].max(cut.at);
+                if !above.enter(plus) {
                     return false;
                 }
             }
-            Node::Deferred(leaf) => {
-                let listed = lists(leaf, source, face, flip ^ place.complement);
-                if !listed && enters(source, face, &branch.cell) {
-                    return false;
-                }
+            if !reaches.0 {
+                place = above;
+                continue;
             }
-            Node::Cut(halves) => {
-                let Some(cut) = branch.cell.cut() else {
-                    return false;
-                };
-                for (child, plus) in halves.children.iter().zip([false, true]) {
-                    let Some(part) = place.child(child, cut, plus) else {
-                        continue;
-                    };
-                    if !child.cell.holds_box(&part.low, &part.high) {
-                        return false;
-                    }
-                    open.push(part);
-                }
+            if reaches.1 {
+                open.push(above);
+                place.high[cut.axis] = cut.at - 1;
             }
+            if !place.enter(minus) {
+                return false;
+            }
+        }
+        if !place.is_listed(source, face, flip) && enters(source, face, &place.branch.cell) {
+            return false;
         }
     }
     true

@@ -3,10 +3,13 @@
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use rayon::prelude::*;
+use rustc_hash::FxHashMap as HashMap;
+use smallvec::SmallVec;
 
-use super::collect::{CutFace, Fate};
+use super::collect::Fate;
 use crate::geometry::cell::Cell;
 use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::geometry::plane::Lattice;
 use crate::merge::list::Sources;
 use crate::mesh::source::{Source, TriangleMesh};
 use crate::mesh::tasks::{in_pool, CHUNK};
@@ -25,15 +28,62 @@ pub struct Spanning {
     pub leaf: u32,
 }
 
+/// What of a face one leaf lists.
+pub struct Piece<'a> {
+    /// The source's slot.
+    pub slot: u32,
+    /// The face.
+    pub face: u32,
+    /// Whether inside and outside are exchanged.
+    pub flip: bool,
+    outline: Outline<'a>,
+}
+
+/// Where a piece ends; most outlines are looked up or made when it is their turn.
+enum Outline<'a> {
+    /// The face's own edges, and the border of the cell of the leaf with this number.
+    Face(u32),
+    /// As the part says.
+    Part(&'a Part),
+    /// These edges.
+    Edges(Vec<OutlineEdge>),
+}
+
+impl From<&Spanning> for Piece<'_> {
+    fn from(s: &Spanning) -> Self {
+        Self {
+            slot: s.slot,
+            face: s.face,
+            flip: s.flip,
+            outline: Outline::Face(s.leaf),
+        }
+    }
+}
+
+impl Piece<'_> {
+    /// The edges around the piece; taken out of it if it has them.
+    pub fn take_edges(&mut self, sources: &Sources, cells: &[Cell]) -> Vec<OutlineEdge> {
+        match &mut self.outline {
+            Outline::Face(leaf) => {
+                let source = sources.get(self.slot as usize);
+                let polygon = source.clip(self.face, &cells[*leaf as usize]);
+                polygon.map_or_else(Vec::new, |p| OutlineEdge::all_of(&p).collect())
+            }
+            Outline::Part(part) => part_edges(part, &part.home),
+            Outline::Edges(edges) => std::mem::take(edges),
+        }
+    }
+}
+
 /// What the leaves say, in their order.
 #[derive(Default)]
-pub struct Listed {
+pub struct Listed<'a> {
     /// Faces inside a leaf's cell are whole, those with a part in one are cut; by slot.
     pub fates: Vec<Vec<Fate>>,
     /// The faces that reach out of leaves.
     pub spanning: Vec<Spanning>,
-    /// The parts, and where they end.
-    pub parts: Vec<CutFace>,
+    /// The pieces that the parts are in the leaves, by slot, face and orientation.
+    pub parts: Vec<Piece<'a>>,
     /// Faces in cells where several operands met, by slot.
     pub near: Vec<(u32, u32)>,
     /// The leaves' cells.
@@ -42,10 +92,24 @@ pub struct Listed {
 
 /// What one leaf says but for the faces inside its cell.
 #[derive(Default)]
-struct Found {
+struct Found<'a> {
     spanning: Vec<Spanning>,
-    parts: Vec<CutFace>,
+    parts: Vec<Listing<'a>>,
     near: Vec<(u32, u32)>,
+}
+
+/// A part that a leaf lists.
+struct Listing<'a> {
+    slot: u32,
+    flip: bool,
+    leaf: u32,
+    part: &'a Part,
+}
+
+impl Listing<'_> {
+    fn key(&self) -> (u32, u32, bool) {
+        (self.slot, self.part.face, self.flip)
+    }
 }
 
 /// A leaf, its number and its element groups' slots.
@@ -57,10 +121,10 @@ struct Leaf<'a> {
 }
 
 /// Asks all leaves.
-pub fn listed(root: &Branch, sources: &Sources) -> Listed {
+pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
     let leaves = leaves_of(root);
     let fates = Fates::of(&leaves, sources);
-    let visit = |leaf: &Leaf| leaf.visit(sources, &fates);
+    let visit = |leaf: &Leaf<'a>| leaf.visit(sources, &fates);
     let size: usize = leaves.iter().map(|l| l.content.len()).sum();
     let found: Vec<Found> = if in_pool() && size > CHUNK {
         leaves.par_iter().map(visit).collect()
@@ -68,16 +132,126 @@ pub fn listed(root: &Branch, sources: &Sources) -> Listed {
         leaves.iter().map(visit).collect()
     };
     let mut all = Listed {
-        fates: fates.into_plain(),
         cells: leaves.iter().map(|l| l.cell).collect(),
         ..Listed::default()
     };
+    let mut parts: Vec<Listing> = Vec::new();
     for leaf in found {
         all.spanning.extend(leaf.spanning);
-        all.parts.extend(leaf.parts);
+        parts.extend(leaf.parts);
         all.near.extend(leaf.near);
     }
+    parts.sort_by_key(Listing::key);
+    all.parts = pieces(&parts, &all.cells);
+    for piece in &all.parts {
+        fates.0[piece.slot as usize][piece.face as usize].store(CUT, Ordering::Relaxed);
+    }
+    all.fates = fates.into_plain();
     all
+}
+
+/// What listed parts, by their keys, are in their leaves.
+fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
+    let runs: Vec<&[Listing]> = parts.chunk_by(|a, b| a.key() == b.key()).collect();
+    let face = |run: &&[Listing<'a>]| pieces_of_face(run, cells);
+    let pieces: Vec<Vec<Piece>> = if in_pool() && parts.len() > CHUNK {
+        runs.par_iter().map(face).collect()
+    } else {
+        runs.iter().map(face).collect()
+    };
+    pieces.into_iter().flatten().collect()
+}
+
+/// The pieces of one face: all of a part where that is still there, else what leaves have of it.
+fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
+    let mut places: HashMap<*const Part, usize> = HashMap::default();
+    let mut by_part: Vec<(&'a Part, SmallVec<[u32; 4]>)> = Vec::new();
+    for listing in run {
+        let next = by_part.len();
+        let place = *places.entry(listing.part).or_insert(next);
+        if place == next {
+            by_part.push((listing.part, SmallVec::new()));
+        }
+        by_part[place].1.push(listing.leaf);
+    }
+    let mut outlines: Vec<Outline> = Vec::new();
+    for (part, leaves) in by_part {
+        if is_whole(part, &leaves, cells) {
+            outlines.push(Outline::Part(part));
+            continue;
+        }
+        let edges = leaves.iter().map(|l| part_edges(part, &cells[*l as usize]));
+        outlines.extend(edges.filter(|e| !e.is_empty()).map(Outline::Edges));
+    }
+    let (slot, face, flip) = run[0].key();
+    let piece = |outline| Piece {
+        slot,
+        face,
+        flip,
+        outline,
+    };
+    outlines.into_iter().map(piece).collect()
+}
+
+/// Whether the leaves that list a part have all of it; errs on no.
+fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
+    if let [leaf] = leaves {
+        if cells[*leaf as usize] == part.home {
+            return !part.edges.is_empty();
+        }
+    }
+    let once = leaves.windows(2).all(|pair| pair[0] != pair[1]);
+    once && fill(part_box(part), leaves.iter().copied(), cells)
+}
+
+/// A lattice box around a part inside its home cell.
+fn part_box(part: &Part) -> (Lattice, Lattice) {
+    let (least, most) = (*part.home.low(), part.home.high());
+    let (mut low, mut high) = (most, least);
+    for edge in &part.edges {
+        let at = edge.from.approx();
+        for i in 0..3 {
+            let slack = at[i].abs() * 4.0 * f64::EPSILON;
+            low[i] = low[i].min((at[i] - slack).floor() as i64);
+            high[i] = high[i].max((at[i] + slack).ceil() as i64);
+        }
+    }
+    (
+        [0, 1, 2].map(|i| low[i].max(least[i])),
+        [0, 1, 2].map(|i| high[i].min(most[i])),
+    )
+}
+
+/// Whether the cells of different leaves make up a box; errs on no.
+///
+/// Leaves are apart, so that it is enough to count lattice points.
+pub fn fill(
+    (low, high): (Lattice, Lattice),
+    leaves: impl Iterator<Item = u32>,
+    cells: &[Cell],
+) -> bool {
+    let Some(mut rest) = count(&low, &high).filter(|all| *all > 0) else {
+        return false;
+    };
+    for leaf in leaves {
+        let cell = &cells[leaf as usize];
+        let top = cell.high();
+        let a = [0, 1, 2].map(|i| low[i].max(cell.low()[i]));
+        let b = [0, 1, 2].map(|i| high[i].min(top[i]));
+        let Some(less) = count(&a, &b).and_then(|part| rest.checked_sub(part)) else {
+            return false;
+        };
+        rest = less;
+    }
+    rest == 0
+}
+
+/// How many lattice points a box has; `None` for huge ones.
+fn count(low: &Lattice, high: &Lattice) -> Option<u128> {
+    (0..3).try_fold(1u128, |product, i| {
+        let extent = u128::try_from(high[i] - low[i] + 1).unwrap_or(0);
+        product.checked_mul(extent)
+    })
 }
 
 fn leaves_of(root: &Branch) -> Vec<Leaf<'_>> {
@@ -143,8 +317,8 @@ impl Fates {
     }
 }
 
-impl Leaf<'_> {
-    fn visit(&self, sources: &Sources, fates: &Fates) -> Found {
+impl<'a> Leaf<'a> {
+    fn visit(&self, sources: &Sources, fates: &Fates) -> Found<'a> {
         let mut found = Found::default();
         for group in &self.content.groups {
             let slot = sources.slot(&group.source);
@@ -155,24 +329,18 @@ impl Leaf<'_> {
             self.visit_group(group, slot as u32, &fates.0[slot], &mut found);
         }
         for element in &self.content.parts {
-            let part = &element.part;
-            let edges = part_edges(part, &self.cell);
-            if edges.is_empty() {
-                continue;
-            }
-            let slot = sources.slot(&part.source);
-            fates.0[slot][part.face as usize].store(CUT, Ordering::Relaxed);
-            found.parts.push(CutFace {
-                slot: slot as u32,
-                face: part.face,
+            let part = &*element.part;
+            found.parts.push(Listing {
+                slot: sources.slot(&part.source) as u32,
                 flip: element.flip ^ self.complement,
-                edges,
+                leaf: self.number,
+                part,
             });
         }
         found
     }
 
-    fn visit_group(&self, group: &Group, slot: u32, fates: &[AtomicU8], found: &mut Found) {
+    fn visit_group(&self, group: &Group, slot: u32, fates: &[AtomicU8], found: &mut Found<'a>) {
         let flip = group.flip ^ self.complement;
         let mesh = group.source.mesh();
         let holds_all = mesh.is_some() && group.source.cell().is_some_and(|c| self.cell.holds(&c));
@@ -204,7 +372,7 @@ fn holder<'a>(mesh: &'a TriangleMesh, cell: &Cell) -> impl Fn(u32) -> bool + 'a 
     }
 }
 
-/// The outline of a part inside a leaf's cell.
+/// The edges of a part inside a leaf's cell.
 fn part_edges(part: &Part, cell: &Cell) -> Vec<OutlineEdge> {
     if part.home == *cell {
         return part.outline();

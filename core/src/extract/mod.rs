@@ -8,6 +8,7 @@ pub mod fans;
 mod leaves;
 mod origin;
 pub mod planes;
+mod polygons;
 pub mod rim;
 pub mod round;
 pub mod seams;

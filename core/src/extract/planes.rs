@@ -5,10 +5,10 @@ use std::sync::Arc;
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::assemble::TriangleFace;
-use super::collect::{Boundary, CutFace, Fate};
-use super::rim::{half_edge_ends, FrontierEdge, Rims};
+use super::collect::{maximal, Boundary, CutFace, Fate};
+use super::rim::Rims;
 use crate::geometry::line::LineKey;
-use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::geometry::outline::OutlineEdge;
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::Polygon;
 use crate::merge::list::Sources;
@@ -62,7 +62,7 @@ pub fn group(
     }
     let mut groups = grouping.groups;
     for group in &mut groups {
-        group.edges = cancel(std::mem::take(&mut group.edges));
+        group.edges = maximal(std::mem::take(&mut group.edges));
         group.faces.sort_unstable();
     }
     groups.retain(|g| !g.edges.is_empty());
@@ -94,13 +94,19 @@ impl Grouping<'_> {
         self.groups[at]
             .faces
             .push(TriangleFace { slot, face, flip });
-        let edges = &mut self.groups[at].edges;
-        if cut.flip {
-            edges.extend(cut.edges.iter().map(OutlineEdge::reversed));
-        } else {
-            edges.extend(cut.edges);
+        let mut edges = cut.edges;
+        if flip {
+            for edge in &mut edges {
+                std::mem::swap(&mut edge.from, &mut edge.to);
+            }
         }
-        self.open.push((cut.slot, cut.face, cut.flip, at));
+        let target = &mut self.groups[at].edges;
+        if target.is_empty() {
+            *target = edges;
+        } else {
+            target.append(&mut edges);
+        }
+        self.open.push((slot, face, flip, at));
     }
 
     fn oriented_plane(&self, slot: u32, face: u32, flip: bool) -> Arc<Plane> {
@@ -161,7 +167,7 @@ impl Grouping<'_> {
             };
             let plane = self.oriented_plane(slot, face, flip);
             let group = self.group_of(plane);
-            let line = self.line_of(*edge);
+            let line = edge.line(self.sources);
             candidates.push((slot, face, flip, group, line));
         }
         let group_lines: HashSet<(usize, LineKey)> = self
@@ -183,16 +189,5 @@ impl Grouping<'_> {
                 self.absorb(slot, face, flip, group);
             }
         }
-    }
-
-    fn line_of(&self, edge: FrontierEdge) -> LineKey {
-        let mesh = self.sources.get(edge.slot as usize).mesh();
-        mesh.map_or_else(
-            || LineKey::of_edge(&[0; 3], &[1, 0, 0]),
-            |m| {
-                let [a, b] = half_edge_ends(m, edge.half).map(|v| m.vertices[v as usize]);
-                LineKey::of_edge(&a, &b)
-            },
-        )
     }
 }

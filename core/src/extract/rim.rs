@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 
 use super::collect::Fate;
+use crate::geometry::line::LineKey;
 use crate::merge::list::Sources;
 use crate::mesh::source::{Source, TriangleMesh};
 use crate::mesh::tasks::{in_pool, CHUNK};
@@ -39,6 +40,16 @@ pub struct FrontierEdge {
     pub slot: u32,
     /// The half-edge.
     pub half: u32,
+}
+
+impl FrontierEdge {
+    /// The line it lies on.
+    pub fn line(&self, sources: &Sources) -> LineKey {
+        let mesh = sources.get(self.slot as usize).mesh();
+        let ends = mesh.map(|m| half_edge_ends(m, self.half).map(|v| m.vertices[v as usize]));
+        let [a, b] = ends.unwrap_or([[0; 3], [1, 0, 0]]);
+        LineKey::of_edge(&a, &b)
+    }
 }
 
 impl Rims {

@@ -13,30 +13,36 @@ use crate::geometry::outline::OutlineEdge;
 /// Numbered points by the line they lie on.
 pub type LinePoints = HashMap<LineKey, Vec<u32>>;
 
-/// A directed edge between numbered points, on a line.
+/// Points inside edges, from start to end, by the edges' numbers.
+pub type InnerPoints = HashMap<usize, Vec<u32>>;
+
+/// A directed edge between numbered points.
 #[derive(Clone, Copy, Debug)]
 pub struct Edge {
     /// Start.
     pub from: u32,
     /// End.
     pub to: u32,
-    /// The line it lies on.
-    pub line: LineKey,
 }
 
-/// For each edge the points inside it at which it must be subdivided, from start to end.
+/// For the edges at which there are any, the points at which they must be subdivided.
 ///
 /// Opposite edges with equal ends pair and stay. The others still form a closed chain, for a
 /// boundary has no boundary: subdivided at each other's ends, line by line, they pair too.
 ///
 /// # Source
 /// Design review F6.
-pub fn subdivisions(edges: &[Edge], touching: &LinePoints, table: &VertexTable) -> Vec<Vec<u32>> {
-    let mut inner = vec![Vec::new(); edges.len()];
-    let mut open = unpaired(edges, touching);
-    open.sort_by_key(|i| (edges[*i].line, *i));
-    for run in open.chunk_by(|a, b| edges[*a].line == edges[*b].line) {
-        let extra = touching.get(&edges[run[0]].line).map_or(&[][..], |t| t);
+pub fn subdivisions(
+    edges: &[Edge],
+    line: impl Fn(usize) -> LineKey,
+    touching: &LinePoints,
+    table: &VertexTable,
+) -> InnerPoints {
+    let mut inner = InnerPoints::default();
+    let mut open: Vec<(LineKey, usize)> = unpaired(edges, &line, touching, table);
+    open.sort_unstable();
+    for run in open.chunk_by(|a, b| a.0 == b.0) {
+        let extra = touching.get(&run[0].0).map_or(&[][..], |t| t);
         subdivide_line(run, edges, extra, table, &mut inner);
     }
     inner
@@ -72,9 +78,12 @@ pub fn find_touching(
     for (i, a) in boxed.iter().enumerate() {
         let near = boxed[i + 1..].iter().take_while(|b| b.low[0] <= a.high[0]);
         for b in near.filter(|b| b.low[1] <= a.high[1] && a.low[1] <= b.high[1]) {
-            for (edge, point) in [(a.edge, b.edge.from), (b.edge, a.edge.from)] {
+            for (edge, line, point) in [
+                (a.edge, a.outline.line, b.edge.from),
+                (b.edge, b.outline.line, a.edge.from),
+            ] {
                 if view.is_between(edge.from, point, edge.to) {
-                    touching.entry(edge.line).or_default().push(point);
+                    touching.entry(line).or_default().push(point);
                 }
             }
             if view.crosses([a.edge.from, a.edge.to], [b.edge.from, b.edge.to]) {
@@ -107,47 +116,94 @@ impl<'a> Boxed<'a> {
 }
 
 /// The edges left after opposite ones with equal ends cancel, and all on lines with touching points.
-fn unpaired(edges: &[Edge], touching: &LinePoints) -> Vec<usize> {
-    let mut waiting: HashMap<(u32, u32), Vec<usize>> =
-        HashMap::with_capacity_and_hasher(edges.len(), rustc_hash::FxBuildHasher);
+fn unpaired(
+    edges: &[Edge],
+    line: &impl Fn(usize) -> LineKey,
+    touching: &LinePoints,
+    table: &VertexTable,
+) -> Vec<(LineKey, usize)> {
+    let paired = paired(edges, table.len());
+    let keyed = (0..edges.len()).filter_map(|i| {
+        if paired[i] && touching.is_empty() {
+            return None;
+        }
+        let line = line(i);
+        (!paired[i] || touching.contains_key(&line)).then_some((line, i))
+    });
+    keyed.collect()
+}
+
+/// Which edges have an opposite one with equal ends for themselves.
+fn paired(edges: &[Edge], points: usize) -> Vec<bool> {
     let mut paired = vec![false; edges.len()];
-    for (i, edge) in edges.iter().enumerate() {
-        let twin = waiting.get_mut(&(edge.to, edge.from)).and_then(Vec::pop);
-        if let Some(j) = twin {
-            paired[i] = true;
-            paired[j] = true;
-        } else {
-            waiting.entry((edge.from, edge.to)).or_default().push(i);
+    let mut waiting: Vec<u32> = Vec::new();
+    let (starts, mut order) = by_lower_end(edges, points);
+    for bounds in starts.windows(2) {
+        let around = &mut order[bounds[0] as usize..bounds[1] as usize];
+        let higher = |i: &u32| edges[*i as usize].from.max(edges[*i as usize].to);
+        around.sort_unstable_by_key(|i| (higher(i), *i));
+        for same in around.chunk_by(|a, b| higher(a) == higher(b)) {
+            waiting.clear();
+            for i in same {
+                let opposite = |j: &mut u32| edges[*j as usize].from == edges[*i as usize].to;
+                if let Some(j) = waiting.pop_if(opposite) {
+                    paired[*i as usize] = true;
+                    paired[j as usize] = true;
+                } else {
+                    waiting.push(*i);
+                }
+            }
         }
     }
-    (0..edges.len())
-        .filter(|i| !paired[*i] || touching.contains_key(&edges[*i].line))
-        .collect()
+    paired
+}
+
+/// The edges sorted by the lower number of their ends, and where those of each number start.
+fn by_lower_end(edges: &[Edge], points: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0u32; points + 1];
+    for edge in edges {
+        starts[edge.from.min(edge.to) as usize] += 1;
+    }
+    let mut sum = 0;
+    for start in &mut starts {
+        sum += *start;
+        *start = sum;
+    }
+    let mut order = vec![0u32; edges.len()];
+    for (i, edge) in (0u32..).zip(edges) {
+        let start = &mut starts[edge.from.min(edge.to) as usize];
+        *start -= 1;
+        order[*start as usize] = i;
+    }
+    (starts, order)
 }
 
 fn subdivide_line(
-    run: &[usize],
+    run: &[(LineKey, usize)],
     edges: &[Edge],
     extra: &[u32],
     table: &VertexTable,
-    inner: &mut [Vec<u32>],
+    inner: &mut InnerPoints,
 ) {
-    let axis = edges[run[0]].line.axis();
+    let axis = run[0].0.axis();
     let mut points: Vec<u32> = run
         .iter()
-        .flat_map(|i| [edges[*i].from, edges[*i].to])
+        .flat_map(|(_, i)| [edges[*i].from, edges[*i].to])
         .chain(extra.iter().copied())
         .collect();
     points.sort_unstable();
     points.dedup();
     points.sort_by(|a, b| table.point(*a).compare(table.point(*b), axis));
     let rank: HashMap<u32, usize> = points.iter().enumerate().map(|(r, p)| (*p, r)).collect();
-    for i in run {
+    for (_, i) in run {
         let (from, to) = (rank[&edges[*i].from], rank[&edges[*i].to]);
-        inner[*i] = if from < to {
+        let between: Vec<u32> = if from < to {
             points[from + 1..to].to_vec()
         } else {
             points[to + 1..from].iter().rev().copied().collect()
         };
+        if !between.is_empty() {
+            inner.insert(*i, between);
+        }
     }
 }

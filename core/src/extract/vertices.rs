@@ -51,7 +51,9 @@ impl VertexTable {
                 self.previous.push(entry.insert(next));
             }
         }
-        self.points.push(shared());
+        let place = lattice_place(vertex);
+        let point = place.map_or_else(shared, |p| Arc::new(Vertex::lattice(p)));
+        self.points.push(point);
         next
     }
 
@@ -75,6 +77,17 @@ impl VertexTable {
     pub fn len(&self) -> usize {
         self.points.len()
     }
+}
+
+/// The lattice point that a constructed one is, if it is: questions about these are cheap.
+fn lattice_place(vertex: &Vertex) -> Option<Lattice> {
+    if vertex.as_lattice().is_some() {
+        return None;
+    }
+    let (at, place) = (vertex.approx(), vertex.approx().map(f64::round));
+    let near = (0..3).all(|i| (at[i] - place[i]).abs() <= at[i].abs() * 4.0 * f64::EPSILON);
+    let place = place.map(|c| c as i64);
+    (near && vertex.same(&Vertex::lattice(place))).then_some(place)
 }
 
 /// A fingerprint that equal points share; unequal points differ but for chance 2^-64.
