@@ -4,9 +4,16 @@
 //! needles overlap in every box, but hardly in a projection across them. In the plane of the two best
 //! lines also the edges of triangles tell them from boxes.
 
-use crate::geometry::plane::Lattice;
+mod line;
+mod rim;
 
-/// An element as the sweep sees it, where those of one operand follow each other: its operand, its box, and corners whose convex hull holds it.
+use crate::geometry::plane::Lattice;
+use line::{dot, longest_edge, Line, Span};
+use rim::{largest_coordinate, rims, HalfPlane};
+
+/// An element as the sweep sees it: its operand, its box, and corners whose convex hull holds it.
+///
+/// Elements of one operand follow each other.
 #[derive(Clone, Debug)]
 pub struct Swept {
     /// The operand.
@@ -22,20 +29,17 @@ pub struct Swept {
 /// Up to this many elements are compared all with all, at about a nanosecond each.
 const FEW: usize = 384;
 
-/// Among fewer elements than this other lines than the axes are not worth finding.
-const MANY: usize = 512;
-
 /// Projections are widened by this share of the largest coordinate, far above their rounding.
 const SLACK: f64 = 1e-14;
+
+/// Among fewer elements than this other lines than the axes are not worth finding.
+const MANY: usize = 512;
 
 /// A sweep that compares more pairs, at about a nanosecond each, costs more than halving the cell.
 const CROWDED: f64 = 3e8;
 
 /// Lines closer than this cosine are nearly one: their plane shows little.
 const PARALLEL: f64 = 0.8;
-
-/// Lowest and highest place along a line.
-type Span = [f64; 2];
 
 /// Calls `meet` for all pairs of different operands whose extents overlap along every line, the
 /// lower index first; gives up with `None` where too many elements lie above each other on each.
@@ -155,20 +159,6 @@ struct Sweep {
     crowding: f64,
 }
 
-/// A line, given by its direction, and the elements along it.
-struct Line {
-    direction: [f64; 3],
-    spans: Vec<Span>,
-    crowding: f64,
-}
-
-/// The points of the plane for which normal · point is at most the limit.
-#[derive(Clone, Copy)]
-struct HalfPlane {
-    normal: [f64; 2],
-    limit: f64,
-}
-
 impl Sweep {
     fn of(elements: &[Swept], mut numbers: Vec<usize>) -> Self {
         let swept: Vec<&Swept> = numbers.iter().map(|i| &elements[*i]).collect();
@@ -227,173 +217,6 @@ impl Sweep {
             && !beyond(b, a)
             && self.others.iter().all(overlap)
     }
-}
-
-impl Line {
-    /// The axes and, among many elements, lines along and across the directions in which they are
-    /// long.
-    fn all(elements: &[&Swept]) -> Vec<Self> {
-        let mut lines: Vec<Self> = (0..3).map(|axis| Self::axis(elements, axis)).collect();
-        if elements.len() > MANY {
-            let slanted = directions(elements);
-            lines.extend(slanted.iter().filter_map(|d| Self::slanted(elements, d)));
-        }
-        lines
-    }
-
-    fn axis(elements: &[&Swept], axis: usize) -> Self {
-        let mut direction = [0.0; 3];
-        direction[axis] = 1.0;
-        let span = |e: &&Swept| [e.low[axis] as f64, e.high[axis] as f64];
-        Self::new(direction, elements.iter().map(span).collect())
-    }
-
-    /// `None` if an element has no corners.
-    fn slanted(elements: &[&Swept], direction: &[f64; 3]) -> Option<Self> {
-        let spans = projections(elements, direction)?;
-        Some(Self::new(*direction, spans))
-    }
-
-    fn new(direction: [f64; 3], spans: Vec<Span>) -> Self {
-        let crowding = crowding(&spans);
-        Self {
-            direction,
-            spans,
-            crowding,
-        }
-    }
-}
-
-impl HalfPlane {
-    /// All of the plane.
-    const ALL: Self = Self {
-        normal: [0.0; 2],
-        limit: f64::INFINITY,
-    };
-
-    /// What holds the points `corners` and ends along the line through the first two of them.
-    ///
-    /// Any normal will do, so that only products with it are rounded: by a few units in the last
-    /// place of coordinates up to `size`, well below the slack.
-    fn beside(corners: [[f64; 2]; 3], size: f64) -> Self {
-        let [a, b, c] = corners;
-        let across = [b[1] - a[1], a[0] - b[0]];
-        let dot = |p: &[f64; 2]| across[0] * p[0] + across[1] * p[1];
-        let out = if dot(&c) > dot(&a) { -1.0 } else { 1.0 };
-        let normal = across.map(|x| out * x);
-        let most = corners
-            .iter()
-            .map(|p| out * dot(p))
-            .fold(f64::MIN, f64::max);
-        let slack = (normal[0].abs() + normal[1].abs()) * size * SLACK;
-        Self {
-            normal,
-            limit: most + slack,
-        }
-    }
-
-    /// Whether a box lies outside.
-    fn excludes(&self, spans: &[Span; 2]) -> bool {
-        let least = |i: usize| self.normal[i] * spans[i][usize::from(self.normal[i] < 0.0)];
-        least(0) + least(1) > self.limit
-    }
-}
-
-/// The half-planes beside the edges of a triangle's projection.
-fn rims(corners: Option<&[[f64; 3]; 3]>, plane: &[[f64; 3]; 2], size: f64) -> [HalfPlane; 3] {
-    let Some(corners) = corners else {
-        return [HalfPlane::ALL; 3];
-    };
-    let [a, b, c] = corners.map(|p| [dot(&p, &plane[0]), dot(&p, &plane[1])]);
-    [[a, b, c], [b, c, a], [c, a, b]].map(|corners| HalfPlane::beside(corners, size))
-}
-
-fn largest_coordinate(elements: &[&Swept]) -> f64 {
-    let corners = elements.iter().filter_map(|e| e.corners.as_ref());
-    let coordinates = corners.flatten().flatten();
-    coordinates.fold(1.0f64, |m, x| m.max(x.abs()))
-}
-
-/// The sum of extents relative to the whole: how many elements overlap at a point.
-fn crowding(spans: &[Span]) -> f64 {
-    let low = spans.iter().fold(f64::INFINITY, |m, s| m.min(s[0]));
-    let high = spans.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s[1]));
-    let sum: f64 = spans.iter().map(|s| s[1] - s[0]).sum();
-    sum / (high - low).max(1.0)
-}
-
-/// For the first operand and for the others the direction in which their elements are long and two
-/// across it, and the one across both.
-fn directions(elements: &[&Swept]) -> Vec<[f64; 3]> {
-    let own = elements.first().map_or(0, |e| e.operand);
-    let (first, others): (Vec<&Swept>, Vec<&Swept>) =
-        elements.iter().partition(|e| e.operand == own);
-    let long = [direction_along(&first), direction_along(&others)];
-    let mut found: Vec<[f64; 3]> = long.iter().flatten().flat_map(frame).collect();
-    if let [Some(a), Some(b)] = long {
-        found.push(cross(&a, &b));
-    }
-    found.iter().filter_map(unit).collect()
-}
-
-/// A direction and two across it.
-fn frame(long: &[f64; 3]) -> [[f64; 3]; 3] {
-    let thin = (0..3).min_by(|i, j| long[*i].abs().total_cmp(&long[*j].abs()));
-    let mut axis = [0.0; 3];
-    axis[thin.unwrap_or(0)] = 1.0;
-    let any = cross(long, &axis);
-    [*long, any, cross(long, &any)]
-}
-
-/// The direction in which elements are long.
-fn direction_along(elements: &[&Swept]) -> Option<[f64; 3]> {
-    let mut long = [0.0f64; 3];
-    let corners = elements.iter().filter_map(|e| e.corners.as_ref());
-    for edge in corners.filter_map(longest_edge) {
-        let sign = if dot(&edge, &long) < 0.0 { -1.0 } else { 1.0 };
-        (0..3).for_each(|i| long[i] += sign * edge[i]);
-    }
-    unit(&long)
-}
-
-fn longest_edge(corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
-    let edge = |i: usize| {
-        let (a, b) = (&corners[i], &corners[(i + 1) % 3]);
-        [0, 1, 2].map(|k| b[k] - a[k])
-    };
-    let longer = |a: &[f64; 3], b: &[f64; 3]| dot(a, a).total_cmp(&dot(b, b));
-    (0..3).map(edge).max_by(longer)
-}
-
-fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
-    let size = dot(v, v).sqrt();
-    (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
-}
-
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-/// The extents along a direction, widened by their rounding; `None` if an element has no corners.
-fn projections(elements: &[&Swept], direction: &[f64; 3]) -> Option<Vec<Span>> {
-    elements
-        .iter()
-        .map(|e| {
-            let corners = e.corners.as_ref()?;
-            let at = corners.map(|p| dot(&p, direction));
-            let size = corners.iter().flatten().fold(1.0f64, |m, x| m.max(x.abs()));
-            let low = at[0].min(at[1]).min(at[2]) - size * SLACK - 1.0;
-            Some([low, at[0].max(at[1]).max(at[2]) + size * SLACK + 1.0])
-        })
-        .collect()
 }
 
 #[cfg(test)]

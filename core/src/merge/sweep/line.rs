@@ -1,0 +1,130 @@
+//! Lines to sweep along, and how elements lie along them.
+
+use super::{Swept, MANY, SLACK};
+
+/// Lowest and highest place along a line.
+pub type Span = [f64; 2];
+
+/// A line, given by its direction, and the elements along it.
+pub struct Line {
+    pub direction: [f64; 3],
+    pub spans: Vec<Span>,
+    pub crowding: f64,
+}
+
+impl Line {
+    /// The axes and, among many elements, lines along and across the directions in which they are
+    /// long.
+    pub fn all(elements: &[&Swept]) -> Vec<Self> {
+        let mut lines: Vec<Self> = (0..3).map(|axis| Self::axis(elements, axis)).collect();
+        if elements.len() > MANY {
+            let slanted = directions(elements);
+            lines.extend(slanted.iter().filter_map(|d| Self::slanted(elements, d)));
+        }
+        lines
+    }
+
+    fn axis(elements: &[&Swept], axis: usize) -> Self {
+        let mut direction = [0.0; 3];
+        direction[axis] = 1.0;
+        let span = |e: &&Swept| [e.low[axis] as f64, e.high[axis] as f64];
+        Self::new(direction, elements.iter().map(span).collect())
+    }
+
+    /// `None` if an element has no corners.
+    fn slanted(elements: &[&Swept], direction: &[f64; 3]) -> Option<Self> {
+        let spans = projections(elements, direction)?;
+        Some(Self::new(*direction, spans))
+    }
+
+    fn new(direction: [f64; 3], spans: Vec<Span>) -> Self {
+        let crowding = crowding(&spans);
+        Self {
+            direction,
+            spans,
+            crowding,
+        }
+    }
+}
+
+/// The sum of extents relative to the whole: how many elements overlap at a point.
+fn crowding(spans: &[Span]) -> f64 {
+    let low = spans.iter().fold(f64::INFINITY, |m, s| m.min(s[0]));
+    let high = spans.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s[1]));
+    let sum: f64 = spans.iter().map(|s| s[1] - s[0]).sum();
+    sum / (high - low).max(1.0)
+}
+
+/// For the first operand and for the others the direction in which their elements are long and two
+/// across it, and the one across both.
+fn directions(elements: &[&Swept]) -> Vec<[f64; 3]> {
+    let own = elements.first().map_or(0, |e| e.operand);
+    let (first, others): (Vec<&Swept>, Vec<&Swept>) =
+        elements.iter().partition(|e| e.operand == own);
+    let long = [direction_along(&first), direction_along(&others)];
+    let mut found: Vec<[f64; 3]> = long.iter().flatten().flat_map(frame).collect();
+    if let [Some(a), Some(b)] = long {
+        found.push(cross(&a, &b));
+    }
+    found.iter().filter_map(unit).collect()
+}
+
+/// A direction and two across it.
+fn frame(long: &[f64; 3]) -> [[f64; 3]; 3] {
+    let thin = (0..3).min_by(|i, j| long[*i].abs().total_cmp(&long[*j].abs()));
+    let mut axis = [0.0; 3];
+    axis[thin.unwrap_or(0)] = 1.0;
+    let any = cross(long, &axis);
+    [*long, any, cross(long, &any)]
+}
+
+/// The direction in which elements are long.
+fn direction_along(elements: &[&Swept]) -> Option<[f64; 3]> {
+    let mut long = [0.0f64; 3];
+    let corners = elements.iter().filter_map(|e| e.corners.as_ref());
+    for edge in corners.filter_map(longest_edge) {
+        let sign = if dot(&edge, &long) < 0.0 { -1.0 } else { 1.0 };
+        (0..3).for_each(|i| long[i] += sign * edge[i]);
+    }
+    unit(&long)
+}
+
+pub fn longest_edge(corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
+    let edge = |i: usize| {
+        let (a, b) = (&corners[i], &corners[(i + 1) % 3]);
+        [0, 1, 2].map(|k| b[k] - a[k])
+    };
+    let longer = |a: &[f64; 3], b: &[f64; 3]| dot(a, a).total_cmp(&dot(b, b));
+    (0..3).map(edge).max_by(longer)
+}
+
+fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
+    let size = dot(v, v).sqrt();
+    (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
+}
+
+pub fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// The extents along a direction, widened by their rounding; `None` if an element has no corners.
+fn projections(elements: &[&Swept], direction: &[f64; 3]) -> Option<Vec<Span>> {
+    elements
+        .iter()
+        .map(|e| {
+            let corners = e.corners.as_ref()?;
+            let at = corners.map(|p| dot(&p, direction));
+            let size = corners.iter().flatten().fold(1.0f64, |m, x| m.max(x.abs()));
+            let low = at[0].min(at[1]).min(at[2]) - size * SLACK - 1.0;
+            Some([low, at[0].max(at[1]).max(at[2]) + size * SLACK + 1.0])
+        })
+        .collect()
+}

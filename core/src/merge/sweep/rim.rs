@@ -1,0 +1,61 @@
+//! What bounds triangles in the plane of two lines.
+
+use super::line::{dot, Span};
+use super::{Swept, SLACK};
+
+/// The points of the plane for which normal · point is at most the limit.
+#[derive(Clone, Copy)]
+pub struct HalfPlane {
+    normal: [f64; 2],
+    limit: f64,
+}
+
+impl HalfPlane {
+    /// All of the plane.
+    const ALL: Self = Self {
+        normal: [0.0; 2],
+        limit: f64::INFINITY,
+    };
+
+    /// What holds the points `corners` and ends along the line through the first two of them.
+    ///
+    /// Any normal will do, so that only products with it are rounded: by a few units in the last
+    /// place of coordinates up to `size`, well below the slack.
+    fn beside(corners: [[f64; 2]; 3], size: f64) -> Self {
+        let [a, b, c] = corners;
+        let across = [b[1] - a[1], a[0] - b[0]];
+        let dot = |p: &[f64; 2]| across[0] * p[0] + across[1] * p[1];
+        let out = if dot(&c) > dot(&a) { -1.0 } else { 1.0 };
+        let normal = across.map(|x| out * x);
+        let most = corners
+            .iter()
+            .map(|p| out * dot(p))
+            .fold(f64::MIN, f64::max);
+        let slack = (normal[0].abs() + normal[1].abs()) * size * SLACK;
+        Self {
+            normal,
+            limit: most + slack,
+        }
+    }
+
+    /// Whether a box lies outside.
+    pub fn excludes(&self, spans: &[Span; 2]) -> bool {
+        let least = |i: usize| self.normal[i] * spans[i][usize::from(self.normal[i] < 0.0)];
+        least(0) + least(1) > self.limit
+    }
+}
+
+/// The half-planes beside the edges of a triangle's projection.
+pub fn rims(corners: Option<&[[f64; 3]; 3]>, plane: &[[f64; 3]; 2], size: f64) -> [HalfPlane; 3] {
+    let Some(corners) = corners else {
+        return [HalfPlane::ALL; 3];
+    };
+    let [a, b, c] = corners.map(|p| [dot(&p, &plane[0]), dot(&p, &plane[1])]);
+    [[a, b, c], [b, c, a], [c, a, b]].map(|corners| HalfPlane::beside(corners, size))
+}
+
+pub fn largest_coordinate(elements: &[&Swept]) -> f64 {
+    let corners = elements.iter().filter_map(|e| e.corners.as_ref());
+    let coordinates = corners.flatten().flatten();
+    coordinates.fold(1.0f64, |m, x| m.max(x.abs()))
+}
