@@ -22,6 +22,7 @@ pub mod separation;
 pub mod simple;
 pub mod split_tree;
 mod star;
+mod state;
 mod stays;
 mod sweep;
 mod window;
