@@ -342,18 +342,23 @@ impl Polygon {
 
     /// A box of doubles around the polygon, widened by the rounding of its corners.
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        for corner in &self.corners {
-            let p = corner.at.approx();
-            for i in 0..3 {
-                let slack = p[i].abs() * 4.0 * f64::EPSILON;
-                low[i] = low[i].min(p[i] - slack);
-                high[i] = high[i].max(p[i] + slack);
-            }
-        }
-        (low, high)
+        bounds(self.corners.iter().map(|corner| &*corner.at))
     }
+}
+
+/// A box of doubles around points, widened by their rounding.
+pub fn bounds<'a>(points: impl Iterator<Item = &'a Vertex>) -> ([f64; 3], [f64; 3]) {
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for point in points {
+        let p = point.approx();
+        for i in 0..3 {
+            let slack = p[i].abs() * 4.0 * f64::EPSILON;
+            low[i] = low[i].min(p[i] - slack);
+            high[i] = high[i].max(p[i] + slack);
+        }
+    }
+    (low, high)
 }
 
 fn reversed(edge: &Carrier) -> Carrier {

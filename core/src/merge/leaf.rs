@@ -195,7 +195,7 @@ fn fragments(list: &List, cell: &Cell, sources: &Sources) -> Vec<Fragment> {
             sources.slot(&p.element.part.source) as u32,
             p.element.part.face,
         );
-        let clipped = p.pieces.iter().filter_map(|q| q.clone().clipped(cell));
+        let clipped = p.pieces().iter().filter_map(|q| q.clone().clipped(cell));
         found.extend(clipped.map(|polygon| Fragment {
             polygon,
             weight,

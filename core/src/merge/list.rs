@@ -61,15 +61,22 @@ impl Record {
     }
 }
 
-/// A part with its convex pieces.
+/// A part with conservative bounds, and its convex pieces once somebody has asked.
 #[derive(Clone, Debug)]
 pub struct PartRecord {
     low: [i32; 3],
     high: [i32; 3],
     /// The part.
     pub element: PartElement,
-    /// Its convex pieces.
-    pub pieces: Arc<[Polygon]>,
+    pieces: OnceLock<Arc<[Polygon]>>,
+}
+
+impl PartRecord {
+    /// The convex pieces.
+    pub fn pieces(&self) -> &[Polygon] {
+        let derived = || self.element.part.pieces().into();
+        self.pieces.get_or_init(derived)
+    }
 }
 
 /// The elements of one operand that meet a cell, and its winding number at the low corner.
@@ -134,10 +141,9 @@ impl List {
         }
         for element in &leaf.parts {
             let flip = element.flip ^ branch.complement;
-            let pieces = element.part.pieces().into();
             let part = Arc::clone(&element.part);
             list.parts
-                .push(frame.part_record(PartElement { part, flip }, pieces));
+                .push(frame.part_record(PartElement { part, flip }, OnceLock::new()));
         }
         list
     }
@@ -232,7 +238,7 @@ impl List {
             *r = frame.record(sources.get(r.slot()), r.face, r.slot_and_flip);
         }
         for p in &mut self.parts {
-            *p = frame.part_record(p.element.clone(), Arc::clone(&p.pieces));
+            *p = frame.part_record(p.element.clone(), p.pieces.clone());
         }
         self.frame = frame;
     }
@@ -265,7 +271,7 @@ impl List {
             })
         };
         for p in self.parts.iter().filter(widened) {
-            let across: i32 = p.pieces.iter().map(|q| polygon_change(q, &segment)).sum();
+            let across: i32 = p.pieces().iter().map(|q| polygon_change(q, &segment)).sum();
             change += if p.element.flip { -across } else { across };
         }
         change
@@ -338,16 +344,10 @@ impl Frame {
         }
     }
 
-    fn part_record(&self, element: PartElement, pieces: Arc<[Polygon]>) -> PartRecord {
-        let mut low = [i32::MAX; 3];
-        let mut high = [i32::MIN; 3];
-        for piece in pieces.iter() {
-            let (a, b) = piece.bounds();
-            for i in 0..3 {
-                low[i] = low[i].min(self.index(i, (a[i] - 0.5).ceil() as i64));
-                high[i] = high[i].max(self.index(i, (b[i] + 0.5).floor() as i64));
-            }
-        }
+    fn part_record(&self, element: PartElement, pieces: OnceLock<Arc<[Polygon]>>) -> PartRecord {
+        let (low, high) = element.part.bounds();
+        let low = [0, 1, 2].map(|i| self.index(i, (low[i] - 0.5).ceil() as i64));
+        let high = [0, 1, 2].map(|i| self.index(i, (high[i] + 0.5).floor() as i64));
         PartRecord {
             low,
             high,

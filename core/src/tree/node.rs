@@ -7,7 +7,7 @@ use crate::geometry::cell::Cell;
 use crate::geometry::fixed::Flux;
 use crate::geometry::outline;
 use crate::geometry::outline::{BareEdge, OutlineEdge};
-use crate::geometry::polygon::Polygon;
+use crate::geometry::polygon::{bounds, Polygon};
 use crate::mesh::source::Source;
 
 /// A node of the tree. Immutable and shared.
@@ -192,6 +192,11 @@ impl Part {
     pub fn outline(&self) -> Vec<OutlineEdge> {
         let support = self.source.plane(self.face);
         OutlineEdge::keyed(&self.edges, &support)
+    }
+
+    /// A box of doubles around the part.
+    pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+        bounds(self.edges.iter().map(|edge| &*edge.from))
     }
 
     /// The convex pieces, derived from the outline.

@@ -86,7 +86,7 @@ impl<'a> Scene<'a> {
             let slot = sources.slot(&p.element.part.source) as u32;
             self.parts.push((&p.element.part, slot));
             let inside = self.cell.holds(&p.element.part.home);
-            for piece in p.pieces.iter() {
+            for piece in p.pieces() {
                 let (low, high) = piece.bounds();
                 self.elements.push(Element {
                     operand,

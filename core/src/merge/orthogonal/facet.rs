@@ -97,7 +97,7 @@ impl<'a> Facets<'a> {
         let part = self.parts.len();
         self.parts.push((&record.element.part, slot));
         let weight = if record.element.flip { -1 } else { 1 };
-        for piece in record.pieces.iter() {
+        for piece in record.pieces() {
             let facet = Facet::of_piece(operand, weight, part, piece)?;
             self.all.extend(Some(facet).filter(|f| f.may_meet(cell)));
         }
