@@ -252,40 +252,58 @@ impl Polygon {
 
     /// The pieces on the minus and on the plus side of a plane that cuts the polygon in a chord.
     pub fn divided(&self, cut: &Arc<Plane>, sides: &[i32], chord: &Chord) -> (Self, Self) {
+        let half = |plus| self.half(cut, sides, chord, plus);
+        (half(false), half(true))
+    }
+
+    /// One of these pieces.
+    fn half(&self, cut: &Arc<Plane>, sides: &[i32], chord: &Chord, plus: bool) -> Self {
         let n = self.corners.len();
-        let (mut minus, mut plus) = (Corners::new(), Corners::new());
+        let own = |side: i32| if plus { side > 0 } else { side < 0 };
+        let along = |at: &Arc<Vertex>| Corner {
+            at: Arc::clone(at),
+            edge: Carrier::Cut(Arc::clone(cut), plus),
+        };
+        let mut corners = Corners::new();
         let mut ends = chord.iter();
-        for i in 0..n {
+        for (i, corner) in self.corners.iter().enumerate() {
             let next = sides[(i + 1) % n];
-            let corner = &self.corners[i];
-            match sides[i] {
-                s if s < 0 => minus.push(corner.clone()),
-                s if s > 0 => plus.push(corner.clone()),
-                _ => {
-                    ends.next();
-                    push_touching(corner, next, cut, &mut minus, &mut plus);
-                }
+            if sides[i] == 0 {
+                ends.next();
             }
-            if sides[i] * next < 0 {
-                if let Some(at) = ends.next() {
-                    push_crossing(at, corner, next, cut, &mut minus, &mut plus);
-                }
+            if own(sides[i]) || sides[i] == 0 && own(next) {
+                corners.push(corner.clone());
+            } else if sides[i] == 0 {
+                corners.push(along(&corner.at));
+            }
+            let crossing = if sides[i] * next < 0 {
+                ends.next()
+            } else {
+                None
+            };
+            match crossing {
+                Some(at) if own(next) => corners.push(Corner {
+                    at: Arc::clone(at),
+                    edge: corner.edge.clone(),
+                }),
+                Some(at) => corners.push(along(at)),
+                None => {}
             }
         }
-        let with = |corners| Self {
+        Self {
             support: Arc::clone(&self.support),
             corners,
-        };
-        (with(minus), with(plus))
+        }
     }
 
     /// The part on the minus side of a plane, if it has an area.
     #[must_use]
     pub fn inside(self, cut: &Arc<Plane>) -> Option<Self> {
-        match self.split(cut) {
-            PolygonSplit::Minus => Some(self),
-            PolygonSplit::Both(minus, _) => Some(minus),
-            PolygonSplit::Plus | PolygonSplit::Coplanar => None,
+        let sides = self.sides(cut);
+        match straddle(&sides) {
+            (true, true) => Some(self.half(cut, &sides, &self.chord(cut, &sides), false)),
+            (true, false) => Some(self),
+            (false, _) => None,
         }
     }
 
@@ -365,54 +383,5 @@ fn reversed(edge: &Carrier) -> Carrier {
     match edge {
         Carrier::Edge(edge) => Carrier::Edge(edge.reversed()),
         cut @ Carrier::Cut(..) => cut.clone(),
-    }
-}
-
-/// Sends a corner that lies in the cut to both pieces; each gets the edge that is its own.
-fn push_touching(
-    corner: &Corner,
-    next: i32,
-    cut: &Arc<Plane>,
-    minus: &mut Corners,
-    plus: &mut Corners,
-) {
-    let along = |flip| Corner {
-        at: Arc::clone(&corner.at),
-        edge: Carrier::Cut(Arc::clone(cut), flip),
-    };
-    minus.push(if next < 0 {
-        corner.clone()
-    } else {
-        along(false)
-    });
-    plus.push(if next > 0 {
-        corner.clone()
-    } else {
-        along(true)
-    });
-}
-
-fn push_crossing(
-    at: &Arc<Vertex>,
-    corner: &Corner,
-    next: i32,
-    cut: &Arc<Plane>,
-    minus: &mut Corners,
-    plus: &mut Corners,
-) {
-    let along = |flip| Corner {
-        at: Arc::clone(at),
-        edge: Carrier::Cut(Arc::clone(cut), flip),
-    };
-    let onward = Corner {
-        at: Arc::clone(at),
-        edge: corner.edge.clone(),
-    };
-    if next < 0 {
-        minus.push(onward);
-        plus.push(along(true));
-    } else {
-        minus.push(along(false));
-        plus.push(onward);
     }
 }
