@@ -4,7 +4,7 @@
 
 mod support;
 
-use bspcsg::geometry::plane::Lattice;
+use bspcsg::geometry::plane::{normal, Lattice};
 use bspcsg::merge::expression::Term;
 use bspcsg::merge::SetOp;
 use bspcsg::tree::solid::Solid;
@@ -48,12 +48,44 @@ impl Cubes {
     }
 }
 
-/// A box of at least `least` cubes along each edge.
+/// A box of at least `least` cubes along each edge, some with vertices inside their sides.
 fn any_box(numbers: &mut Numbers, least: i64) -> (Solid, Cubes) {
     let low = [0; 3].map(|_| numbers.below(SIDE - least + 1));
     let high = low.map(|c| c + least + numbers.below(SIDE - least - c + 1));
     let shape = Shape::cuboid(low.map(|c| 2 * c), high.map(|c| 2 * c));
+    let shape = match numbers.below(2) {
+        0 => shape,
+        _ => divided(&shape),
+    };
     (shape.solid(), Cubes::of(low, high))
+}
+
+/// The same solid with each triangle divided around a lattice point strictly inside it, if there is
+/// one near its centre: no other face's plane goes through that point.
+fn divided(shape: &Shape) -> Shape {
+    let mut vertices = shape.vertices.clone();
+    let mut faces = Vec::new();
+    for face in &shape.faces {
+        let corners = face.map(|v| shape.vertices[usize::try_from(v).expect("a vertex")]);
+        let [a, b, c] = &corners;
+        let centre = [0, 1, 2].map(|i| (a[i] + b[i] + c[i]) / 3);
+        let whole = normal(a, b, c);
+        let around = [
+            normal(a, b, &centre),
+            normal(b, c, &centre),
+            normal(c, a, &centre),
+        ];
+        let inside = |n: &[i128; 3]| (0..3).any(|i| n[i] * whole[i] > 0);
+        if around.iter().all(inside) {
+            let middle = i64::try_from(vertices.len()).expect("few vertices");
+            vertices.push(centre);
+            let [a, b, c] = *face;
+            faces.extend([[a, b, middle], [b, c, middle], [c, a, middle]]);
+        } else {
+            faces.push(*face);
+        }
+    }
+    Shape { vertices, faces }
 }
 
 #[test]

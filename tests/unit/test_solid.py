@@ -110,6 +110,20 @@ def test_a_cavity_is_a_surface_of_its_own() -> None:
     assert (hollow.components, hollow.genus, hollow.euler_number) == (2, 0, 4)
 
 
+@pytest.mark.parametrize(("shift", "simple"), [((20, 0, 0), True), ((3, 0.5, 0.5), False)])
+def test_rings_in_one_mesh_are_found_apart_or_linked(
+    shift: tuple[float, float, float], simple: bool
+) -> None:
+    ring = b.box((6, 6, 2)) - b.box((2, 2, 4)).translate(2, 2, -1)
+    one = ring.rotate(33, (1, 2, 3)).to_mesh()
+    vertices = np.vstack([one.vertices, one.vertices + shift])
+    both = b.Solid(vertices, np.vstack([one.faces, one.faces + len(one.vertices)]))
+    united = both.normalized()
+    assert both.tree.simple is simple
+    assert united.tree.simple is True
+    assert (both.volume == pytest.approx(128)) is simple
+
+
 def test_mesh_arrays_are_the_documented_ones_and_kept() -> None:
     solid = b.cube(2) - b.cube(1)
     mesh = solid.to_mesh()

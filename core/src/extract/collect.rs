@@ -8,7 +8,6 @@ use crate::geometry::cell::Cell;
 use crate::geometry::line::LineKey;
 use crate::geometry::outline::{cancel, OutlineEdge};
 use crate::geometry::plane::Lattice;
-use crate::geometry::vertex::Vertex;
 use crate::merge::list::Sources;
 use crate::merge::separation::misses;
 use crate::mesh::source::{Shape, Source};
@@ -181,7 +180,7 @@ fn is_full_face(cut: &CutFace, source: &Source) -> bool {
         return false;
     };
     let c = mesh.corners(cut.face);
-    let near = |edge: &OutlineEdge| c.iter().any(|corner| is_near(&edge.from, corner));
+    let near = |edge: &OutlineEdge| c.iter().any(|corner| edge.from.may_be(corner));
     if ![p, q, r].into_iter().all(near) {
         return false;
     }
@@ -189,15 +188,6 @@ fn is_full_face(cut: &CutFace, source: &Source) -> bool {
     let own = [0, 1, 2].map(|i| LineKey::of_edge(&c[i], &c[(i + 1) % 3]));
     let distinct = p.line != q.line && q.line != r.line && r.line != p.line;
     distinct && own.iter().all(|k| lines.contains(k))
-}
-
-/// Whether a vertex may be a lattice point; errs on yes.
-fn is_near(vertex: &Vertex, place: &Lattice) -> bool {
-    let at = vertex.approx();
-    (0..3).all(|i| {
-        let c = place[i] as f64;
-        (at[i] - c).abs() <= c.abs() * 4.0 * f64::EPSILON
-    })
 }
 
 /// A subtree to look through for a face, and the face's box in it.

@@ -206,19 +206,10 @@ fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
 
 /// A lattice box around a part inside its home cell.
 fn part_box(part: &Part) -> (Lattice, Lattice) {
-    let (least, most) = (*part.home.low(), part.home.high());
-    let (mut low, mut high) = (most, least);
-    for edge in &part.edges {
-        let at = edge.from.approx();
-        for i in 0..3 {
-            let slack = at[i].abs() * 4.0 * f64::EPSILON;
-            low[i] = low[i].min((at[i] - slack).floor() as i64);
-            high[i] = high[i].max((at[i] + slack).ceil() as i64);
-        }
-    }
+    let ((low, high), home) = (part.bounds(), (part.home.low(), part.home.high()));
     (
-        [0, 1, 2].map(|i| low[i].max(least[i])),
-        [0, 1, 2].map(|i| high[i].min(most[i])),
+        [0, 1, 2].map(|i| (low[i].floor() as i64).max(home.0[i])),
+        [0, 1, 2].map(|i| (high[i].ceil() as i64).min(home.1[i])),
     )
 }
 

@@ -84,10 +84,8 @@ fn lattice_place(vertex: &Vertex) -> Option<Lattice> {
     if vertex.as_lattice().is_some() {
         return None;
     }
-    let (at, place) = (vertex.approx(), vertex.approx().map(f64::round));
-    let near = (0..3).all(|i| (at[i] - place[i]).abs() <= at[i].abs() * 4.0 * f64::EPSILON);
-    let place = place.map(|c| c as i64);
-    (near && vertex.same(&Vertex::lattice(place))).then_some(place)
+    let place = vertex.approx().map(|c| c.round() as i64);
+    (vertex.may_be(&place) && vertex.same(&Vertex::lattice(place))).then_some(place)
 }
 
 /// A fingerprint that equal points share; unequal points differ but for chance 2^-64.

@@ -333,10 +333,9 @@ impl Polygon {
                 below |= p[axis] < low;
                 above |= p[axis] > high;
             } else {
-                let c = corner.at.approx()[axis];
-                let slack = c.abs() * 4.0 * f64::EPSILON;
-                below |= c - slack < low as f64;
-                above |= c + slack > high as f64;
+                let (least, most) = corner.at.bounds();
+                below |= least[axis] < low as f64;
+                above |= most[axis] > high as f64;
             }
         }
         (below, above)
@@ -369,11 +368,10 @@ pub fn bounds<'a>(points: impl Iterator<Item = &'a Vertex>) -> ([f64; 3], [f64; 
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
     for point in points {
-        let p = point.approx();
+        let (least, most) = point.bounds();
         for i in 0..3 {
-            let slack = p[i].abs() * 4.0 * f64::EPSILON;
-            low[i] = low[i].min(p[i] - slack);
-            high[i] = high[i].max(p[i] + slack);
+            low[i] = low[i].min(least[i]);
+            high[i] = high[i].max(most[i]);
         }
     }
     (low, high)

@@ -102,6 +102,20 @@ impl Vertex {
         [x / w, y / w, z / w]
     }
 
+    /// The lowest and the highest place where the point may be.
+    pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+        let p = self.approx();
+        let slack = p.map(|c| c.abs() * 4.0 * f64::EPSILON);
+        let ([x, y, z], [a, b, c]) = (p, slack);
+        ([x - a, y - b, z - c], [x + a, y + b, z + c])
+    }
+
+    /// Whether this may be a lattice point; errs on yes.
+    pub fn may_be(&self, place: &Lattice) -> bool {
+        let (low, high) = self.bounds();
+        (0..3).all(|i| low[i] <= place[i] as f64 && place[i] as f64 <= high[i])
+    }
+
     /// Sign of the plane's value here: -1 minus side, 0 on, +1 plus side.
     pub fn side_of(&self, plane: &Plane) -> i32 {
         match &self.place {

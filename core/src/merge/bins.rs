@@ -135,12 +135,7 @@ impl Bins {
             work: self.leaf().work,
             ..Deferred::default()
         };
-        Branch {
-            cell: *cell,
-            outside: 0,
-            complement: false,
-            node: Arc::new(Node::Deferred(leaf)),
-        }
+        Branch::of_node(*cell, Node::Deferred(leaf))
     }
 
     fn leaf(&self) -> &Deferred {

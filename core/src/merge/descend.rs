@@ -18,7 +18,7 @@ use super::state::{find, has_constant, nested, State, States, MANY, TASK};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
 use crate::mesh::tasks::{both, in_pool};
-use crate::tree::node::{Branch, Node, Work};
+use crate::tree::node::{Branch, Work};
 
 /// Lists that together hold at most this many elements are worked on by a leaf kernel, whatever
 /// their position: local trees cost the square, smaller cells cost halvings and cut faces.
@@ -249,19 +249,19 @@ impl<'a> Descent<'a> {
             });
         }
         let opening: usize = states.iter().map(|s| s.1.len_to_open(&cell)).sum();
-        let states = self.opened(&cell, states);
+        let states = self.opened(&cell, states, opening);
         let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
-        if total <= (ORTHOGONAL * states.len()).min(CROWD) {
-            if let Some(branch) = self.among_orthogonal(cell, &expression, &states, total) {
-                return Ok(branch);
-            }
-        }
         let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
         let stuck = listed && is_stuck(&cell, &states, round, total);
         let small = total <= LEAF || stuck && total <= STUCK;
         let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
             return Ok(self.leaf(cell, &expression, states, total));
         };
+        if total <= (ORTHOGONAL * states.len()).min(CROWD) {
+            if let Some(branch) = self.among_orthogonal(cell, &expression, &states, total) {
+                return Ok(branch);
+            }
+        }
         // No level of bins suited these faces, so halving will not separate them either.
         let long = opening >= MANY;
         if listed && (long || stuck || total <= most_in_general_position(&states)) {
@@ -272,19 +272,11 @@ impl<'a> Descent<'a> {
         self.halves(cell, cut, &expression, states, round.next(total), total)
     }
 
-    /// The states with the leaves of this cell opened.
-    fn opened(&self, cell: &Cell, states: States) -> States {
+    /// The states with the leaves of this cell, of so many elements, opened.
+    fn opened(&self, cell: &Cell, states: States, opening: usize) -> States {
         let open =
             |(k, state): (u32, State)| (k, state.opened(cell, self.sources, &self.counters.binned));
-        let heavy = |s: &(u32, State)| matches!(&s.1, State::Tree(b) if b.cell == *cell);
-        let total = || {
-            states
-                .iter()
-                .filter(|s| heavy(s))
-                .map(|s| s.1.len_in(cell))
-                .sum::<usize>()
-        };
-        if in_pool() && total() >= 8 * MANY {
+        if in_pool() && opening >= 8 * MANY {
             return states.into_par_iter().map(open).collect();
         }
         states.into_iter().map(open).collect()
@@ -349,7 +341,7 @@ impl<'a> Descent<'a> {
             .collect();
         let node = leaf::in_general_position(&cell, expression, self.rule, &lists, self.sources)?;
         self.count_leaf(total);
-        Some(branch_of(cell, node))
+        Some(Branch::of_node(cell, node))
     }
 
     /// The result in a cell of which all faces are perpendicular to axes.
@@ -369,7 +361,7 @@ impl<'a> Descent<'a> {
         let lists: Vec<(u32, &List)> = named.map(|(k, list)| (k, &**list)).collect();
         let node = leaf::among_orthogonal(&cell, expression, &lists, self.sources)?;
         self.count_leaf(total);
-        Some(branch_of(cell, node))
+        Some(Branch::of_node(cell, node))
     }
 
     fn leaf(&self, cell: Cell, expression: &Expression, states: States, total: usize) -> Branch {
@@ -384,7 +376,7 @@ impl<'a> Descent<'a> {
         let node = leaf::evaluate(&cell, expression, self.rule, lists, self.sources, |k| {
             self.overlaps[k as usize].store(true, Ordering::Relaxed);
         });
-        branch_of(cell, node)
+        Branch::of_node(cell, node)
     }
 }
 
@@ -395,18 +387,6 @@ fn most_in_general_position(states: &States) -> usize {
         GENERAL
     } else {
         FRESH
-    }
-}
-
-fn branch_of(cell: Cell, node: Node) -> Branch {
-    match node {
-        Node::Leaf(w) => Branch::uniform(cell, w),
-        node => Branch {
-            cell,
-            outside: 0,
-            complement: false,
-            node: Arc::new(node),
-        },
     }
 }
 

@@ -84,20 +84,9 @@ impl Expression {
     }
 
     /// The value for known operands.
-    pub fn value(&self, operand: impl Fn(u32) -> bool, scratch: &mut Vec<bool>) -> bool {
-        scratch.clear();
-        for term in &self.terms {
-            let at = |i: &u32| scratch[*i as usize];
-            let value = match term {
-                Term::Operand(k) => operand(*k),
-                Term::Not(a) => !at(a),
-                Term::And(list) => list.iter().all(at),
-                Term::Or(list) => list.iter().any(at),
-                Term::Xor(list) => list.iter().filter(|i| at(i)).count() % 2 == 1,
-            };
-            scratch.push(value);
-        }
-        scratch.last().copied().unwrap_or(false)
+    pub fn value(&self, operand: impl Fn(u32) -> bool, scratch: &mut Vec<u64>) -> bool {
+        let word = |k: u32| if operand(k) { u64::MAX } else { 0 };
+        self.words(word, scratch) != 0
     }
 
     /// The values for 64 cases at once: a bit of each word is one case.

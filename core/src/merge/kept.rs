@@ -145,8 +145,11 @@ pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: u32, cell: &Cell) 
         return !edges.is_empty();
     }
     // No wall is slanted.
-    let is_slanted = |e: &&OutlineEdge| matches!(&e.carrier, Carrier::Cut(plane, _) if plane.only_axis().is_none());
-    if others.iter().any(is_slanted) {
+    let is_slanted = |carrier: &Carrier| match carrier {
+        Carrier::Cut(plane, _) => plane.only_axis().is_none(),
+        Carrier::Edge(_) => false,
+    };
+    if others.iter().any(|e| is_slanted(&e.carrier)) {
         return false;
     }
     let border = border_lines(&source.plane(face), cell);

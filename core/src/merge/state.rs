@@ -167,15 +167,7 @@ impl State {
             Self::Tree(branch) if negate => branch.complemented(),
             Self::Tree(branch) => branch,
             Self::Bins(bins) => Self::Tree(bins.branch_in(&cell)).shared(cell, negate, sources),
-            Self::List(list) => match list.close(negate, sources) {
-                Node::Leaf(w) => Branch::uniform(cell, w),
-                node => Branch {
-                    cell,
-                    outside: 0,
-                    complement: false,
-                    node: Arc::new(node),
-                },
-            },
+            Self::List(list) => Branch::of_node(cell, list.close(negate, sources)),
         }
     }
 }

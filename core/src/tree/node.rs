@@ -69,6 +69,19 @@ impl Branch {
         }
     }
 
+    /// A node that covers a cell of its own.
+    pub fn of_node(cell: Cell, node: Node) -> Self {
+        match node {
+            Node::Leaf(w) => Self::uniform(cell, w),
+            node => Self {
+                cell,
+                outside: 0,
+                complement: false,
+                node: Arc::new(node),
+            },
+        }
+    }
+
     /// The winding number, if it is the same everywhere.
     pub fn constant(&self) -> Option<i32> {
         match *self.node {

@@ -125,9 +125,6 @@ pub(super) fn piece_with(cutting: &Cutting, is_it: impl Fn(&Arc<Vertex>) -> bool
 
 /// Whether a point certainly lies in a cell.
 fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
-    let (p, low, high) = (vertex.approx(), cell.low(), cell.high());
-    (0..3).all(|i| {
-        let slack = p[i].abs() * 4.0 * f64::EPSILON;
-        p[i] - slack >= low[i] as f64 && p[i] + slack <= high[i] as f64
-    })
+    let ((least, most), low, high) = (vertex.bounds(), cell.low(), cell.high());
+    (0..3).all(|i| least[i] >= low[i] as f64 && most[i] <= high[i] as f64)
 }

@@ -85,9 +85,8 @@ impl Grid {
             let at = 2 * p[axis];
             return lines.partition_point(|l| *l < at)..lines.partition_point(|l| *l <= at);
         }
-        let near = 2.0 * point.approx()[axis];
-        let slack = near.abs() * 4.0 * f64::EPSILON;
-        let below = lines.partition_point(|l| (*l as f64) < near - slack);
+        let least = 2.0 * point.bounds().0[axis];
+        let below = lines.partition_point(|l| (*l as f64) < least);
         let side = |line: &Arc<Plane>| point.side_of(line);
         let start = below + count(&self.planes[axis][below..], |line| side(line) > 0);
         start..start + count(&self.planes[axis][start..], |line| side(line) == 0)

@@ -50,7 +50,7 @@ pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<(
     }
     let sweeps: Vec<Sweep> = parties(elements)
         .into_iter()
-        .map(|numbers| Sweep::of(elements, numbers))
+        .map(|numbers| Sweep::of(elements, &numbers))
         .collect();
     if sweeps.iter().map(Sweep::cost).sum::<f64>() > CROWDED {
         return None;
@@ -160,7 +160,7 @@ struct Sweep {
 }
 
 impl Sweep {
-    fn of(elements: &[Swept], mut numbers: Vec<usize>) -> Self {
+    fn of(elements: &[Swept], numbers: &[usize]) -> Self {
         let swept: Vec<&Swept> = numbers.iter().map(|i| &elements[*i]).collect();
         let mut lines = Line::all(&swept);
         lines.sort_by(|a, b| a.crowding.total_cmp(&b.crowding));
@@ -174,17 +174,15 @@ impl Sweep {
         order.sort_unstable_by(|a, b| low(*a).total_cmp(&low(*b)).then(a.cmp(b)));
         let ordered = |line: &Line| order.iter().map(|i| line.spans[*i]).collect::<Vec<Span>>();
         let rim = |i: &usize| rims(swept[*i].corners.as_ref(), &plane, size);
-        let sweep = Self {
+        Self {
             first: ordered(&first),
             second: ordered(&second),
             others: lines.iter().map(ordered).collect(),
             rims: order.iter().map(rim).collect(),
             operands: order.iter().map(|i| swept[*i].operand).collect(),
-            numbers: Vec::new(),
+            numbers: order.iter().map(|i| numbers[*i]).collect(),
             crowding: first.crowding,
-        };
-        numbers = order.iter().map(|i| numbers[*i]).collect();
-        Self { numbers, ..sweep }
+        }
     }
 
     /// About how many pairs are compared.
