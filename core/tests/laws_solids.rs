@@ -3,7 +3,7 @@
 mod support;
 
 use bspcsg::geometry::plane::Lattice;
-use bspcsg::merge::descend::LEAF;
+use bspcsg::merge::choice::LEAF;
 use bspcsg::merge::expression::Term;
 use bspcsg::merge::leaf::Rule;
 use bspcsg::merge::SetOp;

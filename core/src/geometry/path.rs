@@ -14,6 +14,52 @@ use crate::arith::Int;
 /// u = 2^-53, relative to the sum of magnitudes; 16u leaves room for the bound's own rounding.
 const DETERMINANT_FILTER: f64 = 16.0 / 9_007_199_254_740_992.0;
 
+/// What boxes are widened by, as a share of the largest coordinate.
+///
+/// Ends and differences are rounded by a few units in the last place of a coordinate, quotients by
+/// as much of the extent: together below 2^-48 of the largest coordinate.
+const WAY_SLACK: f64 = 1e-14;
+
+/// A straight path in doubles, to be compared with boxes.
+pub struct Way {
+    from: [f64; 3],
+    /// For each axis the inverse of the extent; infinite across the path.
+    inverse: [f64; 3],
+    /// By how much boxes are widened.
+    slack: f64,
+}
+
+impl Way {
+    /// A path between points that are rounded by less than a step.
+    pub fn new(from: [f64; 3], to: [f64; 3]) -> Self {
+        let sizes = from.iter().chain(&to).map(|x| x.abs());
+        Self {
+            from,
+            inverse: [0, 1, 2].map(|i| 1.0 / (to[i] - from[i])),
+            slack: 2.0 + sizes.fold(0.0, f64::max) * WAY_SLACK,
+        }
+    }
+
+    /// Whether the path may meet a box; errs on yes.
+    pub fn may_meet(&self, low: &Lattice, high: &Lattice) -> bool {
+        let (mut first, mut last) = (0.0f64, 1.0f64);
+        for i in 0..3 {
+            let before = low[i] as f64 - self.slack - self.from[i];
+            let after = high[i] as f64 + self.slack - self.from[i];
+            if self.inverse[i].is_infinite() {
+                if before > 0.0 || after < 0.0 {
+                    return false;
+                }
+                continue;
+            }
+            let (enters, leaves) = (before * self.inverse[i], after * self.inverse[i]);
+            first = first.max(enters.min(leaves));
+            last = last.min(enters.max(leaves));
+        }
+        first <= last
+    }
+}
+
 /// The change of the winding number across a lattice triangle, from a doubled corner to a lattice
 /// point; `None` if the path is not generic.
 pub fn triangle_on_path(corners: &[Lattice; 3], from: &Lattice, to: &Lattice) -> Option<i32> {
@@ -76,7 +122,7 @@ impl NearCross {
 }
 
 /// Sign of the determinant of three rows.
-fn determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> i32 {
+pub fn determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> i32 {
     let near = near_determinant(a, b, c);
     if near != 0 {
         return near;

@@ -16,7 +16,7 @@ use super::window::{Span, Window};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::mesh::source::TriangleMesh;
-use crate::tree::node::{Branch, Deferred, Group, Node};
+use crate::tree::node::{Branch, Deferred, Group, Node, Work};
 
 /// Faces for each cell, at least, on average.
 const DENSITY: usize = 4;
@@ -136,6 +136,11 @@ impl Bins {
             ..Deferred::default()
         };
         Branch::of_node(*cell, Node::Deferred(leaf))
+    }
+
+    /// What the home went through.
+    pub fn work(&self) -> Work {
+        self.leaf().work
     }
 
     fn leaf(&self) -> &Deferred {

@@ -33,7 +33,8 @@ impl<'a> Face<'a> {
         Self { polygon, rims }
     }
 
-    fn rims(&self) -> &[Plane] {
+    /// The planes of its border, the face on their minus sides.
+    pub fn rims(&self) -> &[Plane] {
         let rim = |c: &Corner| c.edge.rim(self.polygon.support());
         self.rims
             .get_or_init(|| self.polygon.corners().iter().map(rim).collect())
@@ -312,12 +313,13 @@ impl Partition<'_> {
 }
 
 /// How a face may meet a polygon.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Debug)]
 pub enum Contact {
     /// Not in a way that matters.
     None,
-    /// It may cross it.
-    Crossing,
+    /// It may cross it: the sides of its plane on which the polygon's corners lie, and of the
+    /// polygon's plane on which its own do.
+    Crossing(Sides, Sides),
     /// Its position is special.
     Special,
 }
@@ -335,7 +337,7 @@ pub fn contact(polygon: &Polygon, face: &Face<'_>) -> Contact {
         return Contact::Special;
     }
     if crossed && straddle(&ours) == (true, true) {
-        return Contact::Crossing;
+        return Contact::Crossing(ours, theirs);
     }
     Contact::None
 }

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::choice::{Round, CROWD, LEAF, ORTHOGONAL, STUCK};
 use super::expression::{Expression, Residual};
 use super::join;
 use super::leaf::{self, Rule};
@@ -18,33 +19,7 @@ use super::state::{find, has_constant, nested, State, States, MANY, TASK};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
 use crate::mesh::tasks::{both, in_pool};
-use crate::tree::node::{Branch, Work};
-
-/// Lists that together hold at most this many elements are worked on by a leaf kernel, whatever
-/// their position: local trees cost the square, smaller cells cost halvings and cut faces.
-pub const LEAF: usize = 32;
-
-/// Lists that together hold at most this many are tried without local trees: in larger leaves the
-/// next operation has more to do again, in smaller ones more faces are cut by walls.
-const GENERAL: usize = 64;
-
-/// The same, where no list is an operation's result, and the next operation may never come.
-const FRESH: usize = 4 * GENERAL;
-
-/// States that together hold at most this many for each operand are worked on at once, if all faces
-/// are perpendicular to axes.
-///
-/// Few operands are as a rule a step of a chain: the next one cuts the leaf up again.
-const ORTHOGONAL: usize = 32;
-
-/// More elements than this are halved even so, to be shared among threads.
-const CROWD: usize = 512;
-
-/// Three halvings, one round of the axes, should leave at most 7/8 of the elements in a child.
-const ROUND: u32 = 3;
-
-/// Longer lists than this are halved on, stuck or not: the kernel's cost grows with their square.
-const STUCK: usize = 2048;
+use crate::tree::node::Branch;
 
 /// Counts of what an evaluation did.
 #[derive(Debug, Default)]
@@ -92,30 +67,6 @@ pub struct Descent<'a> {
     pub overlaps: Vec<AtomicBool>,
 }
 
-/// How the element count fared in the current round of three halvings.
-#[derive(Clone, Copy)]
-struct Round {
-    depth: u32,
-    start: usize,
-    stuck: bool,
-}
-
-impl Round {
-    fn next(self, total: usize) -> Self {
-        if self.depth + 1 < ROUND {
-            return Self {
-                depth: self.depth + 1,
-                ..self
-            };
-        }
-        Self {
-            depth: 0,
-            start: total,
-            stuck: total * 8 > self.start * 7,
-        }
-    }
-}
-
 impl<'a> Descent<'a> {
     /// A descent over this many operands.
     pub fn new(
@@ -157,11 +108,7 @@ impl<'a> Descent<'a> {
         for (_, state) in &mut states {
             state.settle(&cell);
         }
-        let round = Round {
-            depth: 0,
-            start: usize::MAX / 8,
-            stuck: false,
-        };
+        let round = Round::START;
         let residual = if self.share || has_constant(&states) {
             self.residual(&expression, &states)
         } else {
@@ -251,8 +198,9 @@ impl<'a> Descent<'a> {
         let opening: usize = states.iter().map(|s| s.1.len_to_open(&cell)).sum();
         let states = self.opened(&cell, states, opening);
         let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
+        let mut round = round;
+        let stuck = round.is_stuck(&cell, &states, total);
         let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
-        let stuck = listed && is_stuck(&cell, &states, round, total);
         let small = total <= LEAF || stuck && total <= STUCK;
         let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
             return Ok(self.leaf(cell, &expression, states, total));
@@ -263,11 +211,12 @@ impl<'a> Descent<'a> {
             }
         }
         // No level of bins suited these faces, so halving will not separate them either.
-        let long = opening >= MANY;
-        if listed && (long || stuck || total <= most_in_general_position(&states)) {
+        let long = listed && opening >= MANY;
+        if long || listed && stuck || round.suits_general_position(&cell, &states, total) {
             if let Some(branch) = self.in_general_position(cell, &expression, &states, total) {
                 return Ok(branch);
             }
+            round.refused(total);
         }
         self.halves(cell, cut, &expression, states, round.next(total), total)
     }
@@ -324,7 +273,13 @@ impl<'a> Descent<'a> {
             .fetch_add(total as u64, Ordering::Relaxed);
     }
 
-    /// The result in a cell of a few more elements, if nothing there is special.
+    /// All operands' elements as lists of the cell, if they can be.
+    fn lists_in<'s>(&self, cell: &Cell, states: &'s States) -> Option<Vec<(u32, Cow<'s, List>)>> {
+        let list = |(k, state): &'s (u32, State)| Some((*k, state.list_in(cell, self.sources)?));
+        states.iter().map(list).collect()
+    }
+
+    /// The result in a cell of more elements, if nothing there is special.
     fn in_general_position(
         &self,
         cell: Cell,
@@ -332,13 +287,8 @@ impl<'a> Descent<'a> {
         states: &States,
         total: usize,
     ) -> Option<Branch> {
-        let lists: Vec<(u32, &List)> = states
-            .iter()
-            .filter_map(|(k, s)| match s {
-                State::List(list) => Some((*k, list)),
-                State::Constant(_) | State::Tree(_) | State::Bins(_) => None,
-            })
-            .collect();
+        let lists = self.lists_in(&cell, states)?;
+        let lists: Vec<(u32, &List)> = lists.iter().map(|(k, list)| (*k, &**list)).collect();
         let node = leaf::in_general_position(&cell, expression, self.rule, &lists, self.sources)?;
         self.count_leaf(total);
         Some(Branch::of_node(cell, node))
@@ -355,10 +305,8 @@ impl<'a> Descent<'a> {
         if !states.iter().all(|s| s.1.is_orthogonal(self.sources)) {
             return None;
         }
-        let lists = states.iter().map(|s| s.1.list_in(&cell, self.sources));
-        let lists: Vec<Cow<List>> = lists.collect::<Option<_>>()?;
-        let named = states.iter().map(|s| s.0).zip(&lists);
-        let lists: Vec<(u32, &List)> = named.map(|(k, list)| (k, &**list)).collect();
+        let lists = self.lists_in(&cell, states)?;
+        let lists: Vec<(u32, &List)> = lists.iter().map(|(k, list)| (*k, &**list)).collect();
         let node = leaf::among_orthogonal(&cell, expression, &lists, self.sources)?;
         self.count_leaf(total);
         Some(Branch::of_node(cell, node))
@@ -378,24 +326,4 @@ impl<'a> Descent<'a> {
         });
         Branch::of_node(cell, node)
     }
-}
-
-/// The longest lists that are tried without local trees.
-fn most_in_general_position(states: &States) -> usize {
-    let worked = |s: &(u32, State)| matches!(&s.1, State::List(list) if list.work() != Work::Given);
-    if states.iter().any(worked) {
-        GENERAL
-    } else {
-        FRESH
-    }
-}
-
-/// Whether halving has stopped separating: a round kept nearly all elements, and nearly all of them
-/// reach out of the cell, as around a vertex of many faces.
-fn is_stuck(cell: &Cell, states: &States, round: Round, total: usize) -> bool {
-    let reaching = |s: &(u32, State)| match &s.1 {
-        State::List(list) => list.reaching_out(cell),
-        State::Constant(_) | State::Tree(_) | State::Bins(_) => 0,
-    };
-    round.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::list::Sources;
 use crate::geometry::cell::Cell;
 use crate::geometry::line::LineKey;
-use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::geometry::outline::{cancel, BareEdge, OutlineEdge};
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::{Carrier, Polygon};
 use crate::mesh::source::{Shape, Source};
@@ -25,8 +25,10 @@ enum What {
     Whole,
     /// All of a part inside the cell.
     Part(Arc<Part>),
-    /// Some convex pieces.
-    Pieces(Vec<Polygon>),
+    /// Some convex pieces, and what some edges bound.
+    Pieces(Vec<Polygon>, Vec<BareEdge>),
+    /// What an outline bounds that needs no joining, and is not all of the face in the cell.
+    Outline(Vec<BareEdge>),
 }
 
 impl Kept {
@@ -44,8 +46,38 @@ impl Kept {
 
     /// Convex pieces of a face.
     pub fn pieces(face: (u32, u32), flip: bool, pieces: Vec<Polygon>) -> Self {
-        let what = What::Pieces(pieces);
+        Self::joined(face, flip, pieces, Vec::new())
+    }
+
+    /// Convex pieces of a face, and what some edges on it bound.
+    pub fn joined(
+        face: (u32, u32),
+        flip: bool,
+        pieces: Vec<Polygon>,
+        edges: Vec<BareEdge>,
+    ) -> Self {
+        let what = What::Pieces(pieces, edges);
         Self { face, flip, what }
+    }
+
+    /// What an outline bounds: some, but not all of a face in the cell; no two of its edges that
+    /// follow each other lie on one line.
+    pub fn outlined(face: (u32, u32), flip: bool, edges: Vec<BareEdge>) -> Self {
+        let what = What::Outline(edges);
+        Self { face, flip, what }
+    }
+
+    /// What bounds it inside the cell.
+    fn edges(&self, source: &Source, cell: &Cell) -> Vec<OutlineEdge> {
+        let polygons = self.polygons(source, cell);
+        let mut edges: Vec<OutlineEdge> = Vec::new();
+        for polygon in &polygons {
+            edges.extend(OutlineEdge::all_of(polygon));
+        }
+        if let What::Pieces(_, bare) | What::Outline(bare) = &self.what {
+            edges.extend(OutlineEdge::keyed(bare, &source.plane(self.face.1)));
+        }
+        edges
     }
 
     /// The convex pieces inside the cell.
@@ -56,7 +88,8 @@ impl Kept {
                 let clipped = part.pieces().into_iter().filter_map(|p| p.clipped(cell));
                 clipped.collect()
             }
-            What::Pieces(pieces) => pieces.clone(),
+            What::Pieces(pieces, _) => pieces.clone(),
+            What::Outline(_) => Vec::new(),
         }
     }
 }
@@ -78,7 +111,7 @@ pub fn assemble(
         work,
         ..Deferred::default()
     };
-    for run in kept.chunk_by(|a, b| a.face == b.face && a.flip == b.flip) {
+    for run in kept.chunk_by_mut(|a, b| a.face == b.face && a.flip == b.flip) {
         let (slot, face) = run[0].face;
         let source = sources.get(slot as usize);
         let flip = run[0].flip;
@@ -97,13 +130,18 @@ pub fn assemble(
                 leaf.parts.push(PartElement { part, flip });
                 continue;
             }
+            [Kept {
+                what: What::Outline(edges),
+                ..
+            }] => {
+                let edges = std::mem::take(edges).into_boxed_slice();
+                let part = Arc::new(Part::of_edges(Arc::clone(source), face, *cell, edges));
+                leaf.parts.push(PartElement { part, flip });
+                continue;
+            }
             _ => {}
         }
-        let edges = run
-            .iter()
-            .flat_map(|k| k.polygons(source, cell))
-            .flat_map(|p| OutlineEdge::all_of(&p).collect::<Vec<_>>())
-            .collect();
+        let edges = run.iter().flat_map(|k| k.edges(source, cell)).collect();
         let edges = cancel(edges);
         if is_whole(&edges, source, face, cell) {
             list_whole(&mut leaf.groups, source, face, run[0].flip);

@@ -160,7 +160,8 @@ impl List {
         };
         let faces = |g: &Group| g.faces.iter().all(|face| held(&g.source, face));
         let parts = |p: &PartElement| branch.cell.holds(&p.part.home);
-        if !(leaf.groups.iter().all(faces) && leaf.parts.iter().all(parts)) {
+        let all_held = || leaf.groups.iter().all(faces) && leaf.parts.iter().all(parts);
+        if branch.cell != *cell && !all_held() {
             return None;
         }
         let mut list = Self::open(leaf, branch, sources);

@@ -2,6 +2,7 @@
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
 mod bins;
+pub mod choice;
 mod crossings;
 mod cutting;
 pub mod descend;

@@ -8,7 +8,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::descend::LEAF;
+use super::choice::LEAF;
 use super::leaf::LeafTree;
 use super::list::{List, Sources};
 use super::star::is_star_shaped;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::bins::Bins;
 use super::list::{List, PartRecord, Record, Sources};
 use crate::geometry::cell::{Cell, Cut};
-use crate::tree::node::{Branch, Node};
+use crate::tree::node::{Branch, Node, Work};
 
 /// Lists at least this long are worth a task of their own.
 pub const TASK: usize = 512;
@@ -74,6 +74,27 @@ impl State {
         }
     }
 
+    /// About how many it has in a part of the cell.
+    pub fn count_in(&self, part: &Cell) -> usize {
+        match self {
+            Self::Tree(branch) if !branch.cell.meets(part) => 0,
+            state => state.len_in(part),
+        }
+    }
+
+    /// Whether it lists an operand's boundary as that was given.
+    pub fn is_given(&self) -> bool {
+        match self {
+            Self::Constant(_) => false,
+            Self::Tree(branch) => match &*branch.node {
+                Node::Deferred(leaf) => leaf.work == Work::Given,
+                Node::Leaf(_) | Node::Cut(_) => false,
+            },
+            Self::List(list) => list.work() == Work::Given,
+            Self::Bins(bins) => bins.work() == Work::Given,
+        }
+    }
+
     /// The number of elements in a deferred leaf of this very cell.
     pub fn len_to_open(&self, cell: &Cell) -> usize {
         match self {
@@ -115,7 +136,8 @@ impl State {
         match self {
             Self::List(list) => Some(Cow::Borrowed(list)),
             Self::Tree(branch) => List::lifted(branch, cell, sources).map(Cow::Owned),
-            Self::Constant(_) | Self::Bins(_) => None,
+            Self::Bins(bins) => List::lifted(&bins.branch_in(cell), cell, sources).map(Cow::Owned),
+            Self::Constant(_) => None,
         }
     }
 

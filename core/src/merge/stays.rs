@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::kept::Kept;
+use crate::geometry::outline::BareEdge;
 use crate::geometry::polygon::Polygon;
 use crate::tree::node::Part;
 
@@ -14,6 +15,8 @@ pub enum Stays {
     All,
     /// These pieces.
     Pieces(Vec<Polygon>),
+    /// What an outline bounds, of which no two edges that follow each other lie on one line.
+    Outline(Vec<BareEdge>),
 }
 
 /// Whose an element is.
@@ -43,6 +46,7 @@ impl Stays {
             Self::Nothing => None,
             Self::All => Some(Kept::whole(face, flip)),
             Self::Pieces(polygons) => Some(Kept::pieces(face, flip, polygons)),
+            Self::Outline(edges) => Some(Kept::outlined(face, flip, edges)),
         }
     }
 }
@@ -85,10 +89,15 @@ fn kept_part(
     if !pieces.is_empty() && pieces.iter().all(|p| matches!(p.1, Stays::All)) {
         return Some(Kept::part(face, flip, Arc::clone(part)));
     }
-    let polygons = pieces.into_iter().flat_map(|(i, stays)| match stays {
-        Stays::Nothing => Vec::new(),
-        Stays::All => polygon(i).into_iter().collect(),
-        Stays::Pieces(polygons) => polygons,
-    });
-    Stays::of(polygons.collect()).kept(face, flip)
+    let (mut polygons, mut edges) = (Vec::new(), Vec::new());
+    for (i, stays) in pieces {
+        match stays {
+            Stays::Nothing => {}
+            Stays::All => polygons.extend(polygon(i)),
+            Stays::Pieces(pieces) => polygons.extend(pieces),
+            Stays::Outline(outline) => edges.extend(outline),
+        }
+    }
+    let some = !(polygons.is_empty() && edges.is_empty());
+    some.then(|| Kept::joined(face, flip, polygons, edges))
 }

@@ -192,11 +192,17 @@ pub struct Part {
 impl Part {
     /// The part of a face that an outline bounds in a cell.
     pub fn new(source: Arc<Source>, face: u32, home: Cell, edges: Vec<OutlineEdge>) -> Self {
+        let edges = edges.into_iter().map(BareEdge::from).collect();
+        Self::of_edges(source, face, home, edges)
+    }
+
+    /// The same, of edges without the keys of their lines.
+    pub fn of_edges(source: Arc<Source>, face: u32, home: Cell, edges: Box<[BareEdge]>) -> Self {
         Self {
             source,
             face,
             home,
-            edges: edges.into_iter().map(BareEdge::from).collect(),
+            edges,
             flux: OnceLock::new(),
         }
     }

@@ -5,9 +5,7 @@
 
 use std::sync::Arc;
 
-use smallvec::SmallVec;
-
-use super::super::cutting::Cutting;
+use super::fates::Cut;
 use super::scene::{Element, Place, Triangle};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
@@ -20,8 +18,6 @@ pub(super) struct Anchor {
     pub(super) name: Name,
     pub(super) place: Spot,
 }
-
-pub(super) type Anchors = SmallVec<[Anchor; 3]>;
 
 /// What tells points apart that several elements may have in common.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -43,11 +39,19 @@ pub(super) enum Spot {
 }
 
 impl Element<'_> {
-    /// The corners inside the cell that other elements of the operand may share.
-    pub(super) fn anchors(&self, cell: &Cell) -> Anchors {
+    /// Whether this is a whole face with a vertex in the cell.
+    pub(super) fn has_vertex_in(&self, cell: &Cell) -> bool {
         match &self.place {
-            Place::Face(triangle) => (0..3)
-                .filter(|i| cell.holds_box(&triangle.corners[*i], &triangle.corners[*i]))
+            Place::Face(triangle) => triangle.vertices_in(cell).next().is_some(),
+            Place::Plane(..) | Place::Piece(..) => false,
+        }
+    }
+
+    /// The corners inside the cell that other elements of the operand may share.
+    pub(super) fn anchors(&self, cell: &Cell) -> Vec<Anchor> {
+        match &self.place {
+            Place::Face(triangle) => triangle
+                .vertices_in(cell)
                 .map(|i| Anchor::at_vertex(triangle, i))
                 .collect(),
             Place::Piece(_, shape) => {
@@ -57,14 +61,14 @@ impl Element<'_> {
                     .map(Anchor::of_corner)
                     .collect()
             }
-            Place::Plane(..) => SmallVec::new(),
+            Place::Plane(..) => Vec::new(),
         }
     }
 
     /// The points in which a face's own edges leave the cell: its neighbours share them.
-    pub(super) fn anchors_at_walls(&self, clipped: &Polygon) -> Anchors {
+    pub(super) fn anchors_at_walls(&self, clipped: &Polygon) -> Vec<Anchor> {
         let Place::Face(triangle) = &self.place else {
-            return SmallVec::new();
+            return Vec::new();
         };
         let corners = clipped.corners();
         let n = corners.len();
@@ -76,7 +80,7 @@ impl Element<'_> {
 impl Anchor {
     fn at_vertex(triangle: &Triangle, corner: usize) -> Self {
         Self {
-            name: Name::Vertex(triangle.slot, triangle.vertices[corner]),
+            name: triangle.name(corner),
             place: Spot::Lattice(triangle.corners[corner]),
         }
     }
@@ -104,9 +108,9 @@ impl Anchor {
         })
     }
 
-    /// A piece that has the anchor as a corner.
-    pub(super) fn piece(&self, cutting: &Cutting) -> Option<usize> {
-        piece_with(cutting, |corner| self.is_at(corner))
+    /// A part that has the anchor as a corner.
+    pub(super) fn part(&self, cut: &Cut) -> Option<usize> {
+        cut.part_with(|corner| self.is_at(corner))
     }
 
     fn is_at(&self, corner: &Arc<Vertex>) -> bool {
@@ -115,12 +119,6 @@ impl Anchor {
             Spot::Exact(vertex) => Arc::ptr_eq(vertex, corner),
         }
     }
-}
-
-/// The first piece that has such a corner.
-pub(super) fn piece_with(cutting: &Cutting, is_it: impl Fn(&Arc<Vertex>) -> bool) -> Option<usize> {
-    let has = |piece: &Polygon| piece.corners().iter().any(|c| is_it(&c.at));
-    cutting.pieces.iter().position(has)
 }
 
 /// Whether a point certainly lies in a cell.

@@ -5,9 +5,12 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use super::super::cutting::{contact, cut_up, Contact, Cutter, Cutting};
-use super::super::sweep::{pairs, Swept};
-use super::anchors::Anchors;
-use super::scene::{Place, Scene};
+use super::super::sweep::{pairs, shift_of, Boxed};
+use super::anchors::Anchor;
+use super::points::Points;
+use super::scene::{Element, Place, Scene};
+use super::segment::{Crossed, Crosser};
+use super::trace::Trace;
 use crate::geometry::apart::are_apart;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
@@ -19,33 +22,60 @@ type Neighbours = SmallVec<[u32; 6]>;
 pub(super) enum Fate {
     /// It does not meet the cell.
     Absent,
+    /// A whole face near which there is no other, and of which a vertex lies in the cell.
+    Untouched,
     /// Nothing crosses it, and it has these anchors, at least one.
-    Uncut(Anchors),
-    /// It was cut up; it has these anchors, and this corner if it has none.
-    Cut(Cutting, Arc<Vertex>, Anchors),
+    Uncut(Vec<Anchor>),
+    /// It was cut up.
+    Cut(Box<Cut>),
+}
+
+/// A cut element.
+pub(super) struct Cut {
+    /// All of it inside the cell.
+    pub(super) polygon: Polygon,
+    pub(super) parts: Parts,
+    pub(super) anchors: Vec<Anchor>,
+}
+
+/// What an element is cut into.
+pub(super) enum Parts {
+    /// What lies outside one operand, and what inside.
+    Sides(Trace),
+    /// Convex pieces, by the faces of any operands.
+    Pieces(Cutting),
 }
 
 impl Scene<'_> {
     /// The fates of all elements; `None` if two meet in a special way.
     pub(super) fn fates(&self) -> Option<Vec<Fate>> {
         let neighbours = self.neighbours()?;
+        let mut points = Points::default();
         (0..self.elements.len())
-            .map(|i| self.fate(i, &neighbours[i]))
+            .map(|i| self.fate(i, &neighbours[i], &mut points))
             .collect()
     }
 
     /// For each element those of other operands that may meet it inside the cell; `None` if they
     /// are too many to be found by a sweep.
     fn neighbours(&self) -> Option<Vec<Neighbours>> {
-        let swept: Vec<Swept> = self.elements.iter().map(|e| e.swept(self.cell)).collect();
+        let size = self.cell.size().into_iter().max().unwrap_or(0);
+        let shift = shift_of(1 << size);
+        let boxed = |(number, element): (u32, &Element)| {
+            let [low, high] = element.extent(self.cell);
+            Boxed::new(element.operand, number, [&low, &high], shift)
+        };
+        let boxes = (0..).zip(&self.elements).map(boxed).collect();
+        let swept = |number: u32| self.elements[number as usize].swept(self.cell);
         let mut found = vec![Neighbours::new(); self.elements.len()];
-        pairs(&swept, |i, j| {
+        pairs(boxes, swept, |a, b| {
+            let (i, j) = (a as usize, b as usize);
             if !self.separated(i, j) {
-                found[i].push(j as u32);
-                found[j].push(i as u32);
+                found[i].push(b);
+                found[j].push(a);
             }
         })?;
-        // The sweep's order is not that of the elements.
+        // The order in which pairs are found is not that of the elements.
         for list in &mut found {
             list.sort_unstable();
         }
@@ -60,8 +90,11 @@ impl Scene<'_> {
         }
     }
 
-    fn fate(&self, i: usize, neighbours: &[u32]) -> Option<Fate> {
+    fn fate(&self, i: usize, neighbours: &[u32], points: &mut Points) -> Option<Fate> {
         let element = &self.elements[i];
+        if neighbours.is_empty() && element.has_vertex_in(self.cell) {
+            return Some(Fate::Untouched);
+        }
         let anchors = element.anchors(self.cell);
         if !anchors.is_empty() && neighbours.is_empty() {
             return Some(Fate::Uncut(anchors));
@@ -74,29 +107,64 @@ impl Scene<'_> {
         } else {
             anchors
         };
-        let cutters = self.cutters(&polygon, neighbours)?;
-        if !anchors.is_empty() && cutters.is_empty() {
+        let crossers = self.crossers(&polygon, neighbours)?;
+        if !anchors.is_empty() && crossers.is_empty() {
             return Some(Fate::Uncut(anchors));
         }
-        let base = Arc::clone(&polygon.corners()[0].at);
-        Some(Fate::Cut(cut_up(polygon, &cutters)?, base, anchors))
+        let crossed = Crossed {
+            polygon: &polygon,
+            number: i as u32,
+        };
+        let parts = Parts::of(&crossed, &crossers, points)?;
+        Some(Fate::Cut(Box::new(Cut {
+            polygon,
+            parts,
+            anchors,
+        })))
     }
 
     /// Those neighbours that may cross a polygon; `None` if one touches it in a special way.
-    fn cutters(&self, polygon: &Polygon, neighbours: &[u32]) -> Option<Vec<Cutter<'_>>> {
-        let mut cutters = Vec::with_capacity(neighbours.len());
+    fn crossers(&self, polygon: &Polygon, neighbours: &[u32]) -> Option<Vec<Crosser<'_>>> {
+        let mut crossers = Vec::with_capacity(neighbours.len());
         for j in neighbours {
             let other = &self.elements[*j as usize];
             match contact(polygon, other.shape()) {
                 Contact::Special => return None,
                 Contact::None => {}
-                Contact::Crossing => cutters.push(Cutter {
+                Contact::Crossing(ours, theirs) => crossers.push(Crosser {
                     face: other.shape(),
+                    number: *j,
                     operand: other.operand,
                     weight: other.weight,
+                    ours,
+                    theirs,
                 }),
             }
         }
-        Some(cutters)
+        Some(crossers)
+    }
+}
+
+impl Parts {
+    fn of(crossed: &Crossed, crossers: &[Crosser], points: &mut Points) -> Option<Self> {
+        if let Some(trace) = Trace::new(crossed, crossers, points) {
+            return Some(Self::Sides(trace));
+        }
+        let cutters: Vec<Cutter> = crossers.iter().map(Crosser::cutter).collect();
+        Some(Self::Pieces(cut_up(crossed.polygon.clone(), &cutters)?))
+    }
+}
+
+impl Cut {
+    /// The first part that has such a corner.
+    pub(super) fn part_with(&self, is_it: impl Fn(&Arc<Vertex>) -> bool) -> Option<usize> {
+        let has = |piece: &Polygon| piece.corners().iter().any(|c| is_it(&c.at));
+        match &self.parts {
+            Parts::Pieces(cutting) => cutting.pieces.iter().position(has),
+            Parts::Sides(trace) => {
+                let corner = self.polygon.corners().iter().position(|c| is_it(&c.at))?;
+                Some(usize::from(trace.holds_corner(corner)))
+            }
+        }
     }
 }

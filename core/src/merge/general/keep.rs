@@ -4,7 +4,7 @@ use smallvec::SmallVec;
 
 use super::super::kept::Kept;
 use super::super::stays::{kept, Owner, Stays};
-use super::fates::Fate;
+use super::fates::{Fate, Parts};
 use super::scene::{Element, Place, Scene};
 use super::{Labels, OnPieces};
 
@@ -18,6 +18,7 @@ impl Scene<'_> {
     ) -> Vec<Kept> {
         let present = fates.into_iter().enumerate();
         let present = present.filter(|(_, fate)| !matches!(fate, Fate::Absent));
+        let mut values = Values::of(value);
         let settled = present.map(|(i, fate)| {
             let element = &self.elements[i];
             let owner = match &element.place {
@@ -25,7 +26,7 @@ impl Scene<'_> {
                 Place::Plane(slot, _) => Owner::Face((*slot, 0)),
                 Place::Piece(part, _) => Owner::Part(*part),
             };
-            (i, owner, element.stays(fate, &labels[i], value))
+            (i, owner, element.stays(fate, &labels[i], &mut values))
         });
         kept(settled, &self.parts, |i| {
             self.elements[i].polygon_in(self.cell)
@@ -39,9 +40,9 @@ impl Element<'_> {
         &self,
         fate: Fate,
         labels: &[Labels],
-        value: &mut impl FnMut(Labels) -> bool,
+        values: &mut Values<impl FnMut(Labels) -> bool>,
     ) -> [Stays; 2] {
-        let side = |others: &Labels| self.side(*others, value);
+        let side = |others: &Labels| self.side(*others, values);
         let sides: SmallVec<[Option<usize>; 4]> = labels.iter().map(side).collect();
         let mut stays = [Stays::Nothing, Stays::Nothing];
         match sides[0] {
@@ -49,28 +50,68 @@ impl Element<'_> {
                 stays[first] = Stays::All;
                 stays
             }
-            _ => stays_of_pieces(fate, &sides),
+            _ => stays_of_parts(fate, &sides),
         }
     }
 
     /// Whether a piece where the others have these labels stays, and as what: 1 is turned.
-    fn side(&self, others: Labels, value: &mut impl FnMut(Labels) -> bool) -> Option<usize> {
+    fn side(
+        &self,
+        others: Labels,
+        values: &mut Values<impl FnMut(Labels) -> bool>,
+    ) -> Option<usize> {
         let own: Labels = 1 << self.operand;
-        let (inside, outside) = (value(others | own), value(others & !own));
+        let [inside, outside] = values.on_sides(own, others & !own);
         let turned = outside != (self.weight < 0);
         (inside != outside).then_some(usize::from(turned))
     }
 }
 
-/// The pieces by the sides on which they stay.
-fn stays_of_pieces(fate: Fate, sides: &[Option<usize>]) -> [Stays; 2] {
-    let mut found = [Vec::new(), Vec::new()];
-    if let Fate::Cut(cutting, ..) = fate {
-        for (piece, side) in cutting.pieces.into_iter().zip(sides) {
-            if let Some(side) = side {
-                found[*side].push(piece);
+/// An expression's values inside and outside an operand: elements that follow each other mostly
+/// ask for the same.
+struct Values<F> {
+    value: F,
+    last: Option<((Labels, Labels), [bool; 2])>,
+}
+
+impl<F: FnMut(Labels) -> bool> Values<F> {
+    fn of(value: F) -> Self {
+        Self { value, last: None }
+    }
+
+    fn on_sides(&mut self, own: Labels, others: Labels) -> [bool; 2] {
+        match self.last {
+            Some((asked, found)) if asked == (own, others) => found,
+            _ => {
+                let found = [(self.value)(others | own), (self.value)(others)];
+                self.last = Some(((own, others), found));
+                found
             }
         }
     }
-    found.map(Stays::of)
+}
+
+/// The parts by the sides on which they stay.
+fn stays_of_parts(fate: Fate, sides: &[Option<usize>]) -> [Stays; 2] {
+    let Fate::Cut(cut) = fate else {
+        return [Stays::Nothing, Stays::Nothing];
+    };
+    match cut.parts {
+        Parts::Sides(trace) => [0, 1].map(|side| {
+            let stays = |inside: &bool| sides[usize::from(*inside)] == Some(side);
+            let inside = [false, true].into_iter().find(stays);
+            inside.map_or(Stays::Nothing, |i| {
+                Stays::Outline(trace.outline(&cut.polygon, i))
+            })
+        }),
+        Parts::Pieces(cutting) => {
+            let mut found = [Vec::new(), Vec::new()];
+            for (piece, side) in cutting.pieces.into_iter().zip(sides) {
+                if let Some(side) = side {
+                    found[*side].push(piece);
+                }
+            }
+            found.map(Stays::of)
+        }
+    }
 }

@@ -2,10 +2,14 @@
 
 use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
-use super::anchors::{Anchor, Name, Spot};
+use super::anchors::{Anchor, Name};
 use super::fates::Fate;
-use super::scene::Scene;
+use super::scene::{Element, Place, Scene};
 use super::Labels;
+use crate::geometry::cell::Cell;
+
+/// Stands for no anchor, and is above the numbers of all.
+const NONE: u32 = u32::MAX;
 
 /// Anchors with what is known of the other operands there. Those of an element that nothing
 /// crosses have the same labels.
@@ -14,6 +18,8 @@ pub(super) struct Known {
     parents: Vec<u32>,
     /// By anchor that stands for others.
     pub(super) labels: Vec<Option<Labels>>,
+    /// By element that nothing crosses: one of its anchors.
+    anchors: Vec<u32>,
     /// The cut elements at the anchors that stand for others: the anchor, the element, and the
     /// anchor's place among the element's.
     cuts: Vec<(u32, u32, u32)>,
@@ -28,17 +34,17 @@ impl Known {
             numbers: HashMap::with_capacity_and_hasher(count, FxBuildHasher),
             parents: Vec::with_capacity(count),
             labels: Vec::with_capacity(count),
+            anchors: Vec::with_capacity(count),
             cuts: Vec::new(),
         };
         for (element, fate) in scene.elements.iter().zip(fates) {
-            if let Fate::Uncut(anchors) = fate {
-                known.unite(element.operand, anchors);
-            }
+            let anchor = known.enter(scene.cell, element, fate);
+            known.anchors.push(anchor);
         }
         for (i, (element, fate)) in (0u32..).zip(scene.elements.iter().zip(fates)) {
-            if let Fate::Cut(_, _, anchors) = fate {
-                for (place, anchor) in (0u32..).zip(anchors) {
-                    let root = known.root(element.operand, anchor);
+            if let Fate::Cut(cut) = fate {
+                for (place, anchor) in (0u32..).zip(&cut.anchors) {
+                    let root = known.root_of(element.operand, anchor.name);
                     known.cuts.push((root, i, place));
                 }
             }
@@ -47,27 +53,41 @@ impl Known {
         known
     }
 
-    /// Makes one anchor stand for all of an element.
-    fn unite(&mut self, operand: usize, anchors: &[Anchor]) {
-        let first = self.root(operand, &anchors[0]);
-        anchors[1..].iter().fold(first, |a, other| {
-            let b = self.root(operand, other);
-            self.parents[b.max(a) as usize] = a.min(b);
-            a.min(b)
-        });
+    /// Makes one anchor stand for all of an element that nothing crosses, and returns it.
+    fn enter(&mut self, cell: &Cell, element: &Element, fate: &Fate) -> u32 {
+        let operand = element.operand;
+        match (fate, &element.place) {
+            (Fate::Untouched, Place::Face(triangle)) => {
+                let names = triangle.vertices_in(cell).map(|i| triangle.name(i));
+                self.unite(operand, names)
+            }
+            (Fate::Uncut(anchors), _) => self.unite(operand, anchors.iter().map(|a| a.name)),
+            _ => NONE,
+        }
     }
 
-    /// The number of the anchor that stands for this one.
-    pub(super) fn root(&mut self, operand: usize, anchor: &Anchor) -> u32 {
+    fn unite(&mut self, operand: usize, names: impl Iterator<Item = Name>) -> u32 {
+        names.fold(NONE, |a, name| {
+            let b = self.root_of(operand, name);
+            if a != NONE {
+                self.parents[b.max(a) as usize] = a.min(b);
+            }
+            a.min(b)
+        })
+    }
+
+    /// The number of the anchor that stands for the one with this name.
+    pub(super) fn root_of(&mut self, operand: usize, name: Name) -> u32 {
         let next = self.parents.len() as u32;
-        let mut at = *self
-            .numbers
-            .entry((operand as u32, anchor.name))
-            .or_insert(next);
+        let at = *self.numbers.entry((operand as u32, name)).or_insert(next);
         if at == next {
             self.parents.push(next);
             self.labels.push(None);
         }
+        self.root(at)
+    }
+
+    fn root(&mut self, mut at: u32) -> u32 {
         while self.parents[at as usize] != at {
             let above = self.parents[self.parents[at as usize] as usize];
             self.parents[at as usize] = above;
@@ -76,7 +96,7 @@ impl Known {
         at
     }
 
-    /// The cut elements at an anchor, with the piece there and its labels.
+    /// The cut elements at an anchor, with the part there and its labels.
     pub(super) fn cut_at(
         &self,
         root: usize,
@@ -87,11 +107,11 @@ impl Known {
         let here = self.cuts[start..].iter();
         let here = here.take_while(|c| c.0 as usize == root);
         here.map(|(_, i, place)| {
-            let Fate::Cut(cutting, _, anchors) = &fates[*i as usize] else {
+            let Fate::Cut(cut) = &fates[*i as usize] else {
                 return None;
             };
-            let piece = anchors[*place as usize].piece(cutting)?;
-            Some((*i as usize, piece, label))
+            let part = cut.anchors[*place as usize].part(cut)?;
+            Some((*i as usize, part, label))
         })
         .collect()
     }
@@ -103,13 +123,29 @@ impl Known {
         operand: usize,
         anchor: &Anchor,
     ) -> Option<Labels> {
-        let root = self.root(operand, anchor) as usize;
-        if self.labels[root].is_none() {
-            self.labels[root] = Some(match &anchor.place {
-                Spot::Lattice(point) => scene.count_at_lattice(operand, point)?,
-                Spot::Exact(point) => scene.count(operand, point)?,
-            });
+        let root = self.root_of(operand, anchor.name);
+        self.known_or(root, || scene.count_at(operand, &anchor.place))
+    }
+
+    /// The labels of all other operands on an element that nothing crosses.
+    pub(super) fn label_of(&mut self, scene: &Scene, i: usize, fate: &Fate) -> Option<Labels> {
+        let element = &scene.elements[i];
+        let root = self.root(self.anchors[i]);
+        self.known_or(root, || match (fate, &element.place) {
+            (Fate::Uncut(anchors), _) => scene.count_at(element.operand, &anchors.first()?.place),
+            (_, Place::Face(triangle)) => {
+                let corner = triangle.vertices_in(scene.cell).next()?;
+                scene.count_at_lattice(element.operand, &triangle.corners[corner])
+            }
+            _ => None,
+        })
+    }
+
+    fn known_or(&mut self, root: u32, count: impl FnOnce() -> Option<Labels>) -> Option<Labels> {
+        let known = &mut self.labels[root as usize];
+        if known.is_none() {
+            *known = Some(count()?);
         }
-        self.labels[root]
+        *known
     }
 }

@@ -6,12 +6,12 @@
 use std::sync::Arc;
 
 use super::super::cutting::{Cutting, Tie};
-use super::anchors::{piece_with, Anchors};
-use super::fates::Fate;
+use super::anchors::Spot;
+use super::fates::{Cut, Fate, Parts};
 use super::known::Known;
 use super::scene::{Element, Place, Scene};
 use super::{Labels, OnPieces};
-use crate::geometry::path::triangle_on_path;
+use crate::geometry::path::{triangle_on_path, Way};
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
 
@@ -21,37 +21,31 @@ impl Scene<'_> {
         let mut known = Known::new(self, fates);
         let mut labels = vec![OnPieces::new(); fates.len()];
         for (i, fate) in fates.iter().enumerate() {
-            if let (Fate::Cut(cutting, base, anchors), true) = (fate, labels[i].is_empty()) {
-                let operand = self.elements[i].operand;
-                let (piece, start) = self.start(operand, cutting, base, anchors, &mut known)?;
-                self.flood(fates, (i, piece, start), &mut known, &mut labels)?;
+            if let (Fate::Cut(cut), true) = (fate, labels[i].is_empty()) {
+                let (part, start) = self.start(self.elements[i].operand, cut, &mut known)?;
+                self.flood(fates, (i, part, start), &mut known, &mut labels)?;
             }
         }
-        for ((element, fate), labels) in self.elements.iter().zip(fates).zip(&mut labels) {
-            if let Fate::Uncut(anchors) = fate {
-                labels.push(known.label(self, element.operand, &anchors[0])?);
+        for (i, fate) in fates.iter().enumerate() {
+            if let Fate::Untouched | Fate::Uncut(_) = fate {
+                labels[i].push(known.label_of(self, i, fate)?);
             }
         }
         Some(labels)
     }
 
-    /// A piece of a cut element, and its labels.
-    fn start(
-        &self,
-        operand: usize,
-        cutting: &Cutting,
-        base: &Arc<Vertex>,
-        anchors: &Anchors,
-        known: &mut Known,
-    ) -> Option<(usize, Labels)> {
-        if let Some(anchor) = anchors.first() {
-            return Some((anchor.piece(cutting)?, known.label(self, operand, anchor)?));
+    /// A part of a cut element, and its labels.
+    fn start(&self, operand: usize, cut: &Cut, known: &mut Known) -> Option<(usize, Labels)> {
+        if let Some(anchor) = cut.anchors.first() {
+            let label = known.label(self, operand, anchor)?;
+            return Some((anchor.part(cut)?, label));
         }
-        let piece = piece_with(cutting, |at| Arc::ptr_eq(at, base))?;
-        Some((piece, self.count(operand, base)?))
+        let base = &cut.polygon.corners()[0].at;
+        let part = cut.part_with(|at| Arc::ptr_eq(at, base))?;
+        Some((part, self.count(operand, base)?))
     }
 
-    /// Labels the pieces of a cut element from one of them, and of all cut elements that share
+    /// Labels the parts of a cut element from one of them, and of all cut elements that share
     /// anchors with it.
     fn flood(
         &self,
@@ -61,14 +55,14 @@ impl Scene<'_> {
         labels: &mut [OnPieces],
     ) -> Option<()> {
         let mut open = vec![start];
-        while let Some((i, piece, start)) = open.pop() {
-            let (Fate::Cut(cutting, _, anchors), true) = (&fates[i], labels[i].is_empty()) else {
+        while let Some((i, part, start)) = open.pop() {
+            let (Fate::Cut(cut), true) = (&fates[i], labels[i].is_empty()) else {
                 continue;
             };
-            labels[i] = spread(cutting, piece, start)?;
-            for anchor in anchors {
-                let label = labels[i][anchor.piece(cutting)?];
-                let root = known.root(self.elements[i].operand, anchor) as usize;
+            labels[i] = spread(&cut.parts, part, start)?;
+            for anchor in &cut.anchors {
+                let label = labels[i][anchor.part(cut)?];
+                let root = known.root_of(self.elements[i].operand, anchor.name) as usize;
                 match known.labels[root].replace(label) {
                     Some(other) if other != label => return None,
                     Some(_) => {}
@@ -79,15 +73,18 @@ impl Scene<'_> {
         Some(())
     }
 
+    /// The labels of all operands but one at a place on that one's boundary.
+    pub(super) fn count_at(&self, own: usize, place: &Spot) -> Option<Labels> {
+        match place {
+            Spot::Lattice(point) => self.count_at_lattice(own, point),
+            Spot::Exact(point) => self.count(own, point),
+        }
+    }
+
     /// The labels of all operands but one at an exact point of that one's boundary.
-    pub(super) fn count(&self, own: usize, point: &Vertex) -> Option<Labels> {
+    fn count(&self, own: usize, point: &Vertex) -> Option<Labels> {
         let across = |e: &Element| e.shape().on_path(&self.corner, point);
-        let near = point.approx();
-        let (low, high) = (
-            near.map(|x| x.floor() as i64),
-            near.map(|x| x.ceil() as i64),
-        );
-        self.count_by(own, &low, &high, across)
+        self.count_by(own, point.approx(), across)
     }
 
     /// The labels of all operands but one at a lattice vertex of that one.
@@ -97,21 +94,18 @@ impl Scene<'_> {
             Place::Face(t) => triangle_on_path(&t.corners, &self.corner, point),
             _ => e.shape().on_path(&self.corner, &exact),
         };
-        self.count_by(own, point, point, across)
+        self.count_by(own, point.map(|x| x as f64), across)
     }
 
-    /// The labels at a point in a box, given the change across an element on the way there.
+    /// The labels at a point close to one, given the change across an element on the way there.
     fn count_by(
         &self,
         own: usize,
-        low: &Lattice,
-        high: &Lattice,
+        point: [f64; 3],
         across: impl Fn(&Element) -> Option<i32>,
     ) -> Option<Labels> {
-        let start = self.cell.low();
-        let from = [0, 1, 2].map(|i| low[i].min(start[i]) - 1);
-        let to = [0, 1, 2].map(|i| high[i].max(start[i]) + 1);
-        let near = |e: &&Element| (0..3).all(|i| e.low[i] <= to[i] && e.high[i] >= from[i]);
+        let way = Way::new(self.corner.map(|x| 0.5 * x as f64), point);
+        let near = |e: &&Element| way.may_meet(&e.low, &e.high);
         let mut labels = 0;
         for operand in (0..self.corners.len()).filter(|k| *k != own) {
             let mut w = self.corners[operand];
@@ -127,9 +121,22 @@ impl Scene<'_> {
     }
 }
 
+/// The labels of all parts from those of one; `None` if they contradict each other.
+fn spread(parts: &Parts, first: usize, start: Labels) -> Option<OnPieces> {
+    match parts {
+        Parts::Pieces(cutting) => spread_along_ties(cutting, first, start),
+        Parts::Sides(trace) => {
+            let bit: Labels = 1 << trace.operand;
+            let inside = first == 1;
+            let agrees = (start & bit != 0) == inside;
+            agrees.then(|| OnPieces::from_buf([start & !bit, start | bit]))
+        }
+    }
+}
+
 /// The labels of all pieces from those of one; `None` if the ties contradict each other, or a
 /// number is neither 0 nor 1.
-fn spread(cutting: &Cutting, first: usize, start: Labels) -> Option<OnPieces> {
+fn spread_along_ties(cutting: &Cutting, first: usize, start: Labels) -> Option<OnPieces> {
     let mut labels: Vec<Option<Labels>> = vec![None; cutting.pieces.len()];
     labels[first] = Some(start);
     let mut changed = true;

@@ -10,7 +10,10 @@ mod fates;
 mod keep;
 mod known;
 mod labels;
+mod points;
 mod scene;
+mod segment;
+mod trace;
 
 use smallvec::SmallVec;
 

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::super::cutting::Face;
 use super::super::list::{List, Record, Sources};
 use super::super::sweep::Swept;
+use super::anchors::Name;
 use super::Labels;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
@@ -45,9 +46,9 @@ pub(super) struct Element<'a> {
 pub(super) enum Place<'a> {
     Face(Triangle<'a>),
     /// The face of a half-space: its slot, and its part in the cell.
-    Plane(u32, Face<'a>),
+    Plane(u32, Box<Face<'a>>),
     /// A piece of a part: the part's number in the scene.
-    Piece(usize, Face<'a>),
+    Piece(usize, Box<Face<'a>>),
 }
 
 /// A whole face.
@@ -57,7 +58,7 @@ pub(super) struct Triangle<'a> {
     pub(super) face: u32,
     pub(super) vertices: [u32; 3],
     pub(super) corners: [Lattice; 3],
-    shape: OnceCell<Face<'a>>,
+    shape: OnceCell<Box<Face<'a>>>,
 }
 
 impl<'a> Scene<'a> {
@@ -91,7 +92,7 @@ impl<'a> Scene<'a> {
                 self.elements.push(Element {
                     operand,
                     weight: if p.element.flip { -1 } else { 1 },
-                    place: Place::Piece(part, Face::new(Cow::Borrowed(piece))),
+                    place: Place::Piece(part, Box::new(Face::new(Cow::Borrowed(piece)))),
                     inside,
                     low: low.map(|x| x.floor() as i64),
                     high: high.map(|x| x.ceil() as i64),
@@ -116,6 +117,17 @@ impl<'a> Scene<'a> {
 }
 
 impl Triangle<'_> {
+    /// Which of the vertices lie in a cell.
+    pub(super) fn vertices_in(&self, cell: &Cell) -> impl Iterator<Item = usize> {
+        let inside = self.corners.map(|p| cell.holds_box(&p, &p));
+        (0..3).filter(move |i| inside[*i])
+    }
+
+    /// The name of a vertex.
+    pub(super) fn name(&self, corner: usize) -> Name {
+        Name::Vertex(self.slot, self.vertices[corner])
+    }
+
     /// The vertices at the ends of an edge that is given by its places.
     pub(super) fn ends_of(&self, edge: [&Lattice; 2]) -> Option<[u32; 2]> {
         let at = |place: &Lattice| self.corners.iter().position(|c| c == place);
@@ -143,7 +155,10 @@ impl<'a> Element<'a> {
             }),
             Shape::HalfSpace(plane) => {
                 let polygon = Polygon::span(plane, cell)?;
-                Place::Plane(record.slot() as u32, Face::new(Cow::Owned(polygon)))
+                Place::Plane(
+                    record.slot() as u32,
+                    Box::new(Face::new(Cow::Owned(polygon))),
+                )
             }
         };
         let (low, high) = source.face_box(record.face);
@@ -157,14 +172,24 @@ impl<'a> Element<'a> {
         })
     }
 
-    /// The element as the sweep sees it.
-    pub(super) fn swept(&self, cell: &Cell) -> Swept {
+    /// The ends of the element's box inside the cell, relative to its low corner.
+    pub(super) fn extent(&self, cell: &Cell) -> [Lattice; 2] {
         let (low, high) = (cell.low(), cell.high());
-        let relative = |p: &Lattice| [0, 1, 2].map(|i| (p[i] - low[i]) as f64);
+        [
+            [0, 1, 2].map(|i| self.low[i].max(low[i] - 1) - low[i]),
+            [0, 1, 2].map(|i| self.high[i].min(high[i] + 1) - low[i]),
+        ]
+    }
+
+    /// The element as a sweep sees it.
+    pub(super) fn swept(&self, cell: &Cell) -> Swept {
+        let origin = cell.low();
+        let relative = |p: &Lattice| [0, 1, 2].map(|i| (p[i] - origin[i]) as f64);
+        let [low, high] = self.extent(cell);
         Swept {
             operand: self.operand,
-            low: [0, 1, 2].map(|i| self.low[i].max(low[i] - 1) - low[i]),
-            high: [0, 1, 2].map(|i| self.high[i].min(high[i] + 1) - low[i]),
+            low,
+            high,
             corners: match &self.place {
                 Place::Face(t) => Some([0, 1, 2].map(|i| relative(&t.corners[i]))),
                 Place::Plane(..) | Place::Piece(..) => None,
@@ -176,7 +201,7 @@ impl<'a> Element<'a> {
         match &self.place {
             Place::Face(t) => t.shape.get_or_init(|| {
                 let plane = t.source.plane(t.face);
-                Face::new(Cow::Owned(Polygon::triangle(&t.corners, plane)))
+                Box::new(Face::new(Cow::Owned(Polygon::triangle(&t.corners, plane))))
             }),
             Place::Plane(_, shape) | Place::Piece(_, shape) => shape,
         }

@@ -4,10 +4,14 @@
 //! needles overlap in every box, but hardly in a projection across them. In the plane of the two best
 //! lines also the edges of triangles tell them from boxes.
 
+mod boxes;
 mod line;
 mod rim;
 
+use std::cell::RefCell;
+
 use crate::geometry::plane::Lattice;
+pub use boxes::{shift_of, Boxed};
 use line::{dot, longest_edge, Line, Span};
 use rim::{largest_coordinate, rims, HalfPlane};
 
@@ -26,9 +30,6 @@ pub struct Swept {
     pub corners: Option<[[f64; 3]; 3]>,
 }
 
-/// Up to this many elements are compared all with all, at about a nanosecond each.
-const FEW: usize = 384;
-
 /// Projections are widened by this share of the largest coordinate, far above their rounding.
 const SLACK: f64 = 1e-14;
 
@@ -43,11 +44,28 @@ const PARALLEL: f64 = 0.8;
 
 /// Calls `meet` for all pairs of different operands whose extents overlap along every line, the
 /// lower index first; gives up with `None` where too many elements lie above each other on each.
-pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<()> {
-    if elements.len() <= FEW {
-        compare_all(elements, &mut meet);
-        return Some(());
-    }
+///
+/// Elements of one operand follow each other; `swept` gives the element with a number.
+pub fn pairs(
+    elements: Vec<Boxed>,
+    swept: impl Fn(u32) -> Swept,
+    meet: impl FnMut(u32, u32),
+) -> Option<()> {
+    let meet = RefCell::new(meet);
+    let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
+    boxes::pairs(elements, found, |crowd, space| {
+        let some: Vec<Swept> = crowd.iter().map(|e| swept(e.number)).collect();
+        sweep(&some, |i, j| {
+            let (a, b) = (&crowd[i], &crowd[j]);
+            if space.owns(a, b) {
+                found(a.number, b.number);
+            }
+        })
+    })
+}
+
+/// The same, by sweeps along lines.
+fn sweep(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<()> {
     let sweeps: Vec<Sweep> = parties(elements)
         .into_iter()
         .map(|numbers| Sweep::of(elements, &numbers))
@@ -59,56 +77,6 @@ pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<(
         sweep.run(&mut meet);
     }
     Some(())
-}
-
-fn compare_all(elements: &[Swept], meet: &mut impl FnMut(usize, usize)) {
-    let shift = shift_of(elements);
-    let boxes: Vec<ShortBox> = elements.iter().map(|e| ShortBox::of(e, shift)).collect();
-    let mut end = 0;
-    for run in elements.chunk_by(|a, b| a.operand == b.operand) {
-        let start = end;
-        end += run.len();
-        for i in start..end {
-            let wanted = boxes[i].turned();
-            for (j, other) in (end..).zip(&boxes[end..]) {
-                if wanted.overlaps(other) {
-                    meet(i, j);
-                }
-            }
-        }
-    }
-}
-
-/// By how many bits coordinates are shortened to fit into 31 with their sign.
-fn shift_of(elements: &[Swept]) -> u32 {
-    let coordinates = elements.iter().flat_map(|e| e.low.iter().chain(&e.high));
-    let all = coordinates.fold(0, |bits, x| bits | x.unsigned_abs());
-    (u64::BITS - all.leading_zeros()).saturating_sub(30)
-}
-
-/// The upper ends of a box and its lower ends, negated; or, turned, the lower ends and the upper
-/// ones, negated. Two boxes overlap if those of one, turned, nowhere exceed those of the other.
-#[derive(Clone, Copy)]
-struct ShortBox([i32; 8]);
-
-impl ShortBox {
-    fn of(element: &Swept, shift: u32) -> Self {
-        let short = |x: i64| (x >> shift) as i32;
-        let [a, b, c] = element.low.map(short);
-        let [x, y, z] = element.high.map(short);
-        Self([x, y, z, 0, -a, -b, -c, 0])
-    }
-
-    fn turned(&self) -> Self {
-        let [x, y, z, _, a, b, c, _] = self.0;
-        Self([-a, -b, -c, 0, -x, -y, -z, 0])
-    }
-
-    #[inline]
-    fn overlaps(&self, other: &Self) -> bool {
-        let exceeds = self.0.iter().zip(&other.0).map(|(a, b)| a > b);
-        !exceeds.fold(false, |any, one| any | one)
-    }
 }
 
 /// The elements, all together or, if two operands have many, as pairs of groups that suit different
@@ -251,7 +219,7 @@ mod tests {
         let direction = || [-200..=200i64, -200..=200i64, -200..=200i64];
         let all = move |(a, b)| {
             let one = prop_oneof![needle(a), needle(b)].boxed();
-            let sizes = prop_oneof![20..FEW, FEW..MANY, MANY..MANY + 90];
+            let sizes = prop_oneof![20..99usize, 99..MANY, MANY..MANY + 90];
             let some = move |size| proptest::collection::vec((0..operands, one.clone()), size);
             sizes.prop_flat_map(some)
         };
@@ -267,9 +235,15 @@ mod tests {
     fn misses_nothing(scene: &[(usize, [Lattice; 3])]) -> bool {
         let elements: Vec<Swept> = scene.iter().map(|(k, t)| swept(*k, t)).collect();
         let mut found = std::collections::HashSet::new();
-        let done = pairs(&elements, |i, j| {
-            found.insert((i, j));
-        });
+        let boxed = |(k, e): (u32, &Swept)| Boxed::new(e.operand, k, [&e.low, &e.high], 0);
+        let boxes = (0..).zip(&elements).map(boxed).collect();
+        let done = pairs(
+            boxes,
+            |k| elements[k as usize].clone(),
+            |i, j| {
+                found.insert((i as usize, j as usize));
+            },
+        );
         let meet = |i: usize, j: usize| {
             let (a, b) = (&scene[i], &scene[j]);
             a.0 != b.0 && (pierces(&a.1, &b.1) || pierces(&b.1, &a.1))

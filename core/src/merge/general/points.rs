@@ -1,0 +1,71 @@
+//! The points in which edges cross elements, made once for all elements that share them.
+
+use std::sync::Arc;
+
+use rustc_hash::FxHashMap as HashMap;
+
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::polygon::{Carrier, Polygon};
+use crate::geometry::vertex::Vertex;
+
+/// The points known so far, by edge and by the number of the element that it crosses.
+#[derive(Default)]
+pub(super) struct Points(HashMap<(EdgeName, u32), Point>);
+
+struct Point {
+    at: Arc<Vertex>,
+    /// The planes in the edge's name: while they are held no others have their addresses.
+    _planes: Option<[Arc<Plane>; 2]>,
+}
+
+/// What tells edges apart, the same for all elements at an edge.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum EdgeName {
+    /// The ends of a lattice edge, the lower one first.
+    Lattice([Lattice; 2]),
+    /// The addresses of the two planes that meet in it, the lower one first.
+    Planes([usize; 2]),
+}
+
+impl EdgeName {
+    fn of(edge: &Carrier, support: &Arc<Plane>) -> Self {
+        match edge {
+            Carrier::Edge(edge) => {
+                let (a, b) = edge.ends();
+                Self::Lattice([*a.min(b), *a.max(b)])
+            }
+            Carrier::Cut(plane, _) => {
+                let address = |p: &Arc<Plane>| Arc::as_ptr(p) as usize;
+                let (a, b) = (address(support), address(plane));
+                Self::Planes([a.min(b), a.max(b)])
+            }
+        }
+    }
+}
+
+impl Points {
+    /// The point in which an edge of a polygon crosses the plane of the element with a number;
+    /// `None` if they are parallel.
+    pub(super) fn at(
+        &mut self,
+        (polygon, edge): (&Polygon, usize),
+        (plane, number): (&Arc<Plane>, u32),
+    ) -> Option<Arc<Vertex>> {
+        let carrier = &polygon.corners()[edge].edge;
+        let name = (EdgeName::of(carrier, polygon.support()), number);
+        if let Some(known) = self.0.get(&name) {
+            return Some(Arc::clone(&known.at));
+        }
+        let at = Arc::new(carrier.meet(polygon.support(), plane)?);
+        let planes = match carrier {
+            Carrier::Edge(_) => None,
+            Carrier::Cut(cut, _) => Some([Arc::clone(polygon.support()), Arc::clone(cut)]),
+        };
+        let known = Point {
+            at: Arc::clone(&at),
+            _planes: planes,
+        };
+        self.0.insert(name, known);
+        Some(at)
+    }
+}

@@ -1,0 +1,178 @@
+//! Pairs of boxes that overlap, found by halving the space around them.
+
+use crate::geometry::plane::Lattice;
+
+/// Up to this many boxes are compared all with all: halving them costs about as much.
+const FEW: usize = 96;
+
+/// Up to this many that halving does not separate are compared even so: a sweep costs about as much.
+const SOME: usize = 384;
+
+/// An element with its box in short integers.
+#[derive(Clone, Copy)]
+pub struct Boxed {
+    extent: ShortBox,
+    operand: u32,
+    /// Its number.
+    pub number: u32,
+}
+
+impl Boxed {
+    /// An element of an operand, its number, and the ends of its box shortened by some bits.
+    pub fn new(operand: usize, number: u32, ends: [&Lattice; 2], shift: u32) -> Self {
+        Self {
+            extent: ShortBox::new(ends, shift),
+            operand: operand as u32,
+            number,
+        }
+    }
+}
+
+/// By how many bits coordinates up to this size are shortened to fit into 31 with their sign.
+pub fn shift_of(size: u64) -> u32 {
+    (u64::BITS - size.leading_zeros()).saturating_sub(30)
+}
+
+/// The upper ends of a box and its lower ends, negated; or, turned, the lower ends and the upper
+/// ones, negated. Two boxes overlap if those of one, turned, nowhere exceed those of the other.
+#[derive(Clone, Copy)]
+struct ShortBox([i32; 8]);
+
+/// The elements that reach into a box of space.
+struct Task {
+    elements: Vec<Boxed>,
+    space: Space,
+}
+
+/// The places above `low`, up to `high`.
+///
+/// A pair belongs to the space that holds the lowest corner of what the two have in common.
+#[derive(Clone, Copy)]
+pub struct Space {
+    low: [i32; 3],
+    high: [i32; 3],
+}
+
+/// Calls `meet` for all pairs of different operands whose boxes overlap, and `crowd` for elements
+/// that halving does not separate, with the space in which their pairs are still to be found.
+///
+/// Elements of one operand follow each other.
+pub fn pairs(
+    elements: Vec<Boxed>,
+    mut meet: impl FnMut(u32, u32),
+    mut crowd: impl FnMut(&[Boxed], &Space) -> Option<()>,
+) -> Option<()> {
+    let space = Space::around(&elements);
+    let mut open = vec![Task { elements, space }];
+    while let Some(task) = open.pop() {
+        let halved = task.elements.len() > FEW && task.halve(&mut open);
+        if halved {
+            continue;
+        }
+        if task.elements.len() <= SOME {
+            compare_all(&task, &mut meet);
+        } else {
+            crowd(&task.elements, &task.space)?;
+        }
+    }
+    Some(())
+}
+
+fn compare_all(task: &Task, meet: &mut impl FnMut(u32, u32)) {
+    let mut end = 0;
+    for run in task.elements.chunk_by(|a, b| a.operand == b.operand) {
+        let start = end;
+        end += run.len();
+        for one in &task.elements[start..end] {
+            let wanted = one.extent.turned();
+            for other in &task.elements[end..] {
+                if wanted.overlaps(&other.extent) && task.space.owns(one, other) {
+                    meet(one.number, other.number);
+                }
+            }
+        }
+    }
+}
+
+impl ShortBox {
+    fn new([low, high]: [&Lattice; 2], shift: u32) -> Self {
+        let short = |x: i64| (x >> shift) as i32;
+        let [a, b, c] = low.map(short);
+        let [x, y, z] = high.map(short);
+        Self([x, y, z, 0, -a, -b, -c, 0])
+    }
+
+    fn low(&self, axis: usize) -> i32 {
+        -self.0[4 + axis]
+    }
+
+    fn high(&self, axis: usize) -> i32 {
+        self.0[axis]
+    }
+
+    fn turned(&self) -> Self {
+        let [x, y, z, _, a, b, c, _] = self.0;
+        Self([-a, -b, -c, 0, -x, -y, -z, 0])
+    }
+
+    #[inline]
+    fn overlaps(&self, other: &Self) -> bool {
+        let exceeds = self.0.iter().zip(&other.0).map(|(a, b)| a > b);
+        !exceeds.fold(false, |any, one| any | one)
+    }
+}
+
+impl Space {
+    fn around(elements: &[Boxed]) -> Self {
+        let low = |i: usize| elements.iter().map(|e| e.extent.low(i)).min();
+        let high = |i: usize| elements.iter().map(|e| e.extent.high(i)).max();
+        Self {
+            low: [0, 1, 2].map(|i| low(i).map_or(0, |x| x - 1)),
+            high: [0, 1, 2].map(|i| high(i).unwrap_or(0)),
+        }
+    }
+
+    /// Whether a pair belongs here.
+    pub fn owns(&self, a: &Boxed, b: &Boxed) -> bool {
+        (0..3).all(|i| {
+            let corner = a.extent.low(i).max(b.extent.low(i));
+            self.low[i] < corner && corner <= self.high[i]
+        })
+    }
+}
+
+impl Task {
+    /// Divides the elements among the halves of the space; false if no axis separates them.
+    fn halve(&self, open: &mut Vec<Self>) -> bool {
+        let middle = |i: usize| self.space.low[i].midpoint(self.space.high[i]);
+        let wide = |i: &usize| self.space.high[*i] - self.space.low[*i] > 1;
+        let cost = |i: usize| (self.cost(i, middle(i)), i);
+        let best = (0..3).filter(wide).map(cost).min();
+        let Some((_, axis)) = best.filter(|(cost, _)| 4 * cost <= 5 * self.elements.len()) else {
+            return false;
+        };
+        let (mut below, mut above) = (self.space, self.space);
+        below.high[axis] = middle(axis);
+        above.low[axis] = middle(axis);
+        let at = middle(axis);
+        self.push(below, |e| e.extent.low(axis) <= at, open);
+        self.push(above, |e| e.extent.high(axis) > at, open);
+        true
+    }
+
+    /// How many elements the halves have together.
+    fn cost(&self, axis: usize, at: i32) -> usize {
+        let both = |e: &Boxed| {
+            usize::from(e.extent.low(axis) <= at) + usize::from(e.extent.high(axis) > at)
+        };
+        self.elements.iter().map(both).sum()
+    }
+
+    fn push(&self, space: Space, reaches: impl Fn(&&Boxed) -> bool, open: &mut Vec<Self>) {
+        let elements: Vec<Boxed> = self.elements.iter().filter(reaches).copied().collect();
+        let alone = |e: &Boxed| e.operand == elements[0].operand;
+        if !elements.iter().all(alone) {
+            open.push(Self { elements, space });
+        }
+    }
+}
