@@ -39,18 +39,10 @@ pub(super) enum Spot {
 }
 
 impl Element<'_> {
-    /// Whether this is a whole face with a vertex in the cell.
-    pub(super) fn has_vertex_in(&self, cell: &Cell) -> bool {
-        match &self.place {
-            Place::Face(triangle) => triangle.vertices_in(cell).next().is_some(),
-            Place::Plane(..) | Place::Piece(..) => false,
-        }
-    }
-
     /// The corners inside the cell that other elements of the operand may share.
     pub(super) fn anchors(&self, cell: &Cell) -> Vec<Anchor> {
         match &self.place {
-            Place::Face(triangle) => triangle
+            Place::Face(triangle) => self
                 .vertices_in(cell)
                 .map(|i| Anchor::at_vertex(triangle, i))
                 .collect(),

@@ -92,7 +92,7 @@ impl Scene<'_> {
 
     fn fate(&self, i: usize, neighbours: &[u32], points: &mut Points) -> Option<Fate> {
         let element = &self.elements[i];
-        if neighbours.is_empty() && element.has_vertex_in(self.cell) {
+        if neighbours.is_empty() && element.vertices_in(self.cell).next().is_some() {
             return Some(Fate::Untouched);
         }
         let anchors = element.anchors(self.cell);

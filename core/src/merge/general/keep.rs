@@ -1,5 +1,6 @@
 //! What an expression leaves of the elements.
 
+use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
 
 use super::super::kept::Kept;
@@ -67,27 +68,34 @@ impl Element<'_> {
     }
 }
 
-/// An expression's values inside and outside an operand: elements that follow each other mostly
-/// ask for the same.
+/// An expression's values for labels, each computed once.
 struct Values<F> {
     value: F,
+    known: HashMap<Labels, bool>,
+    /// Elements that follow each other mostly ask for the same.
     last: Option<((Labels, Labels), [bool; 2])>,
 }
 
 impl<F: FnMut(Labels) -> bool> Values<F> {
     fn of(value: F) -> Self {
-        Self { value, last: None }
+        Self {
+            value,
+            known: HashMap::default(),
+            last: None,
+        }
     }
 
+    /// The values inside and outside an operand.
     fn on_sides(&mut self, own: Labels, others: Labels) -> [bool; 2] {
-        match self.last {
-            Some((asked, found)) if asked == (own, others) => found,
-            _ => {
-                let found = [(self.value)(others | own), (self.value)(others)];
-                self.last = Some(((own, others), found));
-                found
-            }
+        if let Some((_, found)) = self.last.filter(|(asked, _)| *asked == (own, others)) {
+            return found;
         }
+        let found = [others | own, others].map(|labels| {
+            let value = &mut self.value;
+            *self.known.entry(labels).or_insert_with(|| value(labels))
+        });
+        self.last = Some(((own, others), found));
+        found
     }
 }
 

@@ -58,7 +58,7 @@ impl Known {
         let operand = element.operand;
         match (fate, &element.place) {
             (Fate::Untouched, Place::Face(triangle)) => {
-                let names = triangle.vertices_in(cell).map(|i| triangle.name(i));
+                let names = element.vertices_in(cell).map(|i| triangle.name(i));
                 self.unite(operand, names)
             }
             (Fate::Uncut(anchors), _) => self.unite(operand, anchors.iter().map(|a| a.name)),
@@ -134,7 +134,7 @@ impl Known {
         self.known_or(root, || match (fate, &element.place) {
             (Fate::Uncut(anchors), _) => scene.count_at(element.operand, &anchors.first()?.place),
             (_, Place::Face(triangle)) => {
-                let corner = triangle.vertices_in(scene.cell).next()?;
+                let corner = element.vertices_in(scene.cell).next()?;
                 scene.count_at_lattice(element.operand, &triangle.corners[corner])
             }
             _ => None,

@@ -109,7 +109,13 @@ impl Scene<'_> {
         let mut labels = 0;
         for operand in (0..self.corners.len()).filter(|k| *k != own) {
             let mut w = self.corners[operand];
-            for element in self.of_operand(operand).iter().filter(near) {
+            let [low, high] = &self.boxes[operand];
+            let elements = if way.may_meet(low, high) {
+                self.of_operand(operand)
+            } else {
+                &[]
+            };
+            for element in elements.iter().filter(near) {
                 w += element.weight * across(element)?;
             }
             if !(0..=1).contains(&w) {

@@ -26,6 +26,8 @@ pub(super) struct Scene<'a> {
     pub(super) elements: Vec<Element<'a>>,
     /// For each operand where its elements end.
     ends: Vec<usize>,
+    /// For each operand a box around its elements.
+    pub(super) boxes: Vec<[Lattice; 2]>,
     /// The parts that pieces belong to, and the slots of their sources.
     pub(super) parts: Vec<(&'a Arc<Part>, u32)>,
 }
@@ -69,6 +71,7 @@ impl<'a> Scene<'a> {
             corners: lists.iter().map(|l| l.1.corner).collect(),
             elements: Vec::with_capacity(lists.iter().map(|l| l.1.len()).sum()),
             ends: Vec::with_capacity(lists.len()),
+            boxes: Vec::with_capacity(lists.len()),
             parts: Vec::new(),
         };
         for (operand, (_, list)) in lists.iter().enumerate() {
@@ -77,6 +80,7 @@ impl<'a> Scene<'a> {
             scene.elements.extend(faces);
             scene.add_parts(operand, list, sources);
             scene.ends.push(scene.elements.len());
+            scene.boxes.push(box_around(scene.of_operand(operand)));
         }
         scene
     }
@@ -116,13 +120,18 @@ impl<'a> Scene<'a> {
     }
 }
 
-impl Triangle<'_> {
-    /// Which of the vertices lie in a cell.
-    pub(super) fn vertices_in(&self, cell: &Cell) -> impl Iterator<Item = usize> {
-        let inside = self.corners.map(|p| cell.holds_box(&p, &p));
-        (0..3).filter(move |i| inside[*i])
-    }
+/// A box around elements; one that holds nothing if there are none.
+fn box_around(elements: &[Element]) -> [Lattice; 2] {
+    let nothing = [[i64::MAX; 3], [i64::MIN; 3]];
+    elements.iter().fold(nothing, |[low, high], e| {
+        [
+            [0, 1, 2].map(|i| low[i].min(e.low[i])),
+            [0, 1, 2].map(|i| high[i].max(e.high[i])),
+        ]
+    })
+}
 
+impl Triangle<'_> {
     /// The name of a vertex.
     pub(super) fn name(&self, corner: usize) -> Name {
         Name::Vertex(self.slot, self.vertices[corner])
@@ -170,6 +179,16 @@ impl<'a> Element<'a> {
             low,
             high,
         })
+    }
+
+    /// Which vertices of a whole face lie in the cell.
+    pub(super) fn vertices_in(&self, cell: &Cell) -> impl Iterator<Item = usize> {
+        let inside = match &self.place {
+            Place::Face(_) if self.inside => [true; 3],
+            Place::Face(triangle) => triangle.corners.map(|p| cell.holds_box(&p, &p)),
+            Place::Plane(..) | Place::Piece(..) => [false; 3],
+        };
+        (0..3).filter(move |i| inside[*i])
     }
 
     /// The ends of the element's box inside the cell, relative to its low corner.
