@@ -112,8 +112,15 @@ fn by_length(elements: &[Swept], numbers: Vec<usize>) -> Vec<Vec<usize>> {
         .collect()
 }
 
-/// The elements in their order along the line on which they overlap least.
+/// The elements along the lines on which they overlap least, by operand.
 struct Sweep {
+    operands: Vec<Swath>,
+    size: usize,
+    crowding: f64,
+}
+
+/// An operand's elements in their order along the line on which all overlap least.
+struct Swath {
     /// Along that line.
     first: Vec<Span>,
     /// Along the next best line.
@@ -122,9 +129,7 @@ struct Sweep {
     others: Vec<Vec<Span>>,
     /// What bounds each element in the plane of the two best lines.
     rims: Vec<[HalfPlane; 3]>,
-    operands: Vec<usize>,
     numbers: Vec<usize>,
-    crowding: f64,
 }
 
 impl Sweep {
@@ -137,51 +142,75 @@ impl Sweep {
         let second = lines.remove(lines.iter().position(across).unwrap_or(0));
         let plane = [first.direction, second.direction];
         let size = largest_coordinate(&swept);
+        let low = |i: &usize| first.spans[*i][0];
         let mut order: Vec<usize> = (0..numbers.len()).collect();
-        let low = |i: usize| first.spans[i][0];
-        order.sort_unstable_by(|a, b| low(*a).total_cmp(&low(*b)).then(a.cmp(b)));
-        let ordered = |line: &Line| order.iter().map(|i| line.spans[*i]).collect::<Vec<Span>>();
+        order.sort_unstable_by(|a, b| {
+            let operands = swept[*a].operand.cmp(&swept[*b].operand);
+            operands.then(low(a).total_cmp(&low(b))).then(a.cmp(b))
+        });
         let rim = |i: &usize| rims(swept[*i].corners.as_ref(), &plane, size);
+        let swath = |own: &[usize]| {
+            let ordered = |line: &Line| own.iter().map(|i| line.spans[*i]).collect::<Vec<Span>>();
+            Swath {
+                first: ordered(&first),
+                second: ordered(&second),
+                others: lines.iter().map(ordered).collect(),
+                rims: own.iter().map(rim).collect(),
+                numbers: own.iter().map(|i| numbers[*i]).collect(),
+            }
+        };
+        let operands = order.chunk_by(|a, b| swept[*a].operand == swept[*b].operand);
         Self {
-            first: ordered(&first),
-            second: ordered(&second),
-            others: lines.iter().map(ordered).collect(),
-            rims: order.iter().map(rim).collect(),
-            operands: order.iter().map(|i| swept[*i].operand).collect(),
-            numbers: order.iter().map(|i| numbers[*i]).collect(),
+            operands: operands.map(swath).collect(),
+            size: numbers.len(),
             crowding: first.crowding,
         }
     }
 
     /// About how many pairs are compared.
     fn cost(&self) -> f64 {
-        self.crowding * self.numbers.len() as f64
+        self.crowding * self.size as f64
     }
 
     fn run(&self, meet: &mut impl FnMut(usize, usize)) {
-        for at in 0..self.numbers.len() {
-            let [_, high] = self.first[at];
-            let end = at + 1 + self.first[at + 1..].partition_point(|span| span[0] <= high);
+        for (k, swath) in self.operands.iter().enumerate() {
+            for other in &self.operands[k + 1..] {
+                swath.meet_those_after(other, true, meet);
+                other.meet_those_after(swath, false, meet);
+            }
+        }
+    }
+}
+
+impl Swath {
+    /// Finds for each element those of another operand that begin after it; with it, too, where
+    /// `level` is set.
+    fn meet_those_after(&self, other: &Self, level: bool, meet: &mut impl FnMut(usize, usize)) {
+        let mut start = 0;
+        for (at, [low, high]) in self.first.iter().enumerate() {
+            let before = |span: &Span| span[0] < *low || !level && span[0] == *low;
+            start += other.first[start..].partition_point(before);
+            let end = start + other.first[start..].partition_point(|span| span[0] <= *high);
             let [low, high] = self.second[at];
-            for (next, span) in (at + 1..end).zip(&self.second[at + 1..end]) {
-                if span[0] <= high && span[1] >= low && self.may_meet(at, next) {
-                    let (i, j) = (self.numbers[at], self.numbers[next]);
+            for (next, span) in (start..end).zip(&other.second[start..end]) {
+                if span[0] <= high && span[1] >= low && self.may_meet(at, other, next) {
+                    let (i, j) = (self.numbers[at], other.numbers[next]);
                     meet(i.min(j), i.max(j));
                 }
             }
         }
     }
 
-    fn may_meet(&self, a: usize, b: usize) -> bool {
-        let overlap = |line: &Vec<Span>| line[a][0] <= line[b][1] && line[b][0] <= line[a][1];
-        let beyond = |a: usize, b: usize| {
-            let spans = [self.first[b], self.second[b]];
-            self.rims[a].iter().any(|rim| rim.excludes(&spans))
+    fn may_meet(&self, a: usize, other: &Self, b: usize) -> bool {
+        let beyond = |one: &Self, i: usize, two: &Self, j: usize| {
+            let spans = [two.first[j], two.second[j]];
+            one.rims[i].iter().any(|rim| rim.excludes(&spans))
         };
-        self.operands[a] != self.operands[b]
-            && !beyond(a, b)
-            && !beyond(b, a)
-            && self.others.iter().all(overlap)
+        let overlap =
+            |(one, two): (&Vec<Span>, &Vec<Span>)| one[a][0] <= two[b][1] && two[b][0] <= one[a][1];
+        !beyond(self, a, other, b)
+            && !beyond(other, b, self, a)
+            && self.others.iter().zip(&other.others).all(overlap)
     }
 }
 
