@@ -144,32 +144,49 @@ impl Space {
 impl Task {
     /// Divides the elements among the halves of the space; false if no axis separates them.
     fn halve(&self, open: &mut Vec<Self>) -> bool {
-        let middle = |i: usize| self.space.low[i].midpoint(self.space.high[i]);
         let wide = |i: &usize| self.space.high[*i] - self.space.low[*i] > 1;
-        let cost = |i: usize| (self.cost(i, middle(i)), i);
-        let best = (0..3).filter(wide).map(cost).min();
-        let Some((_, axis)) = best.filter(|(cost, _)| 4 * cost <= 5 * self.elements.len()) else {
+        let counted = |i: usize| (self.counts(i), i);
+        let best = (0..3).filter(wide).map(counted);
+        let Some(([few, many], axis)) = best.min_by_key(|(counts, _)| counts[0] + counts[1]) else {
             return false;
         };
+        if 4 * (few + many) > 5 * self.elements.len() {
+            return false;
+        }
+        let at = self.middle(axis);
         let (mut below, mut above) = (self.space, self.space);
-        below.high[axis] = middle(axis);
-        above.low[axis] = middle(axis);
-        let at = middle(axis);
-        self.push(below, |e| e.extent.low(axis) <= at, open);
-        self.push(above, |e| e.extent.high(axis) > at, open);
+        below.high[axis] = at;
+        above.low[axis] = at;
+        self.push(below, few, |e| e.extent.low(axis) <= at, open);
+        self.push(above, many, |e| e.extent.high(axis) > at, open);
         true
     }
 
-    /// How many elements the halves have together.
-    fn cost(&self, axis: usize, at: i32) -> usize {
-        let both = |e: &Boxed| {
-            usize::from(e.extent.low(axis) <= at) + usize::from(e.extent.high(axis) > at)
-        };
-        self.elements.iter().map(both).sum()
+    fn middle(&self, axis: usize) -> i32 {
+        self.space.low[axis].midpoint(self.space.high[axis])
     }
 
-    fn push(&self, space: Space, reaches: impl Fn(&&Boxed) -> bool, open: &mut Vec<Self>) {
-        let elements: Vec<Boxed> = self.elements.iter().filter(reaches).copied().collect();
+    /// How many elements the lower and the upper half would have.
+    fn counts(&self, axis: usize) -> [usize; 2] {
+        let at = self.middle(axis);
+        let count = |[below, above]: [u32; 2], e: &Boxed| {
+            [
+                below + u32::from(e.extent.low(axis) <= at),
+                above + u32::from(e.extent.high(axis) > at),
+            ]
+        };
+        self.elements.iter().fold([0; 2], count).map(|n| n as usize)
+    }
+
+    fn push(
+        &self,
+        space: Space,
+        count: usize,
+        reaches: impl Fn(&&Boxed) -> bool,
+        open: &mut Vec<Self>,
+    ) {
+        let mut elements: Vec<Boxed> = Vec::with_capacity(count);
+        elements.extend(self.elements.iter().filter(reaches));
         let alone = |e: &Boxed| e.operand == elements[0].operand;
         if !elements.iter().all(alone) {
             open.push(Self { elements, space });
