@@ -104,7 +104,7 @@ pub fn order_along(a: &Arc<Vertex>, b: &Arc<Vertex>, axis: usize) -> Ordering {
     if Arc::ptr_eq(a, b) {
         Ordering::Equal
     } else {
-        a.compare(b, axis)
+        a.compare_along(b, axis)
     }
 }
 
