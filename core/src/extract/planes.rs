@@ -6,10 +6,10 @@ use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::assemble::TriangleFace;
 use super::collect::{maximal, Boundary, CutFace, Fate};
-use super::rim::Rims;
+use super::rim::{FrontierEdge, Rims};
 use crate::geometry::line::LineKey;
 use crate::geometry::outline::OutlineEdge;
-use crate::geometry::plane::Plane;
+use crate::geometry::plane::{normal, Plane};
 use crate::geometry::polygon::Polygon;
 use crate::merge::list::Sources;
 
@@ -118,6 +118,19 @@ impl Grouping<'_> {
         }
     }
 
+    /// Whether a face lies in the plane of a group and is turned as the group is.
+    fn lies_in(&self, slot: u32, face: u32, flip: bool, group: usize) -> bool {
+        let Some(mesh) = self.sources.get(slot as usize).mesh() else {
+            return false;
+        };
+        let (plane, [a, b, c]) = (&self.groups[group].plane, mesh.corners(face));
+        if [a, b, c].iter().any(|p| plane.side_of_lattice(p) != 0) {
+            return false;
+        }
+        let axis = plane.main_axis();
+        (normal(&a, &b, &c)[axis] < 0) ^ (plane.normal()[axis] < 0) == flip
+    }
+
     /// Moves a whole face into the group of its plane.
     fn absorb(&mut self, slot: u32, face: u32, flip: bool, group: usize) {
         let source = self.sources.get(slot as usize);
@@ -147,7 +160,7 @@ impl Grouping<'_> {
                     continue;
                 };
                 let whole = self.fates[slot as usize][next as usize] == Fate::Whole(flip);
-                if whole && self.oriented_plane(slot, next, flip) == self.groups[group].plane {
+                if whole && self.lies_in(slot, next, flip, group) {
                     self.absorb(slot, next, flip, group);
                 }
             }
@@ -157,37 +170,73 @@ impl Grouping<'_> {
 
     /// Absorbs whole faces that share a line and a plane with others of another source or part.
     fn absorb_seams(&mut self) {
+        let candidates = self.candidates();
+        // Faces that are alone in their plane share no line there.
+        let mut alone: Vec<bool> = self.groups.iter().map(|g| g.edges.is_empty()).collect();
+        for pair in candidates.windows(2).filter(|p| p[0].group == p[1].group) {
+            let [p, q] = [&pair[0], &pair[1]].map(|c| (c.edge.slot, c.edge.half / 3));
+            alone[pair[0].group] &= p == q;
+        }
+        let mut lines: HashMap<(usize, LineKey), Option<(u32, u32)>> = HashMap::default();
+        let near = candidates.iter().filter(|c| !alone[c.group]);
+        let keyed: Vec<(&Candidate, LineKey)> =
+            near.map(|c| (c, c.edge.line(self.sources))).collect();
+        let asked: HashSet<usize> = keyed.iter().map(|c| c.0.group).collect();
+        for at in &asked {
+            let edges = self.groups[*at].edges.iter();
+            lines.extend(edges.map(|e| ((*at, e.line), None)));
+        }
+        for (c, line) in &keyed {
+            let face = (c.edge.slot, c.edge.half / 3);
+            let first = lines.entry((c.group, *line)).or_insert(Some(face));
+            if *first != Some(face) {
+                *first = None;
+            }
+        }
+        let shared = keyed.iter().filter(|(c, line)| lines[&(c.group, *line)].is_none());
+        let mut shared: Vec<Candidate> = shared.map(|(c, _)| **c).collect();
+        shared.sort_unstable_by_key(|c| c.number);
+        for c in shared {
+            let (slot, face) = (c.edge.slot, c.edge.half / 3);
+            if self.fates[slot as usize][face as usize] == Fate::Whole(c.flip) {
+                self.absorb(slot, face, c.flip, c.group);
+            }
+        }
+    }
+
+    /// The edges in which whole faces end, with the groups of the faces' planes; by group.
+    fn candidates(&mut self) -> Vec<Candidate> {
         let frontier = self.rims.frontier(&self.fates, self.sources);
-        let mut seen: HashMap<(usize, LineKey), (u32, u32)> = HashMap::default();
-        let mut candidates = Vec::new();
-        for edge in &frontier {
+        let mut candidates: Vec<Candidate> = Vec::with_capacity(frontier.len());
+        for (number, edge) in (0..).zip(frontier) {
             let (slot, face) = (edge.slot, edge.half / 3);
             let Fate::Whole(flip) = self.fates[slot as usize][face as usize] else {
                 continue;
             };
-            let plane = self.oriented_plane(slot, face, flip);
-            let group = self.group_of(plane);
-            let line = edge.line(self.sources);
-            candidates.push((slot, face, flip, group, line));
+            let last = candidates.last();
+            let known = last.filter(|c| (c.edge.slot, c.edge.half / 3) == (slot, face));
+            let group = match known {
+                Some(c) => c.group,
+                None => self.group_of(self.oriented_plane(slot, face, flip)),
+            };
+            candidates.push(Candidate {
+                group,
+                number,
+                edge,
+                flip,
+            });
         }
-        let group_lines: HashSet<(usize, LineKey)> = self
-            .groups
-            .iter()
-            .enumerate()
-            .flat_map(|(at, g)| g.edges.iter().map(move |e| (at, e.line)))
-            .collect();
-        let mut shared: HashSet<(usize, LineKey)> = HashSet::default();
-        for (slot, face, _, group, line) in &candidates {
-            let first = *seen.entry((*group, *line)).or_insert((*slot, *face));
-            if first != (*slot, *face) || group_lines.contains(&(*group, *line)) {
-                shared.insert((*group, *line));
-            }
-        }
-        for (slot, face, flip, group, line) in candidates {
-            let whole = self.fates[slot as usize][face as usize] == Fate::Whole(flip);
-            if whole && shared.contains(&(group, line)) {
-                self.absorb(slot, face, flip, group);
-            }
-        }
+        candidates.sort_unstable_by_key(|c| (c.group, c.number));
+        candidates
     }
+}
+
+/// An edge of a whole face that may belong to a group.
+#[derive(Clone, Copy)]
+struct Candidate {
+    group: usize,
+    /// The place in the frontier.
+    number: u32,
+    edge: FrontierEdge,
+    flip: bool,
 }

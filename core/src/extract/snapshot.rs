@@ -10,7 +10,7 @@ use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, REACH};
 use crate::geometry::edge::LatticeEdge;
-use crate::geometry::line::LineKey;
+use crate::geometry::line::{LineKey, PlaneResidues};
 use crate::geometry::outline::OutlineEdge;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
@@ -459,7 +459,7 @@ impl EdgeData {
         if !carries(&carrier, support, &from, &to) {
             return Err(bad_snapshot());
         }
-        let line = LineKey::of(&carrier.line(support));
+        let line = LineKey::of(&carrier.line(&PlaneResidues::of(support)));
         Ok(OutlineEdge {
             from: Arc::new(from),
             to: Arc::new(to),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use super::line::LineKey;
+use super::line::{LineKey, PlaneResidues};
 use super::plane::Plane;
 use super::polygon::{Carrier, Corner, Polygon, PolygonSplit};
 use super::vertex::Vertex;
@@ -96,7 +96,8 @@ fn lines<'a>(
     carriers: impl Iterator<Item = &'a Carrier>,
     support: &Plane,
 ) -> SmallVec<[LineKey; 8]> {
-    LineKey::of_all(carriers.map(|carrier| carrier.line(support)))
+    let support = PlaneResidues::of(support);
+    LineKey::of_all(carriers.map(|carrier| carrier.line(&support)))
 }
 
 /// Order of two points of one line.
@@ -113,15 +114,43 @@ pub fn order_along(a: &Arc<Vertex>, b: &Arc<Vertex>, axis: usize) -> Ordering {
 /// # Order
 /// By line key, then along the line.
 pub fn cancel(mut edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
-    edges.sort_by_key(|e| e.line);
-    let mut kept = Vec::with_capacity(edges.len());
-    for run in edges.chunk_by(|a, b| a.line == b.line) {
+    let order = by_line(&edges);
+    let mut alone: SmallVec<[bool; 64]> = SmallVec::from_elem(false, edges.len());
+    let mut joined = Vec::new();
+    let line = |place: &Place| &edges[place.edge as usize].line;
+    for run in order.chunk_by(|a, b| a.mixed == b.mixed && line(a) == line(b)) {
         match run {
-            [single] => kept.push(single.clone()),
-            _ => cancel_line(run, &mut kept),
+            [single] => alone[single.edge as usize] = true,
+            _ => cancel_line(&edges, run, &mut joined),
         }
     }
-    kept
+    let mut alone = alone.iter();
+    edges.retain(|_| alone.next().is_some_and(|a| *a));
+    edges.append(&mut joined);
+    edges.sort_by(|a, b| a.line.cmp(&b.line));
+    edges
+}
+
+/// An edge in the order of lines.
+struct Place {
+    /// Of the line's key, told apart faster than the key.
+    mixed: u64,
+    edge: u32,
+}
+
+/// The edges of each line in one run, in their own order.
+fn by_line(edges: &[OutlineEdge]) -> SmallVec<[Place; 32]> {
+    let places = (0..).zip(edges).map(|(edge, e)| Place {
+        mixed: e.line.mixed(),
+        edge,
+    });
+    let mut order: SmallVec<[Place; 32]> = places.collect();
+    order.sort_unstable_by(|a, b| {
+        let line = |place: &Place| &edges[place.edge as usize].line;
+        let by_key = || line(a).cmp(line(b)).then(a.edge.cmp(&b.edge));
+        a.mixed.cmp(&b.mixed).then_with(by_key)
+    });
+    order
 }
 
 struct Event<'a> {
@@ -129,10 +158,17 @@ struct Event<'a> {
     change: i32,
 }
 
-fn cancel_line(run: &[OutlineEdge], kept: &mut Vec<OutlineEdge>) {
+/// Keeps what remains of the edges of one line.
+fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>) {
+    let run: SmallVec<[&OutlineEdge; 16]> = run.iter().map(|p| &edges[p.edge as usize]).collect();
     let axis = run[0].line.axis();
-    let mut events = Vec::with_capacity(2 * run.len());
-    for edge in run {
+    if let [a, b] = run[..] {
+        if is_opposite(a, b, axis) {
+            return;
+        }
+    }
+    let mut events: SmallVec<[Event; 32]> = SmallVec::with_capacity(2 * run.len());
+    for edge in &run {
         events.push(Event {
             at: &edge.from,
             change: 1,
@@ -149,7 +185,7 @@ fn cancel_line(run: &[OutlineEdge], kept: &mut Vec<OutlineEdge>) {
         let next = sum + group.iter().map(|e| e.change).sum::<i32>();
         if next != sum {
             if let (Some(from), true) = (start, sum != 0) {
-                emit(run, sum, from, group[0].at, kept);
+                emit(&run, sum, from, group[0].at, kept);
             }
             start = Some(group[0].at);
             sum = next;
@@ -157,9 +193,15 @@ fn cancel_line(run: &[OutlineEdge], kept: &mut Vec<OutlineEdge>) {
     }
 }
 
+/// Whether one edge of a line is another run backwards.
+fn is_opposite(a: &OutlineEdge, b: &OutlineEdge, axis: usize) -> bool {
+    let same = |p, q| order_along(p, q, axis) == Ordering::Equal;
+    same(&a.from, &b.to) && same(&a.to, &b.from)
+}
+
 /// Emits the maximal edge between two points with the run's net multiplicity.
 fn emit(
-    run: &[OutlineEdge],
+    run: &[&OutlineEdge],
     sum: i32,
     low: &Arc<Vertex>,
     high: &Arc<Vertex>,
