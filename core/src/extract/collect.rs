@@ -74,9 +74,10 @@ impl Collector<'_> {
     /// Decides the faces that span leaves, and outlines the cut ones.
     fn settle(mut self) -> Boundary {
         let mut spanning = std::mem::take(&mut self.listed.spanning);
-        spanning.sort_unstable();
+        // Stable, so that the leaves of a face keep their order.
+        spanning.sort_by_key(Spanning::face_key);
         let runs: Vec<&[Spanning]> = spanning
-            .chunk_by(|a, b| (a.slot, a.face) == (b.slot, b.face))
+            .chunk_by(|a, b| a.face_key() == b.face_key())
             .collect();
         let whole = |run: &&[Spanning]| self.is_whole(run);
         let whole: Vec<bool> = if in_pool() && runs.len() > MANY {

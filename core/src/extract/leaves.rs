@@ -16,7 +16,7 @@ use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::tree::node::{Branch, Deferred, Group, Node, Part, Work};
 
 /// A face that reaches out of a leaf that lists it.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Spanning {
     /// The source's slot.
     pub slot: u32,
@@ -26,6 +26,13 @@ pub struct Spanning {
     pub flip: bool,
     /// The number of the leaf.
     pub leaf: u32,
+}
+
+impl Spanning {
+    /// Slot and face in one word.
+    pub fn face_key(&self) -> u64 {
+        u64::from(self.slot) << 32 | u64::from(self.face)
+    }
 }
 
 /// What of a face one leaf lists.
@@ -239,10 +246,9 @@ pub fn fill(
 
 /// How many lattice points a box has; `None` for huge ones.
 fn count(low: &Lattice, high: &Lattice) -> Option<u128> {
-    (0..3).try_fold(1u128, |product, i| {
-        let extent = u128::try_from(high[i] - low[i] + 1).unwrap_or(0);
-        product.checked_mul(extent)
-    })
+    let extent = |i: usize| u64::try_from(high[i] - low[i] + 1).unwrap_or(0);
+    let area = u128::from(extent(0)) * u128::from(extent(1));
+    area.checked_mul(u128::from(extent(2)))
 }
 
 fn leaves_of(root: &Branch) -> Vec<Leaf<'_>> {

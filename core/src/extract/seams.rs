@@ -67,6 +67,9 @@ pub fn find_touching(
     table: &mut VertexTable,
     touching: &mut LinePoints,
 ) {
+    if edges.len() <= 3 {
+        return;
+    }
     let view = Projection::onto(&group.plane, table);
     let mut boxed: Vec<Boxed> = edges
         .iter()

@@ -32,7 +32,7 @@ impl VertexTable {
         self.find_at(vertex, &place).unwrap_or_else(|| {
             let lattice = lattice_place(vertex, &place);
             let lattice = lattice.map(|p| Arc::new(Vertex::lattice(p)));
-            self.add(lattice.unwrap_or_else(|| Arc::clone(vertex)), place)
+            self.add(lattice.unwrap_or_else(|| Arc::clone(vertex)))
         })
     }
 
@@ -41,7 +41,7 @@ impl VertexTable {
         let vertex = Vertex::lattice(place);
         let place = vertex.approx();
         let known = self.find_at(&vertex, &place);
-        known.unwrap_or_else(|| self.add(Arc::new(vertex), place))
+        known.unwrap_or_else(|| self.add(Arc::new(vertex)))
     }
 
     /// The number of a point that is in the table.
@@ -58,7 +58,8 @@ impl VertexTable {
         (0..8).find_map(|i| self.among(corner(i).fingerprint(), vertex))
     }
 
-    fn add(&mut self, vertex: Arc<Vertex>, place: [f64; 3]) -> u32 {
+    fn add(&mut self, vertex: Arc<Vertex>) -> u32 {
+        let place = vertex.approx();
         let next = self.points.len() as u32;
         let before = self.last.insert(Blur::of(&place).fingerprint(), next);
         self.previous.push(before.unwrap_or(NONE));

@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::plane::{Lattice, Plane};
+use super::plane::{normal, Lattice, Plane};
 use super::residue::{reduce_p1, residue};
 use crate::arith::{inv_mod, mul_mod, P1};
 
@@ -31,6 +31,20 @@ pub struct PlaneResidues {
 }
 
 impl PlaneResidues {
+    /// Those of a multiple of the plane through three lattice points.
+    pub fn through([a, b, c]: &[Lattice; 3]) -> Self {
+        let lattice = |c: i64| residue(c.into());
+        let [x, y, z] = normal(a, b, c).map(residue);
+        let negative = [x, y, z].map(|r| sub(0, r));
+        let first = u128::from(negative[0]) * u128::from(lattice(a[0]));
+        let second = u128::from(negative[1]) * u128::from(lattice(a[1]));
+        let third = u128::from(negative[2]) * u128::from(lattice(a[2]));
+        Self {
+            normal: [x, y, z],
+            offset: reduce_p1(first + second + third),
+        }
+    }
+
     /// Those of a plane.
     pub fn of(plane: &Plane) -> Self {
         let ([x, y, z], offset) = (plane.normal(), plane.offset());

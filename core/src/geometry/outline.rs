@@ -59,7 +59,7 @@ impl OutlineEdge {
     /// The edges of a polygon.
     pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
         let carriers = polygon.edges().map(|(_, _, carrier)| carrier);
-        let lines = lines(carriers, polygon.support());
+        let lines = lines(carriers, &PlaneResidues::of(polygon.support()));
         let bare = polygon.edges().map(|(from, to, carrier)| BareEdge {
             from: Arc::clone(from),
             to: Arc::clone(to),
@@ -69,7 +69,7 @@ impl OutlineEdge {
     }
 
     /// Edges in a plane with the keys of their lines.
-    pub fn keyed(edges: &[BareEdge], support: &Plane) -> Vec<Self> {
+    pub fn keyed(edges: &[BareEdge], support: &PlaneResidues) -> Vec<Self> {
         let lines = lines(edges.iter().map(|e| &e.carrier), support);
         let bare = edges.iter().cloned();
         bare.zip(lines)
@@ -94,10 +94,9 @@ impl OutlineEdge {
 
 fn lines<'a>(
     carriers: impl Iterator<Item = &'a Carrier>,
-    support: &Plane,
+    support: &PlaneResidues,
 ) -> SmallVec<[LineKey; 8]> {
-    let support = PlaneResidues::of(support);
-    LineKey::of_all(carriers.map(|carrier| carrier.line(&support)))
+    LineKey::of_all(carriers.map(|carrier| carrier.line(support)))
 }
 
 /// Order of two points of one line.

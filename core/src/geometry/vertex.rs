@@ -219,6 +219,10 @@ impl Vertex {
     }
 
     fn has_coordinates_of(&self, other: &Self) -> bool {
+        let doubled = |axis: usize| self.doubled(axis).zip(other.doubled(axis));
+        if let [Some(x), Some(y), Some(z)] = [0, 1, 2].map(doubled) {
+            return [x, y, z].iter().all(|(p, q)| p == q);
+        }
         let (p, q) = (self.exact(), other.exact());
         (0..3).all(|axis| p.compare(&q, axis) == Ordering::Equal)
     }

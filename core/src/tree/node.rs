@@ -203,7 +203,7 @@ impl Part {
 
     /// The outline with the keys of its lines.
     pub fn outline(&self) -> Vec<OutlineEdge> {
-        let support = self.source.plane(self.face);
+        let support = self.source.plane_residues(self.face);
         OutlineEdge::keyed(&self.edges, &support)
     }
 

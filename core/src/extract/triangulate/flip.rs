@@ -31,7 +31,18 @@ pub(super) fn improve<P: Planar>(
     triangles: Vec<[u32; 3]>,
     boundary: &[(u32, u32)],
 ) -> Result<Vec<[u32; 3]>, Error> {
-    let mut mesh = Mates::new(triangles, boundary)?;
+    Ok(flipped(points, Mates::new(triangles, boundary)?))
+}
+
+/// The same for the few ears of one loop, which need no check: no diagonal is cut off twice.
+pub(super) fn improve_ears<P: Planar>(points: &P, ears: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
+    if ears.len() == 1 {
+        return ears;
+    }
+    flipped(points, Mates::of_ears(ears))
+}
+
+fn flipped<P: Planar>(points: &P, mut mesh: Mates) -> Vec<[u32; 3]> {
     let mut budget = FLIPS_PER_TRIANGLE * mesh.triangles.len();
     // First in, first out spreads a budget that runs out over the whole region.
     let mut pending: VecDeque<usize> = (0..mesh.mates.len())
@@ -43,7 +54,7 @@ pub(super) fn improve<P: Planar>(
             pending.extend(mesh.flip(half));
         }
     }
-    Ok(mesh.triangles)
+    mesh.triangles
 }
 
 impl Mates {
@@ -70,6 +81,23 @@ impl Mates {
             }
         }
         Ok(mesh)
+    }
+
+    /// The mates found by comparing all half-edges, as is fastest for a few.
+    fn of_ears(triangles: Vec<[u32; 3]>) -> Self {
+        let count = 3 * triangles.len();
+        let mut mesh = Self {
+            triangles,
+            mates: vec![NONE; count],
+        };
+        for h in 3..count {
+            let (a, b) = (mesh.origin(h), mesh.head(h));
+            let before = 0..h - h % 3;
+            if let Some(g) = before.rev().find(|g| mesh.origin(*g) == b && mesh.head(*g) == a) {
+                mesh.pair(g, h);
+            }
+        }
+        mesh
     }
 
     fn pair(&mut self, g: usize, h: usize) {
