@@ -8,7 +8,7 @@ use smallvec::SmallVec;
 
 use super::collect::Fate;
 use crate::geometry::cell::Cell;
-use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::geometry::outline::{cancel, Outline, OutlineEdge};
 use crate::geometry::plane::Lattice;
 use crate::merge::list::Sources;
 use crate::mesh::source::{Source, TriangleMesh};
@@ -43,11 +43,11 @@ pub struct Piece<'a> {
     pub face: u32,
     /// Whether inside and outside are exchanged.
     pub flip: bool,
-    outline: Outline<'a>,
+    extent: Extent<'a>,
 }
 
 /// Where a piece ends; most outlines are looked up or made when it is their turn.
-enum Outline<'a> {
+enum Extent<'a> {
     /// The face's own edges, and the border of the cell of the leaf with this number.
     Face(u32),
     /// As the part says.
@@ -62,22 +62,30 @@ impl From<&Spanning> for Piece<'_> {
             slot: s.slot,
             face: s.face,
             flip: s.flip,
-            outline: Outline::Face(s.leaf),
+            extent: Extent::Face(s.leaf),
         }
     }
 }
 
 impl Piece<'_> {
+    /// The outline of a piece that is all there is of its face.
+    pub fn outline(&mut self, sources: &Sources, cells: &[Cell]) -> Outline {
+        match self.extent {
+            Extent::Part(part) => Outline::of_bare(&part.edges),
+            _ => Outline::of(self.take_edges(sources, cells)),
+        }
+    }
+
     /// The edges around the piece; taken out of it if it has them.
     pub fn take_edges(&mut self, sources: &Sources, cells: &[Cell]) -> Vec<OutlineEdge> {
-        match &mut self.outline {
-            Outline::Face(leaf) => {
+        match &mut self.extent {
+            Extent::Face(leaf) => {
                 let source = sources.get(self.slot as usize);
                 let polygon = source.clip(self.face, &cells[*leaf as usize]);
                 polygon.map_or_else(Vec::new, |p| OutlineEdge::all_of(&p).collect())
             }
-            Outline::Part(part) => part_edges(part, &part.home),
-            Outline::Edges(edges) => std::mem::take(edges),
+            Extent::Part(part) => part.outline(),
+            Extent::Edges(edges) => std::mem::take(edges),
         }
     }
 }
@@ -181,23 +189,23 @@ fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
         }
         by_part[place].1.push(listing.leaf);
     }
-    let mut outlines: Vec<Outline> = Vec::new();
+    let mut extents: Vec<Extent> = Vec::new();
     for (part, leaves) in by_part {
         if is_whole(part, &leaves, cells) {
-            outlines.push(Outline::Part(part));
+            extents.push(Extent::Part(part));
             continue;
         }
         let edges = leaves.iter().map(|l| part_edges(part, &cells[*l as usize]));
-        outlines.extend(edges.filter(|e| !e.is_empty()).map(Outline::Edges));
+        extents.extend(edges.filter(|e| !e.is_empty()).map(Extent::Edges));
     }
     let (slot, face, flip) = run[0].key();
-    let piece = |outline| Piece {
+    let piece = |extent| Piece {
         slot,
         face,
         flip,
-        outline,
+        extent,
     };
-    outlines.into_iter().map(piece).collect()
+    extents.into_iter().map(piece).collect()
 }
 
 /// Whether the leaves that list a part have all of it; errs on no.

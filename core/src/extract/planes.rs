@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use smallvec::SmallVec;
 
 use super::assemble::TriangleFace;
-use super::collect::{maximal, Boundary, CutFace, Fate};
+use super::collect::{Boundary, CutFace, Fate};
 use super::rim::{FrontierEdge, Rims};
-use crate::geometry::line::LineKey;
-use crate::geometry::outline::OutlineEdge;
+use crate::geometry::line::{LineKey, PlaneResidues};
+use crate::geometry::outline::{BareEdge, Outline, OutlineEdge};
 use crate::geometry::plane::{normal, Plane};
 use crate::geometry::polygon::Polygon;
 use crate::merge::list::Sources;
@@ -21,7 +22,48 @@ pub struct PlaneGroup {
     /// The faces that lie in it, ascending.
     pub faces: Vec<TriangleFace>,
     /// The outline, counterclockwise as seen from outside.
-    pub edges: Vec<OutlineEdge>,
+    pub outline: Outline,
+}
+
+impl PlaneGroup {
+    /// The edges of the outline.
+    pub fn edges(&self) -> &[BareEdge] {
+        self.outline.edges()
+    }
+
+    /// The keys of the lines that the edges lie on.
+    pub fn lines(&mut self) -> &[LineKey] {
+        self.outline.lines(&PlaneResidues::of(&self.plane))
+    }
+}
+
+/// A group in the making.
+struct Gathered {
+    plane: Arc<Plane>,
+    faces: Vec<TriangleFace>,
+    /// The outlines of cut faces.
+    cut: SmallVec<[Outline; 1]>,
+    /// The edges of whole faces.
+    whole: Vec<OutlineEdge>,
+}
+
+impl Gathered {
+    fn joined(mut self) -> PlaneGroup {
+        self.faces.sort_unstable();
+        let outline = match (&mut self.cut[..], &self.whole[..]) {
+            ([single], []) => std::mem::take(single),
+            _ => {
+                let plane = PlaneResidues::of(&self.plane);
+                let cut = self.cut.into_iter().flat_map(|c| c.keyed(&plane));
+                Outline::of(cut.chain(self.whole).collect())
+            }
+        };
+        PlaneGroup {
+            plane: self.plane,
+            faces: self.faces,
+            outline,
+        }
+    }
 }
 
 /// Groups in the making.
@@ -29,7 +71,7 @@ struct Grouping<'a> {
     sources: &'a Sources,
     join: bool,
     fates: Vec<Vec<Fate>>,
-    groups: Vec<PlaneGroup>,
+    groups: Vec<Gathered>,
     by_plane: HashMap<Arc<Plane>, usize>,
     open: Vec<(u32, u32, bool, usize)>,
     rims: Rims,
@@ -60,12 +102,9 @@ pub fn group(
         grouping.absorb_seams();
         grouping.spread();
     }
-    let mut groups = grouping.groups;
-    for group in &mut groups {
-        group.edges = maximal(std::mem::take(&mut group.edges));
-        group.faces.sort_unstable();
-    }
-    groups.retain(|g| !g.edges.is_empty());
+    let groups = grouping.groups.into_iter().filter(|g| !g.faces.is_empty());
+    let mut groups: Vec<PlaneGroup> = groups.map(Gathered::joined).collect();
+    groups.retain(|g| !g.edges().is_empty());
     (grouping.fates, groups, grouping.rims)
 }
 
@@ -78,10 +117,11 @@ impl Grouping<'_> {
             next
         };
         if at == next {
-            self.groups.push(PlaneGroup {
+            self.groups.push(Gathered {
                 plane,
                 faces: Vec::new(),
-                edges: Vec::new(),
+                cut: SmallVec::new(),
+                whole: Vec::new(),
             });
         }
         at
@@ -91,21 +131,14 @@ impl Grouping<'_> {
         let plane = self.oriented_plane(cut.slot, cut.face, cut.flip);
         let at = self.group_of(plane);
         let (slot, face, flip) = (cut.slot, cut.face, cut.flip);
-        self.groups[at]
-            .faces
-            .push(TriangleFace { slot, face, flip });
-        let mut edges = cut.edges;
-        if flip {
-            for edge in &mut edges {
-                std::mem::swap(&mut edge.from, &mut edge.to);
-            }
-        }
-        let target = &mut self.groups[at].edges;
-        if target.is_empty() {
-            *target = edges;
+        let outline = if flip {
+            cut.outline.flipped()
         } else {
-            target.append(&mut edges);
-        }
+            cut.outline
+        };
+        let group = &mut self.groups[at];
+        group.faces.push(TriangleFace { slot, face, flip });
+        group.cut.push(outline);
         self.open.push((slot, face, flip, at));
     }
 
@@ -143,7 +176,7 @@ impl Grouping<'_> {
         let edges = OutlineEdge::all_of(&polygon);
         let faces = &mut self.groups[group].faces;
         faces.push(TriangleFace { slot, face, flip });
-        let target = &mut self.groups[group].edges;
+        let target = &mut self.groups[group].whole;
         if flip {
             target.extend(edges.map(|e| e.reversed()));
         } else {
@@ -172,7 +205,7 @@ impl Grouping<'_> {
     fn absorb_seams(&mut self) {
         let candidates = self.candidates();
         // Faces that are alone in their plane share no line there.
-        let mut alone: Vec<bool> = self.groups.iter().map(|g| g.edges.is_empty()).collect();
+        let mut alone: Vec<bool> = self.groups.iter().map(|g| g.faces.is_empty()).collect();
         for pair in candidates.windows(2).filter(|p| p[0].group == p[1].group) {
             let [p, q] = [&pair[0], &pair[1]].map(|c| (c.edge.slot, c.edge.half / 3));
             alone[pair[0].group] &= p == q;
@@ -183,8 +216,13 @@ impl Grouping<'_> {
             near.map(|c| (c, c.edge.line(self.sources))).collect();
         let asked: HashSet<usize> = keyed.iter().map(|c| c.0.group).collect();
         for at in &asked {
-            let edges = self.groups[*at].edges.iter();
-            lines.extend(edges.map(|e| ((*at, e.line), None)));
+            let Gathered {
+                plane, cut, whole, ..
+            } = &mut self.groups[*at];
+            let plane = PlaneResidues::of(plane);
+            let cut = cut.iter_mut().flat_map(|c| c.lines(&plane)).copied();
+            let own = cut.chain(whole.iter().map(|e| e.line));
+            lines.extend(own.map(|line| ((*at, line), None)));
         }
         for (c, line) in &keyed {
             let face = (c.edge.slot, c.edge.half / 3);

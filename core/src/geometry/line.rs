@@ -3,8 +3,8 @@
 use smallvec::SmallVec;
 
 use super::plane::{normal, Lattice, Plane};
-use super::residue::{reduce_p1, residue};
-use crate::arith::{inv_mod, mul_mod, P1};
+use super::residue::{mul_p1, reduce_p1, residue};
+use crate::arith::{inv_mod, P1};
 
 /// Plücker coordinates of a line up to scale, modulo a prime.
 ///
@@ -87,7 +87,7 @@ impl Line {
     /// The key, for the inverse of the lead.
     fn scaled(&self, scale: u64) -> LineKey {
         let ([u, v, w], [x, y, z]) = (self.direction, self.moment);
-        let scaled = |c| mul_mod(c, scale, P1);
+        let scaled = |c| mul_p1(c, scale);
         LineKey([
             scaled(u),
             scaled(v),
@@ -124,15 +124,15 @@ impl LineKey {
         let before: SmallVec<[(Line, u64); 8]> = lines
             .map(|line| {
                 let so_far = product;
-                product = mul_mod(product, line.lead(), P1);
+                product = mul_p1(product, line.lead());
                 (line, so_far)
             })
             .collect();
         let mut inverse = inv_mod(product, P1);
         let mut keys: SmallVec<[Self; 8]> = SmallVec::with_capacity(before.len());
         for (line, so_far) in before.iter().rev() {
-            keys.push(line.scaled(mul_mod(inverse, *so_far, P1)));
-            inverse = mul_mod(inverse, line.lead(), P1);
+            keys.push(line.scaled(mul_p1(inverse, *so_far)));
+            inverse = mul_p1(inverse, line.lead());
         }
         keys.reverse();
         keys

@@ -92,6 +92,62 @@ impl OutlineEdge {
     }
 }
 
+/// A maximal outline, in the order that [`cancel`] gives, and the keys of its lines once asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Outline {
+    edges: Vec<BareEdge>,
+    /// As many as there are edges, or none if nobody has asked.
+    lines: Vec<LineKey>,
+}
+
+impl Outline {
+    /// An outline that is maximal and in order.
+    pub fn of_bare(edges: &[BareEdge]) -> Self {
+        Self {
+            edges: edges.to_vec(),
+            lines: Vec::new(),
+        }
+    }
+
+    /// What remains of some edges.
+    pub fn of(edges: Vec<OutlineEdge>) -> Self {
+        let edges = maximal(edges);
+        let lines = edges.iter().map(|e| e.line).collect();
+        let edges = edges.into_iter().map(BareEdge::from).collect();
+        Self { edges, lines }
+    }
+
+    /// The edges.
+    pub fn edges(&self) -> &[BareEdge] {
+        &self.edges
+    }
+
+    /// The keys of the edges' lines in a plane.
+    pub fn lines(&mut self, plane: &PlaneResidues) -> &[LineKey] {
+        if self.lines.is_empty() {
+            let carriers = self.edges.iter().map(|e| &e.carrier);
+            self.lines = lines(carriers, plane).into_vec();
+        }
+        &self.lines
+    }
+
+    /// The edges with the keys of their lines in a plane.
+    pub fn keyed(mut self, plane: &PlaneResidues) -> Vec<OutlineEdge> {
+        self.lines(plane);
+        let keyed = self.edges.into_iter().zip(self.lines);
+        keyed.map(|(edge, line)| edge.keyed(line)).collect()
+    }
+
+    /// The outline of the same region seen from the other side.
+    #[must_use]
+    pub fn flipped(mut self) -> Self {
+        for edge in &mut self.edges {
+            std::mem::swap(&mut edge.from, &mut edge.to);
+        }
+        self
+    }
+}
+
 fn lines<'a>(
     carriers: impl Iterator<Item = &'a Carrier>,
     support: &PlaneResidues,
@@ -106,6 +162,16 @@ pub fn order_along(a: &Arc<Vertex>, b: &Arc<Vertex>, axis: usize) -> Ordering {
     } else {
         a.compare_along(b, axis)
     }
+}
+
+/// The edges that remain when opposite ones cancel, as [`cancel`] has them, in no more memory.
+pub fn maximal(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
+    if edges.is_sorted_by(|a, b| a.line < b.line) {
+        return edges;
+    }
+    let mut kept = cancel(edges);
+    kept.shrink_to_fit();
+    kept
 }
 
 /// Cancels opposite edges and joins what remains into maximal edges, line by line.

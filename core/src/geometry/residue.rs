@@ -19,11 +19,25 @@ pub fn residue(value: i128) -> u64 {
 pub fn reduce_p1(value: u128) -> u64 {
     let low = value as u64 & P1;
     let middle = (value >> 61) as u64 & P1;
-    let once = low + middle + (value >> 122) as u64;
-    let twice = (once & P1) + (once >> 61);
+    let once = low.wrapping_add(middle).wrapping_add((value >> 122) as u64);
+    let twice = (once & P1).wrapping_add(once >> 61);
     if twice >= P1 {
         twice - P1
     } else {
         twice
+    }
+}
+
+/// The product of two residues.
+#[inline]
+#[allow(clippy::cast_possible_truncation)]
+pub fn mul_p1(a: u64, b: u64) -> u64 {
+    let product = u128::from(a).wrapping_mul(u128::from(b));
+    // Below 2^122, so that the two halves of 61 bits are all there is.
+    let sum = (product as u64 & P1).wrapping_add((product >> 61) as u64);
+    if sum >= P1 {
+        sum - P1
+    } else {
+        sum
     }
 }

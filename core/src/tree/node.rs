@@ -183,7 +183,7 @@ pub struct Part {
     pub face: u32,
     /// The cell the outline describes.
     pub home: Cell,
-    /// The outline, counterclockwise on the face.
+    /// The outline, counterclockwise on the face: maximal edges, in the order that `cancel` gives.
     pub edges: Box<[BareEdge]>,
     /// The flux through the part, once somebody has asked.
     pub flux: OnceLock<Flux>,
@@ -191,6 +191,8 @@ pub struct Part {
 
 impl Part {
     /// The part of a face that an outline bounds in a cell.
+    ///
+    /// The edges must be maximal, and in the order that `cancel` gives.
     pub fn new(source: Arc<Source>, face: u32, home: Cell, edges: Vec<OutlineEdge>) -> Self {
         Self {
             source,
