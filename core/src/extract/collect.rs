@@ -54,6 +54,9 @@ pub struct Boundary {
 /// Fewer faces than this are looked at on one thread.
 const MANY: usize = 256;
 
+/// One in so many faces must be listed for counting to be faster than sorting.
+const SPARSE: usize = 16;
+
 struct Collector<'a> {
     sources: &'a Sources,
     root: &'a Branch,
@@ -73,11 +76,9 @@ pub fn collect(solid: &Solid, sources: &Sources) -> Boundary {
 impl Collector<'_> {
     /// Decides the faces that span leaves, and outlines the cut ones.
     fn settle(mut self) -> Boundary {
-        let mut spanning = std::mem::take(&mut self.listed.spanning);
-        // Stable, so that the leaves of a face keep their order.
-        spanning.sort_by_key(Spanning::face_key);
+        let spanning = by_face(&self.listed.spanning, &self.listed.fates);
         let runs: Vec<&[Spanning]> = spanning
-            .chunk_by(|a, b| a.face_key() == b.face_key())
+            .chunk_by(|a, b| (a.slot, a.face) == (b.slot, b.face))
             .collect();
         let whole = |run: &&[Spanning]| self.is_whole(run);
         let whole: Vec<bool> = if in_pool() && runs.len() > MANY {
@@ -165,6 +166,39 @@ impl Collector<'_> {
             outline,
         }
     }
+}
+
+/// What leaves list, sorted by slot and face; the leaves of a face keep their order.
+fn by_face(spanning: &[Spanning], fates: &[Vec<Fate>]) -> Vec<Spanning> {
+    let faces: usize = fates.iter().map(Vec::len).sum();
+    let mut sorted = spanning.to_vec();
+    if spanning.len() < faces / SPARSE {
+        sorted.sort_by_key(|s| (s.slot, s.face));
+        return sorted;
+    }
+    let firsts: Vec<usize> = fates
+        .iter()
+        .scan(0, |sum, fates| {
+            *sum += fates.len();
+            Some(*sum - fates.len())
+        })
+        .collect();
+    let place = |s: &Spanning| firsts[s.slot as usize] + s.face as usize;
+    let mut ends = vec![0u32; faces];
+    for s in spanning {
+        ends[place(s)] += 1;
+    }
+    let mut sum = 0;
+    for end in &mut ends {
+        sum += *end;
+        *end = sum;
+    }
+    for s in spanning.iter().rev() {
+        let end = &mut ends[place(s)];
+        *end -= 1;
+        sorted[*end as usize] = *s;
+    }
+    sorted
 }
 
 /// Whether an outline is the face's own triangle.

@@ -28,13 +28,6 @@ pub struct Spanning {
     pub leaf: u32,
 }
 
-impl Spanning {
-    /// Slot and face in one word.
-    pub fn face_key(&self) -> u64 {
-        u64::from(self.slot) << 32 | u64::from(self.face)
-    }
-}
-
 /// What of a face one leaf lists.
 pub struct Piece<'a> {
     /// The source's slot.
@@ -241,8 +234,8 @@ pub fn fill(
     };
     for leaf in leaves {
         let cell = &cells[leaf as usize];
-        let top = cell.high();
-        let a = [0, 1, 2].map(|i| low[i].max(cell.low()[i]));
+        let (bottom, top) = (cell.low(), cell.high());
+        let a = [0, 1, 2].map(|i| low[i].max(bottom[i]));
         let b = [0, 1, 2].map(|i| high[i].min(top[i]));
         let Some(less) = count(&a, &b).and_then(|part| rest.checked_sub(part)) else {
             return false;

@@ -188,8 +188,8 @@ impl Projection<'_> {
     pub fn is_between(&self, a: u32, point: u32, b: u32) -> bool {
         point != a
             && point != b
-            && self.orient(a, point, b) == 0
             && self.compare(a, point) == self.compare(point, b)
+            && self.orient(a, point, b) == 0
     }
 }
 
