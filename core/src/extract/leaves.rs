@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
-use smallvec::SmallVec;
+use smallvec::{smallvec, SmallVec};
 
 use super::collect::Fate;
 use crate::geometry::cell::Cell;
@@ -158,11 +158,16 @@ pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
     all
 }
 
+/// The pieces of one face: mostly one.
+type Pieces<'a> = SmallVec<[Piece<'a>; 1]>;
+
+type Extents<'a> = SmallVec<[Extent<'a>; 1]>;
+
 /// What listed parts, by their keys, are in their leaves.
 fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
     let runs: Vec<&[Listing]> = parts.chunk_by(|a, b| a.key() == b.key()).collect();
     let face = |run: &&[Listing<'a>]| pieces_of_face(run, cells);
-    let pieces: Vec<Vec<Piece>> = if in_pool() && parts.len() > CHUNK {
+    let pieces: Vec<Pieces> = if in_pool() && parts.len() > CHUNK {
         runs.par_iter().map(face).collect()
     } else {
         runs.iter().map(face).collect()
@@ -171,7 +176,22 @@ fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
 }
 
 /// The pieces of one face: all of a part where that is still there, else what leaves have of it.
-fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
+fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Pieces<'a> {
+    let extents = match run {
+        [single] => extents(single.part, &[single.leaf], cells),
+        _ => extents_by_part(run, cells),
+    };
+    let (slot, face, flip) = run[0].key();
+    let piece = |extent| Piece {
+        slot,
+        face,
+        flip,
+        extent,
+    };
+    extents.into_iter().map(piece).collect()
+}
+
+fn extents_by_part<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Extents<'a> {
     let mut places: HashMap<*const Part, usize> = HashMap::default();
     let mut by_part: Vec<(&'a Part, SmallVec<[u32; 4]>)> = Vec::new();
     for listing in run {
@@ -182,23 +202,19 @@ fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
         }
         by_part[place].1.push(listing.leaf);
     }
-    let mut extents: Vec<Extent> = Vec::new();
-    for (part, leaves) in by_part {
-        if is_whole(part, &leaves, cells) {
-            extents.push(Extent::Part(part));
-            continue;
-        }
-        let edges = leaves.iter().map(|l| part_edges(part, &cells[*l as usize]));
-        extents.extend(edges.filter(|e| !e.is_empty()).map(Extent::Edges));
+    let by_part = by_part.into_iter();
+    by_part
+        .flat_map(|(part, leaves)| extents(part, &leaves, cells))
+        .collect()
+}
+
+/// Where a part ends that some leaves list.
+fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
+    if is_whole(part, leaves, cells) {
+        return smallvec![Extent::Part(part)];
     }
-    let (slot, face, flip) = run[0].key();
-    let piece = |extent| Piece {
-        slot,
-        face,
-        flip,
-        extent,
-    };
-    extents.into_iter().map(piece).collect()
+    let edges = leaves.iter().map(|l| part_edges(part, &cells[*l as usize]));
+    edges.filter(|e| !e.is_empty()).map(Extent::Edges).collect()
 }
 
 /// Whether the leaves that list a part have all of it; errs on no.

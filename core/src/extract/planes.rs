@@ -231,7 +231,9 @@ impl Grouping<'_> {
                 *first = None;
             }
         }
-        let shared = keyed.iter().filter(|(c, line)| lines[&(c.group, *line)].is_none());
+        let shared = keyed
+            .iter()
+            .filter(|(c, line)| lines[&(c.group, *line)].is_none());
         let mut shared: Vec<Candidate> = shared.map(|(c, _)| **c).collect();
         shared.sort_unstable_by_key(|c| c.number);
         for c in shared {

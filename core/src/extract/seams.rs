@@ -82,7 +82,8 @@ pub fn find_touching(
         let near = boxed[i + 1..].iter().take_while(|b| b.low[0] <= a.high[0]);
         for b in near.filter(|b| b.low[1] <= a.high[1] && a.low[1] <= b.high[1]) {
             for (near, point) in [(a, b.edge.from), (b, a.edge.from)] {
-                if view.is_between(near.edge.from, point, near.edge.to) {
+                let between = || view.is_between(near.edge.from, point, near.edge.to);
+                if near.may_hold(view.approx(point)) && between() {
                     touches.push((near.number, point));
                 }
             }
@@ -115,6 +116,11 @@ impl<'a> Boxed<'a> {
             low: [0, 1].map(|i| a[i].min(b[i]) - slack[i]),
             high: [0, 1].map(|i| a[i].max(b[i]) + slack[i]),
         }
+    }
+
+    /// Whether a point may lie on the edge; a rounded one that does lies in the box.
+    fn may_hold(&self, p: [f64; 2]) -> bool {
+        (0..2).all(|i| self.low[i] <= p[i] && p[i] <= self.high[i])
     }
 }
 

@@ -142,7 +142,13 @@ impl Blur {
 
     /// Each coordinate from one of two, as the bits of a number tell.
     fn mixed(low: &Self, high: &Self, bits: usize) -> Self {
-        let pick = |i: usize| if bits >> i & 1 == 0 { low.0[i] } else { high.0[i] };
+        let pick = |i: usize| {
+            if bits >> i & 1 == 0 {
+                low.0[i]
+            } else {
+                high.0[i]
+            }
+        };
         Self([0, 1, 2].map(pick))
     }
 
@@ -188,8 +194,8 @@ impl Projection<'_> {
     pub fn is_between(&self, a: u32, point: u32, b: u32) -> bool {
         point != a
             && point != b
-            && self.compare(a, point) == self.compare(point, b)
             && self.orient(a, point, b) == 0
+            && self.compare(a, point) == self.compare(point, b)
     }
 }
 

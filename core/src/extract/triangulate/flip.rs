@@ -71,7 +71,14 @@ pub(super) fn improve_ears<P: Planar>(points: &P, ears: Vec<[u32; 3]>) -> Vec<[u
     if ears.len() == 1 {
         return ears;
     }
-    flipped(points, Mates::of_ears(ears))
+    let mut mesh = Mates::of_ears(ears);
+    if mesh.triangles.len() > 2 {
+        return flipped(points, mesh);
+    }
+    if let Some(half) = (0..3).find(|h| mesh.should_flip(points, *h)) {
+        mesh.flip(half);
+    }
+    mesh.triangles
 }
 
 fn flipped<P: Planar>(points: &P, mut mesh: Mates) -> Vec<[u32; 3]> {
@@ -127,7 +134,10 @@ impl Mates {
         for h in 3..count {
             let (a, b) = (mesh.origin(h), mesh.head(h));
             let before = 0..h - h % 3;
-            if let Some(g) = before.rev().find(|g| mesh.origin(*g) == b && mesh.head(*g) == a) {
+            if let Some(g) = before
+                .rev()
+                .find(|g| mesh.origin(*g) == b && mesh.head(*g) == a)
+            {
                 mesh.pair(g, h);
             }
         }
