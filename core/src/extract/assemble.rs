@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
+use rustc_hash::FxHashMap as HashMap;
 
 use super::collect::{collect, Fate};
 use super::contacts;
@@ -12,6 +12,7 @@ use super::seams::{find_touching, subdivisions, Edge, InnerPoints, LinePoints};
 use super::untouched::{Untouched, WholeFaces};
 use super::vertices::VertexTable;
 use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::outline::BareEdge;
 use crate::geometry::plane::normal;
 use crate::geometry::vertex::Vertex;
 use crate::merge::list::Sources;
@@ -95,6 +96,9 @@ impl TriangleFace {
 
 const NONE: u32 = u32::MAX;
 
+/// Groups of as many edges are looked through faster than a table of their points is made.
+const SMALL: usize = 16;
+
 /// The mesh of a bounded solid.
 ///
 /// Untouched faces leave as they came, same triangle; cut faces and their coplanar neighbours are
@@ -142,7 +146,7 @@ fn unbounded() -> Error {
 fn reaches_infinity(group: &PlaneGroup, sources: &Sources) -> bool {
     let mut faces = group.faces.iter();
     faces.any(|f| sources.get(f.slot as usize).mesh().is_none())
-        && group.edges.iter().any(|e| e.carrier.is_border())
+        && group.edges().iter().any(|e| e.carrier.is_border())
 }
 
 impl<'a> Assembly<'a> {
@@ -168,7 +172,7 @@ impl<'a> Assembly<'a> {
     fn run(
         &mut self,
         fates: &[Vec<Fate>],
-        groups: Vec<PlaneGroup>,
+        mut groups: Vec<PlaneGroup>,
         rims: &Rims,
         near: &[(u32, u32)],
     ) -> Result<()> {
@@ -186,13 +190,13 @@ impl<'a> Assembly<'a> {
             edges.extend(self.frontier_edge(*e, fates));
         }
         self.name_cut_corners(fates);
-        let touching = self.touching(&groups, &edges);
+        let touching = self.touching(&mut groups, &edges);
         let line = |i: usize| {
             if i >= offset {
                 return frontier[i - offset].line(self.sources);
             }
             let group = starts.partition_point(|start| *start <= i) - 1;
-            groups[group].edges[i - starts[group]].line
+            groups[group].lines()[i - starts[group]]
         };
         let inner = subdivisions(&edges, line, &touching, &self.table);
         let split = split_faces(&frontier, offset, &inner);
@@ -207,25 +211,34 @@ impl<'a> Assembly<'a> {
 
     /// Numbers the ends of a group's edges; those that two edges share are looked up once.
     fn number_edges(&mut self, group: &PlaneGroup, edges: &mut Vec<Edge>) {
-        let mut known = HashMap::with_capacity_and_hasher(group.edges.len(), FxBuildHasher);
-        let table = &mut self.table;
-        let mut number = |at: &Arc<Vertex>| {
-            let entry = known.entry(Arc::as_ptr(at));
-            *entry.or_insert_with(|| table.number(at))
-        };
-        edges.extend(group.edges.iter().map(|e| Edge {
-            from: number(&e.from),
-            to: number(&e.to),
-        }));
+        let start = edges.len();
+        if group.edges().len() > SMALL {
+            let mut known: HashMap<*const Vertex, u32> = HashMap::default();
+            for e in group.edges() {
+                let [from, to] = [&e.from, &e.to].map(|at| {
+                    let entry = known.entry(Arc::as_ptr(at));
+                    *entry.or_insert_with(|| self.table.number(at))
+                });
+                edges.push(Edge { from, to });
+            }
+            return;
+        }
+        for (i, e) in group.edges().iter().enumerate() {
+            let before = group.edges()[..i].iter().zip(&edges[start..]);
+            let [from, to] = [&e.from, &e.to].map(|at| known_end(at, before.clone()));
+            let from = from.unwrap_or_else(|| self.table.number(&e.from));
+            let to = to.unwrap_or_else(|| self.table.number(&e.to));
+            edges.push(Edge { from, to });
+        }
     }
 
     /// For each line the points at which a polygon touches or crosses an edge of its own.
-    fn touching(&mut self, groups: &[PlaneGroup], edges: &[Edge]) -> LinePoints {
+    fn touching(&mut self, groups: &mut [PlaneGroup], edges: &[Edge]) -> LinePoints {
         let mut touching = LinePoints::default();
         let mut start = 0;
         for group in groups {
-            let own = &edges[start..start + group.edges.len()];
-            start += group.edges.len();
+            let own = &edges[start..start + group.edges().len()];
+            start += group.edges().len();
             find_touching(own, group, &mut self.table, &mut touching);
         }
         touching
@@ -449,6 +462,20 @@ impl<'a> Assembly<'a> {
             }
         }
     }
+}
+
+/// The number of a point that is an end of one of some numbered edges, too.
+fn known_end<'e>(
+    at: &Arc<Vertex>,
+    mut numbered: impl Iterator<Item = (&'e BareEdge, &'e Edge)>,
+) -> Option<u32> {
+    numbered.find_map(|(e, numbers)| {
+        if Arc::ptr_eq(at, &e.from) {
+            Some(numbers.from)
+        } else {
+            Arc::ptr_eq(at, &e.to).then_some(numbers.to)
+        }
+    })
 }
 
 /// The points inserted on the three edges of each whole face that received any; the frontier's

@@ -5,8 +5,8 @@ use smallvec::{smallvec, SmallVec};
 
 use super::leaves::{fill, listed, Listed, Piece, Spanning};
 use crate::geometry::cell::Cell;
-use crate::geometry::line::LineKey;
-use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::geometry::line::{LineKey, PlaneResidues};
+use crate::geometry::outline::{BareEdge, Outline};
 use crate::geometry::plane::Lattice;
 use crate::merge::list::Sources;
 use crate::merge::separation::misses;
@@ -37,7 +37,7 @@ pub struct CutFace {
     /// Whether inside and outside are exchanged.
     pub flip: bool,
     /// The outline, counterclockwise on the face as the source has it.
-    pub edges: Vec<OutlineEdge>,
+    pub outline: Outline,
 }
 
 /// A solid's boundary by faces.
@@ -53,6 +53,9 @@ pub struct Boundary {
 
 /// Fewer faces than this are looked at on one thread.
 const MANY: usize = 256;
+
+/// One in so many faces must be listed for counting to be faster than sorting.
+const SPARSE: usize = 16;
 
 struct Collector<'a> {
     sources: &'a Sources,
@@ -73,8 +76,7 @@ pub fn collect(solid: &Solid, sources: &Sources) -> Boundary {
 impl Collector<'_> {
     /// Decides the faces that span leaves, and outlines the cut ones.
     fn settle(mut self) -> Boundary {
-        let mut spanning = std::mem::take(&mut self.listed.spanning);
-        spanning.sort_unstable();
+        let spanning = by_face(&self.listed.spanning, &self.listed.fates);
         let runs: Vec<&[Spanning]> = spanning
             .chunk_by(|a, b| (a.slot, a.face) == (b.slot, b.face))
             .collect();
@@ -135,10 +137,11 @@ impl Collector<'_> {
             runs.into_iter().map(joined).collect()
         };
         let mut cut = Vec::new();
-        for c in found {
-            if is_full_face(&c, self.sources.get(c.slot as usize)) {
+        for mut c in found {
+            let source = self.sources.get(c.slot as usize);
+            if is_full_face(&mut c, source) {
                 self.listed.fates[c.slot as usize][c.face as usize] = Fate::Whole(c.flip);
-            } else if !c.edges.is_empty() {
+            } else if !c.outline.edges().is_empty() {
                 cut.push(c);
             }
         }
@@ -148,46 +151,72 @@ impl Collector<'_> {
     /// One face of its pieces.
     fn joined(&self, run: &mut [Piece]) -> CutFace {
         let cells = &self.listed.cells;
-        let mut edges = run[0].take_edges(self.sources, cells);
-        for piece in &mut run[1..] {
-            edges.append(&mut piece.take_edges(self.sources, cells));
-        }
+        let (slot, face, flip) = (run[0].slot, run[0].face, run[0].flip);
+        let outline = match run {
+            [piece] => piece.outline(self.sources, cells),
+            _ => {
+                let edges = run.iter_mut().map(|p| p.take_edges(self.sources, cells));
+                Outline::of(edges.flatten().collect())
+            }
+        };
         CutFace {
-            slot: run[0].slot,
-            face: run[0].face,
-            flip: run[0].flip,
-            edges: maximal(edges),
+            slot,
+            face,
+            flip,
+            outline,
         }
     }
 }
 
-/// The edges that remain when opposite ones cancel, as [`cancel`] has them, in no more memory.
-pub(super) fn maximal(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
-    if edges.is_sorted_by(|a, b| a.line < b.line) {
-        return edges;
+/// What leaves list, sorted by slot and face; the leaves of a face keep their order.
+fn by_face(spanning: &[Spanning], fates: &[Vec<Fate>]) -> Vec<Spanning> {
+    let faces: usize = fates.iter().map(Vec::len).sum();
+    let mut sorted = spanning.to_vec();
+    if spanning.len() < faces / SPARSE {
+        sorted.sort_by_key(|s| (s.slot, s.face));
+        return sorted;
     }
-    let mut kept = cancel(edges);
-    kept.shrink_to_fit();
-    kept
+    let firsts: Vec<usize> = fates
+        .iter()
+        .scan(0, |sum, fates| {
+            *sum += fates.len();
+            Some(*sum - fates.len())
+        })
+        .collect();
+    let place = |s: &Spanning| firsts[s.slot as usize] + s.face as usize;
+    let mut ends = vec![0u32; faces];
+    for s in spanning {
+        ends[place(s)] += 1;
+    }
+    let mut sum = 0;
+    for end in &mut ends {
+        sum += *end;
+        *end = sum;
+    }
+    for s in spanning.iter().rev() {
+        let end = &mut ends[place(s)];
+        *end -= 1;
+        sorted[*end as usize] = *s;
+    }
+    sorted
 }
 
 /// Whether an outline is the face's own triangle.
-fn is_full_face(cut: &CutFace, source: &Source) -> bool {
+fn is_full_face(cut: &mut CutFace, source: &Source) -> bool {
     let Shape::Mesh(mesh) = source.shape() else {
         return false;
     };
-    let [p, q, r] = &cut.edges[..] else {
-        return false;
-    };
     let c = mesh.corners(cut.face);
-    let near = |edge: &OutlineEdge| c.iter().any(|corner| edge.from.may_be(corner));
-    if ![p, q, r].into_iter().all(near) {
+    let near = |edge: &BareEdge| c.iter().any(|corner| edge.from.may_be(corner));
+    if cut.outline.edges().len() != 3 || !cut.outline.edges().iter().all(near) {
         return false;
     }
-    let lines = [p.line, q.line, r.line];
+    let [p, q, r] = cut.outline.lines(&PlaneResidues::through(&c)) else {
+        return false;
+    };
     let own = [0, 1, 2].map(|i| LineKey::of_edge(&c[i], &c[(i + 1) % 3]));
-    let distinct = p.line != q.line && q.line != r.line && r.line != p.line;
-    distinct && own.iter().all(|k| lines.contains(k))
+    let distinct = p != q && q != r && r != p;
+    distinct && own.iter().all(|k| [&*p, q, r].contains(&k))
 }
 
 /// A subtree to look through for a face, and the face's box in it.

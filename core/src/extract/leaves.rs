@@ -4,11 +4,11 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
-use smallvec::SmallVec;
+use smallvec::{smallvec, SmallVec};
 
 use super::collect::Fate;
 use crate::geometry::cell::Cell;
-use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::geometry::outline::{cancel, Outline, OutlineEdge};
 use crate::geometry::plane::Lattice;
 use crate::merge::list::Sources;
 use crate::mesh::source::{Source, TriangleMesh};
@@ -16,7 +16,7 @@ use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::tree::node::{Branch, Deferred, Group, Node, Part, Work};
 
 /// A face that reaches out of a leaf that lists it.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Spanning {
     /// The source's slot.
     pub slot: u32,
@@ -36,11 +36,11 @@ pub struct Piece<'a> {
     pub face: u32,
     /// Whether inside and outside are exchanged.
     pub flip: bool,
-    outline: Outline<'a>,
+    extent: Extent<'a>,
 }
 
 /// Where a piece ends; most outlines are looked up or made when it is their turn.
-enum Outline<'a> {
+enum Extent<'a> {
     /// The face's own edges, and the border of the cell of the leaf with this number.
     Face(u32),
     /// As the part says.
@@ -55,22 +55,30 @@ impl From<&Spanning> for Piece<'_> {
             slot: s.slot,
             face: s.face,
             flip: s.flip,
-            outline: Outline::Face(s.leaf),
+            extent: Extent::Face(s.leaf),
         }
     }
 }
 
 impl Piece<'_> {
+    /// The outline of a piece that is all there is of its face.
+    pub fn outline(&mut self, sources: &Sources, cells: &[Cell]) -> Outline {
+        match self.extent {
+            Extent::Part(part) => Outline::of_bare(&part.edges),
+            _ => Outline::of(self.take_edges(sources, cells)),
+        }
+    }
+
     /// The edges around the piece; taken out of it if it has them.
     pub fn take_edges(&mut self, sources: &Sources, cells: &[Cell]) -> Vec<OutlineEdge> {
-        match &mut self.outline {
-            Outline::Face(leaf) => {
+        match &mut self.extent {
+            Extent::Face(leaf) => {
                 let source = sources.get(self.slot as usize);
                 let polygon = source.clip(self.face, &cells[*leaf as usize]);
                 polygon.map_or_else(Vec::new, |p| OutlineEdge::all_of(&p).collect())
             }
-            Outline::Part(part) => part_edges(part, &part.home),
-            Outline::Edges(edges) => std::mem::take(edges),
+            Extent::Part(part) => part.outline(),
+            Extent::Edges(edges) => std::mem::take(edges),
         }
     }
 }
@@ -150,11 +158,16 @@ pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
     all
 }
 
+/// The pieces of one face: mostly one.
+type Pieces<'a> = SmallVec<[Piece<'a>; 1]>;
+
+type Extents<'a> = SmallVec<[Extent<'a>; 1]>;
+
 /// What listed parts, by their keys, are in their leaves.
 fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
     let runs: Vec<&[Listing]> = parts.chunk_by(|a, b| a.key() == b.key()).collect();
     let face = |run: &&[Listing<'a>]| pieces_of_face(run, cells);
-    let pieces: Vec<Vec<Piece>> = if in_pool() && parts.len() > CHUNK {
+    let pieces: Vec<Pieces> = if in_pool() && parts.len() > CHUNK {
         runs.par_iter().map(face).collect()
     } else {
         runs.iter().map(face).collect()
@@ -163,7 +176,22 @@ fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
 }
 
 /// The pieces of one face: all of a part where that is still there, else what leaves have of it.
-fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
+fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Pieces<'a> {
+    let extents = match run {
+        [single] => extents(single.part, &[single.leaf], cells),
+        _ => extents_by_part(run, cells),
+    };
+    let (slot, face, flip) = run[0].key();
+    let piece = |extent| Piece {
+        slot,
+        face,
+        flip,
+        extent,
+    };
+    extents.into_iter().map(piece).collect()
+}
+
+fn extents_by_part<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Extents<'a> {
     let mut places: HashMap<*const Part, usize> = HashMap::default();
     let mut by_part: Vec<(&'a Part, SmallVec<[u32; 4]>)> = Vec::new();
     for listing in run {
@@ -174,23 +202,19 @@ fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
         }
         by_part[place].1.push(listing.leaf);
     }
-    let mut outlines: Vec<Outline> = Vec::new();
-    for (part, leaves) in by_part {
-        if is_whole(part, &leaves, cells) {
-            outlines.push(Outline::Part(part));
-            continue;
-        }
-        let edges = leaves.iter().map(|l| part_edges(part, &cells[*l as usize]));
-        outlines.extend(edges.filter(|e| !e.is_empty()).map(Outline::Edges));
+    let by_part = by_part.into_iter();
+    by_part
+        .flat_map(|(part, leaves)| extents(part, &leaves, cells))
+        .collect()
+}
+
+/// Where a part ends that some leaves list.
+fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
+    if is_whole(part, leaves, cells) {
+        return smallvec![Extent::Part(part)];
     }
-    let (slot, face, flip) = run[0].key();
-    let piece = |outline| Piece {
-        slot,
-        face,
-        flip,
-        outline,
-    };
-    outlines.into_iter().map(piece).collect()
+    let edges = leaves.iter().map(|l| part_edges(part, &cells[*l as usize]));
+    edges.filter(|e| !e.is_empty()).map(Extent::Edges).collect()
 }
 
 /// Whether the leaves that list a part have all of it; errs on no.
@@ -226,8 +250,8 @@ pub fn fill(
     };
     for leaf in leaves {
         let cell = &cells[leaf as usize];
-        let top = cell.high();
-        let a = [0, 1, 2].map(|i| low[i].max(cell.low()[i]));
+        let (bottom, top) = (cell.low(), cell.high());
+        let a = [0, 1, 2].map(|i| low[i].max(bottom[i]));
         let b = [0, 1, 2].map(|i| high[i].min(top[i]));
         let Some(less) = count(&a, &b).and_then(|part| rest.checked_sub(part)) else {
             return false;
@@ -239,10 +263,9 @@ pub fn fill(
 
 /// How many lattice points a box has; `None` for huge ones.
 fn count(low: &Lattice, high: &Lattice) -> Option<u128> {
-    (0..3).try_fold(1u128, |product, i| {
-        let extent = u128::try_from(high[i] - low[i] + 1).unwrap_or(0);
-        product.checked_mul(extent)
-    })
+    let extent = |i: usize| u64::try_from(high[i] - low[i] + 1).unwrap_or(0);
+    let area = u128::from(extent(0)) * u128::from(extent(1));
+    area.checked_mul(u128::from(extent(2)))
 }
 
 fn leaves_of(root: &Branch) -> Vec<Leaf<'_>> {

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use smallvec::SmallVec;
 
 use super::assemble::TriangleFace;
-use super::collect::{maximal, Boundary, CutFace, Fate};
-use super::rim::Rims;
-use crate::geometry::line::LineKey;
-use crate::geometry::outline::OutlineEdge;
-use crate::geometry::plane::Plane;
+use super::collect::{Boundary, CutFace, Fate};
+use super::rim::{FrontierEdge, Rims};
+use crate::geometry::line::{LineKey, PlaneResidues};
+use crate::geometry::outline::{BareEdge, Outline, OutlineEdge};
+use crate::geometry::plane::{normal, Plane};
 use crate::geometry::polygon::Polygon;
 use crate::merge::list::Sources;
 
@@ -21,7 +22,48 @@ pub struct PlaneGroup {
     /// The faces that lie in it, ascending.
     pub faces: Vec<TriangleFace>,
     /// The outline, counterclockwise as seen from outside.
-    pub edges: Vec<OutlineEdge>,
+    pub outline: Outline,
+}
+
+impl PlaneGroup {
+    /// The edges of the outline.
+    pub fn edges(&self) -> &[BareEdge] {
+        self.outline.edges()
+    }
+
+    /// The keys of the lines that the edges lie on.
+    pub fn lines(&mut self) -> &[LineKey] {
+        self.outline.lines(&PlaneResidues::of(&self.plane))
+    }
+}
+
+/// A group in the making.
+struct Gathered {
+    plane: Arc<Plane>,
+    faces: Vec<TriangleFace>,
+    /// The outlines of cut faces.
+    cut: SmallVec<[Outline; 1]>,
+    /// The edges of whole faces.
+    whole: Vec<OutlineEdge>,
+}
+
+impl Gathered {
+    fn joined(mut self) -> PlaneGroup {
+        self.faces.sort_unstable();
+        let outline = match (&mut self.cut[..], &self.whole[..]) {
+            ([single], []) => std::mem::take(single),
+            _ => {
+                let plane = PlaneResidues::of(&self.plane);
+                let cut = self.cut.into_iter().flat_map(|c| c.keyed(&plane));
+                Outline::of(cut.chain(self.whole).collect())
+            }
+        };
+        PlaneGroup {
+            plane: self.plane,
+            faces: self.faces,
+            outline,
+        }
+    }
 }
 
 /// Groups in the making.
@@ -29,7 +71,7 @@ struct Grouping<'a> {
     sources: &'a Sources,
     join: bool,
     fates: Vec<Vec<Fate>>,
-    groups: Vec<PlaneGroup>,
+    groups: Vec<Gathered>,
     by_plane: HashMap<Arc<Plane>, usize>,
     open: Vec<(u32, u32, bool, usize)>,
     rims: Rims,
@@ -60,12 +102,9 @@ pub fn group(
         grouping.absorb_seams();
         grouping.spread();
     }
-    let mut groups = grouping.groups;
-    for group in &mut groups {
-        group.edges = maximal(std::mem::take(&mut group.edges));
-        group.faces.sort_unstable();
-    }
-    groups.retain(|g| !g.edges.is_empty());
+    let groups = grouping.groups.into_iter().filter(|g| !g.faces.is_empty());
+    let mut groups: Vec<PlaneGroup> = groups.map(Gathered::joined).collect();
+    groups.retain(|g| !g.edges().is_empty());
     (grouping.fates, groups, grouping.rims)
 }
 
@@ -78,10 +117,11 @@ impl Grouping<'_> {
             next
         };
         if at == next {
-            self.groups.push(PlaneGroup {
+            self.groups.push(Gathered {
                 plane,
                 faces: Vec::new(),
-                edges: Vec::new(),
+                cut: SmallVec::new(),
+                whole: Vec::new(),
             });
         }
         at
@@ -91,21 +131,14 @@ impl Grouping<'_> {
         let plane = self.oriented_plane(cut.slot, cut.face, cut.flip);
         let at = self.group_of(plane);
         let (slot, face, flip) = (cut.slot, cut.face, cut.flip);
-        self.groups[at]
-            .faces
-            .push(TriangleFace { slot, face, flip });
-        let mut edges = cut.edges;
-        if flip {
-            for edge in &mut edges {
-                std::mem::swap(&mut edge.from, &mut edge.to);
-            }
-        }
-        let target = &mut self.groups[at].edges;
-        if target.is_empty() {
-            *target = edges;
+        let outline = if flip {
+            cut.outline.flipped()
         } else {
-            target.append(&mut edges);
-        }
+            cut.outline
+        };
+        let group = &mut self.groups[at];
+        group.faces.push(TriangleFace { slot, face, flip });
+        group.cut.push(outline);
         self.open.push((slot, face, flip, at));
     }
 
@@ -116,6 +149,19 @@ impl Grouping<'_> {
         } else {
             plane
         }
+    }
+
+    /// Whether a face lies in the plane of a group and is turned as the group is.
+    fn lies_in(&self, slot: u32, face: u32, flip: bool, group: usize) -> bool {
+        let Some(mesh) = self.sources.get(slot as usize).mesh() else {
+            return false;
+        };
+        let (plane, [a, b, c]) = (&self.groups[group].plane, mesh.corners(face));
+        if [a, b, c].iter().any(|p| plane.side_of_lattice(p) != 0) {
+            return false;
+        }
+        let axis = plane.main_axis();
+        (normal(&a, &b, &c)[axis] < 0) ^ (plane.normal()[axis] < 0) == flip
     }
 
     /// Moves a whole face into the group of its plane.
@@ -130,7 +176,7 @@ impl Grouping<'_> {
         let edges = OutlineEdge::all_of(&polygon);
         let faces = &mut self.groups[group].faces;
         faces.push(TriangleFace { slot, face, flip });
-        let target = &mut self.groups[group].edges;
+        let target = &mut self.groups[group].whole;
         if flip {
             target.extend(edges.map(|e| e.reversed()));
         } else {
@@ -147,7 +193,7 @@ impl Grouping<'_> {
                     continue;
                 };
                 let whole = self.fates[slot as usize][next as usize] == Fate::Whole(flip);
-                if whole && self.oriented_plane(slot, next, flip) == self.groups[group].plane {
+                if whole && self.lies_in(slot, next, flip, group) {
                     self.absorb(slot, next, flip, group);
                 }
             }
@@ -157,37 +203,80 @@ impl Grouping<'_> {
 
     /// Absorbs whole faces that share a line and a plane with others of another source or part.
     fn absorb_seams(&mut self) {
+        let candidates = self.candidates();
+        // Faces that are alone in their plane share no line there.
+        let mut alone: Vec<bool> = self.groups.iter().map(|g| g.faces.is_empty()).collect();
+        for pair in candidates.windows(2).filter(|p| p[0].group == p[1].group) {
+            let [p, q] = [&pair[0], &pair[1]].map(|c| (c.edge.slot, c.edge.half / 3));
+            alone[pair[0].group] &= p == q;
+        }
+        let mut lines: HashMap<(usize, LineKey), Option<(u32, u32)>> = HashMap::default();
+        let near = candidates.iter().filter(|c| !alone[c.group]);
+        let keyed: Vec<(&Candidate, LineKey)> =
+            near.map(|c| (c, c.edge.line(self.sources))).collect();
+        let asked: HashSet<usize> = keyed.iter().map(|c| c.0.group).collect();
+        for at in &asked {
+            let Gathered {
+                plane, cut, whole, ..
+            } = &mut self.groups[*at];
+            let plane = PlaneResidues::of(plane);
+            let cut = cut.iter_mut().flat_map(|c| c.lines(&plane)).copied();
+            let own = cut.chain(whole.iter().map(|e| e.line));
+            lines.extend(own.map(|line| ((*at, line), None)));
+        }
+        for (c, line) in &keyed {
+            let face = (c.edge.slot, c.edge.half / 3);
+            let first = lines.entry((c.group, *line)).or_insert(Some(face));
+            if *first != Some(face) {
+                *first = None;
+            }
+        }
+        let shared = keyed
+            .iter()
+            .filter(|(c, line)| lines[&(c.group, *line)].is_none());
+        let mut shared: Vec<Candidate> = shared.map(|(c, _)| **c).collect();
+        shared.sort_unstable_by_key(|c| c.number);
+        for c in shared {
+            let (slot, face) = (c.edge.slot, c.edge.half / 3);
+            if self.fates[slot as usize][face as usize] == Fate::Whole(c.flip) {
+                self.absorb(slot, face, c.flip, c.group);
+            }
+        }
+    }
+
+    /// The edges in which whole faces end, with the groups of the faces' planes; by group.
+    fn candidates(&mut self) -> Vec<Candidate> {
         let frontier = self.rims.frontier(&self.fates, self.sources);
-        let mut seen: HashMap<(usize, LineKey), (u32, u32)> = HashMap::default();
-        let mut candidates = Vec::new();
-        for edge in &frontier {
+        let mut candidates: Vec<Candidate> = Vec::with_capacity(frontier.len());
+        for (number, edge) in (0..).zip(frontier) {
             let (slot, face) = (edge.slot, edge.half / 3);
             let Fate::Whole(flip) = self.fates[slot as usize][face as usize] else {
                 continue;
             };
-            let plane = self.oriented_plane(slot, face, flip);
-            let group = self.group_of(plane);
-            let line = edge.line(self.sources);
-            candidates.push((slot, face, flip, group, line));
+            let last = candidates.last();
+            let known = last.filter(|c| (c.edge.slot, c.edge.half / 3) == (slot, face));
+            let group = match known {
+                Some(c) => c.group,
+                None => self.group_of(self.oriented_plane(slot, face, flip)),
+            };
+            candidates.push(Candidate {
+                group,
+                number,
+                edge,
+                flip,
+            });
         }
-        let group_lines: HashSet<(usize, LineKey)> = self
-            .groups
-            .iter()
-            .enumerate()
-            .flat_map(|(at, g)| g.edges.iter().map(move |e| (at, e.line)))
-            .collect();
-        let mut shared: HashSet<(usize, LineKey)> = HashSet::default();
-        for (slot, face, _, group, line) in &candidates {
-            let first = *seen.entry((*group, *line)).or_insert((*slot, *face));
-            if first != (*slot, *face) || group_lines.contains(&(*group, *line)) {
-                shared.insert((*group, *line));
-            }
-        }
-        for (slot, face, flip, group, line) in candidates {
-            let whole = self.fates[slot as usize][face as usize] == Fate::Whole(flip);
-            if whole && shared.contains(&(group, line)) {
-                self.absorb(slot, face, flip, group);
-            }
-        }
+        candidates.sort_unstable_by_key(|c| (c.group, c.number));
+        candidates
     }
+}
+
+/// An edge of a whole face that may belong to a group.
+#[derive(Clone, Copy)]
+struct Candidate {
+    group: usize,
+    /// The place in the frontier.
+    number: u32,
+    edge: FrontierEdge,
+    flip: bool,
 }

@@ -75,7 +75,7 @@ impl Assembly<'_> {
             let mut batch = Vec::new();
             let mut size = 0;
             while let Some(group) = groups.next_if(|_| size < CHUNK) {
-                let (own, rest) = edges.split_at(group.edges.len());
+                let (own, rest) = edges.split_at(group.edges().len());
                 batch.push((group, first, own));
                 first += own.len();
                 size += own.len();

@@ -14,7 +14,6 @@ use crate::geometry::line::LineKey;
 use crate::merge::list::Sources;
 use crate::mesh::source::{Source, TriangleMesh};
 use crate::mesh::tasks::{in_pool, CHUNK};
-use crate::mesh::topology::NONE;
 
 /// What meets at a vertex: a whole face, one turned around, another one.
 const KEPT: u8 = 1;
@@ -29,6 +28,8 @@ pub struct Rims {
     by_slot: Vec<Rim>,
     /// The half-edges near a rim by their ends, found on first use.
     by_ends: Vec<OnceLock<HashMap<[u32; 2], u32>>>,
+    /// The faces around each vertex of a source, found on first use.
+    around: Vec<OnceLock<Around>>,
     /// Slots of which fates have changed.
     outdated: BTreeSet<u32>,
 }
@@ -65,6 +66,7 @@ impl Rims {
                 slots.iter().map(rim).collect()
             },
             by_ends: vec![OnceLock::new(); fates.len()],
+            around: vec![OnceLock::new(); fates.len()],
             outdated: BTreeSet::new(),
         }
     }
@@ -102,10 +104,9 @@ impl Rims {
 
     /// The face across a half-edge, if that may be whole.
     ///
-    /// Near the rim the faces are known by their edges; only far from it mates are needed.
+    /// Near the rim the faces are known by their edges; far from it by their corners.
     pub fn across(&self, slot: u32, half: u32, sources: &Sources) -> Option<u32> {
-        let source = sources.get(slot as usize);
-        let mesh = source.mesh()?;
+        let mesh = sources.get(slot as usize).mesh()?;
         let rim = &self.by_slot[slot as usize];
         let [a, b] = half_edge_ends(mesh, half);
         if !rim.is_used(a) || !rim.is_used(b) {
@@ -115,8 +116,50 @@ impl Rims {
             let by_ends = self.by_ends[slot as usize].get_or_init(|| rim.by_ends(mesh));
             return by_ends.get(&[b, a]).map(|mate| mate / 3);
         }
-        let mate = source.topology()?.mates()[half as usize];
-        (mate != NONE).then_some(mate / 3)
+        let around = self.around[slot as usize].get_or_init(|| Around::of(mesh));
+        let mut faces = around.faces(a).iter();
+        let has_mate = |face: &&u32| {
+            let mut halves = 3 * **face..3 * **face + 3;
+            halves.any(|h| half_edge_ends(mesh, h) == [b, a])
+        };
+        faces.find(has_mate).copied()
+    }
+}
+
+/// The faces around each vertex of a mesh.
+#[derive(Clone, Debug)]
+struct Around {
+    /// By vertex, where its faces start; ends with where the last one's end.
+    starts: Vec<u32>,
+    faces: Vec<u32>,
+}
+
+impl Around {
+    fn of(mesh: &TriangleMesh) -> Self {
+        let mut starts = vec![0u32; mesh.vertices.len() + 1];
+        for vertex in mesh.faces.iter().flatten() {
+            starts[*vertex as usize] += 1;
+        }
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut faces = vec![0; sum as usize];
+        for (face, corners) in mesh.faces.iter().enumerate().rev() {
+            for vertex in corners {
+                let start = &mut starts[*vertex as usize];
+                *start -= 1;
+                faces[*start as usize] = face as u32;
+            }
+        }
+        Self { starts, faces }
+    }
+
+    /// The faces around a vertex, ascending.
+    fn faces(&self, vertex: u32) -> &[u32] {
+        let [start, end] = [0, 1].map(|i| self.starts[vertex as usize + i] as usize);
+        &self.faces[start..end]
     }
 }
 

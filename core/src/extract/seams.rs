@@ -8,7 +8,6 @@ use super::planes::PlaneGroup;
 use super::triangulate::Planar;
 use super::vertices::{Projection, VertexTable};
 use crate::geometry::line::LineKey;
-use crate::geometry::outline::OutlineEdge;
 
 /// Numbered points by the line they lie on.
 pub type LinePoints = HashMap<LineKey, Vec<u32>>;
@@ -34,12 +33,12 @@ pub struct Edge {
 /// Design review F6.
 pub fn subdivisions(
     edges: &[Edge],
-    line: impl Fn(usize) -> LineKey,
+    mut line: impl FnMut(usize) -> LineKey,
     touching: &LinePoints,
     table: &VertexTable,
 ) -> InnerPoints {
     let mut inner = InnerPoints::default();
-    let mut open: Vec<(LineKey, usize)> = unpaired(edges, &line, touching, table);
+    let mut open: Vec<(LineKey, usize)> = unpaired(edges, &mut line, touching, table);
     open.sort_unstable();
     for run in open.chunk_by(|a, b| a.0 == b.0) {
         let extra = touching.get(&run[0].0).map_or(&[][..], |t| t);
@@ -51,7 +50,8 @@ pub fn subdivisions(
 /// An edge with its box in a projection.
 struct Boxed<'a> {
     edge: &'a Edge,
-    outline: &'a OutlineEdge,
+    /// Its number in the outline.
+    number: usize,
     low: [f64; 2],
     high: [f64; 2],
 }
@@ -63,62 +63,71 @@ struct Boxed<'a> {
 /// them are in and out by turns.
 pub fn find_touching(
     edges: &[Edge],
-    group: &PlaneGroup,
+    group: &mut PlaneGroup,
     table: &mut VertexTable,
     touching: &mut LinePoints,
 ) {
+    if edges.len() <= 3 {
+        return;
+    }
     let view = Projection::onto(&group.plane, table);
     let mut boxed: Vec<Boxed> = edges
         .iter()
-        .zip(&group.edges)
-        .map(|(edge, outline)| Boxed::new(edge, outline, &view))
+        .enumerate()
+        .map(|(number, edge)| Boxed::new(edge, number, &view))
         .collect();
     boxed.sort_by(|a, b| a.low[0].total_cmp(&b.low[0]));
-    let mut crossings = Vec::new();
+    let (mut touches, mut crossings) = (Vec::new(), Vec::new());
     for (i, a) in boxed.iter().enumerate() {
         let near = boxed[i + 1..].iter().take_while(|b| b.low[0] <= a.high[0]);
         for b in near.filter(|b| b.low[1] <= a.high[1] && a.low[1] <= b.high[1]) {
-            for (edge, line, point) in [
-                (a.edge, a.outline.line, b.edge.from),
-                (b.edge, b.outline.line, a.edge.from),
-            ] {
-                if view.is_between(edge.from, point, edge.to) {
-                    touching.entry(line).or_default().push(point);
+            for (near, point) in [(a, b.edge.from), (b, a.edge.from)] {
+                let between = || view.is_between(near.edge.from, point, near.edge.to);
+                if near.may_hold(view.approx(point)) && between() {
+                    touches.push((near.number, point));
                 }
             }
             if view.crosses([a.edge.from, a.edge.to], [b.edge.from, b.edge.to]) {
-                crossings.push((a.outline, b.outline));
+                crossings.push((a.number, b.number));
             }
         }
     }
     for (a, b) in crossings {
-        let cut = Arc::new(b.carrier.plane(&group.plane));
-        if let Some(vertex) = a.carrier.meet(&group.plane, &cut) {
+        let (first, second) = (&group.edges()[a].carrier, &group.edges()[b].carrier);
+        let cut = Arc::new(second.plane(&group.plane));
+        if let Some(vertex) = first.meet(&group.plane, &cut) {
             let point = table.number(&Arc::new(vertex));
-            touching.entry(a.line).or_default().push(point);
-            touching.entry(b.line).or_default().push(point);
+            touches.extend([(a, point), (b, point)]);
         }
+    }
+    for (edge, point) in touches {
+        touching.entry(group.lines()[edge]).or_default().push(point);
     }
 }
 
 impl<'a> Boxed<'a> {
     /// The box is widened by the rounding of its ends.
-    fn new(edge: &'a Edge, outline: &'a OutlineEdge, view: &Projection) -> Self {
+    fn new(edge: &'a Edge, number: usize, view: &Projection) -> Self {
         let (a, b) = (view.approx(edge.from), view.approx(edge.to));
         let slack = [0, 1].map(|i| (a[i].abs() + b[i].abs()) * 8.0 * f64::EPSILON);
         Self {
             edge,
-            outline,
+            number,
             low: [0, 1].map(|i| a[i].min(b[i]) - slack[i]),
             high: [0, 1].map(|i| a[i].max(b[i]) + slack[i]),
         }
+    }
+
+    /// Whether a point may lie on the edge; a rounded one that does lies in the box.
+    fn may_hold(&self, p: [f64; 2]) -> bool {
+        (0..2).all(|i| self.low[i] <= p[i] && p[i] <= self.high[i])
     }
 }
 
 /// The edges left after opposite ones with equal ends cancel, and all on lines with touching points.
 fn unpaired(
     edges: &[Edge],
-    line: &impl Fn(usize) -> LineKey,
+    line: &mut impl FnMut(usize) -> LineKey,
     touching: &LinePoints,
     table: &VertexTable,
 ) -> Vec<(LineKey, usize)> {

@@ -10,8 +10,8 @@ use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, REACH};
 use crate::geometry::edge::LatticeEdge;
-use crate::geometry::line::LineKey;
-use crate::geometry::outline::OutlineEdge;
+use crate::geometry::line::{LineKey, PlaneResidues};
+use crate::geometry::outline::{maximal, BareEdge, OutlineEdge};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
 use crate::geometry::vertex::{cross, Vertex};
@@ -192,7 +192,7 @@ impl Snapshot {
             slot: c.slot,
             face: c.face,
             flip: c.flip,
-            edges: c.edges.iter().map(EdgeData::of).collect(),
+            edges: c.outline.edges().iter().map(EdgeData::of).collect(),
         });
         Self {
             format: FORMAT,
@@ -332,7 +332,8 @@ impl Snapshot {
 
 /// Whether nothing but the border of the universe bounds a half-space's face.
 fn is_full_plane(cut: &CutFace) -> bool {
-    cut.edges.iter().all(|e| e.carrier.is_border())
+    let mut edges = cut.outline.edges().iter();
+    edges.all(|e| e.carrier.is_border())
 }
 
 impl WholeFaces {
@@ -429,7 +430,7 @@ impl PartData {
         if !is_balanced(&edges) {
             return Err(bad_snapshot());
         }
-        let part = Part::new(Arc::clone(source), self.face, home, edges);
+        let part = Part::new(Arc::clone(source), self.face, home, maximal(edges));
         Ok(PartElement {
             part: Arc::new(part),
             flip: self.flip,
@@ -438,7 +439,7 @@ impl PartData {
 }
 
 impl EdgeData {
-    fn of(edge: &OutlineEdge) -> Self {
+    fn of(edge: &BareEdge) -> Self {
         let carrier = match &edge.carrier {
             Carrier::Edge(edge) => {
                 let (a, b) = edge.ends();
@@ -459,7 +460,7 @@ impl EdgeData {
         if !carries(&carrier, support, &from, &to) {
             return Err(bad_snapshot());
         }
-        let line = LineKey::of(&carrier.line(support));
+        let line = LineKey::of(&carrier.line(&PlaneResidues::of(support)));
         Ok(OutlineEdge {
             from: Arc::new(from),
             to: Arc::new(to),

@@ -1,7 +1,6 @@
 //! Exact vertex identity: one number for each point, whatever it was made from.
 
 use std::cmp::Ordering;
-use std::collections::hash_map::Entry;
 use std::hash::BuildHasher;
 use std::sync::Arc;
 
@@ -16,6 +15,8 @@ use crate::geometry::vertex::Vertex;
 #[derive(Debug, Default)]
 pub struct VertexTable {
     points: Vec<Arc<Vertex>>,
+    /// The points in doubles, each coordinate within three units in the last place.
+    places: Vec<[f64; 3]>,
     /// By fingerprint the last point that has it.
     last: HashMap<u64, u32>,
     /// For each point the one before it that has the same fingerprint, or [`NONE`].
@@ -25,47 +26,63 @@ pub struct VertexTable {
 const NONE: u32 = u32::MAX;
 
 impl VertexTable {
-    /// The number of a point, found by fingerprint and confirmed exactly.
+    /// The number of a point, found by its place in doubles and confirmed exactly.
     pub fn number(&mut self, vertex: &Arc<Vertex>) -> u32 {
-        self.enter(vertex, || Arc::clone(vertex))
+        let place = vertex.approx();
+        self.find_at(vertex, &place).unwrap_or_else(|| {
+            let lattice = lattice_place(vertex, &place);
+            let lattice = lattice.map(|p| Arc::new(Vertex::lattice(p)));
+            self.add(lattice.unwrap_or_else(|| Arc::clone(vertex)))
+        })
     }
 
     /// The number of a lattice point.
     pub fn number_at(&mut self, place: Lattice) -> u32 {
-        self.enter(&Vertex::lattice(place), || Arc::new(Vertex::lattice(place)))
-    }
-
-    fn enter(&mut self, vertex: &Vertex, shared: impl FnOnce() -> Arc<Vertex>) -> u32 {
-        let next = self.points.len() as u32;
-        let (previous, points) = (&self.previous, &self.points);
-        match self.last.entry(fingerprint(vertex)) {
-            Entry::Vacant(entry) => {
-                entry.insert(next);
-                self.previous.push(NONE);
-            }
-            Entry::Occupied(mut entry) => {
-                let known = among(points, previous, *entry.get(), vertex);
-                if let Some(id) = known {
-                    return id;
-                }
-                self.previous.push(entry.insert(next));
-            }
-        }
-        let place = lattice_place(vertex);
-        let point = place.map_or_else(shared, |p| Arc::new(Vertex::lattice(p)));
-        self.points.push(point);
-        next
+        let vertex = Vertex::lattice(place);
+        let place = vertex.approx();
+        let known = self.find_at(&vertex, &place);
+        known.unwrap_or_else(|| self.add(Arc::new(vertex)))
     }
 
     /// The number of a point that is in the table.
     pub fn find(&self, vertex: &Vertex) -> Option<u32> {
-        let last = self.last.get(&fingerprint(vertex))?;
-        among(&self.points, &self.previous, *last, vertex)
+        self.find_at(vertex, &vertex.approx())
+    }
+
+    fn find_at(&self, vertex: &Vertex, place: &[f64; 3]) -> Option<u32> {
+        let [low, high] = [Blur::lowest(place), Blur::highest(place)];
+        if low == high {
+            return self.among(low.fingerprint(), vertex);
+        }
+        let corner = |i: usize| Blur::mixed(&low, &high, i);
+        (0..8).find_map(|i| self.among(corner(i).fingerprint(), vertex))
+    }
+
+    fn add(&mut self, vertex: Arc<Vertex>) -> u32 {
+        let place = vertex.approx();
+        let next = self.points.len() as u32;
+        let before = self.last.insert(Blur::of(&place).fingerprint(), next);
+        self.previous.push(before.unwrap_or(NONE));
+        self.points.push(vertex);
+        self.places.push(place);
+        next
+    }
+
+    /// The point that is this vertex, among those with one fingerprint.
+    fn among(&self, fingerprint: u64, vertex: &Vertex) -> Option<u32> {
+        let before = |id: &u32| Some(self.previous[*id as usize]).filter(|p| *p != NONE);
+        let last = self.last.get(&fingerprint).copied();
+        std::iter::successors(last, before).find(|id| self.point(*id).same(vertex))
     }
 
     /// The point with this number.
     pub fn point(&self, id: u32) -> &Arc<Vertex> {
         &self.points[id as usize]
+    }
+
+    /// The point with this number in doubles.
+    fn place(&self, id: u32) -> &[f64; 3] {
+        &self.places[id as usize]
     }
 
     /// Whether there are no points.
@@ -80,23 +97,69 @@ impl VertexTable {
 }
 
 /// The lattice point that a constructed one is, if it is: questions about these are cheap.
-fn lattice_place(vertex: &Vertex) -> Option<Lattice> {
+fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
     if vertex.as_lattice().is_some() {
         return None;
     }
-    let place = vertex.approx().map(|c| c.round() as i64);
-    (vertex.may_be(&place) && vertex.same(&Vertex::lattice(place))).then_some(place)
+    let nearest = place.map(|c| c.round() as i64);
+    let near = |i: usize| (place[i] - nearest[i] as f64).abs() <= place[i].abs() * NEAR;
+    ((0..3).all(near) && vertex.is_at(&nearest)).then_some(nearest)
 }
 
-/// A fingerprint that equal points share; unequal points differ but for chance 2^-64.
-fn fingerprint(vertex: &Vertex) -> u64 {
-    FxBuildHasher.hash_one(vertex.key())
+/// How far apart two doubles of one coordinate may be, relative to it: twice three units in the last
+/// place of 2^-52, and room for the rounding of the question.
+const NEAR: f64 = 8.0 * f64::EPSILON;
+
+/// A place in doubles with all but some forty leading bits rounded away.
+///
+/// The digits of a double above zero are ordered as it is, so that two doubles of one coordinate
+/// differ by less than [`Blur::DOUBT`] in them; nearly always they round alike.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Blur([u64; 3]);
+
+impl Blur {
+    /// How many bits are rounded away.
+    const BITS: u32 = 12;
+
+    /// Six units in the last place, twice that beside a power of two; the next power of two.
+    const DOUBT: u64 = 16;
+
+    const HALF: u64 = 1 << (Self::BITS - 1);
+
+    fn of(place: &[f64; 3]) -> Self {
+        Self(place.map(|c| digits(c) + Self::HALF >> Self::BITS))
+    }
+
+    /// Those of the smallest doubles in magnitude that may stand for the same point.
+    fn lowest(place: &[f64; 3]) -> Self {
+        Self(place.map(|c| digits(c) + Self::HALF - Self::DOUBT >> Self::BITS))
+    }
+
+    /// Those of the largest such doubles.
+    fn highest(place: &[f64; 3]) -> Self {
+        Self(place.map(|c| digits(c) + Self::HALF + Self::DOUBT >> Self::BITS))
+    }
+
+    /// Each coordinate from one of two, as the bits of a number tell.
+    fn mixed(low: &Self, high: &Self, bits: usize) -> Self {
+        let pick = |i: usize| {
+            if bits >> i & 1 == 0 {
+                low.0[i]
+            } else {
+                high.0[i]
+            }
+        };
+        Self([0, 1, 2].map(pick))
+    }
+
+    fn fingerprint(&self) -> u64 {
+        FxBuildHasher.hash_one(self)
+    }
 }
 
-/// The point that is this vertex, among those with one fingerprint.
-fn among(points: &[Arc<Vertex>], previous: &[u32], last: u32, vertex: &Vertex) -> Option<u32> {
-    let before = |id: &u32| Some(previous[*id as usize]).filter(|p| *p != NONE);
-    std::iter::successors(Some(last), before).find(|id| points[*id as usize].same(vertex))
+/// The bits of a finite double, zero without a sign.
+fn digits(c: f64) -> u64 {
+    (c + 0.0).to_bits()
 }
 
 /// The table's points as seen along the main axis of a plane's normal, from its plus side.
@@ -150,49 +213,58 @@ impl Planar for Projection<'_> {
         if a == b {
             return Ordering::Equal;
         }
-        let (p, q) = (self.table.point(a), self.table.point(b));
-        p.compare(q, self.u).then_with(|| p.compare(q, self.v))
+        let by = |axis| self.compare_by(a, b, axis);
+        by(self.u).then_with(|| by(self.v))
     }
 
     fn orient(&self, a: u32, b: u32, c: u32) -> i32 {
-        let points = [a, b, c].map(|id| &**self.table.point(id));
-        orient(points, self.u, self.v)
+        self.rough_orient([a, b, c])
+            .unwrap_or_else(|| self.exact_orient([a, b, c]))
     }
 
     fn approx(&self, a: u32) -> [f64; 2] {
-        let p = self.table.point(a).approx();
+        let p = self.table.place(a);
         [p[self.u], p[self.v]]
     }
 }
 
-/// Sign of the turn a → b → c in the (u, v) projection: +1 left, 0 straight, -1 right.
-fn orient(points: [&Vertex; 3], u: usize, v: usize) -> i32 {
-    if let [Some(a), Some(b), Some(c)] = points.map(Vertex::as_lattice) {
-        let d = |p: &[i64; 3], q: &[i64; 3], i: usize| i128::from(q[i] - p[i]);
-        let cross = d(a, b, u) * d(a, c, v) - d(a, b, v) * d(a, c, u);
-        return cross.signum() as i32;
+impl Projection<'_> {
+    fn compare_by(&self, a: u32, b: u32, axis: usize) -> Ordering {
+        let (p, q) = (self.table.place(a)[axis], self.table.place(b)[axis]);
+        if (p - q).abs() > (p.abs() + q.abs()) * NEAR {
+            return p.total_cmp(&q);
+        }
+        self.table.point(a).compare(self.table.point(b), axis)
     }
-    rough_orient(&points, u, v).unwrap_or_else(|| exact_orient(&points, u, v))
+
+    /// The sign of a turn where doubles decide it: coordinates are within three units in the last
+    /// place.
+    fn rough_orient(&self, points: [u32; 3]) -> Option<i32> {
+        let [a, b, c] = points.map(|p| self.approx(p));
+        let (bu, bv) = (b[0] - a[0], b[1] - a[1]);
+        let (cu, cv) = (c[0] - a[0], c[1] - a[1]);
+        let larger = |p: [f64; 2]| p[0].abs().max(p[1].abs());
+        let doubt = NEAR * larger(a).max(larger(b)).max(larger(c));
+        let size = bu.abs() + bv.abs() + cu.abs() + cv.abs();
+        let bound = 2.0 * doubt * (size + 2.0 * doubt)
+            + 4.0 * f64::EPSILON * (bu * cv).abs().max((bv * cu).abs());
+        let cross = bu * cv - bv * cu;
+        (cross.abs() > bound).then_some(if cross > 0.0 { 1 } else { -1 })
+    }
+
+    /// Sign of the turn a → b → c in the view: +1 left, 0 straight, -1 right.
+    fn exact_orient(&self, points: [u32; 3]) -> i32 {
+        let points = points.map(|id| &**self.table.point(id));
+        if let [Some(a), Some(b), Some(c)] = points.map(Vertex::as_lattice) {
+            let d = |p: &[i64; 3], q: &[i64; 3], i: usize| i128::from(q[i] - p[i]);
+            let cross = d(a, b, self.u) * d(a, c, self.v) - d(a, b, self.v) * d(a, c, self.u);
+            return cross.signum() as i32;
+        }
+        wide_orient(&points, self.u, self.v)
+    }
 }
 
-/// The sign where doubles decide it: coordinates are within two units in the last place.
-fn rough_orient(points: &[&Vertex; 3], u: usize, v: usize) -> Option<i32> {
-    let [a, b, c] = points.map(Vertex::approx);
-    let (bu, bv) = (b[u] - a[u], b[v] - a[v]);
-    let (cu, cv) = (c[u] - a[u], c[v] - a[v]);
-    let largest = [a, b, c]
-        .iter()
-        .map(|p| p[u].abs().max(p[v].abs()))
-        .fold(0.0, f64::max);
-    let doubt = 8.0 * f64::EPSILON * largest;
-    let size = bu.abs() + bv.abs() + cu.abs() + cv.abs();
-    let bound = 2.0 * doubt * (size + 2.0 * doubt)
-        + 4.0 * f64::EPSILON * (bu * cv).abs().max((bv * cu).abs());
-    let cross = bu * cv - bv * cu;
-    (cross.abs() > bound).then_some(if cross > 0.0 { 1 } else { -1 })
-}
-
-fn exact_orient(points: &[&Vertex; 3], u: usize, v: usize) -> i32 {
+fn wide_orient(points: &[&Vertex; 3], u: usize, v: usize) -> i32 {
     let [a, b, c] = points.map(Vertex::coordinates);
     let minor = |p: &Int<6>, q: &Int<6>, r: &Int<6>, s: &Int<6>| -> Int<12> {
         let left: Int<12> = p.mul(q);

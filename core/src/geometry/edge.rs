@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use super::plane::Lattice;
+use super::plane::{normal, Lattice, Plane};
 
 /// The corners of a face, in order.
 pub type Ring = SmallVec<[Lattice; 3]>;
@@ -51,6 +51,24 @@ impl LatticeEdge {
             let j = (i + 1) % 3;
             step(a, b, i) * step(c, d, j) == step(a, b, j) * step(c, d, i)
         })
+    }
+
+    /// Whether two edges have the same ends, in either order.
+    pub fn shares_ends(&self, other: &Self) -> bool {
+        let (ends, (a, b)) = (self.ends(), other.ends());
+        ends == (a, b) || ends == (b, a)
+    }
+
+    /// Whether both ends lie in a plane.
+    pub fn lies_in(&self, plane: &Plane) -> bool {
+        let (a, b) = self.ends();
+        plane.side_of_lattice(a) == 0 && plane.side_of_lattice(b) == 0
+    }
+
+    /// Whether a lattice point lies on the edge's line.
+    pub fn line_holds(&self, place: &Lattice) -> bool {
+        let (a, b) = self.ends();
+        normal(a, b, place) == [0; 3]
     }
 
     /// The same edge run backwards.

@@ -2,9 +2,9 @@
 
 use smallvec::SmallVec;
 
-use super::plane::{Lattice, Plane};
-use super::residue::residue;
-use crate::arith::{inv_mod, mul_mod, P1};
+use super::plane::{normal, Lattice, Plane};
+use super::residue::{mul_p1, reduce_p1, residue};
+use crate::arith::{inv_mod, P1};
 
 /// Plücker coordinates of a line up to scale, modulo a prime.
 ///
@@ -23,6 +23,39 @@ pub struct Line {
     moment: [u64; 3],
 }
 
+/// A plane's coefficients modulo the prime.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneResidues {
+    normal: [u64; 3],
+    offset: u64,
+}
+
+impl PlaneResidues {
+    /// Those of a multiple of the plane through three lattice points.
+    pub fn through([a, b, c]: &[Lattice; 3]) -> Self {
+        let lattice = |c: i64| residue(c.into());
+        let [x, y, z] = normal(a, b, c).map(residue);
+        let negative = [x, y, z].map(|r| sub(0, r));
+        let first = u128::from(negative[0]) * u128::from(lattice(a[0]));
+        let second = u128::from(negative[1]) * u128::from(lattice(a[1]));
+        let third = u128::from(negative[2]) * u128::from(lattice(a[2]));
+        Self {
+            normal: [x, y, z],
+            offset: reduce_p1(first + second + third),
+        }
+    }
+
+    /// Those of a plane.
+    pub fn of(plane: &Plane) -> Self {
+        let ([x, y, z], offset) = (plane.normal(), plane.offset());
+        let short = offset.to_i128().map(residue);
+        Self {
+            normal: [residue(*x), residue(*y), residue(*z)],
+            offset: short.unwrap_or_else(|| offset.rem_u61(P1)),
+        }
+    }
+}
+
 impl Line {
     /// The line through two lattice points.
     pub fn of_edge(a: &Lattice, b: &Lattice) -> Self {
@@ -36,13 +69,11 @@ impl Line {
     }
 
     /// The line in which two planes meet.
-    pub fn of_planes(a: &Plane, b: &Plane) -> Self {
-        let residues = |[x, y, z]: &[i128; 3]| [residue(*x), residue(*y), residue(*z)];
-        let (n, m) = (residues(a.normal()), residues(b.normal()));
-        let (d, e) = (a.offset().rem_u61(P1), b.offset().rem_u61(P1));
-        let moment = |i: usize| sub(mul_mod(d, m[i], P1), mul_mod(e, n[i], P1));
+    pub fn of_planes(a: &PlaneResidues, b: &PlaneResidues) -> Self {
+        let (n, m) = (&a.normal, &b.normal);
+        let moment = |i: usize| minor(a.offset, m[i], b.offset, n[i]);
         Self {
-            direction: cross(&n, &m),
+            direction: cross(n, m),
             moment: [moment(0), moment(1), moment(2)],
         }
     }
@@ -56,7 +87,7 @@ impl Line {
     /// The key, for the inverse of the lead.
     fn scaled(&self, scale: u64) -> LineKey {
         let ([u, v, w], [x, y, z]) = (self.direction, self.moment);
-        let scaled = |c| mul_mod(c, scale, P1);
+        let scaled = |c| mul_p1(c, scale);
         LineKey([
             scaled(u),
             scaled(v),
@@ -76,7 +107,10 @@ impl LineKey {
 
     /// The line in which two planes meet.
     pub fn of_planes(a: &Plane, b: &Plane) -> Self {
-        Self::of(&Line::of_planes(a, b))
+        Self::of(&Line::of_planes(
+            &PlaneResidues::of(a),
+            &PlaneResidues::of(b),
+        ))
     }
 
     /// The key of a line.
@@ -90,18 +124,31 @@ impl LineKey {
         let before: SmallVec<[(Line, u64); 8]> = lines
             .map(|line| {
                 let so_far = product;
-                product = mul_mod(product, line.lead(), P1);
+                product = mul_p1(product, line.lead());
                 (line, so_far)
             })
             .collect();
         let mut inverse = inv_mod(product, P1);
         let mut keys: SmallVec<[Self; 8]> = SmallVec::with_capacity(before.len());
         for (line, so_far) in before.iter().rev() {
-            keys.push(line.scaled(mul_mod(inverse, *so_far, P1)));
-            inverse = mul_mod(inverse, line.lead(), P1);
+            keys.push(line.scaled(mul_p1(inverse, *so_far)));
+            inverse = mul_p1(inverse, line.lead());
         }
         keys.reverse();
         keys
+    }
+
+    /// A number that equal keys share and most others do not, to sort by.
+    pub fn mixed(&self) -> u64 {
+        // Odd constants of SplitMix (Steele, Lea, Flood 2014) keep small coordinates apart.
+        let [_, v, w, x, y, z] = self.0;
+        let first = v.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(x);
+        let second = w.wrapping_mul(0xbf58_476d_1ce4_e5b9).wrapping_add(y);
+        let third = first.wrapping_add(second.rotate_left(32));
+        third
+            .wrapping_mul(0x94d0_49bb_1331_11eb)
+            .wrapping_add(z)
+            .wrapping_mul(0x9e37_79b9_7f4a_7c15)
     }
 
     /// The first axis the line is not perpendicular to: points on it are ordered by this coordinate.
@@ -118,7 +165,14 @@ fn sub(a: u64, b: u64) -> u64 {
     }
 }
 
+/// The difference a·d − c·b of residues, reduced once.
+fn minor(a: u64, d: u64, c: u64, b: u64) -> u64 {
+    // Residues are below P1, so that their products are below its square and nothing overflows.
+    const SQUARE: u128 = P1 as u128 * P1 as u128;
+    reduce_p1(u128::from(a) * u128::from(d) + (SQUARE - u128::from(c) * u128::from(b)))
+}
+
 fn cross(a: &[u64; 3], b: &[u64; 3]) -> [u64; 3] {
-    let term = |i: usize, j: usize| sub(mul_mod(a[i], b[j], P1), mul_mod(a[j], b[i], P1));
+    let term = |i: usize, j: usize| minor(a[i], b[j], a[j], b[i]);
     [term(1, 2), term(2, 0), term(0, 1)]
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use super::line::LineKey;
+use super::line::{LineKey, PlaneResidues};
 use super::plane::Plane;
 use super::polygon::{Carrier, Corner, Polygon, PolygonSplit};
 use super::vertex::Vertex;
@@ -59,7 +59,7 @@ impl OutlineEdge {
     /// The edges of a polygon.
     pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
         let carriers = polygon.edges().map(|(_, _, carrier)| carrier);
-        let lines = lines(carriers, polygon.support());
+        let lines = lines(carriers, &PlaneResidues::of(polygon.support()));
         let bare = polygon.edges().map(|(from, to, carrier)| BareEdge {
             from: Arc::clone(from),
             to: Arc::clone(to),
@@ -69,7 +69,7 @@ impl OutlineEdge {
     }
 
     /// Edges in a plane with the keys of their lines.
-    pub fn keyed(edges: &[BareEdge], support: &Plane) -> Vec<Self> {
+    pub fn keyed(edges: &[BareEdge], support: &PlaneResidues) -> Vec<Self> {
         let lines = lines(edges.iter().map(|e| &e.carrier), support);
         let bare = edges.iter().cloned();
         bare.zip(lines)
@@ -92,9 +92,65 @@ impl OutlineEdge {
     }
 }
 
+/// A maximal outline, in the order that [`cancel`] gives, and the keys of its lines once asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Outline {
+    edges: Vec<BareEdge>,
+    /// As many as there are edges, or none if nobody has asked.
+    lines: Vec<LineKey>,
+}
+
+impl Outline {
+    /// An outline that is maximal and in order.
+    pub fn of_bare(edges: &[BareEdge]) -> Self {
+        Self {
+            edges: edges.to_vec(),
+            lines: Vec::new(),
+        }
+    }
+
+    /// What remains of some edges.
+    pub fn of(edges: Vec<OutlineEdge>) -> Self {
+        let edges = maximal(edges);
+        let lines = edges.iter().map(|e| e.line).collect();
+        let edges = edges.into_iter().map(BareEdge::from).collect();
+        Self { edges, lines }
+    }
+
+    /// The edges.
+    pub fn edges(&self) -> &[BareEdge] {
+        &self.edges
+    }
+
+    /// The keys of the edges' lines in a plane.
+    pub fn lines(&mut self, plane: &PlaneResidues) -> &[LineKey] {
+        if self.lines.is_empty() {
+            let carriers = self.edges.iter().map(|e| &e.carrier);
+            self.lines = lines(carriers, plane).into_vec();
+        }
+        &self.lines
+    }
+
+    /// The edges with the keys of their lines in a plane.
+    pub fn keyed(mut self, plane: &PlaneResidues) -> Vec<OutlineEdge> {
+        self.lines(plane);
+        let keyed = self.edges.into_iter().zip(self.lines);
+        keyed.map(|(edge, line)| edge.keyed(line)).collect()
+    }
+
+    /// The outline of the same region seen from the other side.
+    #[must_use]
+    pub fn flipped(mut self) -> Self {
+        for edge in &mut self.edges {
+            std::mem::swap(&mut edge.from, &mut edge.to);
+        }
+        self
+    }
+}
+
 fn lines<'a>(
     carriers: impl Iterator<Item = &'a Carrier>,
-    support: &Plane,
+    support: &PlaneResidues,
 ) -> SmallVec<[LineKey; 8]> {
     LineKey::of_all(carriers.map(|carrier| carrier.line(support)))
 }
@@ -104,8 +160,18 @@ pub fn order_along(a: &Arc<Vertex>, b: &Arc<Vertex>, axis: usize) -> Ordering {
     if Arc::ptr_eq(a, b) {
         Ordering::Equal
     } else {
-        a.compare(b, axis)
+        a.compare_along(b, axis)
     }
+}
+
+/// The edges that remain when opposite ones cancel, as [`cancel`] has them, in no more memory.
+pub fn maximal(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
+    if edges.is_sorted_by(|a, b| a.line < b.line) {
+        return edges;
+    }
+    let mut kept = cancel(edges);
+    kept.shrink_to_fit();
+    kept
 }
 
 /// Cancels opposite edges and joins what remains into maximal edges, line by line.
@@ -113,15 +179,43 @@ pub fn order_along(a: &Arc<Vertex>, b: &Arc<Vertex>, axis: usize) -> Ordering {
 /// # Order
 /// By line key, then along the line.
 pub fn cancel(mut edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
-    edges.sort_by_key(|e| e.line);
-    let mut kept = Vec::with_capacity(edges.len());
-    for run in edges.chunk_by(|a, b| a.line == b.line) {
+    let order = by_line(&edges);
+    let mut alone: SmallVec<[bool; 64]> = SmallVec::from_elem(false, edges.len());
+    let mut joined = Vec::new();
+    let line = |place: &Place| &edges[place.edge as usize].line;
+    for run in order.chunk_by(|a, b| a.mixed == b.mixed && line(a) == line(b)) {
         match run {
-            [single] => kept.push(single.clone()),
-            _ => cancel_line(run, &mut kept),
+            [single] => alone[single.edge as usize] = true,
+            _ => cancel_line(&edges, run, &mut joined),
         }
     }
-    kept
+    let mut alone = alone.iter();
+    edges.retain(|_| alone.next().is_some_and(|a| *a));
+    edges.append(&mut joined);
+    edges.sort_by(|a, b| a.line.cmp(&b.line));
+    edges
+}
+
+/// An edge in the order of lines.
+struct Place {
+    /// Of the line's key, told apart faster than the key.
+    mixed: u64,
+    edge: u32,
+}
+
+/// The edges of each line in one run, in their own order.
+fn by_line(edges: &[OutlineEdge]) -> SmallVec<[Place; 32]> {
+    let places = (0..).zip(edges).map(|(edge, e)| Place {
+        mixed: e.line.mixed(),
+        edge,
+    });
+    let mut order: SmallVec<[Place; 32]> = places.collect();
+    order.sort_unstable_by(|a, b| {
+        let line = |place: &Place| &edges[place.edge as usize].line;
+        let by_key = || line(a).cmp(line(b)).then(a.edge.cmp(&b.edge));
+        a.mixed.cmp(&b.mixed).then_with(by_key)
+    });
+    order
 }
 
 struct Event<'a> {
@@ -129,10 +223,17 @@ struct Event<'a> {
     change: i32,
 }
 
-fn cancel_line(run: &[OutlineEdge], kept: &mut Vec<OutlineEdge>) {
+/// Keeps what remains of the edges of one line.
+fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>) {
+    let run: SmallVec<[&OutlineEdge; 16]> = run.iter().map(|p| &edges[p.edge as usize]).collect();
     let axis = run[0].line.axis();
-    let mut events = Vec::with_capacity(2 * run.len());
-    for edge in run {
+    if let [a, b] = run[..] {
+        if is_opposite(a, b, axis) {
+            return;
+        }
+    }
+    let mut events: SmallVec<[Event; 32]> = SmallVec::with_capacity(2 * run.len());
+    for edge in &run {
         events.push(Event {
             at: &edge.from,
             change: 1,
@@ -149,7 +250,7 @@ fn cancel_line(run: &[OutlineEdge], kept: &mut Vec<OutlineEdge>) {
         let next = sum + group.iter().map(|e| e.change).sum::<i32>();
         if next != sum {
             if let (Some(from), true) = (start, sum != 0) {
-                emit(run, sum, from, group[0].at, kept);
+                emit(&run, sum, from, group[0].at, kept);
             }
             start = Some(group[0].at);
             sum = next;
@@ -157,9 +258,15 @@ fn cancel_line(run: &[OutlineEdge], kept: &mut Vec<OutlineEdge>) {
     }
 }
 
+/// Whether one edge of a line is another run backwards.
+fn is_opposite(a: &OutlineEdge, b: &OutlineEdge, axis: usize) -> bool {
+    let same = |p, q| order_along(p, q, axis) == Ordering::Equal;
+    same(&a.from, &b.to) && same(&a.to, &b.from)
+}
+
 /// Emits the maximal edge between two points with the run's net multiplicity.
 fn emit(
-    run: &[OutlineEdge],
+    run: &[&OutlineEdge],
     sum: i32,
     low: &Arc<Vertex>,
     high: &Arc<Vertex>,

@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 
 use super::cell::Cell;
 use super::edge::{LatticeEdge, Ring};
-use super::line::Line;
+use super::line::{Line, PlaneResidues};
 use super::plane::{Lattice, Plane};
 use super::vertex::Vertex;
 
@@ -65,13 +65,13 @@ impl Carrier {
     }
 
     /// The line this carrier and the support have in common.
-    pub fn line(&self, support: &Plane) -> Line {
+    pub fn line(&self, support: &PlaneResidues) -> Line {
         match self {
             Self::Edge(edge) => {
                 let (a, b) = edge.ends();
                 Line::of_edge(a, b)
             }
-            Self::Cut(plane, _) => Line::of_planes(support, plane),
+            Self::Cut(plane, _) => Line::of_planes(support, &PlaneResidues::of(plane)),
         }
     }
 

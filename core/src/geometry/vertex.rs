@@ -122,7 +122,7 @@ impl Vertex {
             Place::Lattice(p) => plane.side_of_lattice(p),
             _ => match self.filtered_side(plane) {
                 Some(side) => side,
-                None if self.is_made_in(plane) => 0,
+                None if self.is_known_in(plane) => 0,
                 None => self.exact().side_of(plane),
             },
         }
@@ -147,11 +147,13 @@ impl Vertex {
         (value.abs() > doubt).then_some(if value > 0.0 { 1 } else { -1 })
     }
 
-    /// Whether the point was constructed in this very plane.
-    fn is_made_in(&self, plane: &Plane) -> bool {
-        let is_it = |own: &Arc<Plane>| std::ptr::eq(Arc::as_ptr(own), plane);
+    /// Whether the point lies in a plane by what it was constructed from; errs on no.
+    fn is_known_in(&self, plane: &Plane) -> bool {
+        let is_it = |own: &Arc<Plane>| {
+            std::ptr::eq(Arc::as_ptr(own), plane) || own.coincides(plane).is_some()
+        };
         match &self.place {
-            Place::OnEdge(_, cut) => is_it(cut),
+            Place::OnEdge(edge, cut) => is_it(cut) || edge.lies_in(plane),
             Place::Meet(planes) => planes.iter().any(is_it),
             _ => false,
         }
@@ -171,6 +173,20 @@ impl Vertex {
         self.exact().compare(&other.exact(), axis)
     }
 
+    /// Order of two points of one line by a coordinate that changes along it.
+    pub fn compare_along(&self, other: &Self, axis: usize) -> Ordering {
+        if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
+            return p[axis].cmp(&q[axis]);
+        }
+        if let Some(order) = self.near_order(other, axis) {
+            return order;
+        }
+        if self.same(other) {
+            return Ordering::Equal;
+        }
+        self.compare(other, axis)
+    }
+
     /// The order by one coordinate where doubles tell it.
     fn near_order(&self, other: &Self, axis: usize) -> Option<Ordering> {
         let left = self.approx[axis] * other.approx[3];
@@ -180,6 +196,9 @@ impl Vertex {
     }
 
     /// Whether two vertices are the same point.
+    ///
+    /// What a point was constructed from meets nowhere else, so that another point that lies in all
+    /// of that is the same.
     pub fn same(&self, other: &Self) -> bool {
         if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
             return p == q;
@@ -187,8 +206,35 @@ impl Vertex {
         if (0..3).any(|axis| self.near_order(other, axis).is_some()) {
             return false;
         }
+        match (&self.place, &other.place) {
+            (Place::Lattice(p), _) => other.is_at(p),
+            (_, Place::Lattice(p)) => self.is_at(p),
+            (Place::OnEdge(edge, cut), Place::OnEdge(same, _)) if edge.shares_ends(same) => {
+                other.side_of(cut) == 0
+            }
+            (Place::Meet(planes), _) => planes.iter().all(|plane| other.side_of(plane) == 0),
+            (_, Place::Meet(planes)) => planes.iter().all(|plane| self.side_of(plane) == 0),
+            _ => self.has_coordinates_of(other),
+        }
+    }
+
+    fn has_coordinates_of(&self, other: &Self) -> bool {
+        let doubled = |axis: usize| self.doubled(axis).zip(other.doubled(axis));
+        if let [Some(x), Some(y), Some(z)] = [0, 1, 2].map(doubled) {
+            return [x, y, z].iter().all(|(p, q)| p == q);
+        }
         let (p, q) = (self.exact(), other.exact());
         (0..3).all(|axis| p.compare(&q, axis) == Ordering::Equal)
+    }
+
+    /// Whether this is a lattice point.
+    pub fn is_at(&self, place: &Lattice) -> bool {
+        match &self.place {
+            Place::Lattice(p) => p == place,
+            Place::OnEdge(edge, cut) => edge.line_holds(place) && cut.side_of_lattice(place) == 0,
+            Place::Meet(planes) => planes.iter().all(|p| p.side_of_lattice(place) == 0),
+            Place::Given(_) => self.has_coordinates_of(&Self::lattice(*place)),
+        }
     }
 
     /// Twice a coordinate, where the point was constructed with one on the lattice or halfway.

@@ -8,6 +8,7 @@ use super::grid::Pitch;
 use super::joints::Joints;
 use super::topology::Topology;
 use crate::geometry::cell::Cell;
+use crate::geometry::line::PlaneResidues;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Polygon;
 
@@ -144,6 +145,14 @@ impl Source {
                 Arc::new(plane.expect("faces without area were left out at import"))
             }
             Shape::HalfSpace(plane) => Arc::clone(plane),
+        }
+    }
+
+    /// The coefficients of a face's plane up to a common factor, for the keys of lines in it.
+    pub fn plane_residues(&self, face: u32) -> PlaneResidues {
+        match &self.shape {
+            Shape::Mesh(mesh) => PlaneResidues::through(&mesh.corners(face)),
+            Shape::HalfSpace(plane) => PlaneResidues::of(plane),
         }
     }
 

@@ -183,7 +183,7 @@ pub struct Part {
     pub face: u32,
     /// The cell the outline describes.
     pub home: Cell,
-    /// The outline, counterclockwise on the face.
+    /// The outline, counterclockwise on the face: maximal edges, in the order that `cancel` gives.
     pub edges: Box<[BareEdge]>,
     /// The flux through the part, once somebody has asked.
     pub flux: OnceLock<Flux>,
@@ -191,6 +191,8 @@ pub struct Part {
 
 impl Part {
     /// The part of a face that an outline bounds in a cell.
+    ///
+    /// The edges must be maximal, and in the order that `cancel` gives.
     pub fn new(source: Arc<Source>, face: u32, home: Cell, edges: Vec<OutlineEdge>) -> Self {
         let edges = edges.into_iter().map(BareEdge::from).collect();
         Self::of_edges(source, face, home, edges)
@@ -209,7 +211,7 @@ impl Part {
 
     /// The outline with the keys of its lines.
     pub fn outline(&self) -> Vec<OutlineEdge> {
-        let support = self.source.plane(self.face);
+        let support = self.source.plane_residues(self.face);
         OutlineEdge::keyed(&self.edges, &support)
     }
 

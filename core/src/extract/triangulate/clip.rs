@@ -1,16 +1,21 @@
 //! Ear clipping of one short loop.
 
+use smallvec::SmallVec;
+
 use super::{Error, Planar};
 
 /// Loops up to this length are clipped; the sweep wins on longer ones.
 const SHORT: usize = 8;
 
+/// The vertices of a short loop.
+pub(super) type Loop = SmallVec<[u32; SHORT]>;
+
 /// The vertices of `edges` in order, if the edges are one short loop that visits no vertex twice.
-pub(super) fn small_loop(edges: &[(u32, u32)]) -> Option<Vec<u32>> {
+pub(super) fn small_loop(edges: &[(u32, u32)]) -> Option<Loop> {
     if !(3..=SHORT).contains(&edges.len()) {
         return None;
     }
-    let mut corners = Vec::with_capacity(edges.len());
+    let mut corners = Loop::new();
     let (first, mut reached) = edges[0];
     corners.push(first);
     while reached != first {
@@ -27,10 +32,7 @@ pub(super) fn small_loop(edges: &[(u32, u32)]) -> Option<Vec<u32>> {
 ///
 /// An ear is a strictly convex corner whose closed triangle holds no further corner. The closed triangle
 /// keeps the diagonals off the vertices on straight runs, so what remains is a simple loop again.
-pub(super) fn clip_ears<P: Planar>(
-    points: &P,
-    mut corners: Vec<u32>,
-) -> Result<Vec<[u32; 3]>, Error> {
+pub(super) fn clip_ears<P: Planar>(points: &P, mut corners: Loop) -> Result<Vec<[u32; 3]>, Error> {
     if let [a, b, c] = corners[..] {
         let is_left = points.orient(a, b, c) > 0;
         return is_left
@@ -38,7 +40,7 @@ pub(super) fn clip_ears<P: Planar>(
             .ok_or(Error::Crossing { vertex: a });
     }
     let mut triangles = Vec::with_capacity(corners.len() - 2);
-    let mut turns: Vec<i32> = (0..corners.len())
+    let mut turns: SmallVec<[i32; SHORT]> = (0..corners.len())
         .map(|k| turn(points, &corners, k))
         .collect();
     while corners.len() > 3 {

@@ -22,6 +22,38 @@ struct Mates {
     mates: Vec<usize>,
 }
 
+/// A half-edge in one number, to be sorted: its edge, its direction, its number.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Half(u128);
+
+impl Half {
+    /// The bit of the direction; the number is below it.
+    const FORWARD: u128 = 1 << 63;
+
+    fn new(a: u32, b: u32, number: usize) -> Self {
+        let edge = u128::from(a.min(b)) << 96 | u128::from(a.max(b)) << 64;
+        let forward = if a < b { Self::FORWARD } else { 0 };
+        Self(edge | forward | (number as u128 & (Self::FORWARD - 1)))
+    }
+
+    fn edge(self) -> u64 {
+        (self.0 >> 64) as u64
+    }
+
+    fn is_forward(self) -> bool {
+        self.0 & Self::FORWARD != 0
+    }
+
+    fn number(self) -> usize {
+        let number = self.0 & (Self::FORWARD - 1);
+        if number == Self::FORWARD - 1 {
+            NONE
+        } else {
+            number as usize
+        }
+    }
+}
+
 /// Flips edges inside strictly convex quadrilaterals while that widens the narrowest angle.
 ///
 /// # Errors
@@ -31,7 +63,25 @@ pub(super) fn improve<P: Planar>(
     triangles: Vec<[u32; 3]>,
     boundary: &[(u32, u32)],
 ) -> Result<Vec<[u32; 3]>, Error> {
-    let mut mesh = Mates::new(triangles, boundary)?;
+    Ok(flipped(points, Mates::new(triangles, boundary)?))
+}
+
+/// The same for the few ears of one loop, which need no check: no diagonal is cut off twice.
+pub(super) fn improve_ears<P: Planar>(points: &P, ears: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
+    if ears.len() == 1 {
+        return ears;
+    }
+    let mut mesh = Mates::of_ears(ears);
+    if mesh.triangles.len() > 2 {
+        return flipped(points, mesh);
+    }
+    if let Some(half) = (0..3).find(|h| mesh.should_flip(points, *h)) {
+        mesh.flip(half);
+    }
+    mesh.triangles
+}
+
+fn flipped<P: Planar>(points: &P, mut mesh: Mates) -> Vec<[u32; 3]> {
     let mut budget = FLIPS_PER_TRIANGLE * mesh.triangles.len();
     // First in, first out spreads a budget that runs out over the whole region.
     let mut pending: VecDeque<usize> = (0..mesh.mates.len())
@@ -43,7 +93,7 @@ pub(super) fn improve<P: Planar>(
             pending.extend(mesh.flip(half));
         }
     }
-    Ok(mesh.triangles)
+    mesh.triangles
 }
 
 impl Mates {
@@ -53,15 +103,17 @@ impl Mates {
             triangles,
             mates: vec![NONE; count],
         };
-        let undirected = |a: u32, b: u32, half: usize| (a.min(b), a.max(b), a < b, half);
-        let mut halves: Vec<(u32, u32, bool, usize)> = Vec::with_capacity(count + boundary.len());
-        halves.extend((0..count).map(|half| undirected(mesh.origin(half), mesh.head(half), half)));
+        let mut halves: Vec<Half> = Vec::with_capacity(count + boundary.len());
+        let inner = (0..count).map(|h| Half::new(mesh.origin(h), mesh.head(h), h));
+        halves.extend(inner);
         // A boundary edge stands for the missing half-edge on its other side.
-        halves.extend(boundary.iter().map(|&(a, b)| undirected(b, a, NONE)));
+        halves.extend(boundary.iter().map(|&(a, b)| Half::new(b, a, NONE)));
         halves.sort_unstable();
-        for pair in halves.chunk_by(|p, q| (p.0, p.1) == (q.0, q.1)) {
-            let &[(vertex, _, false, g), (_, _, true, h)] = pair else {
-                return Err(Error::Crossing { vertex: pair[0].0 });
+        for pair in halves.chunk_by(|p, q| p.edge() == q.edge()) {
+            let vertex = (pair[0].edge() >> 32) as u32;
+            let (g, h) = match pair {
+                [g, h] if !g.is_forward() && h.is_forward() => (g.number(), h.number()),
+                _ => return Err(Error::Crossing { vertex }),
             };
             match (g, h) {
                 (NONE, NONE) => return Err(Error::Overlap { vertex }),
@@ -70,6 +122,26 @@ impl Mates {
             }
         }
         Ok(mesh)
+    }
+
+    /// The mates found by comparing all half-edges, as is fastest for a few.
+    fn of_ears(triangles: Vec<[u32; 3]>) -> Self {
+        let count = 3 * triangles.len();
+        let mut mesh = Self {
+            triangles,
+            mates: vec![NONE; count],
+        };
+        for h in 3..count {
+            let (a, b) = (mesh.origin(h), mesh.head(h));
+            let before = 0..h - h % 3;
+            if let Some(g) = before
+                .rev()
+                .find(|g| mesh.origin(*g) == b && mesh.head(*g) == a)
+            {
+                mesh.pair(g, h);
+            }
+        }
+        mesh
     }
 
     fn pair(&mut self, g: usize, h: usize) {

@@ -92,11 +92,7 @@ impl std::error::Error for Error {}
 pub fn triangulate<P: Planar>(points: &P, edges: &[(u32, u32)]) -> Result<Vec<[u32; 3]>, Error> {
     if let Some(corners) = clip::small_loop(edges) {
         let triangles = clip::clip_ears(points, corners)?;
-        return if triangles.len() == 1 {
-            Ok(triangles)
-        } else {
-            flip::improve(points, triangles, edges)
-        };
+        return Ok(flip::improve_ears(points, triangles));
     }
     triangulate_by_sweep(points, edges)
 }
