@@ -75,7 +75,10 @@ impl Kept {
             edges.extend(OutlineEdge::all_of(polygon));
         }
         if let What::Pieces(_, bare) | What::Outline(bare) = &self.what {
-            edges.extend(OutlineEdge::keyed(bare, &source.plane_residues(self.face.1)));
+            edges.extend(OutlineEdge::keyed(
+                bare,
+                &source.plane_residues(self.face.1),
+            ));
         }
         edges
     }

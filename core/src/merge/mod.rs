@@ -18,6 +18,7 @@ pub mod merge_trees;
 pub mod op;
 mod orthogonal;
 mod overlay;
+mod pairs;
 pub mod partition_tree;
 pub mod separation;
 pub mod simple;
@@ -25,7 +26,6 @@ pub mod split_tree;
 mod star;
 mod state;
 mod stays;
-mod sweep;
 mod window;
 
 pub use merge_trees::merge;

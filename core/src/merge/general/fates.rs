@@ -5,7 +5,7 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use super::super::cutting::{contact, cut_up, Contact, Cutter, Cutting};
-use super::super::sweep::{pairs, shift_of, Boxed};
+use super::super::pairs::{pairs, shift_of, Boxed};
 use super::anchors::Anchor;
 use super::points::Points;
 use super::scene::{Element, Place, Scene};

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::super::cutting::Face;
 use super::super::list::{List, Record, Sources};
-use super::super::sweep::Swept;
+use super::super::pairs::Swept;
 use super::anchors::Name;
 use super::Labels;
 use crate::geometry::cell::Cell;

@@ -1,40 +1,15 @@
-//! Pairs of elements of different operands that may meet, by a sweep along a line.
+//! Pairs of elements whose extents overlap, found by sweeps along lines.
 //!
-//! The line is a coordinate axis, or one across the direction in which most elements are long:
+//! A line is a coordinate axis, or one along or across the direction in which most elements are long:
 //! needles overlap in every box, but hardly in a projection across them. In the plane of the two best
 //! lines also the edges of triangles tell them from boxes.
 
-mod boxes;
-mod line;
-mod rim;
-
-use std::cell::RefCell;
-
-use crate::geometry::plane::Lattice;
-pub use boxes::{shift_of, Boxed};
-use line::{dot, longest_edge, Line, Span};
-use rim::{largest_coordinate, rims, HalfPlane};
-
-/// An element as the sweep sees it: its operand, its box, and corners whose convex hull holds it.
-///
-/// Elements of one operand follow each other.
-#[derive(Clone, Debug)]
-pub struct Swept {
-    /// The operand.
-    pub operand: usize,
-    /// The lowest coordinates inside the cell, relative to its low corner.
-    pub low: Lattice,
-    /// The highest coordinates inside the cell, relative to its low corner.
-    pub high: Lattice,
-    /// Three corners of a triangle, relative to the same; nothing if only the box is known.
-    pub corners: Option<[[f64; 3]; 3]>,
-}
-
-/// Projections are widened by this share of the largest coordinate, far above their rounding.
-const SLACK: f64 = 1e-14;
+use super::line::{dot, longest_edge, Line, Span};
+use super::rim::{largest_coordinate, rims, HalfPlane};
+use super::Swept;
 
 /// Among fewer elements than this other lines than the axes are not worth finding.
-const MANY: usize = 512;
+pub const MANY: usize = 512;
 
 /// A sweep that compares more pairs, at about a nanosecond each, costs more than halving the cell.
 const CROWDED: f64 = 3e8;
@@ -44,28 +19,7 @@ const PARALLEL: f64 = 0.8;
 
 /// Calls `meet` for all pairs of different operands whose extents overlap along every line, the
 /// lower index first; gives up with `None` where too many elements lie above each other on each.
-///
-/// Elements of one operand follow each other; `swept` gives the element with a number.
-pub fn pairs(
-    elements: Vec<Boxed>,
-    swept: impl Fn(u32) -> Swept,
-    meet: impl FnMut(u32, u32),
-) -> Option<()> {
-    let meet = RefCell::new(meet);
-    let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
-    boxes::pairs(elements, found, |crowd, space| {
-        let some: Vec<Swept> = crowd.iter().map(|e| swept(e.number)).collect();
-        sweep(&some, |i, j| {
-            let (a, b) = (&crowd[i], &crowd[j]);
-            if space.owns(a, b) {
-                found(a.number, b.number);
-            }
-        })
-    })
-}
-
-/// The same, by sweeps along lines.
-fn sweep(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<()> {
+pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<()> {
     let sweeps: Vec<Sweep> = parties(elements)
         .into_iter()
         .map(|numbers| Sweep::of(elements, &numbers))
@@ -211,88 +165,5 @@ impl Swath {
         !beyond(self, a, other, b)
             && !beyond(other, b, self, a)
             && self.others.iter().zip(&other.others).all(overlap)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::geometry::apart::pierces;
-
-    const REACH: i64 = 2000;
-
-    /// A triangle along a direction, within a few steps beside it.
-    fn needle(along: Lattice) -> impl Strategy<Value = [Lattice; 3]> {
-        let near = || [-99..=99i64, -99..=99i64, -99..=99i64];
-        (near(), near(), near(), 0..=9i64).prop_map(move |(a, b, c, length)| {
-            let far = [0, 1, 2].map(|i| b[i] + length * along[i]);
-            [a, far, c]
-        })
-    }
-
-    fn swept(operand: usize, corners: &[Lattice; 3]) -> Swept {
-        let end = |i: usize, most: fn(i64, i64) -> i64| {
-            corners.iter().map(|p| p[i]).reduce(most).unwrap_or(0)
-        };
-        Swept {
-            operand,
-            low: [0, 1, 2].map(|i| end(i, i64::min).max(-REACH)),
-            high: [0, 1, 2].map(|i| end(i, i64::max).min(REACH)),
-            corners: Some(corners.map(|p| p.map(|x| x as f64))),
-        }
-    }
-
-    fn scene(operands: usize) -> impl Strategy<Value = Vec<(usize, [Lattice; 3])>> {
-        let direction = || [-200..=200i64, -200..=200i64, -200..=200i64];
-        let all = move |(a, b)| {
-            let one = prop_oneof![needle(a), needle(b)].boxed();
-            let sizes = prop_oneof![20..99usize, 99..MANY, MANY..MANY + 90];
-            let some = move |size| proptest::collection::vec((0..operands, one.clone()), size);
-            sizes.prop_flat_map(some)
-        };
-        let sorted = |mut scene: Vec<(usize, [Lattice; 3])>| {
-            scene.sort_by_key(|e| e.0);
-            scene
-        };
-        (direction(), direction())
-            .prop_flat_map(all)
-            .prop_map(sorted)
-    }
-
-    fn misses_nothing(scene: &[(usize, [Lattice; 3])]) -> bool {
-        let elements: Vec<Swept> = scene.iter().map(|(k, t)| swept(*k, t)).collect();
-        let mut found = std::collections::HashSet::new();
-        let boxed = |(k, e): (u32, &Swept)| Boxed::new(e.operand, k, [&e.low, &e.high], 0);
-        let boxes = (0..).zip(&elements).map(boxed).collect();
-        let done = pairs(
-            boxes,
-            |k| elements[k as usize].clone(),
-            |i, j| {
-                found.insert((i as usize, j as usize));
-            },
-        );
-        let meet = |i: usize, j: usize| {
-            let (a, b) = (&scene[i], &scene[j]);
-            a.0 != b.0 && (pierces(&a.1, &b.1) || pierces(&b.1, &a.1))
-        };
-        let rows = 0..scene.len();
-        let mut all = rows.flat_map(|i| (i + 1..scene.len()).map(move |j| (i, j)));
-        done.is_some() && all.all(|(i, j)| found.contains(&(i, j)) || !meet(i, j))
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(40))]
-
-        #[test]
-        fn needles_of_two_operands_that_cross_are_found(scene in scene(2)) {
-            prop_assert!(misses_nothing(&scene));
-        }
-
-        #[test]
-        fn needles_of_several_operands_that_cross_are_found(scene in scene(4)) {
-            prop_assert!(misses_nothing(&scene));
-        }
     }
 }

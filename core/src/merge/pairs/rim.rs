@@ -1,7 +1,8 @@
 //! What bounds triangles in the plane of two lines.
 
+use super::line::SLACK;
 use super::line::{dot, Span};
-use super::{Swept, SLACK};
+use super::Swept;
 
 /// The points of the plane for which normal · point is at most the limit.
 #[derive(Clone, Copy)]

@@ -1,6 +1,10 @@
 //! Lines to sweep along, and how elements lie along them.
 
-use super::{Swept, MANY, SLACK};
+use super::sweep::MANY;
+use super::Swept;
+
+/// Projections are widened by this share of the largest coordinate, far above their rounding.
+pub const SLACK: f64 = 1e-14;
 
 /// Lowest and highest place along a line.
 pub type Span = [f64; 2];
