@@ -45,6 +45,15 @@ impl From<OutlineEdge> for BareEdge {
 }
 
 impl BareEdge {
+    /// The edges of a polygon.
+    pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
+        polygon.edges().map(|(from, to, carrier)| Self {
+            from: Arc::clone(from),
+            to: Arc::clone(to),
+            carrier: carrier.clone(),
+        })
+    }
+
     fn keyed(self, line: LineKey) -> OutlineEdge {
         OutlineEdge {
             from: self.from,
@@ -58,23 +67,16 @@ impl BareEdge {
 impl OutlineEdge {
     /// The edges of a polygon.
     pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
-        let carriers = polygon.edges().map(|(_, _, carrier)| carrier);
-        let lines = lines(carriers, polygon.support());
-        let bare = polygon.edges().map(|(from, to, carrier)| BareEdge {
-            from: Arc::clone(from),
-            to: Arc::clone(to),
-            carrier: carrier.clone(),
-        });
-        bare.zip(lines).map(|(edge, line)| edge.keyed(line))
+        let lines = lines(polygon.edges().map(|e| e.2), polygon.support());
+        let bare = BareEdge::all_of(polygon).zip(lines);
+        bare.map(|(edge, line)| edge.keyed(line))
     }
 
     /// Edges in a plane with the keys of their lines.
-    pub fn keyed(edges: &[BareEdge], support: &Plane) -> Vec<Self> {
+    pub fn keyed(edges: Vec<BareEdge>, support: &Plane) -> Vec<Self> {
         let lines = lines(edges.iter().map(|e| &e.carrier), support);
-        let bare = edges.iter().cloned();
-        bare.zip(lines)
-            .map(|(edge, line)| edge.keyed(line))
-            .collect()
+        let bare = edges.into_iter().zip(lines);
+        bare.map(|(edge, line)| edge.keyed(line)).collect()
     }
 
     /// The same edge run backwards.
@@ -115,11 +117,19 @@ pub fn order_along(a: &Arc<Vertex>, b: &Arc<Vertex>, axis: usize) -> Ordering {
 pub fn cancel(mut edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     edges.sort_by_key(|e| e.line);
     let mut kept = Vec::with_capacity(edges.len());
-    for run in edges.chunk_by(|a, b| a.line == b.line) {
-        match run {
-            [single] => kept.push(single.clone()),
-            _ => cancel_line(run, &mut kept),
+    let mut run = Vec::new();
+    let mut rest = edges.into_iter().peekable();
+    while let Some(edge) = rest.next() {
+        let line = edge.line;
+        run.push(edge);
+        if rest.peek().is_some_and(|next| next.line == line) {
+            continue;
         }
+        if run.len() > 1 {
+            cancel_line(&run, &mut kept);
+            run.clear();
+        }
+        kept.append(&mut run);
     }
     kept
 }

@@ -191,12 +191,17 @@ pub struct Part {
 
 impl Part {
     /// The part of a face that an outline bounds in a cell.
-    pub fn new(source: Arc<Source>, face: u32, home: Cell, edges: Vec<OutlineEdge>) -> Self {
+    pub fn new(
+        source: Arc<Source>,
+        face: u32,
+        home: Cell,
+        edges: Vec<impl Into<BareEdge>>,
+    ) -> Self {
         Self {
             source,
             face,
             home,
-            edges: edges.into_iter().map(BareEdge::from).collect(),
+            edges: edges.into_iter().map(Into::into).collect(),
             flux: OnceLock::new(),
         }
     }
@@ -204,7 +209,7 @@ impl Part {
     /// The outline with the keys of its lines.
     pub fn outline(&self) -> Vec<OutlineEdge> {
         let support = self.source.plane(self.face);
-        OutlineEdge::keyed(&self.edges, &support)
+        OutlineEdge::keyed(self.edges.to_vec(), &support)
     }
 
     /// A box of doubles around the part.
