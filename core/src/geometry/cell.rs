@@ -119,13 +119,14 @@ impl Cell {
     /// first axis of those with the most is the one that the next cut would be across.
     pub fn around(low: &Lattice, high: &Lattice) -> Self {
         let origin = Self::UNIVERSE.low;
-        let place = |p: &Lattice, i: usize| (p[i] - origin[i]) as u64;
+        let place = |p: &Lattice, i: usize| (p[i] - origin[i]).cast_unsigned();
         let differing = |i: usize| u64::BITS - (place(low, i) ^ place(high, i)).leading_zeros();
         let differing = [differing(0), differing(1), differing(2)];
         let most = differing.into_iter().max().unwrap_or(0);
         let next = differing.iter().position(|d| *d == most).unwrap_or(0);
         let size = [0, 1, 2].map(|i| most - u32::from(i < next));
-        let low = [0, 1, 2].map(|i| origin[i] + (place(low, i) >> size[i] << size[i]) as i64);
+        let low =
+            [0, 1, 2].map(|i| origin[i] + (place(low, i) >> size[i] << size[i]).cast_signed());
         let size = size.map(|s| s as u8);
         Self { low, size }
     }
