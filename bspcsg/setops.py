@@ -6,7 +6,7 @@ from functools import reduce
 from typing import Any, overload
 
 from . import interop
-from ._core import Tree
+from ._core import CoreError, Tree
 from ._types import FloatArray, IndexArray, ProgramLine, SetOp
 from .block import Unfilled
 from .counting import counted
@@ -152,6 +152,14 @@ def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, 
 
 
 def _tree(vertices: Any, faces: Any) -> Tree:
+    try:
+        return Tree.from_mesh(vertices, faces)
+    except (TypeError, CoreError):
+        # Not arrays as the core has them; what they can become is settled at leisure.
+        return _converted_tree(vertices, faces)
+
+
+def _converted_tree(vertices: Any, faces: Any) -> Tree:
     points = interop.points_array(vertices)
     triangles = interop.face_array(faces, points)
     with core_errors():

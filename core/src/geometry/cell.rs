@@ -114,17 +114,21 @@ impl Cell {
     }
 
     /// The smallest cell of the hierarchy that holds a lattice box.
+    ///
+    /// The binary places from which on coordinates differ say how often an axis can be cut; the
+    /// first axis of those with the most is the one that the next cut would be across.
     pub fn around(low: &Lattice, high: &Lattice) -> Self {
-        let mut cell = Self::UNIVERSE;
-        while let Some(cut) = cell.cut() {
-            let minus = high[cut.axis] < cut.at;
-            let plus = low[cut.axis] >= cut.at;
-            if minus == plus {
-                break;
-            }
-            cell = cell.half(cut, plus);
-        }
-        cell
+        let origin = Self::UNIVERSE.low;
+        let place = |p: &Lattice, i: usize| (p[i] - origin[i]).cast_unsigned();
+        let differing = |i: usize| u64::BITS - (place(low, i) ^ place(high, i)).leading_zeros();
+        let differing = [differing(0), differing(1), differing(2)];
+        let most = differing.into_iter().max().unwrap_or(0);
+        let next = differing.iter().position(|d| *d == most).unwrap_or(0);
+        let size = [0, 1, 2].map(|i| most - u32::from(i < next));
+        let low =
+            [0, 1, 2].map(|i| origin[i] + (place(low, i) >> size[i] << size[i]).cast_signed());
+        let size = size.map(|s| s as u8);
+        Self { low, size }
     }
 
     /// The six planes that bound the cell, the cell on their minus sides.
@@ -139,5 +143,37 @@ impl Cell {
             }
         };
         [wall(0), wall(1), wall(2), wall(3), wall(4), wall(5)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::{Cell, Lattice, REACH};
+
+    /// Coordinates near each other, near zero, and anywhere.
+    fn point() -> impl Strategy<Value = Lattice> {
+        let most = (1i64 << REACH) - 1;
+        let coordinate = prop_oneof![-3i64..=3, 1i64 << 40..(1i64 << 40) + 9, -most..=most];
+        prop::array::uniform3(coordinate)
+    }
+
+    proptest! {
+        /// Halving the universe until a cut has points on both sides ends in the same cell.
+        #[test]
+        fn around_is_where_halving_ends(a in point(), b in point()) {
+            let low = [0, 1, 2].map(|i| a[i].min(b[i]));
+            let high = [0, 1, 2].map(|i| a[i].max(b[i]));
+            let mut cell = Cell::UNIVERSE;
+            while let Some(cut) = cell.cut() {
+                let halves = [false, true].map(|plus| cell.half(cut, plus));
+                match halves.into_iter().find(|half| half.holds_box(&low, &high)) {
+                    Some(half) => cell = half,
+                    None => break,
+                }
+            }
+            prop_assert_eq!(Cell::around(&low, &high), cell);
+        }
     }
 }

@@ -61,7 +61,12 @@ impl Line {
     pub fn of_edge(a: &Lattice, b: &Lattice) -> Self {
         let residue = |c: i64| residue(c.into());
         let residues = |[x, y, z]: &Lattice| [residue(*x), residue(*y), residue(*z)];
-        let (p, q) = (residues(a), residues(b));
+        let p = residues(a);
+        if let Some(direction) = unit_along(a, b) {
+            let moment = cross(&p, &direction);
+            return Self { direction, moment };
+        }
+        let q = residues(b);
         Self {
             direction: [sub(q[0], p[0]), sub(q[1], p[1]), sub(q[2], p[2])],
             moment: cross(&p, &q),
@@ -155,6 +160,12 @@ impl LineKey {
     pub fn axis(&self) -> usize {
         self.0[..3].iter().position(|c| *c != 0).unwrap_or(0)
     }
+}
+
+/// The direction of an edge parallel to an axis, of which the lead has a trivial inverse.
+fn unit_along(a: &Lattice, b: &Lattice) -> Option<[u64; 3]> {
+    let along = [0, 1, 2].map(|i| u64::from(a[i] != b[i]));
+    (along.iter().sum::<u64>() == 1).then_some(along)
 }
 
 fn sub(a: u64, b: u64) -> u64 {

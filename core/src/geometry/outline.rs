@@ -45,6 +45,15 @@ impl From<OutlineEdge> for BareEdge {
 }
 
 impl BareEdge {
+    /// The edges of a polygon.
+    pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
+        polygon.edges().map(|(from, to, carrier)| Self {
+            from: Arc::clone(from),
+            to: Arc::clone(to),
+            carrier: carrier.clone(),
+        })
+    }
+
     fn keyed(self, line: LineKey) -> OutlineEdge {
         OutlineEdge {
             from: self.from,
@@ -58,23 +67,19 @@ impl BareEdge {
 impl OutlineEdge {
     /// The edges of a polygon.
     pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
-        let carriers = polygon.edges().map(|(_, _, carrier)| carrier);
-        let lines = lines(carriers, &PlaneResidues::of(polygon.support()));
-        let bare = polygon.edges().map(|(from, to, carrier)| BareEdge {
-            from: Arc::clone(from),
-            to: Arc::clone(to),
-            carrier: carrier.clone(),
-        });
-        bare.zip(lines).map(|(edge, line)| edge.keyed(line))
+        let lines = lines(
+            polygon.edges().map(|e| e.2),
+            &PlaneResidues::of(polygon.support()),
+        );
+        let bare = BareEdge::all_of(polygon).zip(lines);
+        bare.map(|(edge, line)| edge.keyed(line))
     }
 
     /// Edges in a plane with the keys of their lines.
-    pub fn keyed(edges: &[BareEdge], support: &PlaneResidues) -> Vec<Self> {
+    pub fn keyed(edges: Vec<BareEdge>, support: &PlaneResidues) -> Vec<Self> {
         let lines = lines(edges.iter().map(|e| &e.carrier), support);
-        let bare = edges.iter().cloned();
-        bare.zip(lines)
-            .map(|(edge, line)| edge.keyed(line))
-            .collect()
+        let bare = edges.into_iter().zip(lines);
+        bare.map(|(edge, line)| edge.keyed(line)).collect()
     }
 
     /// The same edge run backwards.

@@ -85,7 +85,21 @@ impl Plane {
     /// Returns `None` if the triangle has no area.
     pub fn through(a: &Lattice, b: &Lattice, c: &Lattice) -> Option<Self> {
         let n = normal(a, b, c);
-        Self::new(n, -dot_lattice(&n, a))
+        let level = |i: &usize| a[*i] == b[*i] && b[*i] == c[*i];
+        match (0..3).find(level) {
+            Some(axis) => Self::level(axis, a[axis], n[axis].signum()),
+            None => Self::new(n, -dot_lattice(&n, a)),
+        }
+    }
+
+    /// The plane at a coordinate of an axis whose normal has this sign along it; `None` for 0.
+    fn level(axis: usize, at: i64, sign: i128) -> Option<Self> {
+        let plane = Self::axis_cut(axis, 2 * at);
+        match sign {
+            0 => None,
+            1 => Some(plane),
+            _ => Some(plane.flipped()),
+        }
     }
 
     /// The plane through a lattice edge parallel to an axis; `None` if the edge is parallel to it.

@@ -56,6 +56,9 @@ impl Vertex {
 
     /// The meet of a lattice edge's line with a plane; `None` if they are parallel.
     pub fn on_edge(edge: &LatticeEdge, cut: &Arc<Plane>) -> Option<Self> {
+        if let Some(point) = edge_on_lattice(edge, cut) {
+            return Some(Self::lattice(point));
+        }
         let approx = Coordinates::on_edge(edge, cut)?.approx();
         let place = Place::OnEdge(edge.clone(), Arc::clone(cut));
         Some(Self { place, approx })
@@ -258,6 +261,16 @@ impl Vertex {
             _ => VertexKey(self.exact().residues()),
         }
     }
+}
+
+/// The meet of an edge parallel to an axis with a plane across that axis, if it is a lattice point.
+fn edge_on_lattice(edge: &LatticeEdge, cut: &Plane) -> Option<Lattice> {
+    let axis = cut.only_axis()?;
+    let (a, b) = edge.ends();
+    let parallel = (0..3).all(|i| (i == axis) != (a[i] == b[i]));
+    let mut point = *a;
+    point[axis] = cut.lattice_coordinate(axis).filter(|_| parallel)?;
+    Some(point)
 }
 
 /// The meet of three planes perpendicular to the three axes, if it is a lattice point.

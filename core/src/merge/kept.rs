@@ -1,13 +1,15 @@
 //! What stays of the faces in a cell, joined again to the elements of a leaf.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::list::Sources;
 use crate::geometry::cell::Cell;
 use crate::geometry::line::LineKey;
 use crate::geometry::outline::{cancel, BareEdge, OutlineEdge};
-use crate::geometry::plane::Plane;
+use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
+use crate::geometry::vertex::Vertex;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Deferred, Group, Node, Part, PartElement, Work};
 
@@ -67,32 +69,24 @@ impl Kept {
         Self { face, flip, what }
     }
 
-    /// What bounds it inside the cell.
-    fn edges(&self, source: &Source, cell: &Cell) -> Vec<OutlineEdge> {
-        let polygons = self.polygons(source, cell);
-        let mut edges: Vec<OutlineEdge> = Vec::new();
-        for polygon in &polygons {
-            edges.extend(OutlineEdge::all_of(polygon));
+    /// Edges that bound some of it, beside the convex pieces.
+    fn edges(&self) -> &[BareEdge] {
+        match &self.what {
+            What::Pieces(_, edges) | What::Outline(edges) => edges,
+            What::Whole | What::Part(_) => &[],
         }
-        if let What::Pieces(_, bare) | What::Outline(bare) = &self.what {
-            edges.extend(OutlineEdge::keyed(
-                bare,
-                &source.plane_residues(self.face.1),
-            ));
-        }
-        edges
     }
 
     /// The convex pieces inside the cell.
-    fn polygons(&self, source: &Source, cell: &Cell) -> Vec<Polygon> {
+    fn polygons(&self, source: &Source, cell: &Cell) -> Cow<'_, [Polygon]> {
         match &self.what {
             What::Whole => source.clip(self.face.1, cell).into_iter().collect(),
             What::Part(part) => {
                 let clipped = part.pieces().into_iter().filter_map(|p| p.clipped(cell));
                 clipped.collect()
             }
-            What::Pieces(pieces, _) => pieces.clone(),
-            What::Outline(_) => Vec::new(),
+            What::Pieces(pieces, _) => Cow::Borrowed(pieces),
+            What::Outline(_) => Cow::Borrowed(&[]),
         }
     }
 }
@@ -137,23 +131,38 @@ pub fn assemble(
                 what: What::Outline(edges),
                 ..
             }] => {
-                let edges = std::mem::take(edges).into_boxed_slice();
-                let part = Arc::new(Part::of_edges(Arc::clone(source), face, *cell, edges));
+                let edges = std::mem::take(edges);
+                let part = Arc::new(Part::new(Arc::clone(source), face, *cell, edges));
                 leaf.parts.push(PartElement { part, flip });
                 continue;
             }
             _ => {}
         }
-        let edges = run.iter().flat_map(|k| k.edges(source, cell)).collect();
-        let edges = cancel(edges);
-        if is_whole(&edges, source, face, cell) {
-            list_whole(&mut leaf.groups, source, face, run[0].flip);
-        } else {
+        if let Some(edges) = outline(run, source, face, cell) {
             let part = Arc::new(Part::new(Arc::clone(source), face, *cell, edges));
             leaf.parts.push(PartElement { part, flip });
+        } else {
+            list_whole(&mut leaf.groups, source, face, flip);
         }
     }
     Node::Deferred(leaf)
+}
+
+/// The outline of what stays of a face with one orientation; `None` if that is all of it.
+fn outline(run: &[Kept], source: &Source, face: u32, cell: &Cell) -> Option<Vec<BareEdge>> {
+    let polygons: Vec<Cow<[Polygon]>> = run.iter().map(|k| k.polygons(source, cell)).collect();
+    let polygons: Vec<&Polygon> = polygons.iter().flat_map(|p| p.iter()).collect();
+    let mut edges: Vec<BareEdge> = run.iter().flat_map(Kept::edges).cloned().collect();
+    if let ([single], []) = (&polygons[..], &edges[..]) {
+        // A convex piece has no edges that cancel.
+        if has_inner(single.edges(), source, face, cell) {
+            return Some(BareEdge::all_of(single).collect());
+        }
+    }
+    edges.extend(polygons.iter().flat_map(|p| BareEdge::all_of(p)));
+    let edges = cancel(OutlineEdge::keyed(edges, &source.plane_residues(face)));
+    let whole = is_whole(&edges, source, face, cell);
+    (!whole).then(|| edges.into_iter().map(BareEdge::from).collect())
 }
 
 fn list_whole(groups: &mut Vec<Group>, source: &Arc<Source>, face: u32, flip: bool) {
@@ -171,6 +180,10 @@ fn list_whole(groups: &mut Vec<Group>, source: &Arc<Source>, face: u32, flip: bo
 /// border of the whole face inside the cell, for a part of a connected set with no border of its
 /// own is all of it.
 pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: u32, cell: &Cell) -> bool {
+    let ends = edges.iter().map(|e| (&e.from, &e.to, &e.carrier));
+    if has_inner(ends, source, face, cell) {
+        return false;
+    }
     let own: Vec<LineKey> = match source.shape() {
         Shape::Mesh(mesh) => {
             let c = mesh.corners(face);
@@ -195,6 +208,34 @@ pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: u32, cell: &Cell) 
     }
     let border = border_lines(&source.plane(face), cell);
     others.iter().all(|e| border.contains(&e.line))
+}
+
+/// Whether some edge of a face surely lies on none of the face's edges and in no wall of the cell;
+/// errs on no.
+fn has_inner<'a>(
+    mut edges: impl Iterator<Item = (&'a Arc<Vertex>, &'a Arc<Vertex>, &'a Carrier)>,
+    source: &Source,
+    face: u32,
+    cell: &Cell,
+) -> bool {
+    let corners = source.mesh().map(|mesh| mesh.corners(face));
+    let holds_own = |plane: &Plane| {
+        let on = |p: &&Lattice| plane.side_of_lattice(p) == 0;
+        corners.is_some_and(|c| c.iter().filter(on).count() >= 2)
+    };
+    edges.any(|(from, to, carrier)| match carrier {
+        Carrier::Cut(plane, _) => !may_share_wall(from, to, cell) && !holds_own(plane),
+        Carrier::Edge(_) => false,
+    })
+}
+
+/// Whether two points may lie in one wall of a cell that holds both; errs on yes.
+fn may_share_wall(a: &Vertex, b: &Vertex, cell: &Cell) -> bool {
+    let (ends, low, high) = ([a, b].map(Vertex::bounds), cell.low(), cell.high());
+    (0..3).any(|i| {
+        let below = ends.iter().all(|(least, _)| least[i] < low[i] as f64);
+        below || ends.iter().all(|(_, most)| most[i] > high[i] as f64)
+    })
 }
 
 /// The lines in which a plane meets the planes of a cell's walls.

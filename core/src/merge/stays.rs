@@ -57,7 +57,7 @@ pub fn kept(
     parts: &[(&Arc<Part>, u32)],
     polygon: impl Fn(usize) -> Option<Polygon>,
 ) -> Vec<Kept> {
-    let mut kept = Vec::new();
+    let mut kept = Vec::with_capacity(settled.size_hint().0);
     let mut pieces: Vec<[Vec<(usize, Stays)>; 2]> = Vec::new();
     pieces.resize_with(parts.len(), Default::default);
     for (i, owner, stays) in settled {

@@ -192,19 +192,18 @@ pub struct Part {
 impl Part {
     /// The part of a face that an outline bounds in a cell.
     ///
-    /// The edges must be maximal, and in the order that `cancel` gives.
-    pub fn new(source: Arc<Source>, face: u32, home: Cell, edges: Vec<OutlineEdge>) -> Self {
-        let edges = edges.into_iter().map(BareEdge::from).collect();
-        Self::of_edges(source, face, home, edges)
-    }
-
-    /// The same, of edges without the keys of their lines.
-    pub fn of_edges(source: Arc<Source>, face: u32, home: Cell, edges: Box<[BareEdge]>) -> Self {
+    /// No two of the edges may overlap or continue each other on one line.
+    pub fn new(
+        source: Arc<Source>,
+        face: u32,
+        home: Cell,
+        edges: Vec<impl Into<BareEdge>>,
+    ) -> Self {
         Self {
             source,
             face,
             home,
-            edges,
+            edges: edges.into_iter().map(Into::into).collect(),
             flux: OnceLock::new(),
         }
     }
@@ -212,7 +211,7 @@ impl Part {
     /// The outline with the keys of its lines.
     pub fn outline(&self) -> Vec<OutlineEdge> {
         let support = self.source.plane_residues(self.face);
-        OutlineEdge::keyed(&self.edges, &support)
+        OutlineEdge::keyed(self.edges.to_vec(), &support)
     }
 
     /// A box of doubles around the part.

@@ -8,10 +8,23 @@ use crate::mesh::source::Source;
 
 /// The sources of a solid or an evaluation, in the order of the expression.
 ///
-/// A table is the beginning of a log that others may share and continue. Who is first to continue
-/// it, or continues it in the same way, shares it on; else the beginning is copied.
+/// Most tables are those of a single mesh, for which nothing else is made. Longer ones are the
+/// beginning of a log that others may share and continue.
 #[derive(Clone, Debug, Default)]
-pub struct Table {
+pub struct Table(Entries);
+
+#[derive(Clone, Debug, Default)]
+enum Entries {
+    #[default]
+    None,
+    One(Arc<Source>),
+    Many(Beginning),
+}
+
+/// The first sources of a log. Who is first to continue it, or continues it in the same way, shares
+/// it on; else the beginning is copied.
+#[derive(Clone, Debug, Default)]
+struct Beginning {
     log: Arc<Log>,
     len: usize,
 }
@@ -62,12 +75,16 @@ impl<'a> FromIterator<&'a Arc<Source>> for Table {
 impl Table {
     /// The number of sources.
     pub fn len(&self) -> usize {
-        self.len
+        match &self.0 {
+            Entries::None => 0,
+            Entries::One(_) => 1,
+            Entries::Many(beginning) => beginning.len,
+        }
     }
 
     /// Whether there are no sources.
     pub fn is_empty(&self) -> bool {
-        self.len == 0
+        self.len() == 0
     }
 
     /// The source in a slot.
@@ -75,41 +92,70 @@ impl Table {
     /// # Panics
     /// If there is none.
     pub fn get(&self, slot: usize) -> &Arc<Source> {
-        self.log.get(slot).expect("a slot of the table")
+        let found = match &self.0 {
+            Entries::One(only) if slot == 0 => Some(only),
+            Entries::None | Entries::One(_) => None,
+            Entries::Many(beginning) => beginning.log.get(slot),
+        };
+        found.expect("a slot of the table")
     }
 
     /// The slot of a source.
     pub fn slot(&self, source: &Source) -> Option<usize> {
-        self.log.slot(source).filter(|s| *s < self.len)
+        match &self.0 {
+            Entries::None => None,
+            Entries::One(only) => (only.id() == source.id()).then_some(0),
+            Entries::Many(beginning) => beginning.slot(source),
+        }
     }
 
     /// The sources in order.
     pub fn iter(&self) -> impl Iterator<Item = &Arc<Source>> {
-        (0..self.len).map(|slot| self.get(slot))
+        (0..self.len()).map(|slot| self.get(slot))
     }
 
     /// This table and after it the sources of another that it does not have.
     #[must_use]
     pub fn joined(&self, other: &Self) -> Self {
-        if Arc::ptr_eq(&self.log, &other.log) {
-            return if self.len < other.len { other } else { self }.clone();
+        if let (Entries::Many(own), Entries::Many(others)) = (&self.0, &other.0) {
+            if Arc::ptr_eq(&own.log, &others.log) {
+                return if own.len < others.len { other } else { self }.clone();
+            }
         }
         self.extended(other.iter())
     }
 
     /// This table and after it the given sources that it does not have.
     fn extended<'a>(&self, sources: impl IntoIterator<Item = &'a Arc<Source>>) -> Self {
-        let mut table = self.clone();
-        for source in sources {
-            if !table.add(source) {
-                table = Self {
-                    log: Arc::new(table.log.copied(table.len)),
-                    len: table.len,
-                };
-                table.add(source);
-            }
+        let entries = self.0.clone();
+        Self(sources.into_iter().fold(entries, Entries::with))
+    }
+}
+
+impl Entries {
+    /// These entries and a source, if they do not have it.
+    fn with(self, source: &Arc<Source>) -> Self {
+        match self {
+            Self::None => Self::One(Arc::clone(source)),
+            Self::One(only) if only.id() == source.id() => Self::One(only),
+            Self::One(only) => Self::Many(Beginning::default().with(&only).with(source)),
+            Self::Many(beginning) => Self::Many(beginning.with(source)),
         }
-        table
+    }
+}
+
+impl Beginning {
+    fn slot(&self, source: &Source) -> Option<usize> {
+        self.log.slot(source).filter(|s| *s < self.len)
+    }
+
+    /// This beginning and a source, if it does not have it.
+    fn with(mut self, source: &Arc<Source>) -> Self {
+        if !self.add(source) {
+            self.log = Arc::new(self.log.copied(self.len));
+            self.add(source);
+        }
+        self
     }
 
     /// Adds a source if it is new; false if the log goes on with another one.

@@ -59,7 +59,6 @@ struct Slant {
 
 /// The facets of a cell by operand, and the parts that pieces belong to with the slots of their
 /// sources.
-#[derive(Default)]
 pub(super) struct Facets<'a> {
     pub(super) all: Vec<Facet<'a>>,
     pub(super) parts: Vec<(&'a Arc<Part>, u32)>,
@@ -73,7 +72,10 @@ impl<'a> Facets<'a> {
         lists: &[(u32, &'a List)],
         sources: &'a Sources,
     ) -> Option<Self> {
-        let mut facets = Self::default();
+        let mut facets = Self {
+            all: Vec::with_capacity(lists.iter().map(|(_, list)| list.len()).sum()),
+            parts: Vec::new(),
+        };
         for (operand, (_, list)) in lists.iter().enumerate() {
             for record in &list.records {
                 let facet = Facet::of_record(operand, record, sources)?;
