@@ -152,12 +152,11 @@ impl Collector<'_> {
     fn joined(&self, run: &mut [Piece]) -> CutFace {
         let cells = &self.listed.cells;
         let (slot, face, flip) = (run[0].slot, run[0].face, run[0].flip);
-        let outline = match run {
-            [piece] => piece.outline(self.sources, cells),
-            _ => {
-                let edges = run.iter_mut().map(|p| p.take_edges(self.sources, cells));
-                Outline::of(edges.flatten().collect())
-            }
+        let outline = if let [piece] = run {
+            piece.outline(self.sources, cells)
+        } else {
+            let edges = run.iter_mut().map(|p| p.take_edges(self.sources, cells));
+            Outline::of(edges.flatten().collect())
         };
         CutFace {
             slot,

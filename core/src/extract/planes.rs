@@ -50,13 +50,12 @@ struct Gathered {
 impl Gathered {
     fn joined(mut self) -> PlaneGroup {
         self.faces.sort_unstable();
-        let outline = match (&mut self.cut[..], &self.whole[..]) {
-            ([single], []) => std::mem::take(single),
-            _ => {
-                let plane = PlaneResidues::of(&self.plane);
-                let cut = self.cut.into_iter().flat_map(|c| c.keyed(&plane));
-                Outline::of(cut.chain(self.whole).collect())
-            }
+        let outline = if let ([single], []) = (&mut self.cut[..], &self.whole[..]) {
+            std::mem::take(single)
+        } else {
+            let plane = PlaneResidues::of(&self.plane);
+            let cut = self.cut.into_iter().flat_map(|c| c.keyed(&plane));
+            Outline::of(cut.chain(self.whole).collect())
         };
         PlaneGroup {
             plane: self.plane,

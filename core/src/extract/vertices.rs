@@ -127,17 +127,17 @@ impl Blur {
     const HALF: u64 = 1 << (Self::BITS - 1);
 
     fn of(place: &[f64; 3]) -> Self {
-        Self(place.map(|c| digits(c) + Self::HALF >> Self::BITS))
+        Self(place.map(|c| (digits(c) + Self::HALF) >> Self::BITS))
     }
 
     /// Those of the smallest doubles in magnitude that may stand for the same point.
     fn lowest(place: &[f64; 3]) -> Self {
-        Self(place.map(|c| digits(c) + Self::HALF - Self::DOUBT >> Self::BITS))
+        Self(place.map(|c| (digits(c) + Self::HALF - Self::DOUBT) >> Self::BITS))
     }
 
     /// Those of the largest such doubles.
     fn highest(place: &[f64; 3]) -> Self {
-        Self(place.map(|c| digits(c) + Self::HALF + Self::DOUBT >> Self::BITS))
+        Self(place.map(|c| (digits(c) + Self::HALF + Self::DOUBT) >> Self::BITS))
     }
 
     /// Each coordinate from one of two, as the bits of a number tell.

@@ -197,7 +197,7 @@ pub fn cancel(mut edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     let mut alone = alone.iter();
     edges.retain(|_| alone.next().is_some_and(|a| *a));
     edges.append(&mut joined);
-    edges.sort_by(|a, b| a.line.cmp(&b.line));
+    edges.sort_by_key(|e| e.line);
     edges
 }
 
