@@ -11,7 +11,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, REACH};
 use crate::geometry::edge::LatticeEdge;
 use crate::geometry::line::{LineKey, PlaneResidues};
-use crate::geometry::outline::{maximal, BareEdge, OutlineEdge};
+use crate::geometry::outline::{settled, BareEdge, OutlineEdge};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
 use crate::geometry::vertex::{cross, Vertex};
@@ -430,7 +430,7 @@ impl PartData {
         if !is_balanced(&edges) {
             return Err(bad_snapshot());
         }
-        let part = Part::new(Arc::clone(source), self.face, home, maximal(edges));
+        let part = Part::new(Arc::clone(source), self.face, home, settled(edges));
         Ok(PartElement {
             part: Arc::new(part),
             flip: self.flip,

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
+use rustc_hash::FxHashSet as HashSet;
 use smallvec::SmallVec;
 
 use super::line::{LineKey, PlaneResidues};
@@ -97,7 +98,8 @@ impl OutlineEdge {
     }
 }
 
-/// A maximal outline, in the order that [`cancel`] gives, and the keys of its lines once asked for.
+/// An outline of which no two edges overlap or continue each other on one line, and the keys of
+/// their lines once asked for.
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
     edges: Vec<BareEdge>,
@@ -106,7 +108,7 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// An outline that is maximal and in order.
+    /// Such an outline.
     pub fn of_bare(edges: &[BareEdge]) -> Self {
         Self {
             edges: edges.to_vec(),
@@ -175,6 +177,18 @@ pub fn maximal(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
         return edges;
     }
     let mut kept = cancel(edges);
+    kept.shrink_to_fit();
+    kept
+}
+
+/// The edges as they come if none of them cancel or continue each other, else what remains.
+pub fn settled(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
+    let ends = |e: &OutlineEdge| (Arc::as_ptr(&e.from), Arc::as_ptr(&e.to));
+    let mut kept = cancel(edges.clone());
+    let given: HashSet<_> = edges.iter().map(ends).collect();
+    if kept.len() == edges.len() && kept.iter().all(|e| given.contains(&ends(e))) {
+        return edges;
+    }
     kept.shrink_to_fit();
     kept
 }

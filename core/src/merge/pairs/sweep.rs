@@ -142,7 +142,7 @@ impl Swath {
     fn meet_those_after(&self, other: &Self, level: bool, meet: &mut impl FnMut(usize, usize)) {
         let mut start = 0;
         for (at, [low, high]) in self.first.iter().enumerate() {
-            let before = |span: &Span| span[0] < *low || !level && span[0] == *low;
+            let before = |span: &Span| span[0] < *low || !level && span[0] <= *low;
             start += other.first[start..].partition_point(before);
             let end = start + other.first[start..].partition_point(|span| span[0] <= *high);
             let [low, high] = self.second[at];
