@@ -29,7 +29,8 @@ def table_text(
     for row in listed:
         table.add_row(*row)
     # Wide enough for any entry: a table in a pipe or a log must not lose letters.
-    width = 80 + sum(max((len(row[k]) for row in listed), default=0) for k in range(len(columns)))
+    texts = [list(columns), *listed]
+    width = 80 + sum(max(len(row[k]) for row in texts) for k in range(len(columns)))
     drawn = StringIO()
     Console(file=drawn, width=width, highlight=False, markup=False).print(table)
     return "\n".join(line.rstrip() for line in drawn.getvalue().splitlines() if line.strip())
