@@ -1,11 +1,12 @@
 //! The leaf kernel for operands in general position.
 //!
-//! Only faces that truly cross are cut, by each other. Everything else keeps its winding numbers
+//! Only faces that truly cross are divided, by each other. Everything else keeps its winding numbers
 //! over the whole cell: they are counted once along a path from the cell's corner, for all faces
 //! that hang together at vertices. Whatever is special — faces in one plane, edges in faces,
 //! contacts, operands that overlap themselves — is left to the local trees of `leaf`.
 
 mod anchors;
+mod curves;
 mod fates;
 mod keep;
 mod known;
