@@ -1,0 +1,186 @@
+//! The curves that segments on an element form: what continues what, and what may cross.
+
+use std::sync::Arc;
+
+use super::segment::{Doubt, End, Segment};
+use crate::geometry::polygon::{bounds, Polygon};
+
+/// Which segment continues each.
+pub(super) struct Joints(Vec<Option<usize>>);
+
+impl Joints {
+    /// Each end inside the element must be where exactly one other segment begins.
+    pub(super) fn of(segments: &[Segment]) -> Result<Self, Doubt> {
+        let address = |end: &End| Arc::as_ptr(&end.at) as usize;
+        let inner = |end: &&End| end.edge.is_none();
+        let mut begins: Vec<(usize, usize)> = Vec::with_capacity(segments.len());
+        let numbered = segments.iter().enumerate();
+        begins.extend(
+            numbered
+                .filter(|(_, s)| inner(&&s.from))
+                .map(|(i, s)| (address(&s.from), i)),
+        );
+        begins.sort_unstable();
+        let ending = segments.iter().filter(|s| inner(&&s.to)).count();
+        if ending != begins.len() || begins.windows(2).any(|w| w[0].0 == w[1].0) {
+            return Err(Doubt);
+        }
+        let next = |segment: &Segment| {
+            if segment.to.edge.is_some() {
+                return Ok(None);
+            }
+            let found = begins.binary_search_by_key(&address(&segment.to), |b| b.0);
+            found.map(|at| Some(begins[at].1)).map_err(|_| Doubt)
+        };
+        let next: Vec<Option<usize>> = segments.iter().map(next).collect::<Result<_, _>>()?;
+        let mut taken = vec![false; segments.len()];
+        let twice = |i: &usize| std::mem::replace(&mut taken[*i], true);
+        if next.iter().flatten().any(twice) {
+            return Err(Doubt);
+        }
+        Ok(Self(next))
+    }
+
+    /// The number of closed curves.
+    pub(super) fn loops(&self, segments: &[Segment]) -> usize {
+        let mut seen = vec![false; segments.len()];
+        let mut follow = |start: usize| {
+            let mut at = Some(start);
+            let mut found = false;
+            while let Some(i) = at.filter(|i| !seen[*i]) {
+                seen[i] = true;
+                found = true;
+                at = self.0[i];
+            }
+            found
+        };
+        for (i, segment) in segments.iter().enumerate() {
+            if segment.from.edge.is_some() {
+                follow(i);
+            }
+        }
+        (0..segments.len()).filter(|i| follow(*i)).count()
+    }
+
+    /// The segments with those joined that continue each other on one line.
+    pub(super) fn joined(self, segments: Vec<Segment>) -> Result<Vec<Segment>, Doubt> {
+        let mut continued = vec![false; segments.len()];
+        let mut any = false;
+        for (i, next) in self.0.iter().enumerate() {
+            let Some(next) = *next else { continue };
+            let (a, b) = (&segments[i], &segments[next]);
+            match a.plane.coincides(&b.plane) {
+                None => {}
+                Some(same) if same == (a.plus == b.plus) => {
+                    continued[next] = true;
+                    any = true;
+                }
+                Some(_) => return Err(Doubt),
+            }
+        }
+        if !any {
+            return Ok(segments);
+        }
+        let last = |mut i: usize| {
+            while let Some(next) = self.0[i].filter(|next| continued[*next]) {
+                i = next;
+            }
+            segments[i].to.clone()
+        };
+        let firsts = (0..segments.len()).filter(|i| !continued[*i]);
+        Ok(firsts
+            .map(|i| Segment {
+                from: segments[i].from.clone(),
+                to: last(i),
+                plane: Arc::clone(&segments[i].plane),
+                plus: segments[i].plus,
+            })
+            .collect())
+    }
+}
+
+/// Whether two segments that do not follow each other may meet.
+pub(super) fn may_cross(segments: &[Segment]) -> bool {
+    let (count, inner) = (
+        segments.len(),
+        segments.iter().any(|s| s.from.edge.is_none()),
+    );
+    if count == 1 || count == 2 && inner {
+        return false;
+    }
+    let boxes: Vec<([f64; 3], [f64; 3])> = segments
+        .iter()
+        .map(|s| bounds([&*s.from.at, &*s.to.at].into_iter()))
+        .collect();
+    let mut order: Vec<usize> = (0..segments.len()).collect();
+    let axis = widest(&boxes);
+    order.sort_by(|a, b| boxes[*a].0[axis].total_cmp(&boxes[*b].0[axis]));
+    let beyond = |a: usize, b: usize| boxes[b].0[axis] > boxes[a].1[axis];
+    let apart = |a: usize, b: usize| {
+        let ((low, high), (least, most)) = (&boxes[a], &boxes[b]);
+        (0..3).any(|i| low[i] > most[i] || least[i] > high[i])
+    };
+    order.iter().enumerate().any(|(k, a)| {
+        let others = order[k + 1..].iter().take_while(|b| !beyond(*a, **b));
+        others
+            .filter(|b| !apart(*a, **b))
+            .any(|b| !segments[*a].is_clear_of(&segments[*b]))
+    })
+}
+
+/// The axis along which boxes reach farthest.
+fn widest(boxes: &[([f64; 3], [f64; 3])]) -> usize {
+    let extent = |i: usize| {
+        let low = boxes.iter().fold(f64::INFINITY, |m, b| m.min(b.0[i]));
+        let high = boxes.iter().fold(f64::NEG_INFINITY, |m, b| m.max(b.1[i]));
+        high - low
+    };
+    (0..3)
+        .max_by(|i, j| extent(*i).total_cmp(&extent(*j)))
+        .unwrap_or(0)
+}
+
+impl Segment {
+    /// Whether two segments follow each other, or one lies on one side of the other's line.
+    fn is_clear_of(&self, other: &Self) -> bool {
+        let follows = |a: &Self, b: &Self| Arc::ptr_eq(&a.to.at, &b.from.at);
+        follows(self, other)
+            || follows(other, self)
+            || self.is_beside(other)
+            || other.is_beside(self)
+    }
+
+    fn is_beside(&self, other: &Self) -> bool {
+        let side = |end: &End| end.at.side_of(&other.plane);
+        side(&self.from) * side(&self.to) > 0
+    }
+}
+
+/// Whether a closed curve of segments turns left around what it encloses, as seen from the plus
+/// side of the polygon's plane.
+pub(super) fn turns_left(polygon: &Polygon, segments: &[Segment]) -> Result<bool, Doubt> {
+    let axis = polygon.support().main_axis();
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    let origin = segments[0].from.at.approx();
+    let place = |end: &End| {
+        let p = end.at.approx();
+        [p[u] - origin[u], p[v] - origin[v]]
+    };
+    let (mut area, mut reach, mut size) = (0.0f64, 0.0f64, 0.0f64);
+    for segment in segments {
+        let (p, q) = (place(&segment.from), place(&segment.to));
+        area += p[0] * q[1] - p[1] * q[0];
+        reach = reach.max(p[0].abs()).max(p[1].abs());
+        let c = segment.from.at.approx();
+        size = size.max(c[u].abs()).max(c[v].abs());
+    }
+    // Coordinates are off by less than 4 units in the last place of `size`, each of two products
+    // by twice that times `reach`; sums of n terms are rounded n times, and `reach` is at most
+    // twice `size`.
+    let n = segments.len() as f64;
+    let doubt = n * (n + 32.0) * 4.0 * f64::EPSILON * reach * size;
+    if area.abs() <= doubt {
+        return Err(Doubt);
+    }
+    Ok((area > 0.0) == (polygon.support().normal()[axis] > 0))
+}
