@@ -191,13 +191,12 @@ impl<'a> Element<'a> {
         (0..3).filter(move |i| inside[*i])
     }
 
-    /// The ends of the element's box inside the cell, relative to its low corner.
+    /// The ends of the element's box inside the cell, relative to its low corner: at most a step
+    /// outside, even if the element misses the cell.
     pub(super) fn extent(&self, cell: &Cell) -> [Lattice; 2] {
         let (low, high) = (cell.low(), cell.high());
-        [
-            [0, 1, 2].map(|i| self.low[i].max(low[i] - 1) - low[i]),
-            [0, 1, 2].map(|i| self.high[i].min(high[i] + 1) - low[i]),
-        ]
+        let within = |p: &Lattice, i: usize| p[i].clamp(low[i] - 1, high[i] + 1) - low[i];
+        [&self.low, &self.high].map(|p| [0, 1, 2].map(|i| within(p, i)))
     }
 
     /// The element as a sweep sees it.
