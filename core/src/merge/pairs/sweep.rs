@@ -4,9 +4,12 @@
 //! needles overlap in every box, but hardly in a projection across them. In the plane of the two best
 //! lines also the edges of triangles tell them from boxes.
 
+use rayon::prelude::*;
+
 use super::line::{dot, longest_edge, Line, Span};
 use super::rim::{largest_coordinate, rims, HalfPlane};
 use super::Swept;
+use crate::mesh::tasks::in_pool;
 
 /// Among fewer elements than this other lines than the axes are not worth finding.
 pub const MANY: usize = 512;
@@ -20,17 +23,22 @@ const PARALLEL: f64 = 0.8;
 /// Calls `meet` for all pairs of different operands whose extents overlap along every line, the
 /// lower index first; gives up with `None` where too many elements lie above each other on each.
 pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<()> {
-    let sweeps: Vec<Sweep> = parties(elements)
-        .into_iter()
-        .map(|numbers| Sweep::of(elements, &numbers))
-        .collect();
+    let parties = parties(elements);
+    let sweeps = each(&parties, |numbers| Sweep::of(elements, numbers));
     if sweeps.iter().map(Sweep::cost).sum::<f64>() > CROWDED {
         return None;
     }
-    for sweep in sweeps {
-        sweep.run(&mut meet);
-    }
+    let found = each(&sweeps, Sweep::run);
+    found.into_iter().flatten().for_each(|(i, j)| meet(i, j));
     Some(())
+}
+
+/// A value for each item, in order, by several threads where there are any.
+fn each<T: Sync, R: Send>(items: &[T], value: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    if in_pool() {
+        return items.par_iter().map(&value).collect();
+    }
+    items.iter().map(value).collect()
 }
 
 /// The elements, all together or, if two operands have many, as pairs of groups that suit different
@@ -126,13 +134,17 @@ impl Sweep {
         self.crowding * self.size as f64
     }
 
-    fn run(&self, meet: &mut impl FnMut(usize, usize)) {
+    /// The pairs of different operands that may meet, the lower index first.
+    fn run(&self) -> Vec<(usize, usize)> {
+        let mut found = Vec::new();
+        let mut meet = |i: usize, j: usize| found.push((i.min(j), i.max(j)));
         for (k, swath) in self.operands.iter().enumerate() {
             for other in &self.operands[k + 1..] {
-                swath.meet_those_after(other, true, meet);
-                other.meet_those_after(swath, false, meet);
+                swath.meet_those_after(other, true, &mut meet);
+                other.meet_those_after(swath, false, &mut meet);
             }
         }
+        found
     }
 }
 
@@ -148,8 +160,7 @@ impl Swath {
             let [low, high] = self.second[at];
             for (next, span) in (start..end).zip(&other.second[start..end]) {
                 if span[0] <= high && span[1] >= low && self.may_meet(at, other, next) {
-                    let (i, j) = (self.numbers[at], other.numbers[next]);
-                    meet(i.min(j), i.max(j));
+                    meet(self.numbers[at], other.numbers[next]);
                 }
             }
         }
