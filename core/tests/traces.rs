@@ -6,7 +6,7 @@ use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::SetOp;
 use bspcsg::tree::solid::Solid;
 
-use support::{applied, assert_same_set, manifold_mesh, volume, Numbers, Shape};
+use support::{applied, assert_same_set, double, manifold_mesh, volume, Numbers, Shape};
 
 const OPERATIONS: [SetOp; 4] = [
     SetOp::Union,
@@ -30,7 +30,7 @@ fn slab() -> Solid {
 fn ball(numbers: &mut Numbers, at: [i64; 2], radius: i64) -> Shape {
     let mut near = |x: i64| x + numbers.below(41) - 20;
     let center: Lattice = [near(at[0]), near(at[1]), near(TOP - radius / 7)];
-    let shape = Shape::sphere(center, radius as f64, 2);
+    let shape = Shape::sphere(center, double(radius), 2);
     shape.mapped(|p| {
         if p[2] == TOP {
             [p[0], p[1], p[2] + 1]
