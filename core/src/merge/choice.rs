@@ -1,5 +1,6 @@
 //! Which cells are for a kernel, and which are halved.
 
+use super::general::MOST;
 use super::state::{State, States};
 use crate::geometry::cell::Cell;
 
@@ -31,7 +32,8 @@ const ROUND: u32 = 3;
 /// Longer lists than this are halved on, stuck or not: the kernel's cost grows with their square.
 pub const STUCK: usize = 2048;
 
-/// A kernel that refused a cell is asked again when this share of the elements is left.
+/// A kernel that refused a cell is asked again when one in so many elements is left: from `FRESH`
+/// down to `LEAF` at most three times in vain.
 const RETRY: usize = 8;
 
 /// Parts of a cell that tell whether several operands have elements there are about this small.
@@ -93,7 +95,7 @@ impl Round {
     /// That looks at all elements, halving only at where they are: so at least half of them should
     /// lie in small parts of the cell where several operands have some.
     pub fn suits_general_position(&self, cell: &Cell, states: &States, total: usize) -> bool {
-        if total > self.refused / RETRY {
+        if states.len() > MOST || total > self.refused / RETRY {
             return false;
         }
         if states.iter().all(|s| s.1.is_given()) {

@@ -183,7 +183,7 @@ pub struct Part {
     pub face: u32,
     /// The cell the outline describes.
     pub home: Cell,
-    /// The outline, counterclockwise on the face: maximal edges, in the order that `cancel` gives.
+    /// The outline, counterclockwise on the face; no two edges overlap or continue each other.
     pub edges: Box<[BareEdge]>,
     /// The flux through the part, once somebody has asked.
     pub flux: OnceLock<Flux>,

@@ -1,4 +1,4 @@
-//! What becomes of the elements: those that others of another operand cross are cut up.
+//! What becomes of the elements: those that faces of other operands cross are divided.
 
 use std::sync::Arc;
 
@@ -26,11 +26,11 @@ pub(super) enum Fate {
     Untouched,
     /// Nothing crosses it, and it has these anchors, at least one.
     Uncut(Vec<Anchor>),
-    /// It was cut up.
+    /// It was divided.
     Cut(Box<Cut>),
 }
 
-/// A cut element.
+/// A divided element.
 pub(super) struct Cut {
     /// All of it inside the cell.
     pub(super) polygon: Polygon,
@@ -38,7 +38,7 @@ pub(super) struct Cut {
     pub(super) anchors: Vec<Anchor>,
 }
 
-/// What an element is cut into.
+/// What an element is divided into.
 pub(super) enum Parts {
     /// What lies outside one operand, and what inside.
     Sides(Trace),

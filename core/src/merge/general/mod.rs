@@ -25,7 +25,7 @@ use crate::geometry::cell::Cell;
 use scene::Scene;
 
 /// More operands than this do not meet in one small cell, or are left to the local trees.
-const MOST: usize = 64;
+pub const MOST: usize = 64;
 
 /// For each operand of the cell whether a region is inside it, as bits.
 type Labels = u64;
