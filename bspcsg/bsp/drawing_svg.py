@@ -51,20 +51,31 @@ def load_svg(
         If the file cannot be read, is no well-formed SVG, or declares a document type or an entity.
     """
     chord = positive(tolerance, "tolerance")
+    region = Region(pitch=pitch)
+    for shape in shown_shapes(path):
+        if _is_filled(shape):
+            loops = [corners for corners, _ in outlines_of(shape, chord) if len(corners) >= 3]
+            region = region | Region(loops, winding=winding or _rule(shape), pitch=pitch)
+    return region
+
+
+def shown_shapes(path: str | os.PathLike[str]) -> list[Any]:
+    """Return svgelements' shapes of a file, in user units, but for those that are not shown.
+
+    Raises
+    ------
+    FormatError
+        As `load_svg` does.
+    """
     data = _checked(path)
     elements = optional("svgelements", "2d")
     try:
         drawing = elements.SVG.parse(io.BytesIO(_in_user_units(data)), reify=True, ppi=96.0)
-    except (ValueError, TypeError, AttributeError, ArithmeticError, LookupError) as error:
+        shapes = [shape for shape in drawing.elements() if isinstance(shape, elements.Shape)]
+    except Exception as error:  # what svgelements raises is of any kind
         message = f"{os.fspath(path)}: this is no valid SVG: {words_of(error)}."
         raise FormatError(message, "syntax") from error
-    region = Region(pitch=pitch)
-    for shape in drawing.elements():
-        if isinstance(shape, elements.Shape) and _is_filled(shape):
-            loops = [loop for loop in _loops(elements, shape, chord) if len(loop) >= 3]
-            if loops:
-                region = region | Region(loops, winding=winding or _rule(shape), pitch=pitch)
-    return region
+    return [shape for shape in shapes if _is_shown(shape)]
 
 
 def save_svg(
@@ -155,26 +166,38 @@ def _in_user_units(data: bytes) -> bytes:
     return ElementTree.tostring(root)
 
 
+def _is_shown(shape: Any) -> bool:
+    values: dict[str, Any] = shape.values
+    return values.get("display") != "none" and values.get("visibility") != "hidden"
+
+
 def _is_filled(shape: Any) -> bool:
-    values = shape.values
-    hidden = values.get("display") == "none" or values.get("visibility") == "hidden"
-    written = values.get("fill")
     # What says nothing of its fill is black.
-    return not hidden and (written is None or shape.fill.value is not None)
+    return shape.values.get("fill") is None or shape.fill.value is not None
 
 
 def _rule(shape: Any) -> WindingRule:
     return "even-odd" if shape.values.get("fill-rule") == "evenodd" else "nonzero"
 
 
-def _loops(elements: Any, shape: Any, chord: float) -> Iterator[FloatArray]:
+def outlines_of(shape: Any, chord: float) -> Iterator[tuple[FloatArray, bool]]:
+    """Yield the corners of each subpath of a shape, y upwards, and whether it is closed.
+
+    Parameters
+    ----------
+    shape : object
+        One of `shown_shapes`.
+    chord : float
+        Largest distance between a curve and the chords that replace it.
+    """
+    elements = optional("svgelements", "2d")
     # A rotated rectangle keeps its transform until its path is asked for absolute coordinates.
     for subpath in abs(elements.Path(shape)).as_subpaths():
-        points: list[complex] = []
-        for segment in elements.Path(subpath):
-            points.extend(_points_of(elements, segment, chord))
-        loop = np.array([(p.real, 0.0 - p.imag) for p in points]).reshape(-1, 2)
-        yield loop[np.any(loop != np.roll(loop, 1, axis=0), axis=1)]
+        segments = list(elements.Path(subpath))
+        points = [point for segment in segments for point in _points_of(elements, segment, chord)]
+        corners = np.array([(p.real, 0.0 - p.imag) for p in points]).reshape(-1, 2)
+        different = np.any(corners != np.roll(corners, 1, axis=0), axis=1)
+        yield corners[different], any(isinstance(one, elements.Close) for one in segments)
 
 
 def _points_of(elements: Any, segment: Any, chord: float) -> list[complex]:

@@ -1,6 +1,7 @@
 """Bodies below tables of heights."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,8 +12,23 @@ from ..solid import Solid
 from ..sweep import strip
 
 
-def read_heights(path: Path) -> FloatArray:
-    """Return a text file's rows of numbers, shorter ones filled with zeros.
+class Heights(NamedTuple):
+    """A table of heights.
+
+    Parameters
+    ----------
+    table : (m, n) float64
+        Rows that are shorter than others are filled with zeros.
+    floor : float
+        One below the least height in the file, or 0; what fills rows up does not count.
+    """
+
+    table: FloatArray
+    floor: float
+
+
+def read_heights(path: Path) -> Heights:
+    """Return the rows of numbers in a text file.
 
     Raises
     ------
@@ -30,7 +46,8 @@ def read_heights(path: Path) -> FloatArray:
     columns = max(map(len, rows), default=0)
     if len(rows) < 2 or columns < 2:
         raise FormatError(f"{path}: a surface needs two rows and columns of numbers.", "syntax")
-    return np.array([row + [0.0] * (columns - len(row)) for row in rows])
+    table = np.array([row + [0.0] * (columns - len(row)) for row in rows])
+    return Heights(table, min(min(map(min, rows)) - 1, 0.0))
 
 
 def _holds_numbers(line: str) -> bool:
@@ -47,20 +64,19 @@ def _row(path: Path, number: int, line: str) -> list[float]:
     return row
 
 
-def height_map(heights: FloatArray, *, centered: bool) -> Solid:
-    """Return the body between a table of heights and a level one below the least of them or 0.
+def height_map(heights: Heights, *, centered: bool) -> Solid:
+    """Return the body between a table of heights and its floor.
 
     Columns run along x and rows along y, one unit apart; each field rises to the mean of its
     corners in its middle.
     """
-    rows, columns = heights.shape
-    floor = min(float(heights.min()) - 1, 0.0)
+    rows, columns = heights.table.shape
     shift = -(np.array([columns, rows]) - 1) / 2 if centered else np.zeros(2)
     y, x = np.indices((rows, columns))
-    corners = np.column_stack([x.ravel(), y.ravel(), heights.ravel()])
-    middles = _middles(heights)
+    corners = np.column_stack([x.ravel(), y.ravel(), heights.table.ravel()])
+    middles = _middles(heights.table)
     rim = _rim(rows, columns)
-    below = corners[rim] * (1, 1, 0) + (0, 0, floor)
+    below = corners[rim] * (1, 1, 0) + (0, 0, heights.floor)
     vertices = np.concatenate([corners, middles, below]) + (*shift, 0)
     ids = np.arange(rows * columns).reshape(rows, columns)
     a, b, d, c = (part.ravel() for part in (ids[:-1, :-1], ids[:-1, 1:], ids[1:, :-1], ids[1:, 1:]))

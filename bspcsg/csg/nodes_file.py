@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 
 from .. import io
-from .._types import FloatArray
 from ..bsp import Region
 from .arguments import Arguments
 from .drawings import dxf_region
@@ -50,8 +49,8 @@ def surface(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     path = _path(arguments, run)
     if path.suffix.lower() == ".png":
         raise arguments.error("pictures are not supported; give a table of heights.", "unsupported")
-    heights: FloatArray = read_heights(path)
-    arguments.limited(heights.size * 2, "this surface")
+    heights = read_heights(path)
+    arguments.limited(heights.table.size * 2, "this surface")
     return height_map(heights, centered=arguments.flag("center"))
 
 

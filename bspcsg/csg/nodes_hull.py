@@ -71,21 +71,32 @@ def _turns_left(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]
 def minkowski(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Return the sums of a point of each child: the first swept along the others.
 
-    Shapes that are not convex are divided into convex parts; the sums of parts are the hulls of
-    the sums of their corners, and these are united.
+    Empty solids do not count, as in OpenSCAD. Shapes that are not convex are divided into convex
+    parts; the sums of parts are the hulls of the sums of their corners, and these are united.
     """
     arguments = run.arguments(owner)
     solids, regions = run.same_kind(owner, children)
     if solids:
-        return reduce(lambda a, b: _solid_sum(a, b, arguments), solids)
+        bodies = [solid for solid in solids if not solid.is_empty]
+        return reduce(lambda a, b: _solid_sum(a, b, arguments), bodies) if bodies else Solid.empty()
     if regions:
-        return reduce(lambda a, b: _region_sum(a, b, arguments), regions)
+        return reduce(lambda a, b: _region_sum(a, b, arguments), _summands(children, regions))
     return None
 
 
+def _summands(children: list[Geometry], regions: list[Region]) -> list[Region]:
+    """Return the plane figures that are summed; a lone empty one if the sum is empty.
+
+    OpenSCAD leaves empty operands out, but in the plane not the first one, nor the only other one.
+    """
+    figures = [region for region in regions if not region.is_empty]
+    first = children[0]
+    if len(children) > 1 and (first is None or first.is_empty or len(figures) < 2):
+        return [Region.empty()]
+    return regions if len(children) == 1 else figures
+
+
 def _solid_sum(a: Solid, b: Solid, arguments: Arguments) -> Solid:
-    if a.is_empty or b.is_empty:
-        return Solid.empty()
     first, second = _solid_parts(a, arguments), _solid_parts(b, arguments)
     _check_pairs(len(first) * len(second), arguments)
     return setops.union(hull_solid(_sums(p, q)) for p in first for q in second)

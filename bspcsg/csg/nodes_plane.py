@@ -1,24 +1,15 @@
 """Figures of the plane: square, circle, polygon, offset."""
 
-from typing import Any
-
 import numpy as np
 
-from .._types import FloatArray
 from ..bsp import Region
-from ..interop import optional
 from ..sweep import unit_circle
 from .arguments import Arguments
 from .nodes_set import union_of
+from .offsetting import cleaned, grown, is_combined
 from .registry import Evaluation, Geometry, node
 from .tessellation import Fineness
 from .tree import Node
-
-#: Mitred corners may reach this many times the distance: as far as they like.
-_MITER_LIMIT = 1e6
-
-#: Coordinates are brought near this; pyclipper counts in whole numbers of 64 bits.
-_OFFSET_REACH = 2.0**40
 
 
 @node("square")
@@ -74,33 +65,11 @@ def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     if figure.is_empty or delta == 0:
         return figure
     sides = arguments.limited(Fineness.of(arguments).fragments(abs(delta)), "a corner")
-    clipper = optional("pyclipper", "2d")
-    join = _join(clipper, is_round, arguments)
-    return _offset(clipper, figure, delta, join, sides)
+    figure = cleaned(run.parts_of(figure)) if is_combined(owner) else figure
+    return figure if figure.is_empty else grown(figure, delta, _join(is_round, arguments), sides)
 
 
-def _join(clipper: Any, is_round: bool, arguments: Arguments) -> Any:
+def _join(is_round: bool, arguments: Arguments) -> str:
     if is_round:
-        return clipper.JT_ROUND
-    return clipper.JT_SQUARE if arguments.flag("chamfer") else clipper.JT_MITER
-
-
-def _offset(clipper: Any, figure: Region, delta: float, join: Any, sides: int) -> Region:
-    loops = figure.to_polygons()
-    scale = _scale(loops, delta)
-    # This tolerance makes Clipper step by a whole circle's sides.
-    tolerance = abs(delta) * scale * (1 - np.cos(np.pi / sides))
-    pen = clipper.PyclipperOffset(_MITER_LIMIT, tolerance)
-    pen.AddPaths(
-        [np.rint(loop * scale).astype(int).tolist() for loop in loops],
-        join,
-        clipper.ET_CLOSEDPOLYGON,
-    )
-    paths = pen.Execute(delta * scale)
-    return Region([np.array(path) / scale for path in paths], pitch=figure.pitch)
-
-
-def _scale(loops: list[FloatArray], delta: float) -> float:
-    """Return the power of two that brings coordinates near the reach of whole numbers."""
-    largest = max(float(np.abs(loop).max()) for loop in loops) + abs(delta)
-    return float(2.0 ** np.floor(np.log2(_OFFSET_REACH / largest)))
+        return "round"
+    return "square" if arguments.flag("chamfer") else "miter"

@@ -5,6 +5,7 @@ from operator import and_, sub
 
 from .. import setops
 from ..bsp import Region
+from ..solid import Solid
 from .registry import Evaluation, Geometry, node
 from .tree import Node
 
@@ -18,7 +19,10 @@ def union_of(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry
         return regions[0] if regions else None
     # Outlines wind once around what is inside: all of them together wind at least once.
     loops = [loop for region in regions for loop in region.to_polygons()]
-    return Region(loops, pitch=min(region.pitch for region in regions))
+    union = Region(loops, pitch=min(region.pitch for region in regions))
+    # It is kept beside its parts, so that no other figure takes its `id`.
+    run.united[id(union)] = union, [part for region in regions for part in run.parts_of(region)]
+    return union
 
 
 @node("group", "union", "color", "render", makes_corners=False)
@@ -38,8 +42,10 @@ def difference(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
 
 @node("intersection", makes_corners=False)
 def intersection(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Intersect the children; one that is nothing leaves nothing."""
+    """Intersect the children; one that is nothing, or of the other dimension, leaves nothing."""
     if not children or any(child is None for child in children):
         return None
     solids, regions = run.same_kind(owner, children)
+    if len(solids) + len(regions) < len(children):
+        return Solid.empty() if solids else Region.empty()
     return setops.intersection(solids) if solids else reduce(and_, regions)

@@ -41,6 +41,8 @@ class Evaluation:
         The lattice for bodies as they are made, ``10**pitch`` units.
     on_invalid : {"error", "warn", "repair"}
         Whether polyhedra and imported meshes that are not closed are errors, left out, or closed.
+    united : dict
+        Unions of plane figures by their `id`, each with the figures that it is made of.
     """
 
     script: str = "<csg>"
@@ -48,10 +50,15 @@ class Evaluation:
     polish: bool = False
     pitch: int | None = None
     on_invalid: OnInvalid = "error"
+    united: dict[int, tuple[Region, list[Region]]] = field(default_factory=dict)
 
     def arguments(self, node: Node, order: tuple[str, ...] = ()) -> Arguments:
         """Return the arguments of a node."""
         return Arguments(node, self.script, order)
+
+    def parts_of(self, figure: Region) -> list[Region]:
+        """Return the figures whose union a figure is; itself if it is none."""
+        return self.united[id(figure)][1] if id(figure) in self.united else [figure]
 
     def warn(self, node: Node, message: str) -> None:
         """Tell the caller what was left out."""

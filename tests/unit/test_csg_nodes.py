@@ -193,7 +193,46 @@ def test_minkowski_sums() -> None:
     assert region("minkowski() { square(2); square([1, 3]); }").area == 15
     corner = f"difference() {{ cube(4); {moved(1, 1, -1)} cube(9); }}"
     assert volume(f"minkowski() {{ {corner} cube(1); }}") == 5 * (25 - 9)
-    assert csg.loads("minkowski() { cube(2); cube(0); }").is_empty
+
+
+@pytest.mark.parametrize(
+    ("children", "expected"),
+    [
+        ("cube(2); cube(0);", 8),
+        ("cube(0); cube(2);", 8),
+        ("cube(2); group(); cube(1);", 27),
+        ("cube(0);", 0),
+        ("cube(0); sphere(0);", 0),
+    ],
+)
+def test_minkowski_leaves_empty_solids_out(children: str, expected: float) -> None:
+    assert volume(f"minkowski() {{ {children} }}") == expected
+
+
+@pytest.mark.parametrize(
+    ("children", "area"),
+    [
+        ("square(2);", 4),
+        ("square(0);", 0),
+        ("square(2); square(0);", 0),
+        ("square(0); square(2);", 0),
+        ("square(2); group();", 0),
+        ("square(2); square(1); square(0);", 9),
+        ("square(2); square(0); square(1);", 9),
+    ],
+)
+def test_minkowski_in_the_plane_keeps_openscads_rule(children: str, area: float) -> None:
+    assert region(f"minkowski() {{ {children} }}").area == area
+
+
+@pytest.mark.filterwarnings("ignore::bspcsg.csg.CsgWarning")
+def test_intersections_of_both_dimensions_are_empty() -> None:
+    assert csg.loads("intersection() { cube(5); circle(2); }").is_empty
+    assert region("intersection() { circle(2); cube(5); }").is_empty
+    assert volume("difference() { cube(5); circle(2); }") == 125
+    assert volume("union() { cube(5); circle(2); }") == 125
+    with pytest.warns(csg.CsgWarning, match="2D and 3D"):
+        csg.loads("intersection() { cube(5); circle(2); }")
 
 
 def test_minkowski_of_what_is_far_from_convex() -> None:
@@ -231,7 +270,74 @@ def test_offsets() -> None:
         csg.loads("offset(r = 1) cube(1);")
 
 
+@pytest.mark.parametrize("hair", [1e-5, 1e-4])
+@pytest.mark.parametrize("around", ["union()", "group() union()", "union() { union()"])
+def test_offsets_do_not_widen_what_six_digits_part(hair: float, around: str) -> None:
+    pytest.importorskip("pyclipper")
+    parts = f"square(10); {moved(10 + hair, 0, 0)} square(10); {moved(5, 5, 0)} square(10);"
+    figure = f"{around} {{ {parts} }}" + " }" * around.count("{")
+    inner = region(f"offset(delta = -0.3) {{ {figure} }}")
+    # Two rectangles, and 0.3 off all around.
+    assert inner.area == pytest.approx(19.4 * 9.4 + 9.4 * 5, abs=2 * hair * 30)
+
+
+def test_offsets_do_not_draw_out_what_six_digits_leave_over() -> None:
+    pytest.importorskip("pyclipper")
+    sliver = "polygon([[0, 0], [20, 0], [0, 0.0002]]);"
+    assert region(f"offset(delta = 0.5) {{ square(10); {sliver} }}").area == pytest.approx(
+        121, abs=0.001 * 40
+    )
+
+
+def test_fine_figures_are_grown_as_they_are() -> None:
+    pytest.importorskip("pyclipper")
+    ring = region("circle(r = 0.0005, $fn = 100);")
+    grown = region("offset(delta = 0.0005) circle(r = 0.0005, $fn = 100);")
+    assert grown.area == pytest.approx(4 * ring.area, rel=2e-3)
+    assert len(grown.outlines[0].points) == 100
+
+
 # Files
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        ("1 2 3\n4 5 6\n7 8\n", (12 + 16 + 24 + 19) / 4),
+        ("1 2 3\n4 5 6\n7 8", (12 + 16 + 24 + 19) / 4),
+        ("1 1 1\n1 1 1\n1\n", 1 + 1 + 3 / 4 + 2 / 4),
+        ("1 1 1\n\n# two\n1\n1 1 1\n", (3 + 2) / 2),
+        ("-1 -1\n-1\n", 2 - 3 / 4),
+    ],
+)
+def test_rows_of_a_surface_may_be_shorter(tmp_path: Path, rows: str, expected: float) -> None:
+    (tmp_path / "x.dat").write_text(rows)
+    text = 'surface(file = "x.dat");'
+    assert csg.loads(text, folder=tmp_path).volume == pytest.approx(expected)
+
+
+DRAWING = '<svg xmlns="http://www.w3.org/2000/svg">{}</svg>'
+
+
+@pytest.mark.parametrize(
+    ("shapes", "area"),
+    [
+        ('<path fill="none" d="M0 0 L10 0 L10 10 L0 10 Z"/>', 100),
+        ('<rect style="fill:none" width="10" height="2"/>', 20),
+        ('<path fill-rule="nonzero" d="M0 0H10V10H0Z M2 2H4V4H2Z"/>', 96),
+        ('<polyline points="0,0 10,0" stroke-width="2" stroke-linecap="butt"/>', 20),
+        ('<line x2="10" stroke-width="2"/>', 24),
+        ('<g transform="scale(2)"><path d="M0 0H10" stroke-linecap="butt"/></g>', 40),
+        ('<rect display="none" width="10" height="2"/>', 0),
+    ],
+)
+def test_drawings_are_filled_as_openscad_fills_them(
+    tmp_path: Path, shapes: str, area: float
+) -> None:
+    pytest.importorskip("svgelements")
+    (tmp_path / "x.svg").write_text(DRAWING.format(shapes))
+    found = csg.evaluate(csg.parse('import("x.svg");', folder=tmp_path))
+    assert isinstance(found, Region) and found.area == pytest.approx(area)
 
 
 def test_imports_are_relative_to_the_script(tmp_path: Path) -> None:
