@@ -14,7 +14,7 @@ Examples
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from ._core import __version__, set_threads
+from ._core import __version__
 
 if TYPE_CHECKING:
     from .check import CheckReport, Verdict, validate
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     )
     from .io import load, save
     from .mesh import Mesh
+    from .parameters import set_threads
     from .primitives import (
         box,
         cone,
@@ -91,6 +92,7 @@ _MODULES = {
     " MissingPartError UnboundedError",
     "io": "load save",
     "mesh": "Mesh",
+    "parameters": "set_threads",
     "primitives": "box cone cube cylinder extrude half_space prism revolve sphere torus",
     "script": "run_script show",
     "setops": "boolean difference intersection union xor",

@@ -4,11 +4,9 @@ Every failure is a `BspcsgError` with a stable `code`, the places it concerns in
 sentence that says what is wrong and what to do.
 """
 
-import math
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import Any
 
 from . import _core
 
@@ -153,33 +151,6 @@ def invalid_parameter(message: str) -> InvalidMeshError:
 def missing_part(part: str, purpose: str, remedy: str) -> MissingPartError:
     """Return the error for an optional part, with the command that installs it."""
     return MissingPartError(f"{part} is needed {purpose}. Try: {remedy}", "missing_part")
-
-
-def number(value: Any, name: str) -> float:
-    """Return a finite float, or raise an error that names the parameter."""
-    try:
-        result = float(value)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise invalid_parameter(f"{name} must be a number, not {value!r}.") from error
-    if not math.isfinite(result):
-        raise invalid_parameter(f"{name} must be finite, not {result}.")
-    return result
-
-
-def positive(value: Any, name: str) -> float:
-    """Return a finite float above 0, or raise an error that names the parameter."""
-    result = number(value, name)
-    if result <= 0:
-        raise invalid_parameter(f"{name} must be above 0, not {result:g}.")
-    return result
-
-
-def at_least(least: int, value: Any, name: str) -> int:
-    """Return a whole number of at least `least`, or raise an error that names the parameter."""
-    result = number(value, name)
-    if result != int(result) or result < least:
-        raise invalid_parameter(f"{name} must be a whole number from {least} on, not {value!r}.")
-    return int(result)
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,9 @@ import numpy as np
 
 from ._types import FloatArray, IndexArray, Scalar, Vector
 from .counting import counted
-from .errors import InvalidMeshError, at_least, invalid_parameter, number, positive
+from .errors import InvalidMeshError, invalid_parameter
 from .leaf import MeshLeaf, PlaneLeaf
+from .parameters import at_least, number, positive
 from .polygon import triangulate
 from .profile import extrude, revolve
 from .solid import Solid

@@ -7,8 +7,9 @@ import numpy as np
 
 from ._types import FloatArray, IndexArray, Scalar
 from .counting import counted
-from .errors import at_least, invalid_parameter, positive
+from .errors import invalid_parameter
 from .leaf import MeshLeaf
+from .parameters import at_least, positive
 from .polygon import contours_of, directed_edges, triangulate
 from .solid import Solid
 from .sweep import RingLayout, strip
@@ -22,9 +23,10 @@ def extrude(polygon: Any, h: Scalar, *, center: bool = False) -> Solid:
     Parameters
     ----------
     polygon : object
-        (n, 2) points, a list of such contours, or a shapely polygon or manifold3d cross section.
-        Contours may run either way round; one that lies inside an odd number of others is a hole.
-        Where contours cross each other, positive winding counts as inside.
+        (n, 2) points, a list of such contours, a manifold3d cross section, or a shapely polygon,
+        multipolygon or collection, or a list of these. Contours may run either way round; one that
+        lies inside an odd number of others is a hole. Where contours cross each other, positive
+        winding counts as inside.
     h : float
         Height.
     center : bool

@@ -20,11 +20,12 @@ from ._core import Tree
 from ._types import ProgramLine, Scalar, Vector, WindingRule
 from .counting import count, counted, uncounted
 from .describe import describe
-from .errors import core_errors, invalid_parameter
+from .errors import core_errors
 from .expression import Node, Operator, Placed, complement, evaluate, operation
 from .leaf import ConstantLeaf, Leaf, MeshLeaf, TreeLeaf, tree_of
 from .measure import Measured
 from .mesh import Mesh
+from .parameters import optional_pitch, winding_rule
 from .transform import Factors, common_prefix
 
 if TYPE_CHECKING:
@@ -84,10 +85,9 @@ class Solid(Measured):
         trusted: bool = False,
         winding: WindingRule = "positive",
     ) -> None:
-        if winding not in ("positive", "nonzero", "even-odd"):
-            raise invalid_parameter(f"Unknown winding rule {winding!r}.")
+        rule, chosen = winding_rule(winding), optional_pitch(pitch)
         arrays = interop.mesh_arrays(vertices, faces)
-        leaf = MeshLeaf(*arrays, pitch=pitch, trusted=trusted, winding=winding)
+        leaf = MeshLeaf(*arrays, pitch=chosen, trusted=trusted, winding=rule)
         # Errors in a mesh belong to the line that gave it, not to the first query.
         leaf.own_tree()
         leaf.disown()

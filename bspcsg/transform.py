@@ -17,7 +17,8 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ._types import FloatArray, Scalar, Vector
-from .errors import invalid_parameter, number
+from .errors import invalid_parameter
+from .parameters import number
 
 #: Largest number of lattice steps from the origin.
 LATTICE_REACH = 2**53

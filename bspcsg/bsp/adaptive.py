@@ -7,7 +7,8 @@ import numpy as np
 
 from .._core import RayTree
 from .._types import IndexArray
-from ..errors import at_least, core_errors, invalid_parameter
+from ..errors import core_errors, invalid_parameter
+from ..parameters import at_least, pitch_exponent, seed_number
 from .rays import Hits, hits_of
 from .targets import Facets, facets_from, ray_arrays
 
@@ -157,11 +158,12 @@ class AdaptiveTree(StabTree):
     def __init__(self, facets: Any, *, threshold: int = 64, pitch: int | None = None) -> None:
         self._facets = facets_from(facets)
         limit = at_least(0, threshold, "threshold")
+        step = self._facets.pitch if pitch is None else pitch_exponent(pitch)
         with core_errors():
             self._tree = RayTree(
                 self.dimension,
                 self._facets.corners.ravel(),
-                self._facets.pitch if pitch is None else pitch,
+                step,
                 threshold=min(limit, 2**63),
             )
 
@@ -203,7 +205,8 @@ class StaticTree(StabTree):
         max_nodes: int = 4_000_000,
     ) -> None:
         self._facets = facets_from(facets)
-        permutation = _permutation(order, seed, len(self._facets.corners))
+        permutation = _permutation(order, seed_number(seed), len(self._facets.corners))
+        step = self._facets.pitch if pitch is None else pitch_exponent(pitch)
         # The heap takes most hits first.
         hits = np.zeros(len(permutation), dtype=np.int64)
         hits[permutation] = np.arange(len(permutation), 0, -1)
@@ -211,7 +214,7 @@ class StaticTree(StabTree):
             self._tree = RayTree(
                 self.dimension,
                 self._facets.corners.ravel(),
-                self._facets.pitch if pitch is None else pitch,
+                step,
                 hits=hits.tolist(),
                 limit=at_least(1, max_nodes, "max_nodes"),
             )

@@ -19,7 +19,8 @@ from typing import Any
 import numpy as np
 
 from .._types import FloatArray, IndexArray
-from ..errors import InvalidMeshError, at_least, invalid_parameter
+from ..errors import InvalidMeshError, invalid_parameter
+from ..parameters import at_least
 from .tree import PartitionTree
 
 #: Side of the square of whole numbers in which random segments lie.

@@ -6,7 +6,8 @@ import numpy as np
 
 from .. import _core
 from .._types import FloatArray, IndexArray
-from ..errors import InvalidMeshError, invalid_parameter
+from ..errors import InvalidMeshError, core_errors, invalid_parameter
+from ..parameters import pitch_exponent
 
 
 def boundary_arrays(facets: Any) -> tuple[int, FloatArray, IndexArray | None]:
@@ -49,12 +50,18 @@ def segment_rows(segments: FloatArray) -> FloatArray:
     return np.ascontiguousarray(segments.reshape(-1, 4))
 
 
-def suited_pitch(points: FloatArray) -> int:
+def chosen_pitch(given: Any, points: FloatArray) -> int:
+    """Return the exponent of the lattice step: the given one, or what suits these points."""
+    return _suited_pitch(points) if given is None else pitch_exponent(given)
+
+
+def _suited_pitch(points: FloatArray) -> int:
     """Return the exponent of the lattice step for these points: -9 unless their size asks else."""
     if len(points) == 0 or not np.isfinite(points).all():
         return -9
     extent = float(np.ptp(points, axis=0).max())
-    return _core.suited_pitch(float(np.abs(points).max()), extent)
+    with core_errors():
+        return _core.suited_pitch(float(np.abs(points).max()), extent)
 
 
 def _numbers(facets: Any) -> FloatArray:

@@ -7,7 +7,8 @@ from typing import Any, Literal, TypeAlias, get_args
 import numpy as np
 
 from .._types import FloatArray
-from ..errors import invalid_parameter, number, positive
+from ..errors import invalid_parameter
+from ..parameters import number, positive
 
 #: Views by name; z is up. "front" looks along +y, with x to the right; "iso" looks from the right
 #: front top.

@@ -13,7 +13,8 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from ..errors import core_errors, invalid_parameter, number
+from ..errors import core_errors, invalid_parameter
+from ..parameters import not_negative
 from .policy import POLICIES, Policy
 from .tree import PartitionTree
 
@@ -54,7 +55,7 @@ def cost(tree: PartitionTree, query: Query = "point", margin: float | None = Non
     """
     if query not in ("point", "ray"):
         raise invalid_parameter(f"The query is 'point' or 'ray', not {query!r}.")
-    reach = tree.margin if margin is None else number(margin, "margin")
+    reach = tree.margin if margin is None else not_negative(margin, "margin")
     with core_errors():
         volume, surface, volumes, surfaces = tree.core.measures(reach)
     if query == "point":

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from .._types import FloatArray, Scalar, WindingRule
-from ..errors import FormatError, positive, words_of
+from ..errors import FormatError, words_of
 from ..interop import optional
 from ..io.atomic import write_file
+from ..parameters import positive
 from .region import Region
 
 _OUTLINES = "LINE ARC CIRCLE ELLIPSE SPLINE LWPOLYLINE POLYLINE"

@@ -11,9 +11,10 @@ from xml.parsers import expat
 import numpy as np
 
 from .._types import FloatArray, Scalar, WindingRule
-from ..errors import FormatError, positive, words_of
+from ..errors import FormatError, words_of
 from ..interop import optional
 from ..io.atomic import write_file
+from ..parameters import positive
 from .region import Region
 
 #: Files larger than this are refused, in bytes.

@@ -7,9 +7,10 @@ import numpy as np
 
 from .. import _core
 from .._types import FloatArray, Scalar
-from ..errors import InvalidMeshError, core_errors, invalid_parameter, number
+from ..errors import InvalidMeshError, core_errors, invalid_parameter
+from ..parameters import number
 from ..transform import whole_steps
-from .boundary import interval_rows, suited_pitch
+from .boundary import chosen_pitch, interval_rows
 from .objects import ObjectTree
 from .settle import Settled
 
@@ -44,10 +45,12 @@ class Intervals(Settled, ObjectTree):
 
     __slots__ = ()
 
+    _DIMENSION = 1
+
     def __init__(self, pairs: Any = (), *, pitch: int | None = None) -> None:
         ends = _pairs(pairs)
         finite = ends[np.isfinite(ends)]
-        chosen = suited_pitch(finite[:, None]) if pitch is None else int(pitch)
+        chosen = chosen_pitch(pitch, finite[:, None])
         bounded = np.isfinite(ends).all(axis=1)
         with core_errors():
             tree = _core.ObjectTree.uniform(1, False, chosen)

@@ -8,12 +8,13 @@ Sources: Thibault, Naylor 1987; Naylor, Amanatides, Thibault 1990.
 """
 
 from collections.abc import Sequence
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 from .. import _core, interop
 from .._types import FloatArray, Scalar, SetOp, WindingRule
 from ..errors import core_errors, invalid_parameter
-from .boundary import boundary_arrays, suited_pitch
+from ..parameters import at_least, pitch_exponent, seed_number, winding_rule
+from .boundary import boundary_arrays, chosen_pitch
 from .pieces import BuildPolicy, Hyperplane, SplitCase
 from .rows import hyperplane_row, hyperplane_rows
 from .tree_queries import TreeQueries
@@ -58,6 +59,9 @@ class ObjectTree(TreeQueries):
 
     __slots__ = ("_settled_size",)
 
+    #: The dimension of all sets of a class, if they have one.
+    _DIMENSION: ClassVar[int | None] = None
+
     def __init__(
         self,
         facets: Any,
@@ -69,17 +73,18 @@ class ObjectTree(TreeQueries):
         cuts: Sequence[Hyperplane] = (),
     ) -> None:
         dimension, rows, faces = boundary_arrays(facets)
+        rule, order = winding_rule(winding), seed_number(seed)
+        chosen = chosen_pitch(pitch, rows[:, :dimension])
         with core_errors():
-            chosen = suited_pitch(rows[:, :dimension]) if pitch is None else int(pitch)
             self._set(
                 _core.ObjectTree.build(
                     dimension,
                     rows,
                     chosen,
                     faces=faces,
-                    winding=winding,
+                    winding=rule,
                     policy=policy,
-                    seed=int(seed),
+                    seed=order,
                     cuts=hyperplane_rows(cuts, dimension) if len(cuts) else None,
                 )
             )
@@ -96,31 +101,50 @@ class ObjectTree(TreeQueries):
 
     # Making
 
-    @staticmethod
-    def from_mesh(mesh: Any, **options: Any) -> "ObjectTree":
+    @classmethod
+    def from_mesh(cls, mesh: Any, **options: Any) -> Self:
         """Return the set inside a closed mesh, or whatever holds one (see `Solid.from_mesh`).
 
         An autopartition in space grows with the square of the faces: meant for small meshes.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the class has another dimension, or as for `Solid.from_mesh`.
         """
+        cls._check_dimension(3)
         vertices, faces = interop.own_arrays(*interop.arrays_from(mesh))
-        return ObjectTree(vertices[faces], **options)
+        return cls._of(ObjectTree(vertices[faces], **options)._tree)
 
     @classmethod
     def half_space(cls, normal: Any, offset: Scalar = 0.0, *, pitch: int = -9) -> Self:
         """Return the minus side of a hyperplane: all points x with ``normal . x <= offset``.
 
         The hyperplane goes through the lattice point nearest to the foot of the origin, with the
-        normal rounded to 53 bits.
+        normal rounded to 53 bits. The normal has as many numbers as the class has dimensions.
         """
         row = hyperplane_row(normal, offset)
+        cls._check_dimension(len(row) - 1)
+        step = pitch_exponent(pitch)
         with core_errors():
-            return cls._of(_core.ObjectTree.half_space(row, pitch))
+            return cls._of(_core.ObjectTree.half_space(row, step))
 
-    @staticmethod
-    def uniform(dimension: int, *, full: bool, pitch: int = -9) -> "ObjectTree":
+    @classmethod
+    def uniform(cls, dimension: int, *, full: bool, pitch: int = -9) -> Self:
         """Return the empty set, or everything, in 1, 2 or 3 dimensions."""
+        count, step = at_least(1, dimension, "dimension"), pitch_exponent(pitch)
+        cls._check_dimension(count)
         with core_errors():
-            return ObjectTree._of(_core.ObjectTree.uniform(dimension, full, pitch))
+            return cls._of(_core.ObjectTree.uniform(count, full, step))
+
+    @classmethod
+    def _check_dimension(cls, dimension: int) -> None:
+        """Refuse to make a set of another dimension than the class has."""
+        if cls._DIMENSION not in (None, dimension):
+            raise invalid_parameter(
+                f"{cls.__name__} has dimension {cls._DIMENSION}, not {dimension}; use ObjectTree"
+                " for sets of any dimension."
+            )
 
     # Set operations
 

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from .._types import FloatArray, IndexArray
-from ..errors import at_least, invalid_parameter
+from ..errors import invalid_parameter
+from ..parameters import at_least
 from .clip import Polygons, clip
 from .colours import ColourArray, colour, colours
 from .fragments import Fragments

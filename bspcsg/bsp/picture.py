@@ -9,15 +9,8 @@ from typing import Any, get_args
 import numpy as np
 
 from .._types import BoolArray, FloatArray
-from ..errors import (
-    FormatError,
-    InvalidMeshError,
-    LimitError,
-    at_least,
-    invalid_parameter,
-    number,
-    positive,
-)
+from ..errors import FormatError, InvalidMeshError, LimitError, invalid_parameter
+from ..parameters import at_least, number, positive
 from .camera import Camera, View
 from .colours import DEFAULT, ColourArray, colour, colours
 from .creases import Facets

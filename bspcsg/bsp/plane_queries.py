@@ -8,7 +8,8 @@ import numpy as np
 
 from .. import _core
 from .._types import FloatArray, Vector
-from ..errors import core_errors, invalid_parameter, number
+from ..errors import core_errors, invalid_parameter
+from ..parameters import number
 from .loops import Outline
 from .objects import ObjectTree
 
@@ -17,6 +18,8 @@ class PlaneQueries(ObjectTree):
     """A set of the plane, as its questions see it."""
 
     __slots__ = ("_outlines",)
+
+    _DIMENSION = 2
 
     def _set(self, tree: _core.ObjectTree) -> None:
         super()._set(tree)

@@ -26,7 +26,8 @@ side gets more than three quarters of the facets (general partition).
 
 from typing import Any, Literal, TypeAlias, get_args
 
-from ..errors import at_least, invalid_parameter, number
+from ..errors import invalid_parameter
+from ..parameters import at_least, number, optional_pitch, seed_number
 
 #: The names of the pivot policies.
 Policy: TypeAlias = Literal["first", "random", "least-splits", "balanced", "weighted", "least-cost"]
@@ -55,9 +56,9 @@ def core_options(seed: Any, sample: Any, alpha: Any, top: Any, pitch: Any) -> di
     if not 0 <= weight <= 1:
         raise invalid_parameter(f"alpha must be from 0 to 1, not {alpha}.")
     return {
-        "seed": at_least(0, seed, "seed") % 2**64,
+        "seed": seed_number(seed),
         "sample": at_least(1, sample, "sample"),
         "alpha": weight,
         "top": at_least(0, top, "top"),
-        "pitch": None if pitch is None else int(pitch),
+        "pitch": optional_pitch(pitch),
     }

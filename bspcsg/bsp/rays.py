@@ -9,6 +9,7 @@ import numpy as np
 from .._core import RayScene
 from .._types import FloatArray, IndexArray, SideArray, WindingRule
 from ..errors import core_errors, invalid_parameter
+from ..parameters import pitch_exponent, thread_count, winding_rule
 from .targets import Facets, facets_from, ray_arrays
 
 #: Values of `Hits.kind`.
@@ -182,7 +183,7 @@ class RayCaster:
 
     def __init__(self, facets: Any, *, pitch: int | None = None, deferred: bool = True) -> None:
         self._facets = facets_from(facets)
-        step = self._facets.pitch if pitch is None else pitch
+        step = self._facets.pitch if pitch is None else pitch_exponent(pitch)
         with core_errors():
             self._scene = RayScene(self.dimension, self._facets.corners.ravel(), step)
             if not deferred:
@@ -227,7 +228,7 @@ class RayCaster:
         """
         first, second = ray_arrays(origins, directions, self.dimension)
         with core_errors():
-            columns = self._scene.first(first.ravel(), second.ravel(), threads)
+            columns = self._scene.first(first.ravel(), second.ravel(), thread_count(threads))
         return self._hits(*columns)
 
     def all_hits(self, origins: Any, directions: Any, *, threads: int = 0) -> HitLists:
@@ -238,7 +239,7 @@ class RayCaster:
         """
         first, second = ray_arrays(origins, directions, self.dimension)
         with core_errors():
-            offsets, columns = self._scene.all(first.ravel(), second.ravel(), threads)
+            offsets, columns = self._scene.all(first.ravel(), second.ravel(), thread_count(threads))
         return HitLists(offsets, self._hits(*columns))
 
     def intervals(
@@ -265,12 +266,13 @@ class RayCaster:
         winding : {"positive", "nonzero", "even-odd"}
             Which winding numbers are inside; points on the line are always even-odd.
         """
-        if winding not in ("positive", "nonzero", "even-odd"):
-            raise invalid_parameter(f"Unknown winding rule {winding!r}.")
+        rule, count = winding_rule(winding), thread_count(threads)
         first, second = ray_arrays(origins, directions, self.dimension)
-        rule = "even-odd" if self.dimension == 1 else winding
+        if self.dimension == 1:
+            rule = "even-odd"
         with core_errors():
-            offsets, t, facets = self._scene.intervals(first.ravel(), second.ravel(), rule, threads)
+            found = self._scene.intervals(first.ravel(), second.ravel(), rule, count)
+        offsets, t, facets = found
         return InsideSpans(offsets, t.reshape(-1, 2), facets.reshape(-1, 2))
 
     def occluded(
@@ -309,11 +311,11 @@ class RayCaster:
         if targets is not None:
             first, second = ray_arrays(origins, targets, self.dimension, ("Origins", "Targets"))
             with core_errors():
-                return self._scene.hidden(first.ravel(), second.ravel(), threads)
+                return self._scene.hidden(first.ravel(), second.ravel(), thread_count(threads))
         first, second = ray_arrays(origins, directions, self.dimension)
         limits = np.ascontiguousarray(np.broadcast_to(_limits(max_t), len(first)))
         with core_errors():
-            return self._scene.blocked(first.ravel(), second.ravel(), limits, threads)
+            return self._scene.blocked(first.ravel(), second.ravel(), limits, thread_count(threads))
 
     def _hits(self, *columns: Any) -> Hits:
         return hits_of(self._facets, columns, self._normals)

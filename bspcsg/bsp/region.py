@@ -9,20 +9,13 @@ import numpy as np
 
 from .. import _core, interop, transform
 from .._types import FloatArray, Scalar, Vector, WindingRule
-from ..errors import (
-    LimitError,
-    UnboundedError,
-    at_least,
-    core_errors,
-    invalid_parameter,
-    number,
-    positive,
-)
+from ..errors import LimitError, UnboundedError, core_errors, invalid_parameter
+from ..parameters import at_least, number, positive, winding_rule
 from ..primitives import extrude, revolve
 from ..solid import Solid
 from ..sweep import unit_circle
 from ..transform import Factor
-from .boundary import segment_rows, suited_pitch
+from .boundary import chosen_pitch, segment_rows
 from .loops import closed_loops, loop_segments, moved_points
 from .plane_queries import PlaneQueries, vector2
 from .settle import Settled
@@ -39,9 +32,11 @@ class Region(PlaneQueries, Settled):
     Parameters
     ----------
     outlines : object
-        (n, 2) points of one closed outline; a sequence of such outlines; a `Region`; or a shapely
-        polygon or manifold3d cross section. With the rule "positive", inside is on the left of
-        outer outlines (counterclockwise) and holes run clockwise.
+        (n, 2) points of one closed outline; a sequence of such outlines; a `Region`; a manifold3d
+        cross section; or a shapely polygon, multipolygon or collection, or a list of these. With
+        the rule "positive", inside is on the left of outer outlines (counterclockwise) and holes
+        run clockwise. Rings of shapely shapes are turned so, which makes the region what any of
+        the polygons holds, also where they overlap; points and lines in collections are left out.
     winding : {"positive", "nonzero", "even-odd"}
     pitch : int, optional
         By default -9, or what the size asks for.
@@ -69,10 +64,8 @@ class Region(PlaneQueries, Settled):
     ) -> None:
         loops = closed_loops(outlines)
         points = np.concatenate(loops) if loops else np.zeros((0, 2))
-        with core_errors():
-            chosen = suited_pitch(points) if pitch is None else int(pitch)
-            rows = segment_rows(loop_segments(loops))
-            self._set(_core.ObjectTree.build(2, rows, chosen, winding=winding))
+        rows = segment_rows(loop_segments(loops))
+        self._set(_built(rows, chosen_pitch(pitch, points), winding))
 
     # Making
 
@@ -88,10 +81,8 @@ class Region(PlaneQueries, Settled):
             If they do not close (`where` lists segments).
         """
         array = np.asarray(segments, dtype=np.float64).reshape(-1, 2, 2)
-        with core_errors():
-            chosen = suited_pitch(array.reshape(-1, 2)) if pitch is None else int(pitch)
-            tree = _core.ObjectTree.build(2, segment_rows(array), chosen, winding=winding)
-        return cls._of(tree)
+        chosen = chosen_pitch(pitch, array.reshape(-1, 2))
+        return cls._of(_built(segment_rows(array), chosen, winding))
 
     @classmethod
     def empty(cls) -> Self:
@@ -270,3 +261,9 @@ class Region(PlaneQueries, Settled):
         return (
             f"Region({count} outline{'s' * (count > 1)}, {corners} corners, area {self.area:.6g})"
         )
+
+
+def _built(rows: FloatArray, pitch: int, winding: Any) -> _core.ObjectTree:
+    rule = winding_rule(winding)
+    with core_errors():
+        return _core.ObjectTree.build(2, rows, pitch, winding=rule)

@@ -3,7 +3,8 @@
 import numpy as np
 
 from .._types import FloatArray, Scalar, Vector
-from ..errors import InvalidMeshError, core_errors, number
+from ..errors import InvalidMeshError, core_errors
+from ..parameters import number
 from ..solid import Solid
 from ..transform import vector3
 from .region import Region

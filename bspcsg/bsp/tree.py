@@ -8,7 +8,8 @@ import numpy as np
 
 from .. import _core
 from .._types import FloatArray, IndexArray
-from ..errors import core_errors, invalid_parameter, number
+from ..errors import core_errors, invalid_parameter
+from ..parameters import not_negative
 from .facets import corners_of, mesh_triangles
 from .fragments import Fragments
 from .node import Leaf, Node, RegionShape, Side
@@ -111,7 +112,7 @@ class PartitionTree(Ordered):
     ) -> None:
         self.core = core
         self.lenience = lenience
-        self._margin = None if margin is None else max(number(margin, "margin"), 0.0)
+        self._margin = None if margin is None else not_negative(margin, "margin")
 
     @classmethod
     def from_core(
@@ -242,7 +243,7 @@ class PartitionTree(Ordered):
             from outside, in 3D. Empty if nothing of the box is left.
         """
         node, side = _place(of)
-        reach = self.margin if margin is None else number(margin, "margin")
+        reach = self.margin if margin is None else not_negative(margin, "margin")
         with core_errors():
             walls = self.core.region(node, side, reach)
         if self.dimension == 1:

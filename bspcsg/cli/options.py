@@ -7,10 +7,9 @@ from typing import Any, TypeVar
 
 import click
 
-_Command = TypeVar("_Command", bound=Callable[..., Any])
+from ..parameters import MOST_PITCH, MOST_THREADS
 
-#: Threads beyond which nobody's machine goes.
-_MOST_THREADS = 1024
+_Command = TypeVar("_Command", bound=Callable[..., Any])
 
 #: A file, or "-" for a stream; whoever completes a line offers files for it. Whether it can be read
 #: is found out by reading: click would call a forbidden file wrong usage.
@@ -22,7 +21,7 @@ _THREADS = click.option(
     "--threads",
     "threads",
     metavar="N",
-    type=click.IntRange(0, _MOST_THREADS),
+    type=click.IntRange(0, MOST_THREADS),
     default=0,
     help="Number of threads; 0, the default, for all cores.",
 )
@@ -74,7 +73,7 @@ _SETS = [
     click.option(
         "--pitch",
         metavar="PITCH",
-        type=click.IntRange(-22, 22),
+        type=click.IntRange(-MOST_PITCH, MOST_PITCH),
         help="Lattice step 10^PITCH units; by default -9, or what the size asks for.",
     ),
     click.option(

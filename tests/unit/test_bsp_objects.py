@@ -2,6 +2,7 @@
 
 import itertools
 import pickle
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any, get_args
 
@@ -276,3 +277,41 @@ def test_bad_hyperplanes_and_operands() -> None:
         (~tree).cells()
     with pytest.raises(b.InvalidMeshError):
         tree.classify([[1, 2]])
+
+
+SETS: list[tuple[type[bsp.ObjectTree], int]] = [(bsp.Intervals, 1), (bsp.Region, 2)]
+
+MAKERS: dict[str, Callable[[type[bsp.ObjectTree], int], bsp.ObjectTree]] = {
+    "half_space": lambda kind, dimension: kind.half_space(np.eye(dimension)[0], 2),
+    "uniform": lambda kind, dimension: kind.uniform(dimension, full=True),
+}
+
+
+@pytest.mark.parametrize("make", MAKERS.values(), ids=MAKERS)
+@pytest.mark.parametrize(("kind", "own"), SETS)
+def test_inherited_constructors_keep_the_dimension(
+    kind: type[bsp.ObjectTree],
+    own: int,
+    make: Callable[[type[bsp.ObjectTree], int], bsp.ObjectTree],
+) -> None:
+    made = make(kind, own)
+    assert type(made) is kind
+    assert made.dimension == own
+    for dimension in {1, 2, 3} - {own}:
+        with pytest.raises(b.InvalidMeshError, match=f"has dimension {own}") as caught:
+            make(kind, dimension)
+        assert caught.value.code == "invalid_parameter"
+
+
+@pytest.mark.parametrize(("kind", "own"), SETS)
+def test_meshes_make_sets_of_space_only(kind: type[bsp.ObjectTree], own: int) -> None:
+    with pytest.raises(b.InvalidMeshError, match=f"has dimension {own}, not 3"):
+        kind.from_mesh(b.cube(1))
+    assert type(bsp.ObjectTree.from_mesh(b.cube(1))) is bsp.ObjectTree
+
+
+def test_no_constructor_is_forgotten() -> None:
+    inherited = {
+        name for name, value in vars(bsp.ObjectTree).items() if isinstance(value, classmethod)
+    }
+    assert {name for name in inherited if not name.startswith("_")} == {*MAKERS, "from_mesh"}

@@ -1,0 +1,157 @@
+"""What parameters may be: one check for each kind, used wherever such a parameter is taken.
+
+Each returns the value as the type that the rest of the package works with, or raises an error that
+names the parameter. Truth values and texts are no numbers here.
+"""
+
+import math
+import operator
+from typing import TYPE_CHECKING, Any
+
+from ._core import set_threads as _set_threads
+from .errors import LimitError, invalid_parameter
+
+if TYPE_CHECKING:
+    from ._types import WindingRule
+
+#: The largest exponent of the lattice step, either way: 10**22 is the last power of ten that is a
+#: double.
+MOST_PITCH = 22
+
+#: Threads beyond which no machine goes: each has a stack of 64 MB, which makes 64 GB of addresses.
+MOST_THREADS = 1024
+
+#: Letters of a value that a message repeats.
+_LONGEST = 80
+
+#: Seeds are taken modulo this.
+_SEEDS = 2**64
+
+_WINDING_RULES: "tuple[WindingRule, ...]" = ("positive", "nonzero", "even-odd")
+
+
+def number(value: Any, name: str) -> float:
+    """Return a finite float."""
+    if isinstance(value, (str, bytes, bytearray)) or _is_truth_value(value):
+        raise invalid_parameter(f"{name} must be a number, not {_shown(value)}.")
+    try:
+        result = float(value)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise invalid_parameter(f"{name} must be a number, not {_shown(value)}.") from error
+    if not math.isfinite(result):
+        raise invalid_parameter(f"{name} must be finite, not {result}.")
+    return result
+
+
+def positive(value: Any, name: str) -> float:
+    """Return a finite float above 0."""
+    result = number(value, name)
+    if result <= 0:
+        raise invalid_parameter(f"{name} must be above 0, not {result:g}.")
+    return result
+
+
+def not_negative(value: Any, name: str) -> float:
+    """Return a finite float, 0 or more."""
+    result = number(value, name)
+    if result < 0:
+        raise invalid_parameter(f"{name} must not be below 0, but is {result:g}.")
+    return result
+
+
+def at_least(least: int, value: Any, name: str) -> int:
+    """Return a whole number of at least `least`."""
+    result = _whole(value, name)
+    if result is None or result < least:
+        raise invalid_parameter(
+            f"{name} must be a whole number from {least} on, not {_shown(value)}."
+        )
+    return result
+
+
+def pitch_exponent(value: Any) -> int:
+    """Return the exponent of a lattice step.
+
+    Raises
+    ------
+    InvalidMeshError
+        If it is no whole number.
+    LimitError
+        If it is out of range.
+    """
+    result = _whole(value, "pitch")
+    if result is None:
+        raise invalid_parameter(
+            "pitch is the exponent of ten of the lattice step, a whole number, not"
+            f" {_shown(value)}."
+        )
+    if abs(result) > MOST_PITCH:
+        raise LimitError(
+            f"pitch must be from -{MOST_PITCH} to {MOST_PITCH}, not {result}.", "too_large"
+        )
+    return result
+
+
+def optional_pitch(value: Any) -> int | None:
+    """Return the exponent of a lattice step, or None where nobody has chosen one."""
+    return None if value is None else pitch_exponent(value)
+
+
+def thread_count(value: Any) -> int:
+    """Return a number of threads, 0 for as many as there are processors."""
+    result = _whole(value, "threads")
+    if result is None or not 0 <= result <= MOST_THREADS:
+        raise invalid_parameter(
+            f"threads must be a whole number from 0 to {MOST_THREADS}, not {_shown(value)}."
+        )
+    return result
+
+
+def set_threads(n: int) -> None:
+    """Set how many threads operations use that do not say so.
+
+    Parameters
+    ----------
+    n : int
+        From 0 to 1024; 0 for as many as there are processors.
+    """
+    _set_threads(thread_count(n))
+
+
+def seed_number(value: Any) -> int:
+    """Return what names a random order: a whole number from 0 on, below 2**64."""
+    return at_least(0, value, "seed") % _SEEDS
+
+
+def winding_rule(value: Any) -> "WindingRule":
+    """Return the rule of this name."""
+    for rule in _WINDING_RULES:
+        if isinstance(value, str) and value == rule:
+            return rule
+    known = ", ".join(_WINDING_RULES)
+    raise invalid_parameter(f"Unknown winding rule {_shown(value)}; there are {known}.")
+
+
+def _whole(value: Any, name: str) -> int | None:
+    """Return a whole number of any size, or None if it has a fraction."""
+    if not _is_truth_value(value):
+        try:
+            return operator.index(value)
+        except TypeError:
+            pass
+    result = number(value, name)
+    return int(result) if result.is_integer() else None
+
+
+def _shown(value: Any) -> str:
+    """Return what a message shows of a value: its beginning and its end if it is long."""
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of thousands of digits
+        return f"a {type(value).__name__} of great length"
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST // 2]}...{text[-_LONGEST // 2 :]}"
+
+
+def _is_truth_value(value: Any) -> bool:
+    kind = getattr(getattr(value, "dtype", None), "kind", None)
+    return isinstance(value, bool) or kind == "b"

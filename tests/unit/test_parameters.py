@@ -1,0 +1,162 @@
+"""Parameters mean the same wherever they are taken."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg import bsp
+from bspcsg.parameters import at_least, not_negative, number, positive, seed_number
+
+MESH = b.cube(2).to_mesh()
+SQUARE = [[0, 0], [4, 0], [4, 4], [0, 4]]
+EDGES = np.array([[[0, 0], [1, 0]], [[1, 0], [0, 1]], [[0, 1], [0, 0]]], dtype=np.float64)
+ORIGIN, ALONG = [0.5, 0.25, -1.0], [0.0, 0.0, 1.0]
+CASTER = bsp.RayCaster(b.cube(2))
+
+#: Whatever takes a pitch, and returns what has one.
+PITCHED: dict[str, Callable[[Any], Any]] = {
+    "Solid": lambda pitch: b.Solid(*MESH, pitch=pitch),
+    "Solid.from_mesh": lambda pitch: b.Solid.from_mesh(tuple(MESH), pitch=pitch),
+    "Region": lambda pitch: bsp.Region(SQUARE, pitch=pitch),
+    "Region.from_segments": lambda pitch: bsp.Region.from_segments(EDGES, pitch=pitch),
+    "Region.polygon": lambda pitch: bsp.Region.polygon(SQUARE, pitch=pitch),
+    "Region.half_plane": lambda pitch: bsp.Region.half_plane([1, 0], 1, pitch=pitch),
+    "Intervals": lambda pitch: bsp.Intervals([(0, 1)], pitch=pitch),
+    "ObjectTree": lambda pitch: bsp.ObjectTree([[0, 1]], pitch=pitch),
+    "ObjectTree.from_mesh": lambda pitch: bsp.ObjectTree.from_mesh(tuple(MESH), pitch=pitch),
+    "ObjectTree.half_space": lambda pitch: bsp.ObjectTree.half_space([1], 1, pitch=pitch),
+    "ObjectTree.uniform": lambda pitch: bsp.ObjectTree.uniform(2, full=True, pitch=pitch),
+    "PartitionTree": lambda pitch: bsp.PartitionTree(EDGES, pitch=pitch),
+    "RayCaster": lambda pitch: bsp.RayCaster(EDGES, pitch=pitch),
+    "AdaptiveTree": lambda pitch: bsp.AdaptiveTree(EDGES, pitch=pitch),
+    "StaticTree": lambda pitch: bsp.StaticTree(EDGES, pitch=pitch),
+}
+
+THREADED: dict[str, Callable[[Any], Any]] = {
+    "set_threads": b.set_threads,
+    "first_hit": lambda threads: CASTER.first_hit(ORIGIN, ALONG, threads=threads),
+    "all_hits": lambda threads: CASTER.all_hits(ORIGIN, ALONG, threads=threads),
+    "intervals": lambda threads: CASTER.intervals(ORIGIN, ALONG, threads=threads),
+    "occluded": lambda threads: CASTER.occluded(ORIGIN, [0, 0, 3], threads=threads),
+    "occluded along": lambda threads: CASTER.occluded(ORIGIN, directions=ALONG, threads=threads),
+}
+
+SEEDED: dict[str, Callable[[Any], Any]] = {
+    "ObjectTree": lambda seed: bsp.ObjectTree(EDGES, seed=seed),
+    "PartitionTree": lambda seed: bsp.PartitionTree(EDGES, seed=seed),
+    "StaticTree": lambda seed: bsp.StaticTree(EDGES, seed=seed),
+}
+
+TREE = bsp.PartitionTree(EDGES)
+WITH_MARGIN: dict[str, Callable[[Any], Any]] = {
+    "PartitionTree": lambda margin: bsp.PartitionTree(EDGES, margin=margin).margin,
+    "region": lambda margin: TREE.region(margin=margin),
+    "cost": lambda margin: TREE.cost(margin=margin),
+}
+
+WINDING: dict[str, Callable[[Any], Any]] = {
+    "Solid": lambda winding: b.Solid(*MESH, winding=winding),
+    "Region": lambda winding: bsp.Region(SQUARE, winding=winding),
+    "Region.from_segments": lambda winding: bsp.Region.from_segments(EDGES, winding=winding),
+    "ObjectTree": lambda winding: bsp.ObjectTree(EDGES, winding=winding),
+    "intervals": lambda winding: CASTER.intervals(ORIGIN, ALONG, winding=winding),
+    "intervals on the line": lambda winding: bsp.RayCaster([0.0, 1.0]).intervals(
+        [0.0], [1.0], winding=winding
+    ),
+}
+
+
+def refusal(call: Callable[[], object]) -> b.BspcsgError:
+    with pytest.raises(b.BspcsgError) as caught:
+        call()
+    return caught.value
+
+
+@pytest.mark.parametrize("make", PITCHED.values(), ids=PITCHED)
+class TestPitch:
+    @pytest.mark.parametrize("pitch", [-6, np.int8(-6), np.int64(-6), -6.0, np.float32(-6)])
+    def test_whole_numbers_of_any_type(self, make: Callable[[Any], Any], pitch: Any) -> None:
+        assert make(pitch).pitch == -6
+
+    @pytest.mark.parametrize("pitch", [1e-9, 1.5, True, np.True_, "-9", b"-9", [1], np.nan, np.inf])
+    def test_anything_else_is_refused(self, make: Callable[[Any], Any], pitch: Any) -> None:
+        error = refusal(lambda: make(pitch))
+        assert error.code == "invalid_parameter"
+        assert "pitch" in error.message
+
+    @pytest.mark.parametrize("pitch", [-23, 23, 2**70, -(2**70)])
+    def test_out_of_range(self, make: Callable[[Any], Any], pitch: Any) -> None:
+        error = refusal(lambda: make(pitch))
+        assert (type(error), error.code) == (b.LimitError, "too_large")
+
+
+@pytest.mark.parametrize("call", THREADED.values(), ids=THREADED)
+@pytest.mark.parametrize("threads", [-1, 2**70, 1025, 1.5, "2", True, None, np.nan])
+def test_threads(call: Callable[[Any], Any], threads: Any) -> None:
+    error = refusal(lambda: call(threads))
+    assert error.code == "invalid_parameter"
+    assert "threads" in error.message
+
+
+def test_threads_of_other_types() -> None:
+    for threads in (2, np.int8(2), 2.0):
+        assert CASTER.first_hit(ORIGIN, ALONG, threads=threads).t.tolist() == [1]  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("call", SEEDED.values(), ids=SEEDED)
+def test_seeds(call: Callable[[Any], Any]) -> None:
+    for seed in (-1, 1.5, "1", True, None):
+        error = refusal(lambda seed=seed: call(seed))  # type: ignore[misc]
+        assert error.code == "invalid_parameter"
+        assert "seed" in error.message
+    call(2**70)
+
+
+def test_large_seeds_keep_all_their_digits() -> None:
+    assert seed_number(2**60 + 1) == 2**60 + 1
+    assert seed_number(2**64 + 5) == 5
+
+
+@pytest.mark.parametrize("call", WITH_MARGIN.values(), ids=WITH_MARGIN)
+def test_margins(call: Callable[[Any], Any]) -> None:
+    for margin in (-5, -1e-300, np.nan, np.inf, "1", True):
+        error = refusal(lambda margin=margin: call(margin))  # type: ignore[misc]
+        assert error.code == "invalid_parameter"
+        assert "margin" in error.message
+    call(0)
+    call(np.float32(2))
+
+
+@pytest.mark.parametrize("call", WINDING.values(), ids=WINDING)
+def test_winding_rules(call: Callable[[Any], Any]) -> None:
+    for rule in ("odd", None, 1, ["positive"], np.array(["positive", "nonzero"])):
+        error = refusal(lambda rule=rule: call(rule))  # type: ignore[misc]
+        assert error.code == "invalid_parameter"
+        assert "winding" in error.message
+    call("nonzero")
+    call(np.str_("even-odd"))
+
+
+@pytest.mark.parametrize("value", ["1", b"1", True, np.False_, None, [1, 2], 1j, "nan"])
+def test_what_is_no_number(value: Any) -> None:
+    for check in (number, positive, not_negative, lambda v, name: at_least(0, v, name)):
+        error = refusal(lambda check=check: check(value, "length"))  # type: ignore[misc]
+        assert error.code == "invalid_parameter"
+        assert error.message.startswith("length")
+
+
+def test_messages_stay_short() -> None:
+    for value in (10**400, 10**5000, "x" * 1000):
+        error = refusal(lambda value=value: number(value, "length"))  # type: ignore[misc]
+        assert len(error.message) < 200
+
+
+def test_bounds_of_numbers() -> None:
+    assert not_negative(0, "x") == 0.0
+    assert refusal(lambda: positive(0, "x")).message == "x must be above 0, not 0."
+    assert at_least(3, 2**80, "x") == 2**80
+    assert refusal(lambda: at_least(3, 2, "x")).code == "invalid_parameter"
+    assert refusal(lambda: at_least(3, 4.5, "x")).code == "invalid_parameter"
