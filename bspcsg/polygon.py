@@ -1,6 +1,7 @@
 """Plane polygons with holes: reading, orienting and triangulating them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
 from typing import Any
 
 import manifold3d
@@ -8,6 +9,10 @@ import numpy as np
 
 from ._types import FloatArray, IndexArray
 from .errors import invalid_parameter
+
+#: The share of the products of coordinates that rounding cannot reach in their sum: each has three
+#: roundings and the sum one for each doubling of their number, 2**-53 each.
+_CLEAR = 1e-12
 
 
 def contours_of(polygon: Any) -> list[FloatArray]:
@@ -17,25 +22,45 @@ def contours_of(polygon: Any) -> list[FloatArray]:
     ----------
     polygon : object
         (n, 2) points; a sequence of such contours, in any order and orientation; or an object
-        with ``exterior`` and ``interiors``, with ``geoms``, or with ``to_polygons``.
+        with ``exterior`` and ``interiors``, with ``geoms``, or with ``to_polygons``, or a sequence
+        of the first two kinds.
 
     Returns
     -------
     list of (n, 2) float64
-        Whether a contour is a hole follows from how many others contain it.
+        Shapes say which of their contours are holes. Of bare contours whether one is a hole
+        follows from how many others contain it.
 
     Raises
     ------
     InvalidMeshError
         If there is no contour, one has fewer than 3 points, or a coordinate is not finite.
     """
-    contours = [_cleaned(contour) for contour in _raw_contours(polygon)]
-    if contours and hasattr(polygon, "outlines"):
-        # Outlines of a region are oriented already.
-        return contours
-    if not contours:
+    shapes = shape_contours(polygon)
+    contours = _bare_contours(polygon) if shapes is None else shapes
+    if not contours and not hasattr(polygon, "outlines"):
         raise invalid_parameter("The polygon has no contour.")
-    return [_oriented(number, contours) for number in range(len(contours))]
+    return contours
+
+
+def shape_contours(given: Any) -> list[FloatArray] | None:
+    """Return the oriented contours of a shape or a sequence of shapes, None if it is neither.
+
+    Takes time in proportion to the points, since a shape knows its holes: the winding number of
+    the contours is the number of polygons at a point, whether these overlap or not. Parts of a
+    collection that have no area, such as lines, bound nothing and are left out.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the shape has no area by its kind, a contour has fewer than 3 points, or a coordinate is
+        not finite.
+    """
+    if _is_shape(given):
+        return _rings([given])
+    # A generator cannot be looked into and read again.
+    is_list = isinstance(given, Sequence) and not isinstance(given, (str, bytes))
+    return _rings(given) if is_list and given and all(map(_is_shape, given)) else None
 
 
 def triangulate(contours: Sequence[FloatArray]) -> IndexArray:
@@ -81,21 +106,64 @@ def signed_area(contour: FloatArray) -> float:
     return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2)
 
 
-def _raw_contours(polygon: Any) -> list[Any]:
-    if hasattr(polygon, "geoms"):
-        return [contour for part in polygon.geoms for contour in _raw_contours(part)]
-    if hasattr(polygon, "exterior"):
-        rings = [polygon.exterior, *polygon.interiors]
-        return [ring.coords for ring in rings]
+def runs_clockwise(contour: FloatArray) -> bool:
+    """Whether the area of a contour is negative, exactly."""
+    x, y = (contour - contour[0]).T
+    terms = np.concatenate([x * np.roll(y, -1), -np.roll(x, -1) * y])
+    area = float(terms.sum())
+    if abs(area) > _CLEAR * float(np.abs(terms).sum()):
+        return area < 0
+    points = [(Fraction(a), Fraction(b)) for a, b in contour.tolist()]
+    following = points[1:] + points[:1]
+    pairs = zip(points, following, strict=True)
+    return sum(a * d - c * b for (a, b), (c, d) in pairs) < 0
+
+
+def _is_shape(given: Any) -> bool:
+    return hasattr(given, "exterior") or hasattr(given, "geoms")
+
+
+def _rings(shapes: Iterable[Any]) -> list[FloatArray]:
+    contours = []
+    for part in _polygonal(shapes):
+        contours.append(_turned(_cleaned(part.exterior.coords), clockwise=False))
+        contours += [_turned(_cleaned(ring.coords), clockwise=True) for ring in part.interiors]
+    return contours
+
+
+def _polygonal(shapes: Iterable[Any]) -> Iterator[Any]:
+    """Yield the polygons of shapes and of the collections among them, in order."""
+    waiting = [(shape, False) for shape in shapes][::-1]
+    while waiting:
+        shape, inside = waiting.pop()
+        if hasattr(shape, "exterior"):
+            if not getattr(shape, "is_empty", False):
+                yield shape
+        elif hasattr(shape, "geoms"):
+            mixed = inside or getattr(shape, "geom_type", "") == "GeometryCollection"
+            waiting += [(part, mixed) for part in shape.geoms][::-1]
+        elif not inside:
+            kind = getattr(shape, "geom_type", type(shape).__name__)
+            raise invalid_parameter(f"A {kind} has no area, so it is no polygon.")
+
+
+def _turned(contour: FloatArray, *, clockwise: bool) -> FloatArray:
+    same = runs_clockwise(contour) == clockwise
+    return contour if same else np.ascontiguousarray(contour[::-1])
+
+
+def _bare_contours(polygon: Any) -> list[FloatArray]:
     if hasattr(polygon, "to_polygons"):
-        return list(polygon.to_polygons())
+        contours = [_cleaned(contour) for contour in polygon.to_polygons()]
+        # Outlines of a region are oriented already.
+        return contours if hasattr(polygon, "outlines") else _oriented(contours)
     try:
         points = list(polygon)
         # The entries of a single contour are points, whose entries are numbers.
         single = bool(points) and np.ndim(points[0][0]) == 0
     except (TypeError, IndexError) as error:
         raise invalid_parameter("A polygon is a list of points, or of contours.") from error
-    return [points] if single else points
+    return _oriented([_cleaned(contour) for contour in ([points] if single else points)])
 
 
 def _cleaned(contour: Any) -> FloatArray:
@@ -114,12 +182,28 @@ def _cleaned(contour: Any) -> FloatArray:
     return np.ascontiguousarray(points)
 
 
-def _oriented(number: int, contours: list[FloatArray]) -> FloatArray:
-    contour = contours[number]
-    others = contours[:number] + contours[number + 1 :]
-    is_hole = sum(_contains(other, contour) for other in others) % 2 == 1
-    runs_clockwise = signed_area(contour) < 0
-    return contour if is_hole == runs_clockwise else np.ascontiguousarray(contour[::-1])
+def _oriented(contours: list[FloatArray]) -> list[FloatArray]:
+    """Return the contours, those inside an odd number of others clockwise."""
+    depths = [0] * len(contours)
+    for outer, inner in _overlapping_boxes(contours):
+        depths[inner] += _contains(contours[outer], contours[inner])
+        depths[outer] += _contains(contours[inner], contours[outer])
+    pairs = zip(contours, depths, strict=True)
+    return [_turned(contour, clockwise=depth % 2 == 1) for contour, depth in pairs]
+
+
+def _overlapping_boxes(contours: list[FloatArray]) -> Iterator[tuple[int, int]]:
+    """Yield the pairs whose bounding boxes share area, found along the x axis."""
+    if not contours:
+        return
+    low = np.array([contour.min(axis=0) for contour in contours])
+    high = np.array([contour.max(axis=0) for contour in contours])
+    order = np.argsort(low[:, 0], kind="stable")
+    starts = low[order, 0]
+    for place, one in enumerate(order.tolist()):
+        later = order[place + 1 : np.searchsorted(starts, high[one, 0])]
+        met = (low[later, 1] < high[one, 1]) & (high[later, 1] > low[one, 1])
+        yield from ((one, other) for other in later[met].tolist())
 
 
 def _contains(outer: FloatArray, inner: FloatArray) -> bool:

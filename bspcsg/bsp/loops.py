@@ -55,8 +55,9 @@ def closed_loops(outlines: Any) -> list[FloatArray]:
     InvalidMeshError
         If one has fewer than three points or another shape, or a coordinate is not finite.
     """
-    if hasattr(outlines, "exterior") or hasattr(outlines, "geoms"):
-        return polygon.contours_of(outlines) if not _is_empty(outlines) else []
+    shapes = polygon.shape_contours(outlines)
+    if shapes is not None:
+        return shapes
     if hasattr(outlines, "to_polygons"):
         outlines = outlines.to_polygons()
     try:
@@ -79,10 +80,6 @@ def moved_points(factor: transform.Factor, points: FloatArray) -> FloatArray:
     space = np.column_stack([points, np.zeros(len(points))])
     moved = transform.apply(factor.matrix, space)[:, :2]
     return moved[::-1] if transform.determinant_sign(factor.matrix) < 0 else moved
-
-
-def _is_empty(shape: Any) -> bool:
-    return bool(getattr(shape, "is_empty", False))
 
 
 def _loop(points: Any, place: int) -> FloatArray:
