@@ -66,9 +66,13 @@ _SUFFIXES = (".csg", ".json", ".scad", ".py")
 _NOT_FOR = {
     "polish": (".py",),
     "on_invalid": (".py",),
+    "allow_paths": (".py",),
     "timeout": (".csg", ".json"),
     "defines": (".csg", ".json"),
 }
+
+#: Options that are not spelled as their names are.
+_SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
 
 
 @click.command(
@@ -100,6 +104,15 @@ _NOT_FOR = {
     default="error",
     show_default=True,
     help="Refuse meshes that are not closed, leave them out, or close them; not for Python.",
+)
+@click.option(
+    "--allow-path",
+    "allow_paths",
+    metavar="DIR",
+    multiple=True,
+    type=click.Path(path_type=Path, exists=True, file_okay=False),
+    help="A folder beside the script's own whose files it may read; can be repeated; not for"
+    " Python.",
 )
 @TIMEOUT
 @making
@@ -138,7 +151,7 @@ class _Run(Job):
         for name, useless in _NOT_FOR.items():
             given = context.get_parameter_source(name) is not ParameterSource.DEFAULT
             if given and self._suffix in useless:
-                option = "-D" if name == "defines" else f"--{name.replace('_', '-')}"
+                option = _SPELLED.get(name, f"--{name.replace('_', '-')}")
                 raise click.UsageError(f"{option} is not for {self._suffix} files.")
 
     def combined(self) -> "Solid":
@@ -156,7 +169,8 @@ class _Run(Job):
 
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", csg.CsgWarning)
-            options |= {name: self.settings[name] for name in ("polish", "on_invalid")}
+            names = ("polish", "on_invalid", "allow_paths")
+            options |= {name: self.settings[name] for name in names}
             with self._advised():
                 if str(self._script) == STREAM:
                     solid = csg.loads(stream_text(), name=STREAM, **options)

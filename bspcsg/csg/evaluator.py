@@ -1,7 +1,9 @@
 """Trees as geometry."""
 
-from collections.abc import Hashable
+import os
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from ..bsp import Region
 from ..counting import counted
@@ -36,7 +38,13 @@ def node_names() -> tuple[str, ...]:
 
 
 @counted
-def evaluate(tree: CsgTree, *, polish: bool = False, on_invalid: OnInvalid = "error") -> Geometry:
+def evaluate(
+    tree: CsgTree,
+    *,
+    polish: bool = False,
+    on_invalid: OnInvalid = "error",
+    allow_paths: Iterable[str | os.PathLike[str]] = (),
+) -> Geometry:
     """Return what a tree stands for: a solid, a region of the plane, or None if it is nothing.
 
     Parameters
@@ -51,13 +59,16 @@ def evaluate(tree: CsgTree, *, polish: bool = False, on_invalid: OnInvalid = "er
     on_invalid : {"error", "warn", "repair"}
         Whether polyhedra and imported meshes that are not closed are errors, or are left out with a
         warning, as OpenSCAD does, or closed by `bspcsg.repair` with one.
+    allow_paths : iterable of path
+        Folders that ``import`` and ``surface`` may read beside the script's own. Links are
+        followed before it is decided where a file lies.
 
     Raises
     ------
     FormatError
         For a node that is not supported (code "unsupported"), an argument of a wrong kind
-        ("bad_argument"), a file that is not there ("missing_file"); the message names the script,
-        line and column, which `where` holds.
+        ("bad_argument"), a file that is not there ("missing_file") or lies elsewhere
+        ("forbidden_path"); the message names the script, line and column, which `where` holds.
     InvalidMeshError, LimitError
         If a node makes no solid; the message names the place as well.
 
@@ -66,7 +77,8 @@ def evaluate(tree: CsgTree, *, polish: bool = False, on_invalid: OnInvalid = "er
     CsgWarning
         For what is left out as OpenSCAD leaves it out.
     """
-    run = Evaluation(tree.name, tree.folder, polish, on_invalid=on_invalid)
+    allowed = tuple(Path(path).resolve() for path in allow_paths)
+    run = Evaluation(tree.name, tree.folder, allowed, polish, on_invalid=on_invalid)
     result = _run(tree, run)
     if not polish or result is None or result.is_empty:
         return result

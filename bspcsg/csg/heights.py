@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._types import FloatArray
-from ..errors import FormatError, words_of
+from ..errors import FormatError
 from ..polygon import directed_edges
 from ..solid import Solid
 from ..sweep import strip
@@ -57,8 +57,9 @@ def _holds_numbers(line: str) -> bool:
 def _row(path: Path, number: int, line: str) -> list[float]:
     try:
         row = [float(word) for word in line.split()]
-    except ValueError as error:
-        raise FormatError(f"{path}:{number}: {words_of(error)}.", "syntax", [number]) from error
+    except ValueError:
+        # What stands there is not repeated: the file may hold what its reader must not see.
+        raise FormatError(f"{path}:{number}: a word is no number.", "syntax", [number]) from None
     if not np.isfinite(row).all():
         raise FormatError(f"{path}:{number}: heights must be finite.", "non_finite", [number])
     return row

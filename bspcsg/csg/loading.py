@@ -1,6 +1,7 @@
 """Scripts as solids, and solids as scripts."""
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ def load(
     *,
     polish: bool = False,
     on_invalid: OnInvalid = "error",
+    allow_paths: Iterable[str | os.PathLike[str]] = (),
     **options: Any,
 ) -> Solid:
     """Read a script as a solid.
@@ -41,6 +43,8 @@ def load(
         Undo OpenSCAD's rounding to six digits (see `bspcsg.csg.evaluate`).
     on_invalid : {"error", "warn", "repair"}
         What to do about meshes that are not closed (see `bspcsg.csg.evaluate`).
+    allow_paths : iterable of path
+        Folders beside the script's own whose files it may read.
     **options
         For `.scad`: ``defines``, a dict of variables.
 
@@ -58,7 +62,8 @@ def load(
         For what is left out as OpenSCAD leaves it out.
     """
     tree = read_tree(path, **options)
-    return _solid(evaluate(tree, polish=polish, on_invalid=on_invalid), tree.name)
+    body = evaluate(tree, polish=polish, on_invalid=on_invalid, allow_paths=allow_paths)
+    return _solid(body, tree.name)
 
 
 @counted
@@ -67,6 +72,7 @@ def loads(
     *,
     polish: bool = False,
     on_invalid: OnInvalid = "error",
+    allow_paths: Iterable[str | os.PathLike[str]] = (),
     folder: str | Path | None = None,
     name: str = "<csg>",
 ) -> Solid:
@@ -79,7 +85,8 @@ def loads(
     7.0
     """
     tree = parse(text, name, folder)
-    return _solid(evaluate(tree, polish=polish, on_invalid=on_invalid), name)
+    body = evaluate(tree, polish=polish, on_invalid=on_invalid, allow_paths=allow_paths)
+    return _solid(body, name)
 
 
 def read_tree(path: str | os.PathLike[str], **options: Any) -> CsgTree:

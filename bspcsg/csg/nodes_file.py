@@ -57,7 +57,23 @@ def surface(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 def _path(arguments: Arguments, run: Evaluation) -> Path:
     name = arguments.text("file")
     path = run.folder / name
+    # What lies elsewhere is refused first, so that nobody learns whether it is there.
+    if name and "\0" not in name and not _is_allowed(path, run):
+        message = (
+            f"the file “{name}” lies outside the script's folder; --allow-path DIR (in Python,"
+            " allow_paths) names further folders that may be read."
+        )
+        raise arguments.error(message, "forbidden_path")
     if not name or "\0" in name or not path.is_file():
         message = f"there is no file “{name}”; names are relative to the script's folder."
         raise arguments.error(message, "missing_file")
     return path
+
+
+def _is_allowed(path: Path, run: Evaluation) -> bool:
+    """Whether a file lies where the script may read, wherever links lead."""
+    try:
+        target = path.resolve()
+        return any(target.is_relative_to(one) for one in (run.folder.resolve(), *run.allowed))
+    except (OSError, RuntimeError):  # links that lead in a circle
+        return False

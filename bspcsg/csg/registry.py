@@ -35,6 +35,8 @@ class Evaluation:
         Its name, for errors.
     folder : Path
         Where imported files are looked for.
+    allowed : tuple of Path
+        Folders beside it, links followed, in which imported files may lie.
     polish : bool
         Whether matrices are made exact rotations where they nearly are.
     pitch : int, optional
@@ -47,6 +49,7 @@ class Evaluation:
 
     script: str = "<csg>"
     folder: Path = field(default_factory=Path)
+    allowed: tuple[Path, ...] = ()
     polish: bool = False
     pitch: int | None = None
     on_invalid: OnInvalid = "error"

@@ -73,6 +73,18 @@ def test_what_is_left_out_is_told(folder: Path, capsys: Capture) -> None:
     assert b.load("x.off").volume_exact == 1
 
 
+def test_scripts_read_no_other_folders_unless_allowed(folder: Path, capsys: Capture) -> None:
+    Path("own").mkdir()
+    Path("other").mkdir()
+    Path("other/table.dat").write_text("1 1\n1 1\n")
+    Path("own/x.csg").write_text('surface(file = "../other/table.dat");')
+    code, _, err = ran(capsys, "run", "own/x.csg", "-o", "x.off")
+    assert code == 3 and "own/x.csg:1:1: surface()" in err and "--allow-path" in err
+    options = ("--allow-path", "own", "--allow-path", "other")
+    assert ran(capsys, "run", "own/x.csg", "-o", "x.off", *options)[0] == 0
+    assert b.load("x.off").volume == 1
+
+
 def test_time_limits_are_code_124(folder: Path, capsys: Capture) -> None:
     Path("slow.py").write_text("import time\ntime.sleep(60)\n")
     code, _, err = ran(capsys, "run", "slow.py", "-o", "x.off", "--timeout", "0.5")
@@ -99,6 +111,8 @@ def test_nothing_is_refused_unless_allowed(folder: Path, capsys: Capture) -> Non
         (["bad.csg", "-o", "x.step"], 3, "curved surfaces"),
         (["bad.csg", "-o", "no/x.off"], 5, "no folder"),
         (["bad.py", "-o", "x.off", "--polish"], 2, "--polish is not for .py"),
+        (["bad.py", "-o", "x.off", "--allow-path", "."], 2, "--allow-path is not for .py"),
+        (["bad.csg", "-o", "x.off", "--allow-path", "no"], 2, "'no' does not exist"),
         (["bad.csg", "-o", "x.off", "--timeout", "1"], 2, "--timeout is not for .csg"),
         (["bad.csg", "-o", "x.off", "--timeout", "0"], 2, "--timeout"),
     ],

@@ -348,6 +348,54 @@ def test_imports_are_relative_to_the_script(tmp_path: Path) -> None:
         assert b.load(tmp_path / "all.csg").volume == 8
 
 
+def inside_and_outside(folder: Path) -> Path:
+    """Return a script's folder beside which, and by a link in which, lie other files."""
+    own = folder / "own"
+    (own / "parts").mkdir(parents=True)
+    (own / "parts" / "table.dat").write_text("1 1\n1 1\n")
+    (folder / "table.dat").write_text("secret 1\n1 1\n")
+    (folder / "heights.dat").write_text("1 1\n1 1\n")
+    (own / "link.dat").symlink_to(folder / "heights.dat")
+    (own / "round.dat").symlink_to(own / "round.dat")
+    return own
+
+
+@pytest.mark.parametrize("name", ["parts/table.dat", "parts/../parts/table.dat"])
+def test_files_in_the_scripts_folder_are_read(tmp_path: Path, name: str) -> None:
+    own = inside_and_outside(tmp_path)
+    assert csg.loads(f'surface("{name}");', folder=own).volume == 1
+
+
+@pytest.mark.parametrize("node", ["surface", "import"])
+@pytest.mark.parametrize(
+    "name", ["../heights.dat", "../none.dat", "link.dat", "parts/../../heights.dat", "/etc/passwd"]
+)
+def test_files_elsewhere_are_not_even_looked_for(tmp_path: Path, node: str, name: str) -> None:
+    own = inside_and_outside(tmp_path)
+    with pytest.raises(b.FormatError, match="outside the script's folder") as caught:
+        csg.loads(f'{node}("{name}");', folder=own)
+    assert caught.value.code == "forbidden_path" and caught.value.where == (1, 1)
+
+
+def test_further_folders_can_be_allowed(tmp_path: Path) -> None:
+    own = inside_and_outside(tmp_path)
+    for name in ("../heights.dat", "link.dat"):
+        text = f'surface("{name}");'
+        assert csg.loads(text, folder=own, allow_paths=[tmp_path]).volume == 1
+        assert csg.evaluate(csg.parse(text, folder=own), allow_paths=[str(tmp_path)]) is not None
+    with pytest.raises(b.FormatError, match="outside"):
+        csg.loads('surface("../heights.dat");', folder=own, allow_paths=[own / "parts"])
+    with pytest.raises(b.FormatError):
+        csg.loads('surface("round.dat");', folder=own)
+
+
+def test_errors_do_not_repeat_what_stands_in_files(tmp_path: Path) -> None:
+    own = inside_and_outside(tmp_path)
+    with pytest.raises(b.FormatError, match=r"table.dat:1: a word is no number") as caught:
+        csg.loads('surface("../table.dat");', folder=own, allow_paths=[tmp_path])
+    assert "secret" not in str(caught.value)
+
+
 @pytest.mark.parametrize(
     ("text", "code", "says"),
     [
