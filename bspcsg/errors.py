@@ -4,8 +4,8 @@ Every failure is a `BspcsgError` with a stable `code`, the places it concerns in
 sentence that says what is wrong and what to do.
 """
 
-from collections.abc import Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 
 from . import _core
@@ -113,6 +113,30 @@ def from_core(error: "_core.CoreError") -> BaseException:
     advice = _ADVICE.get("internal" if kind is InternalError else error.code, "")
     sentence = error.message.rstrip().rstrip(".")
     return kind(f"{sentence}. {advice}".rstrip(), error.code, error.where)
+
+
+@contextmanager
+def format_errors(name: str, what: str) -> Iterator[None]:
+    """Turn whatever a parser raises inside the block into a `FormatError`, its cause kept.
+
+    Parsers of other libraries raise anything on damaged files, running out of memory or of stack
+    among it.
+
+    Parameters
+    ----------
+    name : str
+        The file's.
+    what : str
+        What it is read as, such as ``"3MF"``.
+    """
+    try:
+        yield
+    except BspcsgError:
+        raise
+    except Exception as error:
+        reason = f"{type(error).__name__}: {words_of(error)}"
+        message = f"{name}: this file cannot be read as {what} ({reason})."
+        raise FormatError(message, "malformed") from error
 
 
 class _CoreErrors:

@@ -16,7 +16,7 @@ from ._types import FloatArray, IndexArray, Scalar, Vector
 from .counting import counted
 from .errors import InvalidMeshError, invalid_parameter
 from .leaf import MeshLeaf, PlaneLeaf
-from .parameters import at_least, number, positive
+from .parameters import number, positive, refuse_many_corners, sides_around
 from .polygon import triangulate
 from .profile import extrude, revolve
 from .solid import Solid
@@ -94,8 +94,9 @@ def sphere(r: Scalar, segments: int = 32) -> Solid:
     >>> b.sphere(1, segments=4).to_mesh()
     Mesh(6 vertices, 8 faces)
     """
-    radius, around = positive(r, "r"), at_least(3, segments, "segments")
+    radius, around = positive(r, "r"), sides_around(3, segments, "segments")
     bands = max(around // 2, 2)
+    refuse_many_corners(around * bands, "This sphere")
     angles = unit_circle(2 * bands)[: bands + 1]
     # From pole to pole; both poles are on the axis and become one vertex each.
     profile = np.column_stack([angles[:, 1], -angles[:, 0]]) * radius
@@ -136,7 +137,7 @@ def cylinder(
     low, high = (_radius(given, r) for given in (r1, r2))
     if low == high == 0:
         raise invalid_parameter("A cylinder needs a radius above 0.")
-    height, around = positive(h, "h"), at_least(3, segments, "segments")
+    height, around = positive(h, "h"), sides_around(3, segments, "segments")
     base = -height / 2 if center else 0.0
     ends = np.array([[low, base], [high, base + height]])
     vertices, sides = surface_of_revolution(ends, around, closed=False)
@@ -175,10 +176,11 @@ def torus(r: Scalar, tube: Scalar, *, segments: int = 32, tube_segments: int = 1
     major, minor = positive(r, "r"), positive(tube, "tube")
     if minor >= major:
         raise invalid_parameter("The tube of a torus must be thinner than its ring's radius.")
-    profile = unit_circle(at_least(3, tube_segments, "tube_segments")) * minor + (major, 0)
-    return from_arrays(
-        *surface_of_revolution(profile, at_least(3, segments, "segments"), closed=True)
-    )
+    along = sides_around(3, segments, "segments")
+    across = sides_around(3, tube_segments, "tube_segments")
+    refuse_many_corners(along * across, "This torus")
+    profile = unit_circle(across) * minor + (major, 0)
+    return from_arrays(*surface_of_revolution(profile, along, closed=True))
 
 
 @counted
@@ -202,7 +204,7 @@ def prism(sides: int, h: Scalar, r: Scalar, *, center: bool = False) -> Solid:
     >>> b.prism(4, h=1, r=1).volume
     2.0
     """
-    return cylinder(h, r, segments=at_least(3, sides, "sides"), center=center)
+    return cylinder(h, r, segments=sides_around(3, sides, "sides"), center=center)
 
 
 @counted

@@ -9,7 +9,7 @@ from ._types import FloatArray, IndexArray, Scalar
 from .counting import counted
 from .errors import invalid_parameter
 from .leaf import MeshLeaf
-from .parameters import at_least, positive
+from .parameters import positive, refuse_many_corners, sides_around
 from .polygon import contours_of, directed_edges, triangulate
 from .solid import Solid
 from .sweep import RingLayout, strip
@@ -76,9 +76,10 @@ def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = 32) -> Solid
     if turn > 360:
         raise invalid_parameter(f"angle must not exceed 360, not {turn:g}.")
     full = turn == 360
-    columns = at_least(3 if full else 1, segments, "segments") + (not full)
+    columns = sides_around(3 if full else 1, segments, "segments") + (not full)
     contours = contours_of(polygon)
     points = np.concatenate(contours)
+    refuse_many_corners(columns * len(points), "This body")
     if points[:, 0].min() < 0:
         raise invalid_parameter("A revolved polygon must not cross the axis: x below 0.")
     directions = np.array([cos_sin(turn * k / int(segments)) for k in range(columns)])

@@ -18,7 +18,7 @@ import numpy as np
 
 from ._types import FloatArray, Scalar, Vector
 from .errors import invalid_parameter
-from .parameters import number
+from .parameters import number, shown
 
 #: Largest number of lattice steps from the origin.
 LATTICE_REACH = 2**53
@@ -342,7 +342,7 @@ def _axis(axis: str | Vector) -> Vector:
     if not isinstance(axis, str):
         return axis
     if axis.lower() not in _AXES:
-        raise invalid_parameter(f"An axis is 'x', 'y', 'z' or a vector, not {axis!r}.")
+        raise invalid_parameter(f"An axis is 'x', 'y', 'z' or a vector, not {shown(axis)}.")
     return _AXES[axis.lower()]
 
 
@@ -369,9 +369,9 @@ def vector3(value: Any, name: str, *, spread: bool = False) -> FloatArray:
     try:
         vector = np.array(value, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise invalid_parameter(f"The {name} must be three numbers, not {value!r}.") from error
+        raise invalid_parameter(f"The {name} must be three numbers, not {shown(value)}.") from error
     if spread and vector.ndim == 0:
         vector = np.full(3, vector)
     if vector.shape != (3,) or not np.isfinite(vector).all():
-        raise invalid_parameter(f"The {name} must be three finite numbers, not {value!r}.")
+        raise invalid_parameter(f"The {name} must be three finite numbers, not {shown(value)}.")
     return vector

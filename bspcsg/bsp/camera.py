@@ -8,7 +8,7 @@ import numpy as np
 
 from .._types import FloatArray
 from ..errors import invalid_parameter
-from ..parameters import number, positive
+from ..parameters import number, positive, shown
 
 #: Views by name; z is up. "front" looks along +y, with x to the right; "iso" looks from the right
 #: front top.
@@ -238,7 +238,7 @@ def vector(value: Any, name: str) -> FloatArray:
     except (TypeError, ValueError) as error:
         raise invalid_parameter(f"The {name} must be three numbers.") from error
     if result.shape != (3,) or not np.isfinite(result).all():
-        raise invalid_parameter(f"The {name} must be three finite numbers, not {value!r}.")
+        raise invalid_parameter(f"The {name} must be three finite numbers, not {shown(value)}.")
     return result
 
 

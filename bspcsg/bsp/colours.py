@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from .._types import FloatArray
 from ..errors import invalid_parameter
+from ..parameters import shown
 
 #: Red, green, blue (and cover) from 0 to 255.
 ColourArray = npt.NDArray[np.uint8]
@@ -30,7 +31,9 @@ def colour(value: Any, name: str = "colour") -> ColourArray:
         try:
             return np.frombuffer(bytes.fromhex(wide), dtype=np.uint8).reshape(3).copy()
         except ValueError as error:
-            message = f"The {name} must be like '#3070b0' or three numbers from 0 to 1: {value!r}."
+            message = (
+                f"The {name} must be like '#3070b0' or three numbers from 0 to 1: {shown(value)}."
+            )
             raise invalid_parameter(message) from error
     single: ColourArray = colours(
         np.asarray(value)[None] if np.ndim(value) == 1 else value, 1, name

@@ -3,15 +3,15 @@
 import io
 import os
 from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .._types import FloatArray, Scalar, WindingRule
-from ..errors import FormatError, words_of
+from ..errors import FormatError, format_errors, words_of
 from ..interop import optional
 from ..io.atomic import write_file
+from ..io.source import limited_content
 from ..parameters import positive
 from .region import Region
 
@@ -51,12 +51,13 @@ def load_dxf(
     chord = positive(tolerance, "tolerance")
     document = read_document(path)
     wanted = None if layers is None else set(layers)
-    entities = [
-        entity
-        for entity in document.modelspace().query(_OUTLINES)
-        if wanted is None or entity.dxf.layer in wanted
-    ]
-    chains = [chain for entity in entities for chain in _flattened(entity, chord)]
+    with format_errors(os.fspath(path), "DXF"):
+        entities = [
+            entity
+            for entity in document.modelspace().query(_OUTLINES)
+            if wanted is None or entity.dxf.layer in wanted
+        ]
+        chains = [chain for entity in entities for chain in _flattened(entity, chord)]
     return Region(_closed(chains, os.fspath(path)), winding=winding, pitch=pitch)
 
 
@@ -92,14 +93,10 @@ def read_document(path: str | os.PathLike[str]) -> Any:
     """Return the ezdxf document of a file; `FormatError` if it is none."""
     ezdxf = optional("ezdxf", "2d")
     name = os.fspath(path)
+    text = limited_content(name).decode("utf-8", errors="surrogateescape")
     try:
-        text = Path(name).read_bytes().decode("utf-8", errors="surrogateescape")
         return ezdxf.read(io.StringIO(text.replace("\r\n", "\n")))
-    except OSError as error:
-        raise FormatError(
-            f"{name}: cannot read this file: {error.strerror}.", "unreadable"
-        ) from error
-    except (ezdxf.DXFError, ValueError, LookupError, TypeError, AttributeError) as error:
+    except Exception as error:  # what ezdxf raises on damaged files is of any kind
         raise FormatError(f"{name}: this is no valid DXF: {words_of(error)}.", "syntax") from error
 
 

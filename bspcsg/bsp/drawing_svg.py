@@ -3,7 +3,6 @@
 import io
 import os
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 from xml.parsers import expat
@@ -11,14 +10,12 @@ from xml.parsers import expat
 import numpy as np
 
 from .._types import FloatArray, Scalar, WindingRule
-from ..errors import FormatError, words_of
+from ..errors import FormatError, format_errors, words_of
 from ..interop import optional
 from ..io.atomic import write_file
+from ..io.source import limited_content
 from ..parameters import positive
 from .region import Region
-
-#: Files larger than this are refused, in bytes.
-_LARGEST = 1 << 28
 
 
 def load_svg(
@@ -55,7 +52,8 @@ def load_svg(
     region = Region(pitch=pitch)
     for shape in shown_shapes(path):
         if _is_filled(shape):
-            loops = [corners for corners, _ in outlines_of(shape, chord) if len(corners) >= 3]
+            with format_errors(os.fspath(path), "SVG"):
+                loops = [corners for corners, _ in outlines_of(shape, chord) if len(corners) >= 3]
             region = region | Region(loops, winding=winding or _rule(shape), pitch=pitch)
     return region
 
@@ -130,14 +128,7 @@ def _path_of(points: FloatArray) -> str:
 def _checked(path: str | os.PathLike[str]) -> bytes:
     """Return the file's bytes if they are XML without a document type."""
     name = os.fspath(path)
-    try:
-        if Path(name).stat().st_size > _LARGEST:
-            raise FormatError(f"{name}: the file is larger than 256 MB.", "too_large")
-        data = Path(name).read_bytes()
-    except OSError as error:
-        raise FormatError(
-            f"{name}: cannot read this file: {error.strerror}.", "unreadable"
-        ) from error
+    data = limited_content(name)
     parser = expat.ParserCreate()
 
     def refuse(*_: object) -> None:
@@ -154,6 +145,9 @@ def _checked(path: str | os.PathLike[str]) -> bytes:
             "syntax",
             [error.lineno],
         ) from None
+    except (LookupError, ValueError) as error:
+        message = f"{name}:1: the XML cannot be decoded: {words_of(error)}."
+        raise FormatError(message, "syntax", [1]) from error
     return data
 
 

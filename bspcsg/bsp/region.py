@@ -10,7 +10,7 @@ import numpy as np
 from .. import _core, interop, transform
 from .._types import FloatArray, Scalar, Vector, WindingRule
 from ..errors import LimitError, UnboundedError, core_errors, invalid_parameter
-from ..parameters import at_least, number, positive, winding_rule
+from ..parameters import number, positive, sides_around, winding_rule
 from ..primitives import extrude, revolve
 from ..solid import Solid
 from ..sweep import unit_circle
@@ -107,7 +107,7 @@ class Region(PlaneQueries, Settled):
     @classmethod
     def circle(cls, r: Scalar, segments: int = 64) -> Self:
         """Return a regular polygon with its corners on the circle about the origin."""
-        return cls(unit_circle(at_least(3, segments, "segments")) * positive(r, "r"))
+        return cls(unit_circle(sides_around(3, segments, "segments")) * positive(r, "r"))
 
     @classmethod
     def polygon(cls, points: Any, *, pitch: int | None = None) -> Self:
@@ -221,7 +221,7 @@ class Region(PlaneQueries, Settled):
         See `bspcsg.revolve`; empty for an empty region.
         """
         full = positive(angle, "angle") >= 360
-        at_least(3 if full else 1, segments, "segments")
+        sides_around(3 if full else 1, segments, "segments")
         if not self.outlines:
             return Solid.empty()
         return revolve(self, angle=angle, segments=segments)

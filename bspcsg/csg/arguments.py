@@ -3,12 +3,10 @@
 from typing import Any
 
 from ..errors import FormatError
+from ..parameters import MOST_CORNERS, MOST_SEGMENTS
 from .source import error_at
 from .tree import Node, Value
 from .writer import value_text
-
-#: More corners than this in one body are refused, before memory runs out.
-MOST_CORNERS = 4_000_000
 
 #: Larger numbers stand for no length or angle; products of three still are doubles.
 LARGEST = 1e100
@@ -117,6 +115,13 @@ class Arguments:
         """Return a number of corners, or raise an error if it would not fit into memory."""
         if not count <= MOST_CORNERS:
             message = f"{what} would take more than {MOST_CORNERS:,} corners."
+            raise self.error(message, "too_large")
+        return int(count)
+
+    def sides(self, count: float, what: str) -> int:
+        """Return a number of sides around, or raise an error if it is absurd."""
+        if not count <= MOST_SEGMENTS:
+            message = f"{what} would have more than {MOST_SEGMENTS:,} sides."
             raise self.error(message, "too_large")
         return int(count)
 

@@ -10,6 +10,7 @@ import numpy as np
 from .._types import FloatArray
 from ..bsp import Region
 from ..bsp.drawing_dxf import read_document
+from ..errors import format_errors
 from .tessellation import Fineness
 
 #: Blocks in blocks in blocks: deeper ones are left out.
@@ -43,13 +44,14 @@ def dxf_region(
     FormatError
         If the file is no DXF.
     """
-    space = read_document(path).modelspace()
-    entities = [e for e in space if not layer or e.dxf.layer == layer]
-    chains = [
-        (np.array(chain, dtype=np.float64) - origin) * scale
-        for entity in entities
-        for chain in _chains(entity, fineness, abs(scale), 0)
-    ]
+    document = read_document(path)
+    with format_errors(str(path), "DXF"):
+        entities = [e for e in document.modelspace() if not layer or e.dxf.layer == layer]
+        chains = [
+            (np.array(chain, dtype=np.float64) - origin) * scale
+            for entity in entities
+            for chain in _chains(entity, fineness, abs(scale), 0)
+        ]
     proper = [chain for chain in chains if len(chain) > 1]
     loops = [loop for loop in _joined(proper) if len(np.unique(loop, axis=0)) >= 3]
     return Region(loops, winding="even-odd")

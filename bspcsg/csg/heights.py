@@ -7,6 +7,7 @@ import numpy as np
 
 from .._types import FloatArray
 from ..errors import FormatError
+from ..io.source import limited_content
 from ..polygon import directed_edges
 from ..solid import Solid
 from ..sweep import strip
@@ -36,12 +37,7 @@ def read_heights(path: Path) -> Heights:
         If the file cannot be read, a word is no finite number, or there are fewer than two rows or
         columns.
     """
-    try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError as error:
-        raise FormatError(
-            f"{path}: cannot read this file: {error.strerror}.", "unreadable"
-        ) from error
+    lines = limited_content(path).decode("utf-8", errors="replace").splitlines()
     rows = [_row(path, k, line) for k, line in enumerate(lines, 1) if _holds_numbers(line)]
     columns = max(map(len, rows), default=0)
     if len(rows) < 2 or columns < 2:

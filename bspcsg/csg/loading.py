@@ -9,7 +9,7 @@ from ..bsp import Region
 from ..counting import counted
 from ..errors import BspcsgError, FormatError
 from ..io.atomic import write_file
-from ..io.source import content_of
+from ..io.source import limited_content
 from ..solid import Solid
 from .evaluator import evaluate
 from .from_solid import tree_of
@@ -18,9 +18,6 @@ from .parser import parse
 from .registry import Geometry, OnInvalid
 from .tree import CsgTree
 from .writer import written
-
-#: Files larger than this are refused, in bytes.
-_LARGEST = 1 << 28
 
 
 @counted
@@ -113,12 +110,7 @@ def read_tree(path: str | os.PathLike[str], **options: Any) -> CsgTree:
 
 def _text(file: Path, name: str) -> str:
     try:
-        if file.stat().st_size > _LARGEST:
-            raise FormatError(f"{name}: the file is larger than {_LARGEST:,} bytes.", "too_large")
-        return content_of(file).decode("utf-8")
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error
+        return limited_content(file).decode("utf-8")
     except UnicodeDecodeError as error:
         message = f"{name}: this is no text: byte {error.start} is no UTF-8."
         raise FormatError(message, "syntax", [error.start]) from error

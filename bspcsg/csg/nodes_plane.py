@@ -31,7 +31,7 @@ def circle(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     r = arguments.number("d") / 2 if "d" in arguments else arguments.number("r", 1.0)
     if r <= 0:
         return Region.empty()
-    sides = arguments.limited(Fineness.of(arguments).fragments(r), "this circle")
+    sides = arguments.sides(Fineness.of(arguments).fragments(r), "this circle")
     return Region(unit_circle(sides) * r)
 
 
@@ -64,7 +64,7 @@ def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     delta = arguments.number("r", 1.0) if is_round else arguments.number("delta")
     if figure.is_empty or delta == 0:
         return figure
-    sides = arguments.limited(Fineness.of(arguments).fragments(abs(delta)), "a corner")
+    sides = arguments.sides(Fineness.of(arguments).fragments(abs(delta)), "a corner")
     figure = cleaned(run.parts_of(figure)) if is_combined(owner) else figure
     return figure if figure.is_empty else grown(figure, delta, _join(is_round, arguments), sides)
 

@@ -32,7 +32,7 @@ def sphere(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     around = Fineness.of(arguments).fragments(r)
     rings = (around + 1) // 2
     arguments.limited(around * rings, "this sphere")
-    return _sphere(r, int(around), int(rings))
+    return _sphere(r, arguments.sides(around, "this sphere"), int(rings))
 
 
 def _sphere(r: float, around: int, rings: int) -> Solid:
@@ -65,7 +65,7 @@ def cylinder_node(owner: Node, children: list[Geometry], run: Evaluation) -> Geo
     if h <= 0 or min(low, high) < 0 or max(low, high) <= 0:
         return Solid.empty()
     sides = Fineness.of(arguments).fragments(max(low, high))
-    segments = arguments.limited(sides, "this cylinder")
+    segments = arguments.sides(sides, "this cylinder")
     return cylinder(h, r1=low, r2=high, segments=segments, center=arguments.flag("center"))
 
 

@@ -178,7 +178,7 @@ def rotate_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Ge
     if left < 0 < right:
         message = f"its children must not cross the axis: x runs from {left:g} to {right:g}."
         raise arguments.error(message)
-    around = Fineness.of(arguments).fragments(max(right, -left))
+    around = arguments.sides(Fineness.of(arguments).fragments(max(right, -left)), "this turn")
     segments = max(int(around * abs(angle) / 360), 1)
     arguments.limited(segments * sum(map(len, figure.to_polygons())), "this turn")
     return _turned(figure, angle, segments, left < 0)

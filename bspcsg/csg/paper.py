@@ -11,6 +11,7 @@ import numpy as np
 from .._types import FloatArray
 from ..bsp import Region
 from ..bsp.drawing_svg import outlines_of, shown_shapes
+from ..errors import format_errors
 from .offsetting import stroked
 
 _MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6}
@@ -62,7 +63,8 @@ def svg_region(path: Path, dpi: float, centered: bool) -> Region:
 def _drawn(path: Path) -> Region:
     region = Region()
     for shape in shown_shapes(path):
-        outlines = list(outlines_of(shape, _CHORD))
+        with format_errors(str(path), "SVG"):
+            outlines = list(outlines_of(shape, _CHORD))
         closed = [corners for corners, is_closed in outlines if is_closed or _meets(corners)]
         loops = [corners for corners in closed if len(corners) >= 3]
         region = region | Region(loops, winding="even-odd")
@@ -88,7 +90,9 @@ def _page(path: Path, dpi: float) -> _Page:
     # `load_svg` has refused files that declare a document type or an entity.
     _, root = next(iter(ElementTree.iterparse(path, events=("start",))))
     width, height = (_length(root.get(name, ""), dpi) for name in ("width", "height"))
-    box = [float(word) for word in re.split(r"[\s,]+", root.get("viewBox", "").strip()) if word]
+    with format_errors(str(path), "SVG"):
+        words = re.split(r"[\s,]+", root.get("viewBox", "").strip())
+        box = [float(word) for word in words if word]
     if len(box) != 4 or min(box[2:]) <= 0:
         return _Page(1.0, 0.0, height or 0.0)
     left, top, wide, high = box

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from ..errors import Finding, FormatError
+from ..errors import Finding, FormatError, format_errors
 from ..mesh import Mesh
 from . import glb, obj, off, ply, stl, threemf, threemf_write, vtk
 from .atomic import write_file
@@ -148,7 +148,8 @@ def decoded(name: str, data: bytes, suffix: str) -> RawMesh:
     """Return the mesh in the bytes of a file; `name` is for errors, the rest as for `read`."""
     if not data:
         raise FormatError(f"{name}: the file is empty.", "empty_file")
-    raw = FORMATS[suffix.lower()].read(Source(name, data))
+    with format_errors(name, suffix.removeprefix(".").upper()):
+        raw = FORMATS[suffix.lower()].read(Source(name, data))
     return replace(raw, name=raw.name or Path(name).stem)
 
 

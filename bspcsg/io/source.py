@@ -1,6 +1,7 @@
 """A file's bytes with the name and the places that errors about it carry."""
 
 import errno
+import os
 import stat
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -16,6 +17,13 @@ BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 #: How much of an offending word an error quotes.
 _QUOTED = 24
+
+#: Bytes of a script or drawing: parsed, each becomes ten or more, so that this fills 3 GB.
+_LARGEST_TEXT = 1 << 28
+
+#: Letters of a whole number: twice as many as 64 bits need, so that errors can name what is a bit
+#: too large.
+_MOST_DIGITS = 40
 
 
 @dataclass(frozen=True)
@@ -96,6 +104,25 @@ def content_of(path: Path) -> bytes:
     return path.read_bytes()
 
 
+def limited_content(path: str | os.PathLike[str]) -> bytes:
+    """Return the bytes of a script or drawing.
+
+    Raises
+    ------
+    FormatError
+        If it cannot be read or is larger than 256 MiB.
+    """
+    name = os.fspath(path)
+    try:
+        data = content_of(Path(name)) if Path(name).stat().st_size <= _LARGEST_TEXT else None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or type(error).__name__
+        raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error
+    if data is None or len(data) > _LARGEST_TEXT:
+        raise FormatError(f"{name}: the file is larger than {_LARGEST_TEXT:,} bytes.", "too_large")
+    return data
+
+
 def quoted(words: bytes) -> str:
     """Return the beginning of some bytes in quotes, fit for a message."""
     decoded = words.decode("utf-8", "replace")
@@ -106,7 +133,7 @@ def quoted(words: bytes) -> str:
 
 def whole(word: bytes) -> int:
     """Return a whole number; ``1_0``, which Python takes for 10, is none."""
-    if b"_" in word:
+    if b"_" in word or len(word) > _MOST_DIGITS:
         raise ValueError(word)
     return int(word)
 

@@ -8,6 +8,7 @@ import io
 import posixpath
 import zipfile
 import zlib
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TypeAlias
 
@@ -26,8 +27,22 @@ _DEEPEST = 64
 #: How many triangles a build may have.
 _MOST_TRIANGLES = 1 << 27
 
-#: Unpacked size that a part may have, in bytes.
-_LARGEST_PART = 1 << 31
+#: Parts in an archive: some 16 MB of its directory. The largest projects of slicers have hundreds.
+_MOST_PARTS = 1 << 14
+
+#: What the parts may unpack to, in bytes: 64 times the archive, and this much for small ones. The
+#: XML of meshes shrinks to a fifth, that of one small part written again and again to a 13th, and
+#: a part of nothing but one letter to a thousandth.
+_MOST_GROWTH, _SMALL = 64, 1 << 26
+
+#: And 2 GiB in all, some 20 million triangles.
+_LARGEST = 1 << 31
+
+#: Bytes that are unpacked at a time.
+_CHUNK = 1 << 20
+
+#: What begins the entry of a part in an archive's directory.
+_ENTRY = b"PK\x01\x02"
 
 #: What the standard library raises on damaged archives.
 _DAMAGES = (
@@ -51,6 +66,9 @@ def read(source: Source) -> RawMesh:
     FormatError
         If the archive is damaged, has no model, or the model is not valid.
     """
+    if source.data.count(_ENTRY) > _MOST_PARTS:
+        message = f"the archive has more than {_MOST_PARTS:,} parts."
+        raise source.error(message, "too_large")
     try:
         with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
             package = _Package(source, archive)
@@ -73,6 +91,8 @@ class _Package:
         self._source = source
         self._archive = archive
         self._parts: dict[str, Part] = {}
+        self._entries = {entry.filename.lower(): entry for entry in archive.infolist()}
+        self._left = min(max(_MOST_GROWTH * len(source.data), _SMALL), _LARGEST)
 
     def root(self) -> str:
         """Return the name of the part that the package's relationships call its model."""
@@ -83,7 +103,7 @@ class _Package:
                 targets.append(_part_name(attributes.get("Target", "")))
 
         if "_rels/.rels" in self._archive.namelist():
-            parse_xml(self._opened("_rels/.rels"), start)
+            parse_xml(*self._opened("_rels/.rels"), start)
         return targets[0] if targets else "3D/3dmodel.model"
 
     def assemble(self, root: str) -> RawMesh:
@@ -97,10 +117,10 @@ class _Package:
             if model.objects[item].kind != "model":
                 skipped += 1
                 continue
-            pieces.append(_moved(model, item, transforms))
-            triangles += len(pieces[-1].faces)
+            triangles += len(model.objects[item].triangles)
             if triangles > _MOST_TRIANGLES:
                 raise self._source.error("the build has too many triangles.", "too_large")
+            pieces.append(_moved(model, item, transforms))
         findings += _ignored(beams, "beams")
         findings += _ignored(skipped, "objects that are support or surface")
         dropped = sorted(set().union(*(part.dropped for part in self._parts.values())))
@@ -133,20 +153,34 @@ class _Package:
 
     def _part(self, name: str) -> Part:
         if name not in self._parts:
-            reader = PartReader(self._opened(name), _part_name)
+            reader = PartReader(*self._opened(name), _part_name)
             self._parts[name] = reader.read()
         return self._parts[name]
 
-    def _opened(self, name: str) -> Source:
-        """Return the bytes of a part."""
-        entries = {entry.filename.lower(): entry for entry in self._archive.infolist()}
-        entry = entries.get(name.lower())
+    def _opened(self, name: str) -> tuple[Source, Iterator[bytes]]:
+        """Return what errors about a part name, and its bytes."""
+        entry = self._entries.get(name.lower())
         if entry is None:
             raise self._source.error(f"the archive has no part {name}.", "truncated")
-        if entry.file_size > _LARGEST_PART:
-            raise self._source.error(f"the part {name} is too large.", "too_large")
+        if entry.file_size > self._left:
+            raise self._too_large(name)
+        return Source(f"{self._source.name}/{name}", b""), self._unpacked(entry)
+
+    def _unpacked(self, entry: zipfile.ZipInfo) -> Iterator[bytes]:
+        """Yield the bytes of a part, which may be others than the directory promises."""
         with self._archive.open(entry) as stream:
-            return Source(f"{self._source.name}/{name}", stream.read())
+            while chunk := stream.read(_CHUNK):
+                self._left -= len(chunk)
+                if self._left < 0:
+                    raise self._too_large(entry.filename)
+                yield chunk
+
+    def _too_large(self, name: str) -> FormatError:
+        message = (
+            f"the part {name} unpacks to far more than meshes do: all parts together may have"
+            f" {_MOST_GROWTH} times the bytes of the archive, and {_LARGEST >> 30} GiB."
+        )
+        return self._source.error(message, "too_large")
 
 
 def _part_name(target: str) -> str:

@@ -1,6 +1,6 @@
 """One model part of a 3MF package: its objects and its build items."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TypeAlias
 from xml.parsers import expat
@@ -8,7 +8,7 @@ from xml.parsers import expat
 import numpy as np
 
 from .._types import FloatArray, IndexArray
-from ..errors import FormatError
+from ..errors import FormatError, words_of
 from .source import Source, quoted
 
 #: Millimetres in each unit that a model may name.
@@ -80,13 +80,21 @@ class Part:
     dropped: set[str] = field(default_factory=set)
 
 
-def parse_xml(source: Source, start: Start) -> None:
+def parse_xml(source: Source, chunks: Iterable[bytes], start: Start) -> None:
     """Call `start` with the name (without namespace) and attributes of each element.
+
+    Parameters
+    ----------
+    source : Source
+        What errors name.
+    chunks : iterable of bytes
+        The XML.
+    start : callable
 
     Raises
     ------
     FormatError
-        If the XML is not well-formed or declares a document type.
+        If the XML is not well-formed, or declares a document type or an unknown encoding.
     """
     parser = expat.ParserCreate(namespace_separator=" ")
 
@@ -106,10 +114,14 @@ def parse_xml(source: Source, start: Start) -> None:
     parser.StartElementHandler = begin
     parser.StartDoctypeDeclHandler = refuse
     try:
-        parser.Parse(source.data, True)
+        for chunk in chunks:
+            parser.Parse(chunk, False)
+        parser.Parse(b"", True)
     except expat.ExpatError as error:
         message = f"the XML is not well-formed: {expat.ErrorString(error.code)}."
         raise source.error(message, line=error.lineno) from None
+    except (LookupError, ValueError) as error:  # of the encoding: `begin` lets out none of its own
+        raise source.error(f"the XML cannot be decoded: {words_of(error)}.", line=1) from error
 
 
 class PartReader:
@@ -118,12 +130,18 @@ class PartReader:
     Parameters
     ----------
     source : Source
+        What errors name.
+    chunks : iterable of bytes
+        The XML.
     part_name : callable
         Turns a path as written into the name of a part.
     """
 
-    def __init__(self, source: Source, part_name: Callable[[str], str]) -> None:
+    def __init__(
+        self, source: Source, chunks: Iterable[bytes], part_name: Callable[[str], str]
+    ) -> None:
         self._source = source
+        self._chunks = chunks
         self._part_name = part_name
         self._part = Part()
         self._current = Object("none")
@@ -136,7 +154,7 @@ class PartReader:
         FormatError
             If it is no valid XML or no valid model.
         """
-        parse_xml(self._source, self._start)
+        parse_xml(self._source, self._chunks, self._start)
         for number, held in self._part.objects.items():
             top = max(map(max, held.triangles), default=-1)
             if top >= len(held.vertices):

@@ -137,7 +137,7 @@ def test_deep_xml_is_no_harm(tmp_path: Path, depth: int) -> None:
 
 
 def test_parts_that_unpack_to_too_much(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(threemf, "_LARGEST_PART", 1000)
+    monkeypatch.setattr(threemf, "_SMALL", 1000)
     path = package(tmp_path / "bomb.3mf", model(CUBE, ITEM) + " " * 10**7)
     assert path.stat().st_size < 20_000
-    assert "is too large" in refusal(path, path.read_bytes(), "too_large")
+    assert "unpacks to far more" in refusal(path, path.read_bytes(), "too_large")
