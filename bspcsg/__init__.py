@@ -14,9 +14,8 @@ Examples
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from ._core import __version__
-
 if TYPE_CHECKING:
+    from ._core import __version__
     from .check import CheckReport, Verdict, validate
     from .errors import (
         BspcsgError,
@@ -87,6 +86,7 @@ __all__ = [
 #: Which module each name is from; it is imported when the name is first asked for, so that the
 #: command line starts without numpy.
 _MODULES = {
+    "_core": "__version__",
     "check": "CheckReport Verdict validate",
     "errors": "BspcsgError Finding FormatError InternalError InvalidMeshError LimitError"
     " MissingPartError UnboundedError",
@@ -103,7 +103,7 @@ _PARTS = frozenset({"bsp", "csg", "errors", "io", "trimesh_engine"})
 _HOMES = {name: module for module, names in _MODULES.items() for name in names.split()}
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> "Any":
     """Import what is asked for the first time."""
     if name in _PARTS:
         return import_module(f".{name}", __name__)

@@ -1,6 +1,6 @@
 """Lets ``python -m bspcsg`` run the command line."""
 
-from .cli import main
+from .cli.entry import main
 
 if __name__ == "__main__":
-    main.main()
+    main()

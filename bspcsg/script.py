@@ -27,6 +27,12 @@ from .solid import Solid
 #: Longest time for a script, in seconds, unless the caller says otherwise.
 TIMEOUT = 600.0
 
+#: What the child runs: Ctrl-C, which reaches it as well, ends it without a word; its parent tells.
+_SERVE = (
+    "import os, signal; signal.signal(signal.SIGINT, lambda *_: os._exit(130));"
+    " from bspcsg.script import serve; serve()"
+)
+
 _shown: list[Solid] = []
 
 
@@ -95,7 +101,7 @@ def run_script(
 
 def _run_child(task: bytes, name: str, timeout: float | None) -> int:
     # -P keeps modules in the current folder from shadowing this package and what it needs.
-    command = [sys.executable, "-P", "-c", "from bspcsg.script import serve; serve()"]
+    command = [sys.executable, "-P", "-c", _SERVE]
     package = str(Path(__file__).parent.parent)
     search = os.pathsep.join([package, *filter(None, [os.environ.get("PYTHONPATH")])])
     try:

@@ -1,0 +1,61 @@
+"""Ctrl-C is quiet from the moment at which the command line's own code begins."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import bspcsg as b
+from support.cli import heed_interrupts
+
+#: As a console script, but that it tells when the package's entry has begun.
+ENTRY = """
+import os
+from bspcsg.cli import entry
+replace = entry._replace
+entry._replace = lambda *ways: (replace(*ways), os.write(2, b"."))
+entry.main()
+"""
+
+SLOW = "import time\ntime.sleep(60)\n"
+
+
+def interrupted(delay: float, *arguments: str) -> tuple[int, bytes, bytes]:
+    """Run the command line, interrupt it as a terminal does, and return how it ended."""
+    with subprocess.Popen(
+        [sys.executable, "-c", ENTRY, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+        preexec_fn=heed_interrupts,  # noqa: PLW1509
+    ) as running:
+        assert running.stderr is not None
+        assert running.stderr.read(1) == b"."
+        time.sleep(delay)
+        os.killpg(running.pid, signal.SIGINT)
+        out, err = running.communicate(timeout=60)
+    return running.returncode, out, err
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("delay", [k / 20 for k in range(13)])
+def test_interrupts_are_quiet_at_any_moment(tmp_path: Path, delay: float) -> None:
+    b.sphere(1, segments=300).save(tmp_path / "a.stl")
+    target = tmp_path / "x.stl"
+    a = str(tmp_path / "a.stl")
+    code, _, err = interrupted(delay, "union", a, a, "-o", str(target))
+    assert b"Traceback" not in err and len(err.splitlines()) <= 1
+    assert code == 130 or (code == 0 and target.exists())
+    assert [path.name for path in tmp_path.iterdir() if path.suffix == ".part"] == []
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("delay", [0.0, 0.1, 0.3, 0.6, 1.0])
+def test_scripts_are_interrupted_quietly(tmp_path: Path, delay: float) -> None:
+    (tmp_path / "slow.py").write_text(SLOW)
+    code, _, err = interrupted(delay, "run", str(tmp_path / "slow.py"), "-o", "x.stl")
+    assert code == 130 and len(err.splitlines()) <= 1 and b"Traceback" not in err
