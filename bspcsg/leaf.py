@@ -17,10 +17,8 @@ from . import transform
 from ._core import Tree
 from ._types import FloatArray, IndexArray, ProgramLine, WindingRule
 from .errors import LimitError, UnboundedError, core_errors
+from .hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
 from .transform import Factors
-
-#: Exponent of the lattice step for solids that any lattice can hold.
-DEFAULT_PITCH = -9
 
 _COMPLEMENT: list[ProgramLine] = [("leaf", [0]), ("not", [0])]
 
@@ -191,62 +189,47 @@ class TreeLeaf:
 
 @dataclass(frozen=True, eq=False)
 class PlaneLeaf:
-    """The half-space ``normal . x <= offset``; it takes the pitch of what it meets.
+    """The half-space on the minus side of a plane; it takes the pitch of what it meets.
 
     Parameters
     ----------
-    normal : tuple of three floats
-    offset : float
-    factors : tuple of Factor
-        Where it was moved to, outermost first.
+    plane : Hyperplane
     """
 
-    normal: tuple[float, float, float]
-    offset: float
-    factors: Factors = ()
+    plane: Hyperplane
     pitch: int | None = field(default=None, init=False)
     extent: "Extent" = field(default=None, init=False)
 
-    @classmethod
-    def through(cls, normal: Sequence[Fraction], offset: Fraction) -> "PlaneLeaf":
-        """Return the half-space of an exact normal, not zero, and offset."""
-        # Only the direction counts. A power of two brings it into range without rounding.
-        size = _power_of_two_near(max(abs(entry) for entry in normal))
-        x, y, z = (float(entry / size) for entry in normal)
-        return cls((x, y, z), float(offset / size))
-
     def tree(self, pitch: int) -> Tree:
         """Return the tree on the lattice of this pitch."""
-        rigid = transform.permuting_run(self.factors)
-        motion = transform.lattice_motion(rigid, pitch)
-        if motion is None:
-            return self._moved_plane(self.factors).tree(pitch)
-        plane = self._moved_plane(self.factors[len(rigid) :])
+        plane = self.plane.on_lattice(pitch)
         with core_errors():
-            tree = Tree.half_space(plane.normal, plane.offset, pitch)
-            return tree.moved(list(motion.axes), list(motion.shift))
+            return Tree.half_space(plane.row, pitch, plane.note)
 
     def placed(self, factors: Factors) -> "Leaf":
-        """Return the half-space moved by the factors, outermost first."""
-        return PlaneLeaf(self.normal, self.offset, factors + self.factors)
-
-    def _moved_plane(self, factors: Factors) -> "PlaneLeaf":
-        """Return the moved plane; cofactors map its normal, so that no matrix is inverted."""
-        plane = PlaneLeaf(self.normal, self.offset)
+        """Return the half-space moved by the factors, outermost first, in exact numbers."""
+        plane = self.plane
         for factor in reversed(factors):
-            plane = plane._through(factor)
-        return plane
+            plane = _moved_plane(plane, factor)
+        return PlaneLeaf(plane)
 
-    def _through(self, factor: transform.Factor) -> "PlaneLeaf":
-        linear = transform.exact_linear(factor.matrix)
-        cofactors = transform.cofactors(linear)
-        determinant = transform.exact_dot(linear[0], cofactors[0])
-        sign = 1 if determinant > 0 else -1
-        old = [sign * Fraction(entry) for entry in self.normal]
-        normal = [transform.exact_dot(row, old) for row in cofactors]
-        shift = [Fraction(entry) for entry in factor.matrix[:3, 3].tolist()]
-        offset = abs(determinant) * Fraction(self.offset) + transform.exact_dot(normal, shift)
-        return PlaneLeaf.through(normal, offset)
+
+def _moved_plane(plane: Hyperplane, factor: transform.Factor) -> Hyperplane:
+    """Return the image of a plane; cofactors map its normal, so that no matrix is inverted."""
+    linear = _linear_part(factor)
+    determinant = transform.determinant(linear)
+    old = [entry if determinant > 0 else -entry for entry in map(Fraction, plane.normal)]
+    normal = [transform.exact_dot(row, old) for row in transform.cofactors(linear)]
+    shift = [exact_number(entry) for entry in factor.matrix[:3, 3].tolist()]
+    offset = abs(determinant) * plane.offset + transform.exact_dot(normal, shift)
+    return Hyperplane.of(normal, offset, plane.exact).shortened()
+
+
+def _linear_part(factor: transform.Factor) -> list[list[Fraction]]:
+    """Return the rows as the decimals they were written as, if these keep or turn space alike."""
+    rows = [[exact_number(entry) for entry in row] for row in factor.matrix[:3, :3].tolist()]
+    sign = transform.determinant_sign(factor.matrix)
+    return rows if sign * transform.determinant(rows) > 0 else transform.exact_linear(factor.matrix)
 
 
 @dataclass(frozen=True, eq=False)
@@ -280,14 +263,21 @@ Leaf: TypeAlias = MeshLeaf | TreeLeaf | PlaneLeaf | ConstantLeaf
 
 def tree_of(leaf: Leaf) -> Tree:
     """Return the leaf's tree on its own lattice, or on the default one if any will do."""
-    pitch = leaf.pitch
-    return leaf.tree(DEFAULT_PITCH if pitch is None else pitch)
+    return leaf.tree(_common_pitch([leaf]))
+
+
+def _common_pitch(leaves: Sequence[Leaf]) -> int:
+    """Return the finest of the leaves' pitches; planes choose only where nothing else does."""
+    own = [leaf.pitch for leaf in leaves if leaf.pitch is not None]
+    if own:
+        return min(own)
+    planes = [leaf.plane.pitch for leaf in leaves if isinstance(leaf, PlaneLeaf)]
+    return min(planes, default=DEFAULT_PITCH)
 
 
 def run(record: Record) -> TreeLeaf:
     """Evaluate a program on its leaves, all on the finest of their lattices."""
-    pitches = [leaf.pitch for leaf in record.leaves]
-    pitch = min((pitch for pitch in pitches if pitch is not None), default=DEFAULT_PITCH)
+    pitch = _common_pitch(record.leaves)
     trees = [leaf.tree(pitch) for leaf in record.leaves]
     with core_errors():
         return TreeLeaf(Tree.evaluate(record.program, trees), record, _extent(record))
@@ -322,10 +312,6 @@ def transformed_arrays(
     moved = transform.apply(transform.product(factors), vertices)
     mirrored = math.prod(transform.determinant_sign(factor.matrix) for factor in factors) < 0
     return moved, np.ascontiguousarray(faces[:, ::-1]) if mirrored else faces
-
-
-def _power_of_two_near(value: Fraction) -> Fraction:
-    return Fraction(2) ** (value.numerator.bit_length() - value.denominator.bit_length())
 
 
 def _moved_output(tree: Tree, factors: Factors) -> MeshLeaf:

@@ -51,9 +51,10 @@ class Measured(ABC):
     @property
     def findings(self) -> tuple[Finding, ...]:
         """What was noteworthy about the inputs and about making the mesh."""
+        found = self.tree.findings
         if self.is_bounded:
             self.to_mesh()
-        found = [*self.tree.findings, *self.tree.mesh_findings()]
+            found = [*found, *self.tree.mesh_findings()]
         return tuple(Finding.from_core(finding) for finding in found)
 
     @property

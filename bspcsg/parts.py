@@ -46,7 +46,8 @@ def connected_parts(solid: Solid) -> list[Mesh]:
 def sides_of_plane(solid: Solid, normal: Sequence[float], offset: float) -> tuple[Solid, Solid]:
     """Return what of a solid lies below and above the plane ``normal . x = offset``.
 
-    Both sides have the cut as a face; together they are the solid again, exactly.
+    Both sides have the cut as a face; together they are the solid again, exactly. The plane is that
+    of `half_space`, and so is the finding if it had to be moved onto the lattice.
 
     Parameters
     ----------

@@ -368,8 +368,10 @@ class Solid(Measured):
     ) -> "Region":
         """Return the section by a plane as a region of the plane (`bspcsg.bsp.Region`).
 
-        The boundary is cut exactly; each corner of the section is rounded to the lattice point
-        nearest to it, so that corners with lattice coordinates are exact.
+        The boundary is cut exactly, by the plane that `half_space` has for these numbers: the one
+        asked for if it holds lattice points, else the nearest of its direction that does. Each
+        corner of the section is rounded to the lattice point nearest to it, so that corners with
+        lattice coordinates are exact.
 
         Parameters
         ----------

@@ -198,9 +198,13 @@ def determinant_sign(matrix: FloatArray) -> int:
     """Return the exact sign of the linear part's determinant."""
     if matrix[:3, :3].tolist() == _UNIT_ROWS:
         return 1
-    linear = exact_linear(matrix)
-    value = exact_dot(linear[0], cofactors(linear)[0])
+    value = determinant(exact_linear(matrix))
     return (value > 0) - (value < 0)
+
+
+def determinant(rows: list[list[Fraction]]) -> Fraction:
+    """Return the determinant of three rows."""
+    return exact_dot(rows[0], cofactors(rows)[0])
 
 
 def exact_linear(matrix: FloatArray) -> list[list[Fraction]]:

@@ -8,6 +8,7 @@ import numpy as np
 from .. import _core
 from .._types import FloatArray, Scalar
 from ..errors import InvalidMeshError, core_errors, invalid_parameter
+from ..hyperplane import Hyperplane
 from ..parameters import number
 from ..transform import whole_steps
 from .boundary import chosen_pitch, interval_rows
@@ -172,7 +173,8 @@ def _pairs(pairs: Any) -> FloatArray:
 
 def _unbounded(low: float, high: float, pitch: int) -> _core.ObjectTree:
     def below(x: float, side: float) -> _core.ObjectTree:
-        return _core.ObjectTree.half_space(np.array([side, side * x]), pitch)
+        row = Hyperplane.from_numbers([side], side * x).on_lattice(pitch).row
+        return _core.ObjectTree.half_space(row, pitch)
 
     if low == -np.inf and high == np.inf:
         return _core.ObjectTree.uniform(1, True, pitch)

@@ -11,12 +11,12 @@ from collections.abc import Sequence
 from typing import Any, ClassVar, Self
 
 from .. import _core, interop
-from .._types import FloatArray, Scalar, SetOp, WindingRule
+from .._types import Scalar, SetOp, WindingRule
 from ..errors import core_errors, invalid_parameter
 from ..parameters import at_least, pitch_exponent, seed_number, winding_rule
 from .boundary import boundary_arrays, chosen_pitch
 from .pieces import BuildPolicy, Hyperplane, SplitCase
-from .rows import hyperplane_row, hyperplane_rows
+from .rows import hyperplane, hyperplane_row, hyperplane_rows
 from .tree_queries import TreeQueries
 
 
@@ -85,7 +85,7 @@ class ObjectTree(TreeQueries):
                     winding=rule,
                     policy=policy,
                     seed=order,
-                    cuts=hyperplane_rows(cuts, dimension) if len(cuts) else None,
+                    cuts=hyperplane_rows(cuts, dimension, chosen),
                 )
             )
 
@@ -117,17 +117,27 @@ class ObjectTree(TreeQueries):
         return cls._of(ObjectTree(vertices[faces], **options)._tree)
 
     @classmethod
-    def half_space(cls, normal: Any, offset: Scalar = 0.0, *, pitch: int = -9) -> Self:
+    def half_space(cls, normal: Any, offset: Scalar = 0.0, *, pitch: int | None = None) -> Self:
         """Return the minus side of a hyperplane: all points x with ``normal . x <= offset``.
 
-        The hyperplane goes through the lattice point nearest to the foot of the origin, with the
-        normal rounded to 53 bits. The normal has as many numbers as the class has dimensions.
+        The numbers count as the decimals they are written as. A hyperplane that holds lattice
+        points is this very one; others are moved to the nearest of their direction that does, at
+        most half a step, as coordinates are. The same goes for all hyperplanes given to trees.
+        (Normals of more than 62 bits in the plane, or 106 in space, are rounded to 61.)
+
+        Parameters
+        ----------
+        normal : (1,), (2,) or (3,) float, or one number
+            As many as the class has dimensions.
+        offset : float
+        pitch : int, optional
+            By default -9, or down to -12 if the hyperplane needs it.
         """
-        row = hyperplane_row(normal, offset)
-        cls._check_dimension(len(row) - 1)
-        step = pitch_exponent(pitch)
+        wanted = hyperplane(normal, offset)
+        cls._check_dimension(len(wanted.normal))
+        chosen = wanted.pitch if pitch is None else pitch_exponent(pitch)
         with core_errors():
-            return cls._of(_core.ObjectTree.half_space(row, step))
+            return cls._of(_core.ObjectTree.half_space(wanted.on_lattice(chosen).row, chosen))
 
     @classmethod
     def uniform(cls, dimension: int, *, full: bool, pitch: int = -9) -> Self:
@@ -260,13 +270,8 @@ class ObjectTree(TreeQueries):
         with core_errors():
             return self._tree.split_case(row)
 
-    def _row(self, normal: Any, offset: Scalar) -> FloatArray:
-        row = hyperplane_row(normal, offset)
-        if len(row) != self.dimension + 1:
-            raise invalid_parameter(
-                f"The hyperplane's normal must have {self.dimension} numbers, not {len(row) - 1}."
-            )
-        return row
+    def _row(self, normal: Any, offset: Scalar) -> list[int]:
+        return hyperplane_row(normal, offset, self.dimension, self.pitch)
 
     def condensed(self) -> Self:
         """Return the same set as a balanced tree of its own boundary (1D and 2D).

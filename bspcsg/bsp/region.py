@@ -115,7 +115,7 @@ class Region(PlaneQueries, Settled):
         return cls([points], winding="nonzero", pitch=pitch)
 
     @classmethod
-    def half_plane(cls, normal: Vector, offset: Scalar = 0.0, *, pitch: int = -9) -> Self:
+    def half_plane(cls, normal: Vector, offset: Scalar = 0.0, *, pitch: int | None = None) -> Self:
         """Return all points x with ``normal . x <= offset`` (see `ObjectTree.half_space`)."""
         return cls.half_space(vector2(normal, "normal"), offset, pitch=pitch)
 

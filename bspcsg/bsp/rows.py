@@ -5,28 +5,33 @@ from typing import Any
 
 import numpy as np
 
+from .. import hyperplane as exact
 from .._types import FloatArray, Scalar
 from ..errors import invalid_parameter
 from .pieces import Hyperplane
 
 
-def hyperplane_row(normal: Any, offset: Scalar) -> FloatArray:
-    """Return a normal and an offset as one row."""
-    try:
-        row = np.append(np.atleast_1d(np.asarray(normal, dtype=np.float64)), float(offset))
-    except (TypeError, ValueError) as error:
-        raise invalid_parameter("A hyperplane is a normal and an offset, in numbers.") from error
-    if not 2 <= len(row) <= 4:
+def hyperplane(normal: Any, offset: Scalar, dimension: int | None = None) -> exact.Hyperplane:
+    """Return the hyperplane of a normal, which one number may stand for, and an offset."""
+    entries = np.atleast_1d(np.asarray(normal, dtype=object)).tolist()
+    count = len(entries)
+    if dimension is None and not 1 <= count <= 3:
         raise invalid_parameter("The normal of a hyperplane has one to three numbers.")
-    return row
+    if dimension not in (None, count):
+        raise invalid_parameter(
+            f"The hyperplane's normal must have {dimension} numbers, not {count}."
+        )
+    return exact.Hyperplane.from_numbers(entries, offset)
 
 
-def hyperplane_rows(cuts: Sequence[Hyperplane], dimension: int) -> FloatArray:
-    """Return hyperplanes as rows of normal and offset."""
-    rows = [hyperplane_row(normal, offset) for normal, offset in cuts]
-    if any(len(row) != dimension + 1 for row in rows):
-        raise invalid_parameter(f"The normals of the cuts must have {dimension} numbers.")
-    return np.array(rows)
+def hyperplane_row(normal: Any, offset: Scalar, dimension: int, pitch: int) -> list[int]:
+    """Return the normal and the offset of the nearest hyperplane of a lattice, in its steps."""
+    return hyperplane(normal, offset, dimension).on_lattice(pitch).row
+
+
+def hyperplane_rows(cuts: Sequence[Hyperplane], dimension: int, pitch: int) -> list[list[int]]:
+    """Return a row for each hyperplane."""
+    return [hyperplane_row(normal, offset, dimension, pitch) for normal, offset in cuts]
 
 
 def point_rows(points: Any, dimension: int) -> FloatArray:

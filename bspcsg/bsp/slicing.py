@@ -1,9 +1,12 @@
 """Sections of solids by planes, as regions."""
 
+from fractions import Fraction
+
 import numpy as np
 
 from .._types import FloatArray, Scalar, Vector
-from ..errors import InvalidMeshError, core_errors
+from ..errors import core_errors
+from ..hyperplane import Hyperplane, exact_number
 from ..parameters import number
 from ..solid import Solid
 from ..transform import vector3
@@ -29,19 +32,22 @@ def slice_solid(
 ) -> Region:
     """Return the section of a solid by a plane, in coordinates of the plane (see `Solid.slice`)."""
     direction = vector3(normal, "normal")
-    if not np.any(direction):
-        raise InvalidMeshError("The normal of a plane must not be zero.", "bad_normal")
-    at = number(offset, "offset")
-    if origin is not None:
-        at = float(direction @ vector3(origin, "origin"))
+    plane = Hyperplane.from_numbers(direction.tolist(), _product(direction, offset, origin))
     tree = solid.normalized().tree
     with core_errors():
-        x, y, z = direction.tolist()
-        edges = tree.section((x, y, z), at)
+        edges = tree.section(plane.on_lattice(tree.pitch).row)
     flat = _in_plane(edges.reshape(-1, 3), direction)
     segments = flat.reshape(-1, 2, 2)
     proper = (segments[:, 0] != segments[:, 1]).any(axis=1)
     return Region.from_segments(segments[proper], pitch=tree.pitch)
+
+
+def _product(normal: FloatArray, offset: Scalar, origin: Vector | None) -> Fraction:
+    """Return what the normal's product with all points of the plane is."""
+    if origin is None:
+        return exact_number(number(offset, "offset"))
+    pairs = zip(normal.tolist(), vector3(origin, "origin").tolist(), strict=True)
+    return sum((exact_number(n) * exact_number(x) for n, x in pairs), Fraction(0))
 
 
 def _in_plane(points: FloatArray, normal: FloatArray) -> FloatArray:

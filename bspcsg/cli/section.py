@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..errors import Finding
+from ..hyperplane import Hyperplane
 from . import output
 from .drawing import Drawing
 from .files import shown
@@ -73,7 +75,9 @@ class _Section(Drawing):
         self._normal, self._offset = _plane(**{name: settings[name] for name in _PLANE})
 
     def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
-        region = self.inputs.solid(self.file).slice(self._offset, self._normal)
+        solid = self.inputs.solid(self.file)
+        region = solid.slice(self._offset, self._normal)
+        self._tell_of_plane(solid.pitch)
         if region.is_empty:
             raise output.EmptyResultError(self._missed(), "empty_result")
         holes = sum(outline.is_hole for outline in region.outlines)
@@ -89,6 +93,13 @@ class _Section(Drawing):
         }
         words = f"{counted(count, 'outline')}, {counted(holes, 'hole')} among them"
         return self._data(region), f"area {region.area:.9g}  {words}", values
+
+    def _tell_of_plane(self, pitch: int) -> None:
+        """Say whether the plane is another one than was asked for."""
+        plane = Hyperplane.from_numbers(self._normal, self._offset).on_lattice(pitch)
+        if plane.note is not None:
+            finding = Finding("half_space_rounded", "note", plane.note, (), 1)
+            self.out.finding(shown(self.file), finding)
 
     def _data(self, region: "Region") -> bytes:
         from ..bsp.drawing_dxf import dxf_data

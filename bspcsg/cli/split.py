@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..errors import Finding
 from . import output
 from .files import Inputs, Target, expanded, shown
 from .job import mesh_values, summary
@@ -103,6 +104,7 @@ class _Splitting:
             return meshes, []
         if plane:
             sides: Sequence[Solid] = sides_of_plane(solid, plane[:3], plane[3])
+            self._tell_of_plane(sides[0])
         else:
             other = self._inputs.solid(cutter)
             sides = (solid - other, solid & other)
@@ -110,6 +112,11 @@ class _Splitting:
         self._refuse_less_than(2, [mesh for mesh in meshes if len(mesh.faces)])
         checked = sides if self._settings["check"] else ()
         return meshes, [str(side.check().verdict) for side in checked]
+
+    def _tell_of_plane(self, side: "Solid") -> None:
+        """Say whether the plane is another one than was asked for."""
+        found = [Finding.from_core(finding) for finding in side.tree.findings]
+        self._inputs.tell(self._file, [one for one in found if one not in self._inputs.noticed])
 
     def _refuse_less_than(self, least: int, meshes: list["Mesh"]) -> None:
         if len(meshes) >= least:

@@ -4,25 +4,26 @@ mod support;
 
 use std::sync::Arc;
 
+use bspcsg::arith::Int;
 use bspcsg::merge::leaf::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
-use bspcsg::mesh::import::half_space;
+use bspcsg::mesh::half_space::half_space;
 use bspcsg::query::measure::volume_rounded;
 use bspcsg::tree::solid::Solid;
 use bspcsg::tree::table::Table;
 
-use support::{applied, complement, double, is_empty, normalized, volume, Numbers, Ratio, Shape};
+use support::{applied, complement, is_empty, normalized, volume, Numbers, Ratio, Shape};
 
 fn any_tool(numbers: &mut Numbers) -> Solid {
     match numbers.below(5) {
         0 => Shape::any_cuboid(numbers, 60).solid(),
         1 => Shape::sphere(numbers.point(60), 14.0, 1).solid(),
         2 => {
-            let normal = numbers.point(9).map(|c| double(c - 4));
-            let offset = double(numbers.below(400));
+            let normal = numbers.point(9).map(|c| i128::from(c - 4));
+            let offset = Int::from_i64(numbers.below(400));
             let pitch = Pitch::new(0).expect("a pitch");
-            let source = half_space(normal, offset, pitch);
+            let source = half_space(normal, &offset, pitch, None);
             source.map_or_else(
                 |_| Solid::uniform(pitch, true),
                 |plane| Solid::of_source(Arc::new(plane), true),

@@ -2,13 +2,19 @@
 
 mod support;
 
-use bspcsg::geometry::plane::Lattice;
+use std::sync::Arc;
+
+use bspcsg::arith::bounds::{self, COORDINATE_BITS, HALF_SPACE_NORMAL_BITS};
+use bspcsg::arith::Int;
+use bspcsg::error::ErrorKind;
+use bspcsg::extract::snapshot::{Motion, Snapshot};
+use bspcsg::geometry::plane::{Lattice, Plane};
 use bspcsg::merge::choice::LEAF;
 use bspcsg::merge::expression::Term;
 use bspcsg::merge::leaf::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
-use bspcsg::mesh::import::half_space;
+use bspcsg::mesh::half_space::half_space;
 use bspcsg::query::classify::Location;
 use bspcsg::tree::solid::Solid;
 
@@ -226,11 +232,14 @@ fn any_half_space(numbers: &mut Numbers, offset: i64) -> Solid {
             break normal;
         }
     };
-    let number = |k: i64| i32::try_from(k).map(f64::from).expect("small");
-    let distance = number(normal.iter().sum::<i64>() * offset);
+    side_of_plane(normal, normal.iter().sum::<i64>() * offset)
+}
+
+fn side_of_plane(normal: [i64; 3], offset: i64) -> Solid {
     let pitch = Pitch::new(0).expect("a pitch");
-    let source = half_space(normal.map(number), distance, pitch).expect("a half-space");
-    Solid::of_source(std::sync::Arc::new(source), true)
+    let offset = Int::from_i64(offset);
+    let source = half_space(normal.map(i128::from), &offset, pitch, None).expect("a half-space");
+    Solid::of_source(Arc::new(source), true)
 }
 
 /// The two sides of a plane, cut apart and united, are the solid again.
@@ -289,16 +298,11 @@ fn leaves_of_different_winding_numbers_stay_apart() {
 /// Half-spaces alone: bounded results have a mesh, unbounded ones a set.
 #[test]
 fn half_spaces_bound_solids() {
-    let pitch = Pitch::new(0).expect("a pitch");
-    let side = |normal: [f64; 3], offset: f64| {
-        let source = half_space(normal, offset, pitch).expect("a half-space");
-        Solid::of_source(std::sync::Arc::new(source), true)
-    };
     let planes = [
-        side([-1.0, 0.0, 0.0], 0.0),
-        side([0.0, -1.0, 0.0], 0.0),
-        side([0.0, 0.0, -1.0], 0.0),
-        side([1.0, 1.0, 1.0], 30.0),
+        side_of_plane([-1, 0, 0], 0),
+        side_of_plane([0, -1, 0], 0),
+        side_of_plane([0, 0, -1], 0),
+        side_of_plane([1, 1, 1], 30),
     ];
     let corner = combined(&planes, vec![Term::And(vec![0, 1, 2, 3])]);
     assert_eq!(volume(&corner), Ratio::whole(4500));
@@ -309,4 +313,66 @@ fn half_spaces_bound_solids() {
     assert_eq!(found, expected);
     let tetrahedron = Shape::tetrahedron([[0; 3], [30, 0, 0], [0, 30, 0], [0, 0, 30]]);
     assert_same_set(&corner, &tetrahedron.expect("not flat").solid());
+}
+
+/// The half-space behind a face, by its plane's coefficients.
+fn behind(shape: &Shape, face: usize) -> Solid {
+    let [a, b, c] = shape.corners(face);
+    let plane = Plane::through(&a, &b, &c).expect("an area");
+    let pitch = Pitch::new(0).expect("a pitch");
+    let source = half_space(*plane.normal(), &-*plane.offset(), pitch, None);
+    Solid::of_source(Arc::new(source.expect("a half-space")), true)
+}
+
+/// Half-spaces of faces with normals of up to 106 bits.
+#[test]
+fn tetrahedra_are_what_lies_behind_their_faces() {
+    let mut numbers = Numbers::new(5);
+    for bound in [9, 1 << 20, 1 << 40, 1 << 52] {
+        for _ in 0..8 {
+            let shape = Shape::any_tetrahedron(&mut numbers, bound);
+            let sides: Vec<Solid> = (0..4).map(|face| behind(&shape, face)).collect();
+            let common = combined(&sides, vec![Term::And(vec![0, 1, 2, 3])]);
+            assert_same_set(&common, &shape.solid());
+            assert_eq!(volume(&common), volume(&shape.solid()));
+        }
+    }
+}
+
+/// Planes of half-spaces have the widths that `arith::bounds` gives them.
+#[test]
+fn half_spaces_keep_to_their_widths() {
+    let pitch = Pitch::new(0).expect("a pitch");
+    let made = |normal: [i128; 3], offset: Int<3>| half_space(normal, &offset, pitch, None);
+    let widest = (1i128 << HALF_SPACE_NORMAL_BITS) - 1;
+    let reach: Int<3> = Int::<2>::from_i128(3 * widest).mul_i64(1 << COORDINATE_BITS);
+    let farthest = reach - Int::ONE;
+    assert!(farthest.bit_length() <= bounds::offset(COORDINATE_BITS));
+    assert!(made([widest; 3], farthest).is_ok());
+    let kind = |normal, offset| made(normal, offset).err().map(|e| e.kind());
+    assert_eq!(kind([widest; 3], reach), Some(ErrorKind::TooLarge));
+    assert_eq!(
+        kind([widest + 1, 1, 0], Int::ZERO),
+        Some(ErrorKind::TooLarge)
+    );
+    assert_eq!(
+        kind([1, 0, 0], Int::from_i64(1 << 53)),
+        Some(ErrorKind::TooLarge)
+    );
+    assert_eq!(kind([0; 3], Int::ONE), Some(ErrorKind::BadNormal));
+    let far = Int::<2>::from_i128(widest).mul_i64((1 << 53) - 2);
+    let solid = Solid::of_source(Arc::new(made([widest, 1, 0], far).expect("near")), true);
+    for motion in [
+        Motion {
+            scale: 1000,
+            ..Motion::IDENTITY
+        },
+        Motion {
+            shift: [1 << 60, 0, 0],
+            ..Motion::IDENTITY
+        },
+    ] {
+        let moved = Snapshot::of(&solid).moved(&motion, pitch).err();
+        assert_eq!(moved.map(|e| e.kind()), Some(ErrorKind::TooLarge));
+    }
 }

@@ -11,6 +11,12 @@
 /// Lattice coordinates are below 2^`COORDINATE_BITS` in magnitude.
 pub const COORDINATE_BITS: u32 = 53;
 
+/// Normals of half-spaces are below 2^`HALF_SPACE_NORMAL_BITS`.
+///
+/// A plane n·x = d that meets the lattice has |d| < 3·2^(bits + p), which is no wider than the offset
+/// of a plane through lattice points; nor is it after a motion or refinement that leaves it there.
+pub const HALF_SPACE_NORMAL_BITS: u32 = normal(COORDINATE_BITS) - 2;
+
 /// Limbs of a component of a plane's normal; as wide as an `i128`.
 pub const NORMAL_LIMBS: usize = 2;
 
@@ -26,6 +32,21 @@ pub const SHORT_NORMAL_BITS: u32 = 62;
 /// Offsets of short planes are below 2^`SHORT_OFFSET_BITS`: values at lattice points fit a machine
 /// word.
 pub const SHORT_OFFSET_BITS: u32 = 124;
+
+/// Normals of lines in the plane are below 2^`LINE_NORMAL_BITS`: products of two fit a machine word.
+pub const LINE_NORMAL_BITS: u32 = 62;
+
+/// Offsets of lines that meet the plane's frame are below 2^`LINE_OFFSET_BITS`.
+pub const LINE_OFFSET_BITS: u32 = LINE_NORMAL_BITS + COORDINATE_BITS + 2;
+
+/// Limbs of each of the coordinates of a point where two lines meet, times its weight.
+pub const LINE_MEET_LIMBS: usize = 3;
+
+/// Limbs of a line's value at such a point.
+pub const LINE_AT_MEET_LIMBS: usize = 4;
+
+/// Limbs of a coordinate of one such point times the weight of another.
+pub const LINE_CROSS_LIMBS: usize = 5;
 
 /// Limbs of each of the homogeneous coordinates of a point where three short planes meet.
 pub const SHORT_POINT_LIMBS: usize = 4;
@@ -189,6 +210,20 @@ const _: () = {
     assert!(limbs_for(determinant_at_corner(P)) <= OFFSET_LIMBS);
     assert!(limbs_for(numerator_times_weight(P) + 1) <= CROSS_LIMBS);
     assert!(limbs_for(point_orientation(P)) <= ORIENTATION_LIMBS);
+    assert!(HALF_SPACE_NORMAL_BITS + P + 2 <= offset(P));
+};
+
+const _: () = {
+    const N: u32 = LINE_NORMAL_BITS;
+    const D: u32 = LINE_OFFSET_BITS;
+    const WORDS: usize = 2;
+    let weight = det2([N, N]);
+    let numerator = det2([N, D]);
+    assert!(limbs_for(D) <= WORDS);
+    assert!(limbs_for(weight) <= WORDS);
+    assert!(limbs_for(numerator) <= LINE_MEET_LIMBS);
+    assert!(limbs_for(det3([N, N, D])) <= LINE_AT_MEET_LIMBS);
+    assert!(limbs_for(numerator + weight + 1) <= LINE_CROSS_LIMBS);
 };
 
 const _: () = {

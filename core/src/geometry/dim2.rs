@@ -1,11 +1,8 @@
 //! The plane: hyperplanes are lines through lattice points, fragments are segments of them.
 //!
 //! Notation: a line is a·x + b·y + c = 0, a point (x/w, y/w) with w > 0. Every line comes from
-//! lattice points or the frame, never from constructed points, so that widths do not grow.
-//!
-//! # Bits
-//! Lattice coordinates |k| ≤ 2^53, as in space: a, b ≤ 2^54, c ≤ 2^108, w ≤ 2^109, x and y ≤ 2^163,
-//! the side of a meet ≤ 2^219, the product of a coordinate and a denominator ≤ 2^272.
+//! lattice points, from given coefficients or the frame, never from constructed points, so that
+//! widths do not grow (`arith::bounds`).
 
 use std::cmp::Ordering;
 
@@ -13,6 +10,9 @@ use super::cell;
 use super::plane::FILTER;
 use super::side::{Orientation, Side, Split};
 use super::space::Space;
+use crate::arith::bounds::{
+    LINE_AT_MEET_LIMBS, LINE_CROSS_LIMBS, LINE_MEET_LIMBS, LINE_NORMAL_BITS, LINE_OFFSET_BITS,
+};
 use crate::arith::{gcd_u128, Int};
 
 /// Lattice coordinates are at most this large in magnitude.
@@ -40,7 +40,7 @@ pub struct Line2 {
 /// An exact point: a lattice point, or where two lines meet.
 #[derive(Clone, Copy, Debug)]
 pub struct Point2 {
-    x: [Int<3>; 2],
+    x: [Int<LINE_MEET_LIMBS>; 2],
     w: Int<2>,
     approx: [f64; 3],
 }
@@ -68,9 +68,9 @@ impl Line2 {
 
     /// The line with the outward normal (a, b) through a lattice point.
     ///
-    /// Returns `None` if the normal is zero or wider than 54 bits, or the point beyond [`REACH`].
+    /// Returns `None` if the normal is zero or too wide, or the point beyond [`REACH`].
     pub fn with_normal(normal: [i64; 2], point: Lattice2) -> Option<Self> {
-        let wide = normal.iter().any(|n| n.unsigned_abs() > 1 << 54);
+        let wide = normal.iter().any(|n| is_wide(*n));
         if normal == [0; 2] || wide || !is_near(point) {
             return None;
         }
@@ -82,16 +82,33 @@ impl Line2 {
     /// Returns `None` if the normal is zero or a coefficient is wider than those of lines that meet
     /// the frame.
     pub fn new(a: i64, b: i64, c: i128) -> Option<Self> {
-        let widest = a.unsigned_abs().max(b.unsigned_abs());
-        if widest == 0 || widest > 1 << 54 || c.unsigned_abs() > 1 << 109 {
+        let narrow = !is_wide(a) && !is_wide(b) && c.unsigned_abs() < 1 << LINE_OFFSET_BITS;
+        if [a, b] == [0; 2] || !narrow {
             return None;
         }
         let g = gcd_u128(u128::from(a.unsigned_abs()), u128::from(b.unsigned_abs()));
         let g = gcd_u128(g, c.unsigned_abs());
-        // The divisor of coefficients below 2^55 fits.
+        // The divisor of narrow coefficients fits.
         let short = i64::try_from(g).unwrap_or(1).max(1);
         let (a, b, c) = (a / short, b / short, c / i128::from(short));
         Some(Self { a, b, c })
+    }
+
+    /// The line with the outward normal (a, b) whose points have this product with it, if it meets
+    /// the lattice.
+    ///
+    /// Returns `None` if it does not, or if the normal is zero or too wide.
+    pub fn across_lattice(normal: [i64; 2], offset: i128) -> Option<Self> {
+        let [a, b] = normal;
+        if is_wide(a) || is_wide(b) {
+            return None;
+        }
+        let size = u128::from(a.unsigned_abs()) + u128::from(b.unsigned_abs());
+        if offset.unsigned_abs() < size << cell::REACH {
+            Self::new(a, b, -offset)
+        } else {
+            None
+        }
     }
 
     /// The line across an axis at a lattice coordinate, smaller coordinates on its minus side.
@@ -104,7 +121,7 @@ impl Line2 {
     /// The line through a lattice point with normal (a, b).
     fn normalized(a: i64, b: i64, point: Lattice2) -> Self {
         let g = gcd(a.unsigned_abs(), b.unsigned_abs());
-        // Both coefficients are below 2^55, so their divisor fits.
+        // Both coefficients are narrow, so their divisor fits.
         let g = i64::try_from(g).unwrap_or(1).max(1);
         let (a, b) = (a / g, b / g);
         let [x, y] = point.map(i128::from);
@@ -132,8 +149,8 @@ impl Line2 {
         if sum.abs() > (t[0].abs() + t[1].abs() + t[2].abs()) * FILTER {
             return if sum > 0.0 { Side::Plus } else { Side::Minus };
         }
-        let along: Int<4> = p.x[0].mul_i64::<4>(self.a) + p.x[1].mul_i64::<4>(self.b);
-        let last: Int<4> = p.w.mul(&Int::<2>::from_i128(self.c));
+        let along: Int<LINE_AT_MEET_LIMBS> = p.x[0].mul_i64(self.a) + p.x[1].mul_i64(self.b);
+        let last: Int<LINE_AT_MEET_LIMBS> = p.w.mul(&Int::<2>::from_i128(self.c));
         Side::from_sign((along + last).signum())
     }
 
@@ -194,8 +211,8 @@ impl Point2 {
         if (left - right).abs() > (left.abs() + right.abs()) * FILTER {
             return left.partial_cmp(&right).unwrap_or(Ordering::Equal);
         }
-        let left: Int<5> = self.x[axis].mul(&other.w);
-        let right: Int<5> = other.x[axis].mul(&self.w);
+        let left: Int<LINE_CROSS_LIMBS> = self.x[axis].mul(&other.w);
+        let right: Int<LINE_CROSS_LIMBS> = other.x[axis].mul(&self.w);
         left.cmp(&right)
     }
 
@@ -365,6 +382,11 @@ pub fn border() -> Vec<Segment2> {
         between_walls(&walls[i], &p, &q)
     };
     (0..4).filter_map(side).collect()
+}
+
+/// Whether a line may not have this component of a normal.
+fn is_wide(component: i64) -> bool {
+    component.unsigned_abs() >= 1 << LINE_NORMAL_BITS
 }
 
 fn is_near(point: Lattice2) -> bool {

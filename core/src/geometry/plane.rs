@@ -1,7 +1,9 @@
 //! Oriented planes with canonical integer coefficients.
 
 use super::cell::REACH;
-use crate::arith::bounds::{SHORT_NORMAL_BITS, SHORT_OFFSET_BITS};
+use crate::arith::bounds::{
+    self, COORDINATE_BITS, HALF_SPACE_NORMAL_BITS, SHORT_NORMAL_BITS, SHORT_OFFSET_BITS,
+};
 use crate::arith::{gcd_u128, Int};
 
 /// A lattice point, in steps of the pitch; each coordinate below 2^53 in magnitude.
@@ -120,6 +122,24 @@ impl Plane {
     /// The plane with this normal through a lattice point; `None` if the normal is zero.
     pub fn through_point(n: [i128; 3], p: &Lattice) -> Option<Self> {
         Self::new(n, -dot_lattice(&n, p))
+    }
+
+    /// The plane n·x = offset, smaller values on its minus side, if it meets the lattice.
+    ///
+    /// Returns `None` if it does not, or if the normal is zero or wider than
+    /// [`HALF_SPACE_NORMAL_BITS`].
+    pub fn across_lattice(n: [i128; 3], offset: &Int<3>) -> Option<Self> {
+        let wide = |c: &i128| c.unsigned_abs() >= 1 << HALF_SPACE_NORMAL_BITS;
+        if n.iter().any(wide) {
+            return None;
+        }
+        let size = n.iter().map(|c| c.abs()).sum();
+        let reach: Int<3> = Int::<2>::from_i128(size).mul_i64(1 << REACH);
+        if offset.abs() < reach {
+            Self::new(n, -*offset)
+        } else {
+            None
+        }
     }
 
     /// The axis-parallel plane 2·x = `doubled` whose minus side holds the smaller coordinates.
@@ -277,14 +297,21 @@ impl Plane {
     /// Returns `None` if the coefficients leave their width.
     pub fn scaled(&self, s: i64) -> Option<Self> {
         let wide: Int<4> = self.d.mul(&Int::<1>::from_i64(s));
-        Self::new(self.n, wide.narrow()?)
+        Self::new(self.n, fitting(wide.narrow()?)?)
     }
 
     /// The image under the signed axis permutation and translation of a lattice motion.
+    ///
+    /// Returns `None` if the coefficients leave their width.
     pub fn moved(&self, axes: &[(usize, i64); 3], shift: &Lattice) -> Option<Self> {
         let n = [0, 1, 2].map(|i| self.n[axes[i].0] * i128::from(axes[i].1));
-        Self::new(n, self.d - dot_lattice(&n, shift))
+        Self::new(n, fitting(self.d - dot_lattice(&n, shift))?)
     }
+}
+
+/// An offset, if planes may have it.
+fn fitting(d: Int<3>) -> Option<Int<3>> {
+    (d.bit_length() <= bounds::offset(COORDINATE_BITS)).then_some(d)
 }
 
 /// Relative error bound of a filtered sum of four products of rounded factors.

@@ -1,18 +1,16 @@
 //! From arrays of doubles to a source: snapping, judging, welding.
 
 use rustc_hash::FxHashMap as HashMap;
-use std::sync::Arc;
 
 use super::finding::{Finding, Severity};
 use super::grid::{snap_point, Pitch};
 use super::joints::Joints;
 use super::snap::snap_all;
-use super::source::{Shape, Source, TriangleMesh, WELDED};
+use super::source::{Source, TriangleMesh, WELDED};
 use super::tasks::{each_chunk, fill_chunks};
 use super::topology::{open_edges, Topology};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::Cell;
-use crate::geometry::plane::Plane;
 use crate::geometry::plane::{normal, Lattice};
 
 /// Reads a closed triangle mesh onto the lattice.
@@ -63,71 +61,6 @@ fn irregularity(joints: &Joints) -> Option<Finding> {
     let text = "more than two faces share an edge, or several fans a vertex, at these vertices";
     let finding = || Finding::about("non_manifold", Severity::Note, &places, text);
     (!places.is_empty()).then(finding)
-}
-
-/// The half-space normal·x ≤ offset, in model units.
-///
-/// # Errors
-/// `BadNormal` if the normal is zero or not finite, `TooLarge` if the offset leaves the lattice.
-pub fn half_space(normal: [f64; 3], offset: f64, pitch: Pitch) -> Result<Source> {
-    let (n, p, exact) = oriented_foot(normal, offset, pitch)?;
-    let plane = Plane::through_point(n, &p)
-        .ok_or_else(|| Error::new(ErrorKind::BadNormal, "the normal is too small"))?;
-    let mut findings = Vec::new();
-    if !exact {
-        findings.push(Finding::about(
-            "half_space_rounded",
-            Severity::Note,
-            &[0],
-            "the half-space's normal was rounded to 53 bits relative to its largest component",
-        ));
-    }
-    Ok(Source::new(
-        pitch,
-        Shape::HalfSpace(Arc::new(plane)),
-        findings,
-    ))
-}
-
-/// An integer normal, a lattice point of the hyperplane n·x = offset, and whether the normal is exact.
-///
-/// The point is the foot of the origin, snapped to the lattice.
-///
-/// # Errors
-/// `BadNormal`, `NonFinite`, `TooLarge`.
-pub fn oriented_foot(
-    normal: [f64; 3],
-    offset: f64,
-    pitch: Pitch,
-) -> Result<([i128; 3], Lattice, bool)> {
-    let size = normal.iter().fold(0.0f64, |m, c| m.max(c.abs()));
-    let square: f64 = normal.iter().map(|c| (c / size) * (c / size)).sum();
-    if !(size > 0.0 && size.is_finite() && square.is_finite() && offset.is_finite()) {
-        let text = "a half-space needs a finite normal that is not zero and a finite offset";
-        return Err(Error::new(ErrorKind::BadNormal, text));
-    }
-    let (n, exact) = integer_normal(&normal, size);
-    let axis = (0..3)
-        .max_by(|i, j| normal[*i].abs().total_cmp(&normal[*j].abs()))
-        .unwrap_or(0);
-    let scale = offset / size / square;
-    let mut foot = [0, 1, 2].map(|i| normal[i] / size * scale);
-    if (0..3).all(|i| i == axis || normal[i] == 0.0) {
-        foot = [0.0; 3];
-        foot[axis] = offset / normal[axis];
-    }
-    let p = snap_point(pitch, &foot)?;
-    Ok((n, p, exact))
-}
-
-/// The normal as integers of at most 53 bits, and whether nothing was lost.
-#[allow(clippy::float_cmp)]
-fn integer_normal(normal: &[f64; 3], size: f64) -> ([i128; 3], bool) {
-    let exponent = size.log2().floor();
-    let scaled = normal.map(|c| c / 2f64.powf(exponent) * 2f64.powi(52));
-    let rounded = scaled.map(f64::round);
-    let exact = (0..3).all(|i| scaled[i] == rounded[i]);
-    (rounded.map(|c| c as i128), exact)
 }
 
 /// The faces with indices of 32 bits, all of them below `count`.

@@ -11,6 +11,7 @@ mod ears;
 pub mod facets;
 pub mod finding;
 pub mod grid;
+pub mod half_space;
 pub mod import;
 pub mod joints;
 mod links;

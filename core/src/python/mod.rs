@@ -12,6 +12,7 @@ mod arrays;
 mod each;
 mod errors;
 mod fragments;
+mod hyperplanes;
 mod objects;
 mod pieces;
 mod ray_tree;
@@ -39,6 +40,16 @@ fn suited_pitch(py: Python<'_>, largest: f64, extent: f64) -> PyResult<i64> {
     Ok(pitch.exponent())
 }
 
+/// The bits of the normals that half-spaces of a dimension may have.
+#[pyfunction]
+fn normal_bits(dimension: usize) -> u32 {
+    match dimension {
+        1 => 1,
+        2 => crate::arith::bounds::LINE_NORMAL_BITS,
+        _ => crate::arith::bounds::HALF_SPACE_NORMAL_BITS,
+    }
+}
+
 #[pymodule(gil_used = true)]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
@@ -49,6 +60,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<ray_tree::RayTree>()?;
     module.add_class::<rays::RayScene>()?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
+    module.add_function(wrap_pyfunction!(normal_bits, module)?)?;
     module.add_function(wrap_pyfunction!(suited_pitch, module)?)?;
     Ok(())
 }

@@ -5,11 +5,12 @@ use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 use num_bigint::BigInt;
-use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 
 use super::errors::to_python;
+use super::hyperplanes::Row;
 use super::pieces::{self, Pieces};
 use super::run::run;
 use super::set_input::{self, Input};
@@ -90,7 +91,7 @@ impl ObjectTree {
         winding: &str,
         policy: &str,
         seed: u64,
-        cuts: Option<PyReadonlyArray2<'_, f64>>,
+        cuts: Option<Vec<Row>>,
     ) -> PyResult<Self> {
         let fail = |e| to_python(py, &e);
         let pitch = Pitch::new(pitch).map_err(fail)?;
@@ -99,7 +100,7 @@ impl ObjectTree {
         let input = Input {
             facets: rows(&facets),
             faces: faces.transpose().map_err(fail)?.unwrap_or_default(),
-            cuts: cuts.as_ref().map(rows).unwrap_or_default(),
+            cuts: cuts.unwrap_or_default(),
             rule: set_input::rule(winding).map_err(fail)?,
             policy: set_input::policy(policy, seed).map_err(fail)?,
         };
@@ -112,11 +113,11 @@ impl ObjectTree {
     fn half_space(
         _cls: &Bound<'_, PyType>,
         py: Python<'_>,
-        hyperplane: PyReadonlyArray1<'_, f64>,
+        hyperplane: Row,
         pitch: i64,
     ) -> PyResult<Self> {
         let made = Pitch::new(pitch).and_then(|pitch| {
-            let set = Set::half_space(&hyperplane.as_array().to_vec(), pitch)?;
+            let set = Set::half_space(&hyperplane)?;
             Ok(Self::of(set, pitch))
         });
         made.map_err(|e| to_python(py, &e))
@@ -158,29 +159,18 @@ impl ObjectTree {
         self.with(self.set.complement())
     }
 
-    fn partitioned(&self, py: Python<'_>, hyperplane: PyReadonlyArray1<'_, f64>) -> PyResult<Self> {
-        let cut = hyperplane.as_array().to_vec();
-        let set = self.work(py, |set, pitch| set.partitioned(&cut, pitch))?;
+    fn partitioned(&self, py: Python<'_>, hyperplane: Row) -> PyResult<Self> {
+        let set = self.work(py, |set, _| set.partitioned(&hyperplane))?;
         Ok(self.with(set))
     }
 
-    fn split(
-        &self,
-        py: Python<'_>,
-        hyperplane: PyReadonlyArray1<'_, f64>,
-    ) -> PyResult<(Self, Self)> {
-        let cut = hyperplane.as_array().to_vec();
-        let [minus, plus] = self.work(py, |set, pitch| set.split(&cut, pitch))?;
+    fn split(&self, py: Python<'_>, hyperplane: Row) -> PyResult<(Self, Self)> {
+        let [minus, plus] = self.work(py, |set, _| set.split(&hyperplane))?;
         Ok((self.with(minus), self.with(plus)))
     }
 
-    fn split_case(
-        &self,
-        py: Python<'_>,
-        hyperplane: PyReadonlyArray1<'_, f64>,
-    ) -> PyResult<&'static str> {
-        let cut = hyperplane.as_array().to_vec();
-        self.work(py, |set, pitch| set.split_case(&cut, pitch))
+    fn split_case(&self, py: Python<'_>, hyperplane: Row) -> PyResult<&'static str> {
+        self.work(py, |set, _| set.split_case(&hyperplane))
     }
 
     fn condensed(&self, py: Python<'_>) -> PyResult<Self> {

@@ -1,17 +1,15 @@
 //! What a set is made from: names, rows of doubles, hyperplanes.
 
-use std::sync::Arc;
-
+use super::hyperplanes::Row;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::{Dim1, Direction, Point1};
-use crate::geometry::dim2::{Dim2, Line2, Segment2};
+use crate::geometry::dim2::{Dim2, Segment2};
 use crate::geometry::dim3::Dim3;
-use crate::geometry::plane::Plane;
 use crate::merge::SetOp;
 use crate::mesh::grid::Pitch;
 use crate::mesh::import::import;
-use crate::query::region::hyperplane::{line, plane, point, LatticeMap};
+use crate::query::region::hyperplane::LatticeMap;
 use crate::query::region::solid;
 use crate::tree::partition::{enclosed, Facet, PartitionTree, PivotPolicy, Plan};
 
@@ -28,8 +26,8 @@ pub struct Input {
     pub facets: Vec<Vec<f64>>,
     /// Triangles, in space.
     pub faces: Vec<[i64; 3]>,
-    /// Hyperplanes to be cut along first: the normal, then the offset.
-    pub cuts: Vec<Vec<f64>>,
+    /// Hyperplanes to be cut along first.
+    pub cuts: Vec<Row>,
     /// Which winding numbers are inside.
     pub rule: Rule,
     /// How the rest is divided.
@@ -124,31 +122,13 @@ pub fn lattice_map(
 }
 
 /// Rows made into something, the first failure if there is one.
-pub fn all<T>(rows: &[Vec<f64>], make: impl Fn(&[f64]) -> Result<T>) -> Result<Vec<T>> {
+pub fn all<N, T>(rows: &[Vec<N>], make: impl Fn(&[N]) -> Result<T>) -> Result<Vec<T>> {
     rows.iter().map(|row| make(row)).collect()
 }
 
 fn numbers<const N: usize>(row: &[f64]) -> Result<[f64; N]> {
     row.try_into()
         .map_err(|_| shape(format!("a row must have {N} numbers, not {}", row.len())))
-}
-
-/// A row of normal and offset as a point.
-pub fn on_line(cut: &[f64], pitch: Pitch) -> Result<Point1> {
-    let [n, offset] = numbers(cut)?;
-    point(n, offset, pitch)
-}
-
-/// A row of normal and offset as a line.
-pub fn in_plane(cut: &[f64], pitch: Pitch) -> Result<Line2> {
-    let [a, b, offset] = numbers(cut)?;
-    line([a, b], offset, pitch)
-}
-
-/// A row of normal and offset as a plane.
-pub fn in_space(cut: &[f64], pitch: Pitch) -> Result<Arc<Plane>> {
-    let [a, b, c, offset] = numbers(cut)?;
-    plane([a, b, c], offset, pitch)
 }
 
 /// The set inside facets.

@@ -6,14 +6,14 @@ use super::sets::Set;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::Point1;
-use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2};
+use crate::geometry::dim2::{Dim2, Point2, Segment2};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::mesh::grid::Pitch;
-use crate::mesh::import::oriented_foot;
 use crate::query::measure::{big, in_powers, Fraction};
 use crate::query::region::cast::cast;
 use crate::query::region::edges::Boundary;
+use crate::query::region::hyperplane::line_along;
 use crate::query::region::moments;
 use crate::query::region::outlines::{outlines, Outline};
 use crate::tree::partition::{boundary_of, cells, classify, Location, PartitionTree};
@@ -82,7 +82,7 @@ impl Set {
 
     /// The stretches of a line inside a plane region.
     pub fn cast(&self, origin: [f64; 2], direction: [f64; 2], pitch: Pitch) -> Result<PieceList> {
-        let line = line_along(origin, direction, pitch)?;
+        let line = line_along([pitch.snap(origin[0])?, pitch.snap(origin[1])?], direction)?;
         let mut list = PieceList::new();
         for stretch in cast(self.plane()?, &line)? {
             list.push(stretch.map(|p| pitch.position_in_plane(&p)), 0);
@@ -169,14 +169,4 @@ fn polygon_corners(piece: &Polygon, pitch: Pitch) -> Vec<[f64; 3]> {
         .iter()
         .map(|c| pitch.position(&c.at))
         .collect()
-}
-
-/// The line through a point, its own direction (−b, a) the one given.
-fn line_along(origin: [f64; 2], direction: [f64; 2], pitch: Pitch) -> Result<Line2> {
-    let normal = [direction[1], -direction[0], 0.0];
-    let ([a, b, _], ..) = oriented_foot(normal, 0.0, pitch)?;
-    let through = [pitch.snap(origin[0])?, pitch.snap(origin[1])?];
-    let narrow = |n: i128| i64::try_from(n).unwrap_or(0);
-    Line2::with_normal([narrow(a), narrow(b)], through)
-        .ok_or_else(|| Error::new(ErrorKind::BadNormal, "the direction is too short"))
 }

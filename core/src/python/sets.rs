@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use num_bigint::BigInt;
+
 use super::each::{each, map_each};
-use super::set_input::{
-    all, in_plane, in_space, inside_of, on_line, points, segments, shape, triangles, Input,
-};
+use super::hyperplanes::{in_plane, in_space, on_line};
+use super::set_input::{all, inside_of, points, segments, shape, triangles, Input};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::Dim1;
@@ -36,11 +37,11 @@ impl Set {
     pub fn build(dimension: usize, input: &Input, pitch: Pitch) -> Result<Self> {
         match dimension {
             1 => {
-                let cuts = all(&input.cuts, |cut| on_line(cut, pitch))?;
+                let cuts = all(&input.cuts, on_line)?;
                 Ok(Self::Line(inside_of(points(input, pitch)?, input, &cuts)?))
             }
             2 => {
-                let cuts = all(&input.cuts, |cut| in_plane(cut, pitch))?;
+                let cuts = all(&input.cuts, in_plane)?;
                 Ok(Self::Plane(inside_of(
                     segments(input, pitch)?,
                     input,
@@ -48,7 +49,7 @@ impl Set {
                 )?))
             }
             3 => {
-                let cuts = all(&input.cuts, |cut| in_space(cut, pitch))?;
+                let cuts = all(&input.cuts, in_space)?;
                 Ok(Self::Space(inside_of(
                     triangles(input, pitch)?,
                     input,
@@ -71,9 +72,9 @@ impl Set {
     }
 
     /// The minus side of a hyperplane.
-    pub fn half_space(hyperplane: &[f64], pitch: Pitch) -> Result<Self> {
+    pub fn half_space(hyperplane: &[BigInt]) -> Result<Self> {
         let [minus, _] =
-            Self::uniform(hyperplane.len().saturating_sub(1), true)?.split(hyperplane, pitch)?;
+            Self::uniform(hyperplane.len().saturating_sub(1), true)?.split(hyperplane)?;
         Ok(minus)
     }
 
@@ -122,29 +123,29 @@ impl Set {
     }
 
     /// The same set with a hyperplane in its root.
-    pub fn partitioned(&self, cut: &[f64], pitch: Pitch) -> Result<Self> {
+    pub fn partitioned(&self, cut: &[BigInt]) -> Result<Self> {
         Ok(match self {
-            Self::Line(tree) => Self::Line(rooted(tree, &on_line(cut, pitch)?)?),
-            Self::Plane(tree) => Self::Plane(rooted(tree, &in_plane(cut, pitch)?)?),
-            Self::Space(tree) => Self::Space(rooted(tree, &in_space(cut, pitch)?)?),
+            Self::Line(tree) => Self::Line(rooted(tree, &on_line(cut)?)?),
+            Self::Plane(tree) => Self::Plane(rooted(tree, &in_plane(cut)?)?),
+            Self::Space(tree) => Self::Space(rooted(tree, &in_space(cut)?)?),
         })
     }
 
     /// The parts of the set on the minus and the plus side of a hyperplane.
-    pub fn split(&self, cut: &[f64], pitch: Pitch) -> Result<[Self; 2]> {
+    pub fn split(&self, cut: &[BigInt]) -> Result<[Self; 2]> {
         Ok(match self {
-            Self::Line(tree) => halves(tree, &on_line(cut, pitch)?)?.map(Self::Line),
-            Self::Plane(tree) => halves(tree, &in_plane(cut, pitch)?)?.map(Self::Plane),
-            Self::Space(tree) => halves(tree, &in_space(cut, pitch)?)?.map(Self::Space),
+            Self::Line(tree) => halves(tree, &on_line(cut)?)?.map(Self::Line),
+            Self::Plane(tree) => halves(tree, &in_plane(cut)?)?.map(Self::Plane),
+            Self::Space(tree) => halves(tree, &in_space(cut)?)?.map(Self::Space),
         })
     }
 
     /// The name of the case that the root and a hyperplane are.
-    pub fn split_case(&self, cut: &[f64], pitch: Pitch) -> Result<&'static str> {
+    pub fn split_case(&self, cut: &[BigInt]) -> Result<&'static str> {
         let case = match self {
-            Self::Line(tree) => split_case(tree, &span::<Dim1>(&on_line(cut, pitch)?)?),
-            Self::Plane(tree) => split_case(tree, &span::<Dim2>(&in_plane(cut, pitch)?)?),
-            Self::Space(tree) => split_case(tree, &span::<Dim3>(&in_space(cut, pitch)?)?),
+            Self::Line(tree) => split_case(tree, &span::<Dim1>(&on_line(cut)?)?),
+            Self::Plane(tree) => split_case(tree, &span::<Dim2>(&in_plane(cut)?)?),
+            Self::Space(tree) => split_case(tree, &span::<Dim3>(&in_space(cut)?)?),
         };
         case.map(case_name)
     }

@@ -9,6 +9,7 @@ use pyo3::types::{PyBytes, PyDict, PyType};
 
 use super::arrays::{array, rows, wide};
 use super::errors::to_python;
+use super::hyperplanes::{coefficients, Row};
 use super::run::{run, SMALL};
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::collect::has_no_boundary;
@@ -20,11 +21,11 @@ use crate::merge::expression::{Expression, Term};
 use crate::merge::leaf::Rule;
 use crate::mesh::finding::Finding;
 use crate::mesh::grid::{snap_point, Pitch};
-use crate::mesh::import::{half_space, import};
+use crate::mesh::half_space::{bounding_plane, half_space};
+use crate::mesh::import::import;
 use crate::mesh::source::TriangleMesh;
 use crate::query::classify::{classify, Location};
 use crate::query::measure::{volume, volume_near, volume_residues, volume_rounded};
-use crate::query::region::hyperplane::plane;
 use crate::query::region::section::section;
 use crate::tree::solid::Solid;
 use crate::tree::stats::{stats, Stats};
@@ -117,16 +118,18 @@ impl Tree {
     }
 
     #[classmethod]
+    #[pyo3(signature = (hyperplane, pitch, rounded=None))]
     fn half_space(
         _cls: &Bound<'_, PyType>,
         py: Python<'_>,
-        normal: (f64, f64, f64),
-        offset: f64,
+        hyperplane: Row,
         pitch: i64,
+        rounded: Option<String>,
     ) -> PyResult<Self> {
         let fail = |e: Error| to_python(py, &e);
         let pitch = Pitch::new(pitch).map_err(fail)?;
-        let source = half_space(normal.into(), offset, pitch).map_err(fail)?;
+        let (normal, offset) = coefficients(&hyperplane).map_err(fail)?;
+        let source = half_space(normal, &offset, pitch, rounded).map_err(fail)?;
         Ok(Self::of(Solid::of_source(Arc::new(source), true)))
     }
 
@@ -298,12 +301,12 @@ impl Tree {
     fn section<'py>(
         &self,
         py: Python<'py>,
-        normal: (f64, f64, f64),
-        offset: f64,
+        hyperplane: Row,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let pitch = self.solid.pitch();
         let edges = run(py, 0, self.size(), |_| {
-            section(&self.solid, &*plane(normal.into(), offset, pitch)?)
+            let (normal, offset) = coefficients(&hyperplane)?;
+            section(&self.solid, &bounding_plane(normal, &offset)?)
         })?;
         let row =
             |[[a, b, c], [d, e, f]]: [[i64; 3]; 2]| [a, b, c, d, e, f].map(|k| pitch.coordinate(k));

@@ -1,50 +1,69 @@
-//! Hyperplanes from doubles, on a lattice.
+//! Hyperplanes of lattice points, and maps of the lattice that act on them.
 
 use std::sync::Arc;
 
+use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::dim1::{Direction, Point1};
 use crate::geometry::dim2::{Line2, REACH};
 use crate::geometry::plane::Plane;
-use crate::mesh::grid::Pitch;
-use crate::mesh::import::oriented_foot;
+use crate::mesh::half_space::{bounding_plane, out_of_reach};
 
-/// The point at `offset / normal` with its minus side where normal·x < offset.
+/// The point normal·x = offset with its minus side where normal·x is smaller.
 ///
 /// # Errors
-/// `BadNormal`, `TooLarge`.
-pub fn point(normal: f64, offset: f64, pitch: Pitch) -> Result<Point1> {
-    let ([n, ..], [at, ..], _) = oriented_foot([normal, 0.0, 0.0], offset, pitch)?;
-    let inside = if n > 0 {
-        Direction::Below
-    } else {
-        Direction::Above
+/// `BadNormal` if the normal is not ±1, `TooLarge` if the point is beyond the lattice.
+pub fn point(normal: i128, offset: &Int<3>) -> Result<Point1> {
+    let inside = match normal {
+        1 => Direction::Below,
+        -1 => Direction::Above,
+        _ => return Err(bad_normal("a point on the line has the normal 1 or −1")),
     };
-    Ok(Point1::new(at, inside))
+    let at = offset.to_i128().map(|offset| normal * offset);
+    at.and_then(|at| i64::try_from(at).ok())
+        .filter(|at| at.unsigned_abs() < REACH.unsigned_abs())
+        .map(|at| Point1::new(at, inside))
+        .ok_or_else(out_of_reach)
 }
 
 /// The line normal·x = offset with its minus side where normal·x is smaller.
 ///
 /// # Errors
-/// `BadNormal`, `TooLarge`.
-pub fn line(normal: [f64; 2], offset: f64, pitch: Pitch) -> Result<Line2> {
-    let ([a, b, _], [x, y, _], _) = oriented_foot([normal[0], normal[1], 0.0], offset, pitch)?;
+/// `BadNormal` if the normal is zero, `TooLarge` if it is too wide or the line misses the lattice.
+pub fn line(normal: [i128; 2], offset: &Int<3>) -> Result<Line2> {
+    if normal == [0; 2] {
+        return Err(bad_normal("the normal is zero"));
+    }
     let narrow = |n: i128| i64::try_from(n).ok();
-    narrow(a)
-        .zip(narrow(b))
-        .and_then(|(a, b)| Line2::with_normal([a, b], [x, y]))
-        .ok_or_else(|| Error::new(ErrorKind::BadNormal, "the normal is too small"))
+    let line =
+        || Line2::across_lattice([narrow(normal[0])?, narrow(normal[1])?], offset.to_i128()?);
+    line().ok_or_else(out_of_reach)
 }
 
 /// The plane normal·x = offset with its minus side where normal·x is smaller.
 ///
 /// # Errors
-/// `BadNormal`, `TooLarge`.
-pub fn plane(normal: [f64; 3], offset: f64, pitch: Pitch) -> Result<Arc<Plane>> {
-    let (n, foot, _) = oriented_foot(normal, offset, pitch)?;
-    Plane::through_point(n, &foot)
-        .map(Arc::new)
-        .ok_or_else(|| Error::new(ErrorKind::BadNormal, "the normal is too small"))
+/// `BadNormal` if the normal is zero, `TooLarge` if it is too wide or the plane misses the lattice.
+pub fn plane(normal: [i128; 3], offset: &Int<3>) -> Result<Arc<Plane>> {
+    bounding_plane(normal, offset).map(Arc::new)
+}
+
+/// The line through a lattice point, its direction (−b, a) the one given, rounded to 53 bits.
+///
+/// # Errors
+/// `BadNormal`.
+pub fn line_along(origin: [i64; 2], direction: [f64; 2]) -> Result<Line2> {
+    let size = direction[0].abs().max(direction[1].abs());
+    if !(size > 0.0 && size.is_finite()) {
+        return Err(bad_normal("a direction is finite and not zero"));
+    }
+    let power = 2f64.powf(size.log2().floor());
+    let [x, y] = direction.map(|c| (c / power * 2f64.powi(52)).round() as i64);
+    Line2::with_normal([y, -x], origin).ok_or_else(|| bad_normal("the direction is too short"))
+}
+
+fn bad_normal(text: &str) -> Error {
+    Error::new(ErrorKind::BadNormal, text)
 }
 
 /// A signed permutation of the axes with a positive scale before it and a shift after it.

@@ -1,0 +1,47 @@
+//! Half-spaces of lattice planes.
+
+use std::sync::Arc;
+
+use super::finding::{Finding, Severity};
+use super::grid::Pitch;
+use super::source::{Shape, Source};
+use crate::arith::Int;
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::plane::Plane;
+
+/// The half-space of the points with normal·x ≤ offset, in lattice steps.
+///
+/// `rounded` says how the plane was moved onto the lattice; `None` if it is the one asked for.
+///
+/// # Errors
+/// As [`bounding_plane`].
+pub fn half_space(
+    normal: [i128; 3],
+    offset: &Int<3>,
+    pitch: Pitch,
+    rounded: Option<String>,
+) -> Result<Source> {
+    let plane = bounding_plane(normal, offset)?;
+    let note = |text| Finding::about("half_space_rounded", Severity::Note, &[0], text);
+    let findings = rounded.map(note).into_iter().collect();
+    let shape = Shape::HalfSpace(Arc::new(plane));
+    Ok(Source::new(pitch, shape, findings))
+}
+
+/// The plane normal·x = offset, in lattice steps, with smaller values on its minus side.
+///
+/// # Errors
+/// `BadNormal` if the normal is zero, `TooLarge` if it is wider than 106 bits or the plane misses
+/// the lattice.
+pub fn bounding_plane(normal: [i128; 3], offset: &Int<3>) -> Result<Plane> {
+    if normal == [0; 3] {
+        return Err(Error::new(ErrorKind::BadNormal, "the normal is zero"));
+    }
+    Plane::across_lattice(normal, offset).ok_or_else(out_of_reach)
+}
+
+/// The error for a hyperplane that misses the lattice.
+pub fn out_of_reach() -> Error {
+    let text = "the hyperplane of a half-space is beyond 2^53 steps from the origin";
+    Error::new(ErrorKind::TooLarge, text)
+}
