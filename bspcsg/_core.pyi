@@ -123,10 +123,15 @@ class RayScene:
         self, origins: _Floats, directions: _Floats, threads: int = 0
     ) -> tuple[_Indices, _Floats, npt.NDArray[np.int8], _Floats, _Floats]: ...
     def all(
-        self, origins: _Floats, directions: _Floats, threads: int = 0
+        self, origins: _Floats, directions: _Floats, merge: bool = False, threads: int = 0
     ) -> tuple[_Indices, tuple[_Indices, _Floats, npt.NDArray[np.int8], _Floats, _Floats]]: ...
     def intervals(
-        self, origins: _Floats, directions: _Floats, rule: str = "positive", threads: int = 0
+        self,
+        origins: _Floats,
+        directions: _Floats,
+        rule: str = "positive",
+        unbounded: bool = False,
+        threads: int = 0,
     ) -> tuple[_Indices, _Floats, _Indices]: ...
     def hidden(
         self, origins: _Floats, targets: _Floats, threads: int = 0
@@ -145,7 +150,9 @@ class RayTree:
         threshold: int | None = None,
         hits: list[int] | None = None,
         limit: int | None = None,
+        grown: bytes | None = None,
     ) -> RayTree: ...
+    def dump(self) -> bytes: ...
     @property
     def pitch(self) -> int: ...
     def test(

@@ -94,7 +94,6 @@ _CLASSES: dict[str, type[BspcsgError]] = {
 
 _ADVICE = {
     "not_closed": "Before making a solid, close the holes and orient the faces consistently.",
-    "non_finite": "Coordinates must be finite numbers.",
     "empty_mesh": "A mesh without faces is no solid; use Solid.empty() for the empty set.",
     "degenerate": "Leave it out, or choose a finer pitch if it is only very small.",
     "non_planar": "Pass triangles, or non_planar='triangulate' to have it taken apart.",

@@ -10,6 +10,9 @@ from ._types import FloatArray, IndexArray, SideArray
 from .errors import Finding, core_errors
 from .mesh import Mesh
 
+#: What `Measured.volume_residues` are modulo of.
+_PRIMES = (2**61 - 1, 2**61 - 31)
+
 
 class Measured(ABC):
     """A solid as the measures see it."""
@@ -32,6 +35,10 @@ class Measured(ABC):
     @abstractmethod
     def normalized(self) -> "Measured":
         """Return the same set with the reduced boundary as its mesh."""
+
+    @abstractmethod
+    def _outside(self) -> "Measured":
+        """Return the complement with its reduced boundary."""
 
     @property
     def vertices(self) -> FloatArray:
@@ -112,8 +119,15 @@ class Measured(ABC):
 
     @property
     def area(self) -> float:
-        """Surface area in square model units."""
-        return self.normalized().to_mesh().area
+        """Surface area in square model units, which is that of the complement, too.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid and its complement both reach to infinity.
+        """
+        reduced = self.normalized()
+        return (reduced if reduced.is_bounded else self._outside()).to_mesh().area
 
     @property
     def centroid(self) -> FloatArray:
@@ -156,3 +170,23 @@ class Measured(ABC):
         array = interop.points_array(points)
         with core_errors():
             return self.normalized().tree.classify(array)
+
+
+def residues_of_volume(solid: Measured) -> tuple[int | None, ...]:
+    """Return six times the exact volume in cubic units, modulo two primes.
+
+    Unlike `Measured.volume_residues` they follow from the set alone, not from its lattice or its
+    triangles; None where the reduced denominator is a multiple of the prime.
+    """
+    steps = solid.volume_residues
+    if steps is not None:
+        pitch = 3 * solid.normalized().tree.pitch
+        pairs = zip(steps, _PRIMES, strict=True)
+        return tuple(count * pow(10, pitch, prime) % prime for count, prime in pairs)
+    volume = 6 * solid.volume_exact
+    return tuple(
+        volume.numerator * pow(volume.denominator, -1, prime) % prime
+        if volume.denominator % prime
+        else None
+        for prime in _PRIMES
+    )

@@ -23,9 +23,10 @@ from .describe import describe
 from .errors import core_errors
 from .expression import Node, Operator, Placed, complement, evaluate, operation
 from .leaf import ConstantLeaf, Leaf, MeshLeaf, TreeLeaf, tree_of
-from .measure import Measured
+from .measure import Measured, residues_of_volume
 from .mesh import Mesh
 from .parameters import optional_pitch, winding_rule
+from .point_set import PointSet
 from .transform import Factors, common_prefix
 
 if TYPE_CHECKING:
@@ -35,11 +36,15 @@ if TYPE_CHECKING:
     from .bsp import Region
 
 
-class Solid(Measured):
+class Solid(Measured, PointSet):
     """A closed triangle mesh as a set of points.
 
     Inside is where the winding number of the faces satisfies the rule; faces may cross, overlap,
     touch or repeat. Coordinates are snapped to a decimal lattice, by default of step 1e-9.
+
+    ``==``, ``<=``, ``<``, ``in`` and the like are those of Python's sets, for the points: solids
+    are equal if they are the same set, however they were made. They are exact, and evaluate the
+    solids, as `hash` does; whether two names mean one object says ``is``.
 
     Parameters
     ----------
@@ -208,22 +213,25 @@ class Solid(Measured):
 
     @uncounted
     def equals(self, other: "Solid") -> bool:
-        """Whether both are the same set of points, exactly."""
+        """Whether both are the same set of points, exactly; so says ``==``, too."""
         return (self ^ other).is_empty
-
-    @uncounted
-    def __le__(self, other: object) -> bool:
-        """Whether this set is part of the other, exactly."""
-        return (self - other).is_empty if isinstance(other, Solid) else NotImplemented
 
     @uncounted
     def isdisjoint(self, other: "Solid") -> bool:
         """Whether the two have no volume in common; contact is allowed."""
         return (self & other).is_empty
 
-    def __bool__(self) -> bool:
-        """Whether the solid is not empty; this evaluates it."""
-        return not self.is_empty
+    def _is_alike(self, other: object) -> bool:
+        return isinstance(other, Solid)
+
+    @uncounted
+    def _size_key(self) -> object:
+        if self.normalized().is_bounded:
+            return residues_of_volume(self)
+        outside = self._outside()
+        # Where both are unbounded, nothing that is cheap tells solids apart.
+        bounded = outside.is_bounded
+        return ("outside", residues_of_volume(outside)) if bounded else "unbounded"
 
     # Transforms
 
@@ -318,6 +326,10 @@ class Solid(Measured):
             if not _is_reduced(tree):
                 self._reduced = Solid.from_leaf(TreeLeaf(reduced))
         return self if self._reduced is None else self._reduced
+
+    @uncounted
+    def _outside(self) -> "Solid":
+        return (~self).normalized()
 
     def to_trimesh(self) -> "trimesh.Trimesh":
         """Return a `trimesh.Trimesh` with the same vertices and faces."""

@@ -68,6 +68,13 @@ class StabTree:
 
     _facets: Facets
     _tree: RayTree
+    _threshold: int | None = None
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Pickle facets, cuts and all counters; copies are made so, too, and grow by themselves."""
+        with core_errors():
+            grown = self._tree.dump()
+        return _regrown, (type(self), self._facets, self.pitch, self._threshold, grown)
 
     @property
     def dimension(self) -> int:
@@ -125,7 +132,8 @@ class AdaptiveTree(StabTree):
     to the top. Parts of a split facet inherit its counter.
 
     Objects can be shared by threads: a call of `test_ray` has the tree for itself, others wait.
-    How the tree grows depends on the order of the rays; answers do not.
+    How the tree grows depends on the order of the rays; answers do not. Pickles and copies keep the
+    tree as it is, with its counters, and go on growing from there.
 
     Parameters
     ----------
@@ -157,14 +165,14 @@ class AdaptiveTree(StabTree):
 
     def __init__(self, facets: Any, *, threshold: int = 64, pitch: int | None = None) -> None:
         self._facets = facets_from(facets)
-        limit = at_least(0, threshold, "threshold")
+        self._threshold = min(at_least(0, threshold, "threshold"), 2**63)
         step = self._facets.pitch if pitch is None else pitch_exponent(pitch)
         with core_errors():
             self._tree = RayTree(
                 self.dimension,
                 self._facets.corners.ravel(),
                 step,
-                threshold=min(limit, 2**63),
+                threshold=self._threshold,
             )
 
 
@@ -218,6 +226,17 @@ class StaticTree(StabTree):
                 hits=hits.tolist(),
                 limit=at_least(1, max_nodes, "max_nodes"),
             )
+
+
+def _regrown(
+    kind: type[StabTree], facets: Facets, pitch: int, threshold: int | None, grown: bytes
+) -> StabTree:
+    tree = kind.__new__(kind)
+    tree._facets, tree._threshold = facets, threshold
+    with core_errors():
+        corners = facets.corners.ravel()
+        tree._tree = RayTree(facets.dimension, corners, pitch, threshold=threshold, grown=grown)
+    return tree
 
 
 def _permutation(order: Any, seed: int, count: int) -> IndexArray:

@@ -20,7 +20,8 @@ class Intervals(Settled, ObjectTree):
     """A union of intervals on the line.
 
     Ends belong to the boundary, so that intervals that touch are one and single points are nothing
-    (regularised sets). Coordinates are snapped to the lattice of step ``10**pitch``.
+    (regularised sets). Coordinates are snapped to the lattice of step ``10**pitch``. ``==``,
+    ``<=``, ``<``, ``in`` and the like compare sets of points, exactly, as for `Solid`.
 
     Parameters
     ----------

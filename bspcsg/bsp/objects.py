@@ -14,14 +14,18 @@ from .. import _core, interop
 from .._types import Scalar, SetOp, WindingRule
 from ..errors import core_errors, invalid_parameter
 from ..parameters import at_least, pitch_exponent, seed_number, winding_rule
+from ..point_set import PointSet
 from .boundary import boundary_arrays, chosen_pitch
 from .pieces import BuildPolicy, Hyperplane, SplitCase
 from .rows import hyperplane, hyperplane_row, hyperplane_rows
 from .tree_queries import TreeQueries
 
 
-class ObjectTree(TreeQueries):
+class ObjectTree(TreeQueries, PointSet):
     """A set of points as a partition tree; an immutable value.
+
+    ``==``, ``<=``, ``<``, ``in`` and the like are those of Python's sets, for the points: two trees
+    are equal if they stand for the same set, however they divide it. They are exact.
 
     Parameters
     ----------
@@ -216,22 +220,30 @@ class ObjectTree(TreeQueries):
         return self._tree.moved(axes, shift, scale, pitch)
 
     def equals(self, other: "ObjectTree") -> bool:
-        """Whether both are the same set of points, exactly."""
+        """Whether both are the same set of points, exactly; so says ``==``, too.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the other set has another dimension; for ``==`` the two are different then.
+        """
         a, b = self._aligned(other)
         with core_errors():
             return a.equals(b)
 
-    def __le__(self, other: object) -> bool:
-        """Whether this set is part of the other, exactly."""
-        return (self - other).is_empty if isinstance(other, ObjectTree) else NotImplemented
+    def _is_alike(self, other: object) -> bool:
+        return isinstance(other, ObjectTree) and self.dimension == other.dimension
+
+    def _size_key(self) -> object:
+        if self.is_bounded:
+            return self.dimension, self.measure
+        outside = ~self
+        # Where both are unbounded, nothing that is cheap tells sets apart.
+        return self.dimension, -outside.measure - 1 if outside.is_bounded else None
 
     def isdisjoint(self, other: "ObjectTree") -> bool:
         """Whether the two have no interior point in common; contact is allowed."""
         return (self & other).is_empty
-
-    def __bool__(self) -> bool:
-        """Whether the set is not empty."""
-        return not self.is_empty
 
     # Division by a hyperplane
 

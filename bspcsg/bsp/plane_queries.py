@@ -79,8 +79,15 @@ class PlaneQueries(ObjectTree):
 
     @property
     def perimeter(self) -> float:
-        """Length of the boundary in model units: the size of the boundary."""
-        return math.fsum(outline.length for outline in self.outlines)
+        """Length of the boundary in model units, which is that of the complement, too.
+
+        Raises
+        ------
+        UnboundedError
+            If the region and its complement both reach to infinity.
+        """
+        inner = self if self.is_bounded else ~self
+        return math.fsum(outline.length for outline in inner.outlines)
 
     @property
     def centroid_exact(self) -> tuple[Fraction, Fraction] | None:

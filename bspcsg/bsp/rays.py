@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -101,10 +101,11 @@ class InsideSpans:
     offsets : (n + 1,) int64
         The stretches of ray i are rows ``offsets[i]`` to ``offsets[i + 1]``.
     t : (k, 2) float64
-        Where each begins and ends, rounded correctly; 0 where the ray starts inside.
+        Where each begins and ends, rounded correctly; 0 where the ray starts inside, infinite
+        where it stays there.
     facets : (k, 2) int64
         The facets there, the first of the input if there are several; -1 where the ray starts
-        inside.
+        inside or stays there.
     """
 
     offsets: IndexArray
@@ -147,8 +148,9 @@ class RayCaster:
     ----------
     facets : array_like, Solid, or mesh
         ``(n,)`` for points of the line, ``(n, 2, 2)`` for segments of the plane, ``(n, 3, 3)`` for
-        triangles; a `Solid` (its reduced boundary); a *tuple* ``(vertices, faces)``; or what
-        `Solid.from_mesh` takes. A mesh need not be closed.
+        triangles; a `Solid` (its reduced boundary, which must be finite; that of the complement of
+        a bounded solid is); a *tuple* ``(vertices, faces)``; or what `Solid.from_mesh` takes. A
+        mesh need not be closed, but for `intervals`.
     pitch : int, optional
         The lattice step is ``10**pitch`` units; by default the solid's, or what the size asks for.
     deferred : bool
@@ -161,7 +163,7 @@ class RayCaster:
     LimitError
         If coordinates do not fit the lattice.
     UnboundedError
-        For a solid that reaches to infinity.
+        For a solid whose boundary reaches to infinity.
 
     Notes
     -----
@@ -182,13 +184,28 @@ class RayCaster:
     """
 
     def __init__(self, facets: Any, *, pitch: int | None = None, deferred: bool = True) -> None:
-        self._facets = facets_from(facets)
-        step = self._facets.pitch if pitch is None else pitch_exponent(pitch)
+        found = facets_from(facets)
+        self._set(found, found.pitch if pitch is None else pitch_exponent(pitch), deferred)
+
+    def _set(self, facets: Facets, pitch: int | None, deferred: bool) -> None:
+        self._facets = facets
         with core_errors():
-            self._scene = RayScene(self.dimension, self._facets.corners.ravel(), step)
+            self._scene = RayScene(facets.dimension, facets.corners.ravel(), pitch)
             if not deferred:
                 self._scene.complete()
-        self._normals = self._facets.normals()
+        self._normals = facets.normals()
+
+    def __copy__(self) -> Self:
+        """Return the caster itself, whose answers never change."""
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        """Return the caster itself, whose answers never change."""
+        return self
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Pickle facets and lattice; the tree, which never shows, grows again."""
+        return _restored, (type(self), self._facets, self.pitch)
 
     @property
     def dimension(self) -> int:
@@ -231,15 +248,27 @@ class RayCaster:
             columns = self._scene.first(first.ravel(), second.ravel(), thread_count(threads))
         return self._hits(*columns)
 
-    def all_hits(self, origins: Any, directions: Any, *, threads: int = 0) -> HitLists:
+    def all_hits(
+        self, origins: Any, directions: Any, *, merge: bool = False, threads: int = 0
+    ) -> HitLists:
         """Return every facet on each ray, by its first point, nearest first.
 
-        A point on several facets appears once for each of them, in the order of the input.
-        Parameters and errors are those of `first_hit`.
+        Parameters
+        ----------
+        origins, directions, threads
+            As for `first_hit`, as are the errors.
+        merge : bool
+            What becomes of a point on several facets, as on the edge that two of them share. By
+            default it appears once for each of them, in the order of the input; with ``merge=True``
+            once, with the first of the input, as for `first_hit`. Whether points are the same is
+            decided exactly. A point where a ray only touches a boundary is one, too: where it
+            crosses says `intervals`.
         """
         first, second = ray_arrays(origins, directions, self.dimension)
+        count = thread_count(threads)
         with core_errors():
-            offsets, columns = self._scene.all(first.ravel(), second.ravel(), thread_count(threads))
+            found = self._scene.all(first.ravel(), second.ravel(), bool(merge), count)
+        offsets, columns = found
         return HitLists(offsets, self._hits(*columns))
 
     def intervals(
@@ -253,10 +282,11 @@ class RayCaster:
         """Return the stretches of each ray (t ≥ 0) inside the boundary that the facets make.
 
         The facets must bound: a closed mesh, closed outlines with their inside to the left, or an
-        even number of points, between which inside and outside alternate. Winding numbers are
-        counted from the far end of the ray, where they are 0. Every ray is taken at an
-        infinitesimal shift (ε, ε², ε³), so that edges and vertices need no exception, and a ray
-        that runs within a facet is inside there if the points beside it in that direction are.
+        even number of points, between which inside and outside alternate. That is decided exactly,
+        on the lattice, when this is first asked. Winding numbers are counted from the far end of
+        the ray, where they are 0, or 1 for a solid whose complement is bounded. Every ray is taken
+        at an infinitesimal shift (ε, ε², ε³), so that edges and vertices need no exception, and a
+        ray that runs within a facet is inside there if the points beside it in that direction are.
         Stretches of length zero do not appear, and those that touch are one.
 
         Parameters
@@ -265,13 +295,19 @@ class RayCaster:
             As for `first_hit`, as are the errors.
         winding : {"positive", "nonzero", "even-odd"}
             Which winding numbers are inside; points on the line are always even-odd.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the facets do not close ("not_closed"; `where` lists facets at the border).
         """
         rule, count = winding_rule(winding), thread_count(threads)
         first, second = ray_arrays(origins, directions, self.dimension)
         if self.dimension == 1:
             rule = "even-odd"
+        far = self._facets.unbounded
         with core_errors():
-            found = self._scene.intervals(first.ravel(), second.ravel(), rule, count)
+            found = self._scene.intervals(first.ravel(), second.ravel(), rule, far, count)
         offsets, t, facets = found
         return InsideSpans(offsets, t.reshape(-1, 2), facets.reshape(-1, 2))
 
@@ -287,7 +323,8 @@ class RayCaster:
         """Return whether a facet lies strictly between each origin and its target, (n,) bool.
 
         The ends do not count, so that a test from a facet's vertex to another is not blocked by
-        the facets at the two. Facets that the way runs along do block it.
+        the facets at the two. Facets that the way runs along do block it. They block from both
+        sides and need not close: whether the way is free does not depend on an inside.
 
         Parameters
         ----------
@@ -319,6 +356,12 @@ class RayCaster:
 
     def _hits(self, *columns: Any) -> Hits:
         return hits_of(self._facets, columns, self._normals)
+
+
+def _restored(kind: type[RayCaster], facets: Facets, pitch: int) -> RayCaster:
+    caster = kind.__new__(kind)
+    caster._set(facets, pitch, deferred=True)
+    return caster
 
 
 def hits_of(facets: Facets, columns: Any, normals: FloatArray | None = None) -> Hits:

@@ -27,7 +27,8 @@ class Region(PlaneQueries, Settled):
     Inside is where the winding number of the outlines satisfies the rule; outlines may cross, touch
     or overlap themselves and each other. The lattice is that of solids: coordinates are snapped to
     steps of ``10**pitch``, at most 2**53 of them from the origin, and everything else is exact.
-    Points and edges without area on either side do not count (regularised sets).
+    Points and edges without area on either side do not count (regularised sets). ``==``, ``<=``,
+    ``<``, ``in`` and the like compare sets of points, exactly, as for `Solid`.
 
     Parameters
     ----------

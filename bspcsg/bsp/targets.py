@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import interop
 from .._types import FloatArray, IndexArray
+from ..counting import uncounted
 from ..errors import InvalidMeshError
 from ..solid import Solid
 
@@ -23,11 +24,14 @@ class Facets:
         Input mesh and face of each triangle, if they are those of a solid.
     pitch : int or None
         The solid's lattice, if they are a solid's.
+    unbounded : bool
+        Whether they bound a set that reaches to infinity on all sides.
     """
 
     corners: FloatArray
     source: IndexArray | None = None
     pitch: int | None = None
+    unbounded: bool = False
 
     @property
     def dimension(self) -> int:
@@ -71,11 +75,11 @@ def facets_from(given: Any) -> Facets:
     ------
     InvalidMeshError
         If nothing of the kind is found, or an index is out of range.
+    UnboundedError
+        If a solid and its complement both reach to infinity, so that its boundary does, too.
     """
     if isinstance(given, Solid):
-        reduced = given.normalized()
-        mesh = reduced.to_mesh()
-        return Facets(mesh.vertices[mesh.faces], mesh.source, reduced.pitch)
+        return _boundary_of(given)
     if isinstance(given, (list, np.ndarray)):
         return Facets(_corner_array(given))
     vertices, faces = interop.own_arrays(*interop.arrays_from(given))
@@ -84,6 +88,17 @@ def facets_from(given: Any) -> Facets:
         message = f"Face {bad[0]} names a vertex that does not exist."
         raise InvalidMeshError(message, "index_out_of_range", bad[:10].tolist())
     return Facets(vertices[faces])
+
+
+@uncounted
+def _boundary_of(solid: Solid) -> Facets:
+    """Return the finite boundary of a solid, or that of its complement turned over."""
+    reduced = solid.normalized()
+    outside = reduced if reduced.is_bounded else (~solid).normalized()
+    unbounded = outside is not reduced and outside.is_bounded
+    mesh = (outside if unbounded else reduced).to_mesh()
+    faces = mesh.faces[:, ::-1] if unbounded else mesh.faces
+    return Facets(mesh.vertices[faces], mesh.source, reduced.pitch, unbounded)
 
 
 def _corner_array(given: Any) -> FloatArray:

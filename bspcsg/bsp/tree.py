@@ -2,7 +2,7 @@
 
 import os
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 
@@ -325,10 +325,29 @@ class PartitionTree(Ordered):
         """Return a number that equal trees share."""
         return hash((self.dimension, self.pitch, len(self)))
 
+    def __copy__(self) -> Self:
+        """Return the tree itself, which never changes."""
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        """Return the tree itself, which never changes."""
+        return self
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Pickle facets on the lattice and cuts, of which the tree is made again."""
+        corners, offsets = self.core.lattice()
+        parts = corners, offsets, self.pitch, self.arrays["cut"], self.lenience
+        return _restored, (type(self), parts, self._margin)
+
     def __repr__(self) -> str:
         """Say how large the tree is."""
         facets = len(self.core.lattice()[1]) - 1
         return f"PartitionTree({self.dimension}D, {facets} facets, {len(self)} nodes)"
+
+
+def _restored(kind: type[PartitionTree], parts: Any, margin: float | None) -> PartitionTree:
+    with core_errors():
+        return kind.from_core(_core.FragmentTree.rebuild(*parts), parts[-1], margin)
 
 
 def _place(of: Node | Leaf | None) -> tuple[int | None, int]:

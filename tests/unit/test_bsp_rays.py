@@ -175,7 +175,7 @@ BAD: list[tuple[Callable[[], object], str, list[int]]] = [
     (lambda: bsp.RayCaster([0.0, np.inf]), "non_finite", [1]),
     (lambda: bsp.RayCaster([0.0, 1e300]), "too_large", []),
     (lambda: bsp.RayCaster([0.0, 1e9], pitch=-9), "too_large", [1]),
-    (lambda: bsp.RayCaster(~CUBE), "unbounded", []),
+    (lambda: bsp.RayCaster(b.half_space((0, 0, 1))), "unbounded", []),
     (lambda: bsp.RayCaster(CUBE).first_hit([0, 0], [0, 0, 1]), "shape", []),
     (lambda: bsp.RayCaster(CUBE).first_hit(np.zeros((2, 3)), np.ones((3, 3))), "shape", []),
     (lambda: bsp.RayCaster(CUBE).first_hit([0, 0, 0], [[0, 0, 1], [0, 0, 0]]), "bad_normal", [1]),
@@ -203,3 +203,107 @@ def test_bad_input_is_refused(call: Callable[[], object], code: str, where: list
         call()
     assert caught.value.code == code
     assert list(caught.value.where) == where
+
+
+TRIANGLES = np.concatenate([m.vertices[m.faces] for m in [b.cube(2).to_mesh()]])
+SQUARE_WITH_PARTS = [[[0, 0], [4, 0]], [[4, 0], [4, 1]], [[4, 1], [4, 4]], [[4, 4], [0, 4]]]
+
+OPEN: dict[str, tuple[Any, list[int]]] = {
+    "mesh": (TRIANGLES[1:], []),
+    "mesh with a triangle turned over": (np.concatenate([TRIANGLES[:1, ::-1], TRIANGLES[1:]]), []),
+    "outline": (SQUARE_WITH_PARTS, [0]),
+    "outline with an edge turned over": ([*SQUARE_WITH_PARTS, [[0, 0], [0, 4]]], [0, 4]),
+    "points": ([0.0, 1.0, 2.0], []),
+}
+
+
+@pytest.mark.parametrize("name", OPEN)
+def test_intervals_of_what_is_not_closed_are_refused(name: str) -> None:
+    facets, where = OPEN[name]
+    caster = bsp.RayCaster(facets)
+    d = caster.dimension
+    for _ in range(2):
+        with pytest.raises(b.InvalidMeshError) as caught:
+            caster.intervals(np.full(d, -1.0), np.full(d, 1.0))
+        assert caught.value.code == "not_closed"
+    if where:
+        assert list(caught.value.where) == where
+    elif d > 1:
+        assert caught.value.where
+    # What is in the way does not depend on an inside.
+    assert len(caster.first_hit(np.full(d, -1.0), np.eye(d)[0])) == 1
+    assert caster.occluded(np.full(d, -1.0), np.full(d, 9.0)).shape == (1,)
+
+
+def test_closed_means_closed_on_the_lattice() -> None:
+    # A T-junction in one edge, a repeated boundary, and slivers that the lattice closes.
+    top = TRIANGLES[1:]
+    a, c, d = TRIANGLES[0]
+    middle = (a + c) / 2
+    halves = np.array([[a, middle, d], [middle, c, d]])
+    joint, twice = np.concatenate([halves, top]), np.concatenate([TRIANGLES] * 2)
+    for closed in (joint, twice, TRIANGLES + 1e-13):
+        found = bsp.RayCaster(closed).intervals([0.5, 0.25, 5], [0, 0, -1])
+        assert found.t.tolist() == [[3, 5]]
+    square = [*SQUARE_WITH_PARTS, [[0, 4], [0, 0]]]
+    assert bsp.RayCaster(square).intervals([-1, 2], [1, 0]).t.tolist() == [[1, 5]]
+
+
+def test_the_numbers_of_open_facets_are_those_of_the_input() -> None:
+    flat = np.zeros((3, 3, 3))
+    with pytest.raises(b.InvalidMeshError) as caught:
+        bsp.RayCaster(np.concatenate([flat, TRIANGLES[:1]])).intervals([0, 0, 5], [0, 0, -1])
+    assert list(caught.value.where) == [3]
+
+
+def test_one_row_for_each_point_of_a_ray() -> None:
+    caster = bsp.RayCaster(b.cube(2))
+    starts = [[0.5, 0.5, 3], [0.5, 0.25, 3], [0, 0, 3], [-1, 1, 2], [2, 0, 3]]
+    along = [[0, 0, -1], [0, 0, -1], [0, 0, -1], [1, 0, 0], [0, 0, -1]]
+    apart, merged = caster.all_hits(starts, along), caster.all_hits(starts, along, merge=True)
+    assert len(apart.hits) > len(merged.hits)
+    for ray, (every, one) in enumerate(zip(apart, merged, strict=True)):
+        assert one.t.tolist() == sorted(set(every.t.tolist())), ray
+        first = [int(every.facet[every.t == t].min()) for t in one.t]
+        assert one.facet.tolist() == first
+    # Through the diagonals of the top and of the bottom; along an upright edge; past a corner.
+    assert [hits.t.tolist() for hits in merged][:3] == [[1, 3], [1, 3], [1, 3]]
+
+
+def test_points_are_merged_exactly() -> None:
+    # Two walls whose distances along the ray round to one double.
+    caster = bsp.RayCaster([[[1, 0], [1 + 1e-9, 1]], [[1 + 1e-9, 0], [1, 1]]])
+    for y, facets in ((0.499999999, [0, 1]), (0.500000001, [1, 0]), (0.5, [0])):
+        hits = caster.all_hits([-4e6, y], [1, 0], merge=True).hits
+        assert len(set(hits.t.tolist())) == 1
+        assert hits.facet.tolist() == facets
+
+
+def test_complements_with_a_finite_boundary() -> None:
+    shape = b.cube(2) - b.cube(1)
+    inner, outer = bsp.RayCaster(shape), bsp.RayCaster(~shape)
+    rng = np.random.default_rng(3)
+    fixed = [[0.5, 0.5, 0.5], [1.5, 1.5, 1.5]]
+    starts = np.concatenate([rng.integers(-4, 12, (200, 3)) / 4, fixed])
+    along = np.concatenate([rng.integers(-3, 4, (200, 3)), [[1, 0, 0], [0, 0, 1]]]).astype(float)
+    along[~along.any(axis=1)] = 1
+    a, c = inner.first_hit(starts, along), outer.first_hit(starts, along)
+    assert a.t.tolist() == c.t.tolist()
+    assert np.array_equal(a.normal[a.hit], -c.normal[a.hit])
+    for rule in ("positive", "nonzero", "even-odd"):
+        inside = inner.intervals(starts, along)
+        outside = outer.intervals(starts, along, winding=rule)
+        for one, other in zip(inside, outside, strict=True):
+            gaps = np.array([0.0, *one.ravel().tolist(), np.inf]).reshape(-1, 2)
+            assert other.tolist() == gaps[gaps[:, 0] < gaps[:, 1]].tolist()
+    last = outside.facets[outside.offsets[1:] - 1, 1]
+    assert (last == -1).all()
+    assert bsp.RayCaster(b.Solid.full()).intervals([0, 0, 0], [1, 0, 0]).t.tolist() == [[0, np.inf]]
+    assert outer.occluded([0.5, 0.5, 0.5], [1.5, 1.5, 1.5]).tolist() == [True]
+    assert bsp.AdaptiveTree(~shape).test_ray(starts, along).hits.t.tolist() == c.t.tolist()
+
+
+def test_boundaries_without_end_are_refused() -> None:
+    for endless in (b.half_space((0, 0, 1)), b.half_space((0, 0, 1)) - b.half_space((0, 0, 1), -1)):
+        with pytest.raises(b.UnboundedError):
+            bsp.RayCaster(endless)

@@ -254,3 +254,11 @@ def test_bad_parameters() -> None:
         b.half_space((0, 0, 1)).slice(-1)
     with pytest.raises(b.LimitError):
         R.rectangle(1e8) | R([(0, 0), (1, 0), (0, 1)], pitch=-15)
+
+
+def test_the_perimeter_of_a_complement_is_that_of_the_region() -> None:
+    assert (~plate()).perimeter == plate().perimeter
+    assert R.full().perimeter == 0
+    for endless in (R.half_plane((1, 0)), R.half_plane((1, 0)) - plate()):
+        with pytest.raises(b.UnboundedError):
+            endless.perimeter  # noqa: B018

@@ -160,3 +160,24 @@ def test_bounds_of_numbers() -> None:
     assert at_least(3, 2**80, "x") == 2**80
     assert refusal(lambda: at_least(3, 2, "x")).code == "invalid_parameter"
     assert refusal(lambda: at_least(3, 4.5, "x")).code == "invalid_parameter"
+
+
+NAN = float("nan")
+NOT_FINITE: dict[str, Callable[[], object]] = {
+    "Solid": lambda: b.Solid([(NAN, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], MESH.faces[:4] % 4),
+    "Region": lambda: bsp.Region([(0, 0), (1, 0), (NAN, 1)]),
+    "Region.from_segments": lambda: bsp.Region.from_segments(EDGES * NAN),
+    "ObjectTree": lambda: bsp.ObjectTree([[0, NAN]]),
+    "RayCaster": lambda: bsp.RayCaster(EDGES * NAN),
+    "classify": lambda: b.cube(1).classify([[0, NAN, 0]]),
+    "first_hit": lambda: CASTER.first_hit([0, 0, NAN], ALONG),
+    "direction": lambda: CASTER.first_hit(ORIGIN, [0, 0, NAN]),
+    "project": lambda: bsp.Region(SQUARE).project([(NAN, 0)]),
+}
+
+
+@pytest.mark.parametrize("call", NOT_FINITE.values(), ids=NOT_FINITE)
+def test_what_is_not_finite_is_said_once(call: Callable[[], object]) -> None:
+    error = refusal(call)
+    assert error.code == "non_finite"
+    assert error.message.count("finite") == 1

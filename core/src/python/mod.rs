@@ -15,6 +15,7 @@ mod fragments;
 mod hyperplanes;
 mod objects;
 mod pieces;
+mod ray_store;
 mod ray_tree;
 mod rays;
 mod run;

@@ -4,9 +4,10 @@ use std::sync::{Mutex, PoisonError};
 
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 
 use super::errors::to_python;
+use super::ray_store;
 use super::rays::{facets, Columns, HitArrays, WEIGHT};
 use super::run::run;
 use crate::error::{Error, ErrorKind, Result};
@@ -16,6 +17,7 @@ use crate::geometry::dim3::Dim3;
 use crate::mesh::grid::Pitch;
 use crate::query::ray::Scene;
 use crate::query::stab::batch::test_rays;
+use crate::query::stab::record::Record;
 use crate::query::stab::tree::{Growth, Shape};
 use crate::query::stab::{Cast, StabTree, Trace};
 
@@ -48,9 +50,11 @@ pub struct RayTree {
 #[pymethods]
 impl RayTree {
     /// `hits` are counters to begin with; `threshold` is None for a tree that rays do not change;
-    /// `limit` is the most nodes of a tree that is completed at once, None to leave one leaf.
+    /// `limit` is the most nodes of a tree that is completed at once, None to leave one leaf;
+    /// `grown` is what `dump` returned for a tree over the same facets.
     #[new]
-    #[pyo3(signature = (dimension, corners, pitch=None, threshold=None, hits=None, limit=None))]
+    #[pyo3(signature = (dimension, corners, pitch=None, threshold=None, hits=None, limit=None, grown=None))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn new(
         py: Python<'_>,
         dimension: usize,
@@ -59,17 +63,20 @@ impl RayTree {
         threshold: Option<u64>,
         hits: Option<Vec<u64>>,
         limit: Option<usize>,
+        grown: Option<&[u8]>,
     ) -> PyResult<Self> {
         let fail = |e: Error| to_python(py, &e);
         let pitch = pitch.map(Pitch::new).transpose().map_err(fail)?;
         let growth = threshold.map_or(Growth::Never, Growth::Visits);
         let flat = corners.as_slice()?;
+        let record = grown.map(ray_store::from_bytes).transpose().map_err(fail)?;
         let plan = Plan {
             flat,
             pitch,
             growth,
             hits,
             limit,
+            record,
         };
         let tree = run(py, 0, flat.len(), |_| match dimension {
             1 => Ok(Stabbed::Points(plan.tree()?)),
@@ -110,6 +117,13 @@ impl RayTree {
         Ok((columns.arrays(py), PyArray1::from_vec(py, counts)))
     }
 
+    /// The cuts and counters as bytes; facets and threshold are not kept.
+    fn dump<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let record = self.read(py, |tree| with_tree!(tree, tree => tree.record()));
+        let bytes = ray_store::to_bytes(record).map_err(|e| to_python(py, &e))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
     fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let shape = self.read(py, |tree| with_tree!(tree, tree => tree.shape()));
         let dict = PyDict::new(py);
@@ -133,11 +147,15 @@ struct Plan<'a> {
     growth: Growth,
     hits: Option<Vec<u64>>,
     limit: Option<usize>,
+    record: Option<Record>,
 }
 
 impl Plan<'_> {
     fn tree<S: Cast<D>, const D: usize>(&self) -> Result<StabTree<S, D>> {
         let scene = Scene::new(&facets(self.flat)?, self.pitch)?;
+        if let Some(record) = &self.record {
+            return StabTree::regrown(scene, self.growth, record);
+        }
         let mut tree = StabTree::new(scene, self.growth, self.hits.as_deref())?;
         if let Some(limit) = self.limit {
             tree.complete(limit)?;

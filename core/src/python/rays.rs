@@ -164,13 +164,14 @@ impl RayScene {
         Ok(columns.arrays(py))
     }
 
-    /// The offsets of each ray's hits, and the hits.
-    #[pyo3(signature = (origins, directions, threads=0))]
+    /// The offsets of each ray's hits, and the hits; with `merge` the first of those at one point.
+    #[pyo3(signature = (origins, directions, merge=false, threads=0))]
     fn all<'py>(
         &self,
         py: Python<'py>,
         origins: PyReadonlyArray1<'py, f64>,
         directions: PyReadonlyArray1<'py, f64>,
+        merge: bool,
         threads: usize,
     ) -> PyResult<(Indices<'py>, HitArrays<'py>)> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
@@ -181,32 +182,35 @@ impl RayScene {
                 cancel,
             };
             with_scene!(&self.facets, scene => {
-                let hits = rays.all(scene)?;
+                let hits = rays.all(scene, merge)?;
                 Ok((offsets(&hits), Columns::of_all(&hits)))
             })
         })?;
         Ok((PyArray1::from_vec(py, offsets), columns.arrays(py)))
     }
 
-    /// The offsets of each ray's stretches inside, their parameters and facets, flat.
-    #[pyo3(signature = (origins, directions, rule="positive", threads=0))]
+    /// The offsets of each ray's stretches inside, their parameters and facets, flat; what is
+    /// `unbounded` has winding number 1 far away.
+    #[pyo3(signature = (origins, directions, rule="positive", unbounded=false, threads=0))]
     fn intervals<'py>(
         &self,
         py: Python<'py>,
         origins: PyReadonlyArray1<'py, f64>,
         directions: PyReadonlyArray1<'py, f64>,
         rule: &str,
+        unbounded: bool,
         threads: usize,
     ) -> PyResult<(Indices<'py>, Floats<'py>, Indices<'py>)> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
         let rule = winding_rule(rule).map_err(|e| to_python(py, &e))?;
+        let outside = i32::from(unbounded);
         let found = run(py, threads, origins.len() * WEIGHT, |cancel| {
             let rays = Rays {
                 origins,
                 heads,
                 cancel,
             };
-            with_scene!(&self.facets, scene => rays.inside(scene, rule))
+            with_scene!(&self.facets, scene => rays.inside(scene, rule, outside))
         })?;
         let ends = |i: &Inside| i.t;
         let t = found.iter().flatten().flat_map(ends).collect();

@@ -5,9 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 
 use super::answer::{hit, Hit};
-use super::crossings::stretches;
+use super::crossings::{stretches, Stretch};
 use super::first::{Query, Reach};
 use super::line::Ray;
+use super::ratio::Ratio;
 use super::scene::Scene;
 use crate::error::{Error, ErrorKind, Result};
 use crate::merge::leaf::Rule;
@@ -19,9 +20,9 @@ const CHUNK: usize = 512;
 /// A stretch inside, in doubles: parameters, and the facets' places in the input.
 #[derive(Clone, Copy, Debug)]
 pub struct Inside {
-    /// Where it begins and ends.
+    /// Where it begins and ends; infinite where it does not.
     pub t: [f64; 2],
-    /// The facets at the ends; −1 where the ray starts inside.
+    /// The facets at the ends; −1 where the ray starts inside or stays there.
     pub facets: [i64; 2],
 }
 
@@ -88,28 +89,39 @@ impl Rays<'_> {
         })
     }
 
-    /// All hits of each ray in order.
+    /// All hits of each ray in order; `merge` keeps the first of those at one point.
     ///
     /// # Errors
     /// As for `first`.
-    pub fn all<const D: usize>(&self, scene: &Scene<D>) -> Result<Vec<Vec<Hit<D>>>> {
+    pub fn all<const D: usize>(&self, scene: &Scene<D>, merge: bool) -> Result<Vec<Vec<Hit<D>>>> {
         self.cast(scene, |ray| {
-            let found = Query::new(scene, ray).all();
+            let mut found = Query::new(scene, ray).all();
+            if merge {
+                found.dedup_by(|next, kept| next.meeting.at == kept.meeting.at);
+            }
             found.iter().map(|f| hit(scene, ray, f)).collect()
         })
     }
 
-    /// The stretches of each ray inside what the facets bound.
+    /// The stretches of each ray inside what the facets bound, `outside` being the winding number
+    /// far away.
     ///
     /// # Errors
-    /// As for `first`.
-    pub fn inside<const D: usize>(&self, scene: &Scene<D>, rule: Rule) -> Result<Vec<Vec<Inside>>> {
+    /// As for `first`; `NotClosed` if the facets do not bound.
+    pub fn inside<const D: usize>(
+        &self,
+        scene: &Scene<D>,
+        rule: Rule,
+        outside: i32,
+    ) -> Result<Vec<Vec<Inside>>> {
+        scene.require_closed()?;
         let number = |f: Option<u32>| f.map_or(-1, |f| i64::from(scene.number(f)));
         self.cast(scene, |ray| {
-            let found = stretches(scene, ray, rule).into_iter();
-            let rounded = |s: super::crossings::Stretch| Inside {
-                t: [s.from, s.to].map(|at| scene.parameter(&at, ray.exponent())),
-                facets: [s.entry, s.exit].map(number),
+            let found = stretches(scene, ray, rule, outside).into_iter();
+            let t = |at: &Ratio| scene.parameter(at, ray.exponent());
+            let rounded = |s: Stretch| Inside {
+                t: [t(&s.from), s.end.map_or(f64::INFINITY, |end| t(&end.0))],
+                facets: [s.entry, s.end.map(|end| end.1)].map(number),
             };
             found.map(rounded).collect()
         })

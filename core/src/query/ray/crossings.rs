@@ -15,10 +15,8 @@ pub struct Stretch {
     pub from: Ratio,
     /// The facet through which the ray enters; none where it starts inside.
     pub entry: Option<u32>,
-    /// Where it ends.
-    pub to: Ratio,
-    /// The facet through which the ray leaves; none for a stretch without end.
-    pub exit: Option<u32>,
+    /// Where it ends, and the facet through which the ray leaves; none for a stretch without end.
+    pub end: Option<(Ratio, u32)>,
 }
 
 struct Crossing {
@@ -29,36 +27,37 @@ struct Crossing {
 
 /// The stretches inside, in order, none of length zero and no two that touch.
 ///
-/// The facets must bound: outside, far along every ray, the winding number is zero. The ray is
-/// taken at an infinitesimal shift (ε, ε², ε³), so that one that runs within a facet counts as
-/// inside there if the points beside it in that direction are.
-pub fn stretches<const D: usize>(scene: &Scene<D>, ray: &Ray<D>, rule: Rule) -> Vec<Stretch> {
+/// The facets must bound: far along every ray the winding number is `outside`. The ray is taken
+/// at an infinitesimal shift (ε, ε², ε³), so that one that runs within a facet counts as inside
+/// there if the points beside it in that direction are.
+pub fn stretches<const D: usize>(
+    scene: &Scene<D>,
+    ray: &Ray<D>,
+    rule: Rule,
+    outside: i32,
+) -> Vec<Stretch> {
     let crossings = crossings(scene, ray);
-    let mut winding: i32 = crossings.iter().map(|c| c.step).sum();
+    let mut winding = crossings.iter().map(|c| c.step).sum::<i32>() + outside;
     let mut found = Vec::new();
     let mut entry = rule.inside(winding).then_some((Ratio::ZERO, None));
     for group in crossings.chunk_by(|a, b| a.at == b.at) {
         winding -= group.iter().map(|c| c.step).sum::<i32>();
-        let here = (group[0].at, Some(group[0].facet));
+        let (at, facet) = (group[0].at, group[0].facet);
         match (entry, rule.inside(winding)) {
-            (None, true) => entry = Some(here),
-            (Some(begin), false) => {
-                found.push(stretch(begin, here));
+            (None, true) => entry = Some((at, Some(facet))),
+            (Some((from, entered)), false) => {
+                found.push(stretch(from, entered, Some((at, facet))));
                 entry = None;
             }
             _ => {}
         }
     }
+    found.extend(entry.map(|(from, entered)| stretch(from, entered, None)));
     found
 }
 
-fn stretch(from: (Ratio, Option<u32>), to: (Ratio, Option<u32>)) -> Stretch {
-    Stretch {
-        from: from.0,
-        entry: from.1,
-        to: to.0,
-        exit: to.1,
-    }
+fn stretch(from: Ratio, entry: Option<u32>, end: Option<(Ratio, u32)>) -> Stretch {
+    Stretch { from, entry, end }
 }
 
 /// The crossings at positive parameters by parameter and input; +1 where the ray leaves.

@@ -5,12 +5,13 @@
 //! meets a facet is decided exactly, doubles only spare the integers where they are certain. So
 //! the tree over the facets decides how fast an answer comes and never what it is.
 //!
-//! Layers, from the bottom: `bounds` < `ray` < `facet` | `filter` < `scene` | `node` < `walk` <
-//! `first` | `crossings` < `answer` < `batch`.
+//! Layers, from the bottom: `bounds` < `ray` < `facet` | `filter` < `scene` | `node` < `closed` |
+//! `walk` < `first` | `crossings` < `answer` < `batch`.
 
 pub mod answer;
 pub mod batch;
 pub mod bounds;
+pub mod closed;
 pub mod crossings;
 pub mod facet;
 pub mod filter;

@@ -1,7 +1,9 @@
 //! The facets that rays are cast at, snapped to a lattice, with their tree.
 
 use std::cmp::Ordering;
+use std::sync::OnceLock;
 
+use super::closed::require_closed;
 use super::node::{Cell, Node};
 use super::ratio::Ratio;
 use crate::error::{Error, ErrorKind, Result};
@@ -22,6 +24,8 @@ pub struct Scene<const D: usize> {
     numbers: Vec<u32>,
     cell: Cell<D>,
     root: Node<D>,
+    /// Whether the facets bound, once somebody has asked.
+    closed: OnceLock<Result<()>>,
 }
 
 impl<const D: usize> Scene<D> {
@@ -55,6 +59,7 @@ impl<const D: usize> Scene<D> {
             numbers,
             cell,
             root,
+            closed: OnceLock::new(),
         })
     }
 
@@ -81,6 +86,19 @@ impl<const D: usize> Scene<D> {
     /// The tree's root.
     pub fn root(&self) -> &Node<D> {
         &self.root
+    }
+
+    /// Refuses facets that do not bound; decided once.
+    ///
+    /// # Errors
+    /// `NotClosed` with the places in the input of facets at the border.
+    pub fn require_closed(&self) -> Result<()> {
+        if let Some(known) = self.closed.get() {
+            return known.clone();
+        }
+        // Not within `get_or_init`: a thread of the pool that waits there could be asked again.
+        let found = require_closed(self);
+        self.closed.get_or_init(|| found).clone()
     }
 
     /// Divides all deferred leaves now, on all threads of the pool.

@@ -31,6 +31,13 @@ impl<F> Default for Heap<F> {
 }
 
 impl<F> Heap<F> {
+    /// The heap of these entries in this order, if it is one.
+    pub fn of(entries: Vec<Entry<F>>) -> Option<Self> {
+        let mut lower = entries.iter().enumerate().skip(1);
+        let ordered = lower.all(|(place, entry)| !entry.precedes(&entries[(place - 1) / 2]));
+        ordered.then_some(Self { entries })
+    }
+
     /// The number of fragments.
     pub fn len(&self) -> usize {
         self.entries.len()
@@ -69,10 +76,9 @@ impl<F> Heap<F> {
         }
     }
 
-    /// The fragment with most hits, and the others.
-    pub fn into_top_and_rest(self) -> Option<(Entry<F>, impl Iterator<Item = Entry<F>>)> {
-        let mut entries = self.entries.into_iter();
-        entries.next().map(|top| (top, entries))
+    /// The fragments in the heap's order.
+    pub fn into_entries(self) -> Vec<Entry<F>> {
+        self.entries
     }
 }
 
@@ -98,9 +104,15 @@ mod tests {
     }
 
     fn assert_heap(heap: &Heap<()>) {
-        for (place, entry) in heap.entries().iter().enumerate().skip(1) {
-            assert!(!entry.precedes(&heap.entries()[(place - 1) / 2]));
-        }
+        assert!(Heap::of(heap.entries().to_vec()).is_some());
+    }
+
+    #[test]
+    fn only_heaps_are_taken_as_such() {
+        let mut entries = heap(&[1, 3, 2, 3]).into_entries();
+        assert!(Heap::of(entries.clone()).is_some());
+        entries.swap(0, 1);
+        assert!(Heap::of(entries).is_none());
     }
 
     #[test]

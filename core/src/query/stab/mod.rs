@@ -7,6 +7,7 @@
 pub mod batch;
 pub mod cast;
 pub mod heap;
+pub mod record;
 pub mod tree;
 
 mod cut;

@@ -32,10 +32,10 @@ pub enum Growth {
 #[derive(Debug)]
 pub struct StabTree<S: Cast<D>, const D: usize> {
     scene: Scene<D>,
-    nodes: Vec<Node<S, D>>,
+    pub(super) nodes: Vec<Node<S, D>>,
     growth: Growth,
     subdivisions: u64,
-    rays: u64,
+    pub(super) rays: u64,
 }
 
 #[derive(Debug)]
@@ -155,20 +155,29 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
 
     /// Divides a leaf at its most hit fragment; one with a single fragment stays.
     fn divide(&mut self, at: usize) {
-        let (first, depth) = (self.nodes.len() as u32, self.nodes[at].depth + 1);
-        let Content::Leaf(list) = &mut self.nodes[at].content else {
+        let Content::Leaf(list) = &self.nodes[at].content else {
             return;
         };
-        if list.len() < 2 {
-            return;
+        if let [top, _, ..] = list.entries() {
+            self.divide_by(at, top.facet);
         }
-        let Some((inner, halves)) = parts::<S, D>(std::mem::take(list), &self.scene, first) else {
-            return;
+    }
+
+    /// Divides a leaf at the fragment of this facet; `None` if there is no such leaf or fragment.
+    pub(super) fn divide_by(&mut self, at: usize, facet: u32) -> Option<()> {
+        let (first, depth) = (self.nodes.len() as u32, self.nodes.get(at)?.depth + 1);
+        let Content::Leaf(list) = &mut self.nodes[at].content else {
+            return None;
         };
+        let place = list.entries().iter().position(|e| e.facet == facet)?;
+        let mut entries = std::mem::take(list).into_entries();
+        let pivot = entries.remove(place);
+        let (inner, halves) = parts::<S, D>(&pivot, entries, &self.scene, first);
         self.nodes[at].content = Content::Inner(Box::new(inner));
         self.nodes
             .extend(halves.map(|half| Node::leaf(half, depth)));
         self.subdivisions += 1;
+        Some(())
     }
 
     /// Counts what is there.
@@ -196,14 +205,14 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
 
 /// The node that divides a list, and the lists of its children, the first to be at `first`.
 fn parts<S: Cast<D>, const D: usize>(
-    list: Heap<S::Fragment>,
+    pivot: &Entry<S::Fragment>,
+    rest: Vec<Entry<S::Fragment>>,
     scene: &Scene<D>,
     first: u32,
-) -> Option<(Inner<D>, [Heap<S::Fragment>; 2])> {
-    let (top, rest) = list.into_top_and_rest()?;
-    let plane = S::hyperplane(&top.fragment).clone();
-    let mut coplanar = vec![top.facet];
-    let corners = scene.facets()[top.facet as usize].map(|c| c.map(|x| x as i64));
+) -> (Inner<D>, [Heap<S::Fragment>; 2]) {
+    let plane = S::hyperplane(&pivot.fragment).clone();
+    let mut coplanar = vec![pivot.facet];
+    let corners = scene.facets()[pivot.facet as usize].map(|c| c.map(|x| x as i64));
     let [mut below, mut above] = [Heap::default(), Heap::default()];
     let mut touched = [false; 2];
     for entry in rest {
@@ -233,7 +242,7 @@ fn parts<S: Cast<D>, const D: usize>(
         children,
         touched,
     };
-    Some((inner, [below, above]))
+    (inner, [below, above])
 }
 
 impl<S: Cast<D>, const D: usize> Node<S, D> {

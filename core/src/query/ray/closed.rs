@@ -1,0 +1,71 @@
+//! Whether facets bound: what "inside" along a ray presumes.
+
+use super::scene::Scene;
+use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::grid::Pitch;
+use crate::mesh::import::import;
+
+/// Refuses facets that have a border of their own on the lattice.
+///
+/// Triangles must cancel along the lines of their edges, segments end where others begin, and
+/// points of the line come in pairs.
+///
+/// # Errors
+/// `NotClosed` with the places in the input of facets at the border.
+pub fn require_closed<const D: usize>(scene: &Scene<D>) -> Result<()> {
+    match D {
+        1 => points(scene),
+        2 => segments(scene),
+        _ => triangles(scene),
+    }
+}
+
+fn points<const D: usize>(scene: &Scene<D>) -> Result<()> {
+    let count = scene.facets().len();
+    if count.is_multiple_of(2) {
+        return Ok(());
+    }
+    let text = format!("{count} points of the line bound nothing: their number must be even");
+    Err(Error::new(ErrorKind::NotClosed, text))
+}
+
+fn segments<const D: usize>(scene: &Scene<D>) -> Result<()> {
+    let facets = (0..).zip(scene.facets());
+    let ends = facets.flat_map(|(facet, corners)| {
+        let end = |k: usize, step: i64| (corners[k].map(|c| c as i64), step, facet);
+        [end(0, 1), end(1, -1)]
+    });
+    let mut ends: Vec<([i64; D], i64, u32)> = ends.collect();
+    ends.sort_unstable();
+    for run in ends.chunk_by(|a, b| a.0 == b.0) {
+        if run.iter().map(|end| end.1).sum::<i64>() != 0 {
+            let place = run.iter().map(|end| u64::from(scene.number(end.2)));
+            let text = "the segments do not close: as many must end in each point as begin there";
+            return Err(Error::at(ErrorKind::NotClosed, place.collect(), text));
+        }
+    }
+    Ok(())
+}
+
+fn triangles<const D: usize>(scene: &Scene<D>) -> Result<()> {
+    let facets = scene.facets();
+    if facets.is_empty() {
+        return Ok(());
+    }
+    let corner = |p: &[f64; D]| [p[0], p[1], p[2]];
+    let vertices: Vec<_> = facets.iter().flatten().map(corner).collect();
+    let face = |k: i64| [3 * k, 3 * k + 1, 3 * k + 2];
+    let faces: Vec<_> = (0..facets.len() as i64).map(face).collect();
+    // Corners are whole steps already.
+    let steps = Pitch::new(0)?;
+    match import(&vertices, &faces, Some(steps)) {
+        Err(e) if e.kind() == ErrorKind::NotClosed => Err(at_input(scene, &e)),
+        other => other.map(|_| ()),
+    }
+}
+
+fn at_input<const D: usize>(scene: &Scene<D>, error: &Error) -> Error {
+    let number = |place: &u64| u64::from(scene.number(*place as u32));
+    let places = error.place().iter().map(number).collect();
+    Error::at(error.kind(), places, error.message())
+}

@@ -1,0 +1,140 @@
+//! What a tree has become, in numbers: with its facets it can be grown again.
+
+use serde::{Deserialize, Serialize};
+
+use super::cast::Cast;
+use super::heap::{Entry, Heap};
+use super::tree::{Content, Growth, StabTree};
+use crate::error::{Error, ErrorKind, Result};
+use crate::query::ray::Scene;
+
+/// The counters of a tree and where it was cut.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Record {
+    rays: u64,
+    /// In the order in which the nodes were made.
+    nodes: Vec<NodeRecord>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct NodeRecord {
+    visits: u64,
+    content: ContentRecord,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum ContentRecord {
+    /// Facets in the order of the heap, with their hits.
+    Leaf(Vec<(u32, u64)>),
+    /// The facets in the cut, the one that gave it first, and the number of the minus child.
+    Cut(Vec<u32>, u32),
+}
+
+impl<S: Cast<D>, const D: usize> StabTree<S, D> {
+    /// What the tree has become.
+    pub fn record(&self) -> Record {
+        let content = |content: &Content<S, D>| match content {
+            Content::Leaf(list) => {
+                let hits = list.entries().iter().map(|e| (e.facet, e.hits));
+                ContentRecord::Leaf(hits.collect())
+            }
+            Content::Inner(inner) => ContentRecord::Cut(inner.coplanar.clone(), inner.children[0]),
+        };
+        let nodes = self.nodes.iter().map(|node| NodeRecord {
+            visits: node.visits,
+            content: content(&node.content),
+        });
+        Record {
+            rays: self.rays,
+            nodes: nodes.collect(),
+        }
+    }
+
+    /// The tree of a record: its cuts are made again in their order.
+    ///
+    /// # Errors
+    /// `BadSnapshot` if the record is not one of a tree over these facets; as for `new`.
+    pub fn regrown(scene: Scene<D>, growth: Growth, record: &Record) -> Result<Self> {
+        let mut tree = Self::new(scene, growth, None)?;
+        tree.follow(record).ok_or_else(|| {
+            let text = "the stored tree is not one over these facets";
+            Error::new(ErrorKind::BadSnapshot, text)
+        })?;
+        Ok(tree)
+    }
+
+    fn follow(&mut self, record: &Record) -> Option<()> {
+        for (at, facets, child) in record.cuts() {
+            if child as usize != self.nodes.len() {
+                return None;
+            }
+            self.divide_by(at, *facets.first()?)?;
+        }
+        if self.nodes.len() != record.nodes.len() {
+            return None;
+        }
+        for (node, stored) in self.nodes.iter_mut().zip(&record.nodes) {
+            node.visits = stored.visits;
+            restore(&mut node.content, &stored.content)?;
+        }
+        self.rays = record.rays;
+        Some(())
+    }
+}
+
+impl Record {
+    /// Nodes with cuts, the facets in these, and the first child: in the order of the divisions.
+    fn cuts(&self) -> Vec<(usize, &[u32], u32)> {
+        let mut cuts = Vec::new();
+        for (at, node) in self.nodes.iter().enumerate() {
+            if let ContentRecord::Cut(facets, child) = &node.content {
+                cuts.push((at, facets.as_slice(), *child));
+            }
+        }
+        cuts.sort_unstable_by_key(|cut| cut.2);
+        cuts
+    }
+}
+
+/// Puts what a node lists in the order of the record; `None` if that names other facets.
+fn restore<S: Cast<D>, const D: usize>(
+    content: &mut Content<S, D>,
+    stored: &ContentRecord,
+) -> Option<()> {
+    match (content, stored) {
+        (Content::Leaf(list), ContentRecord::Leaf(hits)) => {
+            *list = Heap::of(rearranged(std::mem::take(list).into_entries(), hits)?)?;
+        }
+        (Content::Inner(inner), ContentRecord::Cut(facets, _)) => {
+            let (mut found, mut wanted) = (inner.coplanar.clone(), facets.clone());
+            found.sort_unstable();
+            wanted.sort_unstable();
+            if found != wanted {
+                return None;
+            }
+            inner.coplanar.clone_from(facets);
+        }
+        _ => return None,
+    }
+    Some(())
+}
+
+/// The entries in the order of the stored facets, with their hits.
+fn rearranged<F>(mut entries: Vec<Entry<F>>, hits: &[(u32, u64)]) -> Option<Vec<Entry<F>>> {
+    let mut order: Vec<usize> = (0..hits.len()).collect();
+    order.sort_unstable_by_key(|place| hits[*place].0);
+    entries.sort_unstable_by_key(|entry| entry.facet);
+    if entries.len() != hits.len() {
+        return None;
+    }
+    let mut placed: Vec<Option<Entry<F>>> = entries.iter().map(|_| None).collect();
+    for (mut entry, place) in entries.into_iter().zip(order) {
+        let (facet, count) = hits[place];
+        if entry.facet != facet {
+            return None;
+        }
+        entry.hits = count;
+        placed[place] = Some(entry);
+    }
+    placed.into_iter().collect()
+}
