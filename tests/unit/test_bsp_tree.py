@@ -404,3 +404,15 @@ def has_perfect(segments: list[Any]) -> bool:
         ):
             return True
     return False
+
+
+def test_a_polygon_that_crosses_itself_is_called_that() -> None:
+    # The halves of the second are of one size, so that its normal vanishes.
+    for bow in (
+        [[0, 0, 0], [4, 4, 0], [5, 1, 0], [0, 4, 0]],
+        [[0, 0, 0], [4, 4, 0], [4, 0, 0], [0, 4, 0]],
+    ):
+        for degenerate in ("error", "drop"):
+            with pytest.raises(b.InvalidMeshError, match="crosses") as caught:
+                bsp.PartitionTree([bow], degenerate=degenerate)
+            assert caught.value.code == "not_simple"

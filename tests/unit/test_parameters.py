@@ -168,6 +168,7 @@ NOT_FINITE: dict[str, Callable[[], object]] = {
     "Region": lambda: bsp.Region([(0, 0), (1, 0), (NAN, 1)]),
     "Region.from_segments": lambda: bsp.Region.from_segments(EDGES * NAN),
     "ObjectTree": lambda: bsp.ObjectTree([[0, NAN]]),
+    "PartitionTree": lambda: bsp.PartitionTree(EDGES * NAN),
     "RayCaster": lambda: bsp.RayCaster(EDGES * NAN),
     "classify": lambda: b.cube(1).classify([[0, NAN, 0]]),
     "first_hit": lambda: CASTER.first_hit([0, 0, NAN], ALONG),

@@ -30,7 +30,10 @@ pub fn suited_pitch(rows: &[[f64; 3]]) -> Result<Pitch> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (row, p) in rows.iter().enumerate() {
             if !p[axis].is_finite() {
-                let text = format!("corner {row} has the coordinate {}", p[axis]);
+                let text = format!(
+                    "corner {row} has the coordinate {}; coordinates must be finite",
+                    p[axis]
+                );
                 return Err(Error::at(ErrorKind::NonFinite, vec![row as u64], text));
             }
             low = low.min(p[axis]);
@@ -160,8 +163,7 @@ fn polygon(given: &[Lattice], source: u32, lenient: bool) -> Result<Vec<Facet>> 
         return Err(fault(ErrorKind::Shape, source, text));
     }
     let corners = without_flat_corners(given);
-    let flat = || fault(ErrorKind::Degenerate, source, "has no area on the lattice");
-    let plane = newell_plane(&corners).ok_or_else(flat)?;
+    let plane = newell_plane(&corners).ok_or_else(|| without_normal(&corners, source))?;
     let planar = corners.iter().all(|p| plane.side_of_lattice(p) == 0);
     if !planar && !lenient {
         let text = "is not planar on the lattice";
@@ -179,6 +181,22 @@ fn polygon(given: &[Lattice], source: u32, lenient: bool) -> Result<Vec<Facet>> 
     let crossed = || fault(ErrorKind::NotSimple, source, "crosses or touches itself");
     let parts = triangles(&corners, axes).ok_or_else(crossed)?;
     Ok(parts.iter().map(|t| part(&corners, t, source)).collect())
+}
+
+/// Why a polygon has no normal: it is flat, or what it turns one way round it turns the other.
+fn without_normal(corners: &[Lattice], source: u32) -> Error {
+    let (kind, text) = match corners {
+        // Of more than three corners none lies between its neighbours on one line.
+        [a, b, c, _, ..] => match Plane::through(a, b, c) {
+            Some(plane) if corners.iter().all(|p| plane.side_of_lattice(p) == 0) => {
+                let text = "crosses itself: its areas of either orientation cancel";
+                (ErrorKind::NotSimple, text)
+            }
+            _ => (ErrorKind::NonPlanar, "is not planar on the lattice"),
+        },
+        _ => (ErrorKind::Degenerate, "has no area on the lattice"),
+    };
+    fault(kind, source, text)
 }
 
 fn part(corners: &[Lattice], triangle: &[usize; 3], source: u32) -> Facet {
@@ -284,6 +302,20 @@ mod tests {
         assert_eq!(kind(&bent), Some(ErrorKind::NonPlanar));
         let bow = [[0, 0, 0], [4, 4, 0], [5, 1, 0], [0, 4, 0]];
         assert_eq!(kind(&bow), Some(ErrorKind::NotSimple));
+        // The two halves are of one size.
+        let even = [[0, 0, 0], [4, 4, 0], [4, 0, 0], [0, 4, 0]];
+        assert_eq!(kind(&even), Some(ErrorKind::NotSimple));
+        let skew = [
+            [1, 0, 2],
+            [1, 0, 1],
+            [0, 2, 2],
+            [0, 0, 2],
+            [1, 2, 1],
+            [1, 2, 0],
+        ];
+        assert_eq!(kind(&skew), Some(ErrorKind::NonPlanar));
+        let there_and_back = [[0, 0, 0], [4, 0, 0], [8, 0, 0], [4, 0, 0]];
+        assert_eq!(kind(&there_and_back), Some(ErrorKind::Degenerate));
         assert_eq!(kind(&[[0, 0, 0], [1, 0, 0]]), Some(ErrorKind::Shape));
         let lenience = Lenience {
             triangulate_bent: true,
