@@ -17,12 +17,13 @@ import tempfile
 import traceback
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
+from ._types import ProgramLine
 from .counting import counted, uncounted
 from .errors import BspcsgError, FormatError
 from .setops import union
-from .solid import Solid
+from .solid import Solid, with_record
 
 #: Longest time for a script, in seconds, unless the caller says otherwise.
 TIMEOUT = 600.0
@@ -32,6 +33,9 @@ _SERVE = (
     "import os, signal; signal.signal(signal.SIGINT, lambda *_: os._exit(130));"
     " from bspcsg.script import serve; serve()"
 )
+
+#: A solid, and the program and operands that made it, unless it was no operation.
+_Made: TypeAlias = tuple[Solid, tuple[list[ProgramLine], tuple[Solid, ...]] | None]
 
 _shown: list[Solid] = []
 
@@ -73,7 +77,7 @@ def run_script(
     -------
     Solid
         The global variable ``result``, or the union of a list of solids there, or the union of all
-        that was shown.
+        that was shown. It knows the operation that made it (see `Solid.last_operation`).
 
     Raises
     ------
@@ -95,8 +99,8 @@ def run_script(
         answered = pickle.loads(answer.read_bytes())
     if isinstance(answered, BspcsgError):
         raise answered
-    assert isinstance(answered, Solid)
-    return answered
+    solid, made = answered
+    return solid if made is None else with_record(solid, *made)
 
 
 def _run_child(task: bytes, name: str, timeout: float | None) -> int:
@@ -127,14 +131,15 @@ def _standard_error() -> int:
         return subprocess.DEVNULL
 
 
-def _answer(name: str, arguments: list[str], defines: dict[str, Any]) -> Solid | BspcsgError:
+def _answer(name: str, arguments: list[str], defines: dict[str, Any]) -> _Made | BspcsgError:
     sys.argv = [name, *arguments]
     sys.path.insert(0, str(Path(name).parent.absolute()))
     variables: dict[str, Any] = {}
     try:
         with contextlib.suppress(SystemExit):
             variables = runpy.run_path(name, init_globals=defines, run_name="__main__")
-        return _result(name, variables)
+        result = _result(name, variables)
+        return result if isinstance(result, BspcsgError) else _with_operation(result)
     except BspcsgError as error:
         return _located(error, name)
     except Exception as error:
@@ -151,6 +156,12 @@ def _result(name: str, variables: dict[str, Any]) -> Solid | BspcsgError:
         message = f"{name}: the script left no variable “result” and called no bspcsg.show(solid)."
         return FormatError(message, "no_result")
     return union(_shown)
+
+
+def _with_operation(result: Solid) -> _Made:
+    """Return a solid and what made it, which its pickle leaves out."""
+    last = result.last_operation
+    return result, None if last is None else (last.program, last.operands)
 
 
 def _located(error: Exception, name: str) -> BspcsgError:

@@ -22,7 +22,7 @@ from .counting import count, counted, uncounted
 from .describe import describe
 from .errors import core_errors
 from .expression import Node, Operator, Placed, complement, evaluate, operation
-from .leaf import ConstantLeaf, Leaf, MeshLeaf, TreeLeaf, tree_of
+from .leaf import ConstantLeaf, Leaf, MeshLeaf, Record, TreeLeaf, tree_of
 from .measure import Measured, residues_of_volume
 from .mesh import Mesh
 from .parameters import optional_pitch, winding_rule
@@ -480,6 +480,16 @@ class LastOperation:
     program: list[ProgramLine]
     operands: tuple[Solid, ...]
     result: Solid
+
+
+def with_record(solid: Solid, program: list[ProgramLine], operands: Sequence[Solid]) -> Solid:
+    """Return the solid with what made it before the transform on it, which pickling leaves out.
+
+    For the modules of this package; `program` and `operands` are those of a `LastOperation`.
+    """
+    leaves = tuple(evaluate(operand._node) for operand in operands)
+    leaf = TreeLeaf(tree_of(evaluate(solid._node)), Record(program, leaves))
+    return Solid.from_node(Node(leaf), solid._factors)
 
 
 def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:

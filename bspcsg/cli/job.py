@@ -104,6 +104,8 @@ class Job(ABC):
         line = summary(name, mesh, sum(self.seconds.values()))
         if report is not None:
             line = f"{line}\n  check: {report.summary()}"
+        elif self.settings["check"]:
+            line = f"{line}\n  check: nothing to compare, for no operation made the result"
         if not written:
             line = f"{name}: not written\n  check: {report.summary() if report else ''}"
         as_json = self.out.as_json

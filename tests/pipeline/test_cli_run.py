@@ -64,6 +64,46 @@ def test_python_keeps_standard_output_free(folder: Path) -> None:
     assert b.load("x.off").volume_exact == 12
 
 
+FORGED = """import bspcsg as b
+from bspcsg.leaf import TreeLeaf
+result = b.cube(2) - b.cube(1).translate(1, 1, 1)
+assert result.volume == 7
+result._node.content = TreeLeaf(b.cube(2).tree, result._node.content.record)
+"""
+
+
+@pytest.mark.parametrize(
+    "result",
+    [
+        "b.cube(3) - b.cube(1)",
+        "(b.cube(3) - b.cube(1)).translate(1, 2, 3).rotate(30)",
+        "b.cube(3) - b.half_space((1, 1, 1), 2)",
+        "[b.cube(1), b.sphere(2)]",
+    ],
+)
+def test_python_results_are_checked(folder: Path, capsys: Capture, result: str) -> None:
+    Path("part.py").write_text(f"import bspcsg as b\nresult = {result}\n")
+    code, out, _ = ran(capsys, "run", "part.py", "-o", "x.off")
+    assert code == 0 and "check: agree" in out
+    code, out, _ = ran(capsys, "run", "part.py", "-o", "x.off", "--no-check")
+    assert code == 0 and "check" not in out
+
+
+def test_wrong_python_results_are_found(folder: Path, capsys: Capture) -> None:
+    Path("part.py").write_text(FORGED)
+    code, out, _ = ran(capsys, "run", "part.py", "-o", "x.off")
+    assert code == 1 and "check: DISAGREE" in out
+    assert ran(capsys, "run", "part.py", "-o", "x.off", "--no-check")[0] == 0
+
+
+def test_results_of_no_operation_are_not_called_checked(folder: Path, capsys: Capture) -> None:
+    Path("part.py").write_text("import bspcsg as b\nresult = b.cube(1)\n")
+    for arguments in ["run", "part.py"], ["eval", "a.off"]:
+        code, out, _ = ran(capsys, *arguments, "-o", "x.off")
+        assert code == 0 and "check: nothing to compare, for no operation made the result" in out
+        assert json.loads(ran(capsys, *arguments, "-o", "x.off", "--json")[1])["check"] is None
+
+
 def test_what_is_left_out_is_told(folder: Path, capsys: Capture) -> None:
     Path("open.csg").write_text(OPEN)
     code, _, err = ran(capsys, "run", "open.csg", "-o", "x.off")

@@ -16,6 +16,17 @@ def test_a_result_is_the_solid(tmp_path: Path) -> None:
     assert b.run_script(path).volume == 26
 
 
+def test_results_know_what_made_them(tmp_path: Path) -> None:
+    text = "import bspcsg as b\nresult = (b.cube(3) - b.half_space((1, 0, 0), 1)).scale(2)\n"
+    result = b.run_script(script(tmp_path, text))
+    made = result.last_operation
+    assert made is not None and [op for op, _ in made.program] == ["leaf", "leaf", "not", "and"]
+    assert made.operands[0].equals(b.cube(3)) and not made.operands[1].is_bounded
+    assert made.result.volume == 18 and result.volume == 144
+    path = script(tmp_path, "import bspcsg as b\nresult = b.cube(1)\n")
+    assert b.run_script(path).last_operation is None
+
+
 def test_results_may_be_several_or_meshes(tmp_path: Path) -> None:
     path = script(tmp_path, "import bspcsg as b\nresult = [b.cube(1), b.cube(2)]\n")
     assert b.run_script(path).volume == 8
