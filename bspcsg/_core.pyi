@@ -20,6 +20,7 @@ __all__ = [
     "Tree",
     "__version__",
     "normal_bits",
+    "numbers_in",
     "set_threads",
     "suited_pitch",
 ]
@@ -50,6 +51,7 @@ _SplitCase: TypeAlias = Literal[
 def set_threads(n: int) -> None: ...
 def normal_bits(dimension: int) -> int: ...
 def suited_pitch(largest: float, extent: float) -> int: ...
+def numbers_in(text: bytes) -> npt.NDArray[np.float64]: ...
 
 @final
 class Tree:

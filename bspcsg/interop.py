@@ -66,6 +66,14 @@ def _advice(mesh: Any) -> str:
     return ""
 
 
+def are_empty(arrays: Arrays) -> bool:
+    """Whether there are neither vertices nor faces; vertices alone are a cloud of points."""
+    try:
+        return not any(map(len, arrays))
+    except TypeError:  # no arrays at all, which is said elsewhere
+        return False
+
+
 def mesh_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
     """Return vertices (n, 3) float64 and triangles (m, 3) int64: the given ones if they are so.
 

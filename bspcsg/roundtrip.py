@@ -13,9 +13,6 @@ from .mesh import Mesh
 from .solid import Solid
 from .weld import welded
 
-#: What readers say about parts of a file that they pass by.
-_PASSED_BY = ("ignored", "curves_ignored", "extra_data")
-
 #: How many names are told.
 _TOLD = 4
 
@@ -106,7 +103,7 @@ def losses_between(before: RawMesh, after: RawMesh) -> Losses:
         (_volume(before), _volume(after)),
         (_is_solid(before), _is_solid(after)),
         tuple(dict.fromkeys(names)),
-        tuple(finding.message for finding in before.findings if finding.code in _PASSED_BY),
+        before.passed_by,
         before.dropped,
     )
 

@@ -136,7 +136,7 @@ class Solid(Measured, PointSet):
             A trimesh, manifold3d, pymeshlab, open3d, pyvista, vtk or meshio mesh, a CadQuery or
             build123d shape, a pair (vertices, faces) as libigl has it, a path, the bytes of a file
             or an open one, or anything that has ``vertices`` and ``faces``. A `Solid` is returned
-            as it is.
+            as it is; a mesh without vertices and faces is the empty set.
         format : str, optional
             Of bytes and open files: a suffix, such as ``"stl"``.
         tolerance : float
@@ -164,7 +164,8 @@ class Solid(Measured, PointSet):
             from . import io
 
             return io.loads(mesh, format, **options)
-        return cls(*interop.arrays_from(mesh, tolerance), **options)
+        arrays = interop.arrays_from(mesh, tolerance)
+        return cls.empty() if interop.are_empty(arrays) else cls(*arrays, **options)
 
     @classmethod
     @counted

@@ -117,17 +117,29 @@ class _Conversion:
         raw = self._turned(path, target)
         self._inputs.tell(path, raw.findings)
         shortened, _ = target.rounded(raw)
-        chunks, findings = encoded(shortened, shown(target.path), target.suffix, target.text)
-        data = b"".join(chunks)
-        lost = losses_between(raw, decoded(shown(target.path), data, target.suffix))
-        put(target.path, [data], target.overwrite)
-        for finding in findings:
+        made = encoded(shortened, shown(target.path), target.suffix, target.text)
+        found: list[Losses] = []
+
+        def compare(data: bytes) -> None:
+            made.prove(data)
+            found.append(losses_between(raw, decoded(shown(target.path), data, target.suffix)))
+
+        put(target.path, made.chunks, target.overwrite, compare)
+        lost = found[0]
+        for finding in made.findings:
             self._tell(target, finding)
         seconds = time.perf_counter() - began
         if not self._out.as_json:
             self._out.result(_line(raw, target, lost, seconds), {})
-        document = {"file": str(path), "output": str(target.path), "triangles": len(raw.faces)}
-        return {**document, "lost": lost.to_dict(), "seconds": round(seconds, 4)}, lost.any
+        document = {
+            "file": str(path),
+            "output": str(target.path),
+            "triangles": len(raw.faces),
+            "findings": output.finding_values(made.findings),
+            "lost": lost.to_dict(),
+            "seconds": round(seconds, 4),
+        }
+        return document, lost.any
 
     def _turned(self, path: Path, target: Target) -> "RawMesh":
         """Read a file, turned so that the axis asked for is up in the output."""

@@ -3,7 +3,7 @@
 import os
 import shlex
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -129,10 +129,10 @@ class Inputs:
         try:
             return self._solid_of(raw, path)
         except InvalidMeshError as error:
+            if self.on_invalid == "warn" and error.code in ("not_closed", "empty_mesh"):
+                return self._left_out(error)
             if error.code != "not_closed":
                 raise
-            if self.on_invalid == "warn":
-                return self._left_out(error)
             if self.on_invalid == "repair":
                 return self._repaired(raw, path)
             message = f"{error.message}\n  Try: {repair_command(path)}\n{ON_INVALID}"
@@ -222,14 +222,14 @@ class Target:
         FormatError
             If the format is unknown or the folder cannot be written to.
         """
-        from ..io import encoder_of
+        from ..io import form_of
 
         if self.is_stream and not self.suffix:
             raise click.UsageError("to write to standard output, say the format: --to stl.")
         if self.is_stream and as_json:
             raise click.UsageError("--json and a mesh cannot both go to standard output.")
         named = self.path.suffix == self.suffix
-        encoder_of(self.path if named else f"{self.path}{self.suffix}", self.text)
+        form_of(self.path if named else f"{self.path}{self.suffix}", self.text)
         refuse_unwritable(self.path, self.overwrite)
 
     def rounded(self, mesh: "Mesh | RawMesh") -> "tuple[Mesh | RawMesh, tuple[Finding, ...]]":
@@ -243,21 +243,32 @@ class Target:
         from ..io import encoded
 
         shortened, moved = self.rounded(mesh)
-        chunks, findings = encoded(shortened, shown(self.path), self.suffix, self.text)
-        put(self.path, chunks, self.overwrite)
-        return moved + findings
+        made = encoded(shortened, shown(self.path), self.suffix, self.text)
+        put(self.path, made.chunks, self.overwrite, made.prove)
+        return moved + made.findings
 
 
-def put(path: Path, chunks: Iterable[bytes], overwrite: bool = True) -> None:
-    """Write bytes to a file, which appears complete or not at all, or to standard output."""
+def put(
+    path: Path,
+    chunks: Iterable[bytes],
+    overwrite: bool = True,
+    prove: Callable[[bytes], None] | None = None,
+) -> None:
+    """Write bytes to a file, which appears complete or not at all, or to standard output.
+
+    What `prove` refuses is written to neither.
+    """
     from ..io.atomic import write_file
 
     if str(path) != STREAM:
         refuse_unwritable(path, overwrite)
-        write_file(path, chunks)
+        write_file(path, chunks, prove)
         return
     if sys.stdout.isatty():
         raise click.UsageError("this is no text for a terminal; use a pipe, or -o FILE.")
+    if prove is not None:
+        chunks = [b"".join(chunks)]
+        prove(chunks[0])
     try:
         sys.stdout.buffer.writelines(chunks)
         sys.stdout.buffer.flush()

@@ -12,6 +12,7 @@ from .output import Output, counted
 
 if TYPE_CHECKING:
     from ..check import CheckReport
+    from ..errors import Finding
     from ..mesh import Mesh
     from ..solid import Solid
 
@@ -40,6 +41,7 @@ class Job(ABC):
         self.out = Output.of(settings, self.target.is_stream)
         self.inputs = Inputs.of(self.out, settings)
         self.seconds: dict[str, float] = {}
+        self._lost: tuple[Finding, ...] = ()
         self._last = time.perf_counter()
 
     @abstractmethod
@@ -76,7 +78,8 @@ class Job(ABC):
         if report is not None and report.verdict == "subject failed":
             self._tell(result, mesh, report, written=False)
             return output.FOUND
-        for finding in self.target.write(mesh):
+        self._lost = self.target.write(mesh)
+        for finding in self._lost:
             self.out.finding(shown(self.target.path), finding)
         self.lap("write")
         self._tell(result, mesh, report, written=True)
@@ -123,7 +126,7 @@ class Job(ABC):
             **mesh_values(mesh),
             "volume": result.volume,
             "volume_exact": _exact_volume(result, mesh),
-            "findings": output.finding_values(result.normalized().findings),
+            "findings": output.finding_values((*result.normalized().findings, *self._lost)),
             "check": None if report is None else report.to_dict(),
             "seconds": self.seconds,
         }

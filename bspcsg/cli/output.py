@@ -32,6 +32,9 @@ _FEW = 3
 #: Codes of errors that say which optional package or program is not installed.
 _MISSING_CODES = frozenset({"missing_dependency", "missing_package", "missing_program"})
 
+#: Codes of errors that say that a file was not written.
+_WRITING_CODES = frozenset({"unwritable", "write_mismatch"})
+
 #: Codes of errors that say that a time limit was hit.
 _TIME_CODES = frozenset({"timed_out", "timeout"})
 
@@ -115,7 +118,7 @@ def exit_code_of(error: BspcsgError) -> int:
     if error.code in _TIME_CODES:
         return TIMED_OUT
     if isinstance(error, FormatError):
-        return UNWRITABLE if error.code == "unwritable" else UNREADABLE
+        return UNWRITABLE if error.code in _WRITING_CODES else UNREADABLE
     return REFUSED
 
 

@@ -129,12 +129,14 @@ class _Splitting:
         documents = []
         for number, mesh in enumerate(meshes, 1):
             target = self._target(str(number))
-            for finding in target.write(mesh):
+            lost = target.write(mesh)
+            for finding in lost:
                 self._out.finding(shown(target.path), finding)
             verdict = verdicts[number - 1] if verdicts else None
             line = summary(shown(target.path), mesh, None)
             line += f"\n  check: {verdict}" if verdict else ""
-            documents.append({"output": str(target.path), **mesh_values(mesh), "check": verdict})
+            document = {"output": str(target.path), **mesh_values(mesh), "check": verdict}
+            documents.append({**document, "findings": output.finding_values(lost)})
             if not self._out.as_json:
                 self._out.result(line, {})
         if self._out.as_json:

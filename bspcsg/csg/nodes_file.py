@@ -6,6 +6,7 @@ import numpy as np
 
 from .. import io
 from ..bsp import Region
+from ..solid import Solid
 from .arguments import Arguments
 from .drawings import dxf_region
 from .heights import height_map, read_heights
@@ -31,6 +32,8 @@ def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geome
         message = f"“{suffix}” files are not supported; known are {known}."
         raise arguments.error(message, "unsupported")
     raw = io.read(path)
+    if raw.is_empty_set:
+        return Solid.empty()
     return run.closed_solid(owner, raw.vertices, raw.faces)
 
 

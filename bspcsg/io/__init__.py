@@ -2,7 +2,7 @@
 
 Everything is read and written in double precision where the format has it. A file that is cut off,
 or says what cannot be, is refused with its name and the line or byte; a file that is written
-appears complete or not at all.
+appears complete or not at all, and only after it was read back and compared with the mesh.
 """
 
 import os
@@ -15,7 +15,7 @@ from .formats import (
     FORMATS,
     decoded,
     encoded,
-    encoder_of,
+    form_of,
     format_of,
     read,
     read_as,
@@ -35,7 +35,7 @@ __all__ = [
     "RawMesh",
     "decoded",
     "encoded",
-    "encoder_of",
+    "form_of",
     "format_of",
     "load",
     "loads",
@@ -56,7 +56,8 @@ def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
         Ending in one of `FORMATS`, or a script: ``.csg``, ``.json`` or ``.scad`` (see
         `bspcsg.csg.load`).
         3MF and GLB come in millimetres, the other formats in whatever
-        unit they were written in.
+        unit they were written in. What `save` wrote of the empty set is the empty set again; any
+        other file without faces is refused.
     **options
         For meshes as for `Solid`: ``pitch``, ``trusted``, ``winding``; for scripts as for
         `bspcsg.csg.load`.
@@ -106,9 +107,15 @@ def loads(data: Any, suffix: str | None, **options: Any) -> "Solid":
 
 
 def solid_of(raw: RawMesh, path: str | os.PathLike[str], **options: Any) -> "Solid":
-    """Return the solid of what was read from a file; errors name the file."""
+    """Return the solid of what was read from a file; errors name the file.
+
+    A file that `save` wrote of the empty set is the empty set again; any other without faces is
+    refused, as what should be in it may have got lost.
+    """
     from ..solid import Solid
 
+    if raw.is_empty_set:
+        return Solid.empty()
     try:
         return Solid(raw.vertices, raw.faces, **options)
     except BspcsgError as error:
@@ -138,7 +145,8 @@ def save(
     Raises
     ------
     FormatError
-        If the format is unknown, cannot hold the coordinates, or the file cannot be written.
+        If the format is unknown, cannot hold the coordinates, or the file cannot be written; code
+        ``"write_mismatch"`` if what was written reads back as another mesh.
     UnboundedError
         If the solid reaches to infinity.
     """
@@ -147,5 +155,5 @@ def save(
 
         csg.dump(solid, path)
         return ()
-    encoder_of(path, text)
+    form_of(path, text)
     return write(solid.normalized().to_mesh(), path, text=text)

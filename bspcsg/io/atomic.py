@@ -3,21 +3,34 @@
 import contextlib
 import os
 import secrets
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import TypeAlias
 
 from ..errors import FormatError
 
+#: Takes what was written, and raises an error if it is not what it should be.
+Proof: TypeAlias = Callable[[bytes], None]
 
-def write_file(path: str | os.PathLike[str], chunks: Iterable[bytes]) -> None:
+
+def write_file(
+    path: str | os.PathLike[str], chunks: Iterable[bytes], prove: Proof | None = None
+) -> None:
     """Write the chunks to a new file beside `path`, then give it that name in one step.
 
     Whatever goes wrong, a file that was there before stays as it was.
 
+    Parameters
+    ----------
+    path : str or path
+    chunks : iterable of bytes
+    prove : callable, optional
+        Is given what the new file holds before it gets its name.
+
     Raises
     ------
     FormatError
-        If the file cannot be written; code ``"unwritable"``.
+        If the file cannot be written; code ``"unwritable"``; and what `prove` raises.
     """
     name = os.fspath(path)
     # A link stays a link: what it points to is replaced.
@@ -25,7 +38,7 @@ def write_file(path: str | os.PathLike[str], chunks: Iterable[bytes]) -> None:
     try:
         _check_target(target)
         part = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
-        _write_new(part, target, chunks)
+        _write_new(part, target, chunks, prove)
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise FormatError(f"{name}: cannot write this file: {reason}.", "unwritable") from error
@@ -40,7 +53,7 @@ def _check_target(target: Path) -> None:
         raise FileNotFoundError(2, f"there is no folder {target.parent}")
 
 
-def _write_new(part: Path, target: Path, chunks: Iterable[bytes]) -> None:
+def _write_new(part: Path, target: Path, chunks: Iterable[bytes], prove: Proof | None) -> None:
     # Opened like any new file, so that the user's mask decides about its mode.
     handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
     try:
@@ -48,6 +61,8 @@ def _write_new(part: Path, target: Path, chunks: Iterable[bytes]) -> None:
             stream.writelines(chunks)
             stream.flush()
             os.fsync(stream.fileno())
+        if prove is not None:
+            prove(part.read_bytes())
         if target.exists():
             part.chmod(target.stat().st_mode & 0o7777)
         os.replace(part, target)

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
@@ -10,13 +11,38 @@ import numpy as np
 
 from ..errors import Finding, FormatError, format_errors
 from ..mesh import Mesh
-from . import glb, obj, off, ply, stl, threemf, threemf_write, vtk
+from . import glb, held, obj, off, ply, stl, threemf, threemf_write, vtk
 from .atomic import write_file
-from .raw import RawMesh
+from .proof import Called, Scan, prove
+from .raw import RawMesh, empty_set
 from .source import Source, content_of
 
 Encoder: TypeAlias = Callable[[Mesh | RawMesh], Iterator[bytes]]
 Losses: TypeAlias = Callable[[Mesh | RawMesh], tuple[Finding, ...]]
+
+
+@dataclass(frozen=True)
+class Form:
+    """One way to write a format, and to prove what was written.
+
+    Parameters
+    ----------
+    encode : callable
+    scan : callable
+        Takes a written file apart.
+    called : callable, optional
+        What the name of an object becomes; None if files do not tell objects apart.
+    losses : callable, optional
+        What the form cannot keep; raises OverflowError if it cannot hold the numbers.
+    repeats : bool
+        Whether it holds triangles that name a vertex twice.
+    """
+
+    encode: Encoder
+    scan: Scan
+    called: Called | None = None
+    losses: Losses | None = None
+    repeats: bool = True
 
 
 @dataclass(frozen=True)
@@ -26,9 +52,7 @@ class Format:
     Parameters
     ----------
     read : callable
-    text, binary : callable, optional
-    losses : callable, optional
-        What the binary form cannot keep; raises OverflowError if it cannot hold the numbers.
+    text, binary : Form, optional
     unit : str
         ``"mm"`` if files say how long a unit is, and are read and written in millimetres.
     up : {"z", "y"}
@@ -36,22 +60,40 @@ class Format:
     """
 
     read: Callable[[Source], RawMesh]
-    text: Encoder | None = None
-    binary: Encoder | None = None
-    losses: Losses | None = None
+    text: Form | None = None
+    binary: Form | None = None
     unit: str = ""
     up: str = "z"
 
 
 FORMATS = {
-    ".stl": Format(stl.read, stl.text, stl.binary, stl.losses),
-    ".obj": Format(obj.read, obj.text),
-    ".ply": Format(ply.read, ply.text, ply.binary),
-    ".off": Format(off.read, off.text),
-    ".3mf": Format(threemf.read, None, threemf_write.binary, threemf_write.losses, "mm"),
-    ".glb": Format(glb.read, None, glb.binary, glb.losses, "mm", "y"),
-    ".vtk": Format(vtk.reader(".vtk"), None, vtk.writer(".vtk")),
-    ".vtu": Format(vtk.reader(".vtu"), None, vtk.writer(".vtu")),
+    ".stl": Format(
+        stl.read,
+        Form(stl.text, held.text_stl, stl.called),
+        Form(stl.binary, held.binary_stl, losses=stl.losses),
+    ),
+    ".obj": Format(obj.read, Form(obj.text, held.obj, obj.called)),
+    ".ply": Format(ply.read, Form(ply.text, held.text_ply), Form(ply.binary, held.binary_ply)),
+    ".off": Format(off.read, Form(off.text, held.off)),
+    ".3mf": Format(
+        threemf.read,
+        None,
+        Form(
+            threemf_write.binary,
+            held.archive_3mf,
+            threemf_write.called,
+            threemf_write.losses,
+            repeats=False,
+        ),
+        "mm",
+    ),
+    ".glb": Format(glb.read, None, Form(glb.binary, held.glb, glb.called, glb.losses), "mm", "y"),
+    **{
+        suffix: Format(
+            vtk.reader(suffix), None, Form(vtk.writer(suffix), partial(held.vtk_grid, suffix))
+        )
+        for suffix in (".vtk", ".vtu")
+    },
 }
 
 _BREP = (
@@ -90,8 +132,8 @@ def format_of(path: str | os.PathLike[str]) -> Format:
     raise FormatError(f"{os.fspath(path)}: {_REFUSALS.get(suffix, message)}", "unknown_format")
 
 
-def encoder_of(path: str | os.PathLike[str], text: bool = False) -> Encoder:
-    """Return what writes the format that the suffix names.
+def form_of(path: str | os.PathLike[str], text: bool = False) -> Form:
+    """Return how the format that the suffix names is written.
 
     Raises
     ------
@@ -99,12 +141,12 @@ def encoder_of(path: str | os.PathLike[str], text: bool = False) -> Encoder:
         If the format is unknown or has no form as text; code ``"unknown_format"``.
     """
     chosen = format_of(path)
-    encoder = chosen.text if text else chosen.binary or chosen.text
-    if encoder is None:
+    form = chosen.text if text else chosen.binary or chosen.text
+    if form is None:
         textual = ", ".join(sorted(suffix for suffix, one in FORMATS.items() if one.text))
         message = f"{os.fspath(path)}: this format is never text; text can be {textual}."
         raise FormatError(message, "unknown_format")
-    return encoder
+    return form
 
 
 def read(path: str | os.PathLike[str]) -> RawMesh:
@@ -112,7 +154,8 @@ def read(path: str | os.PathLike[str]) -> RawMesh:
 
     Several objects in one file become one mesh, in the order of the file. Polygons become
     triangles. STL corners are joined where their coordinates are equal, exactly; nothing else is
-    joined, dropped or repaired.
+    joined, dropped or repaired. A file that `write` made of no triangles, byte for byte, is the
+    empty set, with the finding "empty".
 
     Parameters
     ----------
@@ -122,9 +165,9 @@ def read(path: str | os.PathLike[str]) -> RawMesh:
     Raises
     ------
     FormatError
-        If the file cannot be opened, is empty or cut off, is not of its format, or holds numbers
-        that are not finite or vertex numbers out of range. The message names file and line (or
-        byte), `where` holds that number.
+        If the file cannot be opened, has no bytes or is cut off, is not of its format, or holds
+        numbers that are not finite or vertex numbers out of range. The message names file and line
+        (or byte), `where` holds that number.
     MissingPartError
         If the format needs a library that is not installed.
     """
@@ -148,9 +191,17 @@ def decoded(name: str, data: bytes, suffix: str) -> RawMesh:
     """Return the mesh in the bytes of a file; `name` is for errors, the rest as for `read`."""
     if not data:
         raise FormatError(f"{name}: the file is empty.", "empty_file")
+    chosen = FORMATS[suffix.lower()]
+    if any(form is not None and data == _nothing(form) for form in (chosen.text, chosen.binary)):
+        return replace(empty_set(), name=Path(name).stem, unit=chosen.unit)
     with format_errors(name, suffix.removeprefix(".").upper()):
-        raw = FORMATS[suffix.lower()].read(Source(name, data))
+        raw = chosen.read(Source(name, data))
     return replace(raw, name=raw.name or Path(name).stem)
+
+
+def _nothing(form: Form) -> bytes:
+    """Return the file of the empty set."""
+    return b"".join(form.encode(empty_set()))
 
 
 def write(
@@ -158,8 +209,10 @@ def write(
 ) -> tuple[Finding, ...]:
     """Write a mesh; the suffix names the format.
 
-    The file appears complete or not at all. Every format but binary STL and GLB keeps each
-    coordinate's double; what single precision changes is returned as findings.
+    The file appears complete or not at all: before it gets its name it is read back, and every
+    corner of every triangle of every object in it is compared with the mesh. Every format but
+    binary STL and GLB keeps each coordinate's double; what single precision changes is returned as
+    findings.
 
     Parameters
     ----------
@@ -173,28 +226,59 @@ def write(
     Raises
     ------
     FormatError
-        If the format is unknown, cannot hold the coordinates, or the file cannot be written.
+        If the format is unknown, cannot hold the coordinates, or the file cannot be written; code
+        ``"write_mismatch"`` if what was written reads back as another mesh.
     MissingPartError
         If the format needs a library that is not installed.
     """
-    chunks, findings = encoded(mesh, path, Path(path).suffix, text)
-    write_file(path, chunks)
-    return findings
+    made = encoded(mesh, path, Path(path).suffix, text)
+    write_file(path, made.chunks, made.prove)
+    return made.findings
+
+
+@dataclass(frozen=True, eq=False)
+class Encoded:
+    """A file that is to be written.
+
+    Parameters
+    ----------
+    chunks : iterator of bytes
+    findings : tuple of Finding
+        What the format cannot keep.
+    prove : callable
+        Takes the bytes that were written, and raises FormatError if they are not the mesh.
+    """
+
+    chunks: Iterator[bytes]
+    findings: tuple[Finding, ...]
+    prove: Callable[[bytes], None]
 
 
 def encoded(
     mesh: Mesh | RawMesh, path: str | os.PathLike[str], suffix: str, text: bool = False
-) -> tuple[Iterator[bytes], tuple[Finding, ...]]:
-    """Return the bytes of a file and what the format could not keep, as for `write`."""
+) -> Encoded:
+    """Return the bytes of a file, what the format cannot keep, and the proof, as for `write`."""
     name = os.fspath(path)
-    encoder = encoder_of(f"mesh{suffix}", text)
-    chosen = FORMATS[suffix.lower()]
-    if len(mesh.vertices) > np.iinfo(np.int32).max and encoder is ply.binary:
-        raise FormatError(f"{name}: too many vertices for PLY; write OBJ.", "too_large")
-    if chosen.losses is None or encoder is not chosen.binary:
-        return encoder(mesh), ()
+    form = form_of(f"mesh{suffix}", text)
+    _refuse_unwritable(name, mesh, form)
     try:
-        return encoder(mesh), chosen.losses(mesh)
+        findings = form.losses(mesh) if form.losses is not None else ()
     except OverflowError:
         message = f"{name}: coordinates are beyond single precision; write PLY, OBJ, OFF or 3MF."
         raise FormatError(message, "too_large") from None
+    proof = partial(prove, name, mesh, form.scan, form.called, form.repeats)
+    return Encoded(form.encode(mesh), findings, proof)
+
+
+def _refuse_unwritable(name: str, mesh: Mesh | RawMesh, form: Form) -> None:
+    """Refuse what no file, or no file of this form, can hold."""
+    count = len(mesh.vertices)
+    if not np.isfinite(mesh.vertices).all():
+        raise FormatError(f"{name}: a coordinate is not a finite number.", "non_finite")
+    if len(mesh.faces) and not 0 <= mesh.faces.min() <= mesh.faces.max() < count:
+        message = f"{name}: a triangle names a vertex that does not exist."
+        raise FormatError(message, "index_out_of_range")
+    if form.encode is ply.binary and count > np.iinfo(np.int32).max:
+        raise FormatError(f"{name}: too many vertices for PLY; write OBJ.", "too_large")
+    if form.encode is glb.binary and glb.most_bytes(mesh) > np.iinfo(np.uint32).max:
+        raise FormatError(f"{name}: too many triangles for GLB; write 3MF.", "too_large")

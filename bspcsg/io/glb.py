@@ -1,34 +1,35 @@
 """GLB, the binary form of glTF 2.0: metres, y upwards, single precision.
 
-trimesh decodes and encodes; what a file may claim is checked first (see `glb_container`). The
-model's millimetres with z upwards become metres by the matrix of a node, so that no coordinate is
-multiplied: numbers that single precision can hold read back as they were.
+The model's millimetres with z upwards become metres by the matrix of a node, so that no coordinate
+is multiplied: numbers that single precision can hold read back as they were. Names need not
+differ, so every object is a node and a mesh of its own.
 """
 
-import io
+import json
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from .._types import FloatArray
-from ..errors import Finding, words_of
+from ..errors import Finding
 from ..mesh import Mesh
 from . import single
-from .glb_container import check_container
-from .raw import RawMesh, joined, parts_of
+from .glb_container import container_of
+from .glb_nodes import Shown, shown
+from .raw import RawMesh, compacted, joined, parts_of
 from .source import Source
 
 #: Millimetres with z upwards to metres with y upwards, for column vectors, and back.
-_TO_METRES = np.array(
+TO_METRES = np.array(
     [[0.001, 0, 0, 0], [0, 0, 0.001, 0], [0, -0.001, 0, 0], [0, 0, 0, 1]], dtype=np.float64
 )
 _TO_MILLIMETRES = np.array(
     [[1000, 0, 0, 0], [0, 0, -1000, 0], [0, 1000, 0, 0], [0, 0, 0, 1]], dtype=np.float64
 )
 
-#: Objects must have names for trimesh; those that have none get this one and a number.
-_UNNAMED = "unnamed"
+#: Numbers of glTF: types of components, and what a view of the data is for.
+_FLOAT, _UNSIGNED, _VERTICES, _INDICES = 5126, 5125, 34962, 34963
 
 
 def read(source: Source) -> RawMesh:
@@ -39,60 +40,41 @@ def read(source: Source) -> RawMesh:
     FormatError
         If the file is cut off, is no GLB of version 2, or holds what cannot be read.
     """
-    findings, dropped = check_container(source)
+    container = container_of(source)
     try:
-        scene = _decoded(source.data)
-        parts = [_placed(scene, node) for node in _nodes(scene)]
-    except Exception as error:  # what trimesh raises on damaged files is of any kind
-        reason = f"{type(error).__name__}: {words_of(error)}"
-        raise source.error(f"this GLB cannot be decoded: {reason}.") from error
-    mesh = joined([part for part in parts if part is not None])
+        objects, hidden = shown(container)
+    except IndexError as error:
+        raise source.error(f"{error}.", "index_out_of_range") from error
+    except (ValueError, LookupError, TypeError, AttributeError) as error:
+        raise source.error(f"this GLB cannot be decoded: {error}.") from error
+    mesh = joined([_placed(one) for one in objects if len(one.faces)])
     if not np.isfinite(mesh.vertices).all():
         raise source.error("a coordinate is not a finite number.", "non_finite")
-    if len(mesh.faces) and not 0 <= mesh.faces.min() <= mesh.faces.max() < len(mesh.vertices):
-        raise source.error("a triangle names a vertex that does not exist.", "index_out_of_range")
-    findings = (*findings, _unit())
-    return RawMesh(mesh.vertices, mesh.faces, "", findings, mesh.objects, "mm", dropped)
+    findings = (*container.findings, *_hidden(hidden), _unit())
+    return RawMesh(mesh.vertices, mesh.faces, "", findings, mesh.objects, "mm", container.dropped)
 
 
-def _decoded(data: bytes) -> Any:
-    import trimesh
-
-    if data == EMPTY:
-        return trimesh.Scene()
-    return trimesh.load_scene(
-        io.BytesIO(data), file_type="glb", process=False, skip_materials=True, validate=False
-    )
-
-
-def _nodes(scene: Any) -> list[str]:
-    """Return the nodes with a mesh, in the order of the meshes in the file."""
-    order = {name: number for number, name in enumerate(scene.geometry)}
-    return sorted(scene.graph.nodes_geometry, key=lambda node: order[scene.graph[node][1]])
-
-
-def _placed(scene: Any, node: str) -> RawMesh | None:
+def _placed(one: Shown) -> RawMesh:
     """Return the mesh of a node in millimetres; a mirrored one is turned right side out."""
-    matrix, name = scene.graph[node]
-    geometry = scene.geometry[name]
-    faces = getattr(geometry, "faces", None)
-    if faces is None or len(faces) == 0:
-        return None
-    placing = _TO_MILLIMETRES @ matrix
-    vertices = _moved(np.asarray(geometry.vertices, dtype=np.float64), placing)
-    turned = np.asarray(faces, dtype=np.int64)
-    if np.linalg.det(placing[:3, :3]) < 0:
-        turned = turned[:, ::-1]
-    title = "" if str(name).startswith(_UNNAMED) else str(name)
-    return RawMesh(vertices, turned, title)
+    placing = _TO_MILLIMETRES @ one.matrix
+    with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused later
+        vertices = _moved(one.vertices.astype(np.float64), placing)
+        is_mirrored = np.linalg.det(placing[:3, :3]) < 0
+    return RawMesh(vertices, one.faces[:, ::-1] if is_mirrored else one.faces, one.name)
 
 
 def _moved(vertices: FloatArray, matrix: FloatArray) -> FloatArray:
     x, y, z = vertices.T
     # Not a matrix product: where a row has one entry, its result must be exact.
-    with np.errstate(invalid="ignore"):  # what is infinite is refused later
-        rows = [row[0] * x + row[1] * y + row[2] * z + row[3] for row in matrix[:3]]
+    rows = [row[0] * x + row[1] * y + row[2] * z + row[3] for row in matrix[:3]]
     return np.stack(rows, axis=1)
+
+
+def _hidden(count: int) -> tuple[Finding, ...]:
+    if not count:
+        return ()
+    message = f"{count} meshes outside the scene were ignored."
+    return (Finding("ignored", "warning", message, (), count),)
 
 
 def _unit() -> Finding:
@@ -100,34 +82,92 @@ def _unit() -> Finding:
     return Finding("unit", "note", message, (), 1)
 
 
-def _container(description: bytes) -> bytes:
-    """Return the file of a description without data."""
-    text = description + b" " * (-len(description) % 4)
-    sizes = (2, 20 + len(text), len(text))
-    version, total, length = (size.to_bytes(4, "little") for size in sizes)
-    return b"glTF" + version + total + length + b"JSON" + text
+def called(name: str) -> str:
+    """Return a name without lone surrogates, which are no text."""
+    return name.encode("utf-8", "replace").decode("utf-8")
 
 
-#: A file of nothing, which trimesh neither writes nor reads.
-EMPTY = _container(b'{"asset":{"version":"2.0"},"scene":0,"scenes":[{}]}')
+def most_bytes(mesh: Mesh | RawMesh) -> int:
+    """Return how many bytes of data the file has at most: each object has vertices of its own."""
+    vertices = min(3 * len(mesh.faces), len(mesh.vertices) * len(parts_of(mesh)))
+    return 12 * (len(mesh.faces) + vertices)
 
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; coordinates are rounded to single precision."""
-    import trimesh
-
-    if len(mesh.faces) == 0:
-        yield EMPTY
-        return
-    scene: Any = trimesh.Scene()
-    for number, (name, faces) in enumerate(parts_of(mesh), 1):
+    described = _Description()
+    blocks = []
+    for name, faces in parts_of(mesh):
         if len(faces) == 0:
             continue
-        used, corners = np.unique(faces, return_inverse=True)
-        part = trimesh.Trimesh(mesh.vertices[used], corners.reshape(-1, 3), process=False)
-        title = name or f"{_UNNAMED} {number}"
-        scene.add_geometry(part, geom_name=title, node_name=title, transform=_TO_METRES)
-    yield scene.export(file_type="glb", include_normals=False)
+        used, corners = compacted(faces)
+        vertices = mesh.vertices[used].astype("<f4")
+        described.add(name, vertices, len(faces))
+        blocks += [vertices.tobytes(), corners.astype("<u4").tobytes()]
+    yield from _container(described.text(), blocks)
+
+
+class _Description:
+    """The JSON of a file, object by object."""
+
+    def __init__(self) -> None:
+        self._size = 0
+        self._views: list[dict[str, Any]] = []
+        self._accessors: list[dict[str, Any]] = []
+        self._names: list[dict[str, str]] = []
+
+    def add(self, name: str, vertices: "np.ndarray[Any, Any]", triangles: int) -> None:
+        """Add an object whose vertices and indices follow in the data."""
+        self._names.append({"name": called(name)} if name else {})
+        low, high = vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()
+        self._append(12 * len(vertices), _VERTICES, len(vertices), _FLOAT, "VEC3")
+        self._accessors[-1] |= {"min": low, "max": high}
+        self._append(12 * triangles, _INDICES, 3 * triangles, _UNSIGNED, "SCALAR")
+
+    def _append(self, size: int, target: int, count: int, component: int, kind: str) -> None:
+        view = {"buffer": 0, "byteOffset": self._size, "byteLength": size, "target": target}
+        self._views.append(view)
+        self._size += size
+        accessor = {"bufferView": len(self._views) - 1, "componentType": component}
+        self._accessors.append({**accessor, "count": count, "type": kind})
+
+    def text(self) -> bytes:
+        """Return the JSON."""
+        tree: dict[str, Any] = {"asset": {"version": "2.0", "generator": "bspcsg"}, "scene": 0}
+        tree["scenes"] = [{"nodes": list(range(len(self._names)))} if self._names else {}]
+        if self._names:
+            matrix = TO_METRES.T.ravel().tolist()
+            tree["nodes"] = [
+                {**named, "mesh": number, "matrix": matrix}
+                for number, named in enumerate(self._names)
+            ]
+            tree["meshes"] = [
+                {**named, "primitives": [_primitive(number)]}
+                for number, named in enumerate(self._names)
+            ]
+            tree["accessors"] = self._accessors
+            tree["bufferViews"] = self._views
+            tree["buffers"] = [{"byteLength": self._size}]
+        return json.dumps(tree, separators=(",", ":"), ensure_ascii=False).encode()
+
+
+def _primitive(number: int) -> dict[str, Any]:
+    return {"attributes": {"POSITION": 2 * number}, "indices": 2 * number + 1, "mode": 4}
+
+
+def _container(description: bytes, blocks: list[bytes]) -> Iterator[bytes]:
+    """Yield a file; the sizes of all blocks are multiples of four already."""
+    text = description + b" " * (-len(description) % 4)
+    held = sum(map(len, blocks))
+    total = 20 + len(text) + (8 + held if blocks else 0)
+    yield b"glTF" + _word(2) + _word(total) + _word(len(text)) + b"JSON" + text
+    if blocks:
+        yield _word(held) + b"BIN\0"
+        yield from blocks
+
+
+def _word(number: int) -> bytes:
+    return number.to_bytes(4, "little")
 
 
 def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:

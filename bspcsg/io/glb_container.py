@@ -1,6 +1,7 @@
 """What a GLB file claims, checked before anything is decoded: sizes, ranges, the tree of nodes."""
 
 import json
+from dataclasses import dataclass
 from typing import Any
 
 from ..errors import Finding, FormatError
@@ -26,24 +27,40 @@ _ATTRIBUTES = {"NORMAL": "normals", "TEXCOORD": "texture coordinates", "COLOR": 
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
 
-def check_container(source: Source) -> tuple[tuple[Finding, ...], tuple[str, ...]]:
-    """Refuse a file whose claims do not fit together; return what in it is more than triangles.
+@dataclass(frozen=True, eq=False)
+class Container:
+    """A file whose claims fit together.
 
-    Returns
-    -------
-    tuple of Finding
+    Parameters
+    ----------
+    tree : dict
+        The description.
+    data : bytes
+        The binary chunk, which accessors lie in.
+    findings : tuple of Finding
         Points and lines that are passed by.
-    tuple of str
+    dropped : tuple of str
         As `RawMesh.dropped`.
+    """
+
+    tree: dict[str, Any]
+    data: bytes
+    findings: tuple[Finding, ...]
+    dropped: tuple[str, ...]
+
+
+def container_of(source: Source) -> Container:
+    """Return the description and the data of a file.
 
     Raises
     ------
     FormatError
+        If it is cut off, is no GLB of version 2, or its claims do not fit together.
     """
-    tree, held = _chunks(source)
+    tree, data = _chunks(source)
     try:
-        _Claims(source, tree, held).check()
-        return _passed_by(tree), _dropped(tree)
+        _Claims(source, tree, len(data)).check()
+        return Container(tree, data, _passed_by(tree), _dropped(tree))
     except FormatError:
         raise
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as error:
@@ -51,8 +68,8 @@ def check_container(source: Source) -> tuple[tuple[Finding, ...], tuple[str, ...
         raise source.error(f"the description in this GLB is not valid ({reason}).") from None
 
 
-def _chunks(source: Source) -> tuple[dict[str, Any], int]:
-    """Return the parsed JSON chunk and the length of the binary one."""
+def _chunks(source: Source) -> tuple[dict[str, Any], bytes]:
+    """Return the parsed JSON chunk and the binary one."""
     data = source.data
     if len(data) < _HEADER + 8 or data[:4] != _MAGIC:
         raise source.error("this is no GLB: it does not begin with “glTF”.")
@@ -70,7 +87,7 @@ def _chunks(source: Source) -> tuple[dict[str, Any], int]:
             raise source.error("a chunk reaches beyond the end.", "truncated", offset=at)
         found.setdefault(kind, data[at + 8 : at + 8 + size])
         at += 8 + size
-    return _parsed(source, found.get(_JSON, b"")), len(found.get(_BINARY, b""))
+    return _parsed(source, found.get(_JSON, b"")), found.get(_BINARY, b"")
 
 
 def _parsed(source: Source, chunk: bytes) -> dict[str, Any]:
@@ -137,6 +154,9 @@ class _Claims:
         if min(start, length, stride, count, needed) < 0 or start + length > self._held:
             message = f"accessor {number} lies outside the {self._held} bytes of data."
             raise self._source.error(message, "truncated")
+        if stride < element:
+            message = f"the elements of accessor {number} overlap: {stride} bytes from one to next."
+            raise self._source.error(message)
         if needed > length:
             message = f"accessor {number} promises {count} elements, more than its data hold."
             raise self._source.error(message, "truncated")

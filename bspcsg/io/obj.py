@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import Finding, FormatError
 from ..mesh import Mesh
-from .raw import Polygons, RawMesh, parts_of
+from .raw import EMPTY_SET, Polygons, RawMesh, on_one_line, parts_of
 from .source import Source, quoted, whole
 
 #: Statements about what a mesh of triangles has no room for.
@@ -151,13 +151,20 @@ def _curved(count: int) -> tuple[Finding, ...]:
     return (Finding("curves_ignored", "warning", message, (), count),)
 
 
+def called(name: str) -> str:
+    """Return an object's name as a line can hold it: without marks that end or go on a line."""
+    return on_one_line(name).replace("#", "_").replace("\\", "_")
+
+
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; every coordinate reads back as the same double."""
+    if len(mesh.faces) == 0:
+        yield EMPTY_SET
     for point in mesh.vertices.tolist():
         yield "v {!r} {!r} {!r}\n".format(*point).encode()
     parts = parts_of(mesh)
     for name, faces in parts:
-        if len(parts) > 1:
-            yield f"o {' '.join(name.split())}\n".encode("utf-8", "replace")
+        if name or len(parts) > 1:
+            yield f"o {called(name)}\n".encode()
         for face in (faces + np.int64(1)).tolist():
             yield "f {} {} {}\n".format(*face).encode()

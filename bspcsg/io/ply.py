@@ -210,8 +210,9 @@ def _extra(count: int, unit: str, where: tuple[int, ...]) -> tuple[Finding, ...]
 
 
 def _header(mesh: Mesh | RawMesh, form: str) -> bytes:
+    comment = "" if len(mesh.faces) else "comment bspcsg: the empty set\n"
     return (
-        f"ply\nformat {form} 1.0\nelement vertex {len(mesh.vertices)}\n"
+        f"ply\nformat {form} 1.0\n{comment}element vertex {len(mesh.vertices)}\n"
         "property double x\nproperty double y\nproperty double z\n"
         f"element face {len(mesh.faces)}\nproperty list uchar int vertex_indices\nend_header\n"
     ).encode()

@@ -39,6 +39,9 @@ class RawMesh:
         ``"mm"`` if the format says how long a unit is, else empty.
     dropped : tuple of str
         Kinds of data in the file that a mesh of triangles has no room for, such as "colours".
+    is_empty_set : bool
+        Whether the file is one that this package writes for the empty set. Any other file without
+        faces is no set: what should be in it may have got lost.
     """
 
     vertices: FloatArray
@@ -48,6 +51,26 @@ class RawMesh:
     objects: tuple[tuple[str, int], ...] = ()
     unit: str = ""
     dropped: tuple[str, ...] = ()
+    is_empty_set: bool = False
+
+    @property
+    def passed_by(self) -> tuple[str, ...]:
+        """What the reader said it left out."""
+        return tuple(found.message for found in self.findings if found.code in _PASSED_BY)
+
+
+#: The comment in a text of the empty set, by which it is told from one that lost what it held.
+EMPTY_SET = b"# bspcsg: the empty set\n"
+
+#: What readers say about parts of a file that they pass by.
+_PASSED_BY = frozenset({"ignored", "curves_ignored", "extra_data"})
+
+
+def empty_set() -> RawMesh:
+    """Return what is read from a file that this package wrote for the empty set."""
+    finding = Finding("empty", "note", "this file is the empty set.", (), 1)
+    faces = np.zeros((0, 3), dtype=np.int64)
+    return RawMesh(np.zeros((0, 3)), faces, "", (finding,), is_empty_set=True)
 
 
 def parts_of(mesh: Mesh | RawMesh) -> list[tuple[str, IndexArray]]:
@@ -61,6 +84,27 @@ def parts_of(mesh: Mesh | RawMesh) -> list[tuple[str, IndexArray]]:
         (name, mesh.faces[start:end])
         for name, start, end in zip(names, ends, ends[1:], strict=False)
     ]
+
+
+def on_one_line(name: str) -> str:
+    """Return a name as a line of text can hold it: words with a space between, in UTF-8."""
+    words = " ".join("".join(" " if ord(letter) < _SPACE else letter for letter in name).split())
+    return words.encode("utf-8", "replace").decode("utf-8")
+
+
+#: Below are the characters that control, such as line breaks and NUL.
+_SPACE = 32
+
+
+def compacted(faces: IndexArray) -> tuple[IndexArray, IndexArray]:
+    """Return the vertices that triangles use, rising, and the triangles that number only those."""
+    if len(faces) == 0:
+        return np.zeros(0, dtype=np.int64), faces
+    low = int(faces.min())
+    is_used = np.zeros(int(faces.max()) + 1 - low, dtype=bool)
+    is_used[faces - low] = True
+    numbers = np.cumsum(is_used) - 1
+    return np.flatnonzero(is_used) + low, numbers[faces - low]
 
 
 def joined(meshes: Sequence[RawMesh]) -> RawMesh:

@@ -1,16 +1,29 @@
 """What single precision changes about a mesh: binary STL and GLB hold no more."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from .._types import FloatArray
+from .._types import FloatArray, IndexArray
 from ..errors import Finding
 from ..mesh import Mesh
-from ..weld import welded
+from ..weld import distinct
 from .raw import RawMesh
+from .triangles import are_flat, are_turned
+
+#: Triangles looked at together: their arrays fit into a processor's cache.
+_TOGETHER = 1 << 14
+
+#: How many triangles a finding names.
+_NAMED = 8
 
 
 def losses(mesh: Mesh | RawMesh, format_name: str) -> tuple[Finding, ...]:
     """Return what single precision would change about a mesh.
+
+    Vertices that merge, triangles that lose their area and triangles that turn over are counted
+    exactly. A triangle turns over if its normals before and after are more than a right angle
+    apart; one that has no area before is neither lost nor turned.
 
     Parameters
     ----------
@@ -34,19 +47,59 @@ def losses(mesh: Mesh | RawMesh, format_name: str) -> tuple[Finding, ...]:
         f"{format_name} holds single precision: coordinates moved by up to {shift:.2g}."
         " PLY, OBJ, OFF, 3MF and ASCII STL keep every digit."
     )
-    return Finding("single_precision", "note", message, (), 1), *_merged(mesh, rounded)
+    return (
+        Finding("single_precision", "note", message, (), 1),
+        *_merged(mesh.vertices, rounded),
+        *_changed(mesh, rounded),
+    )
 
 
-def _merged(mesh: Mesh | RawMesh, rounded: FloatArray) -> tuple[Finding, ...]:
-    before, after = len(welded(mesh.vertices)[0]), welded(rounded)[1]
-    lost = before - len(np.unique(after))
+def _merged(vertices: FloatArray, rounded: FloatArray) -> tuple[Finding, ...]:
+    lost = distinct(vertices) - distinct(rounded)
     if not lost:
         return ()
-    faces = after[mesh.faces]
-    flat = (faces == np.roll(faces, 1, axis=1)).any(axis=1)
-    message = (
-        f"single precision merges {lost} vertices with others and flattens {int(flat.sum())}"
-        " triangles; write PLY, OBJ, OFF or 3MF to keep the mesh as it is."
+    message = f"single precision merges {lost} vertices with others{_REMEDY}"
+    return (Finding("merged_by_rounding", "warning", message, (), lost),)
+
+
+_REMEDY = "; write PLY, OBJ, OFF or 3MF to keep the mesh as it is."
+
+
+def _changed(mesh: Mesh | RawMesh, rounded: FloatArray) -> tuple[Finding, ...]:
+    """Return the findings about triangles that lose their area or turn over."""
+    flat, turned = _flat_and_turned(mesh.vertices, rounded, mesh.faces)
+    told = (
+        ("flattened_by_rounding", "takes the area of", flat),
+        ("turned_by_rounding", "turns over", turned),
     )
-    where = tuple(np.flatnonzero(flat)[:8].tolist())
-    return (Finding("merged_by_rounding", "warning", message, where, lost),)
+    return tuple(
+        Finding(
+            code,
+            "warning",
+            f"single precision {verb} {len(where)} triangles{_REMEDY}",
+            tuple(where[:_NAMED].tolist()),
+            len(where),
+        )
+        for code, verb, where in told
+        if len(where)
+    )
+
+
+def _flat_and_turned(
+    vertices: FloatArray, rounded: FloatArray, faces: IndexArray
+) -> tuple[IndexArray, IndexArray]:
+    """Return the numbers of the triangles that lose their area, and of those that turn over."""
+    flat, turned = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
+    for start in _starts(len(faces)):
+        some = faces[start : start + _TOGETHER]
+        before, after = vertices[some], rounded[some]
+        is_flat = are_flat(after)
+        lost = np.flatnonzero(is_flat)
+        flat.append(start + lost[~are_flat(before[lost])])
+        kept = np.flatnonzero(~is_flat)
+        turned.append(start + kept[are_turned(before[kept], after[kept])])
+    return np.concatenate(flat), np.concatenate(turned)
+
+
+def _starts(count: int) -> Iterator[int]:
+    return iter(range(0, count, _TOGETHER))

@@ -14,7 +14,7 @@ from ..errors import Finding
 from ..mesh import Mesh
 from ..weld import welded
 from . import single
-from .raw import RawMesh, parts_of
+from .raw import EMPTY_SET, RawMesh, on_one_line, parts_of
 from .source import BYTE_ORDER_MARK, Source, quoted
 
 _HEADER = 84
@@ -126,7 +126,8 @@ def _joined(corners: FloatArray, name: str, findings: tuple[Finding, ...]) -> Ra
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the binary form; coordinates are rounded to single precision."""
-    header = b"bspcsg".ljust(_HEADER - 4, b" ")
+    title = b"bspcsg" if len(mesh.faces) else EMPTY_SET.strip(b"# \n")
+    header = title.ljust(_HEADER - 4, b" ")
     yield header + len(mesh.faces).to_bytes(4, "little")
     records = np.zeros(len(mesh.faces), _RECORD)
     corners = mesh.vertices.astype(np.float32)[mesh.faces]
@@ -135,11 +136,16 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     yield records.tobytes()
 
 
+def called(name: str) -> str:
+    """Return a solid's name as its first line can hold it; a solid without a name gets ours."""
+    return on_one_line(name) or "bspcsg"
+
+
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the ASCII form, a solid for each object; every double reads back as it was."""
-    for name, faces in parts_of(mesh):
-        title = " ".join(name.split()) or "bspcsg"
-        yield f"solid {title}\n".encode("utf-8", "replace")
+    for name, faces in parts_of(mesh) or [("", mesh.faces)]:
+        title = called(name)
+        yield f"solid {title}\n".encode()
         corners = mesh.vertices[faces]
         for normal, triangle in zip(_normals(corners).tolist(), corners.tolist(), strict=True):
             yield (
@@ -147,7 +153,7 @@ def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
                 + "".join("  vertex {!r} {!r} {!r}\n".format(*corner) for corner in triangle)
                 + " endloop\nendfacet\n"
             ).encode()
-        yield f"endsolid {title}\n".encode("utf-8", "replace")
+        yield f"endsolid {title}\n".encode()
 
 
 def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
@@ -162,9 +168,11 @@ def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
 
 
 def _normals(corners: FloatArray) -> FloatArray:
-    """Return unit normals of (m, 3, 3) triangles, zero for those without area."""
+    """Return unit normals of (m, 3, 3) triangles, zero for those that have none."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    normals = np.cross(b - a, c - a)
-    lengths = np.linalg.norm(normals, axis=1)[:, None]
-    units: FloatArray = np.divide(normals, lengths, np.zeros_like(normals), where=lengths > 0)
+    with np.errstate(over="ignore", invalid="ignore"):
+        normals = np.cross(b - a, c - a)
+        lengths = np.linalg.norm(normals, axis=1)[:, None]
+        is_usual = (lengths > 0) & np.isfinite(lengths)
+    units: FloatArray = np.divide(normals, lengths, np.zeros_like(normals), where=is_usual)
     return units

@@ -16,9 +16,10 @@ import numpy as np
 
 from .._types import FloatArray
 from ..errors import Finding, FormatError
-from .raw import RawMesh, joined
+from .raw import RawMesh, empty_set, joined
 from .source import Source
 from .threemf_part import MILLIMETRES, Part, PartReader, Placed, parse_xml
+from .threemf_write import NOTHING
 
 #: How many objects a build may place, and how deep components may lie in one another.
 _MOST_PLACED = 100_000
@@ -72,7 +73,10 @@ def read(source: Source) -> RawMesh:
     try:
         with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
             package = _Package(source, archive)
-            return package.assemble(package.root())
+            root = package.root()
+            if is_empty_set(package.opened(root).data):
+                return replace(empty_set(), unit="mm")
+            return package.assemble(root)
     except FormatError:
         raise
     except _DAMAGES as error:
@@ -106,12 +110,21 @@ class _Package:
             parse_xml(*self._opened("_rels/.rels"), start)
         return targets[0] if targets else "3D/3dmodel.model"
 
+    def is_empty_set(self, root: str) -> bool:
+        """Whether the model is what this package writes for the empty set."""
+        entry = self._entries.get(root.lower())
+        if entry is None or entry.file_size != len(NOTHING):
+            return False
+        with self._archive.open(entry) as stream:
+            return stream.read(len(NOTHING) + 1) == NOTHING
+
     def assemble(self, root: str) -> RawMesh:
         """Return the mesh of all build items."""
         part = self._part(root)
         pieces, findings = [], list(_unit_finding(part))
         beams = skipped = triangles = 0
-        for path, item, transforms in self._placed(root, part.items):
+        placed = self._placed(root, part.items)
+        for path, item, transforms in placed:
             model = self._part(path)
             beams += model.objects[item].beams
             if model.objects[item].kind != "model":
@@ -123,10 +136,17 @@ class _Package:
             pieces.append(_moved(model, item, transforms))
         findings += _ignored(beams, "beams")
         findings += _ignored(skipped, "objects that are support or surface")
+        built = {(path, item) for path, item, _ in placed}
+        findings += _ignored(self._meshes() - len(built), "objects outside the build")
         dropped = sorted(set().union(*(part.dropped for part in self._parts.values())))
         mesh = replace(joined(pieces), findings=tuple(findings), unit="mm", dropped=tuple(dropped))
         scale = MILLIMETRES[part.unit]
         return mesh if scale == 1 else replace(mesh, vertices=mesh.vertices * scale)
+
+    def _meshes(self) -> int:
+        """Return how many objects of the parts read so far have a mesh."""
+        objects = (one for part in self._parts.values() for one in part.objects.values())
+        return sum(bool(one.triangles or one.beams) for one in objects)
 
     def _placed(
         self, root: str, items: list[Placed]

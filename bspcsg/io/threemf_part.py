@@ -174,6 +174,8 @@ class PartReader:
         elif tag == "object":
             kind, name = attributes.get("type", "model"), attributes.get("name", "")
             self._current = Object(kind, name=name)
+            if attributes["id"] in self._part.objects:
+                raise ValueError(f"two objects have the number {attributes['id']}")
             self._part.objects[attributes["id"]] = self._current
         elif tag == "model":
             self._part.unit = attributes.get("unit", "millimeter")

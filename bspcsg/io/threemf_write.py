@@ -5,6 +5,7 @@ never written: slicers disagree on whether a unit applies to them.
 """
 
 import io
+import re
 import zipfile
 from collections.abc import Iterator
 from xml.sax.saxutils import quoteattr
@@ -14,7 +15,7 @@ import numpy as np
 from .._types import FloatArray, IndexArray
 from ..errors import Finding
 from ..mesh import Mesh
-from .raw import RawMesh, parts_of
+from .raw import RawMesh, compacted, empty_set, parts_of
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
@@ -68,7 +69,10 @@ def _repeats_corner(faces: IndexArray) -> "np.ndarray[tuple[int], np.dtype[np.bo
 
 
 def _model(mesh: Mesh | RawMesh) -> Iterator[str]:
-    yield f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}">\n<resources>\n'
+    yield f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}">\n'
+    if len(mesh.faces) == 0:
+        yield "<!-- bspcsg: the empty set -->\n"
+    yield "<resources>\n"
     count = 0
     for name, faces in parts_of(mesh):
         proper = faces[~_repeats_corner(faces)]
@@ -81,19 +85,25 @@ def _model(mesh: Mesh | RawMesh) -> Iterator[str]:
 
 
 def _object(number: int, name: str, vertices: FloatArray, faces: IndexArray) -> Iterator[str]:
-    used, corners = np.unique(faces, return_inverse=True)
-    named = f" name={quoteattr(_printable(name))}" if name else ""
+    used, corners = compacted(faces)
+    named = f" name={quoteattr(called(name))}" if name else ""
     yield f'<object id="{number}" type="model"{named}><mesh><vertices>\n'
     for point in vertices[used].tolist():
         yield '<vertex x="{!r}" y="{!r}" z="{!r}"/>\n'.format(*point)
     yield "</vertices><triangles>\n"
-    for face in corners.reshape(-1, 3).tolist():
+    for face in corners.tolist():
         yield '<triangle v1="{}" v2="{}" v3="{}"/>\n'.format(*face)
     yield "</triangles></mesh></object>\n"
 
 
-def _printable(name: str) -> str:
-    """Return a name without the control characters and lone surrogates that XML forbids."""
-    return "".join(
-        letter if letter.isprintable() else "\N{REPLACEMENT CHARACTER}" for letter in name
-    )
+def called(name: str) -> str:
+    """Return a name with a replacement for the characters that XML forbids."""
+    return _FORBIDDEN.sub("\N{REPLACEMENT CHARACTER}", name)
+
+
+#: Control characters, lone surrogates, and the two that are no characters.
+_FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+
+
+#: The model part of the empty set; the archives around it differ by system.
+NOTHING = "".join(_model(empty_set())).encode()

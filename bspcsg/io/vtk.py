@@ -5,6 +5,7 @@ meshio reads and writes files by name, so the bytes go through a temporary folde
 
 import contextlib
 import io
+import sys
 import tempfile
 import warnings
 import zlib
@@ -26,12 +27,31 @@ _OTHER = ("vertex", "line")
 #: Size that the packed data of a file may unpack to, in bytes.
 _LARGEST = 1 << 31
 
+#: Files of nothing, which meshio neither writes nor reads.
+EMPTY = {
+    ".vtk": (
+        b"# vtk DataFile Version 3.0\nbspcsg\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+        b"POINTS 0 double\nCELLS 0 0\nCELL_TYPES 0\n"
+    ),
+    ".vtu": (
+        b'<?xml version="1.0"?>\n'
+        b'<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">\n'
+        b"<UnstructuredGrid>\n"
+        b'<Piece NumberOfPoints="0" NumberOfCells="0">\n'
+        b'<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii"/></Points>\n'
+        b'<Cells><DataArray type="Int64" Name="connectivity" format="ascii"/>'
+        b'<DataArray type="Int64" Name="offsets" format="ascii"/>'
+        b'<DataArray type="UInt8" Name="types" format="ascii"/></Cells>\n'
+        b"</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"
+    ),
+}
+
 
 def reader(suffix: str) -> Callable[[Source], RawMesh]:
     """Return the reader for ``.vtk`` or ``.vtu``."""
 
     def read(source: Source) -> RawMesh:
-        return _read(source, suffix)
+        return _surface(source, grid_of(source, suffix, _LARGEST))
 
     return read
 
@@ -53,7 +73,14 @@ def _meshio() -> Any:
     return meshio
 
 
-def _read(source: Source, suffix: str) -> RawMesh:
+def grid_of(source: Source, suffix: str, largest: int = sys.maxsize) -> Any:
+    """Return the `meshio.Mesh` of a file, whose packed data may unpack to so many bytes.
+
+    Raises
+    ------
+    FormatError
+        If meshio cannot read it.
+    """
     meshio = _meshio()
     if b"<!DOCTYPE" in source.data or b"<!ENTITY" in source.data:
         raise source.error("document types are not allowed here.")
@@ -65,30 +92,29 @@ def _read(source: Source, suffix: str) -> RawMesh:
             with (
                 contextlib.redirect_stdout(said),
                 contextlib.redirect_stderr(said),
-                _bounded(),
+                _bounded(largest),
                 np.errstate(all="ignore"),
                 warnings.catch_warnings(action="ignore"),
             ):
-                grid = meshio.read(path)
+                return meshio.read(path)
         except (Exception, SystemExit) as error:  # of any kind: meshio checks little itself
             reason = f"{type(error).__name__}: {words_of(error)}"
             reason = reason.replace(str(path), source.name)
             raise source.error(f"meshio cannot read this file ({reason}).") from error
-    return _surface(source, grid)
 
 
 class _Unpacker:
     """Stands for zlib in meshio, which unpacks whatever a few bytes claim to hold."""
 
-    def __init__(self) -> None:
-        self._left = _LARGEST
+    def __init__(self, largest: int) -> None:
+        self._largest = self._left = largest
 
     def decompress(self, data: bytes) -> bytes:
         """Return the unpacked bytes, as long as all of them together are not too many."""
         found = zlib.decompressobj().decompress(data, self._left)
         self._left -= len(found)
         if self._left <= 0:
-            raise MemoryError(f"its data unpack to more than {_LARGEST >> 20} MB")
+            raise MemoryError(f"its data unpack to more than {self._largest >> 20} MB")
         return found
 
 
@@ -102,12 +128,12 @@ class _Refuser:
 
 
 @contextlib.contextmanager
-def _bounded() -> Iterator[None]:
+def _bounded(largest: int) -> Iterator[None]:
     """Let meshio unpack no more than a bounded amount of data inside the block."""
     from meshio.vtu import _vtu
 
     kept = _vtu.zlib, _vtu.lzma
-    _vtu.zlib, _vtu.lzma = _Unpacker(), _Refuser()
+    _vtu.zlib, _vtu.lzma = _Unpacker(largest), _Refuser()
     try:
         yield
     finally:
@@ -147,6 +173,9 @@ def _ignored(count: int) -> tuple[Finding, ...]:
 
 
 def _write(mesh: Mesh | RawMesh, suffix: str) -> Iterator[bytes]:
+    if len(mesh.faces) == 0:
+        yield EMPTY[suffix]
+        return
     meshio = _meshio()
     grid = meshio.Mesh(np.array(mesh.vertices), [("triangle", np.array(mesh.faces))])
     with tempfile.TemporaryDirectory() as folder:

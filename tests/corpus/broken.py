@@ -58,7 +58,7 @@ class Broken:
 
 def good(suffix: str, text: bool = False) -> bytes:
     """Return the bytes of a file with the cube."""
-    return b"".join(encoded(MESH, "x", suffix, text)[0])
+    return b"".join(encoded(MESH, "x", suffix, text).chunks)
 
 
 def swapped(data: bytes, old: bytes, new: bytes, count: int = 1) -> bytes:

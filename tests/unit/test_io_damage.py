@@ -40,7 +40,7 @@ FORMS = [(name, False) for name in FORMATS] + [(name, True) for name in (".stl",
 def test_damage(suffix: str, text: bool) -> None:
     objects = (("lid", 20), ("body", 20))
     mesh = RawMesh(*joined(icosphere(0), moved(icosphere(0), (3, 0, 0))), objects=objects)
-    data = b"".join(encoded(mesh, "x", suffix, text)[0])
+    data = b"".join(encoded(mesh, "x", suffix, text).chunks)
     refused = 0
     for changed in damaged(data, seed=1):
         try:

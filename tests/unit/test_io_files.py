@@ -111,17 +111,6 @@ def test_extreme_doubles_survive(tmp_path: Path, suffix: str) -> None:
     assert read(tmp_path / f"x.{suffix}").vertices.tobytes() == mesh.vertices.tobytes()
 
 
-@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "off"])
-def test_mesh_without_faces(tmp_path: Path, suffix: str) -> None:
-    path = tmp_path / f"x.{suffix}"
-    write(RawMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64)), path)
-    if suffix == "obj":
-        with pytest.raises(FormatError):
-            read(path)
-    else:
-        assert len(read(path).faces) == 0
-
-
 def test_welding_keeps_the_first_of_each() -> None:
     points = np.array([(1.0, 0, 0), (0.0, 0, 0), (1.0, 0, 0), (-0.0, 0, 0), (0, 0, 1)])
     vertices, which = welded(points)

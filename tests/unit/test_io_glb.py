@@ -174,14 +174,14 @@ def test_version_1(tmp_path: Path) -> None:
 def test_bad_numbers(tmp_path: Path, value: float, code: str) -> None:
     path = tmp_path / "x.glb"
     tree, rest = opened(cube_file(path))
-    accessor = tree["accessors"][1 if code == "non_finite" else 0]
+    accessor = tree["accessors"][0 if code == "non_finite" else 1]
     start = 8 + tree["bufferViews"][accessor["bufferView"]]["byteOffset"]
     kind = np.float32 if code == "non_finite" else np.uint32
     rest = rest[:start] + kind(value).tobytes() + rest[start + 4 :]
     path.write_bytes(closed(tree, rest))
     with pytest.raises(FormatError) as caught:
         read(path)
-    assert caught.value.code in (code, "syntax")
+    assert caught.value.code == code
 
 
 def test_appearance_is_dropped_by_name(tmp_path: Path) -> None:

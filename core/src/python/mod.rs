@@ -13,6 +13,7 @@ mod each;
 mod errors;
 mod fragments;
 mod hyperplanes;
+mod numbers;
 mod objects;
 mod pieces;
 mod ray_store;
@@ -63,5 +64,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
     module.add_function(wrap_pyfunction!(normal_bits, module)?)?;
     module.add_function(wrap_pyfunction!(suited_pitch, module)?)?;
+    module.add_function(wrap_pyfunction!(numbers::numbers_in, module)?)?;
     Ok(())
 }
