@@ -21,7 +21,7 @@ Exit codes:
   2    wrong usage
   3    a file is missing, unreadable or of an unknown format
   4    geometry refused: not closed, too large, or an empty result
-  5    the output could not be written
+  5    the output could not be written, or is not the mesh
   6    an optional part is missing; bspcsg doctor says which
   70   a defect of bspcsg
   124  a time limit was hit

@@ -17,7 +17,7 @@ from ..mesh import Mesh
 from . import single
 from .glb_container import container_of
 from .glb_nodes import Shown, shown
-from .raw import RawMesh, compacted, joined, parts_of
+from .raw import RawMesh, compacted, joined, parts_of, says_empty_set
 from .source import Source
 
 #: Millimetres with z upwards to metres with y upwards, for column vectors, and back.
@@ -95,7 +95,7 @@ def most_bytes(mesh: Mesh | RawMesh) -> int:
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; coordinates are rounded to single precision."""
-    described = _Description()
+    described = _Description(says_empty_set(mesh))
     blocks = []
     for name, faces in parts_of(mesh):
         if len(faces) == 0:
@@ -110,7 +110,8 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
 class _Description:
     """The JSON of a file, object by object."""
 
-    def __init__(self) -> None:
+    def __init__(self, is_empty_set: bool) -> None:
+        self._extras = {"extras": {"bspcsg": "the empty set"}} if is_empty_set else {}
         self._size = 0
         self._views: list[dict[str, Any]] = []
         self._accessors: list[dict[str, Any]] = []
@@ -133,7 +134,8 @@ class _Description:
 
     def text(self) -> bytes:
         """Return the JSON."""
-        tree: dict[str, Any] = {"asset": {"version": "2.0", "generator": "bspcsg"}, "scene": 0}
+        asset = {"version": "2.0", "generator": "bspcsg", **self._extras}
+        tree: dict[str, Any] = {"asset": asset, "scene": 0}
         tree["scenes"] = [{"nodes": list(range(len(self._names)))} if self._names else {}]
         if self._names:
             matrix = TO_METRES.T.ravel().tolist()

@@ -16,7 +16,7 @@ from xml.etree import ElementTree
 import numpy as np
 import numpy.typing as npt
 
-from .. import _core
+from .._core import numbers_in
 from .._types import IndexArray
 from . import vtk
 from .glb import TO_METRES
@@ -146,7 +146,7 @@ def _table(data: bytes, head: re.Match[bytes] | None) -> Held:
     body = data[head.end() :]
     expected = b"  \n" * points + b"   \n" * count
     _check_layout(body.translate(None, _OF_NUMBERS), expected)
-    numbers = _core.numbers_in(body)
+    numbers = numbers_in(body)
     rows = numbers[3 * points :].reshape(count, 4)
     if not (rows[:, 0] == 3).all():
         raise ValueError("a face has not three corners")
@@ -229,7 +229,7 @@ def _rows(block: bytes, row: bytes, width: int) -> npt.NDArray[np.float64]:
     layout, unit = block.translate(None, _OF_NUMBERS), row.translate(None, _OF_NUMBERS)
     count = len(layout) // len(unit)
     _check_layout(layout, unit * count)
-    return _core.numbers_in(block).reshape(count, width)
+    return numbers_in(block).reshape(count, width)
 
 
 #: Bytes that may belong to a number.

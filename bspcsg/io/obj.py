@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import Finding, FormatError
 from ..mesh import Mesh
-from .raw import EMPTY_SET, Polygons, RawMesh, on_one_line, parts_of
+from .raw import EMPTY_SET, Polygons, RawMesh, on_one_line, parts_of, says_empty_set
 from .source import Source, quoted, whole
 
 #: Statements about what a mesh of triangles has no room for.
@@ -158,7 +158,7 @@ def called(name: str) -> str:
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; every coordinate reads back as the same double."""
-    if len(mesh.faces) == 0:
+    if says_empty_set(mesh):
         yield EMPTY_SET
     for point in mesh.vertices.tolist():
         yield "v {!r} {!r} {!r}\n".format(*point).encode()

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from ..errors import Finding
 from ..mesh import Mesh
-from .raw import EMPTY_SET, Polygons, RawMesh
+from .raw import EMPTY_SET, Polygons, RawMesh, says_empty_set
 from .source import Source, quoted, whole
 
 _KEYWORD = re.compile(rb"(ST)?C?N?(4?)(n?)(?:OFF|off)")
@@ -109,7 +109,7 @@ def _extra_lines(lines: list[_Line]) -> tuple[Finding, ...]:
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; every coordinate reads back as the same double."""
-    yield b"OFF\n" + (b"" if len(mesh.faces) else EMPTY_SET)
+    yield b"OFF\n" + (EMPTY_SET if says_empty_set(mesh) else b"")
     yield f"{len(mesh.vertices)} {len(mesh.faces)} 0\n".encode()
     for point in mesh.vertices.tolist():
         yield "{!r} {!r} {!r}\n".format(*point).encode()

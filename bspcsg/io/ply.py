@@ -10,7 +10,7 @@ from ..errors import Finding, FormatError
 from ..mesh import Mesh
 from .ply_header import Element, Header, Order, read_header
 from .ply_lists import read_mixed, read_uniform
-from .raw import Polygons, RawMesh
+from .raw import Polygons, RawMesh, says_empty_set
 from .source import Source, quoted, whole
 
 #: Both names of the list are in use.
@@ -210,7 +210,7 @@ def _extra(count: int, unit: str, where: tuple[int, ...]) -> tuple[Finding, ...]
 
 
 def _header(mesh: Mesh | RawMesh, form: str) -> bytes:
-    comment = "" if len(mesh.faces) else "comment bspcsg: the empty set\n"
+    comment = "comment bspcsg: the empty set\n" if says_empty_set(mesh) else ""
     return (
         f"ply\nformat {form} 1.0\n{comment}element vertex {len(mesh.vertices)}\n"
         "property double x\nproperty double y\nproperty double z\n"

@@ -59,6 +59,11 @@ class RawMesh:
         return tuple(found.message for found in self.findings if found.code in _PASSED_BY)
 
 
+def says_empty_set(mesh: Mesh | RawMesh) -> bool:
+    """Whether a file of this mesh is to say that it is the empty set."""
+    return len(mesh.faces) == 0 and (isinstance(mesh, Mesh) or mesh.is_empty_set)
+
+
 #: The comment in a text of the empty set, by which it is told from one that lost what it held.
 EMPTY_SET = b"# bspcsg: the empty set\n"
 

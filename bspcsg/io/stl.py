@@ -14,7 +14,7 @@ from ..errors import Finding
 from ..mesh import Mesh
 from ..weld import welded
 from . import single
-from .raw import EMPTY_SET, RawMesh, on_one_line, parts_of
+from .raw import EMPTY_SET, RawMesh, on_one_line, parts_of, says_empty_set
 from .source import BYTE_ORDER_MARK, Source, quoted
 
 _HEADER = 84
@@ -126,7 +126,7 @@ def _joined(corners: FloatArray, name: str, findings: tuple[Finding, ...]) -> Ra
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the binary form; coordinates are rounded to single precision."""
-    title = b"bspcsg" if len(mesh.faces) else EMPTY_SET.strip(b"# \n")
+    title = EMPTY_SET.strip(b"# \n") if says_empty_set(mesh) else b"bspcsg"
     header = title.ljust(_HEADER - 4, b" ")
     yield header + len(mesh.faces).to_bytes(4, "little")
     records = np.zeros(len(mesh.faces), _RECORD)

@@ -74,7 +74,7 @@ def read(source: Source) -> RawMesh:
         with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
             package = _Package(source, archive)
             root = package.root()
-            if is_empty_set(package.opened(root).data):
+            if package.is_empty_set(root):
                 return replace(empty_set(), unit="mm")
             return package.assemble(root)
     except FormatError:

@@ -15,7 +15,7 @@ import numpy as np
 from .._types import FloatArray, IndexArray
 from ..errors import Finding
 from ..mesh import Mesh
-from .raw import RawMesh, compacted, empty_set, parts_of
+from .raw import RawMesh, compacted, empty_set, parts_of, says_empty_set
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
@@ -70,7 +70,7 @@ def _repeats_corner(faces: IndexArray) -> "np.ndarray[tuple[int], np.dtype[np.bo
 
 def _model(mesh: Mesh | RawMesh) -> Iterator[str]:
     yield f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}">\n'
-    if len(mesh.faces) == 0:
+    if says_empty_set(mesh):
         yield "<!-- bspcsg: the empty set -->\n"
     yield "<resources>\n"
     count = 0

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import Finding, missing_part, words_of
+from ..errors import Finding, FormatError, missing_part, words_of
 from ..mesh import Mesh
-from .raw import Polygons, RawMesh
+from .raw import Polygons, RawMesh, says_empty_set
 from .source import Source
 
 #: Kinds of cells that are faces, and those that are passed by.
@@ -173,9 +173,11 @@ def _ignored(count: int) -> tuple[Finding, ...]:
 
 
 def _write(mesh: Mesh | RawMesh, suffix: str) -> Iterator[bytes]:
-    if len(mesh.faces) == 0:
+    if says_empty_set(mesh):
         yield EMPTY[suffix]
         return
+    if len(mesh.faces) == 0:
+        raise FormatError(f"A mesh without faces cannot be written as {suffix}.", "unwritable")
     meshio = _meshio()
     grid = meshio.Mesh(np.array(mesh.vertices), [("triangle", np.array(mesh.faces))])
     with tempfile.TemporaryDirectory() as folder:

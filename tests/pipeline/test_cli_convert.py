@@ -120,3 +120,40 @@ def test_a_missing_part_is_code_6(
     monkeypatch.setitem(sys.modules, "meshio", None)
     code, _, err = ran(capsys, "convert", "a.off", "-o", "x.vtu")
     assert code == 6 and 'pip install "bspcsg[vtk]"' in err
+
+
+def test_objects_of_one_name_stay(folder: Path, capsys: Capture) -> None:
+    objects = (("lid", 12), ("lid", 12))
+    write(RawMesh(*joined(cube(), moved(cube(), (3, 0, 0))), objects=objects), "x.3mf")
+    for name in ("x.glb", "x.obj"):
+        code, out, _ = ran(capsys, "convert", "x.3mf", "-o", name, "--fail-on-loss")
+        assert code == 0 and "nothing lost" in out and read(name).objects == objects
+
+
+def test_a_file_that_is_not_the_mesh_is_not_put_in_place(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    put("a.off", cube())
+    put("x.off", cube(2))
+    before = Path("x.off").read_bytes()
+    monkeypatch.setattr(os, "fsync", lambda handle: os.ftruncate(handle, 60))
+    for verb in (("convert", "a.off"), ("union", "a.off", "a.off")):
+        code, out, err = ran(capsys, *verb, "-o", "x.off", "--json")
+        said = json.loads(out)
+        assert code == 5 and "is not the mesh" in err
+        assert said["error"]["code"] == "write_mismatch" and said["exit"] == 5
+        assert Path("x.off").read_bytes() == before and not list(Path().glob(".*.part"))
+
+
+def test_what_single_precision_destroys_is_told(folder: Path, capsys: Capture) -> None:
+    put("a.ply", moved(icosphere(2), (0, 0, 1e7)))
+    code, out, err = ran(capsys, "convert", "a.ply", "-o", "x.stl", "--json")
+    findings = json.loads(out)["files"][0]["findings"]
+    counts = {finding["code"]: finding["count"] for finding in findings}
+    assert code == 0 and counts["flattened_by_rounding"] > 0 and counts["merged_by_rounding"] > 0
+    assert f"takes the area of {counts['flattened_by_rounding']} triangles" in err
+    ran(capsys, "union", "a.ply", "a.ply", "-o", "y.stl", "--json")
+    code, out, err = ran(capsys, "union", "a.ply", "a.ply", "-o", "y.stl", "--json", "--no-check")
+    codes = [finding["code"] for finding in json.loads(out)["findings"]]
+    assert code == 0 and {"single_precision", "flattened_by_rounding"} <= set(codes)
+    assert "takes the area of" in err

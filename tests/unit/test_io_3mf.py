@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bspcsg.io import RawMesh, read, threemf
+import bspcsg as b
+from bspcsg.io import RawMesh, read, threemf, write
 from support.io import cube_mesh, refusal
 
 NAMESPACE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
@@ -141,3 +142,45 @@ def test_parts_that_unpack_to_too_much(tmp_path: Path, monkeypatch: pytest.Monke
     path = package(tmp_path / "bomb.3mf", model(CUBE, ITEM) + " " * 10**7)
     assert path.stat().st_size < 20_000
     assert "unpacks to far more" in refusal(path, path.read_bytes(), "too_large")
+
+
+REUSED = (
+    f'<object id="1" name="lid">{mesh_xml(cube_mesh())}</object>'
+    f'<object id="2" name="lid">{mesh_xml(cube_mesh(2.0))}</object>'
+    '<object id="3" name="pair"><components><component objectid="1"/>'
+    '<component objectid="1" transform="-1 0 0 0 1 0 0 0 1 -5 0 0"/>'
+    '<component objectid="2" transform="1 0 0 0 1 0 0 0 1 0 9 0"/></components></object>'
+    '<object id="4"><components><component objectid="3"/>'
+    '<component objectid="3" transform="1 0 0 0 -1 0 0 0 1 0 -20 0"/></components></object>'
+)
+
+
+@pytest.mark.parametrize("suffix", [".glb", ".3mf", ".obj", ".stl", ".ply"])
+def test_reused_components_go_everywhere(tmp_path: Path, suffix: str) -> None:
+    """Equal names, one component at several places, mirrored ones, pairs in pairs."""
+    xml = model(
+        REUSED, '<item objectid="4"/><item objectid="3" transform="1 0 0 0 1 0 0 0 1 50 0 0"/>'
+    )
+    raw = read(package(tmp_path / "in.3mf", xml))
+    assert [name for name, _ in raw.objects] == ["lid"] * 9 and volume(raw) == 30
+    write(raw, tmp_path / f"out{suffix}", text=suffix == ".stl")
+    found = read(tmp_path / f"out{suffix}")
+    assert len(found.faces) == 108 and volume(found) == 30
+    assert b.load(tmp_path / f"out{suffix}").volume == 30
+    if suffix != ".ply":
+        assert found.objects == raw.objects
+
+
+def test_objects_of_one_number_are_refused(tmp_path: Path) -> None:
+    twice = CUBE + CUBE.replace('<vertex x="0.0"', '<vertex x="-9.0"')
+    path = package(tmp_path / "x.3mf", model(twice, ITEM))
+    assert "two objects have the number 1" in refusal(path, path.read_bytes(), "syntax")
+
+
+def test_objects_outside_the_build_are_told(tmp_path: Path) -> None:
+    other = CUBE.replace('id="1"', 'id="2"')
+    raw = read(package(tmp_path / "x.3mf", model(CUBE + other, ITEM)))
+    assert [finding.message for finding in raw.findings] == [
+        "1 objects outside the build were ignored."
+    ]
+    assert raw.passed_by and len(raw.faces) == 12

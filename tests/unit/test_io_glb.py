@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 
 import bspcsg as b
 from bspcsg.errors import FormatError
 from bspcsg.io import RawMesh, read, write
 from support.io import cube_mesh, refusal, same_mesh
-from support.shapes import cube, icosphere
+from support.shapes import cube, icosphere, joined, moved
 
 Edit = Callable[[dict[str, Any]], Any]
 
@@ -63,8 +64,6 @@ def test_what_it_does_not_hold_is_said(tmp_path: Path) -> None:
 
 
 def test_other_readers_see_metres_with_y_upwards(tmp_path: Path) -> None:
-    import trimesh
-
     write(RawMesh(*b.box((1000, 2000, 3000)).normalized().to_mesh()), tmp_path / "x.glb")
     scene = trimesh.load_scene(tmp_path / "x.glb")
     assert scene.units == "meters"
@@ -188,3 +187,76 @@ def test_appearance_is_dropped_by_name(tmp_path: Path) -> None:
     path = tmp_path / "x.glb"
     path.write_bytes(edited(path, set_at("materials", value=[{"name": "red"}])))
     assert read(path).dropped == ("materials",)
+
+
+def test_one_mesh_at_many_nodes(tmp_path: Path) -> None:
+    """Instances inside each other, by matrices and by turns, a mirrored one among them."""
+
+    def place(tree: dict[str, Any]) -> None:
+        tree["nodes"] += [
+            {"mesh": 0, "translation": [1, 0, 0], "children": [2, 3]},
+            {"mesh": 0, "rotation": [0, 0.5**0.5, 0, 0.5**0.5], "translation": [0, 1, 0]},
+            {"mesh": 0, "scale": [1, -1, 1]},
+        ]
+        tree["scenes"][0]["nodes"].append(1)
+
+    path = tmp_path / "x.glb"
+    path.write_bytes(edited(path, place))
+    raw = read(path)
+    assert [name for name, _ in raw.objects] == ["cube"] * 4
+    theirs = trimesh.load_scene(path).to_mesh()
+    x, y, z = theirs.triangles.reshape(-1, 3).T * 1000
+    found = np.array(sorted(raw.vertices[raw.faces].reshape(-1, 3).round(6).tolist()))
+    assert np.allclose(found, sorted(np.stack([x, -z, y], axis=1).round(6).tolist()))
+    assert b.Solid(raw.vertices, raw.faces).to_mesh().volume == pytest.approx(theirs.volume * 1e9)
+
+
+def test_nodes_outside_the_scene_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "x.glb"
+    path.write_bytes(edited(path, lambda tree: tree["nodes"].append({"mesh": 0})))
+    raw = read(path)
+    assert len(raw.faces) == 12
+    assert raw.passed_by == ("1 meshes outside the scene were ignored.",)
+
+
+def test_a_file_without_scenes_shows_every_node(tmp_path: Path) -> None:
+    def strip(tree: dict[str, Any]) -> None:
+        del tree["scenes"], tree["scene"]
+        tree["nodes"][0]["children"] = [1]
+        tree["nodes"].append({"mesh": 0, "translation": [0, 0, 9]})
+
+    path = tmp_path / "x.glb"
+    path.write_bytes(edited(path, strip))
+    assert len(read(path).faces) == 24
+
+
+def test_a_node_named_twice(tmp_path: Path) -> None:
+    path = tmp_path / "x.glb"
+    refusal(path, edited(path, set_at("scenes", 0, "nodes", value=[0, 0])), "index_out_of_range")
+
+
+def test_strips_and_short_indices(tmp_path: Path) -> None:
+    """A tetrahedron as one strip, and the cube with indices of two bytes."""
+    path = tmp_path / "x.glb"
+    corners = np.array([(0, 0, 0), (0, 1, 0), (1, 0, 0), (0, 0, 1)])
+    faces = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
+    write(RawMesh(corners * 1.0, faces), path)
+    tree, rest = opened(path.read_bytes())
+    strip = np.array([0, 1, 2, 3, 0, 1], dtype="<u2").tobytes()
+    start = 8 + tree["bufferViews"][1]["byteOffset"]
+    rest = rest[:start] + strip + rest[start + len(strip) :]
+    tree["accessors"][1] |= {"componentType": 5123, "count": 6}
+    tree["meshes"][0]["primitives"][0]["mode"] = 5
+    path.write_bytes(closed(tree, rest))
+    raw = read(path)
+    assert b.Solid(raw.vertices, raw.faces).volume == pytest.approx(1 / 6)
+
+
+def test_names_are_kept_as_they_are(tmp_path: Path) -> None:
+    names = ("lid", "lid", "", "lid_1", "unnamed 1", 'a\nb\0"')
+    bodies = [moved(cube(), (3 * number, 0, 0)) for number in range(len(names))]
+    objects = tuple((name, 12) for name in names)
+    write(RawMesh(*joined(*bodies), objects=objects), tmp_path / "x.glb")
+    assert read(tmp_path / "x.glb").objects == objects
+    assert len(trimesh.load_scene(tmp_path / "x.glb").geometry) == len(names)
+    assert trimesh.load_scene(tmp_path / "x.glb").to_mesh().volume == pytest.approx(6e-9)
