@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import bspcsg as b
+from fuzzing.scenes import CALLS
 from support.checks import assert_sound
 from support.shapes import cuboid
 
@@ -27,18 +28,25 @@ def operand(description: dict[str, Any]) -> "b.Solid":
     if "half_space" in description:
         return b.half_space(*description["half_space"])
     vertices = np.array(description["vertices"], dtype=np.float64)
-    return b.Solid(vertices, np.array(description["faces"], dtype=np.int64))
+    faces = np.array(description["faces"], dtype=np.int64)
+    return b.Solid(vertices, faces, winding=description.get("winding", "positive"))
 
 
 def evaluate(case: dict[str, Any]) -> "b.Solid":
     """Make the operands and combine them."""
     names = {chr(ord("a") + k): operand(given) for k, given in enumerate(case["operands"])}
-    result: b.Solid = eval(case["expression"], {"__builtins__": {}}, names)
+    result: b.Solid = eval(case["expression"], {"__builtins__": {}, **CALLS}, names)
     return result
 
 
 def compare(solid: "b.Solid", expect: dict[str, Any]) -> None:
     """Compare everything that the case expects."""
+    places = expect.pop("places", [])
+    found_places = solid.classify([place[:3] for place in places] or np.zeros((0, 3)))
+    assert found_places.tolist() == [place[3] for place in places]
+    if not solid.is_bounded:
+        assert not expect
+        return
     mesh = assert_sound(solid)
     found = {
         "volume": solid.volume_exact,

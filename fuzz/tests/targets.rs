@@ -1,0 +1,47 @@
+//! Every target holds on its seeds and on damaged copies of them, without libFuzzer.
+
+use bspcsg_fuzz::seeds::seeds;
+use bspcsg_fuzz::targets;
+
+fn holds_around_its_seeds(name: &str, target: fn(&[u8])) {
+    for (number, seed) in seeds(name).into_iter().enumerate() {
+        target(&seed);
+        for round in 0..8 {
+            let mut damaged = seed.clone();
+            let place = (number * 131 + round * 977) % damaged.len();
+            damaged[place] = damaged[place].wrapping_mul(5).wrapping_add(71);
+            damaged.truncate(seed.len() - round * seed.len() / 16);
+            target(&damaged);
+        }
+    }
+}
+
+#[test]
+fn snapshot() {
+    holds_around_its_seeds("snapshot", targets::snapshot);
+}
+
+#[test]
+fn import() {
+    holds_around_its_seeds("import", targets::import);
+}
+
+#[test]
+fn program() {
+    holds_around_its_seeds("program", targets::program);
+}
+
+#[test]
+fn section() {
+    holds_around_its_seeds("section", targets::section);
+}
+
+#[test]
+fn evaluate() {
+    holds_around_its_seeds("evaluate", targets::evaluate);
+}
+
+#[test]
+fn extract() {
+    holds_around_its_seeds("extract", targets::extract);
+}

@@ -1,0 +1,72 @@
+"""Random tests without end: how long each target ran, on what, and what it found.
+
+    scripts/fuzz [--minutes N] [--seed S] [TARGET ...]
+
+Targets of the core (`fuzz/`) and of the readers are led by coverage, and their corpora are kept in
+`.fuzz`; scenes and files come by rounds. Both go on where they stopped. What was run is added to
+`scripts/records/fuzz.json`; a wrong scene is made small and put into `tests/corpus/cases`.
+"""
+
+import argparse
+import json
+import os
+import sys
+import time
+from pathlib import Path
+
+from fuzz_guided import CORE, Core, Readers
+from fuzz_record import Outcome, add_to_record
+from fuzz_rounds import Rounds
+from recording import REPOSITORY
+
+#: Where corpora, what was found, and the next rounds are kept.
+FOLDER = REPOSITORY / ".fuzz"
+
+TARGETS = [*CORE, "readers", "scenes", "files"]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("targets", nargs="*", metavar="TARGET", help=f"of {', '.join(TARGETS)}")
+    parser.add_argument("--minutes", type=float, default=1.0, help="for each target")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--folder", type=Path, default=FOLDER, help="for corpora and findings")
+    parser.add_argument("--no-record", action="store_true", help="keep nothing in scripts/records")
+    options = parser.parse_args()
+    unknown = set(options.targets) - set(TARGETS)
+    if unknown:
+        parser.error(f"no such target: {', '.join(sorted(unknown))}")
+    os.nice(10)
+    found = 0
+    for name in options.targets or TARGETS:
+        outcome = run(name, options)
+        print(f"{name:9} {outcome.line()}", flush=True)
+        for each in outcome.found[:5]:
+            print(f"    {each.kind}: {each.what[:300]}\n        {each.place}")
+        found += len(outcome.found)
+        if not options.no_record:
+            add_to_record(name, options.seed, outcome)
+    return int(found > 0)
+
+
+def run(name: str, options: argparse.Namespace) -> Outcome:
+    """Run one target from where it stopped last."""
+    folder: Path = options.folder / name
+    folder.mkdir(parents=True, exist_ok=True)
+    state = folder / "state.json"
+    before = json.loads(state.read_text()) if state.is_file() else {}
+    times = before.get(str(options.seed), 0)
+    until = time.monotonic() + 60 * options.minutes
+    if name in CORE or name == "readers":
+        made = Core(name, options.folder) if name in CORE else Readers(options.folder)
+        # A seed names a sequence of runs, each with a seed of its own.
+        outcome = made.run(options.seed * 1000 + times, until)
+        after = times + 1
+    else:
+        outcome, after = Rounds(name, options.seed).run(times, until)
+    state.write_text(json.dumps({**before, str(options.seed): after}) + "\n")
+    return outcome
+
+
+if __name__ == "__main__":
+    sys.exit(main())

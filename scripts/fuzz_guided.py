@@ -1,0 +1,153 @@
+"""Targets led by coverage: programs of libFuzzer, and atheris for the readers in Python."""
+
+import os
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from fuzz_record import CpuClock, Found, Outcome
+from recording import REPOSITORY
+
+#: The targets in `fuzz/fuzz_targets`.
+CORE = ("snapshot", "import", "program", "section", "evaluate", "extract")
+
+#: What makes the compiler count edges and comparisons, on stable Rust: the flags of
+#: `cargo fuzz --sanitizer none`.
+FLAGS = [
+    "-Cpasses=sancov-module",
+    "-Cllvm-args=-sanitizer-coverage-level=4",
+    "-Cllvm-args=-sanitizer-coverage-inline-8bit-counters",
+    "-Cllvm-args=-sanitizer-coverage-pc-table",
+    "-Cllvm-args=-sanitizer-coverage-trace-compares",
+    "-Ccodegen-units=1",
+    "--cfg=fuzzing",
+]
+
+#: One input may take this long, and this much memory.
+SECONDS, MEGABYTES = 10, 2048
+
+#: Longer inputs are no other scenes.
+LONGEST = 2000
+
+#: After so many findings in one run a target is left alone.
+ENOUGH = 5
+
+_COVERAGE = re.compile(r"cov: (\d+) ft:")
+_COUNT = re.compile(r"stat::number_of_executed_units: (\d+)")
+_WRITTEN = re.compile(r"Test unit written to (\S+)")
+_PANIC = re.compile(r"panicked at (\S+?):\d+:\d+:\n(.*)")
+_RAISED = re.compile(r"=== Uncaught Python exception: ===\n(.*)")
+
+
+class Guided:
+    """A program that takes libFuzzer's options."""
+
+    def __init__(self, name: str, command: list[str], folder: Path) -> None:
+        self._command, self._folder = command, folder / name
+        self._corpus, self._found = self._folder / "corpus", self._folder / "found"
+        self._corpus.mkdir(parents=True, exist_ok=True)
+        self._found.mkdir(exist_ok=True)
+
+    def run(self, seed: int, until: float) -> Outcome:
+        """Run until a moment of the monotonic clock, again after each finding."""
+        total, clock = Outcome(), CpuClock()
+        while len(total.found) < ENOUGH and until - time.monotonic() > 1:
+            one = self._once(seed + 100 * len(total.found), until)
+            total.executions += one.executions
+            total.found += one.found
+            if one.coverage:
+                first = total.coverage[0] if total.coverage else one.coverage[0]
+                total.coverage = (first, one.coverage[1])
+            if not one.found:
+                break
+        total.cpu_seconds = clock.seconds()
+        return total
+
+    def _once(self, seed: int, until: float) -> Outcome:
+        options = {
+            "seed": seed % 2**31,
+            "max_total_time": max(1, round(until - time.monotonic())),
+            "max_len": LONGEST,
+            "len_control": 0,
+            "timeout": SECONDS,
+            "rss_limit_mb": MEGABYTES,
+            "print_final_stats": 1,
+            "artifact_prefix": f"{self._found}/",
+        }
+        words = [f"-{name}={value}" for name, value in options.items()]
+        done = subprocess.run(
+            [*self._command, *words, str(self._corpus)],
+            capture_output=True,
+            text=True,
+            errors="replace",
+            env={**os.environ, "RUST_BACKTRACE": "0"},
+            check=False,
+        )
+        return outcome_of(done.stderr, done.returncode)
+
+
+class Core(Guided):
+    """A target of the core, built on first use."""
+
+    def __init__(self, name: str, folder: Path) -> None:
+        super().__init__(name, [str(built(folder) / name)], folder)
+        if not any(self._corpus.iterdir()):
+            asked = {**os.environ, "BSPCSG_FUZZ_SEEDS": str(self._corpus)}
+            subprocess.run(self._command, env=asked, check=True)
+
+
+class Readers(Guided):
+    """All readers of files in Python; atheris must be installed."""
+
+    def __init__(self, folder: Path) -> None:
+        script = Path(__file__).with_name("fuzz_readers.py")
+        super().__init__("readers", [sys.executable, str(script)], folder)
+        if not any(self._corpus.iterdir()):
+            words = [*self._command, "--seeds", str(self._corpus)]
+            subprocess.run(words, check=True, capture_output=True)
+
+
+def built(folder: Path) -> Path:
+    """Build the targets of the core; return where they are."""
+    version = subprocess.run(["rustc", "-vV"], capture_output=True, text=True, check=True).stdout
+    host = next(line[6:] for line in version.splitlines() if line.startswith("host: "))
+    target = folder / "target"
+    # With `--target` what runs while building is not instrumented.
+    words = ["--quiet", "--release", "--bins", "--target", host, "--target-dir", str(target)]
+    subprocess.run(
+        ["cargo", "build", "--manifest-path", str(REPOSITORY / "fuzz" / "Cargo.toml"), *words],
+        env={**os.environ, "RUSTFLAGS": " ".join(FLAGS)},
+        check=True,
+    )
+    return target / host / "release"
+
+
+def outcome_of(said: str, code: int) -> Outcome:
+    """Return what a run of libFuzzer has said."""
+    reached = [int(number) for number in _COVERAGE.findall(said)]
+    count = _COUNT.search(said)
+    outcome = Outcome(int(count[1]) if count else 0)
+    outcome.coverage = (reached[0], reached[-1]) if reached else None
+    if code != 0:
+        written = _WRITTEN.search(said)
+        kind, what = _finding(said)
+        outcome.found.append(Found(kind, what, written[1] if written else ""))
+    return outcome
+
+
+def _finding(said: str) -> tuple[str, str]:
+    """Return the kind of what ended a run, and its words."""
+    if "libFuzzer: timeout" in said:
+        return "hang", f"more than {SECONDS} s"
+    if "out-of-memory" in said:
+        return "memory", f"more than {MEGABYTES} MB"
+    panic, raised = _PANIC.search(said), _RAISED.search(said)
+    if panic:
+        # What the targets assert is about answers; a panic of the core is a crash.
+        ours = not panic[1].startswith("src/") or "core/src" in panic[1]
+        return "crash" if ours and "tests/support" not in panic[1] else "wrong", panic[2]
+    if raised:
+        return "wrong" if "AssertionError" in raised[1] else "crash", raised[1]
+    return "crash", said[-300:]

@@ -1,0 +1,133 @@
+"""Targets by rounds, in a process of their own: round k draws from the generator of (seed, k).
+
+As a program it runs rounds and says, a line of JSON each, which one begins and what was wrong.
+"""
+
+import argparse
+import json
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fuzz_record import CpuClock, Found, Outcome
+from recording import REPOSITORY
+
+#: A round may take this long, and the process this much memory.
+SECONDS, MEGABYTES = 10, 4096
+
+#: Where cases are kept that must be answered.
+CASES = REPOSITORY / "tests" / "corpus" / "cases"
+
+#: After so many findings in one run a target is left alone.
+ENOUGH = 20
+
+
+class Rounds:
+    """A target by rounds, as the process that starts them sees it."""
+
+    def __init__(self, name: str, seed: int) -> None:
+        self._name, self._seed = name, seed
+
+    def run(self, first: int, until: float) -> tuple[Outcome, int]:
+        """Run rounds until a moment of the monotonic clock; return the next round, too."""
+        outcome, clock, at = Outcome(), CpuClock(), first
+        while len(outcome.found) < ENOUGH and until - time.monotonic() > 1:
+            at, ended = self._rounds(at, until, outcome)
+            if not ended:
+                break
+        outcome.executions, outcome.cpu_seconds = at - first, clock.seconds()
+        return outcome, at
+
+    def _rounds(self, first: int, until: float, outcome: Outcome) -> tuple[int, bool]:
+        """Run one process; return the next round and whether the process was ended by one."""
+        seconds = str(until - time.monotonic())
+        words = [self._name, "--seed", str(self._seed), "--first", str(first), "--seconds", seconds]
+        command = [sys.executable, __file__, *words]
+        at = first
+        with (
+            tempfile.TemporaryFile("w+") as told,
+            subprocess.Popen(command, stdout=subprocess.PIPE, stderr=told, text=True) as child,
+        ):
+            assert child.stdout is not None
+            for line in child.stdout:
+                said = json.loads(line)
+                at = said["round"]
+                outcome.found += [Found("wrong", what, said["place"]) for what in said["wrong"]]
+            code = child.wait()
+            if code == 0:
+                return at, False
+            told.seek(0)
+            place = f"round {at} of seed {self._seed}"
+            hang = -code == signal.SIGXCPU
+            what = f"more than {SECONDS} s" if hang else told.read()[-300:] or f"ended by {-code}"
+            outcome.found.append(Found("hang" if hang else "crash", what, place))
+            return at + 1, True
+
+
+def rounds(name: str, seed: int, first: int, until: float) -> None:
+    """Run rounds, and say so."""
+    resource.setrlimit(resource.RLIMIT_AS, (MEGABYTES << 20, MEGABYTES << 20))
+    judge = {"scenes": one_scene, "files": one_file}[name]
+    at = first
+    while time.monotonic() < until:
+        tell(at, [], "")
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        limit = int(used.ru_utime + used.ru_stime) + SECONDS + 1
+        resource.setrlimit(resource.RLIMIT_CPU, (limit, resource.RLIM_INFINITY))
+        wrong, place = judge(seed, at)
+        if wrong:
+            tell(at, wrong, place)
+        at += 1
+    tell(at, [], "")
+
+
+def tell(at: int, wrong: list[str], place: str) -> None:
+    """Say where we are."""
+    print(json.dumps({"round": at, "wrong": wrong[:1], "place": place}), flush=True)
+
+
+def one_scene(seed: int, at: int) -> tuple[list[str], str]:
+    """Judge a scene; a wrong one is made small and kept as a case."""
+    from fuzzing.judge import judge
+    from fuzzing.scenes import random_scene
+    from fuzzing.shrink import keep_case, shrunk
+
+    scene = random_scene(np.random.default_rng([seed, at]))
+    wrong = judge(scene)
+    if not wrong:
+        return [], ""
+    # Making it small takes as long as it takes.
+    resource.setrlimit(resource.RLIMIT_CPU, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+    why = f"Round {at} of scripts/fuzz scenes, seed {seed}: {wrong[0].split(':')[0]}."
+    return wrong, str(keep_case(CASES, f"scene_{seed}_{at}", shrunk(scene, judge), why))
+
+
+def one_file(seed: int, at: int) -> tuple[list[str], str]:
+    """Judge a file of the format whose turn it is."""
+    from fuzzing.files import FORMATS, judge_file, random_file
+
+    rng: Any = np.random.default_rng([seed, at])
+    with tempfile.TemporaryDirectory() as folder:
+        file = random_file(rng, FORMATS[at % len(FORMATS)])
+        return judge_file(file, Path(folder)), f"round {at} of seed {seed}: {file.format}"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("name", choices=["scenes", "files"])
+    parser.add_argument("--seed", type=int, required=True)
+    parser.add_argument("--first", type=int, required=True)
+    parser.add_argument("--seconds", type=float, required=True)
+    options = parser.parse_args()
+    rounds(options.name, options.seed, options.first, time.monotonic() + options.seconds)
+
+
+if __name__ == "__main__":
+    main()

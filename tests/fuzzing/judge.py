@@ -1,0 +1,237 @@
+"""What is wrong with the answers to a scene: points, volumes, meshes, copies, a rival's volume."""
+
+import pickle
+from collections import Counter
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+import bspcsg as b
+from bspcsg import oracle
+
+from .places import Point, Surface, UndecidedError, dot, less, location, normal, windings
+from .scenes import CALLS, PITCH, UNIT, Body, Scene
+
+#: Points nearer to a face than this many units are not looked for in the rounded mesh: far more
+#: than rounding moves its vertices by, at coordinates below 1000.
+CLEAR = 1e-6
+
+#: How much volume, of each unit of area, manifold3d may gain or lose where it merges what is near.
+MERGED = 1e-4
+
+
+class Kernel:
+    """What is asked of the package; the tests of the judge break it on purpose."""
+
+    def solid(self, body: Body) -> "b.Solid":
+        """Return the solid of an operand, not moved."""
+        if body.plane is not None:
+            return b.half_space(*body.half_space())
+        vertices, faces = body.arrays()
+        rule: Any = body.rule
+        return b.Solid(np.array(vertices), np.array(faces), pitch=PITCH, winding=rule)
+
+    def evaluate(self, text: str, names: dict[str, "b.Solid"]) -> "b.Solid":
+        """Return the value of an expression."""
+        found: b.Solid = eval(text, {"__builtins__": {}, **CALLS}, names)
+        return found
+
+    def classify(self, solid: "b.Solid", points: Sequence[Point]) -> list[int]:
+        """Return of each point whether it is inside (+1), on the boundary (0) or outside (-1)."""
+        found: list[int] = solid.classify([[k / UNIT for k in p] for p in points]).tolist()
+        return found
+
+    def volume(self, solid: "b.Solid") -> Fraction:
+        """Return the exact volume."""
+        return solid.volume_exact
+
+    def mesh(self, solid: "b.Solid") -> "b.Mesh":
+        """Return the reduced boundary."""
+        return solid.normalized().to_mesh()
+
+    def copy(self, solid: "b.Solid") -> "b.Solid":
+        """Return the solid after a way through bytes."""
+        found: b.Solid = pickle.loads(pickle.dumps(solid))
+        return found
+
+
+def judge(scene: Scene, kernel: Kernel | None = None) -> list[str]:
+    """Return what is wrong, a sentence each that begins with one word for its kind.
+
+    An error that the package raises is wrong: all scenes have an answer.
+    """
+    try:
+        return list(_Trial(scene, kernel or Kernel()).complaints())
+    except b.BspcsgError as error:
+        return [f"error: {type(error).__name__} {error.code}: {error.message}"]
+
+
+class _Trial:
+    def __init__(self, scene: Scene, kernel: Kernel) -> None:
+        self.scene, self.kernel = scene, kernel
+        self.sets = scene.known()
+        names = {chr(ord("a") + k): kernel.solid(body) for k, body in enumerate(scene.bodies)}
+        self.operands = [
+            kernel.evaluate(Scene((body,), 0, ()).text().replace("a", name, 1), names)
+            for name, body in zip(names, scene.bodies, strict=True)
+        ]
+        self.result = kernel.evaluate(scene.text(), names)
+
+    def complaints(self) -> Any:
+        """Yield what is wrong."""
+        yield from self._points(self.result, "points")
+        yield from self._known_volumes()
+        yield from self._sums()
+        yield from self._copies()
+        if self.scene.is_bounded:
+            mesh = self.kernel.mesh(self.result)
+            yield from self._mesh(mesh)
+            yield from self._inside_mesh(mesh)
+            yield from self._rival()
+
+    def _points(self, result: "b.Solid", kind: str) -> Any:
+        for point, found in zip(
+            self.scene.points, self.kernel.classify(result, self.scene.points), strict=True
+        ):
+            try:
+                expected = location(self.sets, self.scene.value, point)
+            except UndecidedError:
+                continue
+            if found != expected:
+                yield f"{kind}: {point} is {found}, not {expected}"
+
+    def _known_volumes(self) -> Any:
+        for k, (body, solid) in enumerate(zip(self.scene.bodies, self.operands, strict=True)):
+            if body.volume is not None and self.kernel.volume(solid) != body.volume:
+                yield f"volume: operand {k} has {self.kernel.volume(solid)}, not {body.volume}"
+
+    def _sums(self) -> Any:
+        """Compare first and last operand, and the result and the first, by inclusion."""
+        bounded = [
+            solid
+            for body, solid in zip(self.scene.bodies, self.operands, strict=True)
+            if body.plane is None
+        ]
+        bounded += [self.result] if self.scene.is_bounded else []
+        if not bounded:
+            return
+        p, q = bounded[0], bounded[-1]
+        volume = self.kernel.volume
+        joint, common, rest, either = map(volume, (p | q, p & q, p - q, p ^ q))
+        if joint + common != volume(p) + volume(q):
+            yield "sums: union and intersection do not add up"
+        if rest + common != volume(p):
+            yield "sums: difference and intersection do not add up"
+        if joint - common != either:
+            yield "sums: the symmetric difference is not union minus intersection"
+        if not (~p & ~q).equals(~(p | q)):
+            yield "sums: De Morgan does not hold"
+
+    def _copies(self) -> Any:
+        copy = self.kernel.copy(self.result)
+        if self.kernel.classify(copy, self.scene.points) != self.kernel.classify(
+            self.result, self.scene.points
+        ):
+            yield "copy: points lie elsewhere in a copy"
+        if self.scene.is_bounded and self.kernel.volume(copy) != self.kernel.volume(self.result):
+            yield "copy: a copy has another volume"
+
+    def _mesh(self, mesh: "b.Mesh") -> Any:
+        faces = mesh.faces.tolist()
+        after = _corners(faces)
+        if after is None:
+            yield "mesh: an edge is used twice in one direction"
+            return
+        if any((w, v) not in after for v, w in after):
+            yield "mesh: an edge has no opposite"
+            return
+        if _count_fans(after) != len(mesh.vertices):
+            yield "mesh: a vertex is not used, or has several fans"
+        exact = self.kernel.volume(self.result)
+        six = Fraction(0)
+        corners = [[Fraction(x) for x in p] for p in mesh.vertices.tolist()]
+        for p, q, r in faces:
+            six += _determinant(corners[p], corners[q], corners[r])
+        if abs(six / 6 - exact) > Fraction(mesh.area) / UNIT:
+            yield f"mesh: its volume is {float(six / 6)}, the set's {float(exact)}"
+
+    def _inside_mesh(self, mesh: "b.Mesh") -> Any:
+        """Compare points well clear of all faces with the winding numbers of the mesh."""
+        scale = 2**40
+        corners = [tuple(round(x * scale) for x in p) for p in mesh.vertices.tolist()]
+        triangles: Any = [tuple(corners[k] for k in face) for face in mesh.faces.tolist()]
+        proper = [each for each in triangles if normal(each) != (0, 0, 0)]
+        for point in self.scene.points:
+            if not self._is_clear(point):
+                continue
+            x, y, z = (round(Fraction(k, UNIT) * scale) for k in point)
+            try:
+                [found] = windings(proper, (x, y, z), [()])
+                expected = location(self.sets, self.scene.value, point) > 0
+            except UndecidedError:
+                continue
+            if found != expected:
+                yield f"inside: the mesh winds {found} times around {point}"
+
+    def _is_clear(self, point: Point) -> bool:
+        """Whether no face's plane, nor the border of a face near it, is near the point."""
+        for known in self.sets:
+            faces = known.triangles if isinstance(known, Surface) else (known.corners,)
+            for face in faces:
+                n = normal(face)
+                away = abs(dot(n, less(point, face[0]))) / dot(n, n) ** 0.5 / UNIT
+                if away < CLEAR:
+                    return False
+        return True
+
+    def _rival(self) -> Any:
+        """Compare the volume with manifold3d's, where all operands are plain."""
+        if not all(body.volume is not None for body in self.scene.bodies):
+            return
+        record = self.result.last_operation
+        if record is None or not all(operand.is_bounded for operand in record.operands):
+            return
+        meshes = [operand.normalized().to_mesh() for operand in record.operands]
+        try:
+            theirs = oracle.ask(record.program, meshes).mesh
+        except (oracle.OracleFailedError, oracle.OracleRefusedError):
+            return
+        ours = float(self.kernel.volume(self.result))
+        area = sum(mesh.area for mesh in meshes)
+        if abs(theirs.volume - ours) > MERGED * area:
+            yield f"rival: manifold3d has the volume {theirs.volume}, not {ours}"
+
+
+def _corners(faces: Sequence[Sequence[int]]) -> dict[tuple[int, int], int] | None:
+    """Return for each edge from a vertex the end of the next one around it; None if one repeats."""
+    after: dict[tuple[int, int], int] = {}
+    for p, q, r in faces:
+        for v, start, end in ((p, q, r), (q, r, p), (r, p, q)):
+            if (v, start) in after:
+                return None
+            after[v, start] = end
+    return after
+
+
+def _count_fans(after: dict[tuple[int, int], int]) -> int:
+    fans: Counter[int] = Counter()
+    open_edges = set(after)
+    while open_edges:
+        v, start = spoke = open_edges.pop()
+        fans[v] += 1
+        while (spoke := (v, after[spoke])) != (v, start):
+            open_edges.discard(spoke)
+    return sum(fans.values())
+
+
+def _determinant(p: Sequence[Fraction], q: Sequence[Fraction], r: Sequence[Fraction]) -> Fraction:
+    return (
+        p[0] * (q[1] * r[2] - q[2] * r[1])
+        + p[1] * (q[2] * r[0] - q[0] * r[2])
+        + p[2] * (q[0] * r[1] - q[1] * r[0])
+    )
+
+
+Judge = Callable[[Scene], list[str]]

@@ -1,0 +1,202 @@
+"""Where points lie, from winding numbers in whole numbers: no lattice, no tree, no plane of a core.
+
+A place is a point and up to three steps from it, each infinitely smaller than the one before. All
+predicates are linear in the place, so each is decided by its first value that is not zero.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations, product
+from math import gcd
+from typing import TypeAlias
+
+Point: TypeAlias = tuple[int, int, int]
+Triangle: TypeAlias = tuple[Point, Point, Point]
+Steps: TypeAlias = tuple[Point, ...]
+
+#: Which winding numbers are inside.
+RULES: dict[str, Callable[[int], bool]] = {
+    "positive": lambda w: w > 0,
+    "nonzero": lambda w: w != 0,
+    "even-odd": lambda w: w % 2 == 1,
+}
+
+#: Directions of rays, in no plane of small normals.
+RAYS: list[Point] = [
+    (61, 37, 23),
+    (-53, 29, 41),
+    (17, -59, 43),
+    (3137, -4801, 1499),
+    (-19001, -6143, 29009),
+    (590033, -110017, -370003),
+]
+
+
+class UndecidedError(Exception):
+    """Every ray from a place meets an edge, or the place lies on a face."""
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The points around which triangles wind as a rule wants it."""
+
+    triangles: tuple[Triangle, ...]
+    rule: str = "positive"
+
+    def normals_at(self, point: Point) -> list[Point]:
+        """Return the normals of the triangles that hold the point."""
+        return [normal(each) for each in self.triangles if touches(each, point)]
+
+    def sides(self, point: Point, places: Sequence[Steps]) -> list[bool]:
+        """Return of each place beside a point whether it is inside."""
+        return [RULES[self.rule](number) for number in windings(self.triangles, point, places)]
+
+
+@dataclass(frozen=True)
+class Below:
+    """The points on a plane through three points, and below it: they turn left seen from above."""
+
+    corners: Triangle
+
+    def normals_at(self, point: Point) -> list[Point]:
+        """Return the normal if the point lies on the plane."""
+        n = normal(self.corners)
+        return [n] if dot(n, less(point, self.corners[0])) == 0 else []
+
+    def sides(self, point: Point, places: Sequence[Steps]) -> list[bool]:
+        """Return of each place beside a point whether it is below."""
+        n = normal(self.corners)
+        found = [sign(dot(n, less(point, self.corners[0])), n, place) for place in places]
+        if 0 in found:
+            raise UndecidedError
+        return [side < 0 for side in found]
+
+
+Known: TypeAlias = Surface | Below
+
+
+def location(sets: Sequence[Known], value: Callable[[Sequence[bool]], bool], point: Point) -> int:
+    """Return +1 inside, 0 on the boundary, -1 outside of what an expression makes of sets.
+
+    The planes that meet at the point divide its neighbourhood; the point is on the boundary if the
+    expression holds in some of the parts and not in others.
+    """
+    normals = sorted({reduced(n) for each in sets for n in each.normals_at(point)})
+    places = around(normals)
+    columns = [each.sides(point, places) for each in sets]
+    held = {value(inside) for inside in zip(*columns, strict=True)}
+    return 0 if len(held) == 2 else 1 if True in held else -1
+
+
+def windings(triangles: Sequence[Triangle], point: Point, places: Sequence[Steps]) -> Iterator[int]:
+    """Yield how often triangles wind around each of the places beside a point."""
+    near = [each for each in triangles if touches(each, point)]
+    away = [each for each in triangles if not touches(each, point)]
+    # What the point does not lie on is the same for all places, unless a ray meets its edges.
+    kept: dict[Point, int] = {}
+    for place in places:
+        yield _winding(away, near, point, place, kept)
+
+
+def _winding(
+    away: Sequence[Triangle],
+    near: Sequence[Triangle],
+    point: Point,
+    place: Steps,
+    kept: dict[Point, int],
+) -> int:
+    for ray in RAYS:
+        try:
+            if ray not in kept:
+                kept[ray] = sum(crossing(each, point, (), ray) for each in away)
+            return kept[ray] + sum(crossing(each, point, place, ray) for each in near)
+        except UndecidedError:
+            continue
+    raise UndecidedError
+
+
+def crossing(triangle: Triangle, point: Point, place: Steps, ray: Point) -> int:
+    """Return +1 if a ray leaves through a triangle, -1 if it enters by it, 0 if it misses."""
+    a, b, c = (less(corner, point) for corner in triangle)
+    turns = [
+        sign(dot(ray, cross(p, q)), cross(less(p, q), ray), place)
+        for p, q in ((a, b), (b, c), (c, a))
+    ]
+    if 1 in turns and -1 in turns:
+        return 0
+    n = normal(triangle)
+    side, slope = sign(-dot(n, a), n, place), dot(n, ray)
+    if side == 0 or (0 in turns and slope != 0):
+        raise UndecidedError
+    return 0 if side * slope >= 0 else 1 if slope > 0 else -1
+
+
+def around(normals: Sequence[Point]) -> list[Steps]:
+    """Return steps into each part of the neighbourhood that planes with these normals make.
+
+    Unless all planes are parallel, each part has on its border a ray in which two planes meet; the
+    parts around such a ray lie beside the planes that contain it.
+    """
+    places: list[Steps] = []
+    lines = {reduced(cross(p, q)) for p, q in combinations(normals, 2)} - {(0, 0, 0)}
+    for line in sorted(lines | {minus(line) for line in lines}):
+        for n in (n for n in normals if dot(n, line) == 0):
+            across = cross(n, line)
+            pairs = product((across, minus(across)), (n, minus(n)))
+            places.extend((line, aside, off) for aside, off in pairs)
+    if not places and normals:
+        return [(normals[0],), (minus(normals[0]),)]
+    return places or [()]
+
+
+def touches(triangle: Triangle, point: Point) -> bool:
+    """Return whether a point lies on a triangle or its border."""
+    n = normal(triangle)
+    a, b, c = (less(corner, point) for corner in triangle)
+    if n == (0, 0, 0) or dot(n, a) != 0:
+        return False
+    return all(dot(n, cross(p, q)) >= 0 for p, q in ((a, b), (b, c), (c, a)))
+
+
+def sign(value: int, gradient: Point, place: Steps) -> int:
+    """Return the sign of a linear form with a value at the point and this gradient."""
+    changes = (dot(gradient, step) for step in place)
+    found = next((each for each in (value, *changes) if each), 0)
+    return (found > 0) - (found < 0)
+
+
+def reduced(vector: Point) -> Point:
+    """Return the shortest whole vector of the same direction."""
+    size = gcd(*vector) or 1
+    x, y, z = vector
+    return x // size, y // size, z // size
+
+
+def normal(triangle: Triangle) -> Point:
+    """Return a vector across a triangle, outwards."""
+    a, b, c = triangle
+    return cross(less(b, a), less(c, a))
+
+
+def dot(a: Point, b: Point) -> int:
+    """Return the scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Point, b: Point) -> Point:
+    """Return the vector product."""
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+def less(a: Point, b: Point) -> Point:
+    """Return the difference."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def minus(a: Point) -> Point:
+    """Return the vector turned around."""
+    return -a[0], -a[1], -a[2]

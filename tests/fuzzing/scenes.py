@@ -1,0 +1,376 @@
+"""Scenes: operands that nearly or exactly coincide, and an expression over them.
+
+Coordinates are whole numbers of lattice steps of 1e-9 units, so that nothing has to be rounded.
+"""
+
+import pickle
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import gcd
+from typing import Any, TypeAlias
+
+import numpy as np
+
+import bspcsg as b
+
+from .places import Below, Known, Point, Surface, Triangle, cross, dot, less, minus
+
+Rng: TypeAlias = np.random.Generator
+
+#: Steps in a unit, and their exponent.
+UNIT, PITCH = 10**9, -9
+
+#: Coordinates are multiples of one of these: whole units, tenths, steps.
+GRIDS = (UNIT, UNIT // 10, 1)
+
+#: Parts of an operand, operands of a scene, operations of an expression, at most.
+PARTS, OPERANDS, OPERATIONS = 3, 4, 6
+
+Expression: TypeAlias = int | tuple[Any, ...]
+
+_CUBE = [[k >> 2 & 1, k >> 1 & 1, k & 1] for k in range(8)]
+_QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+_CUBE_FACES = tuple(t for p, q, r, s in _QUADS for t in ((p, q, r), (p, r, s)))
+_TETRAHEDRON_FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3))
+
+
+@dataclass(frozen=True)
+class Part:
+    """A closed surface; `plain` says that it is embedded and its inside is inside."""
+
+    vertices: tuple[Point, ...]
+    faces: tuple[tuple[int, int, int], ...]
+    plain: bool
+
+    def turned(self) -> "Part":
+        """Return the part inside out."""
+        return Part(self.vertices, tuple((p, r, q) for p, q, r in self.faces), False)
+
+    def triangles(self) -> list[Triangle]:
+        """Return the corners of all faces."""
+        v = self.vertices
+        return [(v[p], v[q], v[r]) for p, q, r in self.faces]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A map that keeps lattice points on the lattice, and how Python says it.
+
+    For each new axis `axes` has the old one and its sign.
+    """
+
+    axes: tuple[tuple[int, int], ...] = ((0, 1), (1, 1), (2, 1))
+    shift: Point = (0, 0, 0)
+    words: str = ""
+
+    def point(self, p: Point) -> Point:
+        """Return the image of a point."""
+        x, y, z = (s * p[axis] + at for (axis, s), at in self._rows())
+        return x, y, z
+
+    @property
+    def mirrors(self) -> bool:
+        """Whether left becomes right."""
+        order = [axis for axis, _ in self.axes]
+        even = order in ([0, 1, 2], [1, 2, 0], [2, 0, 1])
+        return even != (np.prod([s for _, s in self.axes]) > 0)
+
+    def _rows(self) -> Any:
+        return zip(self.axes, self.shift, strict=True)
+
+
+@dataclass(frozen=True)
+class Body:
+    """An operand: a mesh of parts, or the half-space below three points; then moved."""
+
+    parts: tuple[Part, ...] = ()
+    rule: str = "positive"
+    plane: Triangle | None = None
+    motions: tuple[Motion, ...] = ()
+
+    @property
+    def volume(self) -> Fraction | None:
+        """The exact volume, if the operand is one plain part."""
+        if self.plane is not None or len(self.parts) != 1 or not self.parts[0].plain:
+            return None
+        six = sum(dot(p, cross(q, r)) for p, q, r in self.parts[0].triangles())
+        return Fraction(six, 6 * UNIT**3)
+
+    def known(self) -> Known:
+        """Return the set as it is known."""
+        if self.plane is not None:
+            return Below(self._moved(self.plane))
+        faces = [self._moved(each) for part in self.parts for each in part.triangles()]
+        flat = {
+            each
+            for each in faces
+            if cross(less(each[1], each[0]), less(each[2], each[0])) == (0, 0, 0)
+        }
+        return Surface(tuple(each for each in faces if each not in flat), self.rule)
+
+    def _moved(self, corners: Triangle) -> Triangle:
+        p, q, r = corners
+        for motion in self.motions:
+            p, q, r = motion.point(p), motion.point(q), motion.point(r)
+            if motion.mirrors:
+                q, r = r, q
+        return p, q, r
+
+    def arrays(self) -> tuple[list[list[float]], list[list[int]]]:
+        """Return vertices in units and faces of all parts."""
+        vertices = [[k / UNIT for k in p] for part in self.parts for p in part.vertices]
+        starts = np.cumsum([0] + [len(part.vertices) for part in self.parts]).tolist()
+        faces = [
+            [start + k for k in face]
+            for part, start in zip(self.parts, starts, strict=False)
+            for face in part.faces
+        ]
+        return vertices, faces
+
+    def half_space(self) -> tuple[list[float], float]:
+        """Return normal and offset of the plane in units; both are short decimals."""
+        assert self.plane is not None
+        p, q, r = self.plane
+        n = cross(less(q, p), less(r, p))
+        size = gcd(*n)
+        return [float(k // size) for k in n], dot(n, p) // size / UNIT
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Operands, an expression over their numbers, and points to ask about."""
+
+    bodies: tuple[Body, ...]
+    expression: Expression
+    points: tuple[Point, ...]
+
+    def known(self) -> list[Known]:
+        """Return the operands as they are known."""
+        return [body.known() for body in self.bodies]
+
+    def value(self, inside: Sequence[bool]) -> bool:
+        """Return the value of the expression."""
+        return value_of(self.expression, inside)
+
+    @property
+    def is_bounded(self) -> bool:
+        """Whether no operand is a half-space and infinity is outside."""
+        return all(body.plane is None for body in self.bodies) and not self.value(
+            [False] * len(self.bodies)
+        )
+
+    def text(self) -> str:
+        """Return the expression as Python has it, each operand moved."""
+        return text_of(self.expression, self.bodies)
+
+
+def value_of(expression: Expression, inside: Sequence[bool]) -> bool:
+    """Return the value of an expression where the operands' are known."""
+    if isinstance(expression, int):
+        return inside[expression]
+    operator, *arguments = expression
+    found = [value_of(argument, inside) for argument in arguments]
+    if operator in ("copied", "asked"):
+        return found[0]
+    if operator == "~":
+        return not found[0]
+    first, second = found
+    values = {
+        "|": first or second,
+        "&": first and second,
+        "-": first and not second,
+        "^": first != second,
+    }
+    return values[operator]
+
+
+def text_of(expression: Expression, bodies: Sequence[Body]) -> str:
+    """Return an expression over ``a``, ``b``, … in Python."""
+    if isinstance(expression, int):
+        words = (motion.words for motion in bodies[expression].motions)
+        return chr(ord("a") + expression) + "".join(words)
+    operator, *arguments = expression
+    found = [text_of(argument, bodies) for argument in arguments]
+    if operator == "~":
+        return f"~({found[0]})"
+    if operator in ("copied", "asked"):
+        return f"{operator}({found[0]})"
+    return f"({found[0]} {operator} {found[1]})"
+
+
+def copied(solid: "b.Solid") -> "b.Solid":
+    """Return the solid after a way through bytes."""
+    found: b.Solid = pickle.loads(pickle.dumps(solid))
+    return found
+
+
+def asked(solid: "b.Solid") -> "b.Solid":
+    """Return the solid after it has been evaluated."""
+    solid.is_empty  # noqa: B018
+    return solid
+
+
+#: What expressions may call.
+CALLS = {"copied": copied, "asked": asked}
+
+
+# Random scenes
+
+
+def random_scene(rng: Rng) -> Scene:
+    """Return a scene in which much coincides."""
+    grid, reach = int(rng.choice(GRIDS, p=[0.6, 0.25, 0.15])), int(rng.choice([2, 3, 6]))
+    parts: list[Part] = []
+    bodies = tuple(
+        _random_body(rng, grid, reach, parts) for _ in range(int(rng.integers(1, OPERANDS + 1)))
+    )
+    expression = _random_expression(rng, len(bodies))
+    scene = Scene(bodies, expression, ())
+    return replace(scene, points=_random_points(rng, scene.known(), grid, reach))
+
+
+def _random_body(rng: Rng, grid: int, reach: int, earlier: list[Part]) -> Body:
+    motions = tuple(_random_motion(rng, grid) for _ in range(int(rng.choice([0, 0, 1, 2]))))
+    if rng.random() < 0.15:
+        plane = _random_corners(rng, max(grid, UNIT // 10), reach, 3)
+        surfaces = [part for part in earlier if _is_coarse(part)]
+        if surfaces and rng.random() < 0.6:
+            part = surfaces[int(rng.integers(len(surfaces)))]
+            order = rng.choice(len(part.vertices), 3, replace=False)
+            plane = [part.vertices[int(k)] for k in order]
+        p, q, r = plane
+        if cross(less(q, p), less(r, p)) != (0, 0, 0):
+            return Body(plane=(p, q, r), motions=motions)
+    parts: list[Part] = []
+    for _ in range(int(rng.choice([1, 1, 1, 2, PARTS]))):
+        part = _random_part(rng, grid, reach, earlier + parts)
+        parts.append(part.turned() if rng.random() < 0.1 else part)
+    earlier.extend(parts)
+    rule = str(rng.choice(["positive", "positive", "nonzero", "even-odd"]))
+    return Body(tuple(parts), rule, None, motions)
+
+
+def _is_coarse(part: Part) -> bool:
+    return all(k % (UNIT // 10) == 0 for p in part.vertices for k in p)
+
+
+def _random_part(rng: Rng, grid: int, reach: int, earlier: Sequence[Part]) -> Part:
+    if earlier and rng.random() < 0.3:
+        return _nearly(rng, earlier[int(rng.integers(len(earlier)))])
+    if rng.random() < 0.45:
+        corners = _random_corners(rng, grid, reach, 4)
+        p, q, r, s = corners
+        turn = dot(cross(less(q, p), less(r, p)), less(s, p))
+        if turn != 0:
+            ordered = (p, q, r, s) if turn > 0 else (p, r, q, s)
+            return Part(ordered, _TETRAHEDRON_FACES, True)
+    first, second = _random_corners(rng, grid, reach, 2)
+    low = [min(h, k) for h, k in zip(first, second, strict=True)]
+    size = [abs(h - k) or grid for h, k in zip(first, second, strict=True)]
+    x, y, z = ([low[i], low[i] + size[i]] for i in range(3))
+    return Part(tuple((x[i], y[j], z[k]) for i, j, k in _CUBE), _CUBE_FACES, True)
+
+
+def _nearly(rng: Rng, part: Part) -> Part:
+    """Return a copy: the same, shifted by some steps, or with single corners moved by some."""
+    kind = int(rng.integers(3))
+    if kind == 0:
+        return part
+    most = int(rng.choice([1, 3, 1000]))
+    shift = rng.integers(-most, most + 1, 3).tolist()
+    moved = rng.random(len(part.vertices)) < (1.0 if kind == 1 else 0.3)
+    vertices = [
+        (p[0] + shift[0], p[1] + shift[1], p[2] + shift[2]) if at else p
+        for p, at in zip(part.vertices, moved.tolist(), strict=True)
+    ]
+    return Part(tuple(vertices), part.faces, part.plain and kind == 1)
+
+
+def _random_corners(rng: Rng, grid: int, reach: int, count: int) -> list[Point]:
+    scale = UNIT // grid if grid == 1 else 1
+    drawn = rng.integers(0, reach * scale + 1, (count, 3)).tolist()
+    return [(x * grid, y * grid, z * grid) for x, y, z in drawn]
+
+
+def _random_motion(rng: Rng, grid: int) -> Motion:
+    kind, axis = int(rng.integers(4)), int(rng.integers(3))
+    if kind == 0:
+        x, y, z = (int(k) * grid for k in rng.integers(-2, 3, 3))
+        decimals = ", ".join(repr(k / UNIT) for k in (x, y, z))
+        return Motion(shift=(x, y, z), words=f".translate({decimals})")
+    if kind == 1:
+        signs = tuple((k, -1 if k == axis else 1) for k in range(3))
+        unit = tuple(int(k == axis) for k in range(3))
+        return Motion(axes=signs, words=f".mirror({unit})")
+    if kind == 2:
+        second, third = (axis + 1) % 3, (axis + 2) % 3
+        rows = {axis: (axis, 1), second: (third, -1), third: (second, 1)}
+        return Motion(axes=tuple(rows[k] for k in range(3)), words=f".rotate(90, '{'xyz'[axis]}')")
+    turn, signs = rng.permutation(3).tolist(), rng.choice([-1, 1], 3).tolist()
+    matrix = [[signs[i] * (k == turn[i]) for k in range(3)] for i in range(3)]
+    words = f".transform({_matrix(matrix)})"
+    return Motion(axes=tuple(zip(turn, signs, strict=True)), words=words)
+
+
+def _matrix(rows: list[list[int]]) -> list[list[int]]:
+    return [*([*row, 0] for row in rows), [0, 0, 0, 1]]
+
+
+def _random_expression(rng: Rng, operands: int) -> Expression:
+    """Return an expression that names every operand."""
+    values: list[Expression] = list(range(operands))
+    extra = int(rng.integers(0, OPERATIONS - operands + 1))
+    values += [int(k) for k in rng.integers(0, operands, extra)]
+    while len(values) > 1:
+        first = values.pop(int(rng.integers(len(values))))
+        second = values.pop(int(rng.integers(len(values))))
+        made: Expression = (str(rng.choice(list("||&&--^"))), first, second)
+        if rng.random() < 0.1:
+            made = ("~", made)
+        if rng.random() < 0.25:
+            made = (str(rng.choice(list(CALLS))), made)
+        values.append(made)
+    return values[0]
+
+
+def _random_points(rng: Rng, sets: Sequence[Known], grid: int, reach: int) -> tuple[Point, ...]:
+    """Return corners, points of edges and faces, points a few steps beside them, and others."""
+    triangles = [each for known in sets for each in _triangles(known)]
+    points = _random_corners(rng, max(grid // 4, 1), reach * 4 if grid > 3 else reach, 6)
+    for k in rng.integers(0, len(triangles), 14).tolist():
+        points.append(_point_of(rng, triangles[k]))
+    for k in rng.integers(0, len(points), 6).tolist():
+        x, y, z = points[k]
+        dx, dy, dz = rng.integers(-2, 3, 3).tolist()
+        points.append((x + dx, y + dy, z + dz))
+    return tuple(points)
+
+
+def _triangles(known: Known) -> Sequence[Triangle]:
+    return known.triangles if isinstance(known, Surface) else (known.corners,)
+
+
+def _point_of(rng: Rng, triangle: Triangle) -> Point:
+    """Return a lattice point of a triangle: a corner, or one on an edge or inside, if there is."""
+    order = rng.permutation(3).tolist()
+    p, q, r = (triangle[k] for k in order)
+    if rng.random() < 0.3:
+        return p
+    along, steps = _divided(less(q, p))
+    x = int(rng.integers(0, steps + 1))
+    if rng.random() < 0.5:
+        return _sum(p, along, x)
+    aside, more = _divided(less(r, p))
+    y = int(rng.integers(0, max((steps - x) * more // steps, 0) + 1))
+    return _sum(_sum(p, along, x), aside, y)
+
+
+def _divided(edge: Point) -> tuple[Point, int]:
+    size = gcd(*edge) or 1
+    x, y, z = edge
+    return (x // size, y // size, z // size), size
+
+
+def _sum(p: Point, along: Point, times: int) -> Point:
+    return less(p, minus((along[0] * times, along[1] * times, along[2] * times)))

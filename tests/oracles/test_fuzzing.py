@@ -1,0 +1,135 @@
+"""The random scenes, files and scripts of `scripts/fuzz`: a few of each, and what judges them."""
+
+import json
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from corpus.test_corpus import compare, evaluate
+from fuzzing.files import FORMATS, File, judge_file, random_file, same_meaning
+from fuzzing.judge import Kernel, judge
+from fuzzing.models import random_model
+from fuzzing.places import Below, Point, Surface, Triangle, location, windings
+from fuzzing.scenes import UNIT, Body, Part, Scene, random_scene
+from fuzzing.shrink import case_of, keep_case, shrunk
+from support import DEEP
+from support.shapes import cuboid
+
+ROUNDS = 2000 if DEEP else 25
+
+
+def triangles(low: Point, high: Point) -> tuple[Triangle, ...]:
+    vertices, faces = cuboid(low, high)
+    whole = [(int(x), int(y), int(z)) for x, y, z in vertices.tolist()]
+    return tuple((whole[p], whole[q], whole[r]) for p, q, r in faces.tolist())
+
+
+BOX = Surface(triangles((0, 0, 0), (2, 4, 6)))
+
+
+@pytest.mark.parametrize(
+    ("point", "expected"),
+    [((1, 1, 1), 1), ((0, 0, 0), 0), ((1, 0, 3), 0), ((0, 4, 5), 0), ((-1, 0, 0), -1)],
+)
+def test_places_of_a_box(point: Point, expected: int) -> None:
+    assert location([BOX], lambda inside: inside[0], point) == expected
+    assert location([BOX], lambda inside: not inside[0], point) == -expected
+
+
+def test_a_common_wall_is_inside_a_union() -> None:
+    beside = Surface(triangles((2, 0, 0), (4, 4, 6)))
+    for point, expected in {(2, 1, 1): 1, (2, 0, 0): 0, (2, 4, 3): 0, (2, 2, 6): 0}.items():
+        assert location([BOX, beside], any, point) == expected
+        assert location([BOX, beside], all, point) == -1
+
+
+def test_a_wedge_of_one_step_is_seen() -> None:
+    far = 10**10
+    above = Below(((0, 0, 0), (far, 0, 1), (0, far, 0)))
+    below = Below(((0, 0, 0), (far, 0, 0), (0, far, 0)))
+    between = lambda inside: inside[0] and not inside[1]  # noqa: E731
+    assert location([above, below], between, (0, 0, 0)) == 0
+    assert location([above, below], between, (far, 0, 0)) == 0
+    assert location([above, below], between, (-far, 0, 0)) == -1
+
+
+def test_rules_count_windings() -> None:
+    twice = BOX.triangles * 2
+    assert list(windings(twice, (1, 1, 1), [()])) == [2]
+    found = {rule: Surface(twice, rule).sides((1, 1, 1), [()]) for rule in ("nonzero", "even-odd")}
+    assert found == {"nonzero": [True], "even-odd": [False]}
+
+
+@pytest.mark.timeout(3600 if DEEP else 240)
+def test_random_scenes() -> None:
+    wrong = {k: judge(random_scene(np.random.default_rng([0, k]))) for k in range(ROUNDS)}
+    assert not {k: found for k, found in wrong.items() if found}
+
+
+def test_scenes_ask_about_the_boundary() -> None:
+    found: list[int] = []
+    for k in range(20):
+        scene = random_scene(np.random.default_rng([0, k]))
+        found += [location(scene.known(), scene.value, point) for point in scene.points]
+    assert {side: found.count(side) > 50 for side in (-1, 0, 1)} == {-1: True, 0: True, 1: True}
+
+
+@pytest.mark.parametrize("kind", FORMATS)
+def test_random_files(kind: str, tmp_path: Path) -> None:
+    for k in range(ROUNDS if DEEP else 12):
+        file = random_file(np.random.default_rng([0, k]), kind)
+        assert judge_file(file, tmp_path) == [], k
+
+
+def test_the_judge_of_files_knows_volumes(tmp_path: Path) -> None:
+    text, volume = random_model(np.random.default_rng(4))
+    assert volume is not None and volume > 0
+    assert judge_file(File(".csg", text.encode(), volume), tmp_path) == []
+    assert judge_file(File(".csg", text.encode(), volume + 1), tmp_path)[0].startswith("volume")
+    assert judge_file(File(".csg", b"cube(", volume), tmp_path)[0].startswith("refused")
+
+
+def test_the_same_in_other_words_is_not_the_same_bytes() -> None:
+    good = File(
+        ".off",
+        b"".join(b.io.encoded(b.io.RawMesh(*cuboid((0, 0, 0), (1, 1, 1)), "x"), "x", ".off")[0]),
+    )
+    others = {same_meaning(np.random.default_rng(k), good).data for k in range(9)}
+    assert len(others) > 2
+
+
+class Shifted(Kernel):
+    """A kernel that says the wrong thing about unions."""
+
+    def classify(self, solid: "b.Solid", points: object) -> list[int]:
+        found = super().classify(solid, points)  # type: ignore[arg-type]
+        made = solid.last_operation
+        operators = [] if made is None else [operator for operator, _ in made.program]
+        return [-each for each in found] if "or" in operators else found
+
+
+def test_what_is_wrong_is_made_small(tmp_path: Path) -> None:
+    cube = triangles((0, 0, 0), (UNIT, UNIT, UNIT))
+    corners = tuple(dict.fromkeys(p for each in cube for p in each))
+    part = Part(corners, tuple(tuple(corners.index(p) for p in t) for t in cube), True)  # type: ignore[misc]
+    bodies = tuple(Body((part, part.turned(), part)[:k]) for k in (1, 2, 3))
+    scene = Scene(
+        bodies, ("-", ("|", 0, ("copied", ("&", 1, 2))), 1), ((1, 2, 3), (0, 0, 0), (5, 5, 5))
+    )
+    small = shrunk(scene, lambda each: judge(each, Shifted()))
+    assert judge(small, Shifted()) and judge(small) == []
+    assert len(small.bodies) == 1 and len(small.points) == 1
+    assert small.expression == ("|", 0, 0) and len(small.bodies[0].parts) == 1
+    case = json.loads(keep_case(tmp_path, "small", small, "A test.").read_text())
+    assert case == case_of(small, "A test.") and case["expect"]["places"]
+    compare(evaluate(case), case["expect"])
+
+
+def test_the_volume_of_a_plain_operand_is_known() -> None:
+    scene = random_scene(np.random.default_rng([0, 3]))
+    known = [body for k in range(30) for body in random_scene(np.random.default_rng([0, k])).bodies]
+    volumes = [body.volume for body in known if body.volume is not None]
+    assert scene.bodies and len(volumes) > 20 and all(isinstance(v, Fraction) for v in volumes)
