@@ -33,6 +33,9 @@ def simpler(scene: Scene) -> Iterator[Scene]:
     """Yield what is simpler by one operation, operand, part, motion, point or digit."""
     for inner in _inner(scene.expression):
         yield _without_unused(replace(scene, expression=inner))
+    for k in range(1, len(scene.bodies)):
+        numbers = {j: 0 if j == k else j for j in range(len(scene.bodies))}
+        yield _without_unused(replace(scene, expression=_renamed(scene.expression, numbers)))
     for k in range(len(scene.points) if len(scene.points) > 1 else 0):
         half = len(scene.points) // 2
         if k < 2 and half > 1:

@@ -1,0 +1,346 @@
+"""Each oracle fails when what it judges is broken on purpose.
+
+A fault changes the answers of the package in one small way; the oracle's own test, run under it,
+must fail. An oracle that passes under all faults judges nothing.
+"""
+
+import importlib
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg import bsp, oracle
+from bspcsg.check import Verdict, check_result
+from bspcsg.referee import count_agreeing
+from fuzzing.files import good_file, judge_file
+from fuzzing.judge import Kernel, judge
+from fuzzing.places import Point
+from fuzzing.scenes import random_scene
+
+Patch = pytest.MonkeyPatch
+Broken = Callable[[Patch], None]
+
+#: A shift of a volume by one part in this many.
+FINE = 10**12
+
+
+# Faults of the package
+
+
+def turn_point(patch: Patch) -> None:
+    """Say the opposite of the first point that is not on the boundary."""
+    right = b.Solid.classify
+
+    def wrong(self: b.Solid, points: Any) -> Any:
+        found = right(self, points).copy()
+        clear = np.flatnonzero(found)
+        found[clear[:1]] *= -1
+        return found
+
+    patch.setattr(b.Solid, "classify", wrong)
+
+
+def shift_volume(patch: Patch) -> None:
+    """Make volumes larger by one part in 10¹²."""
+    right = b.Solid.volume_exact.fget  # type: ignore[attr-defined]
+    patch.setattr(
+        b.Solid, "volume_exact", property(lambda self: right(self) * (1 + Fraction(1, FINE)))
+    )
+
+
+def changed_mesh(change: Callable[[b.Mesh], b.Mesh]) -> Broken:
+    """Return the fault that changes every mesh with faces."""
+
+    def fault(patch: Patch) -> None:
+        right = b.Solid.to_mesh
+
+        def wrong(self: b.Solid) -> b.Mesh:
+            mesh = right(self)
+            return change(mesh) if len(mesh.faces) else mesh
+
+        patch.setattr(b.Solid, "to_mesh", wrong)
+
+    return fault
+
+
+def without_triangle(mesh: b.Mesh) -> b.Mesh:
+    return replace(mesh, faces=mesh.faces[1:], source=mesh.source[1:])
+
+
+def triangle_turned(mesh: b.Mesh) -> b.Mesh:
+    faces = mesh.faces.copy()
+    faces[0] = faces[0, ::-1]
+    return replace(mesh, faces=faces)
+
+
+def vertex_moved(mesh: b.Mesh, by: float = 0.01) -> b.Mesh:
+    vertices = mesh.vertices.copy()
+    vertices[0] += by
+    return replace(mesh, vertices=vertices)
+
+
+def swap_operands(patch: Patch) -> None:
+    """Take the first operand of a difference away from the second."""
+    right = b.Solid.__sub__
+    patch.setattr(b.Solid, "__sub__", lambda self, other: right(other, self))
+
+
+def part_coplanar(patch: Patch) -> None:
+    """Move second operands of unions aside by a step, so that nothing is coplanar."""
+    right = b.Solid.__or__
+
+    def wrong(self: b.Solid, other: b.Solid) -> b.Solid:
+        return right(self, other.translate(1e-9, 0, 0))
+
+    patch.setattr(b.Solid, "__or__", wrong)
+
+
+# Faults of rays, painter's order and regions
+
+
+def other_facet(patch: Patch) -> None:
+    """Say of the first ray that hits something that it hits another facet."""
+    right = bsp.RayCaster.first_hit
+
+    def wrong(self: bsp.RayCaster, *args: Any, **options: Any) -> bsp.Hits:
+        hits = right(self, *args, **options)
+        facet = hits.facet.copy()
+        facet[np.flatnonzero(facet >= 0)[:1]] += 1
+        return replace(hits, facet=facet)
+
+    patch.setattr(bsp.RayCaster, "first_hit", wrong)
+
+
+def turn_shadow(patch: Patch) -> None:
+    """Say the opposite of one ray's shadow in a hundred."""
+    right = bsp.RayCaster.occluded
+
+    def wrong(self: bsp.RayCaster, *args: Any, **options: Any) -> Any:
+        found = right(self, *args, **options).copy()
+        found[::100] = ~found[::100]
+        return found
+
+    patch.setattr(bsp.RayCaster, "occluded", wrong)
+
+
+def paint_backwards(patch: Patch) -> None:
+    """Paint the nearest first."""
+    right = bsp.PartitionTree.back_to_front
+
+    def wrong(self: bsp.PartitionTree, **options: Any) -> Any:
+        order = right(self, **options)
+        return order.take(np.arange(len(order))[::-1])
+
+    patch.setattr(bsp.PartitionTree, "back_to_front", wrong)
+
+
+def turn_region_point(patch: Patch) -> None:
+    """Say the opposite of the first point that is on no boundary."""
+    right = bsp.Region.classify
+
+    def wrong(self: bsp.Region, points: Any) -> Any:
+        found = right(self, points).copy()
+        found[np.flatnonzero(found)[:1]] *= -1
+        return found
+
+    patch.setattr(bsp.Region, "classify", wrong)
+
+
+def shift_area(patch: Patch) -> None:
+    """Make areas larger by one part in 10¹²."""
+    right = bsp.Region.area_exact.fget  # type: ignore[attr-defined]
+    larger = property(lambda self: right(self) * (1 + Fraction(1, FINE)))
+    patch.setattr(bsp.Region, "area_exact", larger)
+
+
+def rays_scene() -> Any:
+    """Return the scene at which the tests of rays cast."""
+    return importlib.import_module("oracles.test_ray_hits").lattice_scene()
+
+
+VOXELS = ("test_voxels", "test_union_of_separate_boxes_equals_one_mesh")
+EXPRESSIONS = ("test_voxels", "test_expressions_of_four_operands")
+FIRST_HITS = ("test_ray_hits", "test_first_hits_of_a_hundred_thousand_rays")
+SHADOWS = ("test_ray_hits", "test_shadows_are_all_hits_between_the_ends")
+PAINTER = ("test_painter_order", "test_from_an_eye")
+PIXELS = ("test_painter_pixels", "test_nothing_is_painted_over_what_is_nearer")
+OUTLINES = ("test_regions", "test_random_outlines")
+
+#: An oracle's test, its arguments, and a fault that it must notice.
+NOTICED: list[tuple[tuple[str, str], dict[str, Any], Broken]] = [
+    (VOXELS, {}, turn_point),
+    (VOXELS, {}, shift_volume),
+    (VOXELS, {}, changed_mesh(without_triangle)),
+    (VOXELS, {}, changed_mesh(triangle_turned)),
+    (VOXELS, {}, changed_mesh(vertex_moved)),
+    (EXPRESSIONS, {}, swap_operands),
+    (EXPRESSIONS, {}, part_coplanar),
+    (FIRST_HITS, {"scene": rays_scene()}, other_facet),
+    (SHADOWS, {"scene": rays_scene()}, turn_shadow),
+    (PAINTER, {"policy": "first", "dimension": 3, "top": 0}, paint_backwards),
+    (PIXELS, {"name": "crossing", "policy": "first"}, paint_backwards),
+    (OUTLINES, {"seed": 1, "rule": "nonzero"}, turn_region_point),
+    (OUTLINES, {"seed": 1, "rule": "nonzero"}, shift_area),
+]
+
+
+@pytest.mark.parametrize(
+    ("oracle", "arguments", "fault"), NOTICED, ids=lambda each: getattr(each, "__name__", None)
+)
+def test_oracles_notice(
+    monkeypatch: Patch, oracle: tuple[str, str], arguments: dict[str, Any], fault: Broken
+) -> None:
+    module, name = oracle
+    test = getattr(importlib.import_module(f"oracles.{module}"), name)
+    fault(monkeypatch)
+    with pytest.raises(AssertionError):
+        test(**arguments)
+
+
+def test_the_oracle_of_rounding_counts_turned_triangles() -> None:
+    rounding = importlib.import_module("oracles.test_rounding")
+    operands = rounding.nearly_equal_cubes(0)
+    mesh = b.union(operands).to_mesh()
+    left = rounding.turned_triangles(mesh, operands)
+    assert rounding.turned_triangles(triangle_turned(mesh), operands) == left + 1
+
+
+# Checks against manifold3d, and the referee
+
+
+@pytest.mark.parametrize(
+    ("fault", "verdict"),
+    [
+        (changed_mesh(without_triangle), Verdict.SUBJECT_FAILED),
+        (changed_mesh(triangle_turned), Verdict.SUBJECT_FAILED),
+        (changed_mesh(vertex_moved), Verdict.SUBJECT_FAILED),
+    ],
+    ids=["lost", "turned", "moved"],
+)
+def test_checks_notice_a_broken_mesh(monkeypatch: Patch, fault: Broken, verdict: Verdict) -> None:
+    first, second = b.cube(2), b.cube(2).translate(1, 1, 1)
+    result = first - second
+    right = b.Solid.to_mesh
+    first.to_mesh(), second.to_mesh()
+    with monkeypatch.context() as patch:
+        fault(patch)
+        broken = b.Solid.to_mesh
+
+        def only_result(self: b.Solid) -> b.Mesh:
+            return (broken if self is result else right)(self)
+
+        patch.setattr(b.Solid, "to_mesh", only_result)
+        report = check_result(result, "difference", [first, second])
+    assert report.verdict is verdict and not report.ok
+
+
+@pytest.mark.parametrize("op", ["union", "intersection", "difference", "xor"])
+def test_checks_notice_another_set(op: Any) -> None:
+    first, second = b.cube(2), b.cube(2).translate(1, 1, 1)
+    for wrong in (first, second - first, b.cube(2).translate(1, 1, 1 + 1e-6) | first):
+        report = check_result(wrong, op, [first, second])
+        assert report.verdict is Verdict.DISAGREE and not report.ok
+
+
+def test_the_rival_gives_an_answer_of_its_own() -> None:
+    meshes = [b.cube(2).to_mesh(), b.cube(2).translate(1, 1, 1).to_mesh()]
+    leaves: list[Any] = [("leaf", [0]), ("leaf", [1])]
+    asked = {op: oracle.ask([*leaves, (op, [0, 1])], meshes).mesh for op in ("or", "and", "xor")}
+    assert {op: mesh.volume for op, mesh in asked.items()} == {"or": 15, "and": 1, "xor": 14}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [without_triangle, triangle_turned, lambda mesh: vertex_moved(mesh, 0.2)],
+    ids=["lost", "turned", "moved"],
+)
+def test_the_referee_notices_broken_results(change: Callable[[b.Mesh], b.Mesh]) -> None:
+    first, second = b.sphere(1, segments=8), b.sphere(1, segments=8).translate(0.4, 0.3, 0.2)
+    right = (first - second).to_mesh()
+    program: list[Any] = [("leaf", [0]), ("leaf", [1]), ("not", [1]), ("and", [0, 2])]
+    points: Any = np.random.default_rng(1).uniform(-1.1, 1.1, (3000, 3)).tolist()
+    operands = [first.to_mesh(), second.to_mesh()]
+    agreeing, settled = count_agreeing(program, operands, right, points)
+    assert agreeing == settled > 2900
+    agreeing, settled = count_agreeing(program, operands, change(right), points)
+    assert agreeing < settled
+
+
+# The judge of random scenes
+
+
+class Faulty(Kernel):
+    """A kernel of which one answer is wrong."""
+
+    def __init__(self, fault: str) -> None:
+        self._fault = fault
+
+    def evaluate(self, text: str, names: dict[str, b.Solid]) -> b.Solid:
+        if self._fault == "operands swapped":
+            text = re.sub(r"\(([abcd]) - ([abcd])\)", r"(\2 - \1)", text)
+        if self._fault == "operand ignored" and " ^ " in text:
+            names = {**names, "b": b.Solid.empty()} if "b" in names else names
+        if self._fault == "operand moved":
+            names = {name: solid.translate(1e-9, 0, 0) for name, solid in names.items()}
+        return super().evaluate(text, names)
+
+    def classify(self, solid: b.Solid, points: Sequence[Point]) -> list[int]:
+        found = super().classify(solid, points)
+        if self._fault == "point turned" and any(found):
+            at = next(k for k, side in enumerate(found) if side)
+            found[at] = -found[at]
+        if self._fault == "boundary lost":
+            found = [side or -1 for side in found]
+        return found
+
+    def volume(self, solid: b.Solid) -> Fraction:
+        return super().volume(solid) * (1 + Fraction(self._fault == "volume shifted", FINE))
+
+    def mesh(self, solid: b.Solid) -> b.Mesh:
+        mesh = super().mesh(solid)
+        changes = {"triangle lost": without_triangle, "triangle turned": triangle_turned}
+        changes["vertex moved"] = vertex_moved
+        change = changes.get(self._fault)
+        return mesh if change is None or len(mesh.faces) == 0 else change(mesh)
+
+    def copy(self, solid: b.Solid) -> b.Solid:
+        copy = super().copy(solid)
+        return ~copy if self._fault == "copy turned" else copy
+
+
+@pytest.mark.parametrize(
+    ("fault", "kind"),
+    [
+        ("operands swapped", "points"),
+        ("operand ignored", "points"),
+        ("operand moved", "points"),
+        ("point turned", "points"),
+        ("boundary lost", "points"),
+        ("volume shifted", "volume"),
+        ("triangle lost", "mesh"),
+        ("triangle turned", "mesh"),
+        ("vertex moved", "mesh"),
+        ("copy turned", "copy"),
+    ],
+)
+def test_the_judge_of_scenes_notices(fault: str, kind: str) -> None:
+    scenes = (random_scene(np.random.default_rng([0, k])) for k in range(40))
+    told = (judge(scene, Faulty(fault)) for scene in scenes)
+    kinds = (complaint.split(":")[0] for complaints in told for complaint in complaints)
+    assert kind in kinds
+
+
+@pytest.mark.parametrize("change", [lambda data: data[:-30], lambda data: data[:1]])
+def test_the_judge_of_files_notices_what_is_lost(
+    change: Callable[[bytes], bytes], tmp_path: Path
+) -> None:
+    file = good_file(np.random.default_rng(0), ".off")
+    assert judge_file(file, tmp_path) == []
+    assert judge_file(replace(file, data=change(file.data)), tmp_path)
