@@ -1,0 +1,176 @@
+"""Breaks the core in one line at a time, and sees that the tests named beside it fail.
+
+    scripts/mutants [NUMBER ...]
+
+The core is copied to `.fuzz/mutants` and built there. Ends with status 1 if a mutant survives, or
+if a line to change is not in the source any more.
+"""
+
+import argparse
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+from recording import REPOSITORY, keep
+
+FOLDER = REPOSITORY / ".fuzz" / "mutants"
+
+#: What cargo returns if a test has failed, rather than the build.
+FAILED = 101
+
+
+class Mutant(NamedTuple):
+    """A change of one place, and the test file (and test) that must notice it."""
+
+    what: str
+    file: str
+    old: str
+    new: str
+    tests: tuple[str, ...]
+
+
+MUTANTS = [
+    Mutant(
+        "a triangle that a path crosses counts with the other sign",
+        "geometry/crossing.rs",
+        "        return -sign;\n",
+        "        return sign;\n",
+        ("laws_solids", "tetrahedra_obey_the_laws"),
+    ),
+    Mutant(
+        "points of regions that nothing winds around are inside",
+        "query/classify.rs",
+        "w if w > 0 => Location::Inside",
+        "w if w >= 0 => Location::Inside",
+        ("voxels",),
+    ),
+    Mutant(
+        "even-odd is nonzero",
+        "merge/leaf.rs",
+        "Self::EvenOdd => w % 2 != 0",
+        "Self::EvenOdd => w != 0",
+        ("voxels",),
+    ),
+    Mutant(
+        "what absorbs an expression is turned around",
+        "merge/expression.rs",
+        "Known::Value(v) if v == absorbing => return Known::Value(absorbing)",
+        "Known::Value(v) if v == absorbing => return Known::Value(!absorbing)",
+        ("laws_solids", "boxes_that_touch_obey_the_laws"),
+    ),
+    Mutant(
+        "leaves are joined whatever the numbers at their corners",
+        "merge/join.rs",
+        "if plus_corner != corner + change_along_edge(&faces, cell, cut) {",
+        "if plus_corner == i32::MIN {",
+        ("laws_solids", "leaves_of_different_winding_numbers_stay_apart"),
+    ),
+    Mutant(
+        "faces in general position are never turned around",
+        "merge/general/keep.rs",
+        "let turned = outside != (self.weight < 0);",
+        "let turned = self.weight < 0;",
+        ("leaf_against_merge",),
+    ),
+    Mutant(
+        "coplanar faces that face each other add up",
+        "merge/overlay.rs",
+        "both.weight += if same { new.weight } else { -new.weight };",
+        "both.weight += new.weight;",
+        ("voxels",),
+    ),
+    Mutant(
+        "mirrored snapshots keep their faces as they were",
+        "extract/snapshot.rs",
+        "                        face.swap(1, 2);\n",
+        "                        face.rotate_left(1);\n",
+        ("laws_motions", "motions_of_the_lattice_carry_solids_exactly"),
+    ),
+    Mutant(
+        "what is left over by a division does not decide ties",
+        "arith/round.rs",
+        "let sticky = !exact || any_bit_below(num, num_start);",
+        "let sticky = !exact && any_bit_below(num, num_start);",
+        ("arith",),
+    ),
+    Mutant(
+        "corners of several fans count as one",
+        "extract/contacts.rs",
+        "            Ok(at) if next != first => next = fan[at][1],\n            _ => return false,\n",
+        "            Ok(at) if next != first => next = fan[at][1],\n            _ => return true,\n",
+        ("voxels",),
+    ),
+]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("numbers", nargs="*", type=int, help="from 1; by default all")
+    parser.add_argument("--folder", type=Path, default=FOLDER, help="to build in")
+    parser.add_argument("--record", action="store_true", help="keep the result in scripts/records")
+    options = parser.parse_args()
+    core = options.folder / "core"
+    rows = []
+    for number, mutant in enumerate(MUTANTS, 1):
+        if options.numbers and number not in options.numbers:
+            continue
+        began = time.perf_counter()
+        verdict = verdict_on(mutant, core)
+        seconds = time.perf_counter() - began
+        print(f"{number:3} {mutant.what:60} {verdict:10} {seconds:6.0f} s", flush=True)
+        rows.append({"mutant": mutant.what, "tests": " ".join(mutant.tests), "verdict": verdict})
+    if options.record:
+        print(keep("mutants", {"mutants": rows}))
+    return int(any(row["verdict"] != "noticed" for row in rows))
+
+
+def verdict_on(mutant: Mutant, core: Path) -> str:
+    """Return whether a mutant's tests notice it, and pass without it."""
+    copy_core(core)
+    path = core / "src" / mutant.file
+    text = path.read_text()
+    if text.count(mutant.old) != 1:
+        return "not there"
+    path.write_text(text.replace(mutant.old, mutant.new))
+    code = tested(mutant, core)
+    return "noticed" if code == FAILED else "SURVIVED" if code == 0 else "not built"
+
+
+def copy_core(core: Path) -> None:
+    """Copy the sources; what has not changed keeps its time, so that it is not built again."""
+    for name in ("src", "tests", "benches", "examples"):
+        for source in (REPOSITORY / "core" / name).rglob("*.rs"):
+            _copied(source, core / source.relative_to(REPOSITORY / "core"))
+    for name in ("Cargo.toml", "Cargo.lock"):
+        _copied(REPOSITORY / "core" / name, core / name)
+
+
+def _copied(source: Path, target: Path) -> None:
+    if not target.is_file() or target.read_bytes() != source.read_bytes():
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source, target)
+
+
+def tested(mutant: Mutant, core: Path) -> int:
+    """Return cargo's status; a build that fails has another one than a test."""
+    file, *names = mutant.tests
+    cargo = [
+        "cargo",
+        "test",
+        "--quiet",
+        "--manifest-path",
+        str(core / "Cargo.toml"),
+        "--test",
+        file,
+    ]
+    built = subprocess.run([*cargo, "--no-run"], capture_output=True, check=False)
+    if built.returncode != 0:
+        return -1
+    return subprocess.run([*cargo, *names], capture_output=True, check=False).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())
