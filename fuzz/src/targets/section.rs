@@ -1,0 +1,112 @@
+//! Scenes, cut by planes.
+
+use crate::scene::whole_units;
+use crate::scene::Scene;
+use crate::support::{double, normalized};
+use crate::winding::Place;
+use arbitrary::{Arbitrary, Unstructured};
+use bspcsg::error::ErrorKind;
+use bspcsg::geometry::plane::Lattice;
+use bspcsg::merge::leaf::Rule;
+use bspcsg::query::region::hyperplane::plane;
+use bspcsg::query::region::section as sections;
+use std::collections::HashMap;
+
+/// A scene cut by a plane: the section's edges balance, and wind around what lies just below.
+pub fn section(data: &[u8]) {
+    let mut u = Unstructured::new(data);
+    let Ok((scene, normal, offset)) = cut_scene(&mut u) else {
+        return;
+    };
+    let context = format!("{normal:?} at {offset} of {scene:?}");
+    let result = normalized(&scene.result(), Rule::Positive);
+    let cut = plane(normal.map(double), double(offset), whole_units());
+    let edges = match cut.and_then(|cut| sections::section(&result, &cut)) {
+        // Far out a plane, or where it cuts, may leave the lattice.
+        Err(error) => {
+            let known = matches!(error.kind(), ErrorKind::Unbounded | ErrorKind::TooLarge);
+            return assert!(known, "{error} in {context}");
+        }
+        Ok(edges) => edges,
+    };
+    let mut balance = HashMap::new();
+    for [from, to] in &edges {
+        *balance.entry(*from).or_insert(0) += 1;
+        *balance.entry(*to).or_insert(0) -= 1;
+    }
+    assert!(balance.values().all(|b| *b == 0), "{context}");
+    if let Some(axis) = (0..3).find(|i| normal[(i + 1) % 3] == 0 && normal[(i + 2) % 3] == 0) {
+        let at = offset / normal[axis];
+        if at * normal[axis] == offset {
+            assert_inside_section(&scene, &edges, axis, normal[axis].signum(), at, &context);
+        }
+    }
+}
+
+fn cut_scene(u: &mut Unstructured<'_>) -> arbitrary::Result<(Scene, [i64; 3], i64)> {
+    let scene = Scene::arbitrary(u)?;
+    let axis = u.int_in_range(0..=2usize)?;
+    let mut normal = [0; 3];
+    normal[axis] = if u.arbitrary()? { 1 } else { -1 };
+    if u.ratio(1, 3)? {
+        normal[(axis + 1) % 3] = u.int_in_range(-3..=3)?;
+        normal[(axis + 2) % 3] = u.int_in_range(-3..=3)?;
+    }
+    let through = u.choose(&scene.points)?;
+    let offset = (0..3).map(|i| normal[i] * through[i]).sum();
+    Ok((scene, normal, offset))
+}
+
+/// Points of a plane across an axis, clear of the section's rounded edges, against what is below.
+fn assert_inside_section(
+    scene: &Scene,
+    edges: &[[Lattice; 2]],
+    axis: usize,
+    sign: i64,
+    at: i64,
+    context: &str,
+) {
+    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let below = [0, 1, 2].map(|k| if k == axis { i128::from(-sign) } else { 0 });
+    let flat = |p: &Lattice| if sign > 0 { [p[i], p[j]] } else { [p[j], p[i]] };
+    for point in &scene.points {
+        let mut point = *point;
+        point[axis] = at;
+        let Some(turns) = turns_around(edges, flat, flat(&point)) else {
+            continue;
+        };
+        let place = Place::beside(&point, [below, [0; 3], [0; 3]]);
+        let known: Option<Vec<bool>> = scene
+            .operands
+            .iter()
+            .map(|o| o.known.holds(&place))
+            .collect();
+        if let Some(known) = known {
+            assert_eq!(turns > 0, scene.value(&known), "{point:?} in {context}");
+        }
+    }
+}
+
+/// How often edges wind around a point of their plane; `None` if one passes within two steps.
+fn turns_around(
+    edges: &[[Lattice; 2]],
+    flat: impl Fn(&Lattice) -> [i64; 2],
+    [x, y]: [i64; 2],
+) -> Option<i32> {
+    let mut turns = 0;
+    for edge in edges {
+        let [[ax, ay], [bx, by]] = edge.each_ref().map(&flat);
+        let (u, v) = (i128::from(bx - ax), i128::from(by - ay));
+        let area = u * i128::from(y - ay) - v * i128::from(x - ax);
+        let near = area.pow(2) <= 4 * (u * u + v * v);
+        let clear_x = x > ax.max(bx) + 2 || x < ax.min(bx) - 2;
+        let clear_y = y > ay.max(by) + 2 || y < ay.min(by) - 2;
+        if near && !clear_x && !clear_y {
+            return None;
+        }
+        if (ay <= y) != (by <= y) && (area > 0) == (by > ay) {
+            turns += if by > ay { 1 } else { -1 };
+        }
+    }
+    Some(turns)
+}
