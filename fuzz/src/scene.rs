@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use arbitrary::{Arbitrary, Result, Unstructured};
+use bspcsg::arith::Int;
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::expression::Term;
 use bspcsg::mesh::grid::Pitch;
-use bspcsg::mesh::import::half_space;
+use bspcsg::mesh::half_space::half_space;
 use bspcsg::query::classify::Location;
 use bspcsg::tree::solid::Solid;
 
-use crate::support::{combined, double, Shape, LIMIT};
+use crate::support::{combined, Shape, LIMIT};
 use crate::winding::{location, Known};
 
 /// Coordinates lie in `0..reach`: in small reaches everything meets everything.
@@ -54,7 +55,8 @@ impl Operand {
             (Known::Mesh(_), Some(shape)) => shape.unchecked(),
             (Known::Mesh(_), None) => Solid::uniform(whole_units(), false),
             (Known::HalfSpace(normal, offset), _) => {
-                let source = half_space(normal.map(double), double(*offset), whole_units());
+                let (normal, offset) = plane_numbers(*normal, *offset);
+                let source = half_space(normal, &offset, whole_units(), None);
                 Solid::of_source(Arc::new(source.expect("a small normal")), true)
             }
         }
@@ -107,6 +109,12 @@ impl Scene {
         let sets: Vec<Known> = self.operands.iter().map(|o| o.known.clone()).collect();
         location(&sets, |inside| self.value(inside), point)
     }
+}
+
+/// The numbers of a plane as the core takes them.
+#[must_use]
+pub fn plane_numbers(normal: [i64; 3], offset: i64) -> ([i128; 3], Int<3>) {
+    (normal.map(i128::from), Int::from_i128(offset.into()))
 }
 
 /// The lattice of whole units.

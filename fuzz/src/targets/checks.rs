@@ -1,12 +1,13 @@
 //! What several targets check.
 
-use crate::support::{applied, is_empty, manifold_mesh, normalized};
 use bspcsg::error::ErrorKind;
 use bspcsg::extract::round;
 use bspcsg::extract::snapshot::Snapshot;
 use bspcsg::merge::leaf::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::tree::solid::Solid;
+
+use crate::support::{applied, is_empty, manifold_mesh, normalized};
 
 /// The solid that is read from what was stored; stored again it gives the same bytes.
 pub fn kept(solid: &Solid, context: &str) -> Solid {

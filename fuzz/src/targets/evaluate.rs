@@ -1,13 +1,14 @@
 //! Scenes, evaluated.
 
-use super::checks::{assert_same, manifold_or_unbounded};
-use crate::scene::Scene;
-use crate::support::{applied, combined, complement, located, normalized, volume};
 use arbitrary::{Arbitrary, Unstructured};
 use bspcsg::merge::leaf::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::query::measure;
 use bspcsg::tree::solid::Solid;
+
+use super::checks::{assert_same, manifold_or_unbounded};
+use crate::scene::Scene;
+use crate::support::{applied, combined, complement, located, normalized, volume};
 
 /// A scene: points lie where their winding numbers say, volumes add up, meshes are closed.
 pub fn evaluate(data: &[u8]) {

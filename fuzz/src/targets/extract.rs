@@ -1,14 +1,15 @@
 //! Scenes, taken out of the tree, stored and moved.
 
-use super::checks::{assert_same, kept, manifold_or_unbounded};
-use crate::scene::whole_units;
-use crate::scene::Scene;
-use crate::support::{assert_same_triangles, located, manifold_mesh, normalized, volume};
 use arbitrary::{Arbitrary, Unstructured};
 use bspcsg::extract::snapshot::Motion;
 use bspcsg::extract::snapshot::Snapshot;
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::leaf::Rule;
+
+use super::checks::{assert_same, kept, manifold_or_unbounded};
+use crate::scene::whole_units;
+use crate::scene::Scene;
+use crate::support::{assert_same_triangles, located, manifold_mesh, normalized, volume};
 
 /// A scene's result: stored, moved and mirrored it stays the same, and its mesh makes it again.
 pub fn extract(data: &[u8]) {

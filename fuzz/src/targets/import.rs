@@ -1,10 +1,7 @@
 //! Any triangles as a mesh.
 
-use super::checks::manifold_or_unbounded;
-use crate::scene::whole_units;
-use crate::support::{double, located, normalized};
-use crate::winding::winding;
-use crate::winding::Place;
+use std::collections::HashMap;
+
 use arbitrary::Unstructured;
 use bspcsg::error::ErrorKind;
 use bspcsg::geometry::plane::Lattice;
@@ -12,7 +9,12 @@ use bspcsg::merge::leaf::Rule;
 use bspcsg::mesh::import as importing;
 use bspcsg::query::classify::Location;
 use bspcsg::tree::solid::Solid;
-use std::collections::HashMap;
+
+use super::checks::manifold_or_unbounded;
+use crate::scene::whole_units;
+use crate::support::{double, located, normalized};
+use crate::winding::winding;
+use crate::winding::Place;
 
 /// Triangles without order: taken if and only if they close, and then known point by point.
 pub fn import(data: &[u8]) {

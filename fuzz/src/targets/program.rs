@@ -1,6 +1,7 @@
 //! Any lines as an expression.
 
-use crate::support::{located, manifold_mesh, Voxels};
+use std::sync::atomic::AtomicBool;
+
 use arbitrary::Unstructured;
 use bspcsg::error::ErrorKind;
 use bspcsg::geometry::plane::Lattice;
@@ -11,7 +12,8 @@ use bspcsg::query::classify::Location;
 use bspcsg::query::measure;
 use bspcsg::tree::solid::Solid;
 use num_bigint::BigInt;
-use std::sync::atomic::AtomicBool;
+
+use crate::support::{located, manifold_mesh, Voxels};
 
 /// Any lines as an expression over unions of unit cubes: refused, or right cube by cube.
 pub fn program(data: &[u8]) {

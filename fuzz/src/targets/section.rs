@@ -1,16 +1,18 @@
 //! Scenes, cut by planes.
 
-use crate::scene::whole_units;
-use crate::scene::Scene;
-use crate::support::{double, normalized};
-use crate::winding::Place;
+use std::collections::HashMap;
+
 use arbitrary::{Arbitrary, Unstructured};
 use bspcsg::error::ErrorKind;
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::leaf::Rule;
 use bspcsg::query::region::hyperplane::plane;
 use bspcsg::query::region::section as sections;
-use std::collections::HashMap;
+
+use crate::scene::plane_numbers;
+use crate::scene::Scene;
+use crate::support::normalized;
+use crate::winding::Place;
 
 /// A scene cut by a plane: the section's edges balance, and wind around what lies just below.
 pub fn section(data: &[u8]) {
@@ -20,8 +22,8 @@ pub fn section(data: &[u8]) {
     };
     let context = format!("{normal:?} at {offset} of {scene:?}");
     let result = normalized(&scene.result(), Rule::Positive);
-    let cut = plane(normal.map(double), double(offset), whole_units());
-    let edges = match cut.and_then(|cut| sections::section(&result, &cut)) {
+    let (numbers, constant) = plane_numbers(normal, offset);
+    let edges = match plane(numbers, &constant).and_then(|cut| sections::section(&result, &cut)) {
         // Far out a plane, or where it cuts, may leave the lattice.
         Err(error) => {
             let known = matches!(error.kind(), ErrorKind::Unbounded | ErrorKind::TooLarge);

@@ -1,6 +1,8 @@
 //! Any bytes as a snapshot.
 
-use super::checks::kept;
+use std::sync::atomic::AtomicBool;
+
+use bspcsg::arith::Int;
 use bspcsg::extract::round;
 use bspcsg::extract::snapshot::Snapshot;
 use bspcsg::merge::evaluate::evaluate as run;
@@ -12,7 +14,8 @@ use bspcsg::query::measure;
 use bspcsg::query::region::hyperplane::plane;
 use bspcsg::query::region::section as sections;
 use bspcsg::tree::solid::Solid;
-use std::sync::atomic::AtomicBool;
+
+use super::checks::kept;
 
 /// Any bytes as a snapshot: refused, or a solid that every question can be put to.
 pub fn snapshot(data: &[u8]) {
@@ -29,7 +32,7 @@ pub fn snapshot(data: &[u8]) {
         measure::volume_rounded(&solid),
     );
     let _ = classify(&solid, &[[0; 3], [1, 2, 3], [20; 3]]);
-    if let Ok(plane) = plane([1.0, 2.0, 3.0], 4.0, solid.pitch()) {
+    if let Ok(plane) = plane([1, 2, 3], &Int::from_i128(4)) {
         let _ = sections::section(&solid, &plane);
     }
     let tool = importing::import(&BOX.0, &BOX.1, Some(solid.pitch()));
