@@ -1,5 +1,6 @@
 """The measuring scripts run, at small counts, on the meshes of the repository."""
 
+import json
 from pathlib import Path
 
 from support.cli import script
@@ -39,3 +40,20 @@ def test_probes_print_their_counts() -> None:
     done = script("probes", "--rounds", "0.001")
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count(" 0 failed") >= 9
+
+
+def test_fuzzing_goes_on_where_it_stopped(tmp_path: Path) -> None:
+    common = ["scenes", "files", "--minutes", "0.1", "--no-record", "--folder", str(tmp_path)]
+    reached = []
+    for _ in range(2):
+        done = script("fuzz", *common, "--seed", "7")
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert done.stdout.count(", 0 found") == 2
+        states = [json.loads((tmp_path / name / "state.json").read_text()) for name in common[:2]]
+        reached.append([state["7"] for state in states])
+    assert all(0 < first < second for first, second in zip(*reached, strict=True))
+
+
+def test_unknown_targets_are_refused() -> None:
+    done = script("fuzz", "nothing", "--minutes", "0.01")
+    assert done.returncode == 2 and "no such target: nothing" in done.stderr

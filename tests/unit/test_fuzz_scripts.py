@@ -1,0 +1,50 @@
+"""What `scripts/fuzz` makes of libFuzzer's words, and how runs add up in its record."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+import fuzz_record
+from fuzz_guided import outcome_of
+from fuzz_record import Found, Outcome, add_to_record
+
+SAID = """INFO: seed corpus: files: 40
+#41\tINITED cov: 1200 ft: 3400 corp: 30/9Kb
+#900\tNEW    cov: 1234 ft: 3500 corp: 31/9Kb
+stat::number_of_executed_units: 901
+"""
+
+
+def test_a_run_without_findings() -> None:
+    outcome = outcome_of(SAID, 0)
+    assert (outcome.executions, outcome.coverage, outcome.found) == (901, (1200, 1234), [])
+
+
+@pytest.mark.parametrize(
+    ("words", "kind"),
+    [
+        ("panicked at src/targets/evaluate.rs:12:5:\nleft is not right", "wrong"),
+        ("panicked at src/../../core/tests/support/meshes.rs:18:5:\nan edge", "wrong"),
+        ("panicked at /home/me/core/src/merge/list.rs:31:21:\noverflow", "crash"),
+        ("==7== ERROR: libFuzzer: timeout after 10 seconds", "hang"),
+        ("==7== ERROR: libFuzzer: out-of-memory (used: 2049Mb)", "memory"),
+        ("=== Uncaught Python exception: ===\nAssertionError: ['raw: x']", "wrong"),
+        ("=== Uncaught Python exception: ===\nKeyError: 3", "crash"),
+        ("Segmentation fault", "crash"),
+    ],
+)
+def test_findings_have_kinds(words: str, kind: str) -> None:
+    said = f"{SAID}{words}\nartifact_prefix='x/'; Test unit written to x/crash-12\n"
+    [found] = outcome_of(said.replace("\\\n", "\n"), 77).found
+    assert (found.kind, found.place) == (kind, "x/crash-12")
+
+
+def test_runs_add_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fuzz_record, "RECORDS", tmp_path)
+    add_to_record("scenes", 1, Outcome(10, 60.0, None, [Found("hang", "slow", "here")]))
+    add_to_record("scenes", 1, Outcome(5, 30.0))
+    add_to_record("scenes", 2, Outcome(7, 6.0, (3, 9)))
+    first, second = json.loads((tmp_path / "fuzz.json").read_text())["targets"]["scenes"]
+    assert (first["executions"], first["cpu_minutes"], first["hang"]) == (15, 1.5, 1)
+    assert (second["seed"], second["coverage"], second["wrong"]) == (2, 9, 0)
