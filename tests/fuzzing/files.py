@@ -99,7 +99,9 @@ def good_file(rng: Rng, format: str) -> File:  # noqa: A002
     if format == ".json":
         return File(format, csg.to_json(csg.parse(solid.to_csg())).encode(), volume)
     suffix, _, text = format.partition("-")
-    return File(format, b"".join(encoded(RawMesh(*mesh, "x"), "x", suffix, bool(text))[0]), volume)
+    return File(
+        format, b"".join(encoded(RawMesh(*mesh, "x"), "x", suffix, bool(text)).chunks), volume
+    )
 
 
 def _known_mesh(rng: Rng) -> tuple[tuple[np.ndarray, np.ndarray], Fraction]:

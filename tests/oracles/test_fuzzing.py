@@ -95,7 +95,9 @@ def test_the_judge_of_files_knows_volumes(tmp_path: Path) -> None:
 def test_the_same_in_other_words_is_not_the_same_bytes() -> None:
     good = File(
         ".off",
-        b"".join(b.io.encoded(b.io.RawMesh(*cuboid((0, 0, 0), (1, 1, 1)), "x"), "x", ".off")[0]),
+        b"".join(
+            b.io.encoded(b.io.RawMesh(*cuboid((0, 0, 0), (1, 1, 1)), "x"), "x", ".off").chunks
+        ),
     )
     others = {same_meaning(np.random.default_rng(k), good).data for k in range(9)}
     assert len(others) > 2
