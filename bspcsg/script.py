@@ -10,18 +10,19 @@ with ``python``.
 import contextlib
 import os
 import pickle
-import runpy
 import subprocess
 import sys
 import tempfile
 import traceback
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import ModuleType
 from typing import Any, TypeAlias
 
 from ._types import ProgramLine
 from .counting import counted, uncounted
 from .errors import BspcsgError, FormatError
+from .script_values import VALUES, compiled
 from .setops import union
 from .solid import Solid, with_record
 
@@ -69,7 +70,8 @@ def run_script(
     arguments : sequence of str
         What follows the path in ``sys.argv``.
     defines : mapping, optional
-        Global variables that are there before the script's first line.
+        Values of variables by their names. Each takes the place of what the script assigns to the
+        variable at its top level, wherever it does; lines keep their numbers.
     timeout : float, optional
         In seconds; None waits for ever.
 
@@ -83,8 +85,8 @@ def run_script(
     ------
     FormatError
         If the script cannot be read ("unreadable"), fails ("script_failed": the message names file
-        and line), ends its process ("script_died"), takes too long ("timeout") or leaves no solid
-        ("no_result").
+        and line), ends its process ("script_died"), takes too long ("timeout"), leaves no solid
+        ("no_result") or assigns no variable of a name in `defines` ("unknown_name").
     """
     name = os.fspath(path)
     if not Path(path).is_file():
@@ -137,13 +139,23 @@ def _answer(name: str, arguments: list[str], defines: dict[str, Any]) -> _Made |
     variables: dict[str, Any] = {}
     try:
         with contextlib.suppress(SystemExit):
-            variables = runpy.run_path(name, init_globals=defines, run_name="__main__")
+            variables = _ran(name, defines)
         result = _result(name, variables)
         return result if isinstance(result, BspcsgError) else _with_operation(result)
     except BspcsgError as error:
         return _located(error, name)
     except Exception as error:
         return _located(error, name)
+
+
+def _ran(name: str, defines: dict[str, Any]) -> dict[str, Any]:
+    """Run a script as the main program of this process and return its global variables."""
+    code = compiled(Path(name).read_bytes(), name, defines)
+    program = ModuleType("__main__")
+    vars(program).update({"__file__": name, VALUES: defines} if defines else {"__file__": name})
+    sys.modules["__main__"] = program
+    exec(code, vars(program))
+    return vars(program)
 
 
 def _result(name: str, variables: dict[str, Any]) -> Solid | BspcsgError:

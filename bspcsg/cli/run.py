@@ -1,5 +1,6 @@
 """The verb that evaluates scripts: run."""
 
+import ast
 import re
 import warnings
 from collections.abc import Iterator, Sequence
@@ -32,26 +33,39 @@ def _list_nodes(context: click.Context, option: click.Parameter, wanted: bool) -
         context.exit()
 
 
-def _as_defines(
+def _as_texts(
     context: click.Context, option: click.Parameter, values: tuple[str, ...]
-) -> dict[str, Any]:
-    """Return variables by their names; a word that is no value of the language is a text."""
-    from ..csg import value_of
-
-    defines = {}
+) -> dict[str, str]:
+    """Return the texts given for variables by their names."""
+    texts = {}
     for given in values:
-        name, equals, value = given.partition("=")
+        name, equals, text = given.partition("=")
         if not equals or not name.removeprefix("$").isidentifier():
             raise click.BadParameter(f"{given!r} is not NAME=VALUE.", context, option)
-        try:
-            defines[name] = value_of(value)
-        except FormatError:
-            if not _PLAIN_WORD.fullmatch(value):
-                wanted = "a number, text, true, false or [list]"
-                message = f"{value!r} is no value; it takes {wanted}."
-                raise click.BadParameter(message, context, option) from None
-            defines[name] = value
-    return defines
+        texts[name] = text
+    return texts
+
+
+def _value(text: str) -> Any:
+    """Return the value of OpenSCAD's language that a text stands for; a plain word is a text."""
+    from ..csg import value_of
+
+    try:
+        return value_of(text)
+    except FormatError:
+        if _PLAIN_WORD.fullmatch(text):
+            return text
+        wanted = "a number, text, true, false or [list]"
+        message = f"{text!r} is no value; it takes {wanted}."
+        raise click.BadParameter(message, param_hint="-D") from None
+
+
+def _python_value(text: str) -> Any:
+    """Return the value that a text stands for in Python, where 2 is whole, else in OpenSCAD."""
+    try:
+        return ast.literal_eval(text)
+    except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
+        return _value(text)
 
 
 _EPILOG = """\b
@@ -84,8 +98,9 @@ _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
     "defines",
     metavar="NAME=VALUE",
     multiple=True,
-    callback=_as_defines,
-    help="Set a variable of a .scad or .py script: a number, text, true, false or [list].",
+    callback=_as_texts,
+    help="Set a variable of a .scad or .py script, in place of what it assigns at its top level: a"
+    " number, text, true, false or [list]; can be repeated.",
 )
 @click.option(
     "--list-nodes",
@@ -135,6 +150,7 @@ class _Run(Job):
         super().__init__("run", **settings)
         self._script = script
         self._suffix = ".csg" if str(script) == STREAM else script.suffix.lower()
+        self._defines: dict[str, Any] = {}
 
     def paths(self) -> Sequence[Path]:
         return [self._script]
@@ -145,6 +161,9 @@ class _Run(Job):
             message = f"{shown(self._script)}: this is no script; known are {known}."
             raise FormatError(message, "unknown_format")
         self._refuse_options()
+        value = _python_value if self._suffix == ".py" else _value
+        texts = self.settings["defines"].items()
+        self._defines = {name: value(text) for name, text in texts}
 
     def _refuse_options(self) -> None:
         context = click.get_current_context()
@@ -157,7 +176,7 @@ class _Run(Job):
     def combined(self) -> "Solid":
         from ..script import run_script
 
-        given = {name: self.settings[name] for name in ("timeout", "defines")}
+        given = {"timeout": self.settings["timeout"], "defines": self._defines}
         options = {name: value for name, value in given.items() if value}
         if self._suffix == ".py":
             return run_script(self._script, **options)

@@ -293,12 +293,18 @@ def test_trees_as_json_are_run(folder: Path, capsys: Capture) -> None:
 
 def test_variables_of_python_scripts(folder: Path, capsys: Capture) -> None:
     Path("m.py").write_text(
-        "import bspcsg as b\nassert word == 'plain' and sure is True and said == 'a b'\n"
+        "import bspcsg as b\nsize = 1\nword = sure = said = count = known = None\n"
+        "assert word == 'plain' and sure is True and said == 'a b'\n"
+        "assert list(range(count)) == [0, 1] and known == {'a': (True, None)}\n"
         "result = b.box(size)\n"
     )
     values = ["-D", "size=[1, 2, 3.5]", "-D", "word=plain", "-D", "sure=true", "-D", 'said="a b"']
+    values += ["-D", "count=2", "-D", "known={'a': (True, None)}"]
     code, _, err = ran(capsys, "run", "m.py", "-o", "x.off", *values)
     assert (code, err) == (0, "") and b.load("x.off").volume == 7
+    code, _, err = ran(capsys, "run", "m.py", "-o", "x.off", "-D", "sise=2")
+    assert code == 3 and "m.py: the script assigns no variable sise" in err
+    assert "Did you mean size? It assigns size, word, sure, said, count, known, result." in err
 
 
 @pytest.mark.skipif(shutil.which("openscad") is None, reason="needs openscad")

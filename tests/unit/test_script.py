@@ -48,9 +48,70 @@ def test_scripts_see_their_folder_their_arguments_and_defines(tmp_path: Path) ->
     path = script(
         tmp_path,
         "import sys\nimport bspcsg as b\nfrom sizes import HEIGHT\nassert __name__ == '__main__'\n"
-        "result = b.box((w, float(sys.argv[1]), HEIGHT))\n",
+        "w = 1\nresult = b.box((w, float(sys.argv[1]), HEIGHT))\n",
     )
     assert b.run_script(path, arguments=["3"], defines={"w": 2}).volume == 30
+
+
+ASSIGNING = """import sys
+import bspcsg as b
+size: float = 1
+a = c = 2
+d, (e, *f) = 3, (4, 5)
+if size > 7:
+    late = 1
+try:
+    early
+except NameError:
+    early = 1
+def half(size):
+    a = 100
+    return size / 2
+result = b.box((half(2 * size), 1, 1))
+assert [a, c, d, e, f, early, "late" in globals()] == eval(sys.argv[1])
+if early == 9: raise ValueError("line 17")
+"""
+
+
+@pytest.mark.parametrize(
+    ("defines", "volume", "left"),
+    [
+        ({}, 1, "[2, 2, 3, 4, [5], 1, False]"),
+        ({"size": 5}, 5, "[2, 2, 3, 4, [5], 1, False]"),
+        ({"size": 8, "late": 2}, 8, "[2, 2, 3, 4, [5], 1, True]"),
+        ({"a": [1]}, 1, "[[1], 2, 3, 4, [5], 1, False]"),
+        ({"a": "x", "c": None}, 1, "['x', None, 3, 4, [5], 1, False]"),
+        ({"e": 7, "f": {1: 2}, "early": 3}, 1, "[2, 2, 3, 7, {1: 2}, 3, False]"),
+    ],
+)
+def test_values_take_the_place_of_what_the_top_level_assigns(
+    tmp_path: Path, defines: dict[str, object], volume: float, left: str
+) -> None:
+    path = script(tmp_path, ASSIGNING)
+    assert b.run_script(path, arguments=[left], defines=defines).volume == volume
+
+
+def test_names_that_are_not_assigned_cannot_be_set(tmp_path: Path) -> None:
+    path = script(tmp_path, ASSIGNING)
+    with pytest.raises(b.FormatError) as caught:
+        b.run_script(path, defines={"size": 1, "sise": 2})
+    assert caught.value.code == "unknown_name"
+    assert str(caught.value) == (
+        f"{path}: the script assigns no variable sise at its top level. Did you mean size? It"
+        " assigns size, a, c, d, e, f, result, late, early."
+    )
+    for name in "half", "sys", "b":
+        with pytest.raises(b.FormatError, match=f"assigns no variable {name} at"):
+            b.run_script(path, defines={name: 1})
+    path = script(tmp_path, "import bspcsg as b\nb.show(b.cube(1))\n")
+    with pytest.raises(b.FormatError, match="at its top level, nor any other"):
+        b.run_script(path, defines={"w": 1})
+
+
+def test_lines_keep_their_numbers_where_values_are_set(tmp_path: Path) -> None:
+    path = script(tmp_path, ASSIGNING)
+    with pytest.raises(b.FormatError, match=r"part\.py:17: ValueError: line 17"):
+        b.run_script(path, arguments=["[0, 2, 3, 4, [5], 9, False]"], defines={"a": 0, "early": 9})
 
 
 def test_what_scripts_print_goes_to_standard_error(
