@@ -12,6 +12,7 @@ import struct
 import tempfile
 import warnings
 import zipfile
+import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -290,7 +291,7 @@ def _zipped(members: dict[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> by
 def _damaged_member(rng: Rng, data: bytes) -> bytes:
     try:
         members = _members(data)
-    except (zipfile.BadZipFile, ValueError, OSError, NotImplementedError, EOFError):
+    except (zipfile.BadZipFile, zlib.error, ValueError, OSError, NotImplementedError, EOFError):
         return _damaged_bytes(rng, data)
     if not members:
         return _damaged_bytes(rng, data)
