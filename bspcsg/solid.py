@@ -460,8 +460,14 @@ class Solid(Measured, PointSet):
         return self
 
     def __reduce__(self) -> tuple[Any, tuple[bytes, Factors]]:
-        """Pickle the evaluated tree, exactly, with the transform still apart."""
-        return _restored, (tree_of(evaluate(self._node)).dump(), self._factors)
+        """Pickle the evaluated tree, exactly, with the transform still apart.
+
+        What may have no mesh can be moved as long as its operands are known, which are not kept.
+        """
+        content = evaluate(self._node)
+        if content.extent is None:
+            return _restored, (self.tree.dump(), ())
+        return _restored, (tree_of(content).dump(), self._factors)
 
 
 @dataclass(frozen=True, eq=False)

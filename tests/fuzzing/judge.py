@@ -58,14 +58,14 @@ class Kernel:
 
 
 def judge(scene: Scene, kernel: Kernel | None = None) -> list[str]:
-    """Return what is wrong, a sentence each that begins with one word for its kind.
+    """Return what is wrong, a sentence each that begins with its kind.
 
     An error that the package raises is wrong: all scenes have an answer.
     """
     try:
         return list(_Trial(scene, kernel or Kernel()).complaints())
     except b.BspcsgError as error:
-        return [f"error: {type(error).__name__} {error.code}: {error.message}"]
+        return [f"error {error.code}: {type(error).__name__}: {error.message}"]
 
 
 class _Trial:

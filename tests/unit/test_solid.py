@@ -375,3 +375,14 @@ def test_the_area_of_a_complement_is_that_of_the_solid() -> None:
     for endless in (b.half_space((0, 0, 1)), b.half_space((0, 0, 1)) - part):
         with pytest.raises(b.UnboundedError):
             endless.area  # noqa: B018
+
+
+def test_unbounded_solids_moved_together_can_be_pickled() -> None:
+    turn = [[0, 1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+    first, second = b.half_space((1, 2, 3), 1), b.half_space((-1, 1, 1), 0)
+    wedge = first.transform(turn) & second.transform(turn)
+    points = [(9, 9, 9), (-9, -9, -9), (0, 0, -9)]
+    for solid in (wedge, first.rotate(30), wedge.rotate(30)):
+        copy = pickle.loads(pickle.dumps(solid))
+        assert copy.classify(points).tolist() == solid.classify(points).tolist()
+        assert copy.equals(solid)
