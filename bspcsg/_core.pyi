@@ -15,10 +15,12 @@ __all__ = [
     "CoreError",
     "FragmentTree",
     "ObjectTree",
+    "PanicException",
     "RayScene",
     "RayTree",
     "Tree",
     "__version__",
+    "fail_on_purpose",
     "normal_bits",
     "numbers_in",
     "set_threads",
@@ -31,6 +33,11 @@ class CoreError(Exception):
     code: str
     where: list[int]
     message: str
+    # Of defects only, for the report: what was called on what.
+    call: str
+    inputs: dict[str, object]
+
+class PanicException(BaseException): ...
 
 @type_check_only
 class Finding(TypedDict):
@@ -48,6 +55,7 @@ _SplitCase: TypeAlias = Literal[
     "leaf", "same", "opposite", "minus-minus", "minus-plus", "plus-minus", "plus-plus", "crossing"
 ]
 
+def fail_on_purpose(panic: bool, size: int) -> None: ...
 def set_threads(n: int) -> None: ...
 def normal_bits(dimension: int) -> int: ...
 def suited_pitch(largest: float, extent: float) -> int: ...

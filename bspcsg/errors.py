@@ -4,11 +4,13 @@ Every failure is a `BspcsgError` with a stable `code`, the places it concerns in
 sentence that says what is wrong and what to do.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, TypeVar
 
-from . import _core
+from . import _core, defect
 
 
 class BspcsgError(Exception):
@@ -69,13 +71,16 @@ class UnboundedError(BspcsgError, ValueError):
 
 
 class InternalError(BspcsgError, RuntimeError):
-    """An invariant of this package failed; please report it."""
+    """An invariant of this package failed; please report it with the file the message names."""
 
+
+_Value = TypeVar("_Value")
 
 #: How much of another library's words a message repeats.
 _LONGEST = 200
 
 _CLASSES: dict[str, type[BspcsgError]] = {
+    "forked": BspcsgError,
     "not_closed": InvalidMeshError,
     "non_finite": InvalidMeshError,
     "index_out_of_range": InvalidMeshError,
@@ -100,7 +105,6 @@ _ADVICE = {
     "not_simple": "Give the outline of a simple polygon.",
     "too_large": "Choose a coarser pitch (for example pitch=-6), or move or scale the solids.",
     "too_small": "Choose a finer pitch (for example pitch=-12), or scale the solid up.",
-    "internal": "This is a defect of bspcsg; please report it with the input.",
 }
 
 
@@ -109,9 +113,28 @@ def from_core(error: "_core.CoreError") -> BaseException:
     if error.code == "cancelled":
         return KeyboardInterrupt()
     kind = _CLASSES.get(error.code, InternalError)
-    advice = _ADVICE.get("internal" if kind is InternalError else error.code, "")
-    sentence = error.message.rstrip().rstrip(".")
-    return kind(f"{sentence}. {advice}".rstrip(), error.code, error.where)
+    if kind is InternalError:
+        call, inputs = getattr(error, "call", ""), getattr(error, "inputs", {})
+        return internal(error.message, error.code, error.where, call, inputs)
+    return kind(_sentence(error.message, _ADVICE.get(error.code, "")), error.code, error.where)
+
+
+def internal(
+    message: str,
+    code: str = "internal",
+    where: Sequence[int] = (),
+    call: str = "",
+    inputs: Mapping[str, Any] = MappingProxyType({}),
+) -> InternalError:
+    """Return the error for a defect, and write a report of it."""
+    path = defect.report(message, call, inputs)
+    sent = "the input" if path is None else f"the file {path}, which holds the input"
+    advice = f"This is a defect of bspcsg; please report it with {sent}."
+    return InternalError(_sentence(message, advice), code, where)
+
+
+def _sentence(message: str, advice: str) -> str:
+    return f"{message.rstrip().rstrip('.')}. {advice}".rstrip()
 
 
 @contextmanager
@@ -149,6 +172,8 @@ class _CoreErrors:
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         if isinstance(error, _core.CoreError):
             raise from_core(error) from error
+        if isinstance(error, _core.PanicException):
+            raise internal(f"a panic: {error}") from error
 
 
 _CORE_ERRORS = _CoreErrors()
@@ -157,6 +182,13 @@ _CORE_ERRORS = _CoreErrors()
 def core_errors() -> AbstractContextManager[None]:
     """Turn the core's errors inside the block into exceptions of this package."""
     return _CORE_ERRORS
+
+
+def held(value: _Value | None, name: str) -> _Value:
+    """Return a value that is there by an invariant of this package."""
+    if value is None:
+        raise internal(f"{name} is missing")
+    return value
 
 
 def words_of(error: BaseException) -> str:

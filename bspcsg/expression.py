@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Literal, NamedTuple, TypeAlias
 
 from ._types import ProgramLine
+from .errors import internal
 from .leaf import Leaf, Record, TreeLeaf, run
 from .transform import Factors
 
@@ -90,8 +91,7 @@ def evaluate(root: Node) -> Leaf:
         plan = make_plan(node)
         waiting.append((node, plan))
         waiting.extend((operand.node, None) for operand in reversed(plan.operands))
-    assert not isinstance(root.content, Pending)
-    return root.content
+    return _evaluated(root.content)
 
 
 @dataclass
@@ -132,9 +132,14 @@ def make_plan(root: Node) -> Plan:
     return plan
 
 
+def _evaluated(content: Pending | Leaf) -> Leaf:
+    if isinstance(content, Pending):
+        raise internal("an operand has not been evaluated")
+    return content
+
+
 def _operand_leaf(placed: Placed) -> Leaf:
-    content = placed.node.content
-    assert not isinstance(content, Pending)
+    content = _evaluated(placed.node.content)
     leaf = content.placed(placed.factors) if placed.factors else content
     # What remembers its operands must not be remembered in turn, or a chain would keep all of it.
     return leaf.forgetful() if isinstance(leaf, TreeLeaf) else leaf

@@ -89,9 +89,10 @@ def _replaced(statement: ast.stmt, wanted: tuple[str, ...]) -> list[ast.stmt]:
     if isinstance(statement, ast.AnnAssign):
         statement.value = _value(names[0], statement)
         return [statement]
-    assert isinstance(statement, ast.Assign)
-    rest = [one for one in statement.targets if not _is_name(one, names)]
-    kept = [ast.copy_location(ast.Assign(rest, statement.value), statement)] if rest else []
+    kept: list[ast.stmt] = []
+    if isinstance(statement, ast.Assign):
+        rest = [one for one in statement.targets if not _is_name(one, names)]
+        kept = [ast.copy_location(ast.Assign(rest, statement.value), statement)] if rest else []
     return [*kept, *(_assignment(name, statement) for name in names)]
 
 

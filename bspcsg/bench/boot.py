@@ -12,7 +12,8 @@ def put_in_place(core: str) -> None:
     """Let the package find this file where it looks for its core."""
     name = "bspcsg._core"
     spec = spec_from_file_location(name, core, loader=ExtensionFileLoader(name, core))
-    assert spec is not None and spec.loader is not None
+    if spec is None or spec.loader is None:
+        raise ImportError(f"{core} is no compiled module")
     module = module_from_spec(spec)
     sys.modules[name] = module
     spec.loader.exec_module(module)

@@ -12,6 +12,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from ..errors import held
 from .cases import CASES, Case
 from .engines import ENGINES
 from .targets import OURS
@@ -195,8 +196,7 @@ class _Lines:
     """What a process writes, line by line."""
 
     def __init__(self, child: "subprocess.Popen[bytes]") -> None:
-        assert child.stdout is not None
-        self._descriptor = child.stdout.fileno()
+        self._descriptor = held(child.stdout, "the process's output").fileno()
         self._waiting = b""
 
     def next(self, deadline: float) -> bytes | None:

@@ -1,6 +1,7 @@
 """Partition trees as text: JSON to keep them, DOT and SVG to look at them."""
 
 import json
+import zlib
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,13 @@ from ..errors import BspcsgError, FormatError, core_errors, invalid_parameter
 from .tree import PartitionTree
 
 _FORMAT = "bspcsg partition tree"
-_VERSION = 1
+_VERSION = 2
+#: The version that had no checksum.
+_FIRST = 1
 
 
 def to_json(tree: PartitionTree) -> str:
-    """Return facets as lattice integers, and the cuts in preorder."""
+    """Return facets as lattice integers, the cuts in preorder, and a checksum of both."""
     corners, offsets = tree.core.lattice()
     content = {
         "format": _FORMAT,
@@ -29,18 +32,22 @@ def to_json(tree: PartitionTree) -> str:
         "offsets": offsets.tolist(),
         "cuts": tree.arrays["cut"].tolist(),
     }
-    return json.dumps(content, separators=(",", ":"))
+    return _text(content | {"checksum": _checksum(content)})
 
 
 def from_json(text: str) -> PartitionTree:
     """Return the tree that `to_json` wrote."""
     try:
         content = json.loads(text)
-        known = content["format"] == _FORMAT and content["version"] == _VERSION
+        known = content["format"] == _FORMAT and content["version"] in (_FIRST, _VERSION)
     except (ValueError, TypeError, KeyError) as error:
         raise FormatError("This is not a partition tree in JSON.", "bad_snapshot") from error
     if not known:
-        message = f"Only version {_VERSION} of the format {_FORMAT!r} can be read."
+        message = f"Only versions up to {_VERSION} of the format {_FORMAT!r} can be read."
+        raise FormatError(message, "bad_snapshot")
+    checksum = content.pop("checksum", None)
+    if content["version"] != _FIRST and checksum != _checksum(content):
+        message = "The stored tree was damaged on its way: the checksum does not match."
         raise FormatError(message, "bad_snapshot")
     try:
         return _rebuilt(content)
@@ -49,6 +56,15 @@ def from_json(text: str) -> PartitionTree:
     except (ValueError, TypeError, KeyError, OverflowError) as error:
         message = f"The stored tree is incomplete or damaged ({error})."
         raise FormatError(message, "bad_snapshot") from error
+
+
+def _text(content: dict[str, Any]) -> str:
+    return json.dumps(content, separators=(",", ":"))
+
+
+def _checksum(content: dict[str, Any]) -> int:
+    """Return the CRC-32 of the content, however its text is laid out."""
+    return zlib.crc32(json.dumps(content, separators=(",", ":"), sort_keys=True).encode())
 
 
 def _rebuilt(content: dict[str, Any]) -> PartitionTree:
@@ -100,8 +116,7 @@ def to_svg(tree: PartitionTree, size: int = 480) -> str:
     """Return a picture of a tree in the plane, `size` pixels wide."""
     if tree.dimension != 2:
         raise invalid_parameter("Only trees in the plane are drawn as SVG.")
-    outline = tree.region()
-    assert isinstance(outline, np.ndarray)
+    outline = np.asarray(tree.region())
     low, high = outline.min(axis=0), outline.max(axis=0)
     scale = size / float(high[0] - low[0])
     height = scale * float(high[1] - low[1])

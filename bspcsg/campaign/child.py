@@ -12,6 +12,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Self
 
+from ..errors import held
+
 #: Seconds that a worker may take to start: it imports the package, which takes a quarter of a
 #: second on an idle machine, and a hundred times as long on one that is much too busy.
 _START = 300.0
@@ -65,9 +67,9 @@ class Child:
         """
         try:
             process = self._running()
-            assert process.stdin is not None
-            process.stdin.write(json.dumps(request) + "\n")
-            process.stdin.flush()
+            requests = held(process.stdin, "the process's input")
+            requests.write(json.dumps(request) + "\n")
+            requests.flush()
             line = self._lines.get(timeout=seconds)
         except queue.Empty:
             self._kill()
@@ -116,9 +118,9 @@ class Child:
         )
         listener = threading.Thread(target=_listen, args=(process, self._lines), daemon=True)
         listener.start()
-        assert process.stdin is not None
-        process.stdin.write(json.dumps(self._greeting) + "\n")
-        process.stdin.flush()
+        requests = held(process.stdin, "the process's input")
+        requests.write(json.dumps(self._greeting) + "\n")
+        requests.flush()
         return process
 
     def _await_start(self) -> None:
@@ -159,10 +161,9 @@ class Child:
         else:
             process.kill()
         process.wait()
-        assert process.stdin is not None
         # What was not sent any more cannot be.
         with suppress(OSError):
-            process.stdin.close()
+            held(process.stdin, "the process's input").close()
 
 
 def _how(code: int | None) -> str:
@@ -173,8 +174,7 @@ def _how(code: int | None) -> str:
 
 def _listen(process: "subprocess.Popen[str]", lines: "queue.SimpleQueue[str]") -> None:
     """Pass the lines of a process on; an empty one says that there are no more."""
-    assert process.stdout is not None
-    with process.stdout as answers:
+    with held(process.stdout, "the process's output") as answers:
         for line in answers:
             lines.put(line)
     lines.put("")

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .._types import FloatArray
-from ..errors import InvalidMeshError
+from ..errors import InvalidMeshError, held
 from ..io import read
 from ..solid import Solid
 from .case import Case, Operand
@@ -42,12 +42,13 @@ def operands_of(case: Case) -> tuple[list[Solid], list[FloatArray | None]]:
 
 def _drawn(case: Case, meshes: Sequence[Arrays]) -> tuple[Arrays, FloatArray]:
     """Return the second mesh in its drawn pose."""
-    assert case.pose is not None and case.seed is not None and case.number is not None
+    pose = held(case.pose, "the pose")
+    seed, number = held(case.seed, "the seed"), held(case.number, "the number")
     first, second = meshes
-    second = first if case.pose in OF_THE_FIRST else second
-    rows = pose_matrix(case.pose, _used(first), _used(second), case.seed, case.number)
+    second = first if pose in OF_THE_FIRST else second
+    rows = pose_matrix(pose, _used(first), _used(second), seed, number)
     moved = placed(second, rows)
-    return shuffled(moved, case.seed, case.number) if case.pose == "same" else moved, rows
+    return shuffled(moved, seed, number) if pose == "same" else moved, rows
 
 
 def _used(mesh: Arrays) -> FloatArray:

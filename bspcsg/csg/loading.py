@@ -124,7 +124,7 @@ def _solid(body: Geometry, name: str) -> Solid:
         return Solid.empty()
     try:
         # What makes no solid is an error of this call, not of the first query.
-        assert body.tree is not None
+        body.tree  # noqa: B018  builds it
     except BspcsgError as error:
         raise type(error)(f"{name}: {error.message}", error.code, error.where) from error
     return body

@@ -7,6 +7,7 @@ import numpy as np
 
 from .._types import FloatArray
 from ..bsp import Region
+from ..errors import invalid_parameter
 from ..solid import Solid
 from ..transform import determinant_sign
 from .arguments import LARGEST, Arguments
@@ -106,5 +107,6 @@ def _factors(sizes: Sequence[float], auto: Sequence[bool], old: Sequence[float])
     leader = factors[int(np.argmax(sizes))]
     chosen = zip(sizes, auto, factors, strict=True)
     result = [leader if new == 0 and follows else own for new, follows, own in chosen]
-    assert all(map(math.isfinite, result))
+    if not all(map(math.isfinite, result)):
+        raise invalid_parameter("the new size is too many times the old one.")
     return result

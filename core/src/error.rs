@@ -1,5 +1,7 @@
 //! The one error type of the crate.
 
+pub mod panics;
+
 use std::fmt;
 
 /// What went wrong, as a stable name for programs.
@@ -36,6 +38,8 @@ pub enum ErrorKind {
     NotSimple,
     /// Stored data is not what it claims to be.
     BadSnapshot,
+    /// Another thread was using the object when the process was forked.
+    Forked,
     /// A broken invariant: a defect of this library.
     Internal,
 }
@@ -60,6 +64,7 @@ impl ErrorKind {
             Self::NonPlanar => "non_planar",
             Self::NotSimple => "not_simple",
             Self::BadSnapshot => "bad_snapshot",
+            Self::Forked => "forked",
             Self::Internal => "internal",
         }
     }

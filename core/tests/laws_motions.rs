@@ -3,14 +3,20 @@
 mod support;
 
 use std::sync::atomic::AtomicBool;
+use std::sync::Arc;
 
+use bspcsg::arith::Int;
+use bspcsg::error::panics::caught;
+use bspcsg::error::{ErrorKind, Result};
 use bspcsg::extract::round;
 use bspcsg::extract::snapshot::{Motion, Snapshot};
 use bspcsg::geometry::plane::Lattice;
-use bspcsg::merge::evaluate::evaluate;
+use bspcsg::merge::evaluate::{evaluate, explained, normalize};
 use bspcsg::merge::expression::{Expression, Term};
+use bspcsg::merge::leaf::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
+use bspcsg::mesh::half_space::half_space;
 use bspcsg::query::classify::classify;
 use bspcsg::query::measure;
 use bspcsg::tree::solid::Solid;
@@ -61,8 +67,7 @@ fn snapshots_keep_everything() {
     for round in 0..20 {
         let solid = mixture(&mut numbers);
         let bytes = Snapshot::of(&solid).to_bytes().expect("bytes");
-        let stored = Snapshot::from_bytes(&bytes).expect("a snapshot");
-        let again = stored.solid().expect("a solid");
+        let again = Snapshot::solid_from_bytes(&bytes).expect("a solid");
         assert_same_triangles(&again, &solid, &format!("round {round}"));
         let tool = Shape::any_tetrahedron(&mut numbers, 40).solid();
         let [first, second] = [&solid, &again].map(|s| applied(SetOp::Difference, s, &tool));
@@ -87,7 +92,7 @@ fn damaged_snapshots_do_no_harm() {
             let place = numbers.index(bytes.len());
             bytes[place] = bytes[place].wrapping_add(numbers.pick(&[1, 2, 64, 128, 255]));
         }
-        match Snapshot::from_bytes(&bytes).and_then(|s| s.solid()) {
+        match Snapshot::solid_from_bytes(&bytes) {
             Err(_) => refused += 1,
             Ok(solid) => {
                 let lines = [0, 1].map(Term::Operand).into_iter();
@@ -100,6 +105,104 @@ fn damaged_snapshots_do_no_harm() {
         }
     }
     assert!(refused > 0);
+}
+
+/// Bytes of a solid, changed here and there, with a checksum that is right for them.
+fn forged(solid: &Solid, numbers: &mut Numbers) -> Vec<u8> {
+    let mut bytes = Snapshot::of(solid).to_bytes().expect("bytes");
+    let sealed = bytes.len() - 4;
+    for _ in 0..=numbers.below(2) {
+        let place = 8 + numbers.index(sealed - 8);
+        bytes[place] = bytes[place].wrapping_add(numbers.pick(&[1, 2, 64, 128, 255]));
+    }
+    let checksum = crc32fast::hash(&bytes[..sealed]);
+    bytes[sealed..].copy_from_slice(&checksum.to_le_bytes());
+    bytes
+}
+
+/// What is done with a solid that was read; defects are not among the errors it may end with.
+fn used(solid: &Solid, tool: &Solid) -> Result<()> {
+    let cancel = AtomicBool::new(false);
+    let volume = || measure::volume(solid).map(drop);
+    let near = || measure::volume_near(solid).map(drop);
+    let mesh = || round::mesh(solid).map(drop);
+    let place = || classify(solid, &[[20; 3], [5, 31, 8]]).map(drop);
+    let normal = || normalize(solid, Rule::Positive, &cancel).map(drop);
+    let operated = || {
+        let leaves = || [0, 1].map(Term::Operand).into_iter();
+        for last in [
+            Term::Or(vec![0, 1]),
+            Term::And(vec![0, 1]),
+            Term::Xor(vec![0, 1]),
+        ] {
+            let expression = Expression::new(leaves().chain([last]).collect())?;
+            let (result, _) = evaluate(&expression, &[solid.clone(), tool.clone()], &cancel)?;
+            round::mesh(&result).map_err(|e| explained(&result, e, &cancel))?;
+        }
+        Ok(())
+    };
+    for use_of in [
+        &volume as &dyn Fn() -> Result<()>,
+        &near,
+        &mesh,
+        &place,
+        &normal,
+        &operated,
+    ] {
+        let ended = caught(use_of).map_err(|e| explained(solid, e, &cancel));
+        match ended.map_err(|e| (e.kind(), e)) {
+            Ok(())
+            | Err((ErrorKind::BadSnapshot | ErrorKind::Unbounded | ErrorKind::PitchMismatch, _)) => {
+            }
+            Err((_, error)) => return Err(error),
+        }
+    }
+    Ok(())
+}
+
+/// Data that somebody forged is refused or stands for some solid, which can be used.
+#[test]
+fn forged_snapshots_do_no_harm() {
+    let mut numbers = Numbers::new(21);
+    let rounds = std::env::var("BSPCSG_FORGED").map_or(300, |n| n.parse().expect("a number"));
+    let (mut refused, mut taken) = (0, 0);
+    for round in 0..rounds {
+        let solid = match round % 4 {
+            0 => Shape::any_cuboid(&mut numbers, 40).solid(),
+            1 => with_plane(&mut numbers),
+            _ => mixture(&mut numbers),
+        };
+        let tool = Shape::any_tetrahedron(&mut numbers, 40).solid();
+        let bytes = forged(&solid, &mut numbers);
+        match caught(|| Snapshot::solid_from_bytes(&bytes)) {
+            Err(error) => {
+                assert_eq!(
+                    error.kind(),
+                    ErrorKind::BadSnapshot,
+                    "round {round}: {error}"
+                );
+                refused += 1;
+            }
+            Ok(solid) => {
+                let ended = used(&solid, &tool);
+                assert_eq!(ended, Ok(()), "round {round}: {bytes:?}");
+                taken += 1;
+            }
+        }
+    }
+    assert!(refused > 0 && taken > 0, "{refused} refused, {taken} taken");
+}
+
+/// A solid with a half-space among its operands, perhaps unbounded.
+fn with_plane(numbers: &mut Numbers) -> Solid {
+    let a = mixture(numbers);
+    let normals: [[i128; 3]; 4] = [[1, 0, 0], [0, -1, 1], [1, 2, 3], [-3, 1, 2]];
+    let (normal, offset) = (numbers.pick(&normals), numbers.below(40));
+    let pitch = Pitch::new(0).expect("a pitch");
+    let plane = half_space(normal, &Int::from_i128(offset.into()), pitch, None);
+    let plane = plane.expect("a half-space");
+    let plane = Solid::of_source(Arc::new(plane), true);
+    applied(numbers.pick(&SetOp::ALL), &a, &plane)
 }
 
 fn moved(solid: &Solid, motion: &Motion, pitch: i64) -> Solid {

@@ -2,6 +2,7 @@
 
 import json
 import xml.etree.ElementTree as ET
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -313,7 +314,7 @@ class TestDumps:
         "change",
         [
             {"format": "other"},
-            {"version": 2},
+            {"version": 3},
             {"cuts": []},
             {"cuts": [[-1, 0], [-1, 1], [-1, 1], [-1, 1]]},
             {"cuts": [[-1, 9], [-1, 1], [-1, 1]]},
@@ -332,10 +333,24 @@ class TestDumps:
             {"margin": "wide"},
         ],
     )
-    def test_damaged_json_is_refused(self, change: dict[str, Any]) -> None:
+    def test_forged_json_is_refused(self, change: dict[str, Any]) -> None:
         content = json.loads(bsp.PartitionTree(CROSS, "first").to_json())
+        content.pop("checksum")
+        content |= change
+        checksum = zlib.crc32(json.dumps(content, separators=(",", ":"), sort_keys=True).encode())
         with pytest.raises(b.FormatError):
-            bsp.PartitionTree.from_json(json.dumps({**content, **change}))
+            bsp.PartitionTree.from_json(json.dumps({**content, "checksum": checksum}))
+
+    def test_damaged_json_is_refused(self) -> None:
+        tree = bsp.PartitionTree(CROSS, "first")
+        content = json.loads(tree.to_json())
+        with pytest.raises(b.FormatError, match="checksum"):
+            bsp.PartitionTree.from_json(json.dumps({**content, "margin": 3.0}))
+        del content["checksum"]
+        with pytest.raises(b.FormatError, match="checksum"):
+            bsp.PartitionTree.from_json(json.dumps(content))
+        # The first version had none.
+        assert bsp.PartitionTree.from_json(json.dumps({**content, "version": 1})) == tree
 
     @pytest.mark.parametrize("text", ["", "[]", "{}", "3", "{", '{"format": 1}'])
     def test_other_text_is_refused(self, text: str) -> None:

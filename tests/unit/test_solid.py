@@ -2,8 +2,10 @@
 
 import copy
 import pickle
+import tempfile
 from collections.abc import Callable
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -343,10 +345,14 @@ def test_errors_have_a_code_places_and_a_sentence() -> None:
     )
 
 
-def test_errors_of_the_core_become_errors_of_the_package() -> None:
+def test_errors_of_the_core_become_errors_of_the_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     from bspcsg import _core
     from bspcsg.errors import from_core
 
+    # Where the reports of defects go.
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     kinds = {
         "not_closed": b.InvalidMeshError,
         "bad_normal": b.InvalidMeshError,

@@ -44,6 +44,9 @@ pub fn evaluate(
             return Ok((solid, descent.counters));
         }
         for k in overlaps {
+            if operands[k].is_claimed() {
+                return Err(false_claim());
+            }
             if operands[k].is_reduced() {
                 return Err(Error::internal(format!(
                     "reduced operand {k} overlaps itself"
@@ -52,6 +55,25 @@ pub fn evaluate(
             operands[k] = normalize(&operands[k], Rule::Positive, cancel)?;
         }
     }
+}
+
+/// The error that explains a failed operation on a solid: if stored data say that it is reduced,
+/// their word is checked now.
+pub fn explained(solid: &Solid, error: Error, cancel: &AtomicBool) -> Error {
+    if error.kind() != ErrorKind::Internal || !solid.is_claimed() {
+        return error;
+    }
+    let doubted = solid.clone().with_reduced(false);
+    match normalize(&doubted, Rule::Positive, cancel) {
+        Ok(_) if doubted.is_reduced() => error,
+        Err(e) if e.kind() == ErrorKind::Cancelled => e,
+        _ => false_claim(),
+    }
+}
+
+fn false_claim() -> Error {
+    let text = "a snapshot says that the faces of its solid do not overlap, and they do";
+    Error::new(ErrorKind::BadSnapshot, text)
 }
 
 /// The solid united with itself: the reduced boundary of the points that a rule calls inside.
@@ -69,7 +91,7 @@ pub fn normalize(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid
         return Ok(known);
     }
     let united = unite(solid, rule, cancel)?;
-    Ok(solid.united().get_or_init(|| united).clone())
+    Ok(solid.united().get_or_make(|| united).clone())
 }
 
 /// The solid united with itself, if that is known, or once the meshes it was made of have been
@@ -94,7 +116,7 @@ pub fn settled(solid: &Solid, cancel: &AtomicBool) -> Result<Option<Solid>> {
         }
     }
     let reduced = || solid.clone().with_reduced(true);
-    Ok(Some(solid.united().get_or_init(reduced).clone()))
+    Ok(Some(solid.united().get_or_make(reduced).clone()))
 }
 
 fn unite(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid> {

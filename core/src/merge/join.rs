@@ -1,12 +1,13 @@
 //! Putting the two halves of a cell together again.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use super::kept::is_whole;
 use super::list::Sources;
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, triangle_change, Segment};
 use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::mesh::cached::Cached;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Branch, Deferred, Group, Node};
 
@@ -80,7 +81,7 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
         parts: Vec::new(),
         corner,
         work: a.work.max(b.work),
-        share: OnceLock::new(),
+        share: Cached::new(),
     }))
 }
 

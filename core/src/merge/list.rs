@@ -7,6 +7,7 @@ use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, polygon_change, triangle_change, Segment};
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
+use crate::mesh::cached::Cached;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Branch, Deferred, Group, Node, PartElement, Work};
 use crate::tree::table::Table;
@@ -314,7 +315,7 @@ impl List {
             parts,
             corner,
             work: self.work,
-            share: OnceLock::new(),
+            share: Cached::new(),
         })
     }
 }

@@ -6,6 +6,7 @@
     clippy::cast_sign_loss
 )]
 
+pub mod cached;
 mod chain;
 mod ears;
 pub mod facets;

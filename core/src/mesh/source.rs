@@ -1,12 +1,13 @@
 //! Sources: the immutable boundaries that elements of trees refer to.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
+use super::cached::Cached;
 use super::finding::Finding;
 use super::grid::Pitch;
 use super::joints::Joints;
-use super::topology::Topology;
+use super::topology::{open_edges, Topology};
 use crate::geometry::cell::Cell;
 use crate::geometry::line::PlaneResidues;
 use crate::geometry::plane::{Lattice, Plane};
@@ -18,9 +19,9 @@ pub struct Source {
     id: u64,
     pitch: Pitch,
     shape: Shape,
-    joints: OnceLock<Joints>,
-    topology: OnceLock<Topology>,
-    cell: OnceLock<Option<Cell>>,
+    joints: Cached<Joints>,
+    topology: Cached<Topology>,
+    cell: Cached<Option<Cell>>,
     findings: Vec<Finding>,
 }
 
@@ -58,9 +59,9 @@ impl Source {
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
             pitch,
             shape,
-            joints: OnceLock::new(),
-            topology: OnceLock::new(),
-            cell: OnceLock::new(),
+            joints: Cached::new(),
+            topology: Cached::new(),
+            cell: Cached::new(),
             findings,
         }
     }
@@ -73,10 +74,11 @@ impl Source {
         cell: Cell,
         findings: Vec<Finding>,
     ) -> Self {
-        let source = Self::new(pitch, Shape::Mesh(mesh), findings);
-        let _ = source.joints.set(joints);
-        let _ = source.cell.set(Some(cell));
-        source
+        Self {
+            joints: Cached::of(joints),
+            cell: Cached::of(Some(cell)),
+            ..Self::new(pitch, Shape::Mesh(mesh), findings)
+        }
     }
 
     /// A number that tells sources apart.
@@ -115,7 +117,20 @@ impl Source {
     /// How the faces meet, found on first use; `None` for a half-space.
     pub fn joints(&self) -> Option<&Joints> {
         let mesh = self.mesh()?;
-        Some(self.joints.get_or_init(|| Joints::of(mesh)))
+        Some(self.joints.get_or_make(|| Joints::of(mesh)))
+    }
+
+    /// Whether the faces close, by index or along lines, as all do that were imported.
+    pub fn closes(&self) -> bool {
+        let Some(mesh) = self.mesh() else {
+            return true;
+        };
+        if let Some(joints) = Joints::of_closed(mesh) {
+            self.joints.get_or_make(|| joints);
+            return true;
+        }
+        let open = |t: &Topology| open_edges(&mesh.vertices, &mesh.faces, t.unpaired());
+        self.topology().is_none_or(|t| open(t).is_empty())
     }
 
     /// Whether no face was left out and no vertex welded at import.
@@ -129,7 +144,7 @@ impl Source {
         let mesh = self.mesh()?;
         Some(
             self.topology
-                .get_or_init(|| Topology::new(&mesh.faces, mesh.vertices.len())),
+                .get_or_make(|| Topology::new(&mesh.faces, mesh.vertices.len())),
         )
     }
 
@@ -195,7 +210,7 @@ impl Source {
 
     /// The smallest cell around everything; `None` if there is nothing.
     pub fn cell(&self) -> Option<Cell> {
-        *self.cell.get_or_init(|| match &self.shape {
+        *self.cell.get_or_make(|| match &self.shape {
             Shape::Mesh(mesh) => mesh.bounds().map(|(low, high)| Cell::around(&low, &high)),
             Shape::HalfSpace(_) => Some(Cell::UNIVERSE),
         })

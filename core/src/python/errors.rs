@@ -3,6 +3,7 @@
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyboardInterrupt};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::error::{Error, ErrorKind};
 
@@ -28,4 +29,22 @@ pub fn to_python(py: Python<'_>, error: &Error) -> PyErr {
         Ok(()) => exception,
         Err(failed) => failed,
     }
+}
+
+/// The exception of a call; that of a defect names the call and what it was given, for a report.
+pub fn blamed<'py>(
+    py: Python<'py>,
+    error: PyErr,
+    call: &str,
+    inputs: impl FnOnce() -> PyResult<Bound<'py, PyDict>>,
+) -> PyErr {
+    let value = error.value(py);
+    let code = value.getattr("code").and_then(|c| c.extract::<String>());
+    if code.is_ok_and(|code| code == ErrorKind::Internal.code()) {
+        // Without them the error is still the one to raise.
+        let _ = value
+            .setattr("call", call)
+            .and_then(|()| value.setattr("inputs", inputs()?));
+    }
+    error
 }

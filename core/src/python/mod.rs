@@ -13,9 +13,11 @@ mod each;
 mod errors;
 mod fragments;
 mod hyperplanes;
+mod in_use;
 mod numbers;
 mod objects;
 mod pieces;
+mod pool;
 mod ray_store;
 mod ray_tree;
 mod rays;
@@ -26,20 +28,31 @@ mod set_store;
 mod sets;
 mod tree;
 
+use pyo3::panic::PanicException;
 use pyo3::prelude::*;
+
+use crate::error::{panics, Error};
+use crate::mesh::grid::Pitch;
 
 /// Sets how many threads operations use that do not say so; 0 means one for each processor.
 #[pyfunction]
 fn set_threads(n: usize) {
-    run::set_default_threads(n);
+    pool::set_default_threads(n);
 }
 
 /// The pitch for coordinates of this size and extent.
 #[pyfunction]
 fn suited_pitch(py: Python<'_>, largest: f64, extent: f64) -> PyResult<i64> {
-    let pitch = crate::mesh::grid::Pitch::suited(largest, extent);
-    let pitch = pitch.map_err(|e| errors::to_python(py, &e))?;
-    Ok(pitch.exponent())
+    run::here(py, || Ok(Pitch::suited(largest, extent)?.exponent()))
+}
+
+/// Fails as a defect would: for the tests of what happens then.
+#[pyfunction]
+fn fail_on_purpose(py: Python<'_>, panic: bool, size: usize) -> PyResult<()> {
+    run::run(py, 0, size, |_| {
+        assert!(!panic, "a panic on purpose");
+        Err(Error::internal("a failure on purpose"))
+    })
 }
 
 /// The bits of the normals that half-spaces of a dimension may have.
@@ -55,7 +68,10 @@ fn normal_bits(dimension: usize) -> u32 {
 #[pymodule(gil_used = true)]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    panics::listen();
     module.add("CoreError", module.py().get_type::<errors::CoreError>())?;
+    let panic = module.py().get_type::<PanicException>();
+    module.add("PanicException", panic)?;
     module.add_class::<tree::Tree>()?;
     module.add_class::<fragments::PyFragmentTree>()?;
     module.add_class::<objects::ObjectTree>()?;
@@ -63,6 +79,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<rays::RayScene>()?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
     module.add_function(wrap_pyfunction!(normal_bits, module)?)?;
+    module.add_function(wrap_pyfunction!(fail_on_purpose, module)?)?;
     module.add_function(wrap_pyfunction!(suited_pitch, module)?)?;
     module.add_function(wrap_pyfunction!(numbers::numbers_in, module)?)?;
     Ok(())

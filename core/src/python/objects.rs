@@ -9,10 +9,10 @@ use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 
-use super::errors::to_python;
+use super::errors::{blamed, to_python};
 use super::hyperplanes::Row;
 use super::pieces::{self, Pieces};
-use super::run::run;
+use super::run::{here, run};
 use super::set_input::{self, Input};
 use super::set_queries::{exact_corners, outline_pieces};
 use super::set_store::Nodes;
@@ -60,10 +60,23 @@ impl ObjectTree {
         work: impl FnOnce(&Set, Pitch) -> Result<T> + Send,
     ) -> PyResult<T> {
         run(py, 0, self.set.size(), |_| work(&self.set, self.pitch))
+            .map_err(|e| self.blamed(py, e, &[self]))
     }
 
     fn with(&self, set: Set) -> Self {
         Self::of(set, self.pitch)
+    }
+
+    /// The exception of work; the report of a defect holds the sets.
+    fn blamed(&self, py: Python<'_>, error: PyErr, operands: &[&Self]) -> PyErr {
+        blamed(py, error, "ObjectTree", || {
+            let inputs = PyDict::new(py);
+            for (k, operand) in operands.iter().enumerate() {
+                let operand = Bound::new(py, self.with(operand.set.clone()))?;
+                inputs.set_item(format!("operand-{k}"), operand)?;
+            }
+            Ok(inputs)
+        })
     }
 }
 
@@ -116,11 +129,11 @@ impl ObjectTree {
         hyperplane: Row,
         pitch: i64,
     ) -> PyResult<Self> {
-        let made = Pitch::new(pitch).and_then(|pitch| {
+        here(py, || {
+            let pitch = Pitch::new(pitch)?;
             let set = Set::half_space(&hyperplane)?;
             Ok(Self::of(set, pitch))
-        });
-        made.map_err(|e| to_python(py, &e))
+        })
     }
 
     #[classmethod]
@@ -131,18 +144,18 @@ impl ObjectTree {
         full: bool,
         pitch: i64,
     ) -> PyResult<Self> {
-        let made = Pitch::new(pitch).and_then(|pitch| {
+        here(py, || {
             let set = Set::uniform(dimension, full)?;
-            Ok(Self::of(set, pitch))
-        });
-        made.map_err(|e| to_python(py, &e))
+            Ok(Self::of(set, Pitch::new(pitch)?))
+        })
     }
 
     fn merge(&self, py: Python<'_>, other: PyRef<'_, Self>, op: &str) -> PyResult<Self> {
         let op = set_input::operation(op).map_err(|e| to_python(py, &e))?;
         let (a, b) = (&self.set, &other.set);
         set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
-        let set = run(py, 0, a.size() + b.size(), |_| a.merge(b, op))?;
+        let set = run(py, 0, a.size() + b.size(), |_| a.merge(b, op))
+            .map_err(|e| self.blamed(py, e, &[self, &other]))?;
         Ok(self.with(set))
     }
 
@@ -151,12 +164,13 @@ impl ObjectTree {
         set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
         let difference = run(py, 0, a.size() + b.size(), |_| {
             a.merge(b, SetOp::SymmetricDifference)
-        })?;
+        })
+        .map_err(|e| self.blamed(py, e, &[self, &other]))?;
         Ok(difference.uniform_label() == Some(false))
     }
 
-    fn complement(&self) -> Self {
-        self.with(self.set.complement())
+    fn complement(&self, py: Python<'_>) -> PyResult<Self> {
+        here(py, || Ok(self.with(self.set.complement())))
     }
 
     fn partitioned(&self, py: Python<'_>, hyperplane: Row) -> PyResult<Self> {
@@ -253,7 +267,8 @@ impl ObjectTree {
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
         let points = rows(&points);
         let size = self.set.size() + points.len();
-        let found = run(py, 0, size, |_| self.set.classify(&points, self.pitch))?;
+        let found = run(py, 0, size, |_| self.set.classify(&points, self.pitch))
+            .map_err(|e| self.blamed(py, e, &[self]))?;
         let sign = |location: &Location| match location {
             Location::In => 1i8,
             Location::On => 0,
@@ -278,13 +293,13 @@ impl ObjectTree {
     }
 
     fn dump<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = self.set.to_bytes(self.pitch);
-        Ok(PyBytes::new(py, &bytes.map_err(|e| to_python(py, &e))?))
+        let bytes = here(py, || self.set.to_bytes(self.pitch))?;
+        Ok(PyBytes::new(py, &bytes))
     }
 
     #[classmethod]
     fn load(_cls: &Bound<'_, PyType>, py: Python<'_>, data: &[u8]) -> PyResult<Self> {
-        let (set, pitch) = Set::from_bytes(data).map_err(|e| to_python(py, &e))?;
+        let (set, pitch) = here(py, || Set::from_bytes(data))?;
         Ok(Self::of(set, pitch))
     }
 

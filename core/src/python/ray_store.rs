@@ -1,23 +1,12 @@
 //! Trees that rays have grown as bytes.
 
-use serde::{Deserialize, Serialize};
-
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
+use crate::extract::sealed::{seal, unseal, Kind};
 use crate::query::stab::record::Record;
 
-/// The format's number; readers refuse others.
-const FORMAT: u32 = 1;
-
-#[derive(Serialize, Deserialize)]
-struct Stored {
-    format: u32,
-    record: Record,
-}
-
 /// A record as bytes.
-pub fn to_bytes(record: Record) -> Result<Vec<u8>> {
-    let format = FORMAT;
-    postcard::to_stdvec(&Stored { format, record }).map_err(|e| Error::internal(e.to_string()))
+pub fn to_bytes(record: &Record) -> Result<Vec<u8>> {
+    seal(Kind::Rays, record)
 }
 
 /// The record of bytes.
@@ -25,11 +14,5 @@ pub fn to_bytes(record: Record) -> Result<Vec<u8>> {
 /// # Errors
 /// `BadSnapshot`.
 pub fn from_bytes(bytes: &[u8]) -> Result<Record> {
-    match postcard::from_bytes::<Stored>(bytes) {
-        Ok(stored) if stored.format == FORMAT => Ok(stored.record),
-        _ => {
-            let text = "the bytes are not a stored tree of rays";
-            Err(Error::new(ErrorKind::BadSnapshot, text))
-        }
-    }
+    unseal(Kind::Rays, bytes)
 }

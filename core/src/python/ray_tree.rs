@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use super::errors::to_python;
+use super::in_use::InUse;
 use super::ray_store;
 use super::rays::{facets, Columns, HitArrays, WEIGHT};
 use super::run::run;
@@ -45,6 +46,7 @@ type Counts<'py> = Bound<'py, PyArray1<i64>>;
 #[pyclass(frozen, module = "bspcsg._core")]
 pub struct RayTree {
     tree: Mutex<Stabbed>,
+    calls: InUse,
 }
 
 #[pymethods]
@@ -87,12 +89,12 @@ impl RayTree {
                 Err(Error::new(ErrorKind::Shape, text))
             }
         })?;
-        let tree = Mutex::new(tree);
-        Ok(Self { tree })
+        let (tree, calls) = (Mutex::new(tree), InUse::default());
+        Ok(Self { tree, calls })
     }
 
     #[getter]
-    fn pitch(&self, py: Python<'_>) -> i64 {
+    fn pitch(&self, py: Python<'_>) -> PyResult<i64> {
         self.read(
             py,
             |tree| with_tree!(tree, tree => tree.scene().pitch().exponent()),
@@ -106,6 +108,7 @@ impl RayTree {
         origins: PyReadonlyArray1<'py, f64>,
         directions: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<(HitArrays<'py>, Counts<'py>)> {
+        let _call = self.calls.enter(py)?;
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
         let (columns, counts) = run(py, 0, origins.len() * WEIGHT, |cancel| {
             let mut tree = self.tree.lock().unwrap_or_else(PoisonError::into_inner);
@@ -119,13 +122,13 @@ impl RayTree {
 
     /// The cuts and counters as bytes; facets and threshold are not kept.
     fn dump<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let record = self.read(py, |tree| with_tree!(tree, tree => tree.record()));
-        let bytes = ray_store::to_bytes(record).map_err(|e| to_python(py, &e))?;
+        let record = self.read(py, |tree| with_tree!(tree, tree => tree.record()))?;
+        let bytes = ray_store::to_bytes(&record).map_err(|e| to_python(py, &e))?;
         Ok(PyBytes::new(py, &bytes))
     }
 
     fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let shape = self.read(py, |tree| with_tree!(tree, tree => tree.shape()));
+        let shape = self.read(py, |tree| with_tree!(tree, tree => tree.shape()))?;
         let dict = PyDict::new(py);
         for (name, value) in named(&shape) {
             dict.set_item(name, value)?;
@@ -136,8 +139,17 @@ impl RayTree {
 
 impl RayTree {
     /// Looks at the tree with the GIL released, which the thread that holds the tree may need.
-    fn read<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&Stabbed) -> T + Send) -> T {
-        py.detach(|| look(&self.tree.lock().unwrap_or_else(PoisonError::into_inner)))
+    fn read<T: Send>(
+        &self,
+        py: Python<'_>,
+        look: impl FnOnce(&Stabbed) -> T + Send,
+    ) -> PyResult<T> {
+        let _call = self.calls.enter(py)?;
+        run(py, 0, 0, |_| {
+            Ok(look(
+                &self.tree.lock().unwrap_or_else(PoisonError::into_inner),
+            ))
+        })
     }
 }
 

@@ -1,9 +1,13 @@
 //! The class `RayScene`: facets in one, two or three dimensions, and rays cast at them.
 
+use std::sync::atomic::AtomicBool;
+
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use super::errors::to_python;
+use super::errors::{blamed, to_python};
+use super::in_use::InUse;
 use super::run::{run, SMALL};
 use crate::error::{Error, ErrorKind, Result};
 use crate::merge::leaf::Rule;
@@ -106,6 +110,7 @@ impl Columns {
 #[pyclass(frozen, module = "bspcsg._core")]
 pub struct RayScene {
     facets: Facets,
+    calls: InUse,
 }
 
 #[pymethods]
@@ -122,7 +127,8 @@ impl RayScene {
         let pitch = pitch.map(Pitch::new).transpose().map_err(fail)?;
         let flat = corners.as_slice()?;
         let facets = run(py, 0, flat.len(), |_| build(dimension, flat, pitch))?;
-        Ok(Self { facets })
+        let calls = InUse::default();
+        Ok(Self { facets, calls })
     }
 
     #[getter]
@@ -138,7 +144,7 @@ impl RayScene {
     /// Divides all deferred leaves.
     #[pyo3(signature = (threads=0))]
     fn complete(&self, py: Python<'_>, threads: usize) -> PyResult<()> {
-        run(py, threads, SMALL, |_| {
+        self.run(py, threads, SMALL, |_| {
             with_scene!(&self.facets, scene => scene.complete());
             Ok(())
         })
@@ -153,7 +159,7 @@ impl RayScene {
         threads: usize,
     ) -> PyResult<HitArrays<'py>> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
-        let columns = run(py, threads, origins.len() * WEIGHT, |cancel| {
+        let columns = self.run(py, threads, origins.len() * WEIGHT, |cancel| {
             let rays = Rays {
                 origins,
                 heads,
@@ -175,7 +181,7 @@ impl RayScene {
         threads: usize,
     ) -> PyResult<(Indices<'py>, HitArrays<'py>)> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
-        let (offsets, columns) = run(py, threads, origins.len() * WEIGHT, |cancel| {
+        let (offsets, columns) = self.run(py, threads, origins.len() * WEIGHT, |cancel| {
             let rays = Rays {
                 origins,
                 heads,
@@ -204,7 +210,7 @@ impl RayScene {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
         let rule = winding_rule(rule).map_err(|e| to_python(py, &e))?;
         let outside = i32::from(unbounded);
-        let found = run(py, threads, origins.len() * WEIGHT, |cancel| {
+        let found = self.run(py, threads, origins.len() * WEIGHT, |cancel| {
             let rays = Rays {
                 origins,
                 heads,
@@ -231,7 +237,7 @@ impl RayScene {
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let (origins, heads) = (origins.as_slice()?, targets.as_slice()?);
-        let found = run(py, threads, origins.len() * WEIGHT, |cancel| {
+        let found = self.run(py, threads, origins.len() * WEIGHT, |cancel| {
             let rays = Rays {
                 origins,
                 heads,
@@ -253,7 +259,7 @@ impl RayScene {
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
         let limits = limits.as_slice()?;
-        let found = run(py, threads, origins.len() * WEIGHT, |cancel| {
+        let found = self.run(py, threads, origins.len() * WEIGHT, |cancel| {
             let rays = Rays {
                 origins,
                 heads,
@@ -262,6 +268,29 @@ impl RayScene {
             with_scene!(&self.facets, scene => rays.blocked(scene, limits))
         })?;
         Ok(PyArray1::from_vec(py, found))
+    }
+}
+
+impl RayScene {
+    /// Runs work that may divide leaves.
+    fn run<T: Send>(
+        &self,
+        py: Python<'_>,
+        threads: usize,
+        size: usize,
+        work: impl FnOnce(&AtomicBool) -> Result<T> + Send,
+    ) -> PyResult<T> {
+        let _call = self.calls.enter(py)?;
+        run(py, threads, size, work).map_err(|e| {
+            blamed(py, e, "RayScene", || {
+                let corners: Vec<f64> = with_scene!(&self.facets, scene => {
+                    scene.facets().iter().flatten().flatten().copied().collect()
+                });
+                let inputs = PyDict::new(py);
+                inputs.set_item("corners", PyArray1::from_vec(py, corners))?;
+                Ok(inputs)
+            })
+        })
     }
 }
 

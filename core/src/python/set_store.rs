@@ -5,8 +5,10 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::sets::Set;
+use crate::arith::bounds::{normal, offset, COORDINATE_BITS};
 use crate::arith::Int;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
+use crate::extract::sealed::{seal, unseal, Kind};
 use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::{Direction, Point1};
 use crate::geometry::dim2::Line2;
@@ -14,8 +16,9 @@ use crate::geometry::plane::Plane;
 use crate::mesh::grid::Pitch;
 use crate::tree::partition::{from_preorder, preorder, Entry, Label, PartitionTree};
 
-/// The format's number; readers refuse others.
-const FORMAT: u32 = 1;
+/// The widths of a plane's coefficients.
+const NORMAL: u32 = normal(COORDINATE_BITS);
+const OFFSET: u32 = offset(COORDINATE_BITS);
 
 /// Hyperplanes (n, d + 1), minus children (n,), plus children (n,).
 pub type Nodes<'py> = (
@@ -26,7 +29,6 @@ pub type Nodes<'py> = (
 
 #[derive(Serialize, Deserialize)]
 struct Stored {
-    format: u32,
     pitch: i64,
     dimension: u8,
     nodes: Vec<StoredNode>,
@@ -54,12 +56,11 @@ impl Set {
             }
         };
         let stored = Stored {
-            format: FORMAT,
             pitch: pitch.exponent(),
             dimension: self.dimension() as u8,
             nodes,
         };
-        postcard::to_stdvec(&stored).map_err(|e| Error::internal(e.to_string()))
+        seal(Kind::Set, &stored)
     }
 
     /// The set and its pitch from bytes.
@@ -67,10 +68,7 @@ impl Set {
     /// # Errors
     /// `BadSnapshot`.
     pub fn from_bytes(bytes: &[u8]) -> Result<(Self, Pitch)> {
-        let stored: Stored = postcard::from_bytes(bytes).map_err(|_| bad_bytes())?;
-        if stored.format != FORMAT {
-            return Err(bad_bytes());
-        }
+        let stored: Stored = unseal(Kind::Set, bytes)?;
         let set = match stored.dimension {
             1 => Self::Line(restored(&stored.nodes, |n, d| {
                 let at = i64::try_from(d.to_i128()?).ok()?;
@@ -87,14 +85,15 @@ impl Set {
                 Line2::new(narrow(n[0])?, narrow(n[1])?, d.to_i128()?)
             })?),
             3 => Self::Space(restored(&stored.nodes, |n, d| {
-                let narrow = n.iter().all(|c| c.unsigned_abs() <= 1 << 108);
-                let near = d.abs().bit_length() <= 166;
+                let narrow = n.iter().all(|c| c.unsigned_abs() < 1 << NORMAL);
+                let near = d.bit_length() <= OFFSET;
                 let plane = (narrow && near).then(|| Plane::new(n, d))??;
                 Some(std::sync::Arc::new(plane))
             })?),
             _ => return Err(bad_bytes()),
         };
-        Ok((set, Pitch::new(stored.pitch)?))
+        let pitch = Pitch::new(stored.pitch).map_err(|_| bad_bytes())?;
+        Ok((set, pitch))
     }
 
     /// The inner nodes in preorder: hyperplanes normal·x = offset with normals of length 1, in model
@@ -126,10 +125,7 @@ impl Set {
 }
 
 fn bad_bytes() -> Error {
-    Error::new(
-        ErrorKind::BadSnapshot,
-        "the bytes are not a stored partition tree",
-    )
+    Kind::Set.contradiction()
 }
 
 fn sign(point: &Point1) -> i128 {

@@ -1,5 +1,6 @@
 //! The class `Tree`: an immutable exact solid.
 
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
 use num_bigint::BigInt;
@@ -8,15 +9,16 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 
 use super::arrays::{array, rows, wide};
-use super::errors::to_python;
+use super::errors::{blamed, to_python};
 use super::hyperplanes::{coefficients, Row};
-use super::run::{run, SMALL};
+use super::run::{here, run, SMALL};
+use crate::error::panics::caught;
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::collect::has_no_boundary;
 use crate::extract::round::{self, Mesh};
 use crate::extract::snapshot::{Motion, Snapshot};
 use crate::merge::descend::Counters;
-use crate::merge::evaluate::{evaluate, normalize, settled};
+use crate::merge::evaluate::{evaluate, explained, normalize, settled};
 use crate::merge::expression::{Expression, Term};
 use crate::merge::leaf::Rule;
 use crate::mesh::finding::Finding;
@@ -68,6 +70,33 @@ impl Tree {
         source.mesh().filter(|_| source.is_as_given())
     }
 
+    /// Runs a method's work; the report of a defect holds the solid.
+    fn run<T: Send>(
+        &self,
+        py: Python<'_>,
+        method: &str,
+        threads: usize,
+        size: usize,
+        work: impl FnOnce(&AtomicBool) -> Result<T> + Send,
+    ) -> PyResult<T> {
+        let explained = |cancel: &AtomicBool| {
+            caught(|| work(cancel)).map_err(|e| explained(&self.solid, e, cancel))
+        };
+        run(py, threads, size, explained).map_err(|e| {
+            blamed(py, e, &format!("Tree.{method}"), || {
+                let inputs = PyDict::new(py);
+                let operand = Bound::new(py, Self::of(self.solid.clone()))?;
+                inputs.set_item("operand-0", operand)?;
+                Ok(inputs)
+            })
+        })
+    }
+
+    fn is_bare(&self, py: Python<'_>) -> PyResult<bool> {
+        let bare = |_: &_| Ok(has_no_boundary(&self.solid));
+        self.run(py, "is_empty", 0, self.size(), bare)
+    }
+
     fn size(&self) -> usize {
         work(std::slice::from_ref(&self.solid), SMALL)
     }
@@ -76,7 +105,7 @@ impl Tree {
         if let Some(rounded) = self.rounded.get() {
             return Ok(rounded);
         }
-        let (mesh, triangles) = run(py, threads, self.size(), |_| {
+        let (mesh, triangles) = self.run(py, "to_mesh", threads, self.size(), |_| {
             let mesh = round::mesh(&self.solid)?;
             let triangles = wide(&mesh.triangles);
             Ok((mesh, triangles))
@@ -113,7 +142,16 @@ impl Tree {
         let vertices = rows(&vertices, "vertices").map_err(fail)?;
         let faces = rows(&faces, "faces").map_err(fail)?;
         let pitch = pitch.map(Pitch::new).transpose().map_err(fail)?;
-        let source = run(py, 0, faces.len(), |_| import(&vertices, &faces, pitch))?;
+        let source =
+            run(py, 0, faces.len(), |_| import(&vertices, &faces, pitch)).map_err(|e| {
+                blamed(py, e, "Tree.from_mesh", || {
+                    let inputs = PyDict::new(py);
+                    inputs.set_item("vertices", array(py, vertices.to_vec())?)?;
+                    inputs.set_item("faces", array(py, faces.to_vec())?)?;
+                    inputs.set_item("pitch", pitch.map(Pitch::exponent))?;
+                    Ok(inputs)
+                })
+            })?;
         Ok(Self::of(Solid::of_source(Arc::new(source), trusted)))
     }
 
@@ -126,23 +164,25 @@ impl Tree {
         pitch: i64,
         rounded: Option<String>,
     ) -> PyResult<Self> {
-        let fail = |e: Error| to_python(py, &e);
-        let pitch = Pitch::new(pitch).map_err(fail)?;
-        let (normal, offset) = coefficients(&hyperplane).map_err(fail)?;
-        let source = half_space(normal, &offset, pitch, rounded).map_err(fail)?;
-        Ok(Self::of(Solid::of_source(Arc::new(source), true)))
+        here(py, || {
+            let (normal, offset) = coefficients(&hyperplane)?;
+            let source = half_space(normal, &offset, Pitch::new(pitch)?, rounded)?;
+            Ok(Self::of(Solid::of_source(Arc::new(source), true)))
+        })
     }
 
     #[classmethod]
     fn empty(_cls: &Bound<'_, PyType>, py: Python<'_>, pitch: i64) -> PyResult<Self> {
-        let pitch = Pitch::new(pitch).map_err(|e| to_python(py, &e))?;
-        Ok(Self::of(Solid::uniform(pitch, false)))
+        here(py, || {
+            Ok(Self::of(Solid::uniform(Pitch::new(pitch)?, false)))
+        })
     }
 
     #[classmethod]
     fn full(_cls: &Bound<'_, PyType>, py: Python<'_>, pitch: i64) -> PyResult<Self> {
-        let pitch = Pitch::new(pitch).map_err(|e| to_python(py, &e))?;
-        Ok(Self::of(Solid::uniform(pitch, true)))
+        here(py, || {
+            Ok(Self::of(Solid::uniform(Pitch::new(pitch)?, true)))
+        })
     }
 
     #[classmethod]
@@ -150,11 +190,12 @@ impl Tree {
     fn evaluate(
         _cls: &Bound<'_, PyType>,
         py: Python<'_>,
-        program: Vec<(String, Vec<u32>)>,
+        program: Bound<'_, PyAny>,
         operands: Vec<PyRef<'_, Self>>,
         threads: usize,
     ) -> PyResult<Self> {
-        let terms = program
+        let lines: Vec<(String, Vec<u32>)> = program.extract()?;
+        let terms = lines
             .into_iter()
             .map(|(name, arguments)| term(&name, arguments))
             .collect::<Result<Vec<_>>>();
@@ -164,6 +205,17 @@ impl Tree {
         let solids: Vec<Solid> = operands.iter().map(|o| o.solid.clone()).collect();
         let (solid, counters) = run(py, threads, work(&solids, SMALL), |cancel| {
             evaluate(&expression, &solids, cancel)
+        })
+        .map_err(|e| {
+            blamed(py, e, "Tree.evaluate", || {
+                let inputs = PyDict::new(py);
+                inputs.set_item("program", &program)?;
+                for (k, solid) in solids.iter().enumerate() {
+                    let operand = Bound::new(py, Self::of(solid.clone()))?;
+                    inputs.set_item(format!("operand-{k}"), operand)?;
+                }
+                Ok(inputs)
+            })
         })?;
         Ok(Self {
             counters: Some(counters),
@@ -185,11 +237,12 @@ impl Tree {
         };
         if rule == Rule::Positive {
             let size = work_to_settle(&self.solid);
-            if let Some(solid) = run(py, threads, size, |c| settled(&self.solid, c))? {
+            let settled = |c: &_| settled(&self.solid, c);
+            if let Some(solid) = self.run(py, "normalized", threads, size, settled)? {
                 return Ok(Self::of(solid));
             }
         }
-        let solid = run(py, threads, self.size(), |cancel| {
+        let solid = self.run(py, "normalized", threads, self.size(), |cancel| {
             normalize(&self.solid, rule, cancel)
         })?;
         Ok(Self::of(solid))
@@ -224,9 +277,9 @@ impl Tree {
 
     /// The arrays the tree was made from.
     fn given_arrays<'py>(&self, py: Python<'py>) -> PyResult<MeshArrays<'py>> {
-        let mesh = self.given().ok_or_else(|| {
+        let mesh = self.run(py, "given_arrays", 0, 0, |_| {
             let text = "the tree does not hold the arrays of one mesh as they were given";
-            to_python(py, &Error::internal(text))
+            self.given().ok_or_else(|| Error::internal(text))
         })?;
         Ok((
             array(py, mesh.doubles.clone())?,
@@ -256,22 +309,27 @@ impl Tree {
     }
 
     fn volume6_exact(&self, py: Python<'_>) -> PyResult<(BigInt, BigInt)> {
-        let fraction = run(py, 0, self.size(), |_| volume(&self.solid))?;
+        let volume = |_: &_| volume(&self.solid);
+        let fraction = self.run(py, "volume6_exact", 0, self.size(), volume)?;
         Ok((fraction.numerator, fraction.denominator))
     }
 
     /// The nearest double; None if the near volume has to decide.
-    fn volume_rounded(&self, py: Python<'_>) -> Option<f64> {
-        py.detach(|| volume_rounded(&self.solid))
+    fn volume_rounded(&self, py: Python<'_>) -> PyResult<Option<f64>> {
+        self.run(py, "volume_rounded", 0, 0, |_| {
+            Ok(volume_rounded(&self.solid))
+        })
     }
 
     fn volume_near(&self, py: Python<'_>) -> PyResult<(BigInt, BigInt)> {
-        let fraction = run(py, 0, self.size(), |_| volume_near(&self.solid))?;
+        let volume = |_: &_| volume_near(&self.solid);
+        let fraction = self.run(py, "volume_near", 0, self.size(), volume)?;
         Ok((fraction.numerator, fraction.denominator))
     }
 
     fn volume_residues(&self, py: Python<'_>) -> PyResult<Option<(u64, u64)>> {
-        let residues = run(py, 0, self.size(), |_| volume_residues(&self.solid))?;
+        let volume = |_: &_| volume_residues(&self.solid);
+        let residues = self.run(py, "volume_residues", 0, self.size(), volume)?;
         Ok(residues.map(Into::into))
     }
 
@@ -282,7 +340,7 @@ impl Tree {
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
         let points = rows(&points, "points").map_err(|e| to_python(py, &e))?;
         let size = self.size() + points.len();
-        let found = run(py, 0, size, |_| {
+        let found = self.run(py, "classify", 0, size, |_| {
             let pitch = self.solid.pitch();
             let points = points
                 .iter()
@@ -304,7 +362,7 @@ impl Tree {
         hyperplane: Row,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let pitch = self.solid.pitch();
-        let edges = run(py, 0, self.size(), |_| {
+        let edges = self.run(py, "section", 0, self.size(), |_| {
             let (normal, offset) = coefficients(&hyperplane)?;
             section(&self.solid, &bounding_plane(normal, &offset)?)
         })?;
@@ -315,14 +373,12 @@ impl Tree {
 
     #[getter]
     fn is_empty(&self, py: Python<'_>) -> PyResult<bool> {
-        let bare = run(py, 0, self.size(), |_| Ok(has_no_boundary(&self.solid)))?;
-        Ok(bare && self.solid.root().outside <= 0)
+        Ok(self.is_bare(py)? && self.solid.root().outside <= 0)
     }
 
     #[getter]
     fn is_full(&self, py: Python<'_>) -> PyResult<bool> {
-        let bare = run(py, 0, self.size(), |_| Ok(has_no_boundary(&self.solid)))?;
-        Ok(bare && self.solid.root().outside > 0)
+        Ok(self.is_bare(py)? && self.solid.root().outside > 0)
     }
 
     #[getter]
@@ -356,7 +412,7 @@ impl Tree {
 
     fn moved(&self, py: Python<'_>, axes: [i64; 3], shift: [i64; 3]) -> PyResult<Self> {
         let motion = motion(axes, shift).map_err(|e| to_python(py, &e))?;
-        run(py, 0, self.size(), |_| {
+        self.run(py, "moved", 0, self.size(), |_| {
             self.mapped(&motion, self.solid.pitch())
         })
     }
@@ -378,17 +434,20 @@ impl Tree {
             scale,
             ..Motion::IDENTITY
         };
-        run(py, 0, self.size(), |_| self.mapped(&motion, finer))
+        self.run(py, "refined", 0, self.size(), |_| {
+            self.mapped(&motion, finer)
+        })
     }
 
     fn dump<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = run(py, 0, self.size(), |_| Snapshot::of(&self.solid).to_bytes())?;
+        let bytes = |_: &_| Snapshot::of(&self.solid).to_bytes();
+        let bytes = self.run(py, "dump", 0, self.size(), bytes)?;
         Ok(PyBytes::new(py, &bytes))
     }
 
     #[classmethod]
     fn load(_cls: &Bound<'_, PyType>, py: Python<'_>, data: &[u8]) -> PyResult<Self> {
-        let solid = |_: &_| Snapshot::from_bytes(data).and_then(|s| s.solid());
+        let solid = |_: &_| Snapshot::solid_from_bytes(data);
         Ok(Self::of(run(py, 0, data.len(), solid)?))
     }
 

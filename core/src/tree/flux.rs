@@ -47,10 +47,10 @@ pub fn share(root: &Branch) -> Share {
         match &*branch.node {
             Node::Leaf(_) => {}
             Node::Deferred(leaf) => {
-                leaf.share.get_or_init(|| leaf_share(leaf, &branch.cell));
+                leaf.share.get_or_make(|| leaf_share(leaf, &branch.cell));
             }
             Node::Cut(halves) => {
-                halves.share.get_or_init(|| {
+                halves.share.get_or_make(|| {
                     let mut sum = Share::NONE;
                     for child in &halves.children {
                         sum.add(&known(child).unwrap_or(Share::NONE), child.complement);
@@ -169,7 +169,7 @@ impl Sum {
         let bounded = part.source.mesh().is_some();
         self.rest.open |= !bounded && part.edges.iter().any(|e| e.carrier.is_border());
         if self.surely_holds(part) {
-            let flux = part.flux.get_or_init(|| part_flux(part));
+            let flux = part.flux.get_or_make(|| part_flux(part));
             self.rest.flux.add(flux, flip);
         } else if let Some(slope) = part_slope(part) {
             let flux = fan_flux(&fixed_ends(part), Some(&self.walls), slope);

@@ -1,6 +1,6 @@
 //! The partition tree of a solid: dyadic cuts above, deferred leaves below.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use super::flux::Share;
 use crate::geometry::cell::Cell;
@@ -8,6 +8,7 @@ use crate::geometry::fixed::Flux;
 use crate::geometry::outline;
 use crate::geometry::outline::{BareEdge, OutlineEdge};
 use crate::geometry::polygon::{bounds, Polygon};
+use crate::mesh::cached::Cached;
 use crate::mesh::source::Source;
 
 /// A node of the tree. Immutable and shared.
@@ -28,7 +29,7 @@ impl Node {
     pub fn cut(minus: Branch, plus: Branch) -> Self {
         Self::Cut(Halves {
             children: [minus, plus],
-            share: OnceLock::new(),
+            share: Cached::new(),
         })
     }
 }
@@ -39,7 +40,7 @@ pub struct Halves {
     /// Minus half first.
     pub children: [Branch; 2],
     /// What the node contributes to the volume, once somebody has asked.
-    pub share: OnceLock<Share>,
+    pub share: Cached<Share>,
 }
 
 /// A subtree in its place.
@@ -137,7 +138,7 @@ pub struct Deferred {
     /// What several operands' boundaries here went through.
     pub work: Work,
     /// What the node contributes to the volume, once somebody has asked.
-    pub share: OnceLock<Share>,
+    pub share: Cached<Share>,
 }
 
 /// Which kernel made a leaf; the later ones leave more open.
@@ -186,7 +187,7 @@ pub struct Part {
     /// The outline, counterclockwise on the face; no two edges overlap or continue each other.
     pub edges: Box<[BareEdge]>,
     /// The flux through the part, once somebody has asked.
-    pub flux: OnceLock<Flux>,
+    pub flux: Cached<Flux>,
 }
 
 impl Part {
@@ -204,7 +205,7 @@ impl Part {
             face,
             home,
             edges: edges.into_iter().map(Into::into).collect(),
-            flux: OnceLock::new(),
+            flux: Cached::new(),
         }
     }
 

@@ -1,13 +1,14 @@
 //! Solids: a tree, the winding number outside its root, and the sources it refers to.
 #![allow(clippy::cast_possible_truncation)]
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use rustc_hash::FxHashSet as HashSet;
 
 use super::node::{Branch, Deferred, Group, Node};
 use super::table::Table;
 use crate::geometry::cell::Cell;
+use crate::mesh::cached::Cached;
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::{Shape, Source};
 
@@ -24,9 +25,11 @@ pub struct Solid {
     /// How many sources the tree named when that was last counted.
     named: usize,
     reduced: bool,
+    /// Whether stored data say that it is reduced, or that an operand was.
+    claimed: bool,
     /// Solids of meshes nobody has checked: if all are simple, this solid is reduced.
     doubts: Option<Arc<[Solid]>>,
-    united: Arc<OnceLock<Solid>>,
+    united: Arc<Cached<Solid>>,
 }
 
 impl Solid {
@@ -39,9 +42,22 @@ impl Solid {
             sources,
             named,
             reduced,
+            claimed: false,
             doubts: None,
             united: Arc::default(),
         }
+    }
+
+    /// The same solid, reduced by the word of stored data that somebody may have forged.
+    #[must_use]
+    pub fn claimed(mut self) -> Self {
+        self.claimed = self.reduced;
+        self
+    }
+
+    /// Whether it is reduced by the word of stored data only.
+    pub fn is_claimed(&self) -> bool {
+        self.claimed
     }
 
     /// The solid that operations have made of these operands, reduced if they are.
@@ -52,6 +68,7 @@ impl Solid {
     pub fn made_of(mut self, operands: &[Self]) -> Self {
         let open: Vec<&Self> = operands.iter().filter(|o| !o.is_reduced()).collect();
         self.reduced = open.is_empty();
+        self.claimed = operands.iter().any(|o| o.claimed);
         if !self.reduced && open.iter().all(|o| o.doubts.is_some() || o.is_whole_mesh()) {
             let doubts = open
                 .iter()
@@ -164,6 +181,7 @@ impl Solid {
     #[must_use]
     pub fn with_reduced(mut self, reduced: bool) -> Self {
         self.reduced = reduced;
+        self.claimed = false;
         self.doubts = None;
         // Not the cache of the solid as it was: that is to hold this one.
         self.united = Arc::default();
@@ -171,7 +189,7 @@ impl Solid {
     }
 
     /// The solid united with itself, once somebody has computed it; shared by clones.
-    pub fn united(&self) -> &OnceLock<Self> {
+    pub fn united(&self) -> &Cached<Self> {
         &self.united
     }
 }

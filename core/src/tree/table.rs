@@ -1,6 +1,6 @@
 //! Tables of sources: what grows by one source from step to step costs one source to grow.
 
-use std::sync::{Arc, OnceLock, PoisonError, RwLock};
+use std::sync::{Arc, OnceLock, RwLock, TryLockError};
 
 use rustc_hash::FxHashMap as HashMap;
 
@@ -36,7 +36,8 @@ type Chunk = Box<[OnceLock<Arc<Source>>]>;
 struct Log {
     /// Chunk k has room for 2^k sources, so that none ever moves.
     chunks: [OnceLock<Chunk>; 31],
-    /// The slots by the sources' ids; whoever adds holds this.
+    /// The slots by the sources' ids; whoever adds holds this. Nobody waits for it: in a process
+    /// that was forked it may be held by a thread that is not there.
     slots: RwLock<HashMap<u64, usize>>,
 }
 
@@ -59,9 +60,22 @@ impl Log {
         slots.insert(source.id(), slots.len());
     }
 
-    fn slot(&self, source: &Source) -> Option<usize> {
-        let slots = self.slots.read().unwrap_or_else(PoisonError::into_inner);
-        slots.get(&source.id()).copied()
+    /// The slot of a source, if that is one of the first `len`.
+    fn slot(&self, source: &Source, len: usize) -> Option<usize> {
+        let found = match free(self.slots.try_read()) {
+            Some(slots) => slots.get(&source.id()).copied(),
+            None => (0..len).find(|slot| self.get(*slot).is_some_and(|s| s.id() == source.id())),
+        };
+        found.filter(|slot| *slot < len)
+    }
+}
+
+/// What a lock guards, unless somebody holds it.
+fn free<T>(lock: Result<T, TryLockError<T>>) -> Option<T> {
+    match lock {
+        Ok(guard) => Some(guard),
+        Err(TryLockError::Poisoned(guard)) => Some(guard.into_inner()),
+        Err(TryLockError::WouldBlock) => None,
     }
 }
 
@@ -146,7 +160,7 @@ impl Entries {
 
 impl Beginning {
     fn slot(&self, source: &Source) -> Option<usize> {
-        self.log.slot(source).filter(|s| *s < self.len)
+        self.log.slot(source, self.len)
     }
 
     /// This beginning and a source, if it does not have it.
@@ -158,10 +172,11 @@ impl Beginning {
         self
     }
 
-    /// Adds a source if it is new; false if the log goes on with another one.
+    /// Adds a source if it is new; false if the log goes on with another one, or somebody adds one.
     fn add(&mut self, source: &Arc<Source>) -> bool {
-        let slots = &self.log.slots;
-        let mut slots = slots.write().unwrap_or_else(PoisonError::into_inner);
+        let Some(mut slots) = free(self.log.slots.try_write()) else {
+            return false;
+        };
         match slots.get(&source.id()) {
             Some(slot) if *slot < self.len => return true,
             Some(slot) if *slot == self.len => {}
@@ -176,12 +191,14 @@ impl Beginning {
 impl Log {
     /// A log of the first sources of this one.
     fn copied(&self, len: usize) -> Self {
+        let mut slots = HashMap::default();
         let copy = Self::default();
-        let mut slots = copy.slots.write().unwrap_or_else(PoisonError::into_inner);
         for source in (0..len).filter_map(|slot| self.get(slot)) {
             copy.push(&mut slots, source);
         }
-        drop(slots);
-        copy
+        Self {
+            slots: RwLock::new(slots),
+            ..copy
+        }
     }
 }

@@ -12,7 +12,7 @@ use crate::support::{applied, is_empty, manifold_mesh, normalized};
 /// The solid that is read from what was stored; stored again it gives the same bytes.
 pub fn kept(solid: &Solid, context: &str) -> Solid {
     let stored = |solid: &Solid| Snapshot::of(solid).to_bytes().expect("bytes");
-    let read = |bytes: &[u8]| Snapshot::from_bytes(bytes).and_then(|s| s.solid());
+    let read = |bytes: &[u8]| Snapshot::solid_from_bytes(bytes);
     let again = read(&stored(solid)).expect("what was written is read");
     let bytes = stored(&again);
     let third = read(&bytes).expect("what was written is read");

@@ -19,10 +19,7 @@ use super::checks::kept;
 
 /// Any bytes as a snapshot: refused, or a solid that every question can be put to.
 pub fn snapshot(data: &[u8]) {
-    let Ok(stored) = Snapshot::from_bytes(data) else {
-        return;
-    };
-    let Ok(solid) = stored.solid() else {
+    let Ok(solid) = Snapshot::solid_from_bytes(&unsealed(data)) else {
         return;
     };
     kept(&solid, "a snapshot");
@@ -46,6 +43,16 @@ pub fn snapshot(data: &[u8]) {
         return;
     };
     let _ = (round::mesh(&result), Snapshot::of(&result).to_bytes());
+}
+
+/// The bytes in the first version of the format, whose payload no checksum guards.
+fn unsealed(data: &[u8]) -> Vec<u8> {
+    match data {
+        [b'b', b's', b'p', b'c', b's', b'g', _, _, payload @ .., _, _, _, _] => {
+            [&[1], payload].concat()
+        }
+        _ => data.to_vec(),
+    }
 }
 
 /// A tetrahedron that most snapshots of small solids meet.

@@ -3,6 +3,8 @@
 mod convert;
 mod held;
 
+use std::sync::atomic::AtomicBool;
+
 use num_bigint::BigInt;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -11,7 +13,7 @@ use pyo3::types::{PyDict, PyType};
 use self::convert::{cut_rows, lenience_of, named_policy, node_cuts, padded, rows, Wish};
 use self::held::{built, Inner};
 use super::arrays::array;
-use super::errors::to_python;
+use super::errors::{blamed, to_python};
 use super::run::run;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::affine::Viewpoint;
@@ -126,7 +128,7 @@ impl PyFragmentTree {
 
     /// The cuts of a tree over the same facets that cuts none of them.
     fn perfect_cuts<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<i64>>>> {
-        let found = run(py, 0, 0, |_| each!(&self.inner, held => held.perfect()))?;
+        let found = self.run(py, 0, |_| each!(&self.inner, held => held.perfect()))?;
         found.map(|cuts| cut_rows(py, cuts.into_iter())).transpose()
     }
 
@@ -172,9 +174,7 @@ impl PyFragmentTree {
 
     fn fragments<'py>(&self, py: Python<'py>) -> PyResult<FragmentArrays<'py>> {
         let size = each!(&self.inner, held => held.tree.fragments().len());
-        let export = run(py, 0, size, |_| {
-            Ok(each!(&self.inner, held => held.export()))
-        })?;
+        let export = self.run(py, size, |_| Ok(each!(&self.inner, held => held.export())))?;
         Ok((
             rows(py, export.vertices, self.dimension())?,
             PyArray1::from_vec(py, export.offsets),
@@ -198,7 +198,7 @@ impl PyFragmentTree {
 
     /// The nodes from the farthest to the nearest.
     fn order<'py>(&self, py: Python<'py>, eye: [f64; 3], at_infinity: bool) -> PyResult<Ints<'py>> {
-        let order = run(py, 0, self.__len__(), |_| {
+        let order = self.run(py, self.__len__(), |_| {
             let eye = self.viewpoint(eye, at_infinity)?;
             Ok(each!(&self.inner, held => back_to_front(&held.tree, &eye)))
         })?;
@@ -215,7 +215,7 @@ impl PyFragmentTree {
         eye: [f64; 3],
         at_infinity: bool,
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
-        let found = run(py, 0, self.__len__(), |_| {
+        let found = self.run(py, self.__len__(), |_| {
             let eye = self.viewpoint(eye, at_infinity)?;
             Ok(each!(&self.inner, held => sides(&held.tree, &eye)))
         })?;
@@ -233,7 +233,7 @@ impl PyFragmentTree {
         py: Python<'py>,
         margin: f64,
     ) -> PyResult<(f64, f64, Floats<'py>, Floats<'py>)> {
-        let (whole, all) = run(py, 0, self.__len__(), |_| {
+        let (whole, all) = self.run(py, self.__len__(), |_| {
             each!(&self.inner, held => {
                 let whole = held.whole(margin)?;
                 Ok(((whole.volume(), whole.surface()), measures(&held.tree, &whole)))
@@ -259,9 +259,8 @@ impl PyFragmentTree {
         side: i8,
         margin: f64,
     ) -> PyResult<Vec<Rows<'py>>> {
-        let walls = run(
+        let walls = self.run(
             py,
-            0,
             0,
             |_| each!(&self.inner, held => held.region(node, side, margin)),
         )?;
@@ -271,9 +270,8 @@ impl PyFragmentTree {
 
     /// The corners of the part of a node's hyperplane inside its region.
     fn span<'py>(&self, py: Python<'py>, node: u32, margin: f64) -> PyResult<Rows<'py>> {
-        let corners = run(
+        let corners = self.run(
             py,
-            0,
             0,
             |_| each!(&self.inner, held => held.span(node, margin)),
         )?;
@@ -301,6 +299,24 @@ impl PyFragmentTree {
 }
 
 impl PyFragmentTree {
+    /// Runs a method's work; the report of a defect holds the facets.
+    fn run<T: Send>(
+        &self,
+        py: Python<'_>,
+        size: usize,
+        work: impl FnOnce(&AtomicBool) -> Result<T> + Send,
+    ) -> PyResult<T> {
+        run(py, 0, size, work).map_err(|e| {
+            blamed(py, e, "FragmentTree", || {
+                let inputs = PyDict::new(py);
+                let corners = rows(py, self.corners.clone(), self.dimension())?;
+                inputs.set_item("corners", corners)?;
+                inputs.set_item("offsets", self.offsets.clone())?;
+                Ok(inputs)
+            })
+        })
+    }
+
     fn viewpoint(&self, eye: [f64; 3], at_infinity: bool) -> Result<Viewpoint> {
         if eye.iter().any(|c| !c.is_finite()) {
             return Err(Error::new(

@@ -1,0 +1,74 @@
+"""Reports of defects: a file with what was called, on what, and how it failed."""
+
+import io
+import itertools
+import json
+import os
+import platform
+import tempfile
+import time
+import zipfile
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from . import _core
+
+#: A program that goes on after a defect may meet it often: a process writes no more reports.
+_MOST = 16
+
+_numbers = itertools.count(1)
+
+
+def report(message: str, call: str, inputs: Mapping[str, Any]) -> str | None:
+    """Write a report into the folder for temporary files; return its path, or None.
+
+    The file is a ZIP archive that only its owner may read: ``report.json`` with the message, the
+    call, the versions and small inputs, arrays as ``.npy`` files, trees as ``.snapshot`` files.
+    Nothing that goes wrong here becomes an error.
+    """
+    try:
+        return _written(message, call, inputs) if next(_numbers) <= _MOST else None
+    except Exception:
+        return None
+
+
+def _written(message: str, call: str, inputs: Mapping[str, Any]) -> str:
+    facts = {
+        "message": message,
+        "call": call,
+        "bspcsg": _core.__version__,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "platform": platform.platform(),
+        "processors": os.cpu_count(),
+        "time": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
+    }
+    handle, path = tempfile.mkstemp(prefix="bspcsg-report-", suffix=".zip")
+    with (
+        os.fdopen(handle, "wb") as file,
+        zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive,
+    ):
+        small = {name: _put(archive, name, value) for name, value in inputs.items()}
+        archive.writestr(
+            "report.json", json.dumps(facts | {"inputs": small}, indent=1, default=repr)
+        )
+    return path
+
+
+def _put(archive: zipfile.ZipFile, name: str, value: Any) -> Any:
+    """Put a large input into the archive; return what `report.json` says of it."""
+    try:
+        if isinstance(value, np.ndarray):
+            content = io.BytesIO()
+            np.save(content, value, allow_pickle=False)
+            name, data = f"{name}.npy", content.getvalue()
+        elif isinstance(value, _core.Tree | _core.ObjectTree):
+            name, data = f"{name}.snapshot", value.dump()
+        else:
+            return value
+    except (Exception, _core.PanicException) as error:
+        return f"not written: {error!r}"
+    archive.writestr(name, data)
+    return name

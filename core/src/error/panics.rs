@@ -1,0 +1,64 @@
+//! Panics as errors: a defect of this library is one of its errors, and crashes nothing.
+
+use std::any::Any;
+use std::collections::VecDeque;
+use std::panic::{catch_unwind, set_hook, AssertUnwindSafe, PanicHookInfo};
+use std::sync::Mutex;
+
+use super::{Error, Result};
+
+/// How many panics are remembered for those who catch them on another thread.
+const RECENT: usize = 8;
+
+/// What a panic said, and where it happened.
+struct Seen {
+    message: String,
+    place: String,
+}
+
+static SEEN: Mutex<VecDeque<Seen>> = Mutex::new(VecDeque::new());
+
+/// Remembers where panics happen instead of printing them: who catches them says it.
+pub fn listen() {
+    set_hook(Box::new(remember));
+}
+
+/// The result of work, or the error that its panic is.
+///
+/// # Errors
+/// What the work returns; `Internal` for a panic, also one on another thread of the pool.
+pub fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
+    // What the work left half done is not looked at again, or only ever replaced as a whole.
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| Err(error(&*panic)))
+}
+
+fn error(panic: &(dyn Any + Send)) -> Error {
+    let message = words(panic);
+    let place = place_of(message).unwrap_or_else(|| "an unknown place".to_owned());
+    Error::internal(format!("a panic at {place}: {message}"))
+}
+
+fn words(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("no message")
+}
+
+// Neither of these waits for the lock: a panic must end, and a forked process may find it locked.
+
+fn remember(info: &PanicHookInfo<'_>) {
+    let message = words(info.payload()).to_owned();
+    let place = info
+        .location()
+        .map_or_else(String::new, ToString::to_string);
+    if let Ok(mut seen) = SEEN.try_lock() {
+        seen.truncate(RECENT - 1);
+        seen.push_front(Seen { message, place });
+    }
+}
+
+fn place_of(message: &str) -> Option<String> {
+    let seen = SEEN.try_lock().ok()?;
+    let found = seen.iter().find(|seen| seen.message == message)?;
+    Some(found.place.clone())
+}

@@ -1,0 +1,107 @@
+//! Bytes that are kept outside: what they are, in which version, and a checksum over all of it.
+//!
+//! A mark of eight bytes, the payload, and the CRC-32 of both (that of zlib, so that other
+//! languages have it, too). Damage shows by the checksum: bursts of up to 32 bits always, anything
+//! else but for chance 2⁻³². What somebody forged shows when the payload is looked at.
+
+use serde::de::DeserializeOwned;
+use serde::Serialize;
+
+use crate::error::{Error, ErrorKind, Result};
+
+/// What the bytes describe.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The boundary of a solid.
+    Solid,
+    /// A partition tree of a set.
+    Set,
+    /// A tree that rays have grown.
+    Rays,
+}
+
+const MARK: [u8; 6] = *b"bspcsg";
+
+/// The version that is written.
+const VERSION: u8 = 2;
+
+/// How bytes of version 1 begin, which had neither mark nor checksum.
+const FIRST: u8 = 1;
+
+const HEAD: usize = MARK.len() + 2;
+const CHECKSUM: usize = 4;
+
+impl Kind {
+    fn letter(self) -> u8 {
+        match self {
+            Self::Solid => b's',
+            Self::Set => b't',
+            Self::Rays => b'r',
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Solid => "a solid",
+            Self::Set => "a partition tree",
+            Self::Rays => "a tree of rays",
+        }
+    }
+
+    fn refusal(self, why: &str) -> Error {
+        let text = format!("the bytes are not a snapshot of {}: {why}", self.name());
+        Error::new(ErrorKind::BadSnapshot, text)
+    }
+
+    /// The error for a payload that contradicts itself.
+    pub fn contradiction(self) -> Error {
+        self.refusal("they contradict themselves")
+    }
+}
+
+/// A value as bytes.
+///
+/// # Errors
+/// `Internal` if encoding fails.
+pub fn seal(kind: Kind, value: &impl Serialize) -> Result<Vec<u8>> {
+    let mut bytes = MARK.to_vec();
+    bytes.extend([kind.letter(), VERSION]);
+    let mut bytes =
+        postcard::to_extend(value, bytes).map_err(|e| Error::internal(e.to_string()))?;
+    bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+    Ok(bytes)
+}
+
+/// A value from bytes, also of version 1.
+///
+/// # Errors
+/// `BadSnapshot`.
+pub fn unseal<T: DeserializeOwned>(kind: Kind, bytes: &[u8]) -> Result<T> {
+    let payload = payload(kind, bytes)?;
+    match postcard::take_from_bytes(payload) {
+        Ok((value, [])) => Ok(value),
+        _ => Err(kind.contradiction()),
+    }
+}
+
+fn payload(kind: Kind, bytes: &[u8]) -> Result<&[u8]> {
+    if let Some((&FIRST, payload)) = bytes.split_first() {
+        return Ok(payload);
+    }
+    let head = [&MARK[..], &[kind.letter()]].concat();
+    let Some((version, _)) = bytes.strip_prefix(&*head).and_then(<[u8]>::split_first) else {
+        return Err(kind.refusal("they do not begin as one"));
+    };
+    if *version != VERSION {
+        let why = format!("version {version} is not known; a newer bspcsg may have written it");
+        return Err(kind.refusal(&why));
+    }
+    let (sealed, checksum) = bytes
+        .split_last_chunk::<CHECKSUM>()
+        .filter(|(sealed, _)| sealed.len() >= HEAD)
+        .ok_or_else(|| kind.refusal("they end too soon"))?;
+    if crc32fast::hash(sealed) != u32::from_le_bytes(*checksum) {
+        return Err(kind.refusal("the checksum does not match, so they were damaged on their way"));
+    }
+    Ok(&sealed[HEAD..])
+}
