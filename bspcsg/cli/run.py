@@ -17,6 +17,7 @@ from .job import Job
 from .options import TIMEOUT, common, making
 
 if TYPE_CHECKING:
+    from ..csg import Polish
     from ..solid import Solid
 
 
@@ -111,7 +112,9 @@ _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
     help="List the nodes that can be evaluated, and end.",
 )
 @click.option(
-    "--polish", is_flag=True, help="Undo OpenSCAD's rounding to six digits; not for Python."
+    "--polish",
+    is_flag=True,
+    help="Undo OpenSCAD's rounding to six digits, and say how far corners moved; not for Python.",
 )
 @click.option(
     "--on-invalid",
@@ -190,6 +193,7 @@ class _Run(Job):
             warnings.simplefilter("always", csg.CsgWarning)
             names = ("polish", "on_invalid", "allow_paths")
             options |= {name: self.settings[name] for name in names}
+            options["on_polish"] = self._tell_polish
             with self._advised():
                 if str(self._script) == STREAM:
                     solid = csg.loads(stream_text(), name=STREAM, **options)
@@ -199,6 +203,13 @@ class _Run(Job):
         for said in dict.fromkeys(str(warning.message) for warning in caught):
             self.out.warning(said)
         return solid
+
+    def _tell_polish(self, done: "Polish") -> None:
+        if done.pitch is None:
+            self.out.note("polish: no corners had to move")
+        else:
+            step = f"a lattice of step 1e{done.pitch:+03d}"
+            self.out.note(f"polish: corners moved by {done.moved:.2g} at most, to {step}")
 
     @contextmanager
     def _advised(self) -> Iterator[None]:

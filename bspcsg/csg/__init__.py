@@ -18,6 +18,7 @@ from .json_form import from_json, to_json
 from .loading import dump, dumps, load, loads, read_tree
 from .openscad import read_scad
 from .parser import parse, value_of
+from .polish import Polish
 from .registry import CsgWarning
 from .simplified import simplified
 from .tree import Argument, CsgTree, Node, Place
@@ -29,6 +30,7 @@ __all__ = [
     "CsgWarning",
     "Node",
     "Place",
+    "Polish",
     "dump",
     "dumps",
     "evaluate",

@@ -1,8 +1,8 @@
 """Trees as geometry."""
 
 import os
-from collections.abc import Hashable, Iterable
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Hashable, Iterable
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..bsp import Region
@@ -19,7 +19,7 @@ from . import (
     nodes_solid,
     nodes_sweep,
 )
-from .polish import polished_pitch
+from .polish import Polish, corners_and_levels, pitch_of, polished_pitch, snapped
 from .registry import RECIPES, Evaluation, Geometry, OnInvalid
 from .scope import Scope, inherited, with_scope
 from .source import error_at
@@ -32,6 +32,10 @@ MAKERS = (
 )  # fmt: skip
 
 
+#: Nodes that combine their children where they stand.
+_COMBINING = frozenset({"group", "union", "color", "render", "difference", "intersection"})
+
+
 def node_names() -> tuple[str, ...]:
     """Return the names of the nodes that can be evaluated, sorted."""
     return tuple(sorted(RECIPES))
@@ -42,6 +46,7 @@ def evaluate(
     tree: CsgTree,
     *,
     polish: bool = False,
+    on_polish: Callable[[Polish], object] | None = None,
     on_invalid: OnInvalid = "error",
     allow_paths: Iterable[str | os.PathLike[str]] = (),
 ) -> Geometry:
@@ -51,11 +56,15 @@ def evaluate(
     ----------
     tree : CsgTree
     polish : bool
-        Undo what six digits did: matrices within 1e-5 of a rotation become that rotation, and
-        coordinates are snapped to a lattice whose step is a unit of the sixth digit of the model's
-        largest coordinate, so that faces meet again that nearly did; faces of turned bodies may
-        break where their corners move by as much. The model is evaluated once more to know its
-        size.
+        Undo what six digits did: matrices within 1e-5 of a rotation become that rotation, and the
+        corners of the parts that unions, differences and intersections combine, if no other node is
+        around these, move to the finest lattice on which as many corners of different parts, and
+        faces across the axes, coincide as on any. Its step is a unit of the sixth digit of the
+        largest coordinate at most, and each corner moves once, by at most half a step along each
+        axis. Nothing moves where that brings nothing together; faces of turned bodies may break
+        where their corners move.
+    on_polish : callable, optional
+        Is told which lattice that was and how far corners moved, as a `Polish`.
     on_invalid : {"error", "warn", "repair"}
         Whether polyhedra and imported meshes that are not closed are errors, or are left out with a
         warning, as OpenSCAD does, or closed by `bspcsg.repair` with one.
@@ -79,21 +88,28 @@ def evaluate(
     """
     allowed = tuple(Path(path).resolve() for path in allow_paths)
     run = Evaluation(tree.name, tree.folder, allowed, polish, on_invalid=on_invalid)
-    result = _run(tree, run)
-    if not polish or result is None or result.is_empty:
+    rough = _Cache(run)
+    result = rough.geometry(_whole(tree))
+    if not polish:
         return result
-    return _run(tree, replace(run, pitch=polished_pitch(_largest(result))))
+    pitch = _wanted_pitch(rough.parts)
+    fine = rough if pitch is None else _Cache(run, pitch)
+    if pitch is not None:
+        result = fine.geometry(_whole(tree))
+    if on_polish is not None:
+        on_polish(Polish(pitch, fine.moved))
+    return result
 
 
-def _largest(body: Solid | Region) -> float:
-    bounds = body.bounds
-    return 0.0 if bounds is None else float(abs(bounds).max())
+def _whole(tree: CsgTree) -> Node:
+    return Node("union", (), tree.roots())
 
 
-def _run(tree: CsgTree, run: Evaluation) -> Geometry:
-    cache = _Cache(run)
-    whole = Node("union", (), tree.roots())
-    return cache.geometry(whole)
+def _wanted_pitch(parts: list[Solid | Region]) -> int | None:
+    """Return the lattice on which the parts of a model meet that nearly do; None if none helps."""
+    there = [part for part in parts if not part.is_empty]
+    finest = min((pitch_of(part) for part in there), default=0)
+    return polished_pitch(corners_and_levels(there), finest)
 
 
 @dataclass
@@ -102,62 +118,74 @@ class _Cache:
 
     Two nodes say the same if their names, arguments and children do; so repeated parts share one
     solid, which is evaluated once.
+
+    Parameters
+    ----------
+    run : Evaluation
+    pitch : int, optional
+        The lattice that corners of parts move to: a part is what the operations around everything
+        combine, if no other node is around it.
+    parts : list of Solid or Region
+    moved : float
+        How far the corner of a part went that went farthest.
     """
 
     run: Evaluation
+    pitch: int | None = None
     numbers: dict[Hashable, int] = field(default_factory=dict)
     made: list[Geometry] = field(default_factory=list)
+    parts: list[Solid | Region] = field(default_factory=list)
+    moved: float = 0.0
 
     def geometry(self, root: Node) -> Geometry:
         """Return what a node stands for; nodes may nest to any depth."""
-        waiting: list[tuple[Node, Scope | None]] = [(root, ())]
+        waiting: list[tuple[Node, Scope | None, bool]] = [(root, (), True)]
         done: list[int] = []
         while waiting:
-            node, scope = waiting.pop()
+            node, scope, outer = waiting.pop()
+            combines = outer and node.name in _COMBINING
             children = [child for child in node.children if not child.is_ignored]
             if scope is not None:
                 inner = inherited(scope, node)
-                waiting.append((with_scope(node, scope), None))
-                waiting.extend((child, inner) for child in reversed(children))
+                waiting.append((with_scope(node, scope), None, outer))
+                waiting.extend((child, inner, combines) for child in reversed(children))
                 continue
             first = len(done) - len(children)
             numbers = tuple(done[first:])
             del done[first:]
-            done.append(self._number(node, numbers))
+            done.append(self._number(node, numbers, outer and not combines))
         return self.made[done[0]]
 
-    def _number(self, node: Node, children: tuple[int, ...]) -> int:
+    def _number(self, node: Node, children: tuple[int, ...], is_part: bool) -> int:
         """Return the number of the node's geometry, made if it is new."""
-        key = (node.name, node.arguments, children)
+        key = (node.name, node.arguments, children, is_part)
         if key not in self.numbers:
-            self.made.append(self._make(node, [self.made[child] for child in children]))
+            made = self._make(node, [self.made[child] for child in children], is_part)
+            self.made.append(made)
             self.numbers[key] = len(self.made) - 1
         return self.numbers[key]
 
-    def _make(self, node: Node, children: list[Geometry]) -> Geometry:
+    def _make(self, node: Node, children: list[Geometry], is_part: bool) -> Geometry:
         recipe = RECIPES.get(node.name)
         if recipe is None:
             raise unsupported(node, self.run.script)
         try:
             made = recipe.maker(node, children, self.run)
-            polished = self.run.pitch is not None
-            return self._built(made) if recipe.makes_corners or polished else made
+            if isinstance(made, Solid) and (recipe.makes_corners or (is_part and self.run.polish)):
+                made.tree  # noqa: B018  builds it, so that what is wrong is this node's error
+            return self._part(made) if is_part and self.run.polish else made
         except BspcsgError as error:
             raise _placed(error, node, self.run.script) from error
 
-    def _built(self, body: Geometry) -> Geometry:
-        """Return a body on the lattice asked for; what is wrong with it is this node's error."""
-        pitch = self.run.pitch
-        if isinstance(body, Solid):
-            body.tree  # noqa: B018  builds it
-        if body is None or pitch is None or body.is_empty:
+    def _part(self, body: Geometry) -> Geometry:
+        """Return a part with its corners on the lattice asked for."""
+        if body is None or body.is_empty:
             return body
-        if isinstance(body, Region):
-            return body if body.pitch == pitch else Region(body.to_polygons(), pitch=pitch)
-        if body.tree.pitch == pitch:
-            return body
-        mesh = body.normalized().to_mesh()
-        return Solid(mesh.vertices, mesh.faces, pitch=pitch)
+        if self.pitch is not None and self.pitch > pitch_of(body):
+            body, moved = snapped(body, self.pitch)
+            self.moved = max(self.moved, moved)
+        self.parts.append(body)
+        return body
 
 
 def unsupported(node: Node, script: str) -> FormatError:

@@ -1,7 +1,7 @@
 """Scripts as solids, and solids as scripts."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from .evaluator import evaluate
 from .from_solid import tree_of
 from .json_form import from_json
 from .parser import parse
+from .polish import Polish
 from .registry import Geometry, OnInvalid
 from .tree import CsgTree
 from .writer import written
@@ -25,6 +26,7 @@ def load(
     path: str | os.PathLike[str],
     *,
     polish: bool = False,
+    on_polish: Callable[[Polish], object] | None = None,
     on_invalid: OnInvalid = "error",
     allow_paths: Iterable[str | os.PathLike[str]] = (),
     **options: Any,
@@ -38,6 +40,8 @@ def load(
         converts first (see `bspcsg.csg.read_tree`).
     polish : bool
         Undo OpenSCAD's rounding to six digits (see `bspcsg.csg.evaluate`).
+    on_polish : callable, optional
+        Is told how far corners moved.
     on_invalid : {"error", "warn", "repair"}
         What to do about meshes that are not closed (see `bspcsg.csg.evaluate`).
     allow_paths : iterable of path
@@ -59,7 +63,13 @@ def load(
         For what is left out as OpenSCAD leaves it out.
     """
     tree = read_tree(path, **options)
-    body = evaluate(tree, polish=polish, on_invalid=on_invalid, allow_paths=allow_paths)
+    body = evaluate(
+        tree,
+        polish=polish,
+        on_polish=on_polish,
+        on_invalid=on_invalid,
+        allow_paths=allow_paths,
+    )
     return _solid(body, tree.name)
 
 
@@ -68,6 +78,7 @@ def loads(
     text: str,
     *,
     polish: bool = False,
+    on_polish: Callable[[Polish], object] | None = None,
     on_invalid: OnInvalid = "error",
     allow_paths: Iterable[str | os.PathLike[str]] = (),
     folder: str | Path | None = None,
@@ -82,7 +93,13 @@ def loads(
     7.0
     """
     tree = parse(text, name, folder)
-    body = evaluate(tree, polish=polish, on_invalid=on_invalid, allow_paths=allow_paths)
+    body = evaluate(
+        tree,
+        polish=polish,
+        on_polish=on_polish,
+        on_invalid=on_invalid,
+        allow_paths=allow_paths,
+    )
     return _solid(body, name)
 
 

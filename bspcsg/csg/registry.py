@@ -39,8 +39,6 @@ class Evaluation:
         Folders beside it, links followed, in which imported files may lie.
     polish : bool
         Whether matrices are made exact rotations where they nearly are.
-    pitch : int, optional
-        The lattice for bodies as they are made, ``10**pitch`` units.
     on_invalid : {"error", "warn", "repair"}
         Whether polyhedra and imported meshes that are not closed are errors, left out, or closed.
     united : dict
@@ -51,7 +49,6 @@ class Evaluation:
     folder: Path = field(default_factory=Path)
     allowed: tuple[Path, ...] = ()
     polish: bool = False
-    pitch: int | None = None
     on_invalid: OnInvalid = "error"
     united: dict[int, tuple[Region, list[Region]]] = field(default_factory=dict)
 

@@ -33,12 +33,18 @@ def test_csg_as_json(folder: Path, capsys: Capture) -> None:
     assert found["volume_exact"] == "11" and found["genus"] == 1 and found["check"] is not None
 
 
-def test_polish_coarsens_the_lattice(folder: Path, capsys: Capture) -> None:
-    matrix = "[[0.866025, -0.5, 0, 0], [0.5, 0.866025, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"
-    Path("turned.csg").write_text(f"multmatrix({matrix}) cube(1);")
-    for options, pitch in ([], -9), (["--polish"], -5):
-        code, out, _ = ran(capsys, "run", "turned.csg", "-o", "x.ply", "--json", *options)
-        assert code == 0 and json.loads(out)["pitch"] == pitch
+def test_polish_says_how_far_corners_moved(folder: Path, capsys: Capture) -> None:
+    matrix = "[[0.866025, -0.5, 0, {}], [0.5, 0.866025, 0, {}], [0, 0, 1, 0], [0, 0, 0, 1]]"
+    text = f"multmatrix({matrix.format(0, 0)}) cube([30, 10, 10]);"
+    Path("one.csg").write_text(text)
+    Path("two.csg").write_text(f"{text} multmatrix({matrix.format(25.9808, 15)}) cube(10);")
+    said = "polish: corners moved by 6.6e-05 at most, to a lattice of step 1e-04"
+    for name, pitch, note in [("one", -9, "polish: no corners had to move"), ("two", -4, said)]:
+        options = "run", f"{name}.csg", "-o", "x.ply", "--json"
+        code, out, err = ran(capsys, *options, "--polish")
+        assert code == 0 and json.loads(out)["pitch"] == pitch and err == f"note: {note}\n"
+        code, out, err = ran(capsys, *options)
+        assert code == 0 and json.loads(out)["pitch"] == -9 and err == ""
 
 
 @pytest.mark.skipif(shutil.which("openscad") is None, reason="needs openscad")
