@@ -95,7 +95,7 @@ class Core(Guided):
         super().__init__(name, [str(built(folder) / name)], folder)
         if not any(self._corpus.iterdir()):
             asked = {**os.environ, "BSPCSG_FUZZ_SEEDS": str(self._corpus)}
-            subprocess.run(self._command, env=asked, check=True)
+            subprocess.run(self._command, env=asked, check=True, capture_output=True)
 
 
 class Readers(Guided):

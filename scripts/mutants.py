@@ -38,7 +38,7 @@ MUTANTS = [
         "geometry/crossing.rs",
         "        return -sign;\n",
         "        return sign;\n",
-        ("laws_solids", "tetrahedra_obey_the_laws"),
+        ("laws_solids",),
     ),
     Mutant(
         "points of regions that nothing winds around are inside",
