@@ -87,18 +87,26 @@ def evaluate(
         For what is left out as OpenSCAD leaves it out.
     """
     allowed = tuple(Path(path).resolve() for path in allow_paths)
-    run = Evaluation(tree.name, tree.folder, allowed, polish, on_invalid=on_invalid)
+    name = tree.name if tree.intermediate is None else tree.intermediate.name
+    run = Evaluation(name, tree.folder, allowed, polish, on_invalid=on_invalid)
+    try:
+        result, done = _polished(tree, run)
+    except BspcsgError as error:
+        raise tree.explained(error) from error
+    if polish and on_polish is not None:
+        on_polish(done)
+    return result
+
+
+def _polished(tree: CsgTree, run: Evaluation) -> tuple[Geometry, Polish]:
+    """Evaluate a tree, once more if polishing wants another lattice."""
     rough = _Cache(run)
     result = rough.geometry(_whole(tree))
-    if not polish:
-        return result
-    pitch = _wanted_pitch(rough.parts)
-    fine = rough if pitch is None else _Cache(run, pitch)
-    if pitch is not None:
-        result = fine.geometry(_whole(tree))
-    if on_polish is not None:
-        on_polish(Polish(pitch, fine.moved))
-    return result
+    pitch = _wanted_pitch(rough.parts) if run.polish else None
+    if pitch is None:
+        return result, Polish()
+    fine = _Cache(run, pitch)
+    return fine.geometry(_whole(tree)), Polish(pitch, fine.moved)
 
 
 def _whole(tree: CsgTree) -> Node:

@@ -5,9 +5,11 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from ..errors import FormatError
+from .intermediate import Intermediate
 from .parser import parse
 from .tree import CsgTree, Value
 from .writer import value_text
@@ -33,7 +35,8 @@ def read_scad(
     ------
     FormatError
         If openscad is not on the PATH (code "missing_program"), takes too long ("timeout") or
-        refuses the file; the message ends in what it said.
+        refuses the file; the message ends in what it said. Errors in what it made of the file
+        quote the line of that, and name the script's own where only one can be meant.
     """
     name = os.fspath(path)
     if not path.is_file():
@@ -41,7 +44,13 @@ def read_scad(
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as folder:
         output = Path(folder, "model.csg")
         _convert(path, output, defines or {}, timeout)
-        return parse(output.read_text(encoding="utf-8"), name, path.parent)
+        text = output.read_text(encoding="utf-8")
+    made = Intermediate(name, path.read_text(encoding="utf-8", errors="replace"), text)
+    try:
+        tree = parse(text, made.name, path.parent)
+    except FormatError as error:
+        raise made.explained(error) from error
+    return replace(tree, name=name, intermediate=made)
 
 
 def _convert(path: Path, output: Path, defines: Mapping[str, Value], timeout: float) -> None:

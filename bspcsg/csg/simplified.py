@@ -1,5 +1,7 @@
 """Trees without the nodes that make no difference."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from .tree import CsgTree, Node
@@ -18,7 +20,7 @@ def simplified(tree: CsgTree) -> CsgTree:
     within others, and matrices that move nothing. Other nodes and their arguments stay, those that
     cannot be evaluated as well.
     """
-    return CsgTree(_with_children(Node("union", (), tree.roots())), tree.name, tree.folder)
+    return replace(tree, nodes=_with_children(Node("union", (), tree.roots())))
 
 
 def _with_children(root: Node) -> tuple[Node, ...]:

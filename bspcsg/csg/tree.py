@@ -4,6 +4,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
+from ..errors import BspcsgError
+from .intermediate import Intermediate
+
 #: What an argument may be: a number, a text, true or false, undef (None), or a vector of values.
 Value: TypeAlias = "float | str | bool | tuple[Value, ...] | None"
 
@@ -73,11 +76,18 @@ class CsgTree:
         What errors call the script.
     folder : Path
         Where the files that it imports are looked for.
+    intermediate : Intermediate, optional
+        The text whose lines the nodes' places name, if that is not the script's.
     """
 
     nodes: tuple[Node, ...]
     name: str = field(default="<csg>", compare=False)
     folder: Path = field(default_factory=Path, compare=False)
+    intermediate: Intermediate | None = field(default=None, compare=False)
+
+    def explained(self, error: BspcsgError) -> BspcsgError:
+        """Return an error about a node with all that is known about its place."""
+        return error if self.intermediate is None else self.intermediate.explained(error)
 
     def roots(self) -> tuple[Node, ...]:
         """Return the nodes that count: the first one marked ``!``, else all top nodes."""

@@ -6,7 +6,7 @@ import hypothesis.strategies as st
 import pytest
 from hypothesis import given
 
-from bspcsg import FormatError, csg
+from bspcsg import BspcsgError, FormatError, csg
 from bspcsg.csg import Argument, CsgTree, Node
 
 DEEP = 100_000
@@ -245,3 +245,34 @@ def test_scad_goes_through_openscad(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     stand_in(tmp_path, "exec sleep 5", monkeypatch)
     with pytest.raises(FormatError, match=r"longer than 0\.2 seconds"):
         csg.read_scad(tmp_path / "part.scad", timeout=0.2)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a POSIX shell")
+@pytest.mark.parametrize(
+    ("source", "made", "place", "own"),
+    [
+        ("// text(\n\nt = 1;\ntext(t);", "group() {\n  text(t = 1);\n}", "2:3", 4),
+        ("text(1);\ntext(2);", "group() {\n  text(t = 1);\n}", "2:3", None),
+        ("use <ball.scad>\ntext(1);", "group() {\n  text(t = 1);\n}", "2:3", None),
+        ("cube(1); wrap();\n/*\nwarp()*/ warp();", "cube(1);\n  warp();", "2:3", 3),
+        ("cube(1);", "cube(1);\n  cube(1;", "2:9", None),
+    ],
+)
+def test_errors_of_scad_quote_the_line_that_they_name(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    source: str,
+    made: str,
+    place: str,
+    own: int | None,
+) -> None:
+    path = tmp_path / "part.scad"
+    path.write_text(source)
+    (tmp_path / "made").write_text(made)
+    stand_in(tmp_path, f'cp "{tmp_path}/made" "$2"', monkeypatch)
+    with pytest.raises(BspcsgError) as caught:
+        csg.load(path)
+    first, quoted, *rest = str(caught.value).splitlines()
+    assert first.startswith(f"{path}, as openscad's .csg:{place}: ")
+    assert quoted == f"  line 2 of the .csg: {made.splitlines()[1].strip()}"
+    assert rest == ([] if own is None else [f"  from {path}:{own}"])
