@@ -19,12 +19,12 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeAlias
 
-from ._types import ProgramLine
 from .counting import counted, uncounted
 from .errors import BspcsgError, FormatError
 from .script_values import VALUES, compiled
 from .setops import union
-from .solid import Solid, with_record
+from .solid import LastOperation, Solid, with_record
+from .transform import Factors
 
 #: Longest time for a script, in seconds, unless the caller says otherwise.
 TIMEOUT = 600.0
@@ -35,8 +35,8 @@ _SERVE = (
     " from bspcsg.script import serve; serve()"
 )
 
-#: A solid, and the program and operands that made it, unless it was no operation.
-_Made: TypeAlias = tuple[Solid, tuple[list[ProgramLine], tuple[Solid, ...]] | None]
+#: A solid; of the result of an operation that, and the transform on it, for its pickle forgets it.
+_Made: TypeAlias = Solid | tuple[LastOperation, Factors]
 
 _shown: list[Solid] = []
 
@@ -101,8 +101,7 @@ def run_script(
         answered = pickle.loads(answer.read_bytes())
     if isinstance(answered, BspcsgError):
         raise answered
-    solid, made = answered
-    return solid if made is None else with_record(solid, *made)
+    return answered if isinstance(answered, Solid) else with_record(*answered)
 
 
 def _run_child(task: bytes, name: str, timeout: float | None) -> int:
@@ -171,9 +170,9 @@ def _result(name: str, variables: dict[str, Any]) -> Solid | BspcsgError:
 
 
 def _with_operation(result: Solid) -> _Made:
-    """Return a solid and what made it, which its pickle leaves out."""
+    """Return what the caller needs to know a solid and what made it."""
     last = result.last_operation
-    return result, None if last is None else (last.program, last.operands)
+    return result if last is None else (last, result.expression.factors)
 
 
 def _located(error: Exception, name: str) -> BspcsgError:

@@ -489,14 +489,14 @@ class LastOperation:
     result: Solid
 
 
-def with_record(solid: Solid, program: list[ProgramLine], operands: Sequence[Solid]) -> Solid:
-    """Return the solid with what made it before the transform on it, which pickling leaves out.
+def with_record(last: LastOperation, factors: Factors) -> Solid:
+    """Return the solid of an operation under a transform, for the modules of this package.
 
-    For the modules of this package; `program` and `operands` are those of a `LastOperation`.
+    It knows the operation, which pickling it leaves out.
     """
-    leaves = tuple(evaluate(operand._node) for operand in operands)
-    leaf = TreeLeaf(tree_of(evaluate(solid._node)), Record(program, leaves))
-    return Solid.from_node(Node(leaf), solid._factors)
+    leaves = tuple(evaluate(operand._node) for operand in last.operands)
+    leaf = TreeLeaf(last.result.tree, Record(last.program, leaves))
+    return Solid.from_node(Node(leaf), factors)
 
 
 def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:

@@ -84,6 +84,8 @@ result._node.content = TreeLeaf(b.cube(2).tree, result._node.content.record)
         "b.cube(3) - b.cube(1)",
         "(b.cube(3) - b.cube(1)).translate(1, 2, 3).rotate(30)",
         "b.cube(3) - b.half_space((1, 1, 1), 2)",
+        "b.intersection(b.cube(3) ^ b.half_space((1, 1, 1), 2),"
+        " *(~b.half_space(n, -1) for n in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))).rotate(30)",
         "[b.cube(1), b.sphere(2)]",
     ],
 )
