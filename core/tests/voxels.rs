@@ -13,7 +13,7 @@ use bspcsg::tree::solid::Solid;
 
 use support::{
     applied, combined, complement, inside, is_empty, is_full, manifold_mesh, normalized, straight,
-    turned, volume, Numbers, Ratio, Shape, Voxels,
+    turned, volume, wanted, Numbers, Ratio, Shape, Voxels,
 };
 
 /// A placement of the cubes: the map of the lattice and the volume it gives a cube of side 2.
@@ -202,7 +202,7 @@ fn counted(layers: &[Layer], side: i64, rule: Rule) -> Voxels {
     };
     let mut bits = 0;
     for (i, at) in Voxels::places(side).enumerate() {
-        bits |= u32::from(rule.inside(number(at))) << i;
+        bits |= u32::from(wanted(rule, number(at))) << i;
     }
     Voxels { side, bits }
 }

@@ -51,6 +51,15 @@ pub fn normalized(solid: &Solid, rule: Rule) -> Solid {
     normalize(solid, rule, &AtomicBool::new(false)).expect("normalizes")
 }
 
+/// What a rule says of a winding number, in words of its own.
+pub fn wanted(rule: Rule, number: i32) -> bool {
+    match rule {
+        Rule::Positive => number >= 1,
+        Rule::Nonzero => number.abs() >= 1,
+        Rule::EvenOdd => number & 1 == 1,
+    }
+}
+
 /// Where lattice points lie.
 pub fn located(solid: &Solid, points: &[Lattice]) -> Vec<Location> {
     classify(solid, points).expect("lattice points")

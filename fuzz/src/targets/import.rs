@@ -12,7 +12,7 @@ use bspcsg::tree::solid::Solid;
 
 use super::checks::manifold_or_unbounded;
 use crate::scene::whole_units;
-use crate::support::{double, located, normalized};
+use crate::support::{double, located, normalized, wanted};
 use crate::winding::winding;
 use crate::winding::Place;
 
@@ -55,7 +55,7 @@ pub fn import(data: &[u8]) {
             let Some(w) = winding(&wide, &Place::at(point)) else {
                 continue;
             };
-            let inside = rule.inside(w);
+            let inside = wanted(rule, w);
             let expected = if inside {
                 Location::Inside
             } else {
