@@ -22,6 +22,10 @@ FOLDER = REPOSITORY / ".fuzz" / "mutants"
 FAILED = 101
 
 
+#: A test that takes longer has failed, too.
+SECONDS = 600
+
+
 class Mutant(NamedTuple):
     """A change of one place, and the test file (and test) that must notice it."""
 
@@ -169,7 +173,11 @@ def tested(mutant: Mutant, core: Path) -> int:
     built = subprocess.run([*cargo, "--no-run"], capture_output=True, check=False)
     if built.returncode != 0:
         return -1
-    return subprocess.run([*cargo, *names], capture_output=True, check=False).returncode
+    try:
+        done = subprocess.run([*cargo, *names], capture_output=True, check=False, timeout=SECONDS)
+    except subprocess.TimeoutExpired:
+        return FAILED
+    return done.returncode
 
 
 if __name__ == "__main__":
