@@ -90,6 +90,7 @@ _CLASSES: dict[str, type[BspcsgError]] = {
     "degenerate": InvalidMeshError,
     "non_planar": InvalidMeshError,
     "not_simple": InvalidMeshError,
+    "not_reduced": InvalidMeshError,
     "bad_snapshot": FormatError,
     "too_large": LimitError,
     "too_many": LimitError,
@@ -103,6 +104,7 @@ _ADVICE = {
     "degenerate": "Leave it out, or choose a finer pitch if it is only very small.",
     "non_planar": "Pass triangles, or non_planar='triangulate' to have it taken apart.",
     "not_simple": "Give the outline of a simple polygon.",
+    "not_reduced": "Make the solid without trusted=True; then it is united with itself.",
     "too_large": "Choose a coarser pitch (for example pitch=-6), or move or scale the solids.",
     "too_small": "Choose a finer pitch (for example pitch=-12), or scale the solid up.",
 }

@@ -1,5 +1,6 @@
 """What can be measured of a solid: the queries, apart from the value that answers them."""
 
+import math
 from abc import ABC, abstractmethod
 from fractions import Fraction
 from typing import Any, Self
@@ -12,6 +13,9 @@ from .mesh import Mesh
 
 #: What `Measured.volume_residues` are modulo of.
 _PRIMES = (2**61 - 1, 2**61 - 31)
+
+#: Fractions of more digits take more than about a second to bring to lowest terms.
+LONGEST_VOLUME = 200_000
 
 
 class Measured(ABC):
@@ -87,9 +91,32 @@ class Measured(ABC):
         ------
         UnboundedError
             If the solid reaches to infinity; so for all measures.
+        LimitError
+            If it might be a fraction of more than 200 000 digits; see `exact_volume`.
         """
+        return self.exact_volume()
+
+    def exact_volume(self, most_digits: int = LONGEST_VOLUME) -> Fraction:
+        """Return the volume of the set in cubic model units, exactly.
+
+        Its denominator grows by about one constructed corner's for each corner. Lowest terms cost
+        the square of the length, and cannot be interrupted.
+
+        Parameters
+        ----------
+        most_digits : int
+            How many decimal digits the numerator and the denominator may have.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+        LimitError
+            If they might have more; the message says how many.
+        """
+        bits = math.ceil(most_digits * math.log2(10))
         with core_errors():
-            return Fraction(*self.normalized().tree.volume6_exact())
+            return Fraction(*self.normalized().tree.volume6_exact(bits))
 
     @property
     def volume_near(self) -> Fraction:

@@ -7,7 +7,6 @@
 mod support;
 
 use std::hint::black_box;
-use std::sync::atomic::AtomicBool;
 use std::sync::Arc;
 
 use bspcsg::extract::round;
@@ -115,7 +114,7 @@ fn expression(solids: &[Solid]) -> usize {
     let operands = (0..count).map(Term::Operand);
     let terms = operands.chain([Term::Or((0..count).collect())]).collect();
     let expression = Expression::new(terms).expect("well formed");
-    let done = evaluate(&expression, solids, &AtomicBool::new(false));
+    let done = evaluate(&expression, solids);
     triangles(&done.expect("evaluates").0)
 }
 

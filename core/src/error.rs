@@ -36,6 +36,8 @@ pub enum ErrorKind {
     NonPlanar,
     /// The outline of a polygon crosses or touches itself.
     NotSimple,
+    /// A mesh that was declared to bound a set without overlaps has some.
+    NotReduced,
     /// Stored data is not what it claims to be.
     BadSnapshot,
     /// Another thread was using the object when the process was forked.
@@ -63,6 +65,7 @@ impl ErrorKind {
             Self::Degenerate => "degenerate",
             Self::NonPlanar => "non_planar",
             Self::NotSimple => "not_simple",
+            Self::NotReduced => "not_reduced",
             Self::BadSnapshot => "bad_snapshot",
             Self::Forked => "forked",
             Self::Internal => "internal",
@@ -123,4 +126,4 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {}
 
 /// The crate's result type.
-pub type Result<T> = std::result::Result<T, Error>;
+pub type Result<T, E = Error> = std::result::Result<T, E>;

@@ -8,6 +8,7 @@ pub mod arith;
 pub mod error;
 pub mod extract;
 pub mod geometry;
+pub mod interrupt;
 pub mod merge;
 pub mod mesh;
 pub mod query;

@@ -226,7 +226,6 @@ fn one_limb_is_enough_for_small_numbers() {
     assert_eq!(Int::<1>::from_i64(-7).rem_u61(P1), P1 - 7);
 }
 
-#[cfg(debug_assertions)]
 mod overflow {
     use super::*;
 

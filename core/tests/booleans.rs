@@ -1,6 +1,5 @@
 //! Booleans of small solids end to end, with exact volumes.
 
-use std::sync::atomic::AtomicBool;
 use std::sync::Arc;
 
 use bspcsg::extract::collect::has_no_boundary;
@@ -34,9 +33,7 @@ fn cuboid(low: [f64; 3], high: [f64; 3]) -> Solid {
 
 fn combine(terms: Vec<Term>, solids: &[Solid]) -> Solid {
     let expression = Expression::new(terms).expect("well formed");
-    evaluate(&expression, solids, &AtomicBool::new(false))
-        .expect("evaluates")
-        .0
+    evaluate(&expression, solids).expect("evaluates").0
 }
 
 fn union(a: &Solid, b: &Solid) -> Solid {

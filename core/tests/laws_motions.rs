@@ -2,7 +2,6 @@
 
 mod support;
 
-use std::sync::atomic::AtomicBool;
 use std::sync::Arc;
 
 use bspcsg::arith::Int;
@@ -99,7 +98,7 @@ fn damaged_snapshots_do_no_harm() {
                 let terms = lines.chain([Term::Or(vec![0, 1])]).collect();
                 let union = Expression::new(terms).expect("well formed");
                 let operands = [solid.clone(), tool.clone()];
-                let _ = evaluate(&union, &operands, &AtomicBool::new(false));
+                let _ = evaluate(&union, &operands);
                 let _ = (round::mesh(&solid), classify(&solid, &[[20; 3]]));
             }
         }
@@ -122,12 +121,11 @@ fn forged(solid: &Solid, numbers: &mut Numbers) -> Vec<u8> {
 
 /// What is done with a solid that was read; defects are not among the errors it may end with.
 fn used(solid: &Solid, tool: &Solid) -> Result<()> {
-    let cancel = AtomicBool::new(false);
     let volume = || measure::volume(solid).map(drop);
     let near = || measure::volume_near(solid).map(drop);
     let mesh = || round::mesh(solid).map(drop);
     let place = || classify(solid, &[[20; 3], [5, 31, 8]]).map(drop);
-    let normal = || normalize(solid, Rule::Positive, &cancel).map(drop);
+    let normal = || normalize(solid, Rule::Positive).map(drop);
     let operated = || {
         let leaves = || [0, 1].map(Term::Operand).into_iter();
         for last in [
@@ -136,8 +134,8 @@ fn used(solid: &Solid, tool: &Solid) -> Result<()> {
             Term::Xor(vec![0, 1]),
         ] {
             let expression = Expression::new(leaves().chain([last]).collect())?;
-            let (result, _) = evaluate(&expression, &[solid.clone(), tool.clone()], &cancel)?;
-            round::mesh(&result).map_err(|e| explained(&result, e, &cancel))?;
+            let (result, _) = evaluate(&expression, &[solid.clone(), tool.clone()])?;
+            round::mesh(&result).map_err(|e| explained(&result, e))?;
         }
         Ok(())
     };
@@ -149,7 +147,7 @@ fn used(solid: &Solid, tool: &Solid) -> Result<()> {
         &normal,
         &operated,
     ] {
-        let ended = caught(use_of).map_err(|e| explained(solid, e, &cancel));
+        let ended = caught(use_of).map_err(|e| explained(solid, e));
         match ended.map_err(|e| (e.kind(), e)) {
             Ok(())
             | Err((ErrorKind::BadSnapshot | ErrorKind::Unbounded | ErrorKind::PitchMismatch, _)) => {

@@ -7,8 +7,17 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the bottom to the top.
-const LAYERS: [&str; 9] = [
-    "error", "arith", "geometry", "mesh", "tree", "merge", "extract", "query", "python",
+const LAYERS: [&str; 10] = [
+    "error",
+    "interrupt",
+    "arith",
+    "geometry",
+    "mesh",
+    "tree",
+    "merge",
+    "extract",
+    "query",
+    "python",
 ];
 
 fn rank(layer: &str) -> Option<usize> {

@@ -392,3 +392,25 @@ def test_unbounded_solids_moved_together_can_be_pickled() -> None:
         copy = pickle.loads(pickle.dumps(solid))
         assert copy.classify(points).tolist() == solid.classify(points).tolist()
         assert copy.equals(solid)
+
+
+def test_a_mesh_that_is_wrongly_trusted_is_named() -> None:
+    one = b.cube(2).to_mesh()
+    vertices = np.concatenate([one.vertices, one.vertices + (0.7, 0.8, 0.9)])
+    faces = np.concatenate([one.faces, one.faces + len(one.vertices)])
+    trusted = b.Solid(vertices, faces, trusted=True)
+    with pytest.raises(b.InvalidMeshError, match=r"operand 0 .* declared trusted") as caught:
+        (trusted & b.cube(2.5)).tree.stats()
+    assert caught.value.code == "not_reduced"
+    assert (b.Solid(vertices, faces) & b.cube(2.5)).volume > 8
+
+
+def test_exact_volumes_refuse_to_be_too_long() -> None:
+    ball = b.sphere(1, segments=24)
+    rest = ball - ball.rotate((10, 20, 30)).translate((0.1, 0.2, 0.3))
+    with pytest.raises(b.LimitError, match=r"up to \d+ digits, more than 10\b") as caught:
+        rest.exact_volume(most_digits=10)
+    assert caught.value.code == "too_many"
+    exact = rest.exact_volume()
+    assert exact == rest.volume_exact
+    assert abs(exact - rest.volume_near) < Fraction(1, 10**50)

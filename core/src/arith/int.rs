@@ -2,16 +2,16 @@
 
 use super::limbs::{
     bit_length, inverse_mod_limb, remainder_long, remainder_short, subtract_masked,
-    subtract_multiple, unsigned_product,
+    subtract_multiple, unsigned_product, SPARE,
 };
 use super::modular;
 use super::round;
 
 /// A signed integer of `N` 64-bit limbs, in two's complement.
 ///
-/// The limbs are little-endian. Arithmetic is exact as long as results fit; that they do is
-/// the caller's duty, discharged by the widths in [`bounds`](super::bounds) and checked in
-/// debug builds only. In release builds results wrap modulo 2^(64 `N`).
+/// The limbs are little-endian. Arithmetic is exact. That results fit is the caller's duty,
+/// discharged by the widths in [`bounds`](super::bounds); where one does not, the operation panics,
+/// in every build. Products need no check where the result has the limbs of both factors.
 ///
 /// Values are meant to stay within the symmetric range |x| < 2^(64 `N` − 1).
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -124,16 +124,20 @@ impl<const N: usize> Int<N> {
     }
 
     /// The absolute value.
+    ///
+    /// # Panics
+    /// If that is 2^(64 `N` − 1).
     #[inline]
     #[must_use]
     pub fn abs(self) -> Self {
-        debug_assert!(!self.is_minimum(), "the absolute value overflows");
+        assert!(!self.is_minimum(), "the absolute value overflows");
         Self {
             limbs: self.magnitude(),
         }
     }
 
     /// Whether the value is −2^(64 `N` − 1), the one without a negative.
+    #[inline]
     fn is_minimum(&self) -> bool {
         self.limbs[N - 1] == 1 << 63 && self.limbs[..N - 1].iter().all(|&limb| limb == 0)
     }
@@ -172,6 +176,9 @@ impl<const N: usize> Int<N> {
     /// The product with `other`, in `R` limbs.
     ///
     /// The product must lie in the symmetric range of `R` limbs; for `R >= N + B` it always fits.
+    ///
+    /// # Panics
+    /// If it does not.
     #[inline]
     #[must_use]
     #[allow(
@@ -179,16 +186,20 @@ impl<const N: usize> Int<N> {
         reason = "the width of the product is the caller's choice"
     )]
     pub fn mul<const B: usize, const R: usize>(self, other: &Int<B>) -> Int<R> {
-        let mut product = unsigned_product::<N, B, R>(&self.limbs, &other.limbs);
-        subtract_masked(&mut product, N, &other.limbs, self.sign_limb());
-        subtract_masked(&mut product, B, &self.limbs, other.sign_limb());
+        const { assert!(R + SPARE >= N + B) };
+        let (mut product, mut top) = unsigned_product::<N, B, R>(&self.limbs, &other.limbs);
+        subtract_masked(&mut product, &mut top, N, &other.limbs, self.sign_limb());
+        subtract_masked(&mut product, &mut top, B, &self.limbs, other.sign_limb());
         if R > N + B {
             let sign = ((product[N + B - 1] as i64) >> 63) as u64;
             product[N + B..].fill(sign);
         }
         let product = Int { limbs: product };
-        debug_assert!(
-            R >= N + B || product_fits(&self, other, &product),
+        assert!(
+            R >= N + B
+                || top[..N + B - R]
+                    .iter()
+                    .all(|limb| *limb == product.sign_limb()),
             "a product exceeds {R} limbs"
         );
         product
@@ -221,9 +232,12 @@ impl<const N: usize> Int<N> {
     }
 
     /// The remainder of the absolute value on division by `divisor`, which is not zero.
+    ///
+    /// # Panics
+    /// If it is.
     #[inline]
     pub fn rem_u128(&self, divisor: u128) -> u128 {
-        debug_assert!(divisor != 0, "division by zero");
+        assert!(divisor != 0, "division by zero");
         match u64::try_from(divisor) {
             Ok(short) => u128::from(remainder_short(&self.magnitude(), short)),
             Err(_) => remainder_long(&self.magnitude(), divisor),
@@ -258,17 +272,4 @@ impl<const N: usize> Int<N> {
         });
         Self { limbs }
     }
-}
-
-/// Whether a truncated product is the true one.
-///
-/// Bit lengths bound the product to one bit more than the limbs can hold; there, and only
-/// there, truncation shows in the sign.
-fn product_fits<const A: usize, const B: usize, const R: usize>(
-    a: &Int<A>,
-    b: &Int<B>,
-    product: &Int<R>,
-) -> bool {
-    let sign = a.signum() * b.signum();
-    sign == 0 || a.bit_length() + b.bit_length() <= Int::<R>::BITS && product.signum() == sign
 }

@@ -3,23 +3,40 @@
 //! The loops under [`Int`](super::Int) and the rounding. All of them wrap on purpose, so they
 //! spell it out instead of relying on the build's overflow checks being off.
 
-/// The low `R` limbs of the product of two unsigned numbers.
+/// The most limbs by which a product may be cut short; they are computed to see that they are empty.
+pub(super) const SPARE: usize = 2;
+
+/// The low `R >= A + B - SPARE` limbs of the product of two unsigned numbers, and those above.
 #[inline]
 pub(super) fn unsigned_product<const A: usize, const B: usize, const R: usize>(
     a: &[u64; A],
     b: &[u64; B],
-) -> [u64; R] {
+) -> ([u64; R], [u64; SPARE]) {
     let mut product = [0; R];
-    for i in 0..A.min(R) {
+    let mut top = [0; SPARE];
+    for (i, &a) in a.iter().enumerate() {
         let mut carry = 0;
-        for j in 0..B.min(R - i) {
-            (product[i + j], carry) = multiply_add(a[i], b[j], product[i + j], carry);
+        for (j, &b) in b.iter().enumerate() {
+            let limb = limb_of(&mut product, &mut top, i + j);
+            (*limb, carry) = multiply_add(a, b, *limb, carry);
         }
-        if i + B < R {
-            product[i + B] = carry;
-        }
+        *limb_of(&mut product, &mut top, i + B) = carry;
     }
-    product
+    (product, top)
+}
+
+/// A limb of a number, or one above its last.
+#[inline]
+fn limb_of<'a, const R: usize>(
+    number: &'a mut [u64; R],
+    top: &'a mut [u64; SPARE],
+    place: usize,
+) -> &'a mut u64 {
+    if place < R {
+        &mut number[place]
+    } else {
+        &mut top[place - R]
+    }
 }
 
 /// The low and the high limb of `a * b + c + d`, which always fits.
@@ -32,20 +49,22 @@ pub(super) const fn multiply_add(a: u64, b: u64, c: u64, d: u64) -> (u64, u64) {
     (wide as u64, (wide >> 64) as u64)
 }
 
-/// Subtracts `subtrahend & mask` from the limbs of `number` from `start` on.
+/// Subtracts `subtrahend & mask` from the limbs of `number` from `start` on, of which those above
+/// the last are `top`.
 ///
 /// The borrow out of the subtrahend's last limb is dropped: a product has no limb for it.
 #[inline]
 pub(super) fn subtract_masked<const R: usize, const B: usize>(
     number: &mut [u64; R],
+    top: &mut [u64; SPARE],
     start: usize,
     subtrahend: &[u64; B],
     mask: u64,
 ) {
     let mut borrow = false;
-    for j in 0..B.min(R.saturating_sub(start)) {
-        (number[start + j], borrow) =
-            borrowing_sub(number[start + j], subtrahend[j] & mask, borrow);
+    for (j, &limb) in subtrahend.iter().enumerate() {
+        let from = limb_of(number, top, start + j);
+        (*from, borrow) = borrowing_sub(*from, limb & mask, borrow);
     }
 }
 

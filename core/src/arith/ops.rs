@@ -18,7 +18,7 @@ impl<const N: usize> Add for Int<N> {
             (*limb, carry) = carrying_add(a, b, carry);
         }
         let sum = Self::from_limbs(limbs);
-        debug_assert!(
+        assert!(
             self.is_negative() != other.is_negative() || sum.is_negative() == self.is_negative(),
             "a sum exceeds {N} limbs"
         );
@@ -37,7 +37,7 @@ impl<const N: usize> Sub for Int<N> {
             (*limb, borrow) = borrowing_sub(a, b, borrow);
         }
         let difference = Self::from_limbs(limbs);
-        debug_assert!(
+        assert!(
             self.is_negative() == other.is_negative()
                 || difference.is_negative() == self.is_negative(),
             "a difference exceeds {N} limbs"

@@ -26,10 +26,14 @@ pub fn listen() {
 /// The result of work, or the error that its panic is.
 ///
 /// # Errors
-/// What the work returns; `Internal` for a panic, also one on another thread of the pool.
+/// What the work returns, or unwinds with; `Internal` for a panic, also one on another thread of the
+/// pool.
 pub fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     // What the work left half done is not looked at again, or only ever replaced as a whole.
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| Err(error(&*panic)))
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
+        let unwound = panic.downcast::<Error>();
+        Err(unwound.map_or_else(|panic| error(&*panic), |known| *known))
+    })
 }
 
 fn error(panic: &(dyn Any + Send)) -> Error {

@@ -6,6 +6,7 @@ use rustc_hash::FxHashMap as HashMap;
 
 use super::collect::{collect, Fate};
 use super::contacts;
+use super::failure::Failure;
 use super::planes::{group, PlaneGroup};
 use super::rim::{half_edge_ends, FrontierEdge, Rims};
 use super::seams::{find_touching, subdivisions, Edge, InnerPoints, LinePoints};
@@ -15,6 +16,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::outline::BareEdge;
 use crate::geometry::plane::normal;
 use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
 use crate::merge::list::Sources;
 use crate::mesh::finding::Finding;
 use crate::mesh::source::{Shape, TriangleMesh};
@@ -105,30 +107,29 @@ const SMALL: usize = 16;
 /// triangulated anew; every directed edge has exactly one opposite.
 ///
 /// # Errors
-/// `Unbounded` if the solid reaches infinity.
+/// `Unbounded` if the solid reaches infinity; `NotReduced` if a mesh that was trusted overlaps itself.
 pub fn assemble(solid: &Solid) -> Result<ExactMesh> {
     let sources = Sources::new(solid.sources().clone());
     if solid.root().outside > 0 {
         return Err(unbounded());
     }
-    match attempt(solid, &sources, true) {
-        Err(e) if e.kind() == ErrorKind::Internal && !solid.is_reduced() => {
-            attempt(solid, &sources, false)
-        }
+    let made = match attempt(solid, &sources, true) {
+        Err(Failure::Overlap(_)) if !solid.is_reduced() => attempt(solid, &sources, false),
         result => result,
-    }
+    };
+    made.map_err(|failure| failure.error(solid))
 }
 
 /// Assembles with or without joining faces by plane.
 ///
 /// Joining supposes that faces of one plane do not overlap. A solid that is not known to be
 /// reduced may break that; then its polygons fail to triangulate, or to the right area.
-fn attempt(solid: &Solid, sources: &Sources, join: bool) -> Result<ExactMesh> {
+fn attempt(solid: &Solid, sources: &Sources, join: bool) -> Result<ExactMesh, Failure> {
     let mut boundary = collect(solid, sources);
     let near = std::mem::take(&mut boundary.near);
     let (fates, groups, rims) = group(boundary, sources, join);
     if groups.iter().any(|g| reaches_infinity(g, sources)) {
-        return Err(unbounded());
+        return Err(unbounded().into());
     }
     let mut assembly = Assembly::new(sources, &fates);
     assembly.verify = join && !solid.is_reduced();
@@ -175,13 +176,14 @@ impl<'a> Assembly<'a> {
         mut groups: Vec<PlaneGroup>,
         rims: &Rims,
         near: &[(u32, u32)],
-    ) -> Result<()> {
+    ) -> Result<(), Failure> {
         self.mark_irregular(fates);
         self.identify_near(near, fates);
         let frontier = rims.frontier(fates, self.sources);
         let mut edges = Vec::new();
         let mut starts = Vec::with_capacity(groups.len());
         for group in &groups {
+            poll();
             starts.push(edges.len());
             self.number_edges(group, &mut edges);
         }
@@ -203,10 +205,11 @@ impl<'a> Assembly<'a> {
         self.identify_corners(&split);
         self.emit_whole(fates, rims, &order_of(&split));
         for (slot, face) in order_of(&split) {
+            poll();
             self.emit_split(slot, face, fates, &split)?;
         }
         edges.truncate(offset);
-        self.emit_groups(groups, &edges, &inner)
+        Ok(self.emit_groups(groups, &edges, &inner)?)
     }
 
     /// Numbers the ends of a group's edges; those that two edges share are looked up once.
@@ -298,6 +301,7 @@ impl<'a> Assembly<'a> {
                 continue;
             };
             for (face, _) in fates.iter().enumerate().filter(|(_, f)| **f == Fate::Cut) {
+                poll();
                 for vertex in mesh.faces[face] {
                     let place = mesh.vertices[vertex as usize];
                     if let Some(point) = self.table.find(&Vertex::lattice(place)) {
@@ -340,6 +344,7 @@ impl<'a> Assembly<'a> {
         for (slot, images) in (0u32..).zip(&mut self.images) {
             let rim = rims.get(slot);
             for (vertex, image) in (0u32..).zip(images) {
+                poll();
                 if *image == NONE && rim.is_used(vertex) {
                     *image = self.vertices.len() as u32;
                     self.vertices.push(Corner::Source(slot, vertex));
@@ -396,6 +401,13 @@ impl<'a> Assembly<'a> {
         }
     }
 
+    /// The faces of the triangles at a vertex.
+    pub(super) fn faces_at(&self, vertex: u32) -> Vec<TriangleFace> {
+        let around = self.triangles.iter().zip(&self.faces);
+        let around = around.filter(|(triangle, _)| triangle.contains(&vertex));
+        around.map(|(_, face)| *face).collect()
+    }
+
     /// Emits a triangle of table points.
     pub(super) fn push(&mut self, triangle: [u32; 3], face: TriangleFace) {
         let triangle = triangle.map(|p| self.image_of_point(p));
@@ -428,6 +440,7 @@ impl<'a> Assembly<'a> {
             .map(|v| !self.is_special(v))
             .collect();
         for triangle in self.special_triangles() {
+            poll();
             for vertex in self.triangles[triangle as usize] {
                 used[vertex as usize] = true;
             }

@@ -8,6 +8,7 @@ use crate::geometry::cell::Cell;
 use crate::geometry::line::{LineKey, PlaneResidues};
 use crate::geometry::outline::{BareEdge, Outline};
 use crate::geometry::plane::Lattice;
+use crate::interrupt::{carried, poll};
 use crate::merge::list::Sources;
 use crate::merge::separation::misses;
 use crate::mesh::source::{Shape, Source};
@@ -80,7 +81,7 @@ impl Collector<'_> {
         let runs: Vec<&[Spanning]> = spanning
             .chunk_by(|a, b| (a.slot, a.face) == (b.slot, b.face))
             .collect();
-        let whole = |run: &&[Spanning]| self.is_whole(run);
+        let whole = carried(|run: &&[Spanning]| self.is_whole(run));
         let whole: Vec<bool> = if in_pool() && runs.len() > MANY {
             runs.par_iter().map(whole).collect()
         } else {
@@ -130,7 +131,7 @@ impl Collector<'_> {
         pieces.sort_by_key(|p| (p.slot, p.face, p.flip));
         let same = |a: &Piece, b: &Piece| (a.slot, a.face, a.flip) == (b.slot, b.face, b.flip);
         let runs: Vec<&mut [Piece]> = pieces.chunk_by_mut(same).collect();
-        let joined = |run: &mut [Piece]| self.joined(run);
+        let joined = carried(|run: &mut [Piece]| self.joined(run));
         let found: Vec<CutFace> = if in_pool() && runs.len() > MANY {
             runs.into_par_iter().map(joined).collect()
         } else {
@@ -138,6 +139,7 @@ impl Collector<'_> {
         };
         let mut cut = Vec::new();
         for mut c in found {
+            poll();
             let source = self.sources.get(c.slot as usize);
             if is_full_face(&mut c, source) {
                 self.listed.fates[c.slot as usize][c.face as usize] = Fate::Whole(c.flip);
@@ -257,6 +259,7 @@ fn covers(root: &Branch, source: &Source, face: u32, flip: bool) -> bool {
         high
     }];
     while let Some(mut place) = open.pop() {
+        poll();
         while let Node::Cut(halves) = &*place.branch.node {
             let Some(cut) = place.branch.cell.cut() else {
                 return false;

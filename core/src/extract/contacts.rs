@@ -3,14 +3,16 @@
 use rustc_hash::FxHashSet as HashSet;
 
 use super::assemble::Assembly;
+use super::failure::{Failure, Overlap};
 use super::fans::{split_fans, Radial};
 use super::vertices::direction;
-use crate::error::{Error, Result};
+use crate::error::Error;
+use crate::interrupt::poll;
 use crate::mesh::finding::{Finding, Severity};
 
 /// Splits contacts, so that every directed edge has exactly one opposite by index and every vertex
 /// one fan; reports them.
-pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>> {
+pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>, Failure> {
     let special: Vec<u32> = assembly.special_triangles().collect();
     if is_manifold(assembly, &special)? {
         return Ok(Vec::new());
@@ -59,14 +61,21 @@ pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>> {
 /// Whether the triangles around special vertices form one closed fan each.
 ///
 /// # Errors
-/// `Internal` if an edge at a special vertex has no opposite: the assembly is not closed.
-fn is_manifold(assembly: &Assembly, triangles: &[u32]) -> Result<bool> {
+/// `Overlap` if an edge at a special vertex has no opposite: the assembly is not closed.
+fn is_manifold(assembly: &Assembly, triangles: &[u32]) -> Result<bool, Failure> {
     let mut fans = Fans::of(assembly, triangles);
     let mut single = fans.edges_apart_are_single();
     for place in 0..fans.starts.len() - 1 {
+        poll();
         let fan = &mut fans.corners[fans.starts[place]..fans.starts[place + 1]];
         if !is_single_fan(fan) {
-            balanced(assembly.special_vertex(place as u32), fan)?;
+            if !is_balanced(fan) {
+                let vertex = assembly.special_vertex(place as u32);
+                return Err(Failure::Overlap(Overlap {
+                    sign: format!("the assembled boundary is open at vertex {vertex}"),
+                    faces: assembly.faces_at(vertex),
+                }));
+            }
             single = false;
         }
     }
@@ -121,18 +130,13 @@ impl Fans {
     }
 }
 
-/// Checks that as many triangles leave along each edge at a vertex as arrive.
-fn balanced(vertex: u32, fan: &[[u32; 2]]) -> Result<()> {
+/// Whether as many triangles leave along each edge at a vertex as arrive.
+fn is_balanced(fan: &[[u32; 2]]) -> bool {
     let mut starts: Vec<u32> = fan.iter().map(|c| c[0]).collect();
     let mut ends: Vec<u32> = fan.iter().map(|c| c[1]).collect();
     starts.sort_unstable();
     ends.sort_unstable();
-    if starts == ends {
-        return Ok(());
-    }
-    Err(Error::internal(format!(
-        "the assembled boundary is open at vertex {vertex}"
-    )))
+    starts == ends
 }
 
 /// Whether corners are one closed fan that leaves along each edge once; sorts them.

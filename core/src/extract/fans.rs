@@ -10,6 +10,8 @@ mod tests;
 
 use std::fmt;
 
+use crate::interrupt::poll;
+
 /// The fan of a corner not yet visited.
 const NONE: usize = usize::MAX;
 
@@ -94,6 +96,7 @@ pub fn split_fans<R: Radial>(
     let crowded = surface.pair_all(vertex_count, radial)?;
     let mut fans = Fans::new(&surface);
     for edge in &crowded {
+        poll();
         fans.tell_apart(&mut surface, &edge.forward);
     }
     let split_edges = crowded.iter().map(|edge| edge.ends).collect();
@@ -154,6 +157,7 @@ impl Surface<'_> {
         let group = |half: usize| ends(self.triangles, half)[0] as usize;
         let mut starts = vec![0; vertex_count as usize + 1];
         for half in 0..self.mates.len() {
+            poll();
             starts[group(half) + 1] += 1;
         }
         for vertex in 1..starts.len() {
@@ -162,6 +166,7 @@ impl Surface<'_> {
         let mut free = starts.clone();
         let mut halves = vec![0; self.mates.len()];
         for half in 0..self.mates.len() {
+            poll();
             let slot = &mut free[group(half)];
             halves[*slot] = half;
             *slot += 1;
@@ -194,6 +199,7 @@ impl Surface<'_> {
             }
             _ if forward.len() == backward.len() => {
                 for (g, h) in radial::wedges(radial, ends, forward, backward) {
+                    poll();
                     self.pair(g, h);
                 }
                 Ok(Some(Crowded {
@@ -243,6 +249,7 @@ impl Fans {
             count: 0,
         };
         for corner in 0..fans.of.len() {
+            poll();
             if fans.of[corner] == NONE {
                 fans.label(surface, corner);
             }

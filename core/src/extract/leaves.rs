@@ -10,6 +10,7 @@ use super::collect::Fate;
 use crate::geometry::cell::Cell;
 use crate::geometry::outline::{cancel, Outline, OutlineEdge};
 use crate::geometry::plane::Lattice;
+use crate::interrupt::{carried, poll};
 use crate::merge::list::Sources;
 use crate::mesh::source::{Source, TriangleMesh};
 use crate::mesh::tasks::{in_pool, CHUNK};
@@ -132,7 +133,7 @@ struct Leaf<'a> {
 pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
     let leaves = leaves_of(root);
     let fates = Fates::of(&leaves, sources);
-    let visit = |leaf: &Leaf<'a>| leaf.visit(sources, &fates);
+    let visit = carried(|leaf: &Leaf<'a>| leaf.visit(sources, &fates));
     let size: usize = leaves.iter().map(|l| l.content.len()).sum();
     let found: Vec<Found> = if in_pool() && size > CHUNK {
         leaves.par_iter().map(visit).collect()
@@ -145,6 +146,7 @@ pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
     };
     let mut parts: Vec<Listing> = Vec::new();
     for leaf in found {
+        poll();
         all.spanning.extend(leaf.spanning);
         parts.extend(leaf.parts);
         all.near.extend(leaf.near);
@@ -166,7 +168,7 @@ type Extents<'a> = SmallVec<[Extent<'a>; 1]>;
 /// What listed parts, by their keys, are in their leaves.
 fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
     let runs: Vec<&[Listing]> = parts.chunk_by(|a, b| a.key() == b.key()).collect();
-    let face = |run: &&[Listing<'a>]| pieces_of_face(run, cells);
+    let face = carried(|run: &&[Listing<'a>]| pieces_of_face(run, cells));
     let pieces: Vec<Pieces> = if in_pool() && parts.len() > CHUNK {
         runs.par_iter().map(face).collect()
     } else {
@@ -195,6 +197,7 @@ fn extents_by_part<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Extents<'a> {
     let mut places: HashMap<*const Part, usize> = HashMap::default();
     let mut by_part: Vec<(&'a Part, SmallVec<[u32; 4]>)> = Vec::new();
     for listing in run {
+        poll();
         let next = by_part.len();
         let place = *places.entry(listing.part).or_insert(next);
         if place == next {
@@ -249,6 +252,7 @@ pub fn fill(
         return false;
     };
     for leaf in leaves {
+        poll();
         let cell = &cells[leaf as usize];
         let (bottom, top) = (cell.low(), cell.high());
         let a = [0, 1, 2].map(|i| low[i].max(bottom[i]));
@@ -272,6 +276,7 @@ fn leaves_of(root: &Branch) -> Vec<Leaf<'_>> {
     let mut leaves = Vec::new();
     let mut open = vec![(root, root.complement)];
     while let Some((branch, complement)) = open.pop() {
+        poll();
         match &*branch.node {
             Node::Leaf(_) => {}
             Node::Deferred(content) => leaves.push(Leaf {
@@ -309,6 +314,7 @@ impl Fates {
             }
         };
         for leaf in leaves {
+            poll();
             for group in &leaf.content.groups {
                 enter(&group.source, sources.slot(&group.source));
             }

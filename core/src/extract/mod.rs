@@ -4,6 +4,7 @@
 pub mod assemble;
 pub mod collect;
 mod contacts;
+mod failure;
 pub mod fans;
 mod leaves;
 mod origin;

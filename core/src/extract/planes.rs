@@ -12,6 +12,7 @@ use crate::geometry::line::{LineKey, PlaneResidues};
 use crate::geometry::outline::{BareEdge, Outline, OutlineEdge};
 use crate::geometry::plane::{normal, Plane};
 use crate::geometry::polygon::Polygon;
+use crate::interrupt::poll;
 use crate::merge::list::Sources;
 
 /// All boundary in one oriented plane that is not left as it came.
@@ -94,6 +95,7 @@ pub fn group(
         open: Vec::new(),
     };
     for cut in boundary.cut {
+        poll();
         grouping.add_cut(cut);
     }
     if join {
@@ -187,6 +189,7 @@ impl Grouping<'_> {
     /// Absorbs the whole faces that continue a group's faces across an edge in the same plane.
     fn spread(&mut self) {
         while let Some((slot, face, flip, group)) = self.open.pop() {
+            poll();
             for half in 3 * face..3 * face + 3 {
                 let Some(next) = self.rims.across(slot, half, self.sources) else {
                     continue;
@@ -215,6 +218,7 @@ impl Grouping<'_> {
             near.map(|c| (c, c.edge.line(self.sources))).collect();
         let asked: HashSet<usize> = keyed.iter().map(|c| c.0.group).collect();
         for at in &asked {
+            poll();
             let Gathered {
                 plane, cut, whole, ..
             } = &mut self.groups[*at];
@@ -236,6 +240,7 @@ impl Grouping<'_> {
         let mut shared: Vec<Candidate> = shared.map(|(c, _)| **c).collect();
         shared.sort_unstable_by_key(|c| c.number);
         for c in shared {
+            poll();
             let (slot, face) = (c.edge.slot, c.edge.half / 3);
             if self.fates[slot as usize][face as usize] == Fate::Whole(c.flip) {
                 self.absorb(slot, face, c.flip, c.group);

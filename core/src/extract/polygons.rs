@@ -7,13 +7,14 @@ use rustc_hash::FxHashMap as HashMap;
 
 use super::assemble::{Assembly, TriangleFace};
 use super::collect::Fate;
+use super::failure::Overlap;
 use super::origin::Owners;
 use super::planes::PlaneGroup;
 use super::seams::{Edge, InnerPoints};
 use super::triangulate::{triangulate, Planar};
 use super::vertices::Projection;
-use crate::error::{Error, Result};
 use crate::geometry::plane::Plane;
+use crate::interrupt::{carried, poll};
 use crate::mesh::tasks::{in_pool, CHUNK};
 
 /// Triangles, and the face that each lies in.
@@ -27,7 +28,7 @@ impl Assembly<'_> {
         face: u32,
         fates: &[Vec<Fate>],
         split: &HashMap<(u32, u32), [Vec<u32>; 3]>,
-    ) -> Result<()> {
+    ) -> Result<(), Overlap> {
         let source = Arc::clone(self.sources.get(slot as usize));
         let Some(mesh) = source.mesh() else {
             return Ok(());
@@ -56,8 +57,9 @@ impl Assembly<'_> {
         } else {
             (*plane).clone()
         };
-        for triangle in self.triangulated(&plane, &edges)? {
-            self.push(triangle, TriangleFace { slot, face, flip });
+        let own = TriangleFace { slot, face, flip };
+        for triangle in self.triangulated(&plane, &edges, &[own])? {
+            self.push(triangle, own);
         }
         Ok(())
     }
@@ -68,10 +70,11 @@ impl Assembly<'_> {
         groups: Vec<PlaneGroup>,
         mut edges: &[Edge],
         inner: &InnerPoints,
-    ) -> Result<()> {
+    ) -> Result<(), Overlap> {
         let mut groups = groups.into_iter().peekable();
         let mut first = 0;
         while groups.peek().is_some() {
+            poll();
             let mut batch = Vec::new();
             let mut size = 0;
             while let Some(group) = groups.next_if(|_| size < CHUNK) {
@@ -81,10 +84,10 @@ impl Assembly<'_> {
                 size += own.len();
                 edges = rest;
             }
-            let triangulate = |(group, first, own): (PlaneGroup, usize, &[Edge])| {
+            let triangulate = carried(|(group, first, own): (PlaneGroup, usize, &[Edge])| {
                 self.triangulated_group(&group, &chain(own, first, inner))
-            };
-            let made: Vec<Result<Triangles>> = if in_pool() && batch.len() > 1 {
+            });
+            let made: Vec<Result<Triangles, Overlap>> = if in_pool() && batch.len() > 1 {
                 batch.into_par_iter().map(triangulate).collect()
             } else {
                 batch.into_iter().map(triangulate).collect()
@@ -99,8 +102,12 @@ impl Assembly<'_> {
     }
 
     /// The triangles of a group, and the face that each lies in.
-    fn triangulated_group(&self, group: &PlaneGroup, chain: &[(u32, u32)]) -> Result<Triangles> {
-        let triangles = self.triangulated(&group.plane, chain)?;
+    fn triangulated_group(
+        &self,
+        group: &PlaneGroup,
+        chain: &[(u32, u32)],
+    ) -> Result<Triangles, Overlap> {
+        let triangles = self.triangulated(&group.plane, chain, &group.faces)?;
         if let [face] = group.faces[..] {
             return Ok(triangles.into_iter().map(|t| (t, face)).collect());
         }
@@ -110,12 +117,22 @@ impl Assembly<'_> {
         Ok(triangles.map(|t| (t, owners.at_centre(t, &view))).collect())
     }
 
-    fn triangulated(&self, plane: &Plane, edges: &[(u32, u32)]) -> Result<Vec<[u32; 3]>> {
+    /// The triangles of a region in a plane, which some faces make up.
+    fn triangulated(
+        &self,
+        plane: &Plane,
+        edges: &[(u32, u32)],
+        faces: &[TriangleFace],
+    ) -> Result<Vec<[u32; 3]>, Overlap> {
         let view = Projection::onto(plane, &self.table);
+        let overlap = |sign: String| Overlap {
+            sign,
+            faces: faces.to_vec(),
+        };
         let triangles = triangulate(&view, edges)
-            .map_err(|e| Error::internal(format!("an outline could not be triangulated: {e}")))?;
+            .map_err(|e| overlap(format!("an outline could not be triangulated: {e}")))?;
         if self.verify && !covers_once(&view, edges, &triangles) {
-            return Err(Error::internal("faces of one plane overlap"));
+            return Err(overlap("faces of one plane overlap".to_owned()));
         }
         Ok(triangles)
     }
@@ -125,6 +142,7 @@ impl Assembly<'_> {
 fn chain(edges: &[Edge], first: usize, inner: &InnerPoints) -> Vec<(u32, u32)> {
     let mut chain = Vec::with_capacity(edges.len());
     for (edge, i) in edges.iter().zip(first..) {
+        poll();
         let mut at = edge.from;
         for next in inner.get(&i).into_iter().flatten() {
             chain.push((at, *next));

@@ -11,6 +11,7 @@ use rustc_hash::FxHashMap as HashMap;
 
 use super::collect::Fate;
 use crate::geometry::line::LineKey;
+use crate::interrupt::{carried, poll};
 use crate::merge::list::Sources;
 use crate::mesh::source::{Source, TriangleMesh};
 use crate::mesh::tasks::{in_pool, CHUNK};
@@ -57,7 +58,7 @@ impl Rims {
     /// The rims of these fates.
     pub fn of(fates: &[Vec<Fate>], sources: &Sources) -> Self {
         let slots: Vec<usize> = (0..fates.len()).collect();
-        let rim = |slot: &usize| Rim::of(sources.get(*slot), &fates[*slot]);
+        let rim = carried(|slot: &usize| Rim::of(sources.get(*slot), &fates[*slot]));
         let large = in_pool() && fates.iter().map(Vec::len).sum::<usize>() > CHUNK;
         Self {
             by_slot: if large {
@@ -147,6 +148,7 @@ impl Around {
         }
         let mut faces = vec![0; sum as usize];
         for (face, corners) in mesh.faces.iter().enumerate().rev() {
+            poll();
             for vertex in corners {
                 let start = &mut starts[*vertex as usize];
                 *start -= 1;
@@ -209,6 +211,7 @@ impl Rim {
     fn half_edges(&self, mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u32> {
         let mut halves: Vec<Half> = Vec::new();
         for &face in &self.near {
+            poll();
             for number in 3 * face..3 * face + 3 {
                 let ends = half_edge_ends(mesh, number);
                 if ends.iter().all(|v| self.is_mixed(*v)) {
@@ -219,6 +222,7 @@ impl Rim {
         halves.sort_unstable_by_key(|h| (h.edge, h.turned, h.backward, h.number));
         let mut alone = Vec::new();
         for edge in halves.chunk_by(|a, b| (a.edge, a.turned) == (b.edge, b.turned)) {
+            poll();
             let (forward, backward) = edge.split_at(edge.partition_point(|h| !h.backward));
             let pairs = forward.len().min(backward.len());
             let rest = forward[pairs..].iter().chain(&backward[pairs..]);
@@ -261,6 +265,7 @@ impl Half {
 fn touch(mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u8> {
     let mut touch = vec![0; mesh.vertices.len()];
     for (corners, fate) in mesh.faces.iter().zip(fates) {
+        poll();
         let kind = match fate {
             Fate::Whole(false) => KEPT,
             Fate::Whole(true) => TURNED,

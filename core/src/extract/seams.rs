@@ -8,6 +8,7 @@ use super::planes::PlaneGroup;
 use super::triangulate::Planar;
 use super::vertices::{Projection, VertexTable};
 use crate::geometry::line::LineKey;
+use crate::interrupt::poll;
 
 /// Numbered points by the line they lie on.
 pub type LinePoints = HashMap<LineKey, Vec<u32>>;
@@ -41,6 +42,7 @@ pub fn subdivisions(
     let mut open: Vec<(LineKey, usize)> = unpaired(edges, &mut line, touching, table);
     open.sort_unstable();
     for run in open.chunk_by(|a, b| a.0 == b.0) {
+        poll();
         let extra = touching.get(&run[0].0).map_or(&[][..], |t| t);
         subdivide_line(run, edges, extra, table, &mut inner);
     }
@@ -79,8 +81,10 @@ pub fn find_touching(
     boxed.sort_by(|a, b| a.low[0].total_cmp(&b.low[0]));
     let (mut touches, mut crossings) = (Vec::new(), Vec::new());
     for (i, a) in boxed.iter().enumerate() {
+        poll();
         let near = boxed[i + 1..].iter().take_while(|b| b.low[0] <= a.high[0]);
         for b in near.filter(|b| b.low[1] <= a.high[1] && a.low[1] <= b.high[1]) {
+            poll();
             for (near, point) in [(a, b.edge.from), (b, a.edge.from)] {
                 let between = || view.is_between(near.edge.from, point, near.edge.to);
                 if near.may_hold(view.approx(point)) && between() {
@@ -93,6 +97,7 @@ pub fn find_touching(
         }
     }
     for (a, b) in crossings {
+        poll();
         let (first, second) = (&group.edges()[a].carrier, &group.edges()[b].carrier);
         let cut = Arc::new(second.plane(&group.plane));
         if let Some(vertex) = first.meet(&group.plane, &cut) {
@@ -101,6 +106,7 @@ pub fn find_touching(
         }
     }
     for (edge, point) in touches {
+        poll();
         touching.entry(group.lines()[edge]).or_default().push(point);
     }
 }
@@ -148,6 +154,7 @@ fn paired(edges: &[Edge], points: usize) -> Vec<bool> {
     let mut waiting: Vec<u32> = Vec::new();
     let (starts, mut order) = by_lower_end(edges, points);
     for bounds in starts.windows(2) {
+        poll();
         let around = &mut order[bounds[0] as usize..bounds[1] as usize];
         let higher = |i: &u32| edges[*i as usize].from.max(edges[*i as usize].to);
         around.sort_unstable_by_key(|i| (higher(i), *i));
@@ -171,6 +178,7 @@ fn paired(edges: &[Edge], points: usize) -> Vec<bool> {
 fn by_lower_end(edges: &[Edge], points: usize) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0u32; points + 1];
     for edge in edges {
+        poll();
         starts[edge.from.min(edge.to) as usize] += 1;
     }
     let mut sum = 0;

@@ -17,6 +17,7 @@ use crate::geometry::outline::{settled, BareEdge, OutlineEdge};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
 use crate::geometry::vertex::{cross, Vertex};
+use crate::interrupt::poll;
 use crate::merge::list::Sources;
 use crate::mesh::grid::Pitch;
 use crate::mesh::import::is_flat;
@@ -222,6 +223,7 @@ impl Snapshot {
             ..Deferred::default()
         };
         for w in &self.wholes {
+            poll();
             let source = sources.get(w.slot as usize).ok_or_else(bad_snapshot)?;
             let known = w.faces.iter().all(|f| (*f as usize) < source.face_count());
             if !known || !w.faces.is_sorted_by(|a, b| a < b) {
@@ -235,6 +237,7 @@ impl Snapshot {
             });
         }
         for p in &self.parts {
+            poll();
             leaf.parts.push(p.element(&sources, cell)?);
         }
         let node = Arc::new(Node::Deferred(leaf));

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::assemble::TriangleFace;
 use super::collect::Fate;
+use crate::interrupt::{carried, spend};
 use crate::mesh::source::TriangleMesh;
 use crate::mesh::tasks::{each_chunk, in_pool, CHUNK};
 
@@ -79,7 +80,10 @@ impl Untouched {
             });
             first_triangle += count as u32;
         }
-        let emit = |task: Task| task.run(mesh, images, whole, &self.vertices);
+        let emit = carried(|task: Task| {
+            spend(task.fates.len());
+            task.run(mesh, images, whole, &self.vertices)
+        });
         let special: Vec<Vec<u32>> = if in_pool() && tasks.len() > 1 {
             tasks.into_par_iter().map(emit).collect()
         } else {

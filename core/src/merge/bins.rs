@@ -15,6 +15,7 @@ use super::separation::triangle_misses;
 use super::window::{Span, Window};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
+use crate::interrupt::poll;
 use crate::mesh::source::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node, Work};
 
@@ -155,6 +156,7 @@ impl Bins {
         let mut rest = &elements[..];
         let mut groups = Vec::new();
         for (i, group) in self.leaf().groups.iter().enumerate() {
+            poll();
             let first = self.firsts[i];
             let end = self.firsts.get(i + 1).copied().unwrap_or(u32::MAX);
             let (own, others) = rest.split_at(rest.partition_point(|e| *e < end));
@@ -301,6 +303,7 @@ impl Sorted {
             spans: Vec::new(),
         };
         for run in runs {
+            poll();
             let mesh = run.mesh;
             if run.is_most() {
                 let codes: Vec<u32> = mesh.vertices.iter().map(|p| window.code(p)).collect();
@@ -332,6 +335,7 @@ fn rows(window: &Window, runs: &[Run], spans: &[Span], limit: usize) -> Option<V
     let mut rows = Vec::with_capacity(2 * spans.len());
     let mut lines = 0;
     for span in spans {
+        poll();
         lines += line_count(span);
         let Some((low, high)) = window.within(span) else {
             continue;
@@ -375,6 +379,7 @@ fn spread(
 ) {
     let mut open = vec![(low, high)];
     while let Some((low, high)) = open.pop() {
+        poll();
         let (a, b) = window.extent(&low, &high);
         if triangle_misses(corners, &a, &b) {
             continue;
@@ -426,6 +431,7 @@ fn integral(window: &Window, starts: &[u32]) -> Vec<u32> {
     let (row, slab) = (nz + 1, (ny + 1) * (nz + 1));
     let mut below = vec![0u32; (nx + 1) * slab];
     for x in 0..nx {
+        poll();
         for y in 0..ny {
             let first = (x * ny + y) * nz;
             let to = (x + 1) * slab + (y + 1) * row;

@@ -8,6 +8,7 @@
 use super::window::{Span, Window};
 use crate::geometry::crossing::{triangle_change, Segment};
 use crate::geometry::plane::Lattice;
+use crate::interrupt::poll;
 
 /// A line along an axis and a place on it in one word, ordered by line.
 type Key = u64;
@@ -64,6 +65,7 @@ impl Crossings {
     ) -> Self {
         let mut found = [Vec::new(), Vec::new(), Vec::new()];
         for span in spans.iter().filter(|s| crosses_two(s)) {
+            poll();
             let (corners, flip) = corners(span.element);
             let mut add = |axis: usize, x: i32, y: i32| {
                 let Some((place, change)) = crossing(&window, span, &corners, axis, [x, y]) else {

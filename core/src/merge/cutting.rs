@@ -17,6 +17,7 @@ use crate::geometry::path::polygon_on_path;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{straddle, Chord, Corner, Polygon, Sides};
 use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
 
 /// A convex polygon and the planes that bound it within its own, once somebody asks for them.
 #[derive(Debug)]
@@ -142,6 +143,7 @@ pub fn cut_up(polygon: Polygon, cutters: &[Cutter]) -> Option<Cutting> {
         parent: None,
     }];
     while let Some(task) = open.pop() {
+        poll();
         let parent = task.parent;
         let child = partition.grow(task, &mut open)?;
         if let Some((knot, side)) = parent {
@@ -193,6 +195,7 @@ impl Partition<'_> {
         whole: bool,
     ) -> Result<Option<Crossing>, Special> {
         while let Some(cutter) = list.pop() {
+            poll();
             let plane = self.plane(cutter);
             let sides = piece.sides(plane);
             if straddle(&sides) != (true, true) {
@@ -292,6 +295,7 @@ impl Partition<'_> {
     fn beside(&self, from: Child, link: Chord, cutter: u32) -> Option<(u32, Chord)> {
         let (mut at, mut link) = (from, link);
         loop {
+            poll();
             let knot = match at {
                 Child::Piece(piece) => return Some((piece, link)),
                 Child::Knot(knot) => &self.knots[knot as usize],

@@ -18,6 +18,7 @@ use super::list::{List, Sources};
 use super::state::{find, has_constant, nested, State, States, MANY, TASK};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
+use crate::interrupt::{carried, poll};
 use crate::mesh::tasks::{both, in_pool};
 use crate::tree::node::Branch;
 
@@ -59,8 +60,6 @@ pub struct Descent<'a> {
     pub rule: Rule,
     /// Whether a single operand's boundary is taken as it is, or made the reduced boundary.
     pub share: bool,
-    /// Set from outside to stop.
-    pub cancel: &'a AtomicBool,
     /// What was done.
     pub counters: Counters,
     /// For each operand whether a visited cell showed that it overlaps itself.
@@ -69,18 +68,11 @@ pub struct Descent<'a> {
 
 impl<'a> Descent<'a> {
     /// A descent over this many operands.
-    pub fn new(
-        sources: &'a Sources,
-        rule: Rule,
-        share: bool,
-        cancel: &'a AtomicBool,
-        operands: usize,
-    ) -> Self {
+    pub fn new(sources: &'a Sources, rule: Rule, share: bool, operands: usize) -> Self {
         Self {
             sources,
             rule,
             share,
-            cancel,
             counters: Counters::default(),
             overlaps: (0..operands).map(|_| AtomicBool::new(false)).collect(),
         }
@@ -139,9 +131,7 @@ impl<'a> Descent<'a> {
         mut states: States,
         round: Round,
     ) -> Result<Branch> {
-        if self.cancel.load(Ordering::Relaxed) {
-            return Err(Error::new(ErrorKind::Cancelled, "stopped"));
-        }
+        poll();
         self.counters.cells.fetch_add(1, Ordering::Relaxed);
         for (_, state) in &mut states {
             state.settle(&cell);
@@ -226,7 +216,7 @@ impl<'a> Descent<'a> {
         let open =
             |(k, state): (u32, State)| (k, state.opened(cell, self.sources, &self.counters.binned));
         if in_pool() && opening >= 8 * MANY {
-            return states.into_par_iter().map(open).collect();
+            return states.into_par_iter().map(carried(open)).collect();
         }
         states.into_iter().map(open).collect()
     }

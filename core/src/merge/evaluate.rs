@@ -1,6 +1,6 @@
 //! Expressions over solids.
 
-use std::sync::atomic::AtomicBool;
+use std::sync::Arc;
 
 use super::descend::{Counters, Descent};
 use super::expression::{Expression, Term};
@@ -9,6 +9,7 @@ use super::list::Sources;
 use super::simple::is_simple;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grid::Pitch;
+use crate::mesh::source::Source;
 use crate::tree::solid::Solid;
 use crate::tree::table::Table;
 
@@ -19,20 +20,16 @@ use crate::tree::table::Table;
 /// overlap itself is united with itself, and the evaluation starts again.
 ///
 /// # Errors
-/// `PitchMismatch` if the operands live on different lattices, `Cancelled`.
+/// `PitchMismatch` if the operands live on different lattices.
 ///
 /// # Source
 /// Naylor, Amanatides, Thibault 1990; `ARCHITECTURE.md`, "One descent".
-pub fn evaluate(
-    expression: &Expression,
-    solids: &[Solid],
-    cancel: &AtomicBool,
-) -> Result<(Solid, Counters)> {
+pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Counters)> {
     let pitch = common_pitch(expression, solids)?;
     let mut operands = solids.to_vec();
     loop {
         let sources = Sources::new(joint_table(&operands));
-        let descent = Descent::new(&sources, Rule::Positive, true, cancel, operands.len());
+        let descent = Descent::new(&sources, Rule::Positive, true, operands.len());
         let roots = operands.iter().map(|s| s.root().clone()).collect();
         let root = descent.run(expression.clone(), roots)?;
         let overlaps = descent.overlapping();
@@ -48,25 +45,22 @@ pub fn evaluate(
                 return Err(false_claim());
             }
             if operands[k].is_reduced() {
-                return Err(Error::internal(format!(
-                    "reduced operand {k} overlaps itself"
-                )));
+                return Err(wrongly_reduced(&operands[k], k));
             }
-            operands[k] = normalize(&operands[k], Rule::Positive, cancel)?;
+            operands[k] = normalize(&operands[k], Rule::Positive)?;
         }
     }
 }
 
 /// The error that explains a failed operation on a solid: if stored data say that it is reduced,
 /// their word is checked now.
-pub fn explained(solid: &Solid, error: Error, cancel: &AtomicBool) -> Error {
+pub fn explained(solid: &Solid, error: Error) -> Error {
     if error.kind() != ErrorKind::Internal || !solid.is_claimed() {
         return error;
     }
     let doubted = solid.clone().with_reduced(false);
-    match normalize(&doubted, Rule::Positive, cancel) {
+    match normalize(&doubted, Rule::Positive) {
         Ok(_) if doubted.is_reduced() => error,
-        Err(e) if e.kind() == ErrorKind::Cancelled => e,
         _ => false_claim(),
     }
 }
@@ -76,21 +70,50 @@ fn false_claim() -> Error {
     Error::new(ErrorKind::BadSnapshot, text)
 }
 
+/// The error of a reduced operand that overlaps itself: a mesh that was wrongly trusted, or a defect.
+fn wrongly_reduced(operand: &Solid, number: usize) -> Error {
+    for (slot, source) in operand.sources().iter().enumerate() {
+        match overlaps_itself(source) {
+            Ok(false) => {}
+            Ok(true) => {
+                let text = format!(
+                    "operand {number} overlaps itself: mesh {slot} of those it was made of \
+                     (source {}) was declared trusted, but overlaps itself",
+                    source.id()
+                );
+                return Error::new(ErrorKind::NotReduced, text);
+            }
+            Err(error) => return error,
+        }
+    }
+    Error::internal(format!("reduced operand {number} overlaps itself"))
+}
+
+/// Whether the faces of a source cross or overlap each other, or enclose a region twice.
+///
+/// # Errors
+/// `Internal`.
+pub fn overlaps_itself(source: &Arc<Source>) -> Result<bool> {
+    let solid = Solid::of_source(Arc::clone(source), false);
+    normalize(&solid, Rule::Positive)?;
+    Ok(!solid.is_reduced())
+}
+
 /// The solid united with itself: the reduced boundary of the points that a rule calls inside.
 ///
 /// # Errors
-/// `Cancelled`.
-pub fn normalize(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid> {
+/// `Internal`.
+pub fn normalize(solid: &Solid, rule: Rule) -> Result<Solid> {
     if solid.is_reduced() {
         return Ok(solid.clone());
     }
     if rule != Rule::Positive {
-        return unite(solid, rule, cancel);
+        return unite(solid, rule);
     }
-    if let Some(known) = settled(solid, cancel)? {
+    if let Some(known) = settled(solid)? {
         return Ok(known);
     }
-    let united = unite(solid, rule, cancel)?;
+    let united = unite(solid, rule)?;
     Ok(solid.united().get_or_make(|| united).clone())
 }
 
@@ -98,8 +121,8 @@ pub fn normalize(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid
 /// checked.
 ///
 /// # Errors
-/// `Cancelled`.
-pub fn settled(solid: &Solid, cancel: &AtomicBool) -> Result<Option<Solid>> {
+/// `Internal`.
+pub fn settled(solid: &Solid) -> Result<Option<Solid>> {
     if solid.is_reduced() {
         return Ok(Some(solid.clone()));
     }
@@ -110,7 +133,7 @@ pub fn settled(solid: &Solid, cancel: &AtomicBool) -> Result<Option<Solid>> {
         return Ok(None);
     };
     for mesh in doubts {
-        normalize(mesh, Rule::Positive, cancel)?;
+        normalize(mesh, Rule::Positive)?;
         if !mesh.is_reduced() {
             return Ok(None);
         }
@@ -119,12 +142,12 @@ pub fn settled(solid: &Solid, cancel: &AtomicBool) -> Result<Option<Solid>> {
     Ok(Some(solid.united().get_or_make(reduced).clone()))
 }
 
-fn unite(solid: &Solid, rule: Rule, cancel: &AtomicBool) -> Result<Solid> {
+fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
     let sources = Sources::new(solid.sources().clone());
-    if is_simple(solid, &sources, cancel)? == Some(true) {
+    if is_simple(solid, &sources)? == Some(true) {
         return Ok(solid.clone().with_reduced(true));
     }
-    let descent = Descent::new(&sources, rule, false, cancel, 1);
+    let descent = Descent::new(&sources, rule, false, 1);
     let expression = Expression::new(vec![Term::Operand(0)])?;
     let root = descent.run(expression, vec![solid.root().clone()])?;
     if descent.overlapping().is_empty() {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::interrupt::poll;
 
 /// One line of an expression; numbers name earlier lines.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,6 +58,7 @@ impl Expression {
     /// An expression; every line may name earlier lines only.
     pub fn new(terms: Vec<Term>) -> Result<Self> {
         for (i, term) in terms.iter().enumerate() {
+            poll();
             if term.arguments().iter().any(|a| *a as usize >= i) {
                 let text = format!("line {i} of the expression names a line that is not before it");
                 return Err(Error::at(ErrorKind::Shape, vec![i as u64], text));

@@ -7,6 +7,7 @@ use super::list::Sources;
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, triangle_change, Segment};
 use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::interrupt::poll;
 use crate::mesh::cached::Cached;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Branch, Deferred, Group, Node};
@@ -50,6 +51,7 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
     }
     let mut faces = listed(minus, a);
     for element in listed(plus, b) {
+        poll();
         if !faces.iter().any(|f| f.same_as(&element)) {
             faces.push(element);
         }
@@ -63,6 +65,7 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
     ];
     let mut held = Vec::with_capacity(faces.len());
     for face in faces {
+        poll();
         match face.extent_in(cell, &halves) {
             Extent::All => held.push(face),
             Extent::Nothing => {}
@@ -191,6 +194,7 @@ enum Extent {
 fn grouped(faces: Vec<Listed>) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for f in faces {
+        poll();
         match groups.last_mut() {
             Some(g) if Arc::ptr_eq(&g.source, &f.source) && g.flip == f.flip => {
                 g.faces.push(f.face);

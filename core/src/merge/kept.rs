@@ -10,6 +10,7 @@ use crate::geometry::outline::{cancel, BareEdge, OutlineEdge};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
 use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Deferred, Group, Node, Part, PartElement, Work};
 
@@ -109,6 +110,7 @@ pub fn assemble(
         ..Deferred::default()
     };
     for run in kept.chunk_by_mut(|a, b| a.face == b.face && a.flip == b.flip) {
+        poll();
         let (slot, face) = run[0].face;
         let source = sources.get(slot as usize);
         let flip = run[0].flip;

@@ -15,6 +15,7 @@ use super::overlay::{disjoint, Fragment};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
+use crate::interrupt::poll;
 use crate::tree::node::{Node, Work};
 
 /// Which winding numbers count as inside.
@@ -138,6 +139,7 @@ pub fn by_trees(
     let mut kept = Vec::new();
     for (i, operand) in operands.iter().enumerate() {
         for fragment in &operand.fragments {
+            poll();
             let pieces = sides(fragment, i, &operands, rule);
             kept.extend(keep(fragment, i, pieces, &mut value));
         }
@@ -178,6 +180,7 @@ impl Operand {
 fn fragments(list: &List, cell: &Cell, sources: &Sources) -> Vec<Fragment> {
     let mut found = Vec::with_capacity(list.len());
     for r in &list.records {
+        poll();
         if let Some(polygon) = sources.get(r.slot()).clip(r.face, cell) {
             let weight = if r.flip() { -1 } else { 1 };
             let face = (r.slot() as u32, r.face);
@@ -190,6 +193,7 @@ fn fragments(list: &List, cell: &Cell, sources: &Sources) -> Vec<Fragment> {
         }
     }
     for p in &list.parts {
+        poll();
         let weight = if p.element.flip { -1 } else { 1 };
         let face = (
             sources.slot(&p.element.part.source) as u32,
@@ -233,6 +237,7 @@ fn sides(fragment: &Fragment, own: usize, operands: &[Operand], rule: Rule) -> V
 
 impl Piece {
     fn pushed(self, tree: &LocalTree, rule: Rule) -> Vec<Self> {
+        poll();
         let (minus, plus) = (self.minus, self.plus);
         let with = |labels: &Vec<bool>, w: i32| {
             let mut labels = labels.clone();

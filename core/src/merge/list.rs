@@ -7,6 +7,7 @@ use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, polygon_change, triangle_change, Segment};
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
+use crate::interrupt::spend;
 use crate::mesh::cached::Cached;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Branch, Deferred, Group, Node, PartElement, Work};
@@ -122,6 +123,7 @@ impl Sources {
 impl List {
     /// Opens a deferred leaf whose branch covers `cell`.
     pub fn open(leaf: &Deferred, branch: &Branch, sources: &Sources) -> Self {
+        spend(leaf.len());
         let frame = Frame::of(&branch.cell);
         let mut list = Self {
             frame,
@@ -189,6 +191,7 @@ impl List {
 
     /// The lists of the two halves of `cell`.
     pub fn divide(mut self, cell: &Cell, cut: Cut, sources: &Sources) -> (Self, Self) {
+        spend(self.len());
         if !self.frame.resolves(cell) {
             self.reframe(cell, sources);
         }
@@ -273,6 +276,7 @@ impl List {
             })
         };
         for p in self.parts.iter().filter(widened) {
+            spend(p.pieces().len());
             let across: i32 = p.pieces().iter().map(|q| polygon_change(q, &segment)).sum();
             change += if p.element.flip { -across } else { across };
         }

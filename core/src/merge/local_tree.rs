@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Polygon, PolygonSplit};
+use crate::interrupt::poll;
 
 /// A convex piece of boundary with its multiplicity.
 ///
@@ -81,6 +82,7 @@ impl LocalTree {
             parent: None,
         }];
         while let Some(task) = open.pop() {
+            poll();
             let child = if task.pieces.is_empty() {
                 tree.labels.push(0);
                 Child::Leaf(tree.labels.len() as u32 - 1)
@@ -157,6 +159,7 @@ impl LocalTree {
     fn spread_labels(&mut self, links: Vec<Link>, corner: &Lattice, label: i32) {
         let mut neighbours: Vec<Vec<(u32, i32)>> = vec![Vec::new(); self.labels.len()];
         for (node, link) in links.into_iter().enumerate() {
+            poll();
             let [minus, plus] = self.nodes[node].children;
             let (below, polygon) = self.any_leaf(minus, link.polygon);
             let (above, _) = self.any_leaf(plus, polygon);
@@ -183,6 +186,7 @@ impl LocalTree {
     fn any_leaf(&self, from: Child, polygon: Polygon) -> (u32, Polygon) {
         let (mut at, mut polygon) = (from, polygon);
         loop {
+            poll();
             let node = match at {
                 Child::Leaf(leaf) => return (leaf, polygon),
                 Child::Node(node) => &self.nodes[node as usize],
@@ -230,6 +234,7 @@ impl LocalTree {
         let mut found = Vec::new();
         let mut open = vec![(self.root(), polygon)];
         while let Some((at, polygon)) = open.pop() {
+            poll();
             let node = match at {
                 Child::Leaf(leaf) => {
                     let label = self.labels[leaf as usize];
@@ -260,6 +265,7 @@ impl LocalTree {
         found: &mut Vec<Sided>,
     ) {
         for (piece, below) in self.labelled(node.children[0], polygon) {
+            poll();
             for (polygon, above) in self.labelled(node.children[1], piece) {
                 let (minus, plus) = if same { (below, above) } else { (above, below) };
                 found.push(Sided {
@@ -286,6 +292,7 @@ impl LocalTree {
 }
 
 fn descend(polygon: Polygon, node: &LocalNode, open: &mut Vec<(Child, Polygon)>) {
+    poll();
     match polygon.split(&node.cut) {
         PolygonSplit::Minus | PolygonSplit::Coplanar => open.push((node.children[0], polygon)),
         PolygonSplit::Plus => open.push((node.children[1], polygon)),
@@ -297,6 +304,7 @@ fn descend(polygon: Polygon, node: &LocalNode, open: &mut Vec<(Child, Polygon)>)
 }
 
 fn divide(piece: Weighted, cut: &Arc<Plane>, minus: &mut Vec<Weighted>, plus: &mut Vec<Weighted>) {
+    poll();
     let weight = piece.weight;
     match piece.polygon.split(cut) {
         PolygonSplit::Minus | PolygonSplit::Coplanar => minus.push(piece),

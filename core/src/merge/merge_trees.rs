@@ -7,6 +7,7 @@ use super::split_tree::split_tree;
 use crate::error::{Error, Result};
 use crate::geometry::side::Half;
 use crate::geometry::space::Space;
+use crate::interrupt::poll;
 use crate::tree::partition::{Cut, Facet, PartitionTree, Sheet};
 
 /// Combines two trees of one region by a set operation.
@@ -34,6 +35,7 @@ pub fn merge<S: Space>(
     let mut steps = vec![Step::Merge(a.clone(), b.clone())];
     let mut done = Vec::new();
     while let Some(step) = steps.pop() {
+        poll();
         match step {
             Step::Merge(a, b) => match decided(&a, &b, op) {
                 Ok(tree) => done.push(tree),

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::{Polygon, PolygonSplit};
+use crate::interrupt::poll;
 
 /// A fragment of an operand's boundary in a cell.
 #[derive(Clone, Debug)]
@@ -27,6 +28,7 @@ pub fn disjoint(fragments: Vec<Fragment>) -> (Vec<Fragment>, bool) {
     let mut planes: Vec<Vec<Fragment>> = Vec::new();
     let mut names: Vec<Arc<Plane>> = Vec::new();
     for fragment in fragments {
+        poll();
         let support = fragment.polygon.support();
         let known = names.iter().position(|p| p.coincides(support).is_some());
         let at = known.unwrap_or_else(|| {
@@ -52,6 +54,7 @@ fn add(placed: &mut Vec<Fragment>, new: Fragment) -> bool {
     let mut overlap = false;
     let mut i = 0;
     while i < placed.len() && !rest.is_empty() {
+        poll();
         let touched = rest
             .iter()
             .any(|r| !separated(&placed[i].polygon, &r.polygon));
@@ -80,6 +83,7 @@ fn combine(
     let mut met = false;
     let mut old_pieces = vec![old.clone()];
     for piece in rest {
+        poll();
         let (inside, outside) = carve(&piece.polygon, &old.polygon);
         if inside.is_none() {
             remaining.push(piece);
@@ -121,6 +125,7 @@ fn part_of(fragment: &Fragment, polygon: Polygon) -> Fragment {
 
 /// Whether an edge of one polygon has the other entirely beyond it; both lie in one plane.
 pub fn separated(a: &Polygon, b: &Polygon) -> bool {
+    poll();
     beyond_an_edge(a, b) || beyond_an_edge(b, a)
 }
 
@@ -136,6 +141,7 @@ fn carve(polygon: &Polygon, by: &Polygon) -> (Option<Polygon>, Vec<Polygon>) {
     let mut outside = Vec::new();
     let mut inside = polygon.clone();
     for corner in by.corners() {
+        poll();
         let cut = Arc::new(corner.edge.plane(by.support()));
         match inside.split(&cut) {
             PolygonSplit::Minus => {}

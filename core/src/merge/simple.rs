@@ -13,10 +13,11 @@ use super::leaf::LeafTree;
 use super::list::{List, Sources};
 use super::star::is_star_shaped;
 use crate::arith::Int;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::geometry::cell::Cell;
 use crate::geometry::fixed::sixfold_flux;
 use crate::geometry::plane::Lattice;
+use crate::interrupt::{poll, spend};
 use crate::mesh::source::{Source, TriangleMesh};
 use crate::mesh::tasks::both;
 use crate::mesh::topology::NONE;
@@ -37,14 +38,13 @@ struct Check<'a> {
     irregular: Vec<bool>,
     seen: Vec<AtomicBool>,
     overlap: AtomicBool,
-    cancel: &'a AtomicBool,
 }
 
 /// Whether a solid made of one mesh is simple; `None` if it is made of anything else.
 ///
 /// # Errors
 /// `Cancelled`.
-pub fn is_simple(solid: &Solid, sources: &Sources, cancel: &AtomicBool) -> Result<Option<bool>> {
+pub fn is_simple(solid: &Solid, sources: &Sources) -> Result<Option<bool>> {
     let (Node::Deferred(leaf), 1) = (&*solid.root().node, solid.sources().len()) else {
         return Ok(None);
     };
@@ -77,12 +77,8 @@ pub fn is_simple(solid: &Solid, sources: &Sources, cancel: &AtomicBool) -> Resul
             .map(|_| AtomicBool::new(count == 1 && is_outward(mesh)))
             .collect(),
         overlap: AtomicBool::new(false),
-        cancel,
     };
     check.cell(solid.root().cell, List::open(leaf, solid.root(), sources));
-    if cancel.load(Ordering::Relaxed) {
-        return Err(Error::new(ErrorKind::Cancelled, "stopped"));
-    }
     Ok(Some(!check.overlap.load(Ordering::Relaxed)))
 }
 
@@ -132,7 +128,8 @@ fn irregular(source: &Source, mesh: &TriangleMesh) -> Vec<bool> {
 
 impl Check<'_> {
     fn cell(&self, cell: Cell, list: List) {
-        if self.overlap.load(Ordering::Relaxed) || self.cancel.load(Ordering::Relaxed) {
+        poll();
+        if self.overlap.load(Ordering::Relaxed) {
             return;
         }
         let total = list.len();
@@ -170,6 +167,7 @@ impl Check<'_> {
 
     /// Whether no two of the faces overlap, as far as a quick look can tell; errs on no.
     fn is_clean(&self, faces: &[u32]) -> bool {
+        spend(faces.len());
         let look = |f: &u32| Looked::at(self.mesh, *f, &self.irregular);
         let looked: Vec<Looked> = faces.iter().map(look).collect();
         (1..looked.len()).all(|i| looked[..i].iter().all(|other| looked[i].is_clear_of(other)))

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use crate::error::{Error, Result};
 use crate::geometry::side::{Half, Orientation, Split};
 use crate::geometry::space::Space;
+use crate::interrupt::poll;
 use crate::tree::partition::{Cut, Facet, PartitionTree, Sheet};
 
 /// A tree's parts on the two sides of a hyperplane.
@@ -99,6 +100,7 @@ pub fn split_tree<S: Space>(tree: &PartitionTree<S>, span: &S::Fragment) -> Resu
     let mut splitter = Splitter::new();
     splitter.steps.push(Step::Split(tree.clone(), span.clone()));
     while let Some(step) = splitter.steps.pop() {
+        poll();
         splitter.advance(step)?;
     }
     let (minus, plus) = splitter.pop()?;

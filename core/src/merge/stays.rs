@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::kept::Kept;
 use crate::geometry::outline::BareEdge;
 use crate::geometry::polygon::Polygon;
+use crate::interrupt::poll;
 use crate::tree::node::Part;
 
 /// What stays of an element on one side.
@@ -61,6 +62,7 @@ pub fn kept(
     let mut pieces: Vec<[Vec<(usize, Stays)>; 2]> = Vec::new();
     pieces.resize_with(parts.len(), Default::default);
     for (i, owner, stays) in settled {
+        poll();
         let sides = stays.into_iter().zip([false, true]);
         match owner {
             Owner::Face(face) => {
@@ -72,6 +74,7 @@ pub fn kept(
         }
     }
     for (part, sides) in parts.iter().zip(pieces) {
+        poll();
         let sides = sides.into_iter().zip([false, true]);
         kept.extend(sides.filter_map(|(pieces, flip)| kept_part(*part, pieces, flip, &polygon)));
     }

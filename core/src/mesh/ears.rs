@@ -4,6 +4,7 @@
 //! Meisters 1975, "Polygons have ears".
 
 use crate::geometry::plane::Lattice;
+use crate::interrupt::poll;
 
 /// The signed doubled area of three projected points.
 ///
@@ -67,6 +68,7 @@ pub fn triangles(corners: &[Lattice], axes: (usize, usize)) -> Option<Vec<[usize
     let mut ring: Vec<usize> = (0..corners.len()).collect();
     let mut found = Vec::with_capacity(corners.len());
     while ring.len() > 3 {
+        poll();
         let n = ring.len();
         let ear = (0..n).find(|&i| is_ear(corners, &ring, i, axes))?;
         found.push(around(&ring, ear));

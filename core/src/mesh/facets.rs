@@ -5,6 +5,7 @@ use super::grid::Pitch;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::REACH;
 use crate::geometry::plane::{normal, Lattice, Plane};
+use crate::interrupt::poll;
 
 /// A convex facet, or a convex part of one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,6 +30,7 @@ pub fn suited_pitch(rows: &[[f64; 3]]) -> Result<Pitch> {
     for axis in 0..3 {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (row, p) in rows.iter().enumerate() {
+            poll();
             if !p[axis].is_finite() {
                 let text = format!(
                     "corner {row} has the coordinate {}; coordinates must be finite",
@@ -104,6 +106,7 @@ pub fn facets(
     check_offsets(offsets, corners.len())?;
     let mut found = Vec::with_capacity(offsets.len());
     for (number, pair) in offsets.windows(2).enumerate() {
+        poll();
         // Checked above: they count upwards from zero to the number of corners.
         let own = &corners[pair[0] as usize..pair[1] as usize];
         let source = u32::try_from(number)
@@ -235,6 +238,7 @@ fn newell_plane(corners: &[Lattice]) -> Option<Plane> {
     let first = corners.first()?;
     let mut sum = [0i128; 3];
     for pair in corners.windows(2) {
+        poll();
         let n = normal(first, &pair[0], &pair[1]);
         for i in 0..3 {
             sum[i] += n[i];

@@ -12,6 +12,7 @@ use super::topology::{open_edges, Topology};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::{normal, Lattice};
+use crate::interrupt::poll;
 
 /// Reads a closed triangle mesh onto the lattice.
 ///
@@ -223,6 +224,7 @@ fn weigh_chunk(
     let mut volume = 0.0;
     let mut flat = Vec::new();
     for (number, face) in (first as u32..).zip(faces) {
+        poll();
         let corners = face.map(|v| &vertices[v as usize]);
         let [u, v] = spokes(corners);
         let arm = [0, 1, 2].map(|i| (corners[0][i] - origin[i]) as f64);

@@ -4,6 +4,7 @@
 //! vertex to the one before it. The faces make one fan if the link is one cycle.
 
 use super::tasks::each_chunk;
+use crate::interrupt::poll;
 
 /// Edges that a [`Short`] link holds; around most vertices of most meshes there are six.
 const ROOM: usize = 8;
@@ -30,6 +31,7 @@ fn doubtful(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
     let mut links: Vec<Short> = vec![[0; 2 * ROOM]; vertex_count];
     let mut counts = vec![0u8; vertex_count];
     for &[a, b, c] in faces {
+        poll();
         for (vertex, from, to) in [(a, b, c), (b, c, a), (c, a, b)] {
             let count = &mut counts[vertex as usize];
             let at = usize::from(*count);
@@ -111,6 +113,7 @@ impl<'a> Links<'a> {
         let mut next = starts.clone();
         let mut edges = vec![[0; 2]; starts[vertices.len()] as usize];
         for (row, edge) in corners().filter(|c| c.0 != NONE) {
+            poll();
             let slot = &mut next[row as usize];
             edges[*slot as usize] = edge;
             *slot += 1;

@@ -2,6 +2,8 @@
 
 use rayon::prelude::*;
 
+use crate::interrupt::{spend, Task};
+
 /// Elements of one task: some 50 µs of work, far above what handing it over costs.
 pub const CHUNK: usize = 1 << 14;
 
@@ -15,11 +17,17 @@ pub fn each_chunk<T: Sync, R: Send>(
     items: &[T],
     value: impl Fn(usize, &[T]) -> R + Sync,
 ) -> Vec<R> {
+    let task = Task::current();
+    let value = |(i, chunk): (usize, &[T])| {
+        task.run(|| {
+            spend(chunk.len());
+            value(i * CHUNK, chunk)
+        })
+    };
     if items.len() <= CHUNK || !in_pool() {
-        return vec![value(0, items)];
+        return vec![value((0, items))];
     }
-    let chunks = items.par_chunks(CHUNK).enumerate();
-    chunks.map(|(i, chunk)| value(i * CHUNK, chunk)).collect()
+    items.par_chunks(CHUNK).enumerate().map(value).collect()
 }
 
 /// As [`each_chunk`], and fills the same chunk of another array of the same length.
@@ -28,14 +36,18 @@ pub fn fill_chunks<T: Sync, U: Send, R: Send>(
     out: &mut [U],
     value: impl Fn(usize, &[T], &mut [U]) -> R + Sync,
 ) -> Vec<R> {
+    let task = Task::current();
+    let value = |(i, (chunk, out)): (usize, (&[T], &mut [U]))| {
+        task.run(|| {
+            spend(chunk.len());
+            value(i * CHUNK, chunk, out)
+        })
+    };
     if items.len() <= CHUNK || !in_pool() {
-        return vec![value(0, items, out)];
+        return vec![value((0, (items, out)))];
     }
     let chunks = items.par_chunks(CHUNK).zip(out.par_chunks_mut(CHUNK));
-    let chunks = chunks.enumerate();
-    chunks
-        .map(|(i, (chunk, out))| value(i * CHUNK, chunk, out))
-        .collect()
+    chunks.enumerate().map(value).collect()
 }
 
 /// Two values, made at the same time where that pays.
@@ -45,7 +57,8 @@ pub fn both<A: Send, B: Send>(
     b: impl FnOnce() -> B + Send,
 ) -> (A, B) {
     if pays && in_pool() {
-        rayon::join(a, b)
+        let task = Task::current();
+        rayon::join(|| task.run(a), || task.run(b))
     } else {
         (a(), b())
     }

@@ -1,6 +1,7 @@
 //! Which half-edge is whose mate.
 
 use crate::geometry::plane::Lattice;
+use crate::interrupt::poll;
 
 /// "No mate."
 pub const NONE: u32 = u32::MAX;
@@ -21,6 +22,7 @@ impl Topology {
         let mut mates = vec![NONE; 3 * faces.len()];
         let mut irregular = Vec::new();
         for tail in 0..vertex_count {
+            poll();
             for &half in outgoing.of(tail) {
                 let (a, b) = ends(faces, half);
                 if a > b {
@@ -110,6 +112,7 @@ impl Outgoing {
         let mut next = starts.clone();
         let mut halves = vec![0u32; 3 * faces.len()];
         for (half, vertex) in (0u32..).zip(faces.iter().flatten()) {
+            poll();
             let slot = &mut next[*vertex as usize];
             halves[*slot as usize] = half;
             *slot += 1;
@@ -136,6 +139,7 @@ pub fn open_edges(
     edges.sort_by_key(|a| (a.line, a.low, a.half));
     let mut open = Vec::new();
     for run in edges.chunk_by(|a, b| a.line == b.line) {
+        poll();
         if !cancels(run) {
             open.extend(run.iter().map(|e| e.half as u64));
         }

@@ -49,7 +49,7 @@ fn suited_pitch(py: Python<'_>, largest: f64, extent: f64) -> PyResult<i64> {
 /// Fails as a defect would: for the tests of what happens then.
 #[pyfunction]
 fn fail_on_purpose(py: Python<'_>, panic: bool, size: usize) -> PyResult<()> {
-    run::run(py, 0, size, |_| {
+    run::run(py, 0, size, || {
         assert!(!panic, "a panic on purpose");
         Err(Error::internal("a failure on purpose"))
     })

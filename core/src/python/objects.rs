@@ -59,7 +59,7 @@ impl ObjectTree {
         py: Python<'_>,
         work: impl FnOnce(&Set, Pitch) -> Result<T> + Send,
     ) -> PyResult<T> {
-        run(py, 0, self.set.size(), |_| work(&self.set, self.pitch))
+        run(py, 0, self.set.size(), || work(&self.set, self.pitch))
             .map_err(|e| self.blamed(py, e, &[self]))
     }
 
@@ -118,7 +118,7 @@ impl ObjectTree {
             policy: set_input::policy(policy, seed).map_err(fail)?,
         };
         let size = input.facets.len();
-        let set = run(py, 0, size, |_| Set::build(dimension, &input, pitch))?;
+        let set = run(py, 0, size, || Set::build(dimension, &input, pitch))?;
         Ok(Self::of(set, pitch))
     }
 
@@ -154,7 +154,7 @@ impl ObjectTree {
         let op = set_input::operation(op).map_err(|e| to_python(py, &e))?;
         let (a, b) = (&self.set, &other.set);
         set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
-        let set = run(py, 0, a.size() + b.size(), |_| a.merge(b, op))
+        let set = run(py, 0, a.size() + b.size(), || a.merge(b, op))
             .map_err(|e| self.blamed(py, e, &[self, &other]))?;
         Ok(self.with(set))
     }
@@ -162,7 +162,7 @@ impl ObjectTree {
     fn equals(&self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<bool> {
         let (a, b) = (&self.set, &other.set);
         set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
-        let difference = run(py, 0, a.size() + b.size(), |_| {
+        let difference = run(py, 0, a.size() + b.size(), || {
             a.merge(b, SetOp::SymmetricDifference)
         })
         .map_err(|e| self.blamed(py, e, &[self, &other]))?;
@@ -267,7 +267,7 @@ impl ObjectTree {
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
         let points = rows(&points);
         let size = self.set.size() + points.len();
-        let found = run(py, 0, size, |_| self.set.classify(&points, self.pitch))
+        let found = run(py, 0, size, || self.set.classify(&points, self.pitch))
             .map_err(|e| self.blamed(py, e, &[self]))?;
         let sign = |location: &Location| match location {
             Location::In => 1i8,

@@ -80,7 +80,7 @@ impl RayTree {
             limit,
             record,
         };
-        let tree = run(py, 0, flat.len(), |_| match dimension {
+        let tree = run(py, 0, flat.len(), || match dimension {
             1 => Ok(Stabbed::Points(plan.tree()?)),
             2 => Ok(Stabbed::Segments(plan.tree()?)),
             3 => Ok(Stabbed::Triangles(plan.tree()?)),
@@ -110,10 +110,10 @@ impl RayTree {
     ) -> PyResult<(HitArrays<'py>, Counts<'py>)> {
         let _call = self.calls.enter(py)?;
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
-        let (columns, counts) = run(py, 0, origins.len() * WEIGHT, |cancel| {
+        let (columns, counts) = run(py, 0, origins.len() * WEIGHT, || {
             let mut tree = self.tree.lock().unwrap_or_else(PoisonError::into_inner);
             with_tree!(&mut *tree, tree => {
-                let (hits, traces) = test_rays(tree, origins, heads, cancel)?;
+                let (hits, traces) = test_rays(tree, origins, heads)?;
                 Ok((Columns::of_first(&hits), counts(&traces)))
             })
         })?;
@@ -145,7 +145,7 @@ impl RayTree {
         look: impl FnOnce(&Stabbed) -> T + Send,
     ) -> PyResult<T> {
         let _call = self.calls.enter(py)?;
-        run(py, 0, 0, |_| {
+        run(py, 0, 0, || {
             Ok(look(
                 &self.tree.lock().unwrap_or_else(PoisonError::into_inner),
             ))

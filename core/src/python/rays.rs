@@ -1,7 +1,5 @@
 //! The class `RayScene`: facets in one, two or three dimensions, and rays cast at them.
 
-use std::sync::atomic::AtomicBool;
-
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -126,7 +124,7 @@ impl RayScene {
         let fail = |e: Error| to_python(py, &e);
         let pitch = pitch.map(Pitch::new).transpose().map_err(fail)?;
         let flat = corners.as_slice()?;
-        let facets = run(py, 0, flat.len(), |_| build(dimension, flat, pitch))?;
+        let facets = run(py, 0, flat.len(), || build(dimension, flat, pitch))?;
         let calls = InUse::default();
         Ok(Self { facets, calls })
     }
@@ -144,7 +142,7 @@ impl RayScene {
     /// Divides all deferred leaves.
     #[pyo3(signature = (threads=0))]
     fn complete(&self, py: Python<'_>, threads: usize) -> PyResult<()> {
-        self.run(py, threads, SMALL, |_| {
+        self.run(py, threads, SMALL, || {
             with_scene!(&self.facets, scene => scene.complete());
             Ok(())
         })
@@ -159,12 +157,8 @@ impl RayScene {
         threads: usize,
     ) -> PyResult<HitArrays<'py>> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
-        let columns = self.run(py, threads, origins.len() * WEIGHT, |cancel| {
-            let rays = Rays {
-                origins,
-                heads,
-                cancel,
-            };
+        let columns = self.run(py, threads, origins.len() * WEIGHT, || {
+            let rays = Rays { origins, heads };
             with_scene!(&self.facets, scene => Ok(Columns::of_first(&rays.first(scene)?)))
         })?;
         Ok(columns.arrays(py))
@@ -181,12 +175,8 @@ impl RayScene {
         threads: usize,
     ) -> PyResult<(Indices<'py>, HitArrays<'py>)> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
-        let (offsets, columns) = self.run(py, threads, origins.len() * WEIGHT, |cancel| {
-            let rays = Rays {
-                origins,
-                heads,
-                cancel,
-            };
+        let (offsets, columns) = self.run(py, threads, origins.len() * WEIGHT, || {
+            let rays = Rays { origins, heads };
             with_scene!(&self.facets, scene => {
                 let hits = rays.all(scene, merge)?;
                 Ok((offsets(&hits), Columns::of_all(&hits)))
@@ -210,12 +200,8 @@ impl RayScene {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
         let rule = winding_rule(rule).map_err(|e| to_python(py, &e))?;
         let outside = i32::from(unbounded);
-        let found = self.run(py, threads, origins.len() * WEIGHT, |cancel| {
-            let rays = Rays {
-                origins,
-                heads,
-                cancel,
-            };
+        let found = self.run(py, threads, origins.len() * WEIGHT, || {
+            let rays = Rays { origins, heads };
             with_scene!(&self.facets, scene => rays.inside(scene, rule, outside))
         })?;
         let ends = |i: &Inside| i.t;
@@ -237,12 +223,8 @@ impl RayScene {
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let (origins, heads) = (origins.as_slice()?, targets.as_slice()?);
-        let found = self.run(py, threads, origins.len() * WEIGHT, |cancel| {
-            let rays = Rays {
-                origins,
-                heads,
-                cancel,
-            };
+        let found = self.run(py, threads, origins.len() * WEIGHT, || {
+            let rays = Rays { origins, heads };
             with_scene!(&self.facets, scene => rays.hidden(scene))
         })?;
         Ok(PyArray1::from_vec(py, found))
@@ -259,12 +241,8 @@ impl RayScene {
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
         let limits = limits.as_slice()?;
-        let found = self.run(py, threads, origins.len() * WEIGHT, |cancel| {
-            let rays = Rays {
-                origins,
-                heads,
-                cancel,
-            };
+        let found = self.run(py, threads, origins.len() * WEIGHT, || {
+            let rays = Rays { origins, heads };
             with_scene!(&self.facets, scene => rays.blocked(scene, limits))
         })?;
         Ok(PyArray1::from_vec(py, found))
@@ -278,7 +256,7 @@ impl RayScene {
         py: Python<'_>,
         threads: usize,
         size: usize,
-        work: impl FnOnce(&AtomicBool) -> Result<T> + Send,
+        work: impl FnOnce() -> Result<T> + Send,
     ) -> PyResult<T> {
         let _call = self.calls.enter(py)?;
         run(py, threads, size, work).map_err(|e| {

@@ -1,6 +1,6 @@
 //! Calls into the core: the GIL released, signals polled, panics caught.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::cell::Cell;
 use std::sync::mpsc;
 use std::time::Duration;
 
@@ -11,13 +11,19 @@ use super::errors::to_python;
 use super::pool::pool;
 use crate::error::panics::caught;
 use crate::error::{Error, Result};
+use crate::interrupt::Call;
 
 /// Work on fewer elements than this is done at once, on the caller's thread.
 pub const SMALL: usize = 2000;
 
 const POLL: Duration = Duration::from_millis(50);
 
-/// Runs work with the GIL released; an interrupt sets the flag that the work watches.
+thread_local! {
+    /// What a signal handler raised while this thread waited or worked.
+    static RAISED: Cell<Option<PyErr>> = const { Cell::new(None) };
+}
+
+/// Runs work with the GIL released; an interrupt ends it at its next poll.
 ///
 /// # Errors
 /// What the work returns, as a Python exception; a panic as an internal error; `KeyboardInterrupt`
@@ -26,17 +32,17 @@ pub fn run<T: Send>(
     py: Python<'_>,
     threads: usize,
     size: usize,
-    work: impl FnOnce(&AtomicBool) -> Result<T> + Send,
+    work: impl FnOnce() -> Result<T> + Send,
 ) -> PyResult<T> {
-    let cancel = AtomicBool::new(false);
-    let mut raised = None;
+    RAISED.set(None);
+    let call = Call::new();
     let result = if size < SMALL {
-        py.detach(|| caught(|| work(&cancel)))
+        py.detach(|| call.run_asking(signal_raised, work))
     } else {
         let pool = pool(py, threads).map_err(|e| to_python(py, &e))?;
-        py.detach(|| shared(&pool, work, &cancel, &mut raised))
+        py.detach(|| shared(&pool, &call, work))
     };
-    match raised {
+    match RAISED.take() {
         Some(exception) => Err(exception),
         None => result.map_err(|error| to_python(py, &error)),
     }
@@ -50,17 +56,16 @@ pub fn here<T>(py: Python<'_>, work: impl FnOnce() -> Result<T>) -> PyResult<T> 
     caught(work).map_err(|error| to_python(py, &error))
 }
 
-/// Runs work in a pool and waits for it; a signal's exception is put into `raised`.
+/// Has a pool do the work of a call and waits for it; stops it when a signal's handler raises.
 fn shared<T: Send>(
     pool: &ThreadPool,
-    work: impl FnOnce(&AtomicBool) -> Result<T> + Send,
-    cancel: &AtomicBool,
-    raised: &mut Option<PyErr>,
+    call: &Call,
+    work: impl FnOnce() -> Result<T> + Send,
 ) -> Result<T> {
     let (done, wait) = mpsc::channel();
     pool.in_place_scope(|scope| {
         scope.spawn(move |_| {
-            let _ = done.send(caught(|| work(cancel)));
+            let _ = done.send(call.run(work));
         });
         loop {
             match wait.recv_timeout(POLL) {
@@ -69,9 +74,8 @@ fn shared<T: Send>(
                     return Err(Error::internal("the work ended without an answer"));
                 }
                 Err(mpsc::RecvTimeoutError::Timeout) => {
-                    if let Err(e) = pending_signal() {
-                        *raised = Some(e);
-                        cancel.store(true, Ordering::Relaxed);
+                    if signal_raised() {
+                        call.stop();
                     }
                 }
             }
@@ -79,23 +83,24 @@ fn shared<T: Send>(
     })
 }
 
-/// The exception of a signal that has arrived, such as `KeyboardInterrupt`.
+/// Whether a signal has arrived of which the handler raised an exception, such as
+/// `KeyboardInterrupt`.
 ///
 /// A handler may fork. The child has the threads of the pool no more, and the work borrows from
 /// this stack, so that there is no way on and none back: the child ends with a word, not by waiting.
-#[expect(
-    clippy::redundant_closure_for_method_calls,
-    reason = "the method is bound to one lifetime, `attach` wants any"
-)]
-fn pending_signal() -> PyResult<()> {
+fn signal_raised() -> bool {
     let process = std::process::id();
-    let found = Python::attach(|py| py.check_signals());
+    let raised = Python::attach(|py| py.check_signals().err());
     if std::process::id() != process {
         eprintln!(
             "bspcsg: a signal handler forked this process in the middle of an operation, which \
              cannot go on here; a child must end inside the handler (os._exit)"
         );
         std::process::abort();
+    }
+    let found = raised.is_some();
+    if found {
+        RAISED.set(raised);
     }
     found
 }

@@ -1,6 +1,5 @@
 //! The class `Tree`: an immutable exact solid.
 
-use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
 use num_bigint::BigInt;
@@ -17,6 +16,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::extract::collect::has_no_boundary;
 use crate::extract::round::{self, Mesh};
 use crate::extract::snapshot::{Motion, Snapshot};
+use crate::interrupt::poll;
 use crate::merge::descend::Counters;
 use crate::merge::evaluate::{evaluate, explained, normalize, settled};
 use crate::merge::expression::{Expression, Term};
@@ -27,7 +27,7 @@ use crate::mesh::half_space::{bounding_plane, half_space};
 use crate::mesh::import::import;
 use crate::mesh::source::TriangleMesh;
 use crate::query::classify::{classify, Location};
-use crate::query::measure::{volume, volume_near, volume_residues, volume_rounded};
+use crate::query::measure::{volume_near, volume_residues, volume_rounded, volume_within};
 use crate::query::region::section::section;
 use crate::tree::solid::Solid;
 use crate::tree::stats::{stats, Stats};
@@ -77,11 +77,9 @@ impl Tree {
         method: &str,
         threads: usize,
         size: usize,
-        work: impl FnOnce(&AtomicBool) -> Result<T> + Send,
+        work: impl FnOnce() -> Result<T> + Send,
     ) -> PyResult<T> {
-        let explained = |cancel: &AtomicBool| {
-            caught(|| work(cancel)).map_err(|e| explained(&self.solid, e, cancel))
-        };
+        let explained = || caught(work).map_err(|e| explained(&self.solid, e));
         run(py, threads, size, explained).map_err(|e| {
             blamed(py, e, &format!("Tree.{method}"), || {
                 let inputs = PyDict::new(py);
@@ -93,7 +91,7 @@ impl Tree {
     }
 
     fn is_bare(&self, py: Python<'_>) -> PyResult<bool> {
-        let bare = |_: &_| Ok(has_no_boundary(&self.solid));
+        let bare = || Ok(has_no_boundary(&self.solid));
         self.run(py, "is_empty", 0, self.size(), bare)
     }
 
@@ -105,7 +103,7 @@ impl Tree {
         if let Some(rounded) = self.rounded.get() {
             return Ok(rounded);
         }
-        let (mesh, triangles) = self.run(py, "to_mesh", threads, self.size(), |_| {
+        let (mesh, triangles) = self.run(py, "to_mesh", threads, self.size(), || {
             let mesh = round::mesh(&self.solid)?;
             let triangles = wide(&mesh.triangles);
             Ok((mesh, triangles))
@@ -142,16 +140,15 @@ impl Tree {
         let vertices = rows(&vertices, "vertices").map_err(fail)?;
         let faces = rows(&faces, "faces").map_err(fail)?;
         let pitch = pitch.map(Pitch::new).transpose().map_err(fail)?;
-        let source =
-            run(py, 0, faces.len(), |_| import(&vertices, &faces, pitch)).map_err(|e| {
-                blamed(py, e, "Tree.from_mesh", || {
-                    let inputs = PyDict::new(py);
-                    inputs.set_item("vertices", array(py, vertices.to_vec())?)?;
-                    inputs.set_item("faces", array(py, faces.to_vec())?)?;
-                    inputs.set_item("pitch", pitch.map(Pitch::exponent))?;
-                    Ok(inputs)
-                })
-            })?;
+        let source = run(py, 0, faces.len(), || import(&vertices, &faces, pitch)).map_err(|e| {
+            blamed(py, e, "Tree.from_mesh", || {
+                let inputs = PyDict::new(py);
+                inputs.set_item("vertices", array(py, vertices.to_vec())?)?;
+                inputs.set_item("faces", array(py, faces.to_vec())?)?;
+                inputs.set_item("pitch", pitch.map(Pitch::exponent))?;
+                Ok(inputs)
+            })
+        })?;
         Ok(Self::of(Solid::of_source(Arc::new(source), trusted)))
     }
 
@@ -203,8 +200,8 @@ impl Tree {
             .and_then(Expression::new)
             .map_err(|e| to_python(py, &e))?;
         let solids: Vec<Solid> = operands.iter().map(|o| o.solid.clone()).collect();
-        let (solid, counters) = run(py, threads, work(&solids, SMALL), |cancel| {
-            evaluate(&expression, &solids, cancel)
+        let (solid, counters) = run(py, threads, work(&solids, SMALL), || {
+            evaluate(&expression, &solids)
         })
         .map_err(|e| {
             blamed(py, e, "Tree.evaluate", || {
@@ -237,13 +234,13 @@ impl Tree {
         };
         if rule == Rule::Positive {
             let size = work_to_settle(&self.solid);
-            let settled = |c: &_| settled(&self.solid, c);
+            let settled = || settled(&self.solid);
             if let Some(solid) = self.run(py, "normalized", threads, size, settled)? {
                 return Ok(Self::of(solid));
             }
         }
-        let solid = self.run(py, "normalized", threads, self.size(), |cancel| {
-            normalize(&self.solid, rule, cancel)
+        let solid = self.run(py, "normalized", threads, self.size(), || {
+            normalize(&self.solid, rule)
         })?;
         Ok(Self::of(solid))
     }
@@ -277,7 +274,7 @@ impl Tree {
 
     /// The arrays the tree was made from.
     fn given_arrays<'py>(&self, py: Python<'py>) -> PyResult<MeshArrays<'py>> {
-        let mesh = self.run(py, "given_arrays", 0, 0, |_| {
+        let mesh = self.run(py, "given_arrays", 0, 0, || {
             let text = "the tree does not hold the arrays of one mesh as they were given";
             self.given().ok_or_else(|| Error::internal(text))
         })?;
@@ -308,27 +305,27 @@ impl Tree {
         mesh.findings.iter().map(|f| finding(py, f)).collect()
     }
 
-    fn volume6_exact(&self, py: Python<'_>) -> PyResult<(BigInt, BigInt)> {
-        let volume = |_: &_| volume(&self.solid);
+    fn volume6_exact(&self, py: Python<'_>, most_bits: u64) -> PyResult<(BigInt, BigInt)> {
+        let volume = || volume_within(&self.solid, most_bits);
         let fraction = self.run(py, "volume6_exact", 0, self.size(), volume)?;
         Ok((fraction.numerator, fraction.denominator))
     }
 
     /// The nearest double; None if the near volume has to decide.
     fn volume_rounded(&self, py: Python<'_>) -> PyResult<Option<f64>> {
-        self.run(py, "volume_rounded", 0, 0, |_| {
+        self.run(py, "volume_rounded", 0, 0, || {
             Ok(volume_rounded(&self.solid))
         })
     }
 
     fn volume_near(&self, py: Python<'_>) -> PyResult<(BigInt, BigInt)> {
-        let volume = |_: &_| volume_near(&self.solid);
+        let volume = || volume_near(&self.solid);
         let fraction = self.run(py, "volume_near", 0, self.size(), volume)?;
         Ok((fraction.numerator, fraction.denominator))
     }
 
     fn volume_residues(&self, py: Python<'_>) -> PyResult<Option<(u64, u64)>> {
-        let volume = |_: &_| volume_residues(&self.solid);
+        let volume = || volume_residues(&self.solid);
         let residues = self.run(py, "volume_residues", 0, self.size(), volume)?;
         Ok(residues.map(Into::into))
     }
@@ -340,11 +337,14 @@ impl Tree {
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
         let points = rows(&points, "points").map_err(|e| to_python(py, &e))?;
         let size = self.size() + points.len();
-        let found = self.run(py, "classify", 0, size, |_| {
+        let found = self.run(py, "classify", 0, size, || {
             let pitch = self.solid.pitch();
             let points = points
                 .iter()
-                .map(|p| snap_point(pitch, p))
+                .map(|p| {
+                    poll();
+                    snap_point(pitch, p)
+                })
                 .collect::<Result<Vec<_>>>()?;
             classify(&self.solid, &points)
         })?;
@@ -362,7 +362,7 @@ impl Tree {
         hyperplane: Row,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let pitch = self.solid.pitch();
-        let edges = self.run(py, "section", 0, self.size(), |_| {
+        let edges = self.run(py, "section", 0, self.size(), || {
             let (normal, offset) = coefficients(&hyperplane)?;
             section(&self.solid, &bounding_plane(normal, &offset)?)
         })?;
@@ -412,7 +412,7 @@ impl Tree {
 
     fn moved(&self, py: Python<'_>, axes: [i64; 3], shift: [i64; 3]) -> PyResult<Self> {
         let motion = motion(axes, shift).map_err(|e| to_python(py, &e))?;
-        self.run(py, "moved", 0, self.size(), |_| {
+        self.run(py, "moved", 0, self.size(), || {
             self.mapped(&motion, self.solid.pitch())
         })
     }
@@ -434,20 +434,20 @@ impl Tree {
             scale,
             ..Motion::IDENTITY
         };
-        self.run(py, "refined", 0, self.size(), |_| {
+        self.run(py, "refined", 0, self.size(), || {
             self.mapped(&motion, finer)
         })
     }
 
     fn dump<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = |_: &_| Snapshot::of(&self.solid).to_bytes();
+        let bytes = || Snapshot::of(&self.solid).to_bytes();
         let bytes = self.run(py, "dump", 0, self.size(), bytes)?;
         Ok(PyBytes::new(py, &bytes))
     }
 
     #[classmethod]
     fn load(_cls: &Bound<'_, PyType>, py: Python<'_>, data: &[u8]) -> PyResult<Self> {
-        let solid = |_: &_| Snapshot::solid_from_bytes(data);
+        let solid = || Snapshot::solid_from_bytes(data);
         Ok(Self::of(run(py, 0, data.len(), solid)?))
     }
 

@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
+use crate::interrupt::poll;
 use crate::merge::leaf::LeafTree;
 use crate::merge::list::{List, Sources};
 use crate::tree::node::{Branch, Node};
@@ -28,7 +29,7 @@ const LEAF: usize = 20;
 /// Deferred leaves are divided on the way, for the points at hand only.
 ///
 /// # Errors
-/// None for points on the lattice; reserved for cancellation.
+/// None.
 pub fn classify(solid: &Solid, points: &[Lattice]) -> Result<Vec<Location>> {
     let sources = Sources::new(solid.sources().clone());
     let mut found = vec![Location::Outside; points.len()];
@@ -56,6 +57,7 @@ impl Search<'_> {
             Location::Outside
         };
         for i in points {
+            poll();
             self.found[*i] = location;
         }
     }
@@ -65,12 +67,16 @@ impl Search<'_> {
         points: Vec<usize>,
         inside: impl Fn(&Lattice) -> bool,
     ) -> (Vec<usize>, Vec<usize>) {
-        points.into_iter().partition(|i| inside(&self.points[*i]))
+        points.into_iter().partition(|i| {
+            poll();
+            inside(&self.points[*i])
+        })
     }
 
     fn tree(&mut self, root: &Branch, points: Vec<usize>) {
         let mut open = vec![(root.clone(), points)];
         while let Some((branch, points)) = open.pop() {
+            poll();
             let (points, around) = self.split(points, |p| branch.cell.holds_box(p, p));
             self.label(&around, branch.outside);
             if points.is_empty() {
@@ -97,6 +103,7 @@ impl Search<'_> {
     fn list(&mut self, cell: Cell, list: List, points: Vec<usize>) {
         let mut open = vec![(cell, list, points)];
         while let Some((cell, list, points)) = open.pop() {
+            poll();
             if points.is_empty() {
                 continue;
             }
@@ -120,6 +127,7 @@ impl Search<'_> {
     fn leaf(&mut self, cell: &Cell, list: &List, points: &[usize]) {
         let leaf = LeafTree::new(list, cell, self.sources);
         for i in points {
+            poll();
             let p = &self.points[*i];
             let on = leaf.polygons().any(|q| touches(q, p));
             self.found[*i] = match leaf.label_at(p) {

@@ -3,8 +3,9 @@
 use num_bigint::{BigInt, Sign};
 use num_integer::Integer;
 
-use crate::arith::{inv_mod, mul_mod, ratio_to_f64, Int, P1, P2};
-use crate::error::Result;
+use super::shares::Shares;
+use crate::arith::{ratio_to_f64, Int, P1, P2};
+use crate::error::{Error, ErrorKind, Result};
 use crate::extract::assemble::{assemble, Corner, ExactMesh};
 use crate::geometry::fixed::FLUX_PLACES;
 use crate::geometry::plane::Lattice;
@@ -23,22 +24,43 @@ pub struct Fraction {
 
 /// The exact volume in cubic model units.
 ///
-/// A sum over faces, never over cells: integers for lattice triangles, fractions for the others,
-/// added pairwise so that the operands stay of similar length.
-///
 /// # Errors
 /// `Unbounded`.
 pub fn volume(solid: &Solid) -> Result<Fraction> {
+    volume_within(solid, u64::MAX)
+}
+
+/// The exact volume in cubic model units, if its denominator is not too long.
+///
+/// A sum over faces, never over cells: integers for lattice triangles, fractions for the others.
+///
+/// # Errors
+/// `Unbounded`; `TooMany` if the denominator may have more than so many bits.
+pub fn volume_within(solid: &Solid, most_bits: u64) -> Result<Fraction> {
     let mesh = assemble(solid)?;
-    let (whole, cut) = shares(solid, &mesh);
-    let mut cut: Vec<(BigInt, BigInt)> = cut.collect();
-    cut.push((big(&whole), BigInt::from(1)));
-    let (numerator, denominator) = pairwise_sum(cut);
+    let shares = Shares::of(solid, &mesh);
+    let bits = shares.denominator_bits();
+    if bits > most_bits {
+        return Err(too_long(bits, most_bits));
+    }
+    let (numerator, denominator) = shares.sum();
     Ok(in_units(
         numerator,
         denominator * 6,
         solid.pitch().exponent(),
     ))
+}
+
+fn too_long(bits: u64, most_bits: u64) -> Error {
+    // The decimal logarithm of 2 is 0.30103, to within 10^-8.
+    let digits = |bits: u64| u128::from(bits) * 30_103 / 100_000;
+    let text = format!(
+        "the exact volume is a fraction of up to {} digits, more than {}; the near volume is far finer \
+         than a double",
+        digits(bits),
+        digits(most_bits)
+    );
+    Error::at(ErrorKind::TooMany, vec![bits], text)
 }
 
 /// The volume in cubic model units as the nearest double, from what the tree's nodes have kept.
@@ -83,9 +105,9 @@ const PLACES: usize = 128;
 /// `Unbounded`.
 pub fn volume_near(solid: &Solid) -> Result<Fraction> {
     let mesh = assemble(solid)?;
-    let (whole, cut) = shares(solid, &mesh);
-    let rounded: BigInt = cut.map(|(n, d)| (n << PLACES).div_floor(&d)).sum();
-    let sum = (big(&whole) << PLACES) + rounded;
+    let shares = Shares::of(solid, &mesh);
+    let rounded: BigInt = shares.near(PLACES).sum();
+    let sum = (shares.whole << PLACES) + rounded;
     let denominator = BigInt::from(6) << PLACES;
     Ok(in_units(sum, denominator, solid.pitch().exponent()))
 }
@@ -99,43 +121,13 @@ pub fn volume_near(solid: &Solid) -> Result<Fraction> {
 /// `Unbounded`.
 pub fn volume_residues(solid: &Solid) -> Result<Option<[u64; 2]>> {
     let mesh = assemble(solid)?;
-    let (whole, cut) = shares(solid, &mesh);
-    let cut: Vec<(BigInt, BigInt)> = cut.collect();
-    let residue = |p: u64| {
-        let of = |n: &BigInt| {
-            let r = n.mod_floor(&BigInt::from(p));
-            u64::try_from(r).unwrap_or(0)
-        };
-        cut.iter().try_fold(of(&big(&whole)), |sum, (n, d)| {
-            let d = of(d);
-            let share = mul_mod(of(n), inv_mod(d, p), p);
-            (d != 0).then_some((sum + share) % p)
-        })
-    };
-    Ok(residue(P1).and_then(|a| Some([a, residue(P2)?])))
+    let shares = Shares::of(solid, &mesh);
+    Ok(shares
+        .modulo(P1)
+        .and_then(|a| Some([a, shares.modulo(P2)?])))
 }
 
-/// Six times the volume over all triangles: the lattice triangles' sum, and the others' fractions.
-fn shares<'a>(
-    solid: &'a Solid,
-    mesh: &'a ExactMesh,
-) -> (Int<4>, impl Iterator<Item = (BigInt, BigInt)> + 'a) {
-    let corners = |t: &[u32; 3]| t.map(|v| lattice(solid, mesh, v));
-    let whole = mesh.triangles.iter().filter_map(move |t| match corners(t) {
-        [Some(a), Some(b), Some(c)] => Some(determinant(&a, &b, &c)),
-        _ => None,
-    });
-    let mut sum = Int::<4>::ZERO;
-    whole.for_each(|d| sum += d);
-    let cut = mesh
-        .triangles
-        .iter()
-        .filter(move |t| corners(t).iter().any(Option::is_none))
-        .map(move |t| fraction_of(&t.map(|v| homogeneous(solid, mesh, v))));
-    (sum, cut)
-}
-
-fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Option<Lattice> {
+pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Option<Lattice> {
     match mesh.vertices[vertex as usize] {
         Corner::Source(slot, index) => {
             Some(solid.sources().get(slot as usize).mesh()?.vertices[index as usize])
@@ -160,23 +152,6 @@ pub(super) fn homogeneous(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Homog
     }
 }
 
-/// Six times the volume of the tetrahedron from the origin.
-fn determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> Int<4> {
-    let minor = |i: usize, j: usize| {
-        i128::from(b[i]) * i128::from(c[j]) - i128::from(b[j]) * i128::from(c[i])
-    };
-    let term = |i: usize, m: i128| -> Int<4> { Int::<2>::from_i128(m).mul_i64(a[i]) };
-    term(0, minor(1, 2)) + term(1, minor(2, 0)) + term(2, minor(0, 1))
-}
-
-fn fraction_of(corners: &[Homogeneous; 3]) -> (BigInt, BigInt) {
-    let [a, b, c] = corners;
-    let x = |h: &Homogeneous, i: usize| big(&h.x[i]);
-    let minor = |i: usize, j: usize| x(b, i) * x(c, j) - x(b, j) * x(c, i);
-    let value = x(a, 0) * minor(1, 2) + x(a, 1) * minor(2, 0) + x(a, 2) * minor(0, 1);
-    lowest(value, big(&a.w) * big(&b.w) * big(&c.w))
-}
-
 /// Fractions longer than this many bits are left as they are: the divisor would cost more to find
 /// than it saves.
 const REDUCED: u64 = 4096;
@@ -188,7 +163,7 @@ fn reduced(numerator: BigInt, denominator: BigInt) -> (BigInt, BigInt) {
     lowest(numerator, denominator)
 }
 
-fn lowest(numerator: BigInt, denominator: BigInt) -> (BigInt, BigInt) {
+pub(super) fn lowest(numerator: BigInt, denominator: BigInt) -> (BigInt, BigInt) {
     let g = numerator.gcd(&denominator);
     if g == BigInt::from(1) || g == BigInt::ZERO {
         return (numerator, denominator);

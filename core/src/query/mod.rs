@@ -10,4 +10,5 @@ pub mod classify;
 pub mod measure;
 pub mod ray;
 pub mod region;
+mod shares;
 pub mod stab;

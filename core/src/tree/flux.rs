@@ -18,6 +18,7 @@ use crate::geometry::fixed::{
 use crate::geometry::plane::Lattice;
 use crate::geometry::trim::{trimmed, Rest};
 use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
 use crate::mesh::source::{Shape, Source};
 
 /// What a node's boundary contributes to the volume.
@@ -111,6 +112,7 @@ fn leaf_share(leaf: &Deferred, cell: &Cell) -> Share {
         match group.source.shape() {
             Shape::Mesh(mesh) => {
                 for face in &group.faces {
+                    poll();
                     sum.add_face(&mesh.corners(*face), group.flip);
                 }
             }
@@ -118,6 +120,7 @@ fn leaf_share(leaf: &Deferred, cell: &Cell) -> Share {
         }
     }
     for element in &leaf.parts {
+        poll();
         sum.add_part(&element.part, element.flip);
     }
     sum.rest.flux.value += of_cubic_steps(&sum.inside);
@@ -200,6 +203,7 @@ fn fan_flux(ends: &[[Fixed; 2]], walls: Option<&Walls>, slope: f64) -> Flux {
     let mut rounds = 1;
     let mut value = Int::ZERO;
     for [from, to] in ends.iter().filter(|e| !e.contains(apex)) {
+        poll();
         if let Some(walls) = walls {
             let mut ring: Ring = [*apex, *from, *to].into_iter().collect();
             rounds = rounds.max(1 + walls.clip(&mut ring));

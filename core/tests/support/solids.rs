@@ -1,7 +1,5 @@
 //! Operations on solids and questions to them.
 
-use std::sync::atomic::AtomicBool;
-
 use bspcsg::extract::collect::has_no_boundary;
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::evaluate::{evaluate, normalize};
@@ -16,7 +14,7 @@ pub fn combined(solids: &[Solid], lines: Vec<Term>) -> Solid {
     let count = u32::try_from(solids.len()).expect("few");
     let terms = (0..count).map(Term::Operand).chain(lines).collect();
     let expression = Expression::new(terms).expect("well formed");
-    let done = evaluate(&expression, solids, &AtomicBool::new(false));
+    let done = evaluate(&expression, solids);
     done.expect("evaluates").0
 }
 
@@ -48,7 +46,7 @@ pub fn is_full(solid: &Solid) -> bool {
 
 /// The solid united with itself.
 pub fn normalized(solid: &Solid, rule: Rule) -> Solid {
-    normalize(solid, rule, &AtomicBool::new(false)).expect("normalizes")
+    normalize(solid, rule).expect("normalizes")
 }
 
 /// What a rule says of a winding number, in words of its own.

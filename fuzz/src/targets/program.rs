@@ -1,7 +1,5 @@
 //! Any lines as an expression.
 
-use std::sync::atomic::AtomicBool;
-
 use arbitrary::Unstructured;
 use bspcsg::error::ErrorKind;
 use bspcsg::geometry::plane::Lattice;
@@ -47,7 +45,7 @@ pub fn program(data: &[u8]) {
             .solid(|p| p)
         })
         .collect();
-    let value = run(&expression, &solids, &AtomicBool::new(false));
+    let value = run(&expression, &solids);
     if expression.operands().iter().any(|k| *k >= 3) {
         let kind = value.expect_err("an operand that is not there").kind();
         assert_eq!(kind, ErrorKind::Shape);

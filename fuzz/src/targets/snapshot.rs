@@ -1,7 +1,5 @@
 //! Any bytes as a snapshot.
 
-use std::sync::atomic::AtomicBool;
-
 use bspcsg::arith::Int;
 use bspcsg::extract::round;
 use bspcsg::extract::snapshot::Snapshot;
@@ -36,10 +34,9 @@ pub fn snapshot(data: &[u8]) {
     let Ok(tool) = tool.map(|s| Solid::of_source(s.into(), true)) else {
         return;
     };
-    let never = AtomicBool::new(false);
     let lines = vec![Term::Operand(0), Term::Operand(1), Term::Xor(vec![0, 1])];
     let terms = Expression::new(lines).expect("well formed");
-    let Ok((result, _)) = run(&terms, &[solid, tool], &never) else {
+    let Ok((result, _)) = run(&terms, &[solid, tool]) else {
         return;
     };
     let _ = (round::mesh(&result), Snapshot::of(&result).to_bytes());

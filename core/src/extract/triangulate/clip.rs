@@ -3,6 +3,7 @@
 use smallvec::SmallVec;
 
 use super::{Error, Planar};
+use crate::interrupt::poll;
 
 /// Loops up to this length are clipped; the sweep wins on longer ones.
 const SHORT: usize = 8;
@@ -44,6 +45,7 @@ pub(super) fn clip_ears<P: Planar>(points: &P, mut corners: Loop) -> Result<Vec<
         .map(|k| turn(points, &corners, k))
         .collect();
     while corners.len() > 3 {
+        poll();
         let ear = (0..corners.len()).find(|&k| is_ear(points, &corners, &turns, k));
         let ear = ear.ok_or(Error::Crossing { vertex: corners[0] })?;
         triangles.push(around(&corners, ear));

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use super::{Error, Planar};
+use crate::interrupt::poll;
 
 const NONE: usize = usize::MAX;
 
@@ -88,6 +89,7 @@ fn flipped<P: Planar>(points: &P, mut mesh: Mates) -> Vec<[u32; 3]> {
         .filter(|&h| mesh.is_first(h))
         .collect();
     while let Some(half) = pending.pop_front().filter(|_| budget > 0) {
+        poll();
         if mesh.should_flip(points, half) {
             budget -= 1;
             pending.extend(mesh.flip(half));
@@ -110,6 +112,7 @@ impl Mates {
         halves.extend(boundary.iter().map(|&(a, b)| Half::new(b, a, NONE)));
         halves.sort_unstable();
         for pair in halves.chunk_by(|p, q| p.edge() == q.edge()) {
+            poll();
             let vertex = (pair[0].edge() >> 32) as u32;
             let (g, h) = match pair {
                 [g, h] if !g.is_forward() && h.is_forward() => (g.number(), h.number()),

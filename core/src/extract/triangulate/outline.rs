@@ -7,6 +7,7 @@
 use std::cmp::Ordering;
 
 use super::{Error, Planar};
+use crate::interrupt::poll;
 
 /// For every edge the edge before it along its boundary.
 pub(super) struct Outline {
@@ -42,6 +43,7 @@ impl Outline {
         }
         let mut start = 0;
         for outs in leaving.chunk_by(|&a, &b| edges[a].0 == edges[b].0) {
+            poll();
             let ins = &arriving[start..start + outs.len()];
             outline.join(points, edges, outs, ins)?;
             start += outs.len();

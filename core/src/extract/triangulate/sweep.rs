@@ -13,6 +13,7 @@ use std::cmp::Ordering;
 use super::order::Order;
 use super::outline::Outline;
 use super::{Error, Planar};
+use crate::interrupt::poll;
 
 const NONE: usize = usize::MAX;
 
@@ -76,6 +77,7 @@ pub(super) fn sweep<P: Planar>(points: &P, edges: &[(u32, u32)]) -> Result<Vec<[
         triangles: Vec::with_capacity(edges.len()),
     };
     for corner in visits(points, edges, &kinds) {
+        poll();
         let done = sweep.visit(kinds[corner], outline.previous(corner), corner);
         done.ok_or(Error::Crossing {
             vertex: edges[corner].0,

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::segment::{Doubt, End, Segment};
 use crate::geometry::polygon::{bounds, Polygon};
+use crate::interrupt::poll;
 
 /// Which segment continues each.
 pub(super) struct Joints(Vec<Option<usize>>);
@@ -55,6 +56,7 @@ impl Joints {
             found
         };
         for (i, segment) in segments.iter().enumerate() {
+            poll();
             if segment.from.edge.is_some() {
                 follow(i);
             }
@@ -67,6 +69,7 @@ impl Joints {
         let mut continued = vec![false; segments.len()];
         let mut any = false;
         for (i, next) in self.0.iter().enumerate() {
+            poll();
             let Some(next) = *next else { continue };
             let (a, b) = (&segments[i], &segments[next]);
             match a.plane.coincides(&b.plane) {
@@ -168,6 +171,7 @@ pub(super) fn turns_left(polygon: &Polygon, segments: &[Segment]) -> Result<bool
     };
     let (mut area, mut reach, mut size) = (0.0f64, 0.0f64, 0.0f64);
     for segment in segments {
+        poll();
         let (p, q) = (place(&segment.from), place(&segment.to));
         area += p[0] * q[1] - p[1] * q[0];
         reach = reach.max(p[0].abs()).max(p[1].abs());

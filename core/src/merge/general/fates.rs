@@ -14,6 +14,7 @@ use super::trace::Trace;
 use crate::geometry::apart::are_apart;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
 
 /// Elements that may meet another one, by number: rarely more than six.
 type Neighbours = SmallVec<[u32; 6]>;
@@ -69,6 +70,7 @@ impl Scene<'_> {
         let swept = |number: u32| self.elements[number as usize].swept(self.cell);
         let mut found = vec![Neighbours::new(); self.elements.len()];
         pairs(boxes, swept, |a, b| {
+            poll();
             let (i, j) = (a as usize, b as usize);
             if !self.separated(i, j) {
                 found[i].push(b);
@@ -77,6 +79,7 @@ impl Scene<'_> {
         })?;
         // The order in which pairs are found is not that of the elements.
         for list in &mut found {
+            poll();
             list.sort_unstable();
         }
         Some(found)
@@ -127,6 +130,7 @@ impl Scene<'_> {
     fn crossers(&self, polygon: &Polygon, neighbours: &[u32]) -> Option<Vec<Crosser<'_>>> {
         let mut crossers = Vec::with_capacity(neighbours.len());
         for j in neighbours {
+            poll();
             let other = &self.elements[*j as usize];
             match contact(polygon, other.shape()) {
                 Contact::Special => return None,

@@ -8,6 +8,7 @@ use super::super::stays::{kept, Owner, Stays};
 use super::fates::{Fate, Parts};
 use super::scene::{Element, Place, Scene};
 use super::{Labels, OnPieces};
+use crate::interrupt::poll;
 
 impl Scene<'_> {
     /// What stays of all elements, given their labels and the expression's value for labels.
@@ -115,6 +116,7 @@ fn stays_of_parts(fate: Fate, sides: &[Option<usize>]) -> [Stays; 2] {
         Parts::Pieces(cutting) => {
             let mut found = [Vec::new(), Vec::new()];
             for (piece, side) in cutting.pieces.into_iter().zip(sides) {
+                poll();
                 if let Some(side) = side {
                     found[*side].push(piece);
                 }

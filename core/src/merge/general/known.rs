@@ -7,6 +7,7 @@ use super::fates::Fate;
 use super::scene::{Element, Place, Scene};
 use super::Labels;
 use crate::geometry::cell::Cell;
+use crate::interrupt::poll;
 
 /// Stands for no anchor, and is above the numbers of all.
 const NONE: u32 = u32::MAX;
@@ -38,10 +39,12 @@ impl Known {
             cuts: Vec::new(),
         };
         for (element, fate) in scene.elements.iter().zip(fates) {
+            poll();
             let anchor = known.enter(scene.cell, element, fate);
             known.anchors.push(anchor);
         }
         for (i, (element, fate)) in (0u32..).zip(scene.elements.iter().zip(fates)) {
+            poll();
             if let Fate::Cut(cut) = fate {
                 for (place, anchor) in (0u32..).zip(&cut.anchors) {
                     let root = known.root_of(element.operand, anchor.name);

@@ -14,6 +14,7 @@ use super::{Labels, OnPieces};
 use crate::geometry::path::{triangle_on_path, Way};
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
 
 impl Scene<'_> {
     /// For each element the labels of the other operands on its pieces.
@@ -21,12 +22,14 @@ impl Scene<'_> {
         let mut known = Known::new(self, fates);
         let mut labels = vec![OnPieces::new(); fates.len()];
         for (i, fate) in fates.iter().enumerate() {
+            poll();
             if let (Fate::Cut(cut), true) = (fate, labels[i].is_empty()) {
                 let (part, start) = self.start(self.elements[i].operand, cut, &mut known)?;
                 self.flood(fates, (i, part, start), &mut known, &mut labels)?;
             }
         }
         for (i, fate) in fates.iter().enumerate() {
+            poll();
             if let Fate::Untouched | Fate::Uncut(_) = fate {
                 labels[i].push(known.label_of(self, i, fate)?);
             }
@@ -56,6 +59,7 @@ impl Scene<'_> {
     ) -> Option<()> {
         let mut open = vec![start];
         while let Some((i, part, start)) = open.pop() {
+            poll();
             let (Fate::Cut(cut), true) = (&fates[i], labels[i].is_empty()) else {
                 continue;
             };
@@ -116,6 +120,7 @@ impl Scene<'_> {
                 &[]
             };
             for element in elements.iter().filter(near) {
+                poll();
                 w += element.weight * across(element)?;
             }
             if !(0..=1).contains(&w) {
@@ -149,6 +154,7 @@ fn spread_along_ties(cutting: &Cutting, first: usize, start: Labels) -> Option<O
     while changed {
         changed = false;
         for tie in &cutting.ties {
+            poll();
             let (minus, plus) = (tie.minus as usize, tie.plus as usize);
             match (labels[minus], labels[plus]) {
                 (Some(w), None) => labels[plus] = Some(across(tie, w, true)?),

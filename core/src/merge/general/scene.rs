@@ -12,6 +12,7 @@ use super::Labels;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
+use crate::interrupt::poll;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
 
@@ -87,11 +88,13 @@ impl<'a> Scene<'a> {
 
     fn add_parts(&mut self, operand: usize, list: &'a List, sources: &Sources) {
         for p in &list.parts {
+            poll();
             let part = self.parts.len();
             let slot = sources.slot(&p.element.part.source) as u32;
             self.parts.push((&p.element.part, slot));
             let inside = self.cell.holds(&p.element.part.home);
             for piece in p.pieces() {
+                poll();
                 let (low, high) = piece.bounds();
                 self.elements.push(Element {
                     operand,

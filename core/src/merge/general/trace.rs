@@ -15,6 +15,7 @@ use super::segment::{Crossed, Crosser, Doubt, Segment};
 use crate::geometry::outline::{order_along, BareEdge};
 use crate::geometry::polygon::{Carrier, Polygon};
 use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
 
 /// An element divided by the surface of one other operand.
 pub(super) struct Trace {
@@ -113,6 +114,7 @@ fn divided(crossed: &Crossed, crossers: &[Crosser], points: &mut Points) -> Resu
     }
     let mut segments = Vec::with_capacity(crossers.len());
     for crosser in crossers {
+        poll();
         segments.extend(crossed.segment(crosser, points)?);
     }
     if segments.is_empty() {

@@ -10,6 +10,7 @@ use super::grid::{Grid, Reach};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
+use crate::interrupt::poll;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
 
@@ -78,10 +79,12 @@ impl<'a> Facets<'a> {
         };
         for (operand, (_, list)) in lists.iter().enumerate() {
             for record in &list.records {
+                poll();
                 let facet = Facet::of_record(operand, record, sources)?;
                 facets.all.extend(Some(facet).filter(|f| f.may_meet(cell)));
             }
             for part in &list.parts {
+                poll();
                 facets.add_part(operand, part, cell, sources)?;
             }
         }

@@ -8,6 +8,7 @@ use crate::geometry::cell::Cell;
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
 
 /// Intervals on each axis, at most: the regions above a rectangle are the bits of one word.
 const MOST: usize = 64;
@@ -25,6 +26,7 @@ impl Grid {
     pub(super) fn new(cell: &Cell, facets: &Facets) -> Option<Self> {
         let mut lines = [0, 1, 2].map(|i| vec![2 * cell.low()[i] - 1, 2 * cell.high()[i] + 1]);
         for facet in &facets.all {
+            poll();
             lines[facet.axis].push(2 * facet.at);
         }
         for line in &mut lines {

@@ -9,6 +9,7 @@ use super::facet::{Extent, Facet, Facets, ACROSS};
 use super::grid::{mask, Grid};
 use super::pieces::pieces;
 use crate::geometry::cell::Cell;
+use crate::interrupt::poll;
 
 /// A cell with all that is known of it.
 pub(super) struct Scene<'a> {
@@ -32,6 +33,7 @@ impl Scene<'_> {
         order.sort_by_key(sheet);
         let mut settled: Vec<Settled> = Vec::with_capacity(all.len());
         for sheet in order.chunk_by(|a, b| sheet(a) == sheet(b)) {
+            poll();
             self.keep_sheet(sheet, &mut settled)?;
         }
         settled.sort_unstable_by_key(|s| s.0);
@@ -47,6 +49,7 @@ impl Scene<'_> {
         let mut free = vec![u64::MAX; self.grid.count(row)];
         let all = &self.facets.all;
         for own in sheet.chunk_by(|a, b| all[*a].operand == all[*b].operand) {
+            poll();
             if self.overlap(own) {
                 return None;
             }

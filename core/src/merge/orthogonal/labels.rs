@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::facet::{Extent, Facet, ACROSS};
 use super::grid::{mask, Grid, Reach};
+use crate::interrupt::poll;
 
 /// The coarser grid of one operand's own planes, and its winding numbers there.
 struct Own<'a> {
@@ -24,6 +25,7 @@ pub(super) fn field<'b>(
     let mut own = Own::new(grid, facets.clone());
     own.numbers[0] = corner;
     for (facet, extent) in facets {
+        poll();
         own.enter(facet, extent);
     }
     own.add_up();
@@ -35,6 +37,7 @@ impl<'a> Own<'a> {
     fn new<'b>(grid: &'a Grid, facets: impl Iterator<Item = (&'b Facet<'b>, &'b Extent)>) -> Self {
         let mut starts = [0, 1, 2].map(|axis| vec![0, grid.count(axis)]);
         for (facet, extent) in facets {
+            poll();
             starts[facet.axis].push(extent.line);
         }
         for starts in &mut starts {
@@ -100,6 +103,7 @@ impl<'a> Own<'a> {
             self.numbers[x * ny * nz] += self.numbers[(x - 1) * ny * nz];
         }
         for x in 0..nx {
+            poll();
             for y in 1..ny {
                 self.numbers[(x * ny + y) * nz] += self.numbers[(x * ny + y - 1) * nz];
             }
@@ -120,6 +124,7 @@ impl<'a> Own<'a> {
         let mut field = vec![0; self.grid.columns()];
         for x in 0..self.count(0) {
             for y in 0..self.count(1) {
+                poll();
                 let inside = |z: &usize| self.numbers[self.place([x, y, *z])] == 1;
                 let bits = (0..self.count(2)).filter(inside);
                 let word = bits.fold(0, |all, z| all | mask(&self.interval(2, z)));

@@ -4,6 +4,7 @@ use super::facet::{Facet, ACROSS};
 use super::grid::Grid;
 use crate::geometry::cell::Cell;
 use crate::geometry::polygon::{Polygon, PolygonSplit};
+use crate::interrupt::poll;
 
 /// The pieces of a facet that cover those of the rectangles it touches that stay.
 ///
@@ -22,6 +23,7 @@ pub(super) fn pieces(
     let mut rest = facet.polygon_in(cell);
     let mut start = 0;
     while start < stay.len() {
+        poll();
         let slab = Slab::new(&touched[start..], &stay[start..]);
         let end = start + slab.rows;
         let below = if end < stay.len() {

@@ -1,12 +1,16 @@
 //! Pairs of boxes that overlap, found by halving the space around them.
 
 use crate::geometry::plane::Lattice;
+use crate::interrupt::spend;
 
 /// Up to this many boxes are compared all with all: halving them costs about as much.
 const FEW: usize = 96;
 
 /// Up to this many that halving does not separate are compared even so: a sweep costs about as much.
 const SOME: usize = 384;
+
+/// So many pairs of boxes are compared in the time of one unit of work.
+const PAIRS: usize = 16;
 
 /// An element with its box in short integers.
 #[derive(Clone, Copy)]
@@ -65,6 +69,7 @@ pub fn pairs(
     let space = Space::around(&elements);
     let mut open = vec![Task { elements, space }];
     while let Some(task) = open.pop() {
+        spend(task.elements.len());
         let halved = task.elements.len() > FEW && task.halve(&mut open);
         if halved {
             continue;
@@ -84,6 +89,7 @@ fn compare_all(task: &Task, meet: &mut impl FnMut(u32, u32)) {
         let start = end;
         end += run.len();
         for one in &task.elements[start..end] {
+            spend(1 + (task.elements.len() - end) / PAIRS);
             let wanted = one.extent.turned();
             for other in &task.elements[end..] {
                 if wanted.overlaps(&other.extent) && task.space.owns(one, other) {

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::line::{dot, longest_edge, Line, Span};
 use super::rim::{largest_coordinate, rims, HalfPlane};
 use super::Swept;
+use crate::interrupt::{carried, spend};
 use crate::mesh::tasks::in_pool;
 
 /// Among fewer elements than this other lines than the axes are not worth finding.
@@ -16,6 +17,9 @@ pub const MANY: usize = 512;
 
 /// A sweep that compares more pairs, at about a nanosecond each, costs more than halving the cell.
 const CROWDED: f64 = 3e8;
+
+/// So many pairs of spans are compared in the time of one unit of work.
+const PAIRS: usize = 16;
 
 /// Lines closer than this cosine are nearly one: their plane shows little.
 const PARALLEL: f64 = 0.8;
@@ -36,7 +40,7 @@ pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<(
 /// A value for each item, in order, by several threads where there are any.
 fn each<T: Sync, R: Send>(items: &[T], value: impl Fn(&T) -> R + Sync) -> Vec<R> {
     if in_pool() {
-        return items.par_iter().map(&value).collect();
+        return items.par_iter().map(carried(&value)).collect();
     }
     items.iter().map(value).collect()
 }
@@ -157,6 +161,7 @@ impl Swath {
             let before = |span: &Span| span[0] < *low || !level && span[0] <= *low;
             start += other.first[start..].partition_point(before);
             let end = start + other.first[start..].partition_point(|span| span[0] <= *high);
+            spend(1 + (end - start) / PAIRS);
             let [low, high] = self.second[at];
             for (next, span) in (start..end).zip(&other.second[start..end]) {
                 if span[0] <= high && span[1] >= low && self.may_meet(at, other, next) {

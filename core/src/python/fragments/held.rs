@@ -1,7 +1,5 @@
 //! A tree of one dimension with the facets it was made of.
 
-use std::sync::atomic::AtomicBool;
-
 use num_bigint::BigInt;
 
 use super::convert::Wish;
@@ -23,17 +21,11 @@ pub enum Inner {
 }
 
 /// The tree over facets in a space of `dimension`.
-pub fn built(
-    dimension: usize,
-    facets: Vec<Facet>,
-    pitch: Pitch,
-    wish: Wish,
-    cancel: &AtomicBool,
-) -> Result<Inner> {
+pub fn built(dimension: usize, facets: Vec<Facet>, pitch: Pitch, wish: Wish) -> Result<Inner> {
     Ok(match dimension {
-        1 => Inner::Line(held(facets, pitch, wish, cancel)?),
-        2 => Inner::Plane(held(facets, pitch, wish, cancel)?),
-        3 => Inner::Space(held(facets, pitch, wish, cancel)?),
+        1 => Inner::Line(held(facets, pitch, wish)?),
+        2 => Inner::Plane(held(facets, pitch, wish)?),
+        3 => Inner::Space(held(facets, pitch, wish)?),
         _ => {
             let text = format!("corners must have 1, 2 or 3 coordinates, not {dimension}");
             return Err(Error::new(ErrorKind::Shape, text));
@@ -48,12 +40,7 @@ pub struct Held<S: Affine> {
     pub pitch: Pitch,
 }
 
-fn held<S: Affine>(
-    facets: Vec<Facet>,
-    pitch: Pitch,
-    wish: Wish,
-    cancel: &AtomicBool,
-) -> Result<Held<S>> {
+fn held<S: Affine>(facets: Vec<Facet>, pitch: Pitch, wish: Wish) -> Result<Held<S>> {
     let pieces = pieces::<S>(&facets)?;
     let plan = match wish {
         Wish::Given(cuts) => Plan::Given(cuts),
@@ -67,7 +54,7 @@ fn held<S: Affine>(
             },
         },
     };
-    let tree = build(pieces, plan, cancel)?;
+    let tree = build(pieces, plan)?;
     Ok(Held {
         facets,
         tree,

@@ -3,8 +3,6 @@
 mod convert;
 mod held;
 
-use std::sync::atomic::AtomicBool;
-
 use num_bigint::BigInt;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -80,14 +78,14 @@ impl PyFragmentTree {
         let rows: Vec<[f64; 3]> = padded(&corners, 0.0);
         let offsets = offsets.as_array().to_vec();
         let wish = Wish::Policy(policy, (top > 0).then_some(top), 1);
-        let (inner, corners) = run(py, 0, rows.len(), |cancel| {
+        let (inner, corners) = run(py, 0, rows.len(), || {
             let pitch = match pitch {
                 Some(pitch) => pitch,
                 None => suited_pitch(&rows)?,
             };
             let lattice = snap_corners(dimension, &rows, pitch)?;
             let facets = facets(dimension, &lattice, &offsets, lenience_of(lenience))?;
-            let inner = built(dimension, facets, pitch, wish, cancel)?;
+            let inner = built(dimension, facets, pitch, wish)?;
             Ok((inner, lattice))
         })?;
         Ok(Self {
@@ -114,10 +112,10 @@ impl PyFragmentTree {
         let rows: Vec<Lattice> = padded(&corners, 0);
         let offsets = offsets.as_array().to_vec();
         let cuts = node_cuts(&cuts).map_err(fail)?;
-        let inner = run(py, 0, rows.len(), |cancel| {
+        let inner = run(py, 0, rows.len(), || {
             check_reach(&rows)?;
             let facets = facets(dimension, &rows, &offsets, lenience_of(lenience))?;
-            built(dimension, facets, pitch, Wish::Given(cuts), cancel)
+            built(dimension, facets, pitch, Wish::Given(cuts))
         })?;
         Ok(Self {
             inner,
@@ -128,7 +126,7 @@ impl PyFragmentTree {
 
     /// The cuts of a tree over the same facets that cuts none of them.
     fn perfect_cuts<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<i64>>>> {
-        let found = self.run(py, 0, |_| each!(&self.inner, held => held.perfect()))?;
+        let found = self.run(py, 0, || each!(&self.inner, held => held.perfect()))?;
         found.map(|cuts| cut_rows(py, cuts.into_iter())).transpose()
     }
 
@@ -174,7 +172,7 @@ impl PyFragmentTree {
 
     fn fragments<'py>(&self, py: Python<'py>) -> PyResult<FragmentArrays<'py>> {
         let size = each!(&self.inner, held => held.tree.fragments().len());
-        let export = self.run(py, size, |_| Ok(each!(&self.inner, held => held.export())))?;
+        let export = self.run(py, size, || Ok(each!(&self.inner, held => held.export())))?;
         Ok((
             rows(py, export.vertices, self.dimension())?,
             PyArray1::from_vec(py, export.offsets),
@@ -198,7 +196,7 @@ impl PyFragmentTree {
 
     /// The nodes from the farthest to the nearest.
     fn order<'py>(&self, py: Python<'py>, eye: [f64; 3], at_infinity: bool) -> PyResult<Ints<'py>> {
-        let order = self.run(py, self.__len__(), |_| {
+        let order = self.run(py, self.__len__(), || {
             let eye = self.viewpoint(eye, at_infinity)?;
             Ok(each!(&self.inner, held => back_to_front(&held.tree, &eye)))
         })?;
@@ -215,7 +213,7 @@ impl PyFragmentTree {
         eye: [f64; 3],
         at_infinity: bool,
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
-        let found = self.run(py, self.__len__(), |_| {
+        let found = self.run(py, self.__len__(), || {
             let eye = self.viewpoint(eye, at_infinity)?;
             Ok(each!(&self.inner, held => sides(&held.tree, &eye)))
         })?;
@@ -233,7 +231,7 @@ impl PyFragmentTree {
         py: Python<'py>,
         margin: f64,
     ) -> PyResult<(f64, f64, Floats<'py>, Floats<'py>)> {
-        let (whole, all) = self.run(py, self.__len__(), |_| {
+        let (whole, all) = self.run(py, self.__len__(), || {
             each!(&self.inner, held => {
                 let whole = held.whole(margin)?;
                 Ok(((whole.volume(), whole.surface()), measures(&held.tree, &whole)))
@@ -262,7 +260,7 @@ impl PyFragmentTree {
         let walls = self.run(
             py,
             0,
-            |_| each!(&self.inner, held => held.region(node, side, margin)),
+            || each!(&self.inner, held => held.region(node, side, margin)),
         )?;
         let dimension = self.dimension();
         walls.into_iter().map(|w| rows(py, w, dimension)).collect()
@@ -273,7 +271,7 @@ impl PyFragmentTree {
         let corners = self.run(
             py,
             0,
-            |_| each!(&self.inner, held => held.span(node, margin)),
+            || each!(&self.inner, held => held.span(node, margin)),
         )?;
         rows(py, corners, self.dimension())
     }
@@ -304,7 +302,7 @@ impl PyFragmentTree {
         &self,
         py: Python<'_>,
         size: usize,
-        work: impl FnOnce(&AtomicBool) -> Result<T> + Send,
+        work: impl FnOnce() -> Result<T> + Send,
     ) -> PyResult<T> {
         run(py, 0, size, work).map_err(|e| {
             blamed(py, e, "FragmentTree", || {

@@ -1,7 +1,5 @@
 //! Many rays at once, on all threads of the pool; answers in the order of the rays.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use rayon::prelude::*;
 
 use super::answer::{hit, Hit};
@@ -11,6 +9,7 @@ use super::line::Ray;
 use super::ratio::Ratio;
 use super::scene::Scene;
 use crate::error::{Error, ErrorKind, Result};
+use crate::interrupt::{carried, poll};
 use crate::merge::leaf::Rule;
 use crate::mesh::tasks::in_pool;
 
@@ -33,8 +32,6 @@ pub struct Rays<'a> {
     pub origins: &'a [f64],
     /// As many coordinates.
     pub heads: &'a [f64],
-    /// Set to stop early.
-    pub cancel: &'a AtomicBool,
 }
 
 impl Rays<'_> {
@@ -47,13 +44,11 @@ impl Rays<'_> {
             let text = format!("origins and directions must both have shape (n, {D})");
             return Err(Error::new(ErrorKind::Shape, text));
         }
-        let one = |i: usize| {
-            if self.cancel.load(Ordering::Relaxed) {
-                return Err(Error::new(ErrorKind::Cancelled, "interrupted"));
-            }
+        let one = carried(|i: usize| {
+            poll();
             let origin = scene.snap(&point(self.origins, i))?;
             answer(i, origin, point(self.heads, i))
-        };
+        });
         let count = self.origins.len() / D;
         let answers: Vec<Result<T>> = if in_pool() {
             let rays = (0..count).into_par_iter();

@@ -10,6 +10,7 @@
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use super::scene::Facet;
+use crate::interrupt::poll;
 use crate::mesh::tasks::both;
 
 /// Candidate cuts on each axis.
@@ -143,6 +144,8 @@ impl<const D: usize> Node<D> {
 
     #[cold]
     fn divide(&self, facets: &[Facet<D>]) -> &Content<D> {
+        // Not below: what is taken out of the slot must arrive.
+        poll();
         self.content.get_or_init(|| {
             let mut slot = self.pending.lock().unwrap_or_else(PoisonError::into_inner);
             match slot.take() {

@@ -7,6 +7,7 @@ use super::closed::require_closed;
 use super::node::{Cell, Node};
 use super::ratio::Ratio;
 use crate::error::{Error, ErrorKind, Result};
+use crate::interrupt::poll;
 use crate::mesh::grid::Pitch;
 
 /// The corners of a facet: a point in 1D, a segment in 2D, a triangle in 3D.
@@ -45,6 +46,7 @@ impl<const D: usize> Scene<D> {
         let mut kept = Vec::with_capacity(facets.len());
         let mut numbers = Vec::with_capacity(facets.len());
         for (number, facet) in facets.iter().enumerate() {
+            poll();
             let snapped = snap_facet(pitch, facet).map_err(|e| at_facet(&e, number))?;
             if has_extent(&snapped) {
                 kept.push(snapped.map(|corner| corner.map(|c| c as f64)));

@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2, Square};
 use crate::geometry::side::{Half, Split};
 use crate::geometry::space::Space;
+use crate::interrupt::poll;
 use crate::tree::partition::{classify, Cut, Label, Location, PartitionTree};
 
 /// The maximal stretches of a line in the region's interior, in the order of its direction (−b, a).
@@ -20,6 +21,7 @@ pub fn cast(tree: &PartitionTree<Dim2>, line: &Line2) -> Result<Vec<[Point2; 2]>
     let mut found: Vec<Segment2> = Vec::new();
     let mut pending = vec![(tree.clone(), whole)];
     while let Some((tree, piece)) = pending.pop() {
+        poll();
         let cut = match tree {
             PartitionTree::Leaf(Label::In) => {
                 found.push(piece);

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use crate::error::Result;
 use crate::geometry::dim2::{Dim2, Point2, Segment2};
+use crate::interrupt::poll;
 use crate::tree::partition::{walls, PartitionTree, Wall};
 
 /// A boundary in edges, each from one vertex to another, the region on the left.
@@ -104,6 +105,7 @@ fn successors(pieces: &[Edge]) -> Vec<Option<usize>> {
         .map_or(0, |m| m + 1);
     let (mut arriving, mut leaving) = (vec![Vec::new(); count], vec![Vec::new(); count]);
     for (i, piece) in pieces.iter().enumerate() {
+        poll();
         leaving[piece.ends[0]].push(i);
         arriving[piece.ends[1]].push(i);
     }

@@ -7,6 +7,7 @@ use rustc_hash::FxHashMap as HashMap;
 use super::edges::{Boundary, Edge};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::dim2::{Dim2, Point2};
+use crate::interrupt::poll;
 use crate::tree::partition::{is_bounded, PartitionTree};
 
 /// A simple closed loop, the region on its left: outer loops run counterclockwise, holes clockwise.
@@ -38,6 +39,7 @@ pub fn outlines(tree: &PartitionTree<Dim2>) -> Result<Vec<Outline>> {
     let boundary = Boundary::of(tree)?;
     let mut loops: Vec<Vec<usize>> = Vec::new();
     for closed in traced(&boundary)? {
+        poll();
         loops.extend(simple(&boundary, &closed));
     }
     for edges in &mut loops {
@@ -55,6 +57,7 @@ fn traced(boundary: &Boundary) -> Result<Vec<Vec<usize>>> {
         let mut walk = Vec::new();
         let mut at = start;
         while !seen[at] {
+            poll();
             seen[at] = true;
             walk.push(at);
             at = next_edge(boundary, &boundary.edges[at])
@@ -112,11 +115,13 @@ fn simple(boundary: &Boundary, walk: &[usize]) -> Vec<Vec<usize>> {
     let mut open: Vec<usize> = Vec::new();
     let mut place: HashMap<usize, usize> = HashMap::default();
     for &edge in walk {
+        poll();
         place.insert(boundary.edges[edge].ends[0], open.len());
         open.push(edge);
         if let Some(&start) = place.get(&boundary.edges[edge].ends[1]) {
             let closed = open.split_off(start);
             for e in &closed {
+                poll();
                 place.remove(&boundary.edges[*e].ends[0]);
             }
             loops.push(closed);
@@ -142,6 +147,7 @@ fn nested(boundary: &Boundary, loops: &[Vec<usize>]) -> Vec<Outline> {
     let mut outer = HashMap::default();
     let mut around = HashMap::default();
     for (i, edges) in loops.iter().enumerate() {
+        poll();
         for edge in edges.iter().map(|e| &boundary.edges[*e]) {
             if holes[i] {
                 around.insert(edge.outside, i);

@@ -8,6 +8,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::extract::assemble::assemble;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::vertex::{Homogeneous, Vertex};
+use crate::interrupt::poll;
 use crate::query::measure::{big, homogeneous};
 use crate::tree::solid::Solid;
 
@@ -34,6 +35,7 @@ pub fn section(solid: &Solid, plane: &Plane) -> Result<Vec<[Lattice; 2]>> {
         .collect();
     let mut edges = Vec::new();
     for [enter, leave] in straight(&points, &crossings) {
+        poll();
         let ends = [meet(&points, enter, plane)?, meet(&points, leave, plane)?];
         if ends[0] != ends[1] {
             edges.push(ends);
@@ -90,6 +92,7 @@ fn straight(points: &[Homogeneous], crossings: &[Crossing]) -> Vec<[Rung; 2]> {
 fn successors(points: &[Homogeneous], crossings: &[Crossing]) -> Vec<Option<usize>> {
     let mut entered: HashMap<Rung, Vec<usize>> = HashMap::default();
     for (i, crossing) in crossings.iter().enumerate() {
+        poll();
         entered.entry(crossing.enter).or_default().push(i);
     }
     let beyond = |crossing: &Crossing| match entered.get(&crossing.leave)?.as_slice() {

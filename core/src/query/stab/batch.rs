@@ -1,11 +1,10 @@
 //! Rays tested one after the other, because each may change the tree for the next.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::cast::Cast;
 use super::trace::Trace;
 use super::tree::StabTree;
 use crate::error::{Error, ErrorKind, Result};
+use crate::interrupt::poll;
 use crate::query::ray::answer::{hit, Hit};
 use crate::query::ray::Ray;
 
@@ -15,21 +14,17 @@ pub type Tested<const D: usize> = (Vec<Option<Hit<D>>>, Vec<Trace>);
 /// Tests rays given by flat arrays of origins and directions.
 ///
 /// # Errors
-/// `Shape`; `NonFinite`, `TooLarge`, `BadNormal` with the ray's number, before any ray is tested;
-/// `Cancelled` between two rays.
+/// `Shape`; `NonFinite`, `TooLarge`, `BadNormal` with the ray's number, before any ray is tested.
 pub fn test_rays<S: Cast<D>, const D: usize>(
     tree: &mut StabTree<S, D>,
     origins: &[f64],
     directions: &[f64],
-    cancel: &AtomicBool,
 ) -> Result<Tested<D>> {
     let rays = rays(tree, origins, directions)?;
     let mut hits = Vec::with_capacity(rays.len());
     let mut traces = Vec::with_capacity(rays.len());
     for ray in rays {
-        if cancel.load(Ordering::Relaxed) {
-            return Err(Error::new(ErrorKind::Cancelled, "interrupted"));
-        }
+        poll();
         let (found, trace) = tree.test_ray(&ray);
         hits.push(found.map(|f| hit(tree.scene(), &ray, &f)));
         traces.push(trace);

@@ -15,6 +15,7 @@ use super::trace::Trace;
 use super::walk::Walk;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::Split;
+use crate::interrupt::poll;
 use crate::query::ray::first::{Found, Query};
 use crate::query::ray::walk::clip;
 use crate::query::ray::{Ray, Scene};
@@ -87,6 +88,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
     pub fn new(scene: Scene<D>, growth: Growth, hits: Option<&[u64]>) -> Result<Self> {
         let mut list = Heap::default();
         for (facet, corners) in scene.facets().iter().enumerate() {
+            poll();
             let facet = facet as u32;
             let number = scene.number(facet) as usize;
             list.push(Entry {
@@ -116,6 +118,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
     pub fn complete(&mut self, limit: usize) -> Result<()> {
         let mut next = 0;
         while next < self.nodes.len() {
+            poll();
             if self.nodes.len() > limit {
                 let text = format!(
                     "the tree has more than {limit} nodes; allow more, or let rays grow a tree"

@@ -1,13 +1,12 @@
 //! Pieces → tree, one node at a time from the root down.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::axis::median_cut;
 use super::choice::Policy;
 use super::node::{Crossing, Fragment, FragmentTree, Node, NodeCut, Piece};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::affine::{Affine, Polytope};
 use crate::geometry::side::{Half, Orientation, Split};
+use crate::interrupt::poll;
 use crate::tree::partition::SplitMix;
 
 /// How a tree is to be built.
@@ -36,12 +35,8 @@ pub enum Plan<S: Affine> {
 /// Worst case quadratic for autopartition: a convex body becomes a chain.
 ///
 /// # Errors
-/// `BadSnapshot` if given cuts do not suit the pieces, `Cancelled`.
-pub fn build<S: Affine>(
-    mut pieces: Vec<Piece<S>>,
-    plan: Plan<S>,
-    cancel: &AtomicBool,
-) -> Result<FragmentTree<S>> {
+/// `BadSnapshot` if given cuts do not suit the pieces.
+pub fn build<S: Affine>(mut pieces: Vec<Piece<S>>, plan: Plan<S>) -> Result<FragmentTree<S>> {
     let (chooser, region) = match plan {
         Plan::Policy {
             policy,
@@ -68,12 +63,6 @@ pub fn build<S: Affine>(
         region,
     });
     while let Some(open) = builder.open.pop() {
-        if cancel.load(Ordering::Relaxed) {
-            return Err(Error::new(
-                ErrorKind::Cancelled,
-                "the tree was not finished",
-            ));
-        }
         builder.divide(open)?;
     }
     builder.chooser.finish()?;
@@ -215,6 +204,7 @@ impl<S: Affine> Builder<S> {
     ) -> [Vec<Piece<S>>; 2] {
         let (mut minus, mut plus) = (Vec::new(), Vec::new());
         for piece in pieces {
+            poll();
             let number = piece.number;
             let part = |fragment| Piece { fragment, number };
             match S::split(&piece.fragment, cut) {

@@ -3,6 +3,7 @@
 use super::node::Piece;
 use crate::geometry::affine::{Affine, Polytope};
 use crate::geometry::side::Split;
+use crate::interrupt::poll;
 
 /// How many candidates a policy compares at each node, evenly spaced in its list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +47,7 @@ impl Tally {
     pub fn of<S: Affine>(pieces: &[Piece<S>], cut: &S::Hyperplane) -> Self {
         let mut tally = Self::default();
         for piece in pieces {
+            poll();
             match S::relation(&piece.fragment, cut) {
                 Split::Minus => tally.minus += 1,
                 Split::Plus => tally.plus += 1,

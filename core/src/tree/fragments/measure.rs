@@ -2,6 +2,7 @@
 
 use super::node::FragmentTree;
 use crate::geometry::affine::{Affine, Polytope};
+use crate::interrupt::poll;
 
 /// How large a region is, in lattice steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,6 +37,7 @@ pub fn measures<S: Affine>(tree: &FragmentTree<S>, whole: &Polytope<S>) -> Vec<M
         pending.push((0u32, whole.clone()));
     }
     while let Some((number, region)) = pending.pop() {
+        poll();
         found[number as usize] = Measure::of(&region);
         let node = &tree.nodes()[number as usize];
         if node.minus.is_none() && node.plus.is_none() {

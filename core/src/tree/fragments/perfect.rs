@@ -13,6 +13,7 @@ use super::node::{NodeCut, Piece};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::affine::Affine;
 use crate::geometry::side::Split;
+use crate::interrupt::poll;
 
 /// The largest number of pieces for which the search is allowed: 2^24 sets at most.
 pub const PERFECT_LIMIT: usize = 24;
@@ -53,6 +54,7 @@ fn sides_of<S: Affine>(pivot: &Piece<S>, pieces: &[Piece<S>]) -> Sides {
     let cut = S::hyperplane(&pivot.fragment);
     let mut sides = Sides::default();
     for (i, piece) in pieces.iter().enumerate() {
+        poll();
         match S::relation(&piece.fragment, cut) {
             Split::Minus => sides.minus |= 1 << i,
             Split::Plus => sides.plus |= 1 << i,
@@ -90,6 +92,7 @@ impl Search {
         let mut order = Vec::new();
         let mut pending = vec![all];
         while let Some(set) = pending.pop() {
+            poll();
             if let Some(&Some(pivot)) = self.pivots.get(&set) {
                 order.push(pivot);
                 pending.extend([set & self.sides[pivot].plus, set & self.sides[pivot].minus]);

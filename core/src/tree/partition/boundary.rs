@@ -4,6 +4,7 @@ use super::node::{Cut, Facet, Label, PartitionTree};
 use crate::error::{Error, Result};
 use crate::geometry::side::{Half, Orientation, Split};
 use crate::geometry::space::{overlay, Space};
+use crate::interrupt::poll;
 
 /// The boundary of a tree's set, in convex pieces with In on their minus sides.
 ///
@@ -56,6 +57,7 @@ pub fn owned_boundary<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<Facet<S>>
     let mut pieces = Vec::new();
     for_each_cut(tree, |cut| {
         for Facet { fragment, source } in disjoint_facets(&cut.sheet().facets) {
+            poll();
             let facet = |fragment| Facet { fragment, source };
             pieces.extend(walls(cut, fragment)?.into_iter().map(facet));
         }
@@ -71,6 +73,7 @@ pub fn for_each_cut<S: Space>(
 ) -> Result<()> {
     let mut pending = vec![tree.clone()];
     while let Some(next) = pending.pop() {
+        poll();
         if let PartitionTree::Cut(cut) = next {
             visit(&cut)?;
             pending.extend([cut.child(Half::Plus), cut.child(Half::Minus)]);
@@ -85,6 +88,7 @@ fn disjoint_facets<S: Space>(facets: &[Facet<S>]) -> Vec<Facet<S>> {
     order.sort_by_key(|facet| facet.source);
     let mut owned = Vec::new();
     for (i, facet) in order.iter().enumerate() {
+        poll();
         let masks = order[..i].iter().map(|mask| &mask.fragment);
         let visible = uncovered::<S>(facet.fragment.clone(), masks);
         owned.extend(visible.into_iter().map(|fragment| Facet {
@@ -138,6 +142,7 @@ impl<S: Space> PartitionTree<S> {
         let mut found = Vec::new();
         let mut pending = vec![(self.clone(), piece)];
         while let Some((tree, piece)) = pending.pop() {
+            poll();
             let cut = match tree {
                 PartitionTree::Leaf(label) => {
                     found.push((piece, label));

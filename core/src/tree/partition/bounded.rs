@@ -3,6 +3,7 @@
 use super::node::{Label, PartitionTree};
 use crate::geometry::axis::AxisSpace;
 use crate::geometry::side::{Half, Split};
+use crate::interrupt::poll;
 
 /// Whether the set stays clear of the frame's border, that is, fits into some box.
 ///
@@ -11,6 +12,7 @@ use crate::geometry::side::{Half, Split};
 pub fn is_bounded<S: AxisSpace>(tree: &PartitionTree<S>) -> bool {
     let mut pending: Vec<_> = S::border().into_iter().map(|p| (tree.clone(), p)).collect();
     while let Some((tree, piece)) = pending.pop() {
+        poll();
         let cut = match tree {
             PartitionTree::Leaf(Label::In) => return false,
             PartitionTree::Leaf(Label::Out) => continue,

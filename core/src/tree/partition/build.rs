@@ -11,6 +11,7 @@ use super::random::SplitMix;
 use crate::error::{Error, Result};
 use crate::geometry::side::{Half, Orientation, Split};
 use crate::geometry::space::{Region, Space};
+use crate::interrupt::poll;
 
 /// The rule by which a node's cut is chosen among the hyperplanes of its facets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,6 +79,7 @@ pub fn partition<S: Space>(
         builder.divide(facets)?;
     }
     while let Some(step) = builder.steps.pop() {
+        poll();
         builder.advance(step)?;
     }
     let tree = builder.done.pop();
@@ -195,6 +197,7 @@ impl<S: Space, C: FnMut(&Region<S>, &[Facet<S>]) -> S::Hyperplane> Builder<S, C>
 fn distribute<S: Space>(facets: Vec<Facet<S>>, cut: &S::Hyperplane) -> [Vec<Facet<S>>; 3] {
     let mut lists = [Vec::new(), Vec::new(), Vec::new()];
     for facet in facets {
+        poll();
         let source = facet.source;
         let part = |fragment| Facet { fragment, source };
         match S::split(&facet.fragment, cut) {

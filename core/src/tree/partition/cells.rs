@@ -3,6 +3,7 @@
 use super::node::{Label, PartitionTree};
 use crate::geometry::side::Half;
 use crate::geometry::space::{Region, Space};
+use crate::interrupt::poll;
 
 /// The faces of each In leaf's region, the region on their minus sides.
 ///
@@ -18,6 +19,7 @@ pub fn cells<S: Space>(tree: &PartitionTree<S>, frame: &S::Frame) -> Vec<Vec<S::
     let mut cells = Vec::new();
     let mut pending = vec![(tree.clone(), None)];
     while let Some((next, from)) = pending.pop() {
+        poll();
         if let Some((depth, bound, half)) = from {
             region.truncate(depth);
             region.push(bound, half);

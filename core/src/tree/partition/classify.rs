@@ -4,6 +4,7 @@ use super::node::{Label, PartitionTree};
 use crate::geometry::axis::AxisSpace;
 use crate::geometry::side::{Half, Side};
 use crate::geometry::space::Space;
+use crate::interrupt::poll;
 
 /// Where a point lies relative to a set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -30,6 +31,7 @@ pub fn classify<S: Space>(tree: &PartitionTree<S>, point: &S::Point) -> Location
     let mut pending = vec![tree.clone()];
     let mut seen = None;
     while let Some(next) = pending.pop() {
+        poll();
         match next {
             PartitionTree::Leaf(label) if seen.is_some_and(|other| other != label) => {
                 return Location::On;

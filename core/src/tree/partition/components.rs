@@ -4,6 +4,7 @@ use super::flat::Flat;
 use super::node::{Label, PartitionTree};
 use crate::error::Result;
 use crate::geometry::space::Space;
+use crate::interrupt::poll;
 
 /// A piece of the boundary and the parts on its two sides.
 #[derive(Clone, Debug)]
@@ -31,6 +32,7 @@ pub fn walls<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<Wall<S>>> {
     let mut parts = Parts::new(flat.len());
     let mut walls = Vec::new();
     for contact in flat.contacts()? {
+        poll();
         let (minus, plus) = (contact.minus, contact.plus);
         if flat.label(minus) == flat.label(plus) {
             parts.join(minus, plus);

@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::geometry::axis::AxisSpace;
 use crate::geometry::side::Split;
 use crate::geometry::space::Region;
+use crate::interrupt::poll;
 
 /// Lists of at most this many facets get no axis-parallel cut.
 const FEW: usize = 12;
@@ -91,6 +92,7 @@ fn middle_cut<S: AxisSpace>(facets: &[Facet<S>], axis: usize) -> Option<(usize, 
     let cut = S::axis_cut(axis, at);
     let (mut minus, mut plus, mut both) = (0, 0, 0);
     for facet in facets {
+        poll();
         match S::split(&facet.fragment, &cut) {
             Split::Minus => minus += 1,
             Split::Plus => plus += 1,

@@ -6,6 +6,7 @@ use super::node::{Cut, Label, PartitionTree};
 use crate::error::{Error, Result};
 use crate::geometry::side::{Half, Split};
 use crate::geometry::space::Space;
+use crate::interrupt::poll;
 
 /// A tree as a list, parents before children.
 pub struct Flat<S: Space> {
@@ -43,6 +44,7 @@ impl<S: Space> Flat<S> {
         let mut nodes = Vec::new();
         let mut pending = VecDeque::from([tree.clone()]);
         while let Some(next) = pending.pop_front() {
+            poll();
             nodes.push(match next {
                 PartitionTree::Leaf(label) => FlatNode::Leaf(label),
                 PartitionTree::Cut(cut) => {
@@ -102,6 +104,7 @@ impl<S: Space> Flat<S> {
         let mut found = Vec::new();
         let mut pending = vec![(node, piece)];
         while let Some((at, piece)) = pending.pop() {
+            poll();
             let FlatNode::Cut(node) = &self.nodes[at] else {
                 found.push((piece, at));
                 continue;
@@ -130,6 +133,7 @@ impl<S: Space> Flat<S> {
     pub fn contacts(&self) -> Result<Vec<Contact<S>>> {
         let mut contacts = Vec::new();
         for node in self.cuts() {
+            poll();
             let span = node.cut.sheet().span.clone();
             for (part, minus) in self.beside(node.minus, span)? {
                 for (fragment, plus) in self.beside(node.plus, part)? {

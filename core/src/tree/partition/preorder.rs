@@ -6,6 +6,7 @@ use super::node::{Label, PartitionTree, Sheet};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::{Half, Split};
 use crate::geometry::space::{Region, Space};
+use crate::interrupt::poll;
 
 /// A node in preorder: what divides its region, or what its region is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,6 +22,7 @@ pub fn preorder<S: Space>(tree: &PartitionTree<S>) -> Vec<Entry<S::Hyperplane>> 
     let mut entries = Vec::new();
     let mut pending = vec![tree.clone()];
     while let Some(next) = pending.pop() {
+        poll();
         entries.push(match next {
             PartitionTree::Leaf(label) => Entry::Leaf(label),
             PartitionTree::Cut(cut) => {
@@ -53,6 +55,7 @@ pub fn from_preorder<S: Space>(
         done: Vec::new(),
     };
     while let Some(step) = maker.steps.pop() {
+        poll();
         maker.advance(step)?;
     }
     maker.done.pop().ok_or_else(bad_list)

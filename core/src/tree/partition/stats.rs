@@ -4,6 +4,7 @@ use super::node::{Cut, PartitionTree};
 use crate::error::{Error, Result};
 use crate::geometry::side::Half;
 use crate::geometry::space::{overlay, Region, Space};
+use crate::interrupt::poll;
 
 /// Size figures of a tree; shared subtrees count once for each place where they occur.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,6 +50,7 @@ pub fn check<S: Space>(tree: &PartitionTree<S>, frame: &S::Frame) -> Result<()> 
     let mut region = Region::new(frame.clone());
     let mut pending = vec![(tree.clone(), None)];
     while let Some((next, from)) = pending.pop() {
+        poll();
         if let Some((depth, bound, half)) = from {
             region.truncate(depth);
             region.push(bound, half);

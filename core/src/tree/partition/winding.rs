@@ -9,6 +9,7 @@ use super::node::{Cut, Facet, Label, PartitionTree};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::{Half, Orientation};
 use crate::geometry::space::{overlay, Space};
+use crate::interrupt::poll;
 
 /// A tree labelled by winding numbers.
 #[derive(Clone, Debug)]
@@ -53,6 +54,7 @@ impl<S: Space> Flat<S> {
         let mut jumps = Vec::new();
         let mut disjoint = true;
         for node in self.cuts() {
+            poll();
             for piece in covered_pieces(&node.cut) {
                 disjoint &= piece.layers <= 1;
                 self.cross(node, piece, &mut jumps)?;
@@ -82,6 +84,7 @@ impl<S: Space> Flat<S> {
         numbers[start] = Some(number);
         let mut pending = vec![(start, number)];
         while let Some((leaf, number)) = pending.pop() {
+            poll();
             for &(next, rise) in &neighbours[leaf] {
                 let expected = number + rise;
                 match numbers[next] {

@@ -25,7 +25,7 @@ fn by_policy<S: Affine>(pieces: Vec<Piece<S>>, policy: Policy) -> FragmentTree<S
         top: None,
         region,
     };
-    build(pieces, plan, &AtomicBool::new(false)).unwrap()
+    build(pieces, plan).unwrap()
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn cuts_in_preorder_rebuild_the_tree() {
     for policy in policies {
         let tree = by_policy(cross(), policy);
         let cuts: Vec<NodeCut> = tree.nodes().iter().map(|n| n.cut).collect();
-        let again = build(cross(), Plan::Given(cuts), &AtomicBool::new(false)).unwrap();
+        let again = build(cross(), Plan::Given(cuts)).unwrap();
         let links = |t: &FragmentTree<Dim2>| -> Vec<_> {
             t.nodes().iter().map(|n| (n.cut, n.minus, n.plus)).collect()
         };
@@ -77,7 +77,7 @@ fn cuts_in_preorder_rebuild_the_tree() {
 #[test]
 fn unsuited_cuts_are_refused() {
     let refused = |cuts: Vec<NodeCut>| {
-        let built = build(cross(), Plan::Given(cuts), &AtomicBool::new(false));
+        let built = build(cross(), Plan::Given(cuts));
         built.unwrap_err().kind() == ErrorKind::BadSnapshot
     };
     assert!(refused(vec![NodeCut::Pivot(0)]));
@@ -97,7 +97,7 @@ fn a_convex_chain_becomes_shallow_under_axis_cuts() {
             top,
             region: None,
         };
-        let tree = build(pieces::<Dim1>(&facets), plan, &AtomicBool::new(false)).unwrap();
+        let tree = build(pieces::<Dim1>(&facets), plan).unwrap();
         tree.nodes().iter().map(|n| n.depth).max().unwrap()
     };
     assert_eq!(depth(None), 63);

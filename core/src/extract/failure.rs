@@ -1,0 +1,85 @@
+//! Why the boundary of a solid makes no mesh.
+
+use std::sync::Arc;
+
+use super::assemble::TriangleFace;
+use crate::error::{Error, ErrorKind, Result};
+use crate::merge::evaluate::overlaps_itself;
+use crate::mesh::source::Source;
+use crate::tree::solid::Solid;
+
+/// Why a boundary makes no mesh.
+pub(super) enum Failure {
+    /// Faces cross or overlap each other.
+    Overlap(Overlap),
+    /// Anything else.
+    Refused(Error),
+}
+
+/// Faces that cross or overlap each other, as their boundary shows.
+pub(super) struct Overlap {
+    /// What shows it.
+    pub(super) sign: String,
+    /// The faces where it shows.
+    pub(super) faces: Vec<TriangleFace>,
+}
+
+impl From<Overlap> for Failure {
+    fn from(overlap: Overlap) -> Self {
+        Self::Overlap(overlap)
+    }
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Refused(error)
+    }
+}
+
+impl Failure {
+    /// The error to report: a mesh that was wrongly trusted, or a defect.
+    pub(super) fn error(self, solid: &Solid) -> Error {
+        match self {
+            Self::Refused(error) => error,
+            Self::Overlap(overlap) => overlap.error(solid),
+        }
+    }
+}
+
+impl Overlap {
+    fn error(self, solid: &Solid) -> Error {
+        if solid.is_claimed() {
+            return Error::internal(self.sign);
+        }
+        let (slot, source) = match culprit(solid) {
+            Ok(Some(found)) => found,
+            Ok(None) => return Error::internal(self.sign),
+            Err(error) => return error,
+        };
+        let own = self.faces.iter().filter(|f| f.slot == slot);
+        let mut faces: Vec<u64> = own.map(|f| u64::from(f.face)).collect();
+        faces.sort_unstable();
+        faces.dedup();
+        let told = if solid.is_reduced() {
+            ", though it was declared trusted"
+        } else {
+            ""
+        };
+        let text = format!(
+            "mesh {slot} of those that the solid was made of (source {}) overlaps itself{told}: {}",
+            source.id(),
+            self.sign
+        );
+        Error::at(ErrorKind::NotReduced, faces, text)
+    }
+}
+
+/// The first mesh that overlaps itself, and its slot.
+fn culprit(solid: &Solid) -> Result<Option<(u32, &Arc<Source>)>> {
+    for (slot, source) in (0u32..).zip(solid.sources().iter()) {
+        if overlaps_itself(source)? {
+            return Ok(Some((slot, source)));
+        }
+    }
+    Ok(None)
+}

@@ -1,0 +1,292 @@
+//! Interrupts: a caller may stop work that has become too long.
+//!
+//! Every loop that can run long polls. Where the call it works for has been stopped, the poll
+//! unwinds to [`Call::run`], which answers `Cancelled`; so a routine that has nothing to refuse needs
+//! no error of its own. What calls share is never left half made: values that are kept are put in
+//! their place only when they are complete.
+//!
+//! Polls are counted and the state is looked at once in [`BUDGET`] of them, so that a poll costs
+//! about as much as an addition.
+//!
+//! # Source
+//! Unwinding on cancellation as in the incremental compiler framework salsa.
+
+use std::cell::Cell;
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use crate::error::panics::caught;
+use crate::error::{Error, ErrorKind, Result};
+
+/// Units of work between two looks. A unit takes between 10 ns and some microseconds (an element of
+/// a pass; a pair of elements; an exact question), so looks are 10 µs to some milliseconds apart.
+const BUDGET: usize = 1 << 10;
+
+/// How often a caller who works himself is asked.
+const ASK_EVERY: Duration = Duration::from_millis(50);
+
+/// The number of no call.
+const NOBODY: u64 = 0;
+
+static NEXT: AtomicU64 = AtomicU64::new(1);
+
+/// How many calls are being stopped.
+static STOPPING: AtomicUsize = AtomicUsize::new(0);
+
+static STOPPED: Mutex<Vec<u64>> = Mutex::new(Vec::new());
+
+thread_local! {
+    static LEFT: Cell<usize> = const { Cell::new(BUDGET) };
+    static CURRENT: Cell<Task> = const { Cell::new(Task { call: NOBODY }) };
+    static CALLER: Cell<Option<Caller>> = const { Cell::new(None) };
+}
+
+/// A call that can be stopped while it runs.
+#[derive(Debug)]
+pub struct Call {
+    number: u64,
+}
+
+/// What a thread works for; tasks that it hands to other threads carry it on.
+#[derive(Clone, Copy, Debug)]
+pub struct Task {
+    call: u64,
+}
+
+/// The caller of work on this thread, who knows whether to stop and cannot say so by himself.
+#[derive(Clone, Copy)]
+struct Caller {
+    wants_to_stop: fn() -> bool,
+    asked: Instant,
+}
+
+impl Call {
+    /// A call that nobody has stopped.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            number: NEXT.fetch_add(1, Ordering::Relaxed),
+        }
+    }
+
+    /// Makes the work of the call end at its next polls.
+    pub fn stop(&self) {
+        let mut stopped = STOPPED.lock().unwrap_or_else(PoisonError::into_inner);
+        if !stopped.contains(&self.number) {
+            stopped.push(self.number);
+            STOPPING.store(stopped.len(), Ordering::Release);
+        }
+    }
+
+    /// Does the call's work.
+    ///
+    /// # Errors
+    /// Those of the work; `Cancelled`; `Internal` for a panic.
+    pub fn run<T>(&self, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        let task = Task { call: self.number };
+        caught(|| task.run(work))
+    }
+
+    /// Does the call's work on the caller's own thread, who is asked now and then.
+    ///
+    /// # Errors
+    /// Those of the work; `Cancelled`.
+    pub fn run_asking<T>(
+        &self,
+        wants_to_stop: fn() -> bool,
+        work: impl FnOnce() -> Result<T>,
+    ) -> Result<T> {
+        let asked = Instant::now();
+        let caller = Caller {
+            wants_to_stop,
+            asked,
+        };
+        let _before = Restored::new(&CALLER, Some(caller));
+        self.run(work)
+    }
+}
+
+impl Default for Call {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Drop for Call {
+    fn drop(&mut self) {
+        if STOPPING.load(Ordering::Acquire) == 0 {
+            return;
+        }
+        let mut stopped = STOPPED.lock().unwrap_or_else(PoisonError::into_inner);
+        stopped.retain(|number| *number != self.number);
+        STOPPING.store(stopped.len(), Ordering::Release);
+    }
+}
+
+impl Task {
+    /// What this thread works for.
+    #[must_use]
+    pub fn current() -> Self {
+        CURRENT.get()
+    }
+
+    /// Works for this task's call, unless that has been stopped; on any thread.
+    pub fn run<T>(self, work: impl FnOnce() -> T) -> T {
+        // Tasks that wait begin even where others of the call have ended, and may be short.
+        if self.is_stopped() {
+            end();
+        }
+        let _before = Restored::new(&CURRENT, self);
+        work()
+    }
+
+    fn is_stopped(self) -> bool {
+        STOPPING.load(Ordering::Acquire) > 0 && {
+            let stopped = STOPPED.lock().unwrap_or_else(PoisonError::into_inner);
+            stopped.contains(&self.call)
+        }
+    }
+}
+
+/// A thread's value that returns when this is dropped.
+struct Restored<T: Copy + 'static> {
+    place: &'static std::thread::LocalKey<Cell<T>>,
+    value: T,
+}
+
+impl<T: Copy> Restored<T> {
+    fn new(place: &'static std::thread::LocalKey<Cell<T>>, value: T) -> Self {
+        let value = place.replace(value);
+        Self { place, value }
+    }
+}
+
+impl<T: Copy> Drop for Restored<T> {
+    fn drop(&mut self) {
+        self.place.set(self.value);
+    }
+}
+
+/// Work for other threads that goes on to be done for what this thread works for.
+pub fn carried<A, T>(work: impl Fn(A) -> T) -> impl Fn(A) -> T {
+    let task = Task::current();
+    move |argument| task.run(|| work(argument))
+}
+
+/// Notes a unit of work; ends the call if it has been stopped.
+#[inline]
+pub fn poll() {
+    spend(1);
+}
+
+/// Notes so many units of work; ends the call if it has been stopped.
+#[inline]
+pub fn spend(units: usize) {
+    match LEFT.get().checked_sub(units) {
+        Some(left) => LEFT.set(left),
+        None => look(),
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn look() {
+    LEFT.set(BUDGET);
+    if Task::current().is_stopped() || caller_wants_to_stop() {
+        end();
+    }
+}
+
+/// Unwinds to where the call began.
+fn end() -> ! {
+    let text = "the caller stopped the call";
+    resume_unwind(Box::new(Error::new(ErrorKind::Cancelled, text)))
+}
+
+fn caller_wants_to_stop() -> bool {
+    let Some(caller) = CALLER.get() else {
+        return false;
+    };
+    let now = Instant::now();
+    if now.duration_since(caller.asked) < ASK_EVERY {
+        return false;
+    }
+    CALLER.set(Some(Caller {
+        asked: now,
+        ..caller
+    }));
+    (caller.wants_to_stop)()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::panic::catch_unwind;
+    use std::thread;
+
+    use super::*;
+
+    fn endless() -> Result<()> {
+        loop {
+            poll();
+        }
+    }
+
+    #[test]
+    fn a_stopped_call_ends_at_a_poll() {
+        let call = Call::new();
+        let result = thread::scope(|s| {
+            let work = s.spawn(|| call.run(endless));
+            call.stop();
+            work.join()
+        });
+        assert_eq!(
+            result.map(|r| r.map_err(|e| e.kind())).ok(),
+            Some(Err(ErrorKind::Cancelled))
+        );
+    }
+
+    #[test]
+    fn tasks_on_other_threads_end_with_their_call() {
+        let call = Call::new();
+        let task = call.run(|| Ok(Task::current())).expect("not stopped");
+        let ended = thread::spawn(move || catch_unwind(|| task.run(endless)).is_err());
+        call.stop();
+        assert!(ended.join().expect("no panic"));
+    }
+
+    #[test]
+    fn tasks_of_a_stopped_call_do_not_begin() {
+        let call = Call::new();
+        let task = call.run(|| Ok(Task::current())).expect("not stopped");
+        call.stop();
+        assert!(catch_unwind(|| task.run(|| ())).is_err());
+    }
+
+    #[test]
+    fn other_calls_go_on() {
+        let (stopped, other) = (Call::new(), Call::new());
+        stopped.stop();
+        let passes = || {
+            spend(2 * BUDGET);
+            Ok(())
+        };
+        assert!(other.run(passes).is_ok());
+        assert!(stopped.run(passes).is_err());
+        drop(stopped);
+        assert!(Call::new().run(passes).is_ok());
+    }
+
+    #[test]
+    fn the_caller_is_asked() {
+        assert!(Call::new().run_asking(|| true, endless).is_err());
+    }
+
+    #[test]
+    fn a_panic_is_a_defect() {
+        let defect = || -> Result<()> { resume_unwind(Box::new("other")) };
+        let found = Call::new().run(defect).map_err(|e| e.kind());
+        assert_eq!(found, Err(ErrorKind::Internal));
+    }
+}
