@@ -80,7 +80,7 @@ def test_a_report_holds_the_operands_and_the_program() -> None:
         with archive.open("vertices.npy") as file:
             assert (np.load(file, allow_pickle=False) == np.eye(3)).all()
     again = _core.Tree.evaluate(program, operands)
-    assert again.volume6_exact() == (ball | box).tree.volume6_exact()
+    assert again.volume6_exact(2**60) == (ball | box).tree.volume6_exact(2**60)
 
 
 def test_a_defect_of_a_real_call_names_its_operand() -> None:
