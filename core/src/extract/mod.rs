@@ -3,10 +3,13 @@
 
 pub mod assemble;
 pub mod collect;
+pub mod company;
 mod contacts;
+pub mod crossings;
 mod failure;
 pub mod fans;
 mod leaves;
+pub mod mend;
 mod origin;
 pub mod planes;
 mod polygons;
@@ -14,6 +17,7 @@ pub mod rim;
 pub mod round;
 pub mod sealed;
 pub mod seams;
+pub mod settle;
 pub mod snapshot;
 mod sound;
 pub mod triangulate;

@@ -4,12 +4,11 @@
 //! that may turn over; together with a neighbour of its plane it mostly has another diagonal with
 //! which both face the right way.
 
-use num_bigint::BigInt;
 use rustc_hash::FxHashMap as HashMap;
 
 use super::assemble::{Corner, ExactMesh};
 use super::round::Mesh;
-use crate::arith::mantissa_and_exponent;
+use crate::geometry::doubles::{seen_along, turn};
 use crate::geometry::plane::Plane;
 use crate::merge::list::Sources;
 
@@ -30,21 +29,14 @@ pub struct Unfolded {
 /// # Order
 /// Triangles by their numbers, and in each the edges from its first corner on.
 pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded {
-    let planes = Planes { exact, sources };
-    let constructed = |t: &[u32; 3]| {
-        t.iter()
-            .any(|v| matches!(exact.vertices[*v as usize], Corner::Point(_)))
-    };
-    let turned: Vec<usize> = (exact.untouched..mesh.triangles.len())
-        .filter(|&t| constructed(&mesh.triangles[t]) && planes.is_turned(mesh, t))
-        .collect();
+    let turned = turned(mesh, exact, sources);
     if turned.is_empty() {
         return Unfolded::default();
     }
-    let mut surface = Surface::new(mesh, planes);
+    let mut surface = Surface::new(mesh, Planes { exact, sources });
     let mut tries = TRIES * turned.len();
     let mut found = Unfolded::default();
-    let mut open: Vec<usize> = turned.iter().rev().copied().collect();
+    let mut open: Vec<usize> = turned.iter().rev().map(|t| *t as usize).collect();
     while let Some(t) = open.pop() {
         if tries == 0 || !surface.is_turned(t) {
             continue;
@@ -61,6 +53,18 @@ pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded
     found.repaired.dedup();
     found.left.retain(|&t| surface.is_turned(t as usize));
     found
+}
+
+/// The triangles with a constructed corner that do not face as their planes do, ascending.
+pub fn turned(mesh: &Mesh, exact: &ExactMesh, sources: &Sources) -> Vec<u64> {
+    let planes = Planes { exact, sources };
+    let is_given = |v: &u32| matches!(exact.vertices.get(*v as usize), Some(Corner::Source(..)));
+    let is_left = |t: &[u32; 3]| t[0] != t[1];
+    let late = mesh.triangles.iter().enumerate().skip(exact.untouched);
+    late.filter(|(_, t)| is_left(t) && !t.iter().all(is_given))
+        .filter(|(t, _)| planes.is_turned(mesh, *t))
+        .map(|(t, _)| t as u64)
+        .collect()
 }
 
 /// The exact planes of the triangles.
@@ -90,33 +94,9 @@ impl Planes<'_> {
 fn is_turned(mesh: &Mesh, corners: &[u32; 3], normal: &[i128; 3]) -> bool {
     let axis = (0..3).rev().max_by_key(|i| normal[*i].unsigned_abs());
     let axis = axis.unwrap_or(0);
-    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    let points = corners
-        .map(|c| mesh.vertices[c as usize])
-        .map(|p| [p[u], p[v]]);
+    let corners = corners.map(|c| mesh.vertices[c as usize]);
     let facing = if normal[axis] > 0 { 1 } else { -1 };
-    turn(points) != facing
-}
-
-/// Sign of the turn a → b → c: +1 left, 0 straight, −1 right; exact.
-fn turn([a, b, c]: [[f64; 2]; 3]) -> i32 {
-    let left = (b[0] - a[0]) * (c[1] - a[1]);
-    let right = (b[1] - a[1]) * (c[0] - a[0]);
-    let value = left - right;
-    // Shewchuk 1997, "Adaptive precision floating-point arithmetic", the bound A of orient2d.
-    if value.abs() > (3.0 + 16.0 * f64::EPSILON) * f64::EPSILON * (left.abs() + right.abs()) {
-        return if value > 0.0 { 1 } else { -1 };
-    }
-    exact_turn([a, b, c])
-}
-
-fn exact_turn(points: [[f64; 2]; 3]) -> i32 {
-    let parts = points.map(|p| p.map(mantissa_and_exponent));
-    let least = parts.iter().flatten().map(|p| p.1).min().unwrap_or(0);
-    let [a, b, c] = parts.map(|p| p.map(|(m, e)| BigInt::from(m) << (e - least).unsigned_abs()));
-    let left = (&b[0] - &a[0]) * (&c[1] - &a[1]);
-    let right = (&b[1] - &a[1]) * (&c[0] - &a[0]);
-    left.cmp(&right) as i32
+    turn(seen_along(&corners, axis)) != facing
 }
 
 /// A mesh whose edges can be swapped; half-edge 3t + i runs from corner i of triangle t.
@@ -184,20 +164,4 @@ impl<'a> Surface<'a> {
 
 fn edges(corners: &[u32; 3]) -> [(u32, u32); 3] {
     [0, 1, 2].map(|i| (corners[i], corners[(i + 1) % 3]))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::turn;
-
-    #[test]
-    fn turns_are_exact_in_the_last_place() {
-        let step = f64::EPSILON;
-        let (a, b) = ([0.0, 0.0], [1.0 + step, 1.0 + step]);
-        assert_eq!(turn([a, b, [2.0, 2.0]]), 0);
-        assert_eq!(turn([a, b, [2.0, 2.0 + 2.0 * step]]), 1);
-        assert_eq!(turn([a, b, [2.0, 2.0 - step]]), -1);
-        assert_eq!(turn([a, [1e-300, 1e-300], [1e300, 1e300]]), 0);
-        assert_eq!(turn([[-1.0, 0.5], [0.0, 0.5], [0.5, 0.5 + step]]), 1);
-    }
 }

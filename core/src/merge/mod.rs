@@ -18,7 +18,7 @@ pub mod merge_trees;
 pub mod op;
 mod orthogonal;
 mod overlay;
-mod pairs;
+pub mod pairs;
 pub mod partition_tree;
 pub mod separation;
 pub mod simple;

@@ -10,6 +10,7 @@
 
 mod arrays;
 mod each;
+mod embedding;
 mod errors;
 mod fragments;
 mod hyperplanes;
@@ -77,6 +78,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<objects::ObjectTree>()?;
     module.add_class::<ray_tree::RayTree>()?;
     module.add_class::<rays::RayScene>()?;
+    module.add_function(wrap_pyfunction!(embedding::mesh_faults, module)?)?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
     module.add_function(wrap_pyfunction!(normal_bits, module)?)?;
     module.add_function(wrap_pyfunction!(fail_on_purpose, module)?)?;

@@ -7,7 +7,7 @@ use crate::interrupt::spend;
 const FEW: usize = 96;
 
 /// Up to this many that halving does not separate are compared even so: a sweep costs about as much.
-const SOME: usize = 384;
+pub const SOME: usize = 384;
 
 /// So many pairs of boxes are compared in the time of one unit of work.
 const PAIRS: usize = 16;
@@ -16,7 +16,8 @@ const PAIRS: usize = 16;
 #[derive(Clone, Copy)]
 pub struct Boxed {
     extent: ShortBox,
-    operand: u32,
+    /// Its operand.
+    pub operand: u32,
     /// Its number.
     pub number: u32,
 }
@@ -75,7 +76,7 @@ pub fn pairs(
             continue;
         }
         if task.elements.len() <= SOME {
-            compare_all(&task, &mut meet);
+            compare_all(&task.elements, &task.space, &mut meet);
         } else {
             crowd(&task.elements, &task.space)?;
         }
@@ -83,18 +84,33 @@ pub fn pairs(
     Some(())
 }
 
-fn compare_all(task: &Task, meet: &mut impl FnMut(u32, u32)) {
+/// Calls `meet` for the pairs that belong to a space, comparing all elements with all of other
+/// operands.
+pub fn compare_all(elements: &[Boxed], space: &Space, meet: &mut impl FnMut(u32, u32)) {
     let mut end = 0;
-    for run in task.elements.chunk_by(|a, b| a.operand == b.operand) {
+    for run in elements.chunk_by(|a, b| a.operand == b.operand) {
         let start = end;
         end += run.len();
-        for one in &task.elements[start..end] {
-            spend(1 + (task.elements.len() - end) / PAIRS);
+        for one in &elements[start..end] {
+            spend(1 + (elements.len() - end) / PAIRS);
             let wanted = one.extent.turned();
-            for other in &task.elements[end..] {
-                if wanted.overlaps(&other.extent) && task.space.owns(one, other) {
+            for other in &elements[end..] {
+                if wanted.overlaps(&other.extent) && space.owns(one, other) {
                     meet(one.number, other.number);
                 }
+            }
+        }
+    }
+}
+
+/// Calls `meet` for the pairs of two groups that belong to a space, comparing all with all.
+pub fn compare_groups(first: &[Boxed], second: &[Boxed], space: &Space, meet: impl Fn(u32, u32)) {
+    for one in first {
+        spend(1 + second.len() / PAIRS);
+        let wanted = one.extent.turned();
+        for other in second {
+            if wanted.overlaps(&other.extent) && space.owns(one, other) {
+                meet(one.number, other.number);
             }
         }
     }

@@ -11,6 +11,7 @@ mod sweep;
 use std::cell::RefCell;
 
 use crate::geometry::plane::Lattice;
+use boxes::Space;
 pub use boxes::{shift_of, Boxed};
 
 /// An element as a sweep sees it: its operand, its box, and corners whose convex hull holds it.
@@ -46,6 +47,71 @@ pub fn pairs(
             }
         })
     })
+}
+
+/// As [`pairs`], for any number of operands with few elements each; never gives up.
+///
+/// # Cost
+/// A crowd that halving does not separate is divided between two groups of operands again and
+/// again, each swept against the other; where sweeps separate nothing either, all are compared.
+pub fn pairs_of_many(
+    elements: Vec<Boxed>,
+    swept: impl Fn(u32) -> Swept,
+    meet: impl FnMut(u32, u32),
+) {
+    let meet = RefCell::new(meet);
+    let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
+    boxes::pairs(elements, found, |crowd, space| {
+        let mut open = vec![crowd];
+        while let Some(crowd) = open.pop() {
+            match middle(crowd).filter(|_| crowd.len() > boxes::SOME) {
+                Some(at) => {
+                    sweep_groups(crowd.split_at(at), space, &swept, found);
+                    open.extend([&crowd[..at], &crowd[at..]]);
+                }
+                None => boxes::compare_all(crowd, space, &mut |i, j| found(i, j)),
+            }
+        }
+        Some(())
+    });
+}
+
+/// Calls `meet` for the pairs of an element of one group and one of another.
+fn sweep_groups(
+    (first, second): (&[Boxed], &[Boxed]),
+    space: &Space,
+    swept: &impl Fn(u32) -> Swept,
+    meet: impl Fn(u32, u32),
+) {
+    let of = |operand: usize| {
+        move |e: &Boxed| Swept {
+            operand,
+            ..swept(e.number)
+        }
+    };
+    let some: Vec<Swept> = first
+        .iter()
+        .map(of(0))
+        .chain(second.iter().map(of(1)))
+        .collect();
+    let element = |i: usize| first.get(i).unwrap_or_else(|| &second[i - first.len()]);
+    let done = sweep::pairs(&some, |i, j| {
+        let (a, b) = (element(i), element(j));
+        if space.owns(a, b) {
+            meet(a.number, b.number);
+        }
+    });
+    if done.is_none() {
+        boxes::compare_groups(first, second, space, meet);
+    }
+}
+
+/// Where the operand begins that divides elements best; `None` if there is only one.
+fn middle(crowd: &[Boxed]) -> Option<usize> {
+    let begins = |at: &usize| crowd[at - 1].operand != crowd[*at].operand;
+    let half = crowd.len() / 2;
+    let after = (half.max(1)..crowd.len()).find(begins);
+    after.or_else(|| (1..half).rev().find(begins))
 }
 
 #[cfg(test)]

@@ -1,0 +1,169 @@
+//! Which triangles of a mesh lie so near others that the two may meet, by a coarse grid.
+
+use super::crossings::Faces;
+use crate::geometry::doubles::{Point, Triangle};
+use crate::mesh::tasks::fill_chunks;
+
+/// A box in doubles.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// The lowest coordinates.
+    pub low: Point,
+    /// The highest coordinates.
+    pub high: Point,
+}
+
+impl Extent {
+    /// The box of a triangle.
+    pub fn of(triangle: &Triangle) -> Self {
+        let [a, b, c] = triangle;
+        Self {
+            low: [0, 1, 2].map(|i| a[i].min(b[i]).min(c[i])),
+            high: [0, 1, 2].map(|i| a[i].max(b[i]).max(c[i])),
+        }
+    }
+
+    /// The smallest box that holds both.
+    pub fn joined(&self, other: &Self) -> Self {
+        Self {
+            low: [0, 1, 2].map(|i| self.low[i].min(other.low[i])),
+            high: [0, 1, 2].map(|i| self.high[i].max(other.high[i])),
+        }
+    }
+
+    /// Whether the two have no point in common.
+    pub fn misses(&self, other: &Self) -> bool {
+        (0..3).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i])
+    }
+}
+
+/// The most cells along an axis: the grid then fits into a cache.
+const FINEST: usize = 64;
+
+/// The triangles that are not among some, ascending, but may meet one of them or a triangle of
+/// another party; with their parties.
+///
+/// # Cost
+/// Two passes over vertices and triangles.
+pub fn in_company(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32) -> Vec<(u32, u32)> {
+    if some.len() == faces.triangles.len() {
+        return Vec::new();
+    }
+    let Some(mut grid) = Grid::around(faces) else {
+        return Vec::new();
+    };
+    let mut cells = vec![Cell::default(); faces.vertices.len()];
+    fill_chunks(faces.vertices, &mut cells, |_, places, cells| {
+        for (place, cell) in places.iter().zip(cells) {
+            *cell = grid.cell(place);
+        }
+    });
+    let block = |t: u32| Block::of(faces.triangles[t as usize].map(|v| cells[v as usize]));
+    for t in some {
+        grid.mark(block(*t), SHARED);
+    }
+    let mut own = some.iter().copied().peekable();
+    let is_other = move |t: &u32| own.next_if_eq(t).is_none();
+    let others: Vec<u32> = (0..faces.triangles.len() as u32).filter(is_other).collect();
+    for t in &others {
+        grid.mark(block(*t), party(*t) + 1);
+    }
+    let near = others.into_iter().filter(|t| grid.is_shared(block(*t)));
+    near.map(|t| (party(t), t)).collect()
+}
+
+/// The mark of cells with triangles of several parties, or with one of those that are asked about.
+const SHARED: u32 = u32::MAX;
+
+/// Cells over a mesh, each with the party whose triangles it holds, from 1 on.
+struct Grid {
+    low: Point,
+    factor: Point,
+    /// Cells along an axis.
+    size: usize,
+    marks: Vec<u32>,
+}
+
+/// A cell of the grid, on each axis.
+type Cell = [u8; 3];
+
+/// The lowest and the highest cell that a triangle may meet, on each axis.
+#[derive(Clone, Copy)]
+struct Block(Cell, Cell);
+
+impl Block {
+    fn of([a, b, c]: [Cell; 3]) -> Self {
+        Self(
+            [0, 1, 2].map(|i| a[i].min(b[i]).min(c[i])),
+            [0, 1, 2].map(|i| a[i].max(b[i]).max(c[i])),
+        )
+    }
+}
+
+impl Grid {
+    fn around(faces: &Faces) -> Option<Self> {
+        let mut places = faces.vertices.iter();
+        let first = *places.next()?;
+        let (low, high) = places.fold((first, first), |(low, high), p| {
+            let low = [0, 1, 2].map(|i| low[i].min(p[i]));
+            (low, [0, 1, 2].map(|i| high[i].max(p[i])))
+        });
+        let size = (faces.triangles.len() / 6).isqrt().clamp(2, FINEST);
+        let factor = |i: usize| size as f64 / (high[i] - low[i]).max(f64::MIN_POSITIVE);
+        Some(Self {
+            low,
+            factor: [0, 1, 2].map(factor),
+            size,
+            marks: vec![0; size * size * size],
+        })
+    }
+
+    fn cell(&self, p: &Point) -> Cell {
+        [0, 1, 2].map(|i| {
+            let place = (p[i] - self.low[i]) * self.factor[i];
+            (place as usize).min(self.size - 1) as u8
+        })
+    }
+
+    /// The stretches of marks that a block covers.
+    fn columns(&self, Block(low, high): Block) -> impl Iterator<Item = std::ops::Range<usize>> {
+        let [low, high] = [low, high].map(|c| c.map(usize::from));
+        let size = self.size;
+        (low[0]..=high[0]).flat_map(move |x| {
+            (low[1]..=high[1]).map(move |y| {
+                let start = (x * size + y) * size;
+                start + low[2]..start + high[2] + 1
+            })
+        })
+    }
+
+    /// The mark of the only cell of a block.
+    fn single(&self, Block(low, high): Block) -> Option<usize> {
+        let [x, y, z] = low.map(usize::from);
+        (low == high).then_some((x * self.size + y) * self.size + z)
+    }
+
+    fn mark(&mut self, block: Block, party: u32) {
+        let marked = |mark: &mut u32| {
+            *mark = if *mark == 0 || *mark == party {
+                party
+            } else {
+                SHARED
+            }
+        };
+        if let Some(only) = self.single(block) {
+            return marked(&mut self.marks[only]);
+        }
+        for column in self.columns(block) {
+            self.marks[column].iter_mut().for_each(marked);
+        }
+    }
+
+    fn is_shared(&self, block: Block) -> bool {
+        if let Some(only) = self.single(block) {
+            return self.marks[only] == SHARED;
+        }
+        self.columns(block)
+            .any(|column| self.marks[column].contains(&SHARED))
+    }
+}

@@ -1,0 +1,232 @@
+//! Where the triangles of a mesh in doubles cross or overlap, exactly.
+//!
+//! Surfaces may touch: points and edges that two parts of a mesh share are no crossings, whether or
+//! not they are vertices and edges of both.
+
+use rustc_hash::FxHashMap as HashMap;
+
+use super::company::{in_company, Extent};
+use crate::geometry::doubles::{Point, Triangle};
+use crate::geometry::meeting::{has_no_area, interleave, meeting, passes, Meeting};
+use crate::merge::pairs::{pairs_of_many, Boxed, Swept};
+
+/// A mesh in doubles, closed by index.
+#[derive(Clone, Copy, Debug)]
+pub struct Faces<'a> {
+    /// The vertices.
+    pub vertices: &'a [Point],
+    /// The triangles, each directed edge with one opposite.
+    pub triangles: &'a [[u32; 3]],
+}
+
+/// What keeps a mesh from being embedded.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Faults {
+    /// Pairs of triangles that cross or overlap, the lower first, in ascending order.
+    pub crossings: Vec<[u32; 2]>,
+    /// Triangles without area, ascending. They lie in their neighbours' edges and cross nothing.
+    pub flat: Vec<u32>,
+}
+
+impl Faults {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.crossings.is_empty() && self.flat.is_empty()
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.crossings.len() + self.flat.len()
+    }
+}
+
+impl Faces<'_> {
+    /// The corners of a triangle.
+    pub fn corners(&self, triangle: u32) -> Triangle {
+        self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
+    }
+}
+
+/// The faults of some triangles, ascending, among themselves and with all others, and those of
+/// other triangles of different parties.
+///
+/// Others of one party, such as the faces of one input that are as they came, are not compared with
+/// each other.
+pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32) -> Faults {
+    let area = |t: &u32| !has_no_area(&faces.corners(*t));
+    let (solid, flat): (Vec<u32>, Vec<u32>) = some.iter().partition(|t| area(t));
+    let mut search = Search {
+        faces,
+        crossings: Vec::new(),
+        doubtful: Vec::new(),
+    };
+    let mut others = in_company(faces, some, &party);
+    others.retain(|(_, t)| area(t));
+    others.sort_unstable();
+    let parties = others.last().map_or(0, |o| o.0 + 1);
+    let new = (parties..).zip(solid);
+    candidates(
+        faces,
+        &others.into_iter().chain(new).collect::<Vec<_>>(),
+        |t, u| search.look_at(t, u),
+    );
+    search.settle();
+    search.crossings.sort_unstable();
+    search.crossings.dedup();
+    Faults {
+        crossings: search.crossings,
+        flat,
+    }
+}
+
+/// The faults of a mesh.
+pub fn all_faults(faces: &Faces) -> Faults {
+    let all: Vec<u32> = (0..faces.triangles.len() as u32).collect();
+    faults(faces, &all, |_| 0)
+}
+
+/// A search for crossings.
+struct Search<'a> {
+    faces: &'a Faces<'a>,
+    crossings: Vec<[u32; 2]>,
+    /// Pairs that meet along edges: whether surfaces cross there depends on neighbours.
+    doubtful: Vec<([u32; 2], Meeting)>,
+}
+
+impl Search<'_> {
+    fn look_at(&mut self, t: u32, u: u32) {
+        let pair = [t.min(u), t.max(u)];
+        let [p, q] = pair.map(|t| self.faces.corners(t));
+        match meeting(&p, &q) {
+            Meeting::Clear => {}
+            Meeting::Crossing | Meeting::Overlap => self.crossings.push(pair),
+            Meeting::Edges(i, j) if self.are_mates(pair, i, j) => {}
+            meeting => self.doubtful.push((pair, meeting)),
+        }
+    }
+
+    /// Whether two edges are one by index.
+    fn are_mates(&self, pair: [u32; 2], i: usize, j: usize) -> bool {
+        let [[a, b], [c, d]] = [self.ends(pair[0], i), self.ends(pair[1], j)];
+        a == d && b == c
+    }
+
+    fn ends(&self, triangle: u32, edge: usize) -> [u32; 2] {
+        let corners = &self.faces.triangles[triangle as usize];
+        [corners[edge], corners[(edge + 1) % 3]]
+    }
+
+    /// Decides about the doubtful pairs, by the neighbours across the edges at which they meet.
+    fn settle(&mut self) {
+        let doubtful = std::mem::take(&mut self.doubtful);
+        let edges = |(pair, meeting): &([u32; 2], Meeting)| match *meeting {
+            Meeting::FirstEdge(i) => vec![self.ends(pair[0], i)],
+            Meeting::SecondEdge(j) => vec![self.ends(pair[1], j)],
+            Meeting::Edges(i, j) => vec![self.ends(pair[0], i), self.ends(pair[1], j)],
+            _ => Vec::new(),
+        };
+        let wanted = doubtful.iter().flat_map(edges).map(|[a, b]| [b, a]);
+        let mut apexes: HashMap<[u32; 2], Option<u32>> = wanted.map(|e| (e, None)).collect();
+        if apexes.is_empty() {
+            return;
+        }
+        for corners in self.faces.triangles {
+            for i in 0..3 {
+                let edge = [corners[i], corners[(i + 1) % 3]];
+                if let Some(apex) = apexes.get_mut(&edge) {
+                    *apex = Some(corners[(i + 2) % 3]);
+                }
+            }
+        }
+        for (pair, meeting) in doubtful {
+            let mate = |which: usize, edge: usize| {
+                let [a, b] = self.ends(pair[which], edge);
+                let apex = apexes.get(&[b, a]).copied().flatten()?;
+                Some(self.faces.vertices[apex as usize])
+            };
+            let corners = pair.map(|t| self.faces.corners(t));
+            if crosses_at(meeting, &corners, mate) {
+                self.crossings.push(pair);
+            }
+        }
+    }
+}
+
+/// Whether surfaces cross where two triangles meet like this; `mate` gives the apex of the triangle
+/// across an edge of the first or the second. What has no neighbour crosses what it lies in.
+pub fn crosses_at(
+    meeting: Meeting,
+    [p, q]: &[Triangle; 2],
+    mate: impl Fn(usize, usize) -> Option<Point>,
+) -> bool {
+    let apex = |t: &Triangle, edge: usize| t[(edge + 2) % 3];
+    let crossing = match meeting {
+        Meeting::Clear => Some(false),
+        Meeting::Crossing | Meeting::Overlap => Some(true),
+        Meeting::FirstEdge(i) => mate(0, i).map(|m| passes(q, [&apex(p, i), &m])),
+        Meeting::SecondEdge(j) => mate(1, j).map(|m| passes(p, [&apex(q, j), &m])),
+        Meeting::Edges(i, j) => mate(0, i).zip(mate(1, j)).map(|(m, n)| {
+            let axis = [&p[i], &p[(i + 1) % 3]];
+            interleave(axis, [&apex(p, i), &m], [&apex(q, j), &n])
+        }),
+    };
+    crossing.unwrap_or(true)
+}
+
+/// Calls `meet` for the pairs of different parties that may meet; triangles come by party.
+fn candidates(faces: &Faces, all: &[(u32, u32)], mut meet: impl FnMut(u32, u32)) {
+    let corners = |k: u32| faces.corners(all[k as usize].1);
+    let numbers = || 0..all.len() as u32;
+    let boxes = numbers().map(|k| Extent::of(&corners(k)));
+    let Some(whole) = boxes.reduce(|a, b| a.joined(&b)) else {
+        return;
+    };
+    let scale = Scale::of(&whole);
+    let party = |k: u32| all[k as usize].0 as usize;
+    let boxed = |k: u32| {
+        let [low, high] = scale.ends(&Extent::of(&corners(k)));
+        Boxed::new(party(k), k, [&low, &high], Scale::BITS - 30)
+    };
+    let swept = |k: u32| {
+        let corners = corners(k);
+        let [low, high] = scale.ends(&Extent::of(&corners));
+        Swept {
+            operand: party(k),
+            low,
+            high,
+            corners: Some(corners.map(|p| scale.image(&p))),
+        }
+    };
+    pairs_of_many(numbers().map(boxed).collect(), swept, |i, j| {
+        meet(all[i as usize].1, all[j as usize].1);
+    });
+}
+
+/// The image of a box on integers; monotone, so that boxes that overlap do so there.
+struct Scale {
+    low: Point,
+    factor: f64,
+}
+
+impl Scale {
+    /// Of the images' coordinates.
+    const BITS: u32 = 40;
+
+    fn of(all: &Extent) -> Self {
+        let size = (0..3).fold(0.0f64, |m, i| m.max(all.high[i] - all.low[i]));
+        let factor = (1u64 << Self::BITS) as f64 / size;
+        Self {
+            low: all.low,
+            // A mesh in one place, or too small to be told apart, has one image.
+            factor: if factor.is_finite() { factor } else { 0.0 },
+        }
+    }
+
+    fn image(&self, p: &Point) -> Point {
+        [0, 1, 2].map(|i| (p[i] - self.low[i]) * self.factor)
+    }
+
+    fn ends(&self, extent: &Extent) -> [[i64; 3]; 2] {
+        [extent.low, extent.high].map(|p| self.image(&p).map(|x| x as i64))
+    }
+}

@@ -1,0 +1,234 @@
+//! Makes a rounded mesh an embedded one: finds the crossings that rounding made, and mends them.
+
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+
+use super::company::in_company;
+use super::crossings::{faults, Faces, Faults};
+use super::mend::{Mending, Precision};
+use crate::geometry::doubles::Point;
+
+/// Rounds of finding and mending: each mends what it found, and the next looks at what that moved.
+const ROUNDS: usize = 4;
+
+/// A mesh whose vertices were rounded, closed by index.
+#[derive(Debug)]
+pub struct Rounded {
+    /// The vertices.
+    pub vertices: Vec<Point>,
+    /// The triangles; those removed have one corner three times.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// What is known of a mesh that was settled.
+#[derive(Clone, Debug, Default)]
+pub struct Settled {
+    /// How many triangles were compared with all near them.
+    pub compared: usize,
+    /// The triangles that were changed, ascending; removed ones, too.
+    pub mended: Vec<u32>,
+    /// Vertices put where the exact surface has them, ascending.
+    pub moved: Vec<u32>,
+    /// What could not be mended.
+    pub left: Faults,
+}
+
+/// Finds the faults of changed triangles, ascending, and mends what can be mended.
+///
+/// `exact` gives the place of a vertex on the lattice, if its input had it elsewhere: there the
+/// surfaces do not cross. `given` tells vertices of inputs.
+pub fn settle(
+    mesh: &mut Rounded,
+    mut changed: Vec<u32>,
+    precision: Precision,
+    exact: impl Fn(u32) -> Option<Point>,
+    given: impl Fn(u32) -> bool,
+    party: impl Fn(u32) -> u32,
+) -> Settled {
+    let mut settled = Settled::default();
+    let mut found = faults(&mesh.faces(), &changed, &party);
+    while !found.is_empty() {
+        let moved = mesh.move_corners(&found, &exact);
+        if moved.is_empty() {
+            break;
+        }
+        changed = merged(&changed, &mesh.stars(&moved));
+        settled.moved = merged(&settled.moved, &moved);
+        found = faults(&mesh.faces(), &changed, &party);
+    }
+    for _ in 0..ROUNDS {
+        if found.is_empty() {
+            break;
+        }
+        let touched = mesh.mend(&found, precision, &given);
+        if touched.is_empty() {
+            break;
+        }
+        settled.mended = merged(&settled.mended, &touched);
+        changed = merged(&changed, &touched);
+        changed.retain(|t| !mesh.is_removed(*t));
+        found = faults(&mesh.faces(), &changed, &party);
+    }
+    settled.compared = changed.len();
+    settled.left = found;
+    settled
+}
+
+impl Rounded {
+    fn faces(&self) -> Faces<'_> {
+        Faces {
+            vertices: &self.vertices,
+            triangles: &self.triangles,
+        }
+    }
+
+    /// Whether a triangle was removed.
+    pub fn is_removed(&self, triangle: u32) -> bool {
+        let [a, b, _] = self.triangles[triangle as usize];
+        a == b
+    }
+
+    /// Moves the corners of faulty triangles to where the exact surface has them.
+    fn move_corners(&mut self, found: &Faults, exact: impl Fn(u32) -> Option<Point>) -> Vec<u32> {
+        let mut corners: Vec<u32> = members(found)
+            .flat_map(|t| self.triangles[t as usize])
+            .collect();
+        corners.sort_unstable();
+        corners.dedup();
+        corners.retain(|&v| {
+            let place = exact(v).filter(|p| *p != self.vertices[v as usize]);
+            if let Some(place) = place {
+                self.vertices[v as usize] = place;
+            }
+            place.is_some()
+        });
+        corners
+    }
+
+    /// The triangles at some vertices, ascending.
+    fn stars(&self, vertices: &[u32]) -> Vec<u32> {
+        let wanted: HashSet<u32> = vertices.iter().copied().collect();
+        let has = |t: &u32| {
+            self.triangles[*t as usize]
+                .iter()
+                .any(|v| wanted.contains(v))
+        };
+        let all = 0..self.triangles.len() as u32;
+        all.filter(has).filter(|t| !self.is_removed(*t)).collect()
+    }
+
+    /// Mends the part of the mesh around faults; returns the triangles changed, ascending.
+    fn mend(
+        &mut self,
+        found: &Faults,
+        precision: Precision,
+        given: impl Fn(u32) -> bool,
+    ) -> Vec<u32> {
+        let corners = members(found).flat_map(|t| self.triangles[t as usize]);
+        let core = self.stars(&corners.collect::<Vec<u32>>());
+        let near = in_company(&self.faces(), &core, |_| 0);
+        let some = merged(&core, &near.into_iter().map(|o| o.1).collect::<Vec<u32>>());
+        let part = Part::of(self, &some);
+        let local = |t: &u32| some.binary_search(t).unwrap_or(0) as u32;
+        let faults = Faults {
+            crossings: found
+                .crossings
+                .iter()
+                .map(|p| p.map(|t| local(&t)))
+                .collect(),
+            flat: found.flat.iter().map(local).collect(),
+        };
+        let vertices = part.globals.iter().map(|v| self.vertices[*v as usize]);
+        let marks = [
+            part.is_cut_off(self),
+            part.globals.iter().map(|v| given(*v)).collect(),
+        ];
+        let triangles = part.triangles.clone();
+        let mut mending = Mending::new(vertices.collect(), triangles, marks, precision, &faults);
+        mending.run();
+        self.take_back(&mending, &part, &some)
+    }
+
+    /// Takes what was mended back into the mesh.
+    fn take_back(&mut self, mending: &Mending, part: &Part, some: &[u32]) -> Vec<u32> {
+        let mut globals = part.globals.clone();
+        let first = self.vertices.len() - globals.len();
+        for (v, place) in mending.vertices.iter().enumerate() {
+            match globals.get(v) {
+                Some(global) => self.vertices[*global as usize] = *place,
+                None => {
+                    globals.push((first + v) as u32);
+                    self.vertices.push(*place);
+                }
+            }
+        }
+        let mut touched = Vec::new();
+        for ((t, new), old) in some.iter().zip(&mending.triangles).zip(&part.triangles) {
+            let moved = |v: &u32| mending.is_moved(*v);
+            if new.as_ref() != Some(old) || old.iter().any(moved) {
+                touched.push(*t);
+            }
+            self.triangles[*t as usize] = match new {
+                Some(corners) => corners.map(|v| globals[v as usize]),
+                None => [globals[old[0] as usize]; 3],
+            };
+        }
+        touched
+    }
+}
+
+/// Some triangles with vertices of their own.
+struct Part {
+    /// The vertices by their numbers in the whole mesh.
+    globals: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Part {
+    fn of(mesh: &Rounded, some: &[u32]) -> Self {
+        let mut numbers: HashMap<u32, u32> = HashMap::default();
+        let mut globals = Vec::new();
+        let triangles = some.iter().map(|t| {
+            mesh.triangles[*t as usize].map(|v| {
+                *numbers.entry(v).or_insert_with(|| {
+                    globals.push(v);
+                    globals.len() as u32 - 1
+                })
+            })
+        });
+        let triangles = triangles.collect();
+        Self { globals, triangles }
+    }
+
+    /// For each vertex whether some of its triangles lie outside.
+    fn is_cut_off(&self, mesh: &Rounded) -> Vec<bool> {
+        let mut missing: HashMap<u32, usize> = HashMap::default();
+        for v in self.triangles.iter().flatten() {
+            *missing.entry(self.globals[*v as usize]).or_default() += 1;
+        }
+        let mut whole = missing.clone();
+        whole.values_mut().for_each(|count| *count = 0);
+        let left = mesh.triangles.iter().filter(|t| t[0] != t[1]);
+        for v in left.flatten() {
+            if let Some(count) = whole.get_mut(v) {
+                *count += 1;
+            }
+        }
+        self.globals
+            .iter()
+            .map(|v| whole[v] != missing[v])
+            .collect()
+    }
+}
+
+fn members(found: &Faults) -> impl Iterator<Item = u32> + '_ {
+    let pairs = found.crossings.iter().flatten();
+    pairs.chain(&found.flat).copied()
+}
+
+/// Two ascending lists as one.
+fn merged(a: &[u32], b: &[u32]) -> Vec<u32> {
+    let mut all = [a, b].concat();
+    all.sort_unstable();
+    all.dedup();
+    all
+}

@@ -1,0 +1,234 @@
+//! Exact questions about points given in doubles.
+//!
+//! A filter in doubles settles what is clear; the rest is computed in integers: the coordinates
+//! times a power of two, in fixed width where their exponents lie close together.
+
+use num_bigint::{BigInt, Sign};
+
+use crate::arith::{mantissa_and_exponent, Int};
+
+/// A point of space in doubles; finite.
+pub type Point = [f64; 3];
+
+/// A triangle by its corners.
+pub type Triangle = [Point; 3];
+
+/// Half a unit in the last place of 1.
+const ROUNDING: f64 = f64::EPSILON / 2.0;
+
+/// Shewchuk 1997, "Adaptive precision floating-point arithmetic", the bound A of orient3d.
+const SIDE_BOUND: f64 = (7.0 + 56.0 * ROUNDING) * ROUNDING;
+
+/// The same paper, the bound A of orient2d.
+const TURN_BOUND: f64 = (3.0 + 16.0 * ROUNDING) * ROUNDING;
+
+/// Sums of products beyond these may have lost digits to underflow, or overflowed: the filter's
+/// bounds suppose that neither happened. A product of three differences below 1e100 that lost
+/// 2^-1074 in one step is off by 1e-223 at most, far less than the bound at 1e-200.
+const TRUSTED: std::ops::Range<f64> = 1e-200..1e200;
+
+/// Exponents this far apart still fit: 53 + 70 bits a coordinate, 124 a difference, 249 a minor of
+/// two rows, 375 a determinant of three.
+const SPAN: i32 = 70;
+
+/// The plane of a triangle, prepared for questions about sides.
+pub struct Facing<'a> {
+    triangle: &'a Triangle,
+    minors: Point,
+    sizes: Point,
+}
+
+impl<'a> Facing<'a> {
+    /// The plane through a triangle's corners.
+    #[inline]
+    pub fn of(triangle: &'a Triangle) -> Self {
+        let [a, b, c] = triangle;
+        let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
+        let products = |i: usize| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            (u[j] * v[k], u[k] * v[j])
+        };
+        let all = [products(0), products(1), products(2)];
+        Self {
+            triangle,
+            minors: all.map(|(left, right)| left - right),
+            sizes: all.map(|(left, right)| left.abs() + right.abs()),
+        }
+    }
+
+    /// The side on which a point lies: +1 where the normal by the right-hand rule points, 0 in the
+    /// plane, −1 behind; exact.
+    #[inline]
+    pub fn side(&self, d: &Point) -> i32 {
+        let [a, b, c] = self.triangle;
+        if (0..3).any(|i| a[i] == d[i] && b[i] == d[i] && c[i] == d[i]) {
+            return 0;
+        }
+        let (m, s) = (&self.minors, &self.sizes);
+        let w = [d[0] - a[0], d[1] - a[1], d[2] - a[2]];
+        let value = m[0] * w[0] + m[1] * w[1] + m[2] * w[2];
+        let size = s[0] * w[0].abs() + s[1] * w[1].abs() + s[2] * w[2].abs();
+        if value.abs() > SIDE_BOUND * size && TRUSTED.contains(&size) {
+            return if value > 0.0 { 1 } else { -1 };
+        }
+        exact_side([a, b, c, d])
+    }
+}
+
+/// The side of the plane through a triangle's corners on which a point lies; exact.
+#[inline]
+pub fn side(triangle: &Triangle, d: &Point) -> i32 {
+    Facing::of(triangle).side(d)
+}
+
+fn exact_side(points: [&Point; 4]) -> i32 {
+    let parts = points.map(|p| p.map(mantissa_and_exponent));
+    match on_common_grid(parts.as_flattened()) {
+        Some(grid) => {
+            let from = |p: usize, i: usize| Int::<2>::from_i128(grid[3 * p + i] - grid[i]);
+            let [u, v, w] = [1, 2, 3].map(|p| [0, 1, 2].map(|i| from(p, i)));
+            let minor = |j: usize, k: usize| u[j].mul::<2, 4>(&v[k]) - u[k].mul::<2, 4>(&v[j]);
+            let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3).mul::<2, 6>(&w[i]);
+            (term(0) + term(1) + term(2)).signum()
+        }
+        None => {
+            let grid = on_big_grid(parts.as_flattened());
+            let from = |p: usize, i: usize| &grid[3 * p + i] - &grid[i];
+            let [u, v, w] = [1, 2, 3].map(|p| [0, 1, 2].map(|i| from(p, i)));
+            let minor = |j: usize, k: usize| &u[j] * &v[k] - &u[k] * &v[j];
+            let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3) * &w[i];
+            sign(&(term(0) + term(1) + term(2)))
+        }
+    }
+}
+
+/// Sign of the turn a → b → c in the plane: +1 left, 0 straight, −1 right; exact.
+#[inline]
+pub fn turn([a, b, c]: [[f64; 2]; 3]) -> i32 {
+    let left = (b[0] - a[0]) * (c[1] - a[1]);
+    let right = (b[1] - a[1]) * (c[0] - a[0]);
+    let (value, size) = (left - right, left.abs() + right.abs());
+    if value.abs() > TURN_BOUND * size && TRUSTED.contains(&size) {
+        return if value > 0.0 { 1 } else { -1 };
+    }
+    exact_turn([a, b, c])
+}
+
+fn exact_turn(points: [[f64; 2]; 3]) -> i32 {
+    let parts = points.map(|p| p.map(mantissa_and_exponent));
+    match on_common_grid(parts.as_flattened()) {
+        Some(grid) => {
+            let from = |p: usize, i: usize| Int::<2>::from_i128(grid[2 * p + i] - grid[i]);
+            let [u, v] = [1, 2].map(|p| [from(p, 0), from(p, 1)]);
+            (u[0].mul::<2, 4>(&v[1]) - u[1].mul::<2, 4>(&v[0])).signum()
+        }
+        None => {
+            let grid = on_big_grid(parts.as_flattened());
+            let from = |p: usize, i: usize| &grid[2 * p + i] - &grid[i];
+            let [u, v] = [1, 2].map(|p| [from(p, 0), from(p, 1)]);
+            sign(&(&u[0] * &v[1] - &u[1] * &v[0]))
+        }
+    }
+}
+
+/// The numbers as multiples of the least power of two among them, if they fit.
+fn on_common_grid(parts: &[(i64, i32)]) -> Option<[i128; 12]> {
+    let exponents = || parts.iter().filter(|p| p.0 != 0).map(|p| p.1);
+    let (least, most) = (
+        exponents().min().unwrap_or(0),
+        exponents().max().unwrap_or(0),
+    );
+    if most - least > SPAN {
+        return None;
+    }
+    let mut grid = [0; 12];
+    for (place, (mantissa, exponent)) in grid.iter_mut().zip(parts) {
+        if *mantissa != 0 {
+            *place = i128::from(*mantissa) << (exponent - least);
+        }
+    }
+    Some(grid)
+}
+
+fn on_big_grid(parts: &[(i64, i32)]) -> Vec<BigInt> {
+    let exponents = parts.iter().filter(|p| p.0 != 0).map(|p| p.1);
+    let least = exponents.min().unwrap_or(0);
+    let scaled = |(m, e): &(i64, i32)| BigInt::from(*m) << (e - least).max(0).unsigned_abs();
+    parts.iter().map(scaled).collect()
+}
+
+fn sign(value: &BigInt) -> i32 {
+    match value.sign() {
+        Sign::Plus => 1,
+        Sign::NoSign => 0,
+        Sign::Minus => -1,
+    }
+}
+
+/// Whether the corners of a triangle lie on one line, or in one place; exact.
+pub fn is_flat(triangle: &Triangle) -> bool {
+    (0..3).all(|axis| turn(seen_along(triangle, axis)) == 0)
+}
+
+/// A triangle as seen against the direction of an axis.
+pub fn seen_along(triangle: &Triangle, axis: usize) -> [[f64; 2]; 3] {
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    triangle.map(|p| [p[u], p[v]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_are_exact_in_the_last_place() {
+        let step = f64::EPSILON;
+        let (a, b) = ([0.0, 0.0], [1.0 + step, 1.0 + step]);
+        assert_eq!(turn([a, b, [2.0, 2.0]]), 0);
+        assert_eq!(turn([a, b, [2.0, 2.0 + 2.0 * step]]), 1);
+        assert_eq!(turn([a, b, [2.0, 2.0 - step]]), -1);
+        assert_eq!(turn([a, [1e-300, 1e-300], [1e300, 1e300]]), 0);
+        assert_eq!(turn([[-1.0, 0.5], [0.0, 0.5], [0.5, 0.5 + step]]), 1);
+    }
+
+    #[test]
+    fn sides_are_exact_in_the_last_place() {
+        let step = f64::EPSILON;
+        let plane = [[0.0, 0.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
+        assert_eq!(side(&plane, &[0.3, 0.5, 0.8]), 0);
+        assert_eq!(side(&plane, &[0.5, 0.25, 0.75 + step]), 1);
+        assert_eq!(side(&plane, &[0.5, 0.25, 0.75 - step]), -1);
+        let far = [[0.0, 0.0, 0.0], [1e300, 0.0, 1e300], [0.0, 1e-300, 1e-300]];
+        assert_eq!(side(&far, &[1.0, 1.0, 2.0]), 0);
+        assert_eq!(side(&far, &[1.0, 1.0, 2.0 + 2.0 * step]), 1);
+    }
+
+    #[test]
+    fn integers_of_fixed_width_and_big_ones_agree() {
+        // Near-coplanar points, once within the span of the fixed width and once beyond.
+        for seed in 0..2000u32 {
+            let next = |k: u32| f64::from((seed * 12 + k).wrapping_mul(2_654_435_761)) / 4e9;
+            let mut points = [0, 1, 2, 3].map(|p| [0, 1, 2].map(|i| next(3 * p + i) + 1.0));
+            points[3] = [0, 1, 2].map(|i| (points[0][i] + points[1][i]) * 0.5);
+            let parts = points.map(|p| p.map(mantissa_and_exponent));
+            let grid = on_big_grid(parts.as_flattened());
+            let from = |p: usize, i: usize| &grid[3 * p + i] - &grid[i];
+            let minor = |j: usize, k: usize| from(1, j) * from(2, k) - from(1, k) * from(2, j);
+            let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3) * from(3, i);
+            let [a, b, c, d] = &points;
+            let expected = sign(&(term(0) + term(1) + term(2)));
+            assert_eq!(side(&[*a, *b, *c], d), expected, "seed {seed}");
+        }
+    }
+
+    #[test]
+    fn triangles_on_a_line_are_flat() {
+        assert!(is_flat(&[[0.0; 3], [1.0, 1.0, 1.0], [3.0, 3.0, 3.0]]));
+        assert!(is_flat(&[[1.0; 3], [1.0; 3], [3.0, 1.0, 3.0]]));
+        assert!(!is_flat(&[
+            [0.0; 3],
+            [1.0, 1.0, 1.0],
+            [3.0, 3.0, 3.0 + 1e-15]
+        ]));
+    }
+}
