@@ -21,6 +21,8 @@ __all__ = [
     "Tree",
     "__version__",
     "fail_on_purpose",
+    "mesh_faults",
+    "mesh_in_single",
     "normal_bits",
     "numbers_in",
     "set_threads",
@@ -47,6 +49,18 @@ class Finding(TypedDict):
     where: list[int]
     count: int
 
+@type_check_only
+class Faults(TypedDict):
+    crossings: npt.NDArray[np.int64]
+    flat: npt.NDArray[np.int64]
+
+@type_check_only
+class InSingle(Faults):
+    vertices: npt.NDArray[np.float64]
+    triangles: npt.NDArray[np.int64]
+    kept: npt.NDArray[np.int64]
+    mended: int
+
 _MeshArrays: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]
 _PieceArrays: TypeAlias = tuple[
     npt.NDArray[np.float64], npt.NDArray[np.int64], npt.NDArray[np.int64]
@@ -56,6 +70,10 @@ _SplitCase: TypeAlias = Literal[
 ]
 
 def fail_on_purpose(panic: bool, size: int) -> None: ...
+def mesh_faults(vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]) -> Faults: ...
+def mesh_in_single(
+    vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]
+) -> InSingle: ...
 def set_threads(n: int) -> None: ...
 def normal_bits(dimension: int) -> int: ...
 def suited_pitch(largest: float, extent: float) -> int: ...

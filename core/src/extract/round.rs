@@ -71,11 +71,6 @@ pub fn mesh(solid: &Solid) -> Result<Mesh> {
 fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Settled {
     let changed: Vec<u32> = (exact.untouched as u32..mesh.triangles.len() as u32).collect();
     let party = |t: u32| exact.faces[t as usize].slot;
-    // Faces as they came are in the order of their inputs.
-    let last = exact.untouched.saturating_sub(1) as u32;
-    if changed.is_empty() && (exact.untouched == 0 || party(0) == party(last)) {
-        return Settled::default();
-    }
     let corner = |v: u32| exact.vertices.get(v as usize);
     let on_lattice = |v: u32| match corner(v) {
         Some(Corner::Source(slot, vertex)) => {

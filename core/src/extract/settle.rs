@@ -45,6 +45,9 @@ pub fn settle(
     party: impl Fn(u32) -> u32,
 ) -> Settled {
     let mut settled = Settled::default();
+    if changed.is_empty() && mesh.is_of_one(&party) {
+        return settled;
+    }
     let mut found = faults(&mesh.faces(), &changed, &party);
     while !found.is_empty() {
         let moved = mesh.move_corners(&found, &exact);
@@ -73,12 +76,37 @@ pub fn settle(
     settled
 }
 
+/// Rounds a mesh, closed by index, to single precision and mends what that makes cross.
+pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
+    let single = Precision::Single;
+    let mut moved = vec![false; mesh.vertices.len()];
+    for (place, moved) in mesh.vertices.iter_mut().zip(&mut moved) {
+        let rounded = place.map(|x| single.round(x));
+        *moved = rounded != *place;
+        *place = rounded;
+    }
+    let is_changed = |t: &u32| {
+        mesh.triangles[*t as usize]
+            .iter()
+            .any(|v| moved[*v as usize])
+    };
+    let changed = (0..mesh.triangles.len() as u32)
+        .filter(is_changed)
+        .collect();
+    settle(mesh, changed, single, |_| None, |_| false, |_| 0)
+}
+
 impl Rounded {
     fn faces(&self) -> Faces<'_> {
         Faces {
             vertices: &self.vertices,
             triangles: &self.triangles,
         }
+    }
+
+    /// Whether all triangles are of one party.
+    fn is_of_one(&self, party: impl Fn(u32) -> u32) -> bool {
+        (1..self.triangles.len() as u32).all(|t| party(t) == party(0))
     }
 
     /// Whether a triangle was removed.

@@ -1,15 +1,15 @@
-//! Whether a mesh in doubles crosses itself.
+//! Whether a mesh in doubles crosses itself, and meshes in single precision.
 
-use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::arrays::{array, rows, wide};
 use super::errors::to_python;
 use super::run::run;
 use crate::error::{Error, ErrorKind, Result};
-use crate::extract::crossings::{all_faults, Faces};
-
-type FaultArrays<'py> = (Bound<'py, PyArray2<i64>>, Bound<'py, PyArray1<i64>>);
+use crate::extract::crossings::{all_faults, Faces, Faults};
+use crate::extract::settle::{settle_in_single, Rounded};
 
 /// The pairs of triangles that cross or overlap, and the triangles without area.
 #[pyfunction]
@@ -17,32 +17,63 @@ pub fn mesh_faults<'py>(
     py: Python<'py>,
     vertices: PyReadonlyArray2<'py, f64>,
     triangles: PyReadonlyArray2<'py, i64>,
-) -> PyResult<FaultArrays<'py>> {
-    let fail = |e: Error| to_python(py, &e);
-    let vertices = rows(&vertices, "vertices").map_err(fail)?;
-    let triangles = rows(&triangles, "triangles").map_err(fail)?;
-    let indices = indices(&triangles, vertices.len()).map_err(fail)?;
-    if vertices.as_flattened().iter().any(|x| !x.is_finite()) {
-        let text = "a coordinate is not a finite number";
-        return Err(fail(Error::new(ErrorKind::NonFinite, text)));
-    }
-    let found = run(py, 0, indices.len(), |_| {
-        let faces = Faces {
-            vertices: &vertices,
-            triangles: &indices,
-        };
-        Ok(all_faults(&faces))
+) -> PyResult<Bound<'py, PyDict>> {
+    let mesh = given(&vertices, &triangles).map_err(|e| to_python(py, &e))?;
+    let found = run(py, 0, mesh.triangles.len(), |_| {
+        Ok(all_faults(&Faces {
+            vertices: &mesh.vertices,
+            triangles: &mesh.triangles,
+        }))
     })?;
-    let flat = found.flat.into_iter().map(i64::from).collect();
-    Ok((
-        array(py, wide(&found.crossings))?,
-        PyArray1::from_vec(py, flat),
-    ))
+    let dict = PyDict::new(py);
+    set_faults(&dict, found)?;
+    Ok(dict)
 }
 
-/// Triangles with indices of vertices that exist.
-fn indices(triangles: &[[i64; 3]], count: usize) -> Result<Vec<[u32; 3]>> {
-    let index = |v: i64| u32::try_from(v).ok().filter(|v| (*v as usize) < count);
+/// A mesh closed by index, rounded to single precision and mended.
+#[pyfunction]
+pub fn mesh_in_single<'py>(
+    py: Python<'py>,
+    vertices: PyReadonlyArray2<'py, f64>,
+    triangles: PyReadonlyArray2<'py, i64>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let mut mesh = given(&vertices, &triangles).map_err(|e| to_python(py, &e))?;
+    let settled = run(py, 0, mesh.triangles.len(), |_| {
+        Ok(settle_in_single(&mut mesh))
+    })?;
+    let numbers = (0..).zip(&mesh.triangles);
+    let (kept, left): (Vec<i64>, Vec<[u32; 3]>) = numbers.filter(|(_, t)| t[0] != t[1]).unzip();
+    let dict = PyDict::new(py);
+    dict.set_item("vertices", array(py, mesh.vertices)?)?;
+    dict.set_item("triangles", array(py, wide(&left))?)?;
+    dict.set_item("kept", PyArray1::from_vec(py, kept))?;
+    dict.set_item("mended", settled.mended.len())?;
+    set_faults(&dict, settled.left)?;
+    Ok(dict)
+}
+
+fn set_faults(dict: &Bound<'_, PyDict>, found: Faults) -> PyResult<()> {
+    let py = dict.py();
+    let flat = found.flat.into_iter().map(i64::from).collect();
+    dict.set_item("crossings", array(py, wide(&found.crossings))?)?;
+    dict.set_item("flat", PyArray1::from_vec(py, flat))
+}
+
+/// A mesh of finite coordinates whose triangles name vertices that exist.
+fn given(
+    vertices: &PyReadonlyArray2<'_, f64>,
+    triangles: &PyReadonlyArray2<'_, i64>,
+) -> Result<Rounded> {
+    let vertices = rows(vertices, "vertices")?.into_owned();
+    if vertices.as_flattened().iter().any(|x| !x.is_finite()) {
+        let text = "a coordinate is not a finite number";
+        return Err(Error::new(ErrorKind::NonFinite, text));
+    }
+    let index = |v: i64| {
+        u32::try_from(v)
+            .ok()
+            .filter(|v| (*v as usize) < vertices.len())
+    };
     let row = |(t, corners): (usize, &[i64; 3])| match corners.map(index) {
         [Some(a), Some(b), Some(c)] => Ok([a, b, c]),
         _ => {
@@ -50,5 +81,14 @@ fn indices(triangles: &[[i64; 3]], count: usize) -> Result<Vec<[u32; 3]>> {
             Err(Error::new(ErrorKind::IndexOutOfRange, text))
         }
     };
-    triangles.iter().enumerate().map(row).collect()
+    let triangles = rows(triangles, "triangles")?;
+    let triangles = triangles
+        .iter()
+        .enumerate()
+        .map(row)
+        .collect::<Result<_>>()?;
+    Ok(Rounded {
+        vertices,
+        triangles,
+    })
 }

@@ -79,6 +79,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<ray_tree::RayTree>()?;
     module.add_class::<rays::RayScene>()?;
     module.add_function(wrap_pyfunction!(embedding::mesh_faults, module)?)?;
+    module.add_function(wrap_pyfunction!(embedding::mesh_in_single, module)?)?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
     module.add_function(wrap_pyfunction!(normal_bits, module)?)?;
     module.add_function(wrap_pyfunction!(fail_on_purpose, module)?)?;

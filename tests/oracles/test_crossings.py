@@ -1,0 +1,155 @@
+"""Whether triangles cross, recounted with fractions; and that no delivered mesh does."""
+
+import random
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg._core import mesh_faults, mesh_in_single
+from support import DEEP
+from support.checks import assert_closed
+from support.degenerate import scene
+from support.fractions import common_dimension, exact, is_flat
+
+SCENES = 10_000 if DEEP else 250
+
+
+def faults(mesh: "b.Mesh") -> tuple[list[list[int]], list[int]]:
+    found = mesh_faults(mesh.vertices, mesh.faces)
+    return found["crossings"].tolist(), found["flat"].tolist()
+
+
+def nearby_pairs(seed: int, values: list[float], count: int = 400) -> list[np.ndarray]:
+    """Return pairs of triangles with area whose coordinates are drawn from few values."""
+    rng = random.Random(seed)
+    pairs: list[np.ndarray] = []
+    while len(pairs) < count:
+        pair = np.array([[[rng.choice(values) for _ in range(3)] for _ in range(3)] for _ in "pq"])
+        if rng.random() < 0.5:
+            pair[1, : rng.randrange(1, 3)] = pair[0, : rng.randrange(1, 2)]
+        if not any(is_flat(exact(triangle)) for triangle in pair):
+            pairs.append(pair)
+    return pairs
+
+
+@pytest.mark.parametrize(
+    "values",
+    [[0, 1, 2], [-2, -1, 0, 1, 3], [0, 0.1, 0.3, 1 / 3, 1], [1, 1 + 2**-52, 1 - 2**-53, 2, 0]],
+)
+def test_pairs_of_triangles(values: list[float]) -> None:
+    for seed in range(5):
+        pairs = nearby_pairs(seed, values)
+        # Open triangles have no neighbours: whatever is more than a point counts.
+        for pair in pairs:
+            faces = np.arange(6).reshape(2, 3)
+            found = mesh_faults(pair.reshape(6, 3), faces)
+            expected = common_dimension(exact(pair[0]), exact(pair[1])) >= 1
+            assert (len(found["crossings"]) > 0) == expected, pair.tolist()
+
+
+def solid_of(rng: random.Random) -> "b.Solid":
+    corners = np.array([[rng.randrange(4) for _ in range(3)] for _ in range(4)])
+    size = round(np.linalg.det(corners[1:] - corners[0]))
+    if size == 0:
+        return b.box([rng.randrange(1, 4) for _ in range(3)]).translate(rng.randrange(3), 0, 1)
+    faces = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
+    return b.Solid(corners, faces if size > 0 else faces[:, ::-1])
+
+
+def test_surfaces_that_touch_do_not_cross() -> None:
+    seen = set()
+    for seed in range(400):
+        rng = random.Random(seed)
+        first, second = solid_of(rng), solid_of(rng)
+        meshes = [solid.to_mesh() for solid in (first, second)]
+        shift = len(meshes[0].vertices)
+        vertices = np.concatenate([mesh.vertices for mesh in meshes])
+        faces = np.concatenate([meshes[0].faces, meshes[1].faces + shift])
+        corners = [exact(vertices[face]) for face in faces]
+        apart = len(meshes[0].faces)
+        overlap = any(common_dimension(p, q) == 2 for p in corners[:apart] for q in corners[apart:])
+        common = (first & second).volume_exact
+        pierce = 0 < common < min(first.volume_exact, second.volume_exact)
+        crosses = len(mesh_faults(vertices, faces)["crossings"]) > 0
+        assert crosses == (overlap or pierce), seed
+        seen.add((overlap, pierce))
+    assert len(seen) == 4
+
+
+def test_surfaces_that_cross_at_an_edge_are_found() -> None:
+    # Two wedges whose common edge is an edge of both: no two triangles cross inside.
+    quarter = b.box((1, 1, 1)).translate(-1, -1, 0) | b.box((1, 1, 1))
+    turned = b.box((1, 1, 1)).translate(-1, 0, 0) | b.box((1, 1, 1)).translate(0, -1, 0)
+    mesh = quarter.to_mesh()
+    assert faults(mesh) == ([], [])
+    whole = (quarter | turned).to_mesh()
+    assert faults(whole) == ([], [])
+
+
+def fraction_faults(vertices: np.ndarray, faces: np.ndarray) -> set[tuple[int, int]]:
+    """Return pairs of faces without common vertices that have more than a point in common."""
+    corners = [exact(vertices[face]) for face in faces]
+    return {
+        (i, j)
+        for i, j in combinations(range(len(faces)), 2)
+        if not {tuple(p) for p in corners[i]} & {tuple(p) for p in corners[j]}
+        and not is_flat(corners[i])
+        and not is_flat(corners[j])
+        and common_dimension(corners[i], corners[j]) >= 1
+    }
+
+
+def test_delivered_meshes_do_not_cross() -> None:
+    count = crossing = reported = mended = checked = 0
+    for seed in range(SCENES):
+        try:
+            solid = scene(seed).normalized()
+            mesh = solid.to_mesh()
+        except b.InvalidMeshError:
+            continue
+        if len(mesh.faces) == 0:
+            continue
+        count += 1
+        assert_closed(mesh.faces)
+        pairs, flat = faults(mesh)
+        codes = {finding.code for finding in solid.findings}
+        if pairs or flat:
+            crossing += 1
+            reported += bool({"crossing", "turned", "collapsed"} & codes)
+        mended += bool({"moved", "mended"} & codes)
+        if len(mesh.faces) <= 40:
+            checked += 1
+            own = fraction_faults(mesh.vertices, mesh.faces)
+            assert own <= {tuple(pair) for pair in pairs} or not own, seed
+        # A step is the most a corner moves; rounding adds spacings of the largest coordinate.
+        bound = 10.0**solid.pitch + 16 * np.spacing(np.abs(mesh.vertices).max())
+        assert abs(mesh.volume - float(solid.volume_exact)) <= bound * (mesh.area + bound), seed
+    assert count > 0.7 * SCENES and mended > 0.05 * count and checked > 0.1 * count
+    assert reported == crossing and crossing <= 0.01 * count
+
+
+def test_meshes_in_single_precision_do_not_cross() -> None:
+    count = crossing = mended = 0
+    for seed in range(SCENES):
+        try:
+            mesh = scene(seed).normalized().to_mesh()
+        except b.InvalidMeshError:
+            continue
+        if len(mesh.faces) == 0:
+            continue
+        count += 1
+        found = mesh_in_single(mesh.vertices, mesh.faces)
+        vertices, faces = found["vertices"], found["triangles"]
+        assert (vertices == vertices.astype(np.float32)).all()
+        assert len(faces) == len(found["kept"])
+        if len(faces):
+            assert_closed(faces)
+        again = mesh_faults(vertices, faces)
+        left = len(again["crossings"]) + len(again["flat"])
+        assert (left > 0) == (len(found["crossings"]) + len(found["flat"]) > 0), seed
+        crossing += left > 0
+        mended += found["mended"] > 0
+    assert mended > 0.1 * count
+    assert crossing <= 0.01 * count
