@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ._types import FloatArray, IndexArray
+from .certificate import Certificate, Precision
 from .counting import uncounted
 from .errors import BspcsgError, Finding
 from .io import RawMesh
@@ -39,7 +40,12 @@ class Diagnosis:
         Every edge has as many faces one way as the other; no edge is used twice in one direction;
         no edge has more than two faces.
     self_overlapping : bool or None
-        Whether faces cross, overlap or repeat; None if the mesh is no solid.
+        Whether faces cross, overlap or repeat on the lattice; None if the mesh is no solid.
+    precision : {"double", "single"} or None
+        The coarsest numbers that hold all coordinates; None if the mesh is not closed.
+    crossings : int or None
+        Pairs of triangles that cross or overlap with the coordinates as they are, exactly; None
+        if the mesh is not closed.
     verdict : {"solid", "inside out", "not closed", "empty", "refused"}
     findings : tuple of Finding
         The worst first.
@@ -59,6 +65,8 @@ class Diagnosis:
     oriented: bool
     manifold: bool
     self_overlapping: bool | None
+    precision: Precision | None
+    crossings: int | None
     verdict: str
     findings: tuple[Finding, ...]
     signed_volume: float
@@ -96,6 +104,7 @@ def _diagnosed(raw: RawMesh) -> Diagnosis:
     solid, verdict = _as_solid(raw, findings)
     # Inside out, the set is empty, and comparing the mesh with its boundary says nothing.
     overlapping = _overlaps(solid, findings) if solid is not None and verdict == "solid" else None
+    proof = None if solid is None else _proof(solid, findings)
     return Diagnosis(
         triangles=len(raw.faces),
         vertices=len(raw.vertices),
@@ -103,6 +112,8 @@ def _diagnosed(raw: RawMesh) -> Diagnosis:
         oriented=len(edges.turned) == 0,
         manifold=len(edges.crowded) == 0,
         self_overlapping=overlapping,
+        precision=None if proof is None else proof.precision,
+        crossings=None if proof is None else len(proof.crossings),
         verdict=verdict,
         findings=tuple(sorted(findings, key=lambda found: _RANK[found.severity])),
         signed_volume=mesh.volume,
@@ -261,6 +272,22 @@ def _overlaps(solid: Solid, findings: list[Finding]) -> bool:
     )
     findings.append(Finding("self_overlap", "warning", message, (), 1))
     return True
+
+
+def _proof(solid: Solid, findings: list[Finding]) -> Certificate:
+    """Return what an exact look at the coordinates as they are proves, and add where they cross."""
+    mesh = solid.to_mesh()
+    proof = mesh.certificate
+    if proof.crossings:
+        crossing = np.unique(np.array(proof.crossings))
+        places = mesh.source[crossing, 1]
+        x, y, z = mesh.vertices[mesh.faces[crossing[0], 0]].tolist()
+        message = (
+            f"{_many(len(crossing), 'triangle')} cross or overlap others in {proof.precision}"
+            f" precision; the first near ({x:.6g}, {y:.6g}, {z:.6g})"
+        )
+        findings.append(Finding("crossing", "warning", message, _few(places), len(crossing)))
+    return proof
 
 
 def _many(count: int, one: str, more: str = "") -> str:

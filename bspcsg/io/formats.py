@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import Finding, FormatError, format_errors
 from ..mesh import Mesh
-from . import glb, held, obj, off, ply, stl, threemf, threemf_write, vtk
+from . import glb, held, obj, off, ply, single, stl, threemf, threemf_write, vtk
 from .atomic import write_file
 from .proof import Called, Scan, prove
 from .raw import RawMesh, empty_set
@@ -36,6 +36,8 @@ class Form:
         What the form cannot keep; raises OverflowError if it cannot hold the numbers.
     repeats : bool
         Whether it holds triangles that name a vertex twice.
+    is_single : bool
+        Whether it holds single precision only.
     """
 
     encode: Encoder
@@ -43,6 +45,7 @@ class Form:
     called: Called | None = None
     losses: Losses | None = None
     repeats: bool = True
+    is_single: bool = False
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,7 @@ FORMATS = {
     ".stl": Format(
         stl.read,
         Form(stl.text, held.text_stl, stl.called),
-        Form(stl.binary, held.binary_stl, losses=stl.losses),
+        Form(stl.binary, held.binary_stl, losses=stl.losses, is_single=True),
     ),
     ".obj": Format(obj.read, Form(obj.text, held.obj, obj.called)),
     ".ply": Format(ply.read, Form(ply.text, held.text_ply), Form(ply.binary, held.binary_ply)),
@@ -87,7 +90,13 @@ FORMATS = {
         ),
         "mm",
     ),
-    ".glb": Format(glb.read, None, Form(glb.binary, held.glb, glb.called, glb.losses), "mm", "y"),
+    ".glb": Format(
+        glb.read,
+        None,
+        Form(glb.binary, held.glb, glb.called, glb.losses, is_single=True),
+        "mm",
+        "y",
+    ),
     **{
         suffix: Format(
             vtk.reader(suffix), None, Form(vtk.writer(suffix), partial(held.vtk_grid, suffix))
@@ -263,6 +272,9 @@ def encoded(
     _refuse_unwritable(name, mesh, form)
     try:
         findings = form.losses(mesh) if form.losses is not None else ()
+        if form.is_single and isinstance(mesh, Mesh):
+            mesh, mended = single.settled(mesh)
+            findings = (*findings, *mended)
     except OverflowError:
         message = f"{name}: coordinates are beyond single precision; write PLY, OBJ, OFF or 3MF."
         raise FormatError(message, "too_large") from None

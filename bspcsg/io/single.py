@@ -4,8 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from .._core import mesh_in_single
 from .._types import FloatArray, IndexArray
-from ..errors import Finding
+from ..errors import Finding, core_errors
 from ..mesh import Mesh
 from ..weld import distinct
 from .raw import RawMesh
@@ -52,6 +53,60 @@ def losses(mesh: Mesh | RawMesh, format_name: str) -> tuple[Finding, ...]:
         *_merged(mesh.vertices, rounded),
         *_changed(mesh, rounded),
     )
+
+
+def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
+    """Return a solid's mesh in single precision, crossing itself nowhere that could be mended.
+
+    Rounding moves every corner, so that surfaces near each other may cross and thin triangles lose
+    their area; such are taken out by changes of the width of the rounding.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Closed by index.
+
+    Returns
+    -------
+    mesh : Mesh
+        The given one if nothing had to be changed, or if single precision leaves nothing of it.
+    findings : tuple of Finding
+        How many triangles were changed, and the places where surfaces still cross.
+
+    Raises
+    ------
+    OverflowError
+        If a coordinate is beyond single precision.
+    """
+    with np.errstate(over="ignore"):
+        if not np.isfinite(mesh.vertices.astype(np.float32)).all():
+            raise OverflowError
+    with core_errors():
+        found = mesh_in_single(mesh.vertices, mesh.faces)
+    if not len(found["triangles"]):
+        return mesh, ()
+    crossing = np.unique(found["crossings"]).tolist()
+    findings = [
+        Finding("mended_in_single", "note", _MENDED.format(found["mended"]), (), found["mended"]),
+        Finding(
+            "crossing_in_single",
+            "warning",
+            _CROSSING.format(len(crossing)) + _REMEDY,
+            tuple(crossing[:_NAMED]),
+            len(crossing),
+        ),
+    ]
+    left = tuple(finding for finding in findings if finding.count)
+    if not found["mended"]:
+        return mesh, left
+    return Mesh(found["vertices"], found["triangles"], mesh.source[found["kept"]]), left
+
+
+_MENDED = (
+    "rounding to single precision makes surfaces cross or leaves triangles no area; {} triangles"
+    " were changed or left out by the width of that rounding."
+)
+_CROSSING = "in single precision {} triangles cross or overlap others"
 
 
 def _merged(vertices: FloatArray, rounded: FloatArray) -> tuple[Finding, ...]:

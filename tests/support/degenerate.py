@@ -20,7 +20,7 @@ def _tetrahedron(rng: random.Random) -> "b.Solid":
     faces = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
     try:
         return b.Solid(corners, faces if size > 0 else faces[:, ::-1])
-    except b.InvalidMeshError:
+    except (b.InvalidMeshError, b.LimitError):
         return b.box((1, 1, 1))
 
 

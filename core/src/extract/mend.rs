@@ -34,23 +34,12 @@ impl Precision {
         }
     }
 
-    /// The number some steps further.
-    fn stepped(self, x: f64, steps: i32) -> f64 {
-        let mut x = x;
-        for _ in 0..steps.unsigned_abs() {
-            x = match (self, steps > 0) {
-                (Self::Double, true) => x.next_up(),
-                (Self::Double, false) => x.next_down(),
-                (Self::Single, true) => f64::from((x as f32).next_up()),
-                (Self::Single, false) => f64::from((x as f32).next_down()),
-            };
-        }
-        x
-    }
-
     /// The distance of neighbouring numbers of this size.
     fn spacing(self, x: f64) -> f64 {
-        self.stepped(x.abs(), 1) - x.abs()
+        match self {
+            Self::Double => x.abs().next_up() - x.abs(),
+            Self::Single => f64::from((x.abs() as f32).next_up()) - self.round(x.abs()),
+        }
     }
 }
 
@@ -58,11 +47,26 @@ impl Precision {
 /// point by half a spacing on each axis, and two surfaces in opposite directions.
 const REACH: f64 = 4.0;
 
-/// Moves that are tried on each axis, in spacings of the coordinate.
-const STEPS: [i32; 4] = [1, -1, 2, -2];
+/// Directions in which a vertex is moved, in spacings of the largest coordinate.
+const STEPS: [[f64; 3]; 14] = [
+    [1.0, 0.0, 0.0],
+    [-1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, -1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [0.0, 0.0, -1.0],
+    [1.0, 1.0, 1.0],
+    [1.0, 1.0, -1.0],
+    [1.0, -1.0, 1.0],
+    [1.0, -1.0, -1.0],
+    [-1.0, 1.0, 1.0],
+    [-1.0, 1.0, -1.0],
+    [-1.0, -1.0, 1.0],
+    [-1.0, -1.0, -1.0],
+];
 
-/// Changes tried for each fault before it is left: some 40 merges and flips, 6 · 12 moves.
-const TRIES: usize = 128;
+/// Changes tried for each fault before it is left: 30 merges, 6 swaps, and 14 moves of 6 corners.
+const TRIES: usize = 120;
 
 /// Comparisons of boxes, at about a nanosecond each, after which mending gives up.
 const WORK: usize = 4_000_000_000;
@@ -82,7 +86,10 @@ pub struct Mending {
     crossings: BTreeSet<[u32; 2]>,
     halves: HashMap<[u32; 2], u32>,
     precision: Precision,
-    reach: f64,
+    /// Of the largest coordinate.
+    spacing: f64,
+    /// For each vertex how far it, and those merged with it, were moved at most.
+    drifts: Vec<f64>,
     work: usize,
     moved: HashSet<u32>,
 }
@@ -92,6 +99,8 @@ pub struct Mending {
 struct Edit {
     moves: Vec<(u32, Point)>,
     triangles: Vec<(u32, Option<[u32; 3]>)>,
+    /// How far the vertex that another was merged with has moved it.
+    drift: Option<(u32, f64)>,
     /// Copies of vertices, in order, made for surfaces that no longer hang together.
     copies: Vec<u32>,
 }
@@ -112,6 +121,7 @@ impl Mending {
         let corners = |t: &[u32; 3]| t.map(|v| vertices[v as usize]);
         let extents = triangles.iter().map(|t| Extent::of(&corners(t))).collect();
         let ends = |(t, c): (usize, &[u32; 3])| edges(c).map(|e| (e, t as u32));
+        let drifts = vec![0.0; vertices.len()];
         let halves = triangles.iter().enumerate().flat_map(ends).collect();
         Self {
             triangles: triangles.into_iter().map(Some).collect(),
@@ -123,7 +133,8 @@ impl Mending {
             crossings: faults.crossings.iter().copied().collect(),
             halves,
             precision,
-            reach: REACH * precision.spacing(largest),
+            spacing: precision.spacing(largest),
+            drifts,
             work: WORK,
             moved: HashSet::default(),
         }
@@ -196,7 +207,7 @@ impl Mending {
         for (k, &v) in corners.iter().enumerate() {
             for &w in &corners[..k] {
                 let gap = distance(place(v), place(w));
-                if gap <= self.reach {
+                if gap <= self.reach() {
                     let stays = self.given[v as usize] && !self.given[w as usize];
                     let (from, to) = if stays { (w, v) } else { (v, w) };
                     pairs.extend([(gap, from, to), (gap, to, from)]);
@@ -204,8 +215,10 @@ impl Mending {
             }
         }
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let near = |p: &&(f64, u32, u32)| self.drift(p.1, place(p.2)) <= self.reach();
         let free = pairs.iter().filter(|p| !self.fixed[p.1 as usize]);
-        free.filter_map(|&(_, from, to)| self.merge(from, to))
+        free.filter(near)
+            .filter_map(|&(_, from, to)| self.merge(from, to))
             .collect()
     }
 
@@ -232,6 +245,7 @@ impl Mending {
         }
         let mut edit = Edit {
             triangles: made,
+            drift: Some((to, self.drift(from, &self.vertices[to as usize]))),
             ..Edit::default()
         };
         self.part_fans(&mut edit, to)?;
@@ -303,8 +317,7 @@ impl Mending {
         let d = *others.iter().find(|v| **v != a && **v != b)?;
         let taken = self.halves.contains_key(&[c, d]) || self.halves.contains_key(&[d, c]);
         let [p, q, r, s] = [a, b, c, d].map(|v| &self.vertices[v as usize]);
-        let near = gap_of_lines(p, q, r, s) <= self.reach;
-        if c == d || taken || !near || !faces_on([p, q, r, s]) {
+        if c == d || taken || !diagonals_meet([p, q, r, s], self.reach()) {
             return None;
         }
         Some(Edit {
@@ -313,22 +326,30 @@ impl Mending {
         })
     }
 
-    /// A vertex a few spacings aside.
+    /// A vertex a spacing aside.
     fn moves(&self, v: u32) -> Vec<Edit> {
         if self.fixed[v as usize] {
             return Vec::new();
         }
         let place = self.vertices[v as usize];
-        let moved = |(steps, axis): (i32, usize)| {
-            let mut place = place;
-            place[axis] = self.precision.stepped(place[axis], steps);
+        let moved = |step: &[f64; 3]| {
+            let place = [0, 1, 2].map(|i| self.precision.round(place[i] + step[i] * self.spacing));
             Edit {
                 moves: vec![(v, place)],
                 ..Edit::default()
             }
         };
-        let all = STEPS.iter().flat_map(|s| (0..3).map(|axis| (*s, axis)));
-        all.map(moved).collect()
+        let is_near = |edit: &Edit| self.drift(v, &edit.moves[0].1) <= self.reach();
+        STEPS.iter().map(moved).filter(is_near).collect()
+    }
+
+    /// How far a vertex, or one that was merged with it, is from where it came when it is here.
+    fn drift(&self, v: u32, place: &Point) -> f64 {
+        self.drifts[v as usize] + distance(&self.vertices[v as usize], place)
+    }
+
+    fn reach(&self) -> f64 {
+        REACH * self.spacing
     }
 
     fn star(&self, v: u32) -> Vec<u32> {
@@ -366,7 +387,13 @@ impl Mending {
             }
             self.crossings.extend(crossings);
             self.flat.extend(flat);
-            self.moved.extend(edit.moves.iter().map(|m| m.0));
+            for (v, old) in &undo.moves {
+                self.moved.insert(*v);
+                self.drifts[*v as usize] += distance(old, &self.vertices[*v as usize]);
+            }
+            if let Some((v, drift)) = edit.drift {
+                self.drifts[v as usize] = self.drifts[v as usize].max(drift);
+            }
             return true;
         }
         self.revert(edit, undo);
@@ -380,6 +407,7 @@ impl Mending {
             self.vertices.push(self.vertices[v as usize]);
             self.fixed.push(self.fixed[v as usize]);
             self.given.push(self.given[v as usize]);
+            self.drifts.push(self.drifts[v as usize]);
         }
         for &(v, place) in &edit.moves {
             undo.moves.push((v, self.vertices[v as usize]));
@@ -407,6 +435,7 @@ impl Mending {
         self.vertices.truncate(count);
         self.fixed.truncate(count);
         self.given.truncate(count);
+        self.drifts.truncate(count);
     }
 
     fn exchange(&mut self, triangles: &[(u32, Option<[u32; 3]>)], undo: &mut Edit) {
@@ -544,38 +573,41 @@ fn fans(v: u32, around: Vec<(u32, [u32; 3])>) -> Option<Vec<Vec<(u32, [u32; 3])>
     Some(fans)
 }
 
-/// Whether two triangles a b c and b a d, seen along some axis, face the same way or not at all, and
-/// still do so with the other diagonal: the diagonals cross.
-fn faces_on([a, b, c, d]: [&Point; 4]) -> bool {
-    let seen = |t: [&Point; 3], axis: usize| turn(seen_along(&t.map(|p| *p), axis));
-    (0..3).any(|axis| {
-        let old = [seen([a, b, c], axis), seen([b, a, d], axis)];
-        let new = [seen([a, d, c], axis), seen([d, b, c], axis)];
-        let facing = old[0] + old[1];
-        facing != 0 && new.iter().chain(&old).all(|s| s * facing >= 0)
+/// Whether the diagonals of the triangles a b c and b a d pass each other within a distance.
+///
+/// Seen along the axis that both face most, none of the triangles turns over with the other
+/// diagonal, exactly; so the diagonals cross there, and how far apart they are is a quotient.
+fn diagonals_meet(corners: [&Point; 4], reach: f64) -> bool {
+    let [a, b, c, d] = corners.map(|p| *p);
+    let (first, second) = (area(&[a, b, c]), area(&[b, a, d]));
+    let both = [0, 1, 2].map(|i| first[i] + second[i]);
+    let axis = (1..3).fold(0, |m, i| if both[i].abs() > both[m].abs() { i } else { m });
+    let facing = if both[axis] > 0.0 { 1 } else { -1 };
+    let triangles = [[a, b, c], [b, a, d], [a, d, c], [d, b, c]];
+    if triangles
+        .iter()
+        .any(|t| turn(seen_along(t, axis)) == -facing)
+    {
+        return false;
+    }
+    let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+    let minus = |p: &Point, q: &Point| [0, 1, 2].map(|i| p[i] - q[i]);
+    let cross = |u: &Point, v: &Point| u[j] * v[k] - u[k] * v[j];
+    let (u, v, w) = (minus(&b, &a), minus(&d, &c), minus(&c, &a));
+    let (along, beside) = (cross(&w, &v) / cross(&u, &v), cross(&w, &u) / cross(&u, &v));
+    let on = |p: &Point, u: &Point, t: f64| [0, 1, 2].map(|i| p[i] + t * u[i]);
+    distance(&on(&a, &u, along), &on(&c, &v, beside)) <= reach
+}
+
+/// Twice the area of a triangle along each axis.
+fn area([a, b, c]: &Triangle) -> Point {
+    [0, 1, 2].map(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        (b[j] - a[j]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[j] - a[j])
     })
 }
 
 fn distance(p: &Point, q: &Point) -> f64 {
     let square = |i: usize| (p[i] - q[i]) * (p[i] - q[i]);
     (square(0) + square(1) + square(2)).sqrt()
-}
-
-/// About how far apart the lines through two pairs of points are; infinite for parallel lines that
-/// are apart.
-fn gap_of_lines(p: &Point, q: &Point, r: &Point, s: &Point) -> f64 {
-    let minus = |a: &Point, b: &Point| [0, 1, 2].map(|i| a[i] - b[i]);
-    let (u, v, w) = (minus(q, p), minus(s, r), minus(r, p));
-    let cross = |a: &Point, b: &Point| {
-        let entry = |j: usize, k: usize| a[j] * b[k] - a[k] * b[j];
-        [entry(1, 2), entry(2, 0), entry(0, 1)]
-    };
-    let dot = |a: &Point, b: &Point| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let across = cross(&u, &v);
-    let size = dot(&across, &across).sqrt();
-    if size > 0.0 {
-        return dot(&across, &w).abs() / size;
-    }
-    let away = cross(&u, &w);
-    (dot(&away, &away) / dot(&u, &u).max(f64::MIN_POSITIVE)).sqrt()
 }
