@@ -35,6 +35,13 @@ def is_flat(triangle: Corners) -> bool:
     return not any(normal(triangle))
 
 
+def is_on_both_sides(triangle: Corners, plane: Corners) -> bool:
+    """Return whether corners of a triangle lie on both sides of another's plane."""
+    n = normal(plane)
+    heights = [dot(n, minus(p, plane[0])) for p in triangle]
+    return min(heights) < 0 < max(heights)
+
+
 def _holds(triangle: Corners, point: Vector) -> bool:
     """Return whether a point of a triangle's plane lies in the triangle."""
     n = normal(triangle)

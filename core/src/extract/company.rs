@@ -24,6 +24,7 @@ impl Extent {
     }
 
     /// The smallest box that holds both.
+    #[must_use]
     pub fn joined(&self, other: &Self) -> Self {
         Self {
             low: [0, 1, 2].map(|i| self.low[i].min(other.low[i])),
@@ -118,6 +119,7 @@ impl Grid {
         })
     }
 
+    #[allow(clippy::cast_sign_loss, reason = "no place is below the lowest")]
     fn cell(&self, p: &Point) -> Cell {
         [0, 1, 2].map(|i| {
             let place = (p[i] - self.low[i]) * self.factor[i];

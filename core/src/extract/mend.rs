@@ -264,7 +264,7 @@ impl Mending {
         loose.dedup();
         for v in loose {
             let changed = |t: u32| edit.triangles.iter().position(|m| m.0 == t);
-            let mut around: Vec<(u32, [u32; 3])> = edit
+            let mut around: Vec<Numbered> = edit
                 .triangles
                 .iter()
                 .filter_map(|m| Some((m.0, m.1?)))
@@ -396,7 +396,7 @@ impl Mending {
             }
             return true;
         }
-        self.revert(edit, undo);
+        self.revert(edit, &undo);
         false
     }
 
@@ -421,7 +421,7 @@ impl Mending {
         undo
     }
 
-    fn revert(&mut self, edit: &Edit, undo: Edit) {
+    fn revert(&mut self, edit: &Edit, undo: &Edit) {
         let mut nothing = Edit::default();
         for &(v, place) in undo.moves.iter().rev() {
             self.vertices[v as usize] = place;
@@ -549,9 +549,12 @@ fn cancel_opposites(made: &mut [(u32, Option<[u32; 3]>)]) {
     }
 }
 
+/// A triangle with its number.
+type Numbered = (u32, [u32; 3]);
+
 /// The triangles around a vertex as closed fans, that of the first triangle first; `None` if one is
 /// open.
-fn fans(v: u32, around: Vec<(u32, [u32; 3])>) -> Option<Vec<Vec<(u32, [u32; 3])>>> {
+fn fans(v: u32, around: Vec<Numbered>) -> Option<Vec<Vec<Numbered>>> {
     let turned = |t: &[u32; 3]| {
         let at = t.iter().position(|c| *c == v).unwrap_or(0);
         [t[(at + 1) % 3], t[(at + 2) % 3]]

@@ -82,7 +82,7 @@ pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
     let mut moved = vec![false; mesh.vertices.len()];
     for (place, moved) in mesh.vertices.iter_mut().zip(&mut moved) {
         let rounded = place.map(|x| single.round(x));
-        *moved = rounded != *place;
+        *moved = differ(&rounded, place);
         *place = rounded;
     }
     let is_changed = |t: &u32| {
@@ -123,7 +123,7 @@ impl Rounded {
         corners.sort_unstable();
         corners.dedup();
         corners.retain(|&v| {
-            let place = exact(v).filter(|p| *p != self.vertices[v as usize]);
+            let place = exact(v).filter(|p| differ(p, &self.vertices[v as usize]));
             if let Some(place) = place {
                 self.vertices[v as usize] = place;
             }
@@ -181,12 +181,11 @@ impl Rounded {
         let mut globals = part.globals.clone();
         let first = self.vertices.len() - globals.len();
         for (v, place) in mending.vertices.iter().enumerate() {
-            match globals.get(v) {
-                Some(global) => self.vertices[*global as usize] = *place,
-                None => {
-                    globals.push((first + v) as u32);
-                    self.vertices.push(*place);
-                }
+            if let Some(global) = globals.get(v) {
+                self.vertices[*global as usize] = *place;
+            } else {
+                globals.push((first + v) as u32);
+                self.vertices.push(*place);
             }
         }
         let mut touched = Vec::new();
@@ -234,7 +233,9 @@ impl Part {
             *missing.entry(self.globals[*v as usize]).or_default() += 1;
         }
         let mut whole = missing.clone();
-        whole.values_mut().for_each(|count| *count = 0);
+        for count in whole.values_mut() {
+            *count = 0;
+        }
         let left = mesh.triangles.iter().filter(|t| t[0] != t[1]);
         for v in left.flatten() {
             if let Some(count) = whole.get_mut(v) {
@@ -246,6 +247,14 @@ impl Part {
             .map(|v| whole[v] != missing[v])
             .collect()
     }
+}
+
+#[allow(
+    clippy::float_cmp,
+    reason = "a place is another as soon as one bit differs"
+)]
+fn differ(p: &Point, q: &Point) -> bool {
+    p != q
 }
 
 fn members(found: &Faults) -> impl Iterator<Item = u32> + '_ {

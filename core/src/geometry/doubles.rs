@@ -2,6 +2,10 @@
 //!
 //! A filter in doubles settles what is clear; the rest is computed in integers: the coordinates
 //! times a power of two, in fixed width where their exponents lie close together.
+#![allow(
+    clippy::float_cmp,
+    reason = "equal coordinates are meant to the last bit"
+)]
 
 use num_bigint::{BigInt, Sign};
 
@@ -83,22 +87,19 @@ pub fn side(triangle: &Triangle, d: &Point) -> i32 {
 
 fn exact_side(points: [&Point; 4]) -> i32 {
     let parts = points.map(|p| p.map(mantissa_and_exponent));
-    match on_common_grid(parts.as_flattened()) {
-        Some(grid) => {
-            let from = |p: usize, i: usize| Int::<2>::from_i128(grid[3 * p + i] - grid[i]);
-            let [u, v, w] = [1, 2, 3].map(|p| [0, 1, 2].map(|i| from(p, i)));
-            let minor = |j: usize, k: usize| u[j].mul::<2, 4>(&v[k]) - u[k].mul::<2, 4>(&v[j]);
-            let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3).mul::<2, 6>(&w[i]);
-            (term(0) + term(1) + term(2)).signum()
-        }
-        None => {
-            let grid = on_big_grid(parts.as_flattened());
-            let from = |p: usize, i: usize| &grid[3 * p + i] - &grid[i];
-            let [u, v, w] = [1, 2, 3].map(|p| [0, 1, 2].map(|i| from(p, i)));
-            let minor = |j: usize, k: usize| &u[j] * &v[k] - &u[k] * &v[j];
-            let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3) * &w[i];
-            sign(&(term(0) + term(1) + term(2)))
-        }
+    if let Some(grid) = on_common_grid(parts.as_flattened()) {
+        let from = |p: usize, i: usize| Int::<2>::from_i128(grid[3 * p + i] - grid[i]);
+        let [u, v, w] = [1, 2, 3].map(|p| [0, 1, 2].map(|i| from(p, i)));
+        let minor = |j: usize, k: usize| u[j].mul::<2, 4>(&v[k]) - u[k].mul::<2, 4>(&v[j]);
+        let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3).mul::<2, 6>(&w[i]);
+        (term(0) + term(1) + term(2)).signum()
+    } else {
+        let grid = on_big_grid(parts.as_flattened());
+        let from = |p: usize, i: usize| &grid[3 * p + i] - &grid[i];
+        let [u, v, w] = [1, 2, 3].map(|p| [0, 1, 2].map(|i| from(p, i)));
+        let minor = |j: usize, k: usize| &u[j] * &v[k] - &u[k] * &v[j];
+        let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3) * &w[i];
+        sign(&(term(0) + term(1) + term(2)))
     }
 }
 
@@ -116,18 +117,15 @@ pub fn turn([a, b, c]: [[f64; 2]; 3]) -> i32 {
 
 fn exact_turn(points: [[f64; 2]; 3]) -> i32 {
     let parts = points.map(|p| p.map(mantissa_and_exponent));
-    match on_common_grid(parts.as_flattened()) {
-        Some(grid) => {
-            let from = |p: usize, i: usize| Int::<2>::from_i128(grid[2 * p + i] - grid[i]);
-            let [u, v] = [1, 2].map(|p| [from(p, 0), from(p, 1)]);
-            (u[0].mul::<2, 4>(&v[1]) - u[1].mul::<2, 4>(&v[0])).signum()
-        }
-        None => {
-            let grid = on_big_grid(parts.as_flattened());
-            let from = |p: usize, i: usize| &grid[2 * p + i] - &grid[i];
-            let [u, v] = [1, 2].map(|p| [from(p, 0), from(p, 1)]);
-            sign(&(&u[0] * &v[1] - &u[1] * &v[0]))
-        }
+    if let Some(grid) = on_common_grid(parts.as_flattened()) {
+        let from = |p: usize, i: usize| Int::<2>::from_i128(grid[2 * p + i] - grid[i]);
+        let [u, v] = [1, 2].map(|p| [from(p, 0), from(p, 1)]);
+        (u[0].mul::<2, 4>(&v[1]) - u[1].mul::<2, 4>(&v[0])).signum()
+    } else {
+        let grid = on_big_grid(parts.as_flattened());
+        let from = |p: usize, i: usize| &grid[2 * p + i] - &grid[i];
+        let [u, v] = [1, 2].map(|p| [from(p, 0), from(p, 1)]);
+        sign(&(&u[0] * &v[1] - &u[1] * &v[0]))
     }
 }
 

@@ -3,6 +3,7 @@
 //! Points that surfaces share never make them cross: where two surfaces pass through each other
 //! they do so along lines. So common points count as nothing, and a common stretch of a line is
 //! told apart by whether it runs inside the triangles or along their edges.
+#![allow(clippy::float_cmp, reason = "equal corners are meant to the last bit")]
 
 use super::doubles::{is_flat, seen_along, side, turn, Facing, Point, Triangle};
 

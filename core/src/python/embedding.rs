@@ -74,12 +74,12 @@ fn given(
             .ok()
             .filter(|v| (*v as usize) < vertices.len())
     };
-    let row = |(t, corners): (usize, &[i64; 3])| match corners.map(index) {
-        [Some(a), Some(b), Some(c)] => Ok([a, b, c]),
-        _ => {
-            let text = format!("triangle {t} names a vertex that does not exist");
-            Err(Error::new(ErrorKind::IndexOutOfRange, text))
+    let row = |(t, corners): (usize, &[i64; 3])| {
+        if let [Some(a), Some(b), Some(c)] = corners.map(index) {
+            return Ok([a, b, c]);
         }
+        let text = format!("triangle {t} names a vertex that does not exist");
+        Err(Error::new(ErrorKind::IndexOutOfRange, text))
     };
     let triangles = rows(triangles, "triangles")?;
     let triangles = triangles
