@@ -96,7 +96,7 @@ def test_surfaces_that_cross_at_an_edge_are_found() -> None:
 def pierce_or_overlap(first: Corners, second: Corners) -> bool:
     dimension = common_dimension(first, second)
     pairs = ((first, second), (second, first))
-    return dimension == 2 or dimension == 1 and all(is_on_both_sides(*pair) for pair in pairs)
+    return dimension == 2 or (dimension == 1 and all(is_on_both_sides(*pair) for pair in pairs))
 
 
 def fraction_faults(vertices: np.ndarray, faces: np.ndarray) -> set[tuple[int, int]]:
