@@ -275,10 +275,14 @@ def _overlaps(solid: Solid, findings: list[Finding]) -> bool:
 
 
 def _proof(solid: Solid, findings: list[Finding]) -> Certificate:
-    """Return what an exact look at the coordinates as they are proves, and add where they cross."""
+    """Return what an exact look at the coordinates as they are proves.
+
+    Adds a finding where they cross, unless the faces do so on the lattice already.
+    """
     mesh = solid.to_mesh()
     proof = mesh.certificate
-    if proof.crossings:
+    told = any(found.code == "self_overlap" for found in findings)
+    if proof.crossings and not told:
         crossing = np.unique(np.array(proof.crossings))
         places = mesh.source[crossing, 1]
         x, y, z = mesh.vertices[mesh.faces[crossing[0], 0]].tolist()

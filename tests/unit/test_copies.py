@@ -74,6 +74,7 @@ EXAMPLES: dict[type, Callable[[], Any]] = {
     csg.CsgTree: lambda: SCRIPT,
     csg.CsgWarning: lambda: csg.CsgWarning("something"),
     csg.Node: lambda: SCRIPT.nodes[0],
+    csg.Polish: lambda: csg.Polish(-4, 5e-5),
     csg.Place: lambda: SCRIPT.nodes[0].place,
     RawMesh: lambda: RawMesh(SHAPE.vertices, SHAPE.faces, "part", unit="mm"),
 }
