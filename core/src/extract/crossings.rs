@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap as HashMap;
 use super::company::{in_company, Extent};
 use crate::geometry::doubles::{Point, Triangle};
 use crate::geometry::meeting::{has_no_area, interleave, meeting, passes, Meeting};
+use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, Boxed, Swept};
 
 /// A mesh in doubles, closed by index.
@@ -95,6 +96,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn look_at(&mut self, t: u32, u: u32) {
+        poll();
         let pair = [t.min(u), t.max(u)];
         let [p, q] = pair.map(|t| self.faces.corners(t));
         match meeting(&p, &q) {

@@ -15,6 +15,7 @@ use super::company::Extent;
 use super::crossings::{crosses_at, Faults};
 use crate::geometry::doubles::{seen_along, turn, Point, Triangle};
 use crate::geometry::meeting::{has_no_area, meeting, Meeting};
+use crate::interrupt::spend;
 
 /// The numbers in which coordinates are delivered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -363,6 +364,7 @@ impl Mending {
 
     /// Makes a change if it leaves fewer faults.
     fn attempt(&mut self, edit: &Edit) -> bool {
+        spend(1 + self.triangles.len() / 16);
         self.work = self.work.saturating_sub(self.triangles.len());
         let moved = edit.moves.iter().flat_map(|m| self.star(m.0));
         let mut touched: Vec<u32> = edit.triangles.iter().map(|m| m.0).chain(moved).collect();

@@ -19,7 +19,7 @@ pub fn mesh_faults<'py>(
     triangles: PyReadonlyArray2<'py, i64>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let mesh = given(&vertices, &triangles).map_err(|e| to_python(py, &e))?;
-    let found = run(py, 0, mesh.triangles.len(), |_| {
+    let found = run(py, 0, mesh.triangles.len(), || {
         Ok(all_faults(&Faces {
             vertices: &mesh.vertices,
             triangles: &mesh.triangles,
@@ -38,7 +38,7 @@ pub fn mesh_in_single<'py>(
     triangles: PyReadonlyArray2<'py, i64>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let mut mesh = given(&vertices, &triangles).map_err(|e| to_python(py, &e))?;
-    let settled = run(py, 0, mesh.triangles.len(), |_| {
+    let settled = run(py, 0, mesh.triangles.len(), || {
         Ok(settle_in_single(&mut mesh))
     })?;
     let numbers = (0..).zip(&mesh.triangles);
