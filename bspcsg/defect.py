@@ -11,8 +11,6 @@ import zipfile
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from . import _core
 
 #: A program that goes on after a defect may meet it often: a process writes no more reports.
@@ -35,6 +33,8 @@ def report(message: str, call: str, inputs: Mapping[str, Any]) -> str | None:
 
 
 def _written(message: str, call: str, inputs: Mapping[str, Any]) -> str:
+    import numpy as np  # late: errors are needed where numpy is not, as by --help
+
     facts = {
         "message": message,
         "call": call,
@@ -59,6 +59,8 @@ def _written(message: str, call: str, inputs: Mapping[str, Any]) -> str:
 
 def _put(archive: zipfile.ZipFile, name: str, value: Any) -> Any:
     """Put a large input into the archive; return what `report.json` says of it."""
+    import numpy as np
+
     try:
         if isinstance(value, np.ndarray):
             content = io.BytesIO()
