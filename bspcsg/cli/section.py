@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import Finding
-from ..hyperplane import Hyperplane
 from . import output
 from .drawing import Drawing
 from .files import shown
@@ -96,6 +95,8 @@ class _Section(Drawing):
 
     def _tell_of_plane(self, pitch: int) -> None:
         """Say whether the plane is another one than was asked for."""
+        from ..hyperplane import Hyperplane
+
         plane = Hyperplane.from_numbers(self._normal, self._offset).on_lattice(pitch)
         if plane.note is not None:
             finding = Finding("half_space_rounded", "note", plane.note, (), 1)

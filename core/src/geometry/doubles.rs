@@ -193,7 +193,7 @@ mod tests {
     fn sides_are_exact_in_the_last_place() {
         let step = f64::EPSILON;
         let plane = [[0.0, 0.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
-        assert_eq!(side(&plane, &[0.3, 0.5, 0.8]), 0);
+        assert_eq!(side(&plane, &[0.25, 0.5, 0.75]), 0);
         assert_eq!(side(&plane, &[0.5, 0.25, 0.75 + step]), 1);
         assert_eq!(side(&plane, &[0.5, 0.25, 0.75 - step]), -1);
         let far = [[0.0, 0.0, 0.0], [1e300, 0.0, 1e300], [0.0, 1e-300, 1e-300]];
