@@ -195,13 +195,10 @@ impl<const N: usize> Int<N> {
             product[N + B..].fill(sign);
         }
         let product = Int { limbs: product };
-        assert!(
-            R >= N + B
-                || top[..N + B - R]
-                    .iter()
-                    .all(|limb| *limb == product.sign_limb()),
-            "a product exceeds {R} limbs"
-        );
+        let sign = product.sign_limb();
+        if R < N + B && top[..N + B - R].iter().any(|limb| *limb != sign) {
+            exceeds("a product", R);
+        }
         product
     }
 
@@ -272,4 +269,11 @@ impl<const N: usize> Int<N> {
         });
         Self { limbs }
     }
+}
+
+/// Ends a computation of which a result does not fit into so many limbs.
+#[cold]
+#[inline(never)]
+pub(super) fn exceeds(what: &str, limbs: usize) -> ! {
+    panic!("{what} exceeds {limbs} limbs")
 }

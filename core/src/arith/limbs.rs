@@ -26,7 +26,11 @@ pub(super) fn unsigned_product<const A: usize, const B: usize, const R: usize>(
 }
 
 /// A limb of a number, or one above its last.
-#[inline]
+#[inline(always)]
+#[allow(
+    clippy::inline_always,
+    reason = "the place is a constant once loops are unrolled"
+)]
 fn limb_of<'a, const R: usize>(
     number: &'a mut [u64; R],
     top: &'a mut [u64; SPARE],

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::fmt;
 use std::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
+use super::int::exceeds;
 use super::limbs::{borrowing_sub, carrying_add};
 use super::Int;
 
@@ -18,10 +19,11 @@ impl<const N: usize> Add for Int<N> {
             (*limb, carry) = carrying_add(a, b, carry);
         }
         let sum = Self::from_limbs(limbs);
-        assert!(
-            self.is_negative() != other.is_negative() || sum.is_negative() == self.is_negative(),
-            "a sum exceeds {N} limbs"
-        );
+        // The signs of both terms differ from the sum's.
+        let [a, b, c] = [self, other, sum].map(|x| x.limbs()[N - 1]);
+        if (((a ^ c) & (b ^ c)) as i64) < 0 {
+            exceeds("a sum", N);
+        }
         sum
     }
 }
@@ -37,11 +39,11 @@ impl<const N: usize> Sub for Int<N> {
             (*limb, borrow) = borrowing_sub(a, b, borrow);
         }
         let difference = Self::from_limbs(limbs);
-        assert!(
-            self.is_negative() == other.is_negative()
-                || difference.is_negative() == self.is_negative(),
-            "a difference exceeds {N} limbs"
-        );
+        // The terms differ in sign, and the difference is on the wrong side.
+        let [a, b, c] = [self, other, difference].map(|x| x.limbs()[N - 1]);
+        if (((a ^ b) & (a ^ c)) as i64) < 0 {
+            exceeds("a difference", N);
+        }
         difference
     }
 }
