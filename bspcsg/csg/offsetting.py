@@ -7,6 +7,7 @@ import numpy as np
 
 from .._types import FloatArray
 from ..bsp import Region
+from ..errors import InvalidMeshError
 from ..interop import optional
 from .tree import Node
 
@@ -102,6 +103,8 @@ def stroked(line: FloatArray, width: float, cap: str) -> Region:
 
 
 def _whole_numbers(loops: list[FloatArray], scale: float) -> list[Any]:
+    if not all(np.isfinite(loop).all() for loop in loops):
+        raise InvalidMeshError("A drawing has coordinates that are not finite.", "non_finite")
     return [np.trunc(loop * scale).astype(int).tolist() for loop in loops]
 
 
