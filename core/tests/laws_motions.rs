@@ -7,7 +7,7 @@ use std::sync::Arc;
 use bspcsg::arith::Int;
 use bspcsg::error::panics::caught;
 use bspcsg::error::{ErrorKind, Result};
-use bspcsg::extract::round;
+use bspcsg::extract::round::{self, Mesh};
 use bspcsg::extract::snapshot::{Motion, Snapshot};
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::evaluate::{evaluate, explained, normalize};
@@ -262,7 +262,13 @@ fn any_mixture(numbers: &mut Numbers, reach: i64) -> Shape {
     (0..4).map(one).fold(Shape::default(), Shape::with)
 }
 
-/// Small cells at the border of the lattice, where the doubles of constructed points err by steps.
+/// Whether a finding of this code was made.
+fn found(mesh: &Mesh, code: &str) -> bool {
+    mesh.findings.iter().any(|finding| finding.code == code)
+}
+
+/// Small cells at the border of the lattice, where the doubles of constructed points err by steps:
+/// there triangles may merge, and say so.
 #[test]
 fn results_are_the_same_at_the_border_of_the_lattice() {
     let mut numbers = Numbers::new(13);
@@ -275,11 +281,13 @@ fn results_are_the_same_at_the_border_of_the_lattice() {
             for op in SetOp::ALL {
                 let (near, far) = (applied(op, &a, &b), applied(op, &c, &d));
                 let context = format!("{op:?} of {far:?}");
-                assert_eq!(
-                    manifold_mesh(&far, &context).triangles.len(),
-                    manifold_mesh(&near, &context).triangles.len(),
-                    "{context}"
+                let (here, there) = (
+                    manifold_mesh(&near, &context),
+                    manifold_mesh(&far, &context),
                 );
+                let (most, least) = (here.triangles.len(), there.triangles.len());
+                let merged = found(&there, "mended") && least < most;
+                assert!(least == most || merged, "{most} {least} {context}");
                 assert_eq!(volume(&far), volume(&near), "{context}");
             }
         }
