@@ -8,6 +8,7 @@ from .._core import mesh_in_single
 from .._types import FloatArray, IndexArray
 from ..errors import Finding, core_errors
 from ..mesh import Mesh
+from ..solid import Solid
 from ..weld import distinct
 from .raw import RawMesh
 from .triangles import are_flat, are_turned
@@ -81,25 +82,50 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
     with np.errstate(over="ignore"):
         if not np.isfinite(mesh.vertices.astype(np.float32)).all():
             raise OverflowError
-    with core_errors():
-        found = mesh_in_single(mesh.vertices, mesh.faces)
-    if not len(found["triangles"]):
+    result, mended, crossing = _rounded(mesh)
+    for _ in range(_ROUNDS):
+        if not len(crossing) or not len(result.faces):
+            break
+        mended += len(crossing)
+        result, more, crossing = _rounded(_united(result))
+        mended += more
+    if not len(result.faces):
         return mesh, ()
-    crossing = np.unique(found["crossings"]).tolist()
     findings = [
-        Finding("mended_in_single", "note", _MENDED.format(found["mended"]), (), found["mended"]),
+        Finding("mended_in_single", "note", _MENDED.format(mended), (), mended),
         Finding(
             "crossing_in_single",
             "warning",
             _CROSSING.format(len(crossing)) + _REMEDY,
-            tuple(crossing[:_NAMED]),
+            tuple(crossing[:_NAMED].tolist()),
             len(crossing),
         ),
     ]
     left = tuple(finding for finding in findings if finding.count)
-    if not found["mended"]:
-        return mesh, left
-    return Mesh(found["vertices"], found["triangles"], mesh.source[found["kept"]]), left
+    return (result if mended else mesh), left
+
+
+#: Rounds of uniting what rounding made cross, and of rounding what that makes. One nearly always
+#: does: surfaces nearer each other than the rounding lie in one place after it, and are united.
+_ROUNDS = 4
+
+
+def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
+    """Return a mesh in single precision, how many triangles were mended, and which still cross."""
+    with core_errors():
+        found = mesh_in_single(mesh.vertices, mesh.faces)
+    result = Mesh(found["vertices"], found["triangles"], mesh.source[found["kept"]])
+    return result, found["mended"], np.unique(np.append(found["crossings"], found["flat"]))
+
+
+def _united(mesh: Mesh) -> Mesh:
+    """Return the mesh of the set of points that a mesh winds around, which crosses nowhere.
+
+    Iterated snap rounding: where triangles cross they are cut, exactly, and what is cut is rounded
+    again.
+    """
+    united = Solid(mesh.vertices, mesh.faces, winding="positive").normalized().to_mesh()
+    return Mesh(united.vertices, united.faces, mesh.source[united.source[:, 1]])
 
 
 _MENDED = (

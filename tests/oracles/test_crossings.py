@@ -5,9 +5,11 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+import trimesh
 
 import bspcsg as b
 from bspcsg._core import mesh_faults, mesh_in_single
+from bspcsg.io.single import settled
 from support import DEEP
 from support.checks import assert_closed
 from support.degenerate import scene
@@ -144,7 +146,7 @@ def test_delivered_meshes_do_not_cross() -> None:
 
 
 def test_meshes_in_single_precision_do_not_cross() -> None:
-    count = crossing = mended = 0
+    count = crossing = mended = united = 0
     for seed in range(SCENES):
         try:
             mesh = scene(seed).normalized().to_mesh()
@@ -167,6 +169,33 @@ def test_meshes_in_single_precision_do_not_cross() -> None:
         rounded = b.Mesh(vertices, faces, mesh.source[found["kept"]])
         reach = MOST * float(np.spacing(np.float32(np.abs(mesh.vertices).max())))
         assert abs(rounded.volume - mesh.volume) <= reach * mesh.area, seed
+        united += left > 0 and is_mended_by_uniting(mesh, reach)
     assert mended > 0.1 * count
-    # None without a finding; with one they are some two in a hundred of these scenes.
-    assert crossing <= 0.03 * count
+    # Local changes leave some two in a hundred of these scenes; these are cut where they cross.
+    assert 0 < crossing <= 0.03 * count
+    assert united == crossing
+
+
+def is_mended_by_uniting(mesh: "b.Mesh", reach: float) -> bool:
+    """Whether a mesh settles in single precision after all; say what else must be so."""
+    delivered, findings = settled(mesh)
+    assert (delivered.vertices == delivered.vertices.astype(np.float32)).all()
+    assert_closed(delivered.faces)
+    assert "mended_in_single" in {finding.code for finding in findings}
+    assert abs(delivered.volume - mesh.volume) <= 2 * reach * mesh.area
+    # What vanishes is thinner than the rounding, so what is left lies all along the old surface.
+    corners = np.unique(delivered.vertices, axis=0)
+    assert distances(corners, mesh.vertices[mesh.faces]).max() <= 2 * reach
+    left = any(faults(delivered))
+    assert left == ("crossing_in_single" in {finding.code for finding in findings})
+    return not left
+
+
+def distances(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Return how far points lie from the nearest of some triangles."""
+    nearest = np.full(len(points), np.inf)
+    for triangle in triangles:
+        many = np.tile(triangle, (len(points), 1, 1))
+        foot = trimesh.triangles.closest_point(many, points)  # type: ignore[no-untyped-call]
+        np.minimum(nearest, np.linalg.norm(foot - points, axis=1), out=nearest)
+    return nearest

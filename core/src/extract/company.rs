@@ -39,7 +39,7 @@ impl Extent {
 }
 
 /// The most cells along an axis: the grid then fits into a cache.
-const FINEST: usize = 64;
+const FINEST: usize = 32;
 
 /// The triangles that are not among some, ascending, but may meet one of them or a triangle of
 /// another party; with their parties.
@@ -109,7 +109,7 @@ impl Grid {
             let low = [0, 1, 2].map(|i| low[i].min(p[i]));
             (low, [0, 1, 2].map(|i| high[i].max(p[i])))
         });
-        let size = (faces.triangles.len() / 6).isqrt().clamp(2, FINEST);
+        let size = (faces.triangles.len() / 24).isqrt().clamp(2, FINEST);
         let factor = |i: usize| size as f64 / (high[i] - low[i]).max(f64::MIN_POSITIVE);
         Some(Self {
             low,

@@ -6,7 +6,7 @@
 use rustc_hash::FxHashMap as HashMap;
 
 use super::company::{in_company, Extent};
-use crate::geometry::doubles::{Point, Triangle};
+use crate::geometry::doubles::{side, Point, Triangle};
 use crate::geometry::meeting::{has_no_area, interleave, meeting, passes, Meeting};
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, Boxed, Swept};
@@ -98,6 +98,9 @@ impl Search<'_> {
     fn look_at(&mut self, t: u32, u: u32) {
         poll();
         let pair = [t.min(u), t.max(u)];
+        if self.bend_apart(pair) {
+            return;
+        }
         let [p, q] = pair.map(|t| self.faces.corners(t));
         match meeting(&p, &q) {
             Meeting::Clear => {}
@@ -105,6 +108,18 @@ impl Search<'_> {
             Meeting::Edges(i, j) if self.are_mates(pair, i, j) => {}
             meeting => self.doubtful.push((pair, meeting)),
         }
+    }
+
+    /// Whether two triangles with area are mates at an edge, and bend there: they have nothing
+    /// else in common.
+    fn bend_apart(&self, pair: [u32; 2]) -> bool {
+        let edges = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
+        let mut mates = edges.filter(|(i, j)| self.are_mates(pair, *i, *j));
+        let Some((_, j)) = mates.next() else {
+            return false;
+        };
+        let apex = self.faces.corners(pair[1])[(j + 2) % 3];
+        side(&self.faces.corners(pair[0]), &apex) != 0
     }
 
     /// Whether two edges are one by index.

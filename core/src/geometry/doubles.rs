@@ -112,7 +112,46 @@ pub fn turn([a, b, c]: [[f64; 2]; 3]) -> i32 {
     if value.abs() > TURN_BOUND * size && TRUSTED.contains(&size) {
         return if value > 0.0 { 1 } else { -1 };
     }
-    exact_turn([a, b, c])
+    turn_by_parts([a, b, c]).unwrap_or_else(|| exact_turn([a, b, c]))
+}
+
+/// The turn where the differences of coordinates are doubles, so that two products decide: points
+/// of one plane along the axes, most of all.
+fn turn_by_parts([a, b, c]: [[f64; 2]; 3]) -> Option<i32> {
+    let [u, v] = [b, c].map(|p| [0, 1].map(|i| exact_difference(p[i], a[i])));
+    let [left, right] = [exact_product(u[0]?, v[1]?)?, exact_product(u[1]?, v[0]?)?];
+    // Rounding keeps the order of products; equal ones differ by what was cut off.
+    left.partial_cmp(&right).map(|order| order as i32)
+}
+
+/// a − b, if a double holds it (Knuth's sum of two).
+fn exact_difference(a: f64, b: f64) -> Option<f64> {
+    let difference = a - b;
+    let of_b = a - difference;
+    let lost = (a - (difference + of_b)) + (of_b - b);
+    (lost == 0.0).then_some(difference)
+}
+
+/// A product as its rounded value and the rest, which is a double (Veltkamp and Dekker).
+fn exact_product(a: f64, b: f64) -> Option<(f64, f64)> {
+    let product = a * b;
+    if product == 0.0 {
+        return (a == 0.0 || b == 0.0).then_some((0.0, 0.0));
+    }
+    if [a, b, product].iter().any(|x| !TRUSTED.contains(&x.abs())) {
+        return None;
+    }
+    let ([a, a_tail], [b, b_tail]) = (halves(a), halves(b));
+    let rest = a_tail * b_tail - (((product - a * b) - a_tail * b) - a * b_tail);
+    Some((product, rest))
+}
+
+/// The leading 26 bits of a double, and the others.
+fn halves(x: f64) -> [f64; 2] {
+    const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
+    let scaled = SPLITTER * x;
+    let leading = scaled - (scaled - x);
+    [leading, x - leading]
 }
 
 fn exact_turn(points: [[f64; 2]; 3]) -> i32 {
@@ -187,6 +226,23 @@ mod tests {
         assert_eq!(turn([a, b, [2.0, 2.0 - step]]), -1);
         assert_eq!(turn([a, [1e-300, 1e-300], [1e300, 1e300]]), 0);
         assert_eq!(turn([[-1.0, 0.5], [0.0, 0.5], [0.5, 0.5 + step]]), 1);
+    }
+
+    #[test]
+    fn turns_by_parts_agree_with_integers() {
+        let mut decided = 0;
+        for seed in 0..4000u32 {
+            let next = |k: u32| f64::from((seed * 8 + k).wrapping_mul(2_654_435_761) >> 8);
+            let scale = [1.0, 0.1, 1e-90, 1e80][seed as usize % 4];
+            let [a, u] = [[next(0), next(1)], [next(2), next(3)]].map(|p| p.map(|x| x * scale));
+            let along = |t: f64| [a[0] + t * u[0], a[1] + t * u[1]];
+            let points = [a, along(2.0), along(f64::from(seed % 3) - 0.5)];
+            if let Some(sign) = turn_by_parts(points) {
+                assert_eq!(sign, exact_turn(points), "seed {seed}");
+                decided += 1;
+            }
+        }
+        assert!(decided > 1000, "{decided}");
     }
 
     #[test]

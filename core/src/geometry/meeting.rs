@@ -52,13 +52,15 @@ pub fn meeting(p: &Triangle, q: &Triangle) -> Meeting {
 /// On which sides of a triangle's plane the corners of another lie.
 fn sides(triangle: &Triangle, plane: &Triangle) -> [i32; 3] {
     let facing = Facing::of(plane);
-    triangle.map(|p| {
-        if plane.contains(&p) {
+    let side = |p: &Point| {
+        if plane.contains(p) {
             0
         } else {
-            facing.side(&p)
+            facing.side(p)
         }
-    })
+    };
+    let [a, b, c] = triangle;
+    [side(a), side(b), side(c)]
 }
 
 /// What a triangle has in common with the plane of another.
