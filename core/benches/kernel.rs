@@ -12,7 +12,7 @@ use bspcsg::geometry::plane::{Lattice, Plane};
 use bspcsg::geometry::polygon::Polygon;
 use bspcsg::geometry::vertex::Vertex;
 use bspcsg::merge::{split_tree, SetOp};
-use bspcsg::mesh::source::TriangleMesh;
+use bspcsg::mesh::triangles::TriangleMesh;
 use bspcsg::tree::partition::{autopartition, Facet, Label, PivotPolicy};
 use criterion::{criterion_group, criterion_main, BatchSize, Criterion};
 

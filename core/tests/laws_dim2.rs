@@ -4,7 +4,7 @@ use bspcsg::geometry::dim2::{Dim2, Point2, Segment2, Square};
 use bspcsg::geometry::side::{Half, Side};
 use bspcsg::geometry::space::Space;
 use bspcsg::merge::{merge, SetOp};
-use bspcsg::query::measure::big;
+use bspcsg::query::exact::big;
 use bspcsg::tree::partition::{
     autopartition, boundary, check, classify, owned_boundary, winding_tree, Facet, Label, Location,
     PartitionTree, PivotPolicy,

@@ -9,6 +9,8 @@
 //! lattice points; it enters doubled, as the homogeneous point (2x, 2y, 2z, 2).
 
 /// Lattice coordinates are below 2^`COORDINATE_BITS` in magnitude.
+///
+/// A double holds every integer up to 2^53, so that a lattice coordinate is one.
 pub const COORDINATE_BITS: u32 = 53;
 
 /// Normals of half-spaces are below 2^`HALF_SPACE_NORMAL_BITS`.

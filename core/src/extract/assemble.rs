@@ -4,99 +4,22 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::collect::{collect, Fate};
+use super::assembly::{Assembly, NONE};
+use super::collect::collect;
 use super::contacts;
 use super::failure::Failure;
+use super::leaves::Fate;
+use super::mesh::{Corner, ExactMesh};
 use super::planes::{group, PlaneGroup};
 use super::rim::{half_edge_ends, FrontierEdge, Rims};
 use super::seams::{find_touching, subdivisions, Edge, InnerPoints, LinePoints};
 use super::untouched::{Untouched, WholeFaces};
-use super::vertices::VertexTable;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::outline::BareEdge;
-use crate::geometry::plane::normal;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::merge::list::Sources;
-use crate::mesh::finding::Finding;
-use crate::mesh::source::{Shape, TriangleMesh};
 use crate::tree::solid::Solid;
-
-/// A closed triangle mesh with exact vertices.
-#[derive(Debug, Default)]
-pub struct ExactMesh {
-    /// Where each vertex is.
-    pub vertices: Vec<Corner>,
-    /// Triangles, counterclockwise as seen from outside.
-    pub triangles: Vec<[u32; 3]>,
-    /// For each triangle the face it lies in.
-    pub faces: Vec<TriangleFace>,
-    /// How many triangles at the start are faces of sources as they came.
-    pub untouched: usize,
-    /// The constructed points that [`Corner::Point`] names.
-    pub table: VertexTable,
-    /// What was noticed on the way.
-    pub findings: Vec<Finding>,
-}
-
-/// Where a vertex of an [`ExactMesh`] is.
-#[derive(Clone, Copy, Debug)]
-pub enum Corner {
-    /// A vertex of a source: slot and index.
-    Source(u32, u32),
-    /// A point of the table.
-    Point(u32),
-}
-
-/// The mesh in the making.
-pub(super) struct Assembly<'a> {
-    pub(super) sources: &'a Sources,
-    pub(super) table: VertexTable,
-    /// For each slot the output vertex of each of its vertices.
-    images: Vec<Vec<u32>>,
-    /// For each table point its output vertex.
-    point_images: Vec<u32>,
-    /// For each table point the first source vertex there.
-    names: HashMap<u32, (u32, u32)>,
-    pub(super) vertices: Vec<Corner>,
-    pub(super) triangles: Vec<[u32; 3]>,
-    pub(super) faces: Vec<TriangleFace>,
-    /// The triangles, at the start, that are faces of sources as they came.
-    untouched: Untouched,
-    /// Whether to compare areas, because faces of one plane might overlap.
-    pub(super) verify: bool,
-}
-
-/// The face a triangle lies in, as the source has it, and whether it is turned around.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct TriangleFace {
-    /// The source's slot.
-    pub slot: u32,
-    /// The face.
-    pub face: u32,
-    /// Whether the triangle faces the other way.
-    pub flip: bool,
-}
-
-impl TriangleFace {
-    /// The outward normal of the face, up to a positive factor.
-    pub fn normal(&self, sources: &Sources) -> [i128; 3] {
-        let n = match sources.get(self.slot as usize).shape() {
-            Shape::Mesh(mesh) => {
-                let [a, b, c] = mesh.corners(self.face);
-                normal(&a, &b, &c)
-            }
-            Shape::HalfSpace(plane) => *plane.normal(),
-        };
-        if self.flip {
-            n.map(|c| -c)
-        } else {
-            n
-        }
-    }
-}
-
-const NONE: u32 = u32::MAX;
 
 /// Groups of as many edges are looked through faster than a table of their points is made.
 const SMALL: usize = 16;
@@ -150,26 +73,7 @@ fn reaches_infinity(group: &PlaneGroup, sources: &Sources) -> bool {
         && group.edges().iter().any(|e| e.carrier.is_border())
 }
 
-impl<'a> Assembly<'a> {
-    fn new(sources: &'a Sources, fates: &[Vec<Fate>]) -> Self {
-        let image = |(slot, fates): (usize, &Vec<Fate>)| {
-            let count = sources.get(slot).mesh().map_or(0, |m| m.vertices.len());
-            vec![NONE; if fates.is_empty() { 0 } else { count }]
-        };
-        Self {
-            sources,
-            table: VertexTable::default(),
-            images: fates.iter().enumerate().map(image).collect(),
-            point_images: Vec::new(),
-            names: HashMap::default(),
-            vertices: Vec::new(),
-            triangles: Vec::new(),
-            faces: Vec::new(),
-            untouched: Untouched::default(),
-            verify: false,
-        }
-    }
-
+impl Assembly<'_> {
     fn run(
         &mut self,
         fates: &[Vec<Fate>],
@@ -269,31 +173,6 @@ impl<'a> Assembly<'a> {
         Some(Edge { from, to })
     }
 
-    /// The table number of a source's vertex; from now on the vertex is that point.
-    pub(super) fn point_of(&mut self, slot: u32, mesh: &TriangleMesh, vertex: u32) -> u32 {
-        let image = self.images[slot as usize][vertex as usize];
-        if let Some(Corner::Point(point)) = self.vertices.get(image as usize) {
-            return *point;
-        }
-        let point = self.table.number_at(mesh.vertices[vertex as usize]);
-        self.names.entry(point).or_insert((slot, vertex));
-        let image = self.image_of_point(point);
-        self.images[slot as usize][vertex as usize] = image;
-        point
-    }
-
-    fn image_of_point(&mut self, point: u32) -> u32 {
-        if self.point_images.len() < self.table.len() {
-            self.point_images.resize(self.table.len(), NONE);
-        }
-        let image = &mut self.point_images[point as usize];
-        if *image == NONE {
-            *image = self.vertices.len() as u32;
-            self.vertices.push(Corner::Point(point));
-        }
-        *image
-    }
-
     /// Remembers which source vertices the corners of cut faces are, for their original doubles.
     fn name_cut_corners(&mut self, fates: &[Vec<Fate>]) {
         for (slot, fates) in (0u32..).zip(fates) {
@@ -362,117 +241,6 @@ impl<'a> Assembly<'a> {
             let whole = WholeFaces { slot, fates, split };
             let (triangles, faces) = (&mut self.triangles, &mut self.faces);
             self.untouched.emit(mesh, images, &whole, triangles, faces);
-        }
-    }
-
-    /// The triangles with a special vertex.
-    pub(super) fn special_triangles(&self) -> impl Iterator<Item = u32> + '_ {
-        let last = self.untouched.count as u32..self.triangles.len() as u32;
-        self.untouched.special.iter().copied().chain(last)
-    }
-
-    /// Whether an output vertex lies where something was cut or may touch.
-    fn is_special(&self, vertex: u32) -> bool {
-        !self.untouched.vertices.contains(&vertex)
-    }
-
-    /// How many vertices are special.
-    pub(super) fn special_count(&self) -> usize {
-        self.vertices.len() - self.untouched.vertices.len()
-    }
-
-    /// The place of a vertex among the special ones, if it is one.
-    pub(super) fn special_place(&self, vertex: u32) -> Option<u32> {
-        let others = &self.untouched.vertices;
-        if vertex < others.start {
-            Some(vertex)
-        } else {
-            (vertex >= others.end).then(|| vertex - others.len() as u32)
-        }
-    }
-
-    /// The special vertex in a place.
-    pub(super) fn special_vertex(&self, place: u32) -> u32 {
-        let others = &self.untouched.vertices;
-        if place < others.start {
-            place
-        } else {
-            place + others.len() as u32
-        }
-    }
-
-    /// The faces of the triangles at a vertex.
-    pub(super) fn faces_at(&self, vertex: u32) -> Vec<TriangleFace> {
-        let around = self.triangles.iter().zip(&self.faces);
-        let around = around.filter(|(triangle, _)| triangle.contains(&vertex));
-        around.map(|(_, face)| *face).collect()
-    }
-
-    /// Emits a triangle of table points.
-    pub(super) fn push(&mut self, triangle: [u32; 3], face: TriangleFace) {
-        let triangle = triangle.map(|p| self.image_of_point(p));
-        self.triangles.push(triangle);
-        self.faces.push(face);
-    }
-
-    fn finish(mut self, findings: Vec<Finding>) -> ExactMesh {
-        for vertex in &mut self.vertices {
-            if let Corner::Point(point) = *vertex {
-                if let Some((slot, index)) = self.names.get(&point) {
-                    *vertex = Corner::Source(*slot, *index);
-                }
-            }
-        }
-        self.drop_unused();
-        ExactMesh {
-            vertices: self.vertices,
-            triangles: self.triangles,
-            faces: self.faces,
-            untouched: self.untouched.count,
-            table: self.table,
-            findings,
-        }
-    }
-
-    /// Leaves out vertices that no triangle uses; the others keep their order.
-    fn drop_unused(&mut self) {
-        let mut used: Vec<bool> = (0..self.vertices.len() as u32)
-            .map(|v| !self.is_special(v))
-            .collect();
-        for triangle in self.special_triangles() {
-            poll();
-            for vertex in self.triangles[triangle as usize] {
-                used[vertex as usize] = true;
-            }
-        }
-        if used.iter().all(|u| *u) {
-            return;
-        }
-        let mut next = 0;
-        let image: Vec<u32> = used
-            .iter()
-            .map(|u| {
-                next += u32::from(*u);
-                next - u32::from(*u)
-            })
-            .collect();
-        let mut keep = used.iter();
-        self.vertices
-            .retain(|_| keep.next().copied().unwrap_or(false));
-        for vertex in self.triangles.iter_mut().flatten() {
-            *vertex = image[*vertex as usize];
-        }
-    }
-
-    /// The exact position of an output vertex.
-    pub(super) fn position(&self, vertex: u32) -> Arc<Vertex> {
-        match self.vertices[vertex as usize] {
-            Corner::Point(point) => Arc::clone(self.table.point(point)),
-            Corner::Source(slot, index) => {
-                let mesh = self.sources.get(slot as usize).mesh();
-                let place = mesh.map_or([0; 3], |m| m.vertices[index as usize]);
-                Arc::new(Vertex::lattice(place))
-            }
         }
     }
 }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use smallvec::{smallvec, SmallVec};
 
-use super::leaves::{fill, listed, Listed, Piece, Spanning};
+use super::leaves::{fill, listed, Fate, Listed, Piece, Spanning};
 use crate::geometry::cell::Cell;
 use crate::geometry::line::{LineKey, PlaneResidues};
 use crate::geometry::outline::{BareEdge, Outline};
@@ -15,18 +15,6 @@ use crate::mesh::source::{Shape, Source};
 use crate::mesh::tasks::in_pool;
 use crate::tree::node::{Branch, Deferred, Node};
 use crate::tree::solid::Solid;
-
-/// The fate of a face.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fate {
-    /// No part of it is boundary.
-    Gone,
-    /// All of it is boundary; turned around if the flag is set. Never said of a half-space's face,
-    /// which only the border of the universe ends.
-    Whole(bool),
-    /// Some of it is boundary, or it joins a polygon of its plane.
-    Cut,
-}
 
 /// A face of which a part is boundary.
 #[derive(Debug)]

@@ -1,40 +1,22 @@
 //! Which triangles of a mesh lie so near others that the two may meet, by a coarse grid.
 
-use super::crossings::Faces;
 use crate::geometry::doubles::{Point, Triangle};
+
 use crate::mesh::tasks::fill_chunks;
 
-/// A box in doubles.
+/// A mesh in doubles, closed by index.
 #[derive(Clone, Copy, Debug)]
-pub struct Extent {
-    /// The lowest coordinates.
-    pub low: Point,
-    /// The highest coordinates.
-    pub high: Point,
+pub struct Faces<'a> {
+    /// The vertices.
+    pub vertices: &'a [Point],
+    /// The triangles, each directed edge with one opposite.
+    pub triangles: &'a [[u32; 3]],
 }
 
-impl Extent {
-    /// The box of a triangle.
-    pub fn of(triangle: &Triangle) -> Self {
-        let [a, b, c] = triangle;
-        Self {
-            low: [0, 1, 2].map(|i| a[i].min(b[i]).min(c[i])),
-            high: [0, 1, 2].map(|i| a[i].max(b[i]).max(c[i])),
-        }
-    }
-
-    /// The smallest box that holds both.
-    #[must_use]
-    pub fn joined(&self, other: &Self) -> Self {
-        Self {
-            low: [0, 1, 2].map(|i| self.low[i].min(other.low[i])),
-            high: [0, 1, 2].map(|i| self.high[i].max(other.high[i])),
-        }
-    }
-
-    /// Whether the two have no point in common.
-    pub fn misses(&self, other: &Self) -> bool {
-        (0..3).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i])
+impl Faces<'_> {
+    /// The corners of a triangle.
+    pub fn corners(&self, triangle: u32) -> Triangle {
+        self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
     }
 }
 

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashSet as HashSet;
 
-use super::assemble::Assembly;
+use super::assembly::Assembly;
 use super::failure::{Failure, Overlap};
 use super::fans::{split_fans, Radial};
 use super::vertices::direction;

@@ -5,20 +5,12 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::company::{in_company, Extent};
+use super::company::{in_company, Faces};
 use crate::geometry::doubles::{side, Point, Triangle};
+use crate::geometry::extent::Extent;
 use crate::geometry::meeting::{has_no_area, interleave, meeting, passes, Meeting};
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, Boxed, Swept};
-
-/// A mesh in doubles, closed by index.
-#[derive(Clone, Copy, Debug)]
-pub struct Faces<'a> {
-    /// The vertices.
-    pub vertices: &'a [Point],
-    /// The triangles, each directed edge with one opposite.
-    pub triangles: &'a [[u32; 3]],
-}
 
 /// What keeps a mesh from being embedded.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -38,13 +30,6 @@ impl Faults {
     /// How many there are.
     pub fn count(&self) -> usize {
         self.crossings.len() + self.flat.len()
-    }
-}
-
-impl Faces<'_> {
-    /// The corners of a triangle.
-    pub fn corners(&self, triangle: u32) -> Triangle {
-        self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
     }
 }
 

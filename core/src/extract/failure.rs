@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::assemble::TriangleFace;
+use super::mesh::TriangleFace;
 use crate::error::{Error, ErrorKind, Result};
 use crate::merge::evaluate::overlaps_itself;
 use crate::mesh::source::Source;

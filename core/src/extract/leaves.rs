@@ -6,14 +6,14 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::{smallvec, SmallVec};
 
-use super::collect::Fate;
 use crate::geometry::cell::Cell;
 use crate::geometry::outline::{cancel, Outline, OutlineEdge};
 use crate::geometry::plane::Lattice;
 use crate::interrupt::{carried, poll};
 use crate::merge::list::Sources;
-use crate::mesh::source::{Source, TriangleMesh};
+use crate::mesh::source::Source;
 use crate::mesh::tasks::{in_pool, CHUNK};
+use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node, Part, Work};
 
 /// A face that reaches out of a leaf that lists it.
@@ -294,6 +294,18 @@ fn leaves_of(root: &Branch) -> Vec<Leaf<'_>> {
         }
     }
     leaves
+}
+
+/// The fate of a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// No part of it is boundary.
+    Gone,
+    /// All of it is boundary; turned around if the flag is set. Never said of a half-space's face,
+    /// which only the border of the universe ends.
+    Whole(bool),
+    /// Some of it is boundary, or it joins a polygon of its plane.
+    Cut,
 }
 
 /// Fates that several threads mark, by slot; empty for sources that no leaf names.

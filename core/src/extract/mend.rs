@@ -11,9 +11,9 @@ use std::collections::BTreeSet;
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
-use super::company::Extent;
 use super::crossings::{crosses_at, Faults};
 use crate::geometry::doubles::{seen_along, turn, Point, Triangle};
+use crate::geometry::extent::Extent;
 use crate::geometry::meeting::{has_no_area, meeting, Meeting};
 use crate::interrupt::spend;
 
@@ -46,7 +46,7 @@ impl Precision {
 
 /// How far a change may move the surface, in spacings of the largest coordinate: rounding moves a
 /// point by half a spacing on each axis, and two surfaces in opposite directions.
-const REACH: f64 = 4.0;
+const FARTHEST: f64 = 4.0;
 
 /// Directions in which a vertex is moved, in spacings of the largest coordinate.
 const STEPS: [[f64; 3]; 14] = [
@@ -350,7 +350,7 @@ impl Mending {
     }
 
     fn reach(&self) -> f64 {
-        REACH * self.spacing
+        FARTHEST * self.spacing
     }
 
     fn star(&self, v: u32) -> Vec<u32> {

@@ -2,6 +2,7 @@
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
 pub mod assemble;
+mod assembly;
 pub mod collect;
 pub mod company;
 mod contacts;
@@ -10,6 +11,7 @@ mod failure;
 pub mod fans;
 mod leaves;
 pub mod mend;
+pub mod mesh;
 mod origin;
 pub mod planes;
 mod polygons;

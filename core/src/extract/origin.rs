@@ -1,6 +1,6 @@
 //! Which source face a new triangle of a joined polygon comes from.
 
-use super::assemble::TriangleFace;
+use super::mesh::TriangleFace;
 use super::planes::PlaneGroup;
 use super::triangulate::Planar;
 use super::vertices::Projection;

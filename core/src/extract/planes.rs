@@ -5,8 +5,9 @@ use std::sync::Arc;
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use smallvec::SmallVec;
 
-use super::assemble::TriangleFace;
-use super::collect::{Boundary, CutFace, Fate};
+use super::collect::{Boundary, CutFace};
+use super::leaves::Fate;
+use super::mesh::TriangleFace;
 use super::rim::{FrontierEdge, Rims};
 use crate::geometry::line::{LineKey, PlaneResidues};
 use crate::geometry::outline::{BareEdge, Outline, OutlineEdge};

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 
-use super::assemble::{Assembly, TriangleFace};
-use super::collect::Fate;
+use super::assembly::Assembly;
 use super::failure::Overlap;
+use super::leaves::Fate;
+use super::mesh::TriangleFace;
 use super::origin::Owners;
 use super::planes::PlaneGroup;
 use super::seams::{Edge, InnerPoints};

@@ -9,12 +9,13 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 
-use super::collect::Fate;
+use super::leaves::Fate;
 use crate::geometry::line::LineKey;
 use crate::interrupt::{carried, poll};
 use crate::merge::list::Sources;
-use crate::mesh::source::{Source, TriangleMesh};
+use crate::mesh::source::Source;
 use crate::mesh::tasks::{in_pool, CHUNK};
+use crate::mesh::triangles::TriangleMesh;
 
 /// What meets at a vertex: a whole face, one turned around, another one.
 const KEPT: u8 = 1;

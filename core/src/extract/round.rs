@@ -1,7 +1,8 @@
 //! From exact vertices to doubles: the only rounding, and what it did.
 
-use super::assemble::{assemble, Corner, ExactMesh, TriangleFace};
+use super::assemble::assemble;
 use super::mend::Precision;
+use super::mesh::{Corner, ExactMesh, Mesh, TriangleFace};
 use super::settle::{settle, Rounded, Settled};
 use super::unfold::{turned, unfold};
 use crate::error::Result;
@@ -10,22 +11,6 @@ use crate::merge::list::Sources;
 use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::tasks::fill_chunks;
 use crate::tree::solid::Solid;
-
-/// A triangle mesh in doubles.
-#[derive(Debug, Default)]
-pub struct Mesh {
-    /// Vertices in model units.
-    pub vertices: Vec<[f64; 3]>,
-    /// Triangles, counterclockwise as seen from outside.
-    pub triangles: Vec<[u32; 3]>,
-    /// For each triangle the source's slot and the number of the face in its input.
-    pub origins: Vec<[u32; 2]>,
-    /// What was noticed on the way.
-    pub findings: Vec<Finding>,
-    /// How many triangles were compared exactly with all near them, because they are not faces of
-    /// inputs as they came; those that cross something are a finding.
-    pub compared: u64,
-}
 
 /// The mesh of a bounded solid, each vertex at the nearest double.
 ///

@@ -2,8 +2,8 @@
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
-use super::company::in_company;
-use super::crossings::{faults, Faces, Faults};
+use super::company::{in_company, Faces};
+use super::crossings::{faults, Faults};
 use super::mend::{Mending, Precision};
 use crate::geometry::doubles::Point;
 

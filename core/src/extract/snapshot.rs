@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::collect::{collect, CutFace, Fate};
+use super::collect::{collect, CutFace};
+use super::leaves::Fate;
 use super::sealed::{seal, unseal, Kind};
 use super::sound::is_sound;
 use crate::arith::bounds::{self, COORDINATE_BITS};
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::cell::{Cell, REACH};
+use crate::geometry::cell::Cell;
 use crate::geometry::edge::LatticeEdge;
 use crate::geometry::line::{LineKey, PlaneResidues};
 use crate::geometry::outline::{settled, BareEdge, OutlineEdge};
@@ -21,7 +22,8 @@ use crate::interrupt::poll;
 use crate::merge::list::Sources;
 use crate::mesh::grid::Pitch;
 use crate::mesh::import::is_flat;
-use crate::mesh::source::{Shape, Source, TriangleMesh};
+use crate::mesh::source::{Shape, Source};
+use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
 use crate::tree::solid::Solid;
 
@@ -117,7 +119,7 @@ impl Motion {
             image[i] = p[axis]
                 .checked_mul(self.scale * sign)
                 .and_then(|k| k.checked_add(self.shift[i]))
-                .filter(|k| k.unsigned_abs() < 1 << REACH)
+                .filter(|k| k.unsigned_abs() < 1 << COORDINATE_BITS)
                 .ok_or_else(too_large)?;
         }
         Ok(image)
@@ -375,7 +377,7 @@ impl SourceData {
                 let fits = vertices
                     .iter()
                     .flatten()
-                    .all(|k| k.unsigned_abs() < 1 << REACH);
+                    .all(|k| k.unsigned_abs() < 1 << COORDINATE_BITS);
                 let numbered = numbers.as_ref().is_none_or(|n| n.len() == faces.len());
                 let flat = |f: &[u32; 3]| is_flat(&f.map(|v| vertices[v as usize]));
                 let sound = named && fits && numbered && doubles.len() == count;
@@ -510,7 +512,7 @@ fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bo
             let (a, b) = edge.ends();
             let near = [a, b]
                 .iter()
-                .all(|p| p.iter().all(|k| k.unsigned_abs() < 1 << REACH));
+                .all(|p| p.iter().all(|k| k.unsigned_abs() < 1 << COORDINATE_BITS));
             near && a != b
                 && support.side_of_lattice(a) == 0
                 && support.side_of_lattice(b) == 0
@@ -541,7 +543,7 @@ impl VertexData {
 
     fn vertex(&self) -> Result<Vertex> {
         match self {
-            Self::Lattice(p) if p.iter().all(|k| k.unsigned_abs() < 1 << REACH) => {
+            Self::Lattice(p) if p.iter().all(|k| k.unsigned_abs() < 1 << COORDINATE_BITS) => {
                 Ok(Vertex::lattice(*p))
             }
             Self::Lattice(_) => Err(bad_snapshot()),

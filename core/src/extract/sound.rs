@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use super::collect::Fate;
+use super::leaves::Fate;
 use super::rim::{half_edge_ends, FrontierEdge, Rims};
 use crate::geometry::edge::LatticeEdge;
 use crate::geometry::outline::{cancel, OutlineEdge};
@@ -14,7 +14,8 @@ use crate::geometry::polygon::{Carrier, Polygon};
 use crate::geometry::vertex::Vertex;
 use crate::merge::list::Sources;
 use crate::mesh::grid::Pitch;
-use crate::mesh::source::{Source, TriangleMesh};
+use crate::mesh::source::Source;
+use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Deferred, Node, Part, PartElement};
 use crate::tree::solid::Solid;
 

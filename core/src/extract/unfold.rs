@@ -6,8 +6,7 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::assemble::{Corner, ExactMesh};
-use super::round::Mesh;
+use super::mesh::{Corner, ExactMesh, Mesh};
 use crate::geometry::doubles::{seen_along, turn};
 use crate::geometry::plane::Plane;
 use crate::merge::list::Sources;

@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::assemble::TriangleFace;
-use super::collect::Fate;
+use super::leaves::Fate;
+use super::mesh::TriangleFace;
 use crate::interrupt::{carried, spend};
-use crate::mesh::source::TriangleMesh;
 use crate::mesh::tasks::{each_chunk, in_pool, CHUNK};
+use crate::mesh::triangles::TriangleMesh;
 
 /// The triangles at the start of a mesh that are faces of sources as they came.
 #[derive(Debug, Default)]

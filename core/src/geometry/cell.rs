@@ -1,11 +1,7 @@
 //! Cells of the one dyadic hierarchy that all solids share.
 
 use super::plane::{Lattice, Plane};
-
-/// Coordinates are below 2^REACH lattice steps in magnitude.
-///
-/// A double holds every integer up to 2^53, so that a lattice coordinate is one.
-pub const REACH: u32 = 53;
+use crate::arith::bounds::COORDINATE_BITS;
 
 /// A box of the dyadic hierarchy: the lattice points `low[i] .. low[i] + 2^size[i]`.
 ///
@@ -29,8 +25,8 @@ pub struct Cut {
 impl Cell {
     /// The cell of all lattice points.
     pub const UNIVERSE: Self = Self {
-        low: [-(1 << REACH); 3],
-        size: [REACH as u8 + 1; 3],
+        low: [-(1 << COORDINATE_BITS); 3],
+        size: [COORDINATE_BITS as u8 + 1; 3],
     };
 
     /// The smallest lattice point.
@@ -150,11 +146,11 @@ impl Cell {
 mod tests {
     use proptest::prelude::*;
 
-    use super::{Cell, Lattice, REACH};
+    use super::{Cell, Lattice, COORDINATE_BITS};
 
     /// Coordinates near each other, near zero, and anywhere.
     fn point() -> impl Strategy<Value = Lattice> {
-        let most = (1i64 << REACH) - 1;
+        let most = (1i64 << COORDINATE_BITS) - 1;
         let coordinate = prop_oneof![-3i64..=3, 1i64 << 40..(1i64 << 40) + 9, -most..=most];
         prop::array::uniform3(coordinate)
     }

@@ -6,17 +6,17 @@
 
 use std::cmp::Ordering;
 
-use super::cell;
 use super::plane::FILTER;
 use super::side::{Orientation, Side, Split};
 use super::space::Space;
 use crate::arith::bounds::{
-    LINE_AT_MEET_LIMBS, LINE_CROSS_LIMBS, LINE_MEET_LIMBS, LINE_NORMAL_BITS, LINE_OFFSET_BITS,
+    COORDINATE_BITS, LINE_AT_MEET_LIMBS, LINE_CROSS_LIMBS, LINE_MEET_LIMBS, LINE_NORMAL_BITS,
+    LINE_OFFSET_BITS,
 };
 use crate::arith::{gcd_u128, Int};
 
 /// Lattice coordinates are at most this large in magnitude.
-pub const REACH: i64 = 1 << cell::REACH;
+pub const REACH: i64 = 1 << COORDINATE_BITS;
 
 /// The plane with integer lattice coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,7 +104,7 @@ impl Line2 {
             return None;
         }
         let size = u128::from(a.unsigned_abs()) + u128::from(b.unsigned_abs());
-        if offset.unsigned_abs() < size << cell::REACH {
+        if offset.unsigned_abs() < size << COORDINATE_BITS {
             Self::new(a, b, -offset)
         } else {
             None

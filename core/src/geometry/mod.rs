@@ -12,6 +12,7 @@ pub mod dim2;
 pub mod dim3;
 pub mod doubles;
 pub mod edge;
+pub mod extent;
 pub mod fixed;
 pub mod line;
 pub mod meeting;

@@ -1,6 +1,5 @@
 //! Oriented planes with canonical integer coefficients.
 
-use super::cell::REACH;
 use crate::arith::bounds::{
     self, COORDINATE_BITS, HALF_SPACE_NORMAL_BITS, SHORT_NORMAL_BITS, SHORT_OFFSET_BITS,
 };
@@ -134,7 +133,7 @@ impl Plane {
             return None;
         }
         let size = n.iter().map(|c| c.abs()).sum();
-        let reach: Int<3> = Int::<2>::from_i128(size).mul_i64(1 << REACH);
+        let reach: Int<3> = Int::<2>::from_i128(size).mul_i64(1 << COORDINATE_BITS);
         if offset.abs() < reach {
             Self::new(n, -*offset)
         } else {
@@ -214,7 +213,7 @@ impl Plane {
     pub fn lattice_coordinate(&self, axis: usize) -> Option<i64> {
         let at = -self.d.to_f64();
         // Below 2^53 in magnitude the double is exact.
-        let exact = at.abs() < (1u64 << REACH) as f64;
+        let exact = at.abs() < (1u64 << COORDINATE_BITS) as f64;
         match self.n[axis] {
             1 if exact => Some(at as i64),
             -1 if exact => Some(-at as i64),

@@ -16,7 +16,7 @@ use super::window::{Span, Window};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
-use crate::mesh::source::TriangleMesh;
+use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node, Work};
 
 /// Faces for each cell, at least, on average.

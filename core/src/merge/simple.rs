@@ -18,9 +18,10 @@ use crate::geometry::cell::Cell;
 use crate::geometry::fixed::sixfold_flux;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::{poll, spend};
-use crate::mesh::source::{Source, TriangleMesh};
+use crate::mesh::source::Source;
 use crate::mesh::tasks::both;
 use crate::mesh::topology::NONE;
+use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::Node;
 use crate::tree::solid::Solid;
 

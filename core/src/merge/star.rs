@@ -16,7 +16,7 @@
 use crate::geometry::crossing::{triangle_change, Segment};
 use crate::geometry::path::near_determinant;
 use crate::geometry::plane::Lattice;
-use crate::mesh::source::TriangleMesh;
+use crate::mesh::triangles::TriangleMesh;
 
 /// Whether a mesh that closes by index is star-shaped about the mean of its vertices; errs on no.
 pub fn is_star_shaped(mesh: &TriangleMesh) -> bool {

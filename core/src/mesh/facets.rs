@@ -2,8 +2,8 @@
 
 use super::ears::{is_convex, triangles};
 use super::grid::Pitch;
+use crate::arith::bounds::COORDINATE_BITS;
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::cell::REACH;
 use crate::geometry::plane::{normal, Lattice, Plane};
 use crate::interrupt::poll;
 
@@ -72,7 +72,7 @@ pub fn snap_corners(dimension: usize, rows: &[[f64; 3]], pitch: Pitch) -> Result
 /// # Errors
 /// `TooLarge`, with the row.
 pub fn check_reach(rows: &[Lattice]) -> Result<()> {
-    let limit = (1u64 << REACH) - 1;
+    let limit = (1u64 << COORDINATE_BITS) - 1;
     let beyond = |p: &Lattice| p.iter().any(|k| k.unsigned_abs() > limit);
     match rows.iter().position(beyond) {
         None => Ok(()),

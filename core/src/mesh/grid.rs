@@ -1,8 +1,8 @@
 //! The lattice: the only door between doubles and integers.
 
+use crate::arith::bounds::COORDINATE_BITS;
 use crate::arith::{ratio_to_f64, Int};
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::cell::REACH;
 use crate::geometry::dim2::Point2;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
@@ -152,7 +152,7 @@ impl Pitch {
 }
 
 /// Lattice coordinates stay strictly below this magnitude.
-pub const LIMIT: f64 = (1u64 << REACH) as f64;
+pub const LIMIT: f64 = (1u64 << COORDINATE_BITS) as f64;
 
 fn power_of_ten(exponent: i8) -> f64 {
     10f64.powi(i32::from(exponent))

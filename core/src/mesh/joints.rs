@@ -2,9 +2,9 @@
 
 use super::chain::is_closed;
 use super::links;
-use super::source::TriangleMesh;
 use super::tasks::{both, CHUNK};
 use super::topology::{ends, Topology};
+use super::triangles::TriangleMesh;
 
 /// Vertices where faces do not meet two at each edge and in one fan.
 #[derive(Debug, Default)]

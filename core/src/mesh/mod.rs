@@ -20,3 +20,4 @@ mod snap;
 pub mod source;
 pub mod tasks;
 pub mod topology;
+pub mod triangles;

@@ -9,7 +9,7 @@ use crate::geometry::plane::Lattice;
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// Below this magnitude the sum with [`ROUNDER`] stays among them.
-const REACH: f64 = (1u64 << 51) as f64;
+const EXACT: f64 = (1u64 << 51) as f64;
 
 /// The lattice points nearest to points in model units.
 ///
@@ -58,7 +58,7 @@ fn snap_clear(points: &[[f64; 3]], power: f64, lattice: &mut [Lattice]) -> bool 
         let product = point * power;
         let sum = product + ROUNDER;
         let rest = product - (sum - ROUNDER);
-        clear &= product.abs() < REACH;
+        clear &= product.abs() < EXACT;
         clear &= rest.abs() + product.abs() * f64::EPSILON < 0.5;
         *place = (sum.to_bits() as i64).wrapping_sub(ROUNDER.to_bits() as i64);
     }
@@ -67,7 +67,7 @@ fn snap_clear(points: &[[f64; 3]], power: f64, lattice: &mut [Lattice]) -> bool 
 
 #[cfg(test)]
 mod tests {
-    use super::{snap_all, REACH};
+    use super::{snap_all, EXACT};
     use crate::mesh::grid::{snap_point, Pitch};
     use proptest::prelude::*;
 
@@ -105,9 +105,9 @@ mod tests {
     #[test]
     fn the_first_row_that_does_not_fit_is_named() {
         let pitch = Pitch::DEFAULT;
-        let rows = [[0.0; 3], [REACH, 0.0, 0.0], [f64::NAN; 3]];
+        let rows = [[0.0; 3], [EXACT, 0.0, 0.0], [f64::NAN; 3]];
         assert_eq!(snap_all(&rows, pitch).unwrap_err().place(), [1]);
-        let rows = [[1.0, 0.0, f64::NAN], [REACH, 0.0, 0.0]];
+        let rows = [[1.0, 0.0, f64::NAN], [EXACT, 0.0, 0.0]];
         assert_eq!(snap_all(&rows, pitch).unwrap_err().place(), [0]);
     }
 }

@@ -8,6 +8,7 @@ use super::finding::Finding;
 use super::grid::Pitch;
 use super::joints::Joints;
 use super::topology::{open_edges, Topology};
+use super::triangles::TriangleMesh;
 use crate::geometry::cell::Cell;
 use crate::geometry::line::PlaneResidues;
 use crate::geometry::plane::{Lattice, Plane};
@@ -32,19 +33,6 @@ pub enum Shape {
     Mesh(TriangleMesh),
     /// One unbounded face.
     HalfSpace(Arc<Plane>),
-}
-
-/// Lattice triangles, and the doubles they came from.
-#[derive(Clone, Debug, Default)]
-pub struct TriangleMesh {
-    /// Vertices in lattice steps.
-    pub vertices: Vec<Lattice>,
-    /// The original doubles of the vertices.
-    pub doubles: Vec<[f64; 3]>,
-    /// Triangles, counterclockwise as seen from outside.
-    pub faces: Vec<[u32; 3]>,
-    /// The index each face had in its input, where faces were left out.
-    pub numbers: Option<Vec<u32>>,
 }
 
 /// The code of the finding that vertices were welded.
@@ -214,31 +202,5 @@ impl Source {
             Shape::Mesh(mesh) => mesh.bounds().map(|(low, high)| Cell::around(&low, &high)),
             Shape::HalfSpace(_) => Some(Cell::UNIVERSE),
         })
-    }
-}
-
-impl TriangleMesh {
-    /// The corners of a face.
-    pub fn corners(&self, face: u32) -> [Lattice; 3] {
-        self.faces[face as usize].map(|v| self.vertices[v as usize])
-    }
-
-    /// The lattice box around a face.
-    pub fn face_box(&self, face: u32) -> (Lattice, Lattice) {
-        let [a, b, c] = self.corners(face);
-        let low = [0, 1, 2].map(|i| a[i].min(b[i]).min(c[i]));
-        (low, [0, 1, 2].map(|i| a[i].max(b[i]).max(c[i])))
-    }
-
-    /// The lattice box around all vertices; `None` without any.
-    pub fn bounds(&self) -> Option<(Lattice, Lattice)> {
-        let first = *self.vertices.first()?;
-        let grow = |(low, high): (Lattice, Lattice), p: &Lattice| {
-            (
-                [0, 1, 2].map(|i| low[i].min(p[i])),
-                [0, 1, 2].map(|i| high[i].max(p[i])),
-            )
-        };
-        Some(self.vertices.iter().fold((first, first), grow))
     }
 }

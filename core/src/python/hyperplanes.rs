@@ -4,14 +4,18 @@ use std::sync::Arc;
 
 use num_bigint::{BigInt, Sign};
 
-use super::set_input::shape;
 use crate::arith::Int;
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::dim1::Point1;
 use crate::geometry::dim2::Line2;
 use crate::geometry::plane::Plane;
 use crate::mesh::half_space::out_of_reach;
 use crate::query::region::hyperplane::{line, plane, point};
+
+/// An error about the form of an input.
+pub fn shape(text: impl Into<String>) -> Error {
+    Error::new(ErrorKind::Shape, text)
+}
 
 /// A normal and an offset: the hyperplane normal·x = offset.
 pub type Row = Vec<BigInt>;

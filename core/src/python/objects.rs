@@ -9,6 +9,7 @@ use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 
+use super::each::Set;
 use super::errors::{blamed, to_python};
 use super::hyperplanes::Row;
 use super::pieces::{self, Pieces};
@@ -16,7 +17,6 @@ use super::run::{here, run};
 use super::set_input::{self, Input};
 use super::set_queries::{exact_corners, outline_pieces};
 use super::set_store::Nodes;
-use super::sets::Set;
 use crate::error::Result;
 use crate::merge::SetOp;
 use crate::mesh::grid::Pitch;

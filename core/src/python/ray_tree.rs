@@ -18,8 +18,9 @@ use crate::geometry::dim3::Dim3;
 use crate::mesh::grid::Pitch;
 use crate::query::ray::Scene;
 use crate::query::stab::batch::test_rays;
+use crate::query::stab::node::Growth;
 use crate::query::stab::record::Record;
-use crate::query::stab::tree::{Growth, Shape};
+use crate::query::stab::tree::Shape;
 use crate::query::stab::{Cast, StabTree, Trace};
 
 enum Stabbed {

@@ -1,6 +1,6 @@
 //! What a set is made from: names, rows of doubles, hyperplanes.
 
-use super::hyperplanes::Row;
+use super::hyperplanes::{shape, Row};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::{Dim1, Direction, Point1};
@@ -78,11 +78,6 @@ pub fn operation(name: &str) -> Result<SetOp> {
 
 fn unknown(name: &str, what: &str, known: &str) -> Error {
     shape(format!("'{name}' is not {what}; use {known}"))
-}
-
-/// An error about the form of an input.
-pub fn shape(text: impl Into<String>) -> Error {
-    Error::new(ErrorKind::Shape, text)
 }
 
 /// Refuses operands of different pitch.

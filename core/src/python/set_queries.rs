@@ -1,8 +1,8 @@
 //! What a set answers with: pieces, outlines, measures, places.
 
+use super::each::Set;
+use super::hyperplanes::shape;
 use super::pieces::PieceList;
-use super::set_input::shape;
-use super::sets::Set;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::Point1;
@@ -10,7 +10,8 @@ use crate::geometry::dim2::{Dim2, Point2, Segment2};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::mesh::grid::Pitch;
-use crate::query::measure::{big, in_powers, Fraction};
+use crate::query::exact::big;
+use crate::query::measure::{in_powers, Fraction};
 use crate::query::region::cast::cast;
 use crate::query::region::edges::Boundary;
 use crate::query::region::hyperplane::line_along;

@@ -4,7 +4,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::sets::Set;
+use super::each::Set;
 use crate::arith::bounds::{normal, offset, COORDINATE_BITS};
 use crate::arith::Int;
 use crate::error::{Error, Result};

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use num_bigint::BigInt;
 
-use super::each::{each, map_each};
+use super::each::{each, map_each, Set};
+use super::hyperplanes::shape;
 use super::hyperplanes::{in_plane, in_space, on_line};
-use super::set_input::{all, inside_of, points, segments, shape, triangles, Input};
+use super::set_input::{all, inside_of, points, segments, triangles, Input};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::Dim1;
@@ -20,17 +21,6 @@ use crate::query::region::hyperplane::LatticeMap;
 use crate::tree::partition::{
     from_preorder, is_bounded, preorder, stats, Entry, Label, PartitionTree, Sheet, TreeStats,
 };
-
-/// A set of points as a partition tree.
-#[derive(Clone, Debug)]
-pub enum Set {
-    /// On the line.
-    Line(PartitionTree<Dim1>),
-    /// In the plane.
-    Plane(PartitionTree<Dim2>),
-    /// In space.
-    Space(PartitionTree<Dim3>),
-}
 
 impl Set {
     /// The set inside a boundary.

@@ -1,15 +1,13 @@
 //! Exact measures.
 
-use num_bigint::{BigInt, Sign};
-use num_integer::Integer;
+use num_bigint::BigInt;
 
+use super::exact::lowest;
 use super::shares::Shares;
 use crate::arith::{ratio_to_f64, Int, P1, P2};
 use crate::error::{Error, ErrorKind, Result};
-use crate::extract::assemble::{assemble, Corner, ExactMesh};
+use crate::extract::assemble::assemble;
 use crate::geometry::fixed::FLUX_PLACES;
-use crate::geometry::plane::Lattice;
-use crate::geometry::vertex::Homogeneous;
 use crate::tree::flux::share;
 use crate::tree::solid::Solid;
 
@@ -127,31 +125,6 @@ pub fn volume_residues(solid: &Solid) -> Result<Option<[u64; 2]>> {
         .and_then(|a| Some([a, shares.modulo(P2)?])))
 }
 
-pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Option<Lattice> {
-    match mesh.vertices[vertex as usize] {
-        Corner::Source(slot, index) => {
-            Some(solid.sources().get(slot as usize).mesh()?.vertices[index as usize])
-        }
-        Corner::Point(point) => mesh.table.point(point).as_lattice().copied(),
-    }
-}
-
-pub(super) fn homogeneous(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Homogeneous {
-    if let Some(p) = lattice(solid, mesh, vertex) {
-        return Homogeneous {
-            x: p.map(Int::from_i64),
-            w: Int::ONE,
-        };
-    }
-    match mesh.vertices[vertex as usize] {
-        Corner::Point(point) => mesh.table.point(point).coordinates(),
-        Corner::Source(..) => Homogeneous {
-            x: [Int::ZERO; 3],
-            w: Int::ONE,
-        },
-    }
-}
-
 /// Fractions longer than this many bits are left as they are: the divisor would cost more to find
 /// than it saves.
 const REDUCED: u64 = 4096;
@@ -161,14 +134,6 @@ fn reduced(numerator: BigInt, denominator: BigInt) -> (BigInt, BigInt) {
         return (numerator, denominator);
     }
     lowest(numerator, denominator)
-}
-
-pub(super) fn lowest(numerator: BigInt, denominator: BigInt) -> (BigInt, BigInt) {
-    let g = numerator.gcd(&denominator);
-    if g == BigInt::from(1) || g == BigInt::ZERO {
-        return (numerator, denominator);
-    }
-    (numerator / &g, denominator / g)
 }
 
 pub(super) fn pairwise_sum(mut terms: Vec<(BigInt, BigInt)>) -> (BigInt, BigInt) {
@@ -208,20 +173,4 @@ pub fn in_powers(
         numerator,
         denominator,
     }
-}
-
-/// The integer without a bound on its width.
-pub fn big<const N: usize>(value: &Int<N>) -> BigInt {
-    let size = value.abs();
-    let digits: Vec<u32> = size
-        .limbs()
-        .iter()
-        .flat_map(|l| [*l as u32, (*l >> 32) as u32])
-        .collect();
-    let sign = if value.is_negative() {
-        Sign::Minus
-    } else {
-        Sign::Plus
-    };
-    BigInt::from_slice(sign, &digits)
 }

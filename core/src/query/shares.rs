@@ -10,9 +10,9 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use smallvec::SmallVec;
 
-use super::measure::{big, homogeneous, lattice, lowest};
+use super::exact::{big, homogeneous, lattice, lowest};
 use crate::arith::{inv_mod, mul_mod, Int};
-use crate::extract::assemble::ExactMesh;
+use crate::extract::mesh::ExactMesh;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::{poll, spend};
 use crate::mesh::tasks::both;

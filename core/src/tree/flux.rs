@@ -9,6 +9,7 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use super::node::{Branch, Deferred, Node, Part};
+use super::share::Share;
 use crate::arith::Int;
 use crate::geometry::cell::Cell;
 use crate::geometry::fixed::{
@@ -20,27 +21,6 @@ use crate::geometry::trim::{trimmed, Rest};
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::mesh::source::{Shape, Source};
-
-/// What a node's boundary contributes to the volume.
-#[derive(Clone, Copy, Debug)]
-pub struct Share {
-    /// Six times the flux through the boundary in the node's cell.
-    pub flux: Flux,
-    /// Whether the boundary may reach infinity, so that the flux means nothing.
-    pub open: bool,
-}
-
-impl Share {
-    const NONE: Self = Self {
-        flux: Flux::ZERO,
-        open: false,
-    };
-
-    fn add(&mut self, other: &Self, negative: bool) {
-        self.flux.add(&other.flux, negative);
-        self.open |= other.open;
-    }
-}
 
 /// What a branch contributes; computed where no operation before has left it.
 pub fn share(root: &Branch) -> Share {

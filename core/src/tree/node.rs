@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::flux::Share;
+use super::share::Share;
 use crate::geometry::cell::Cell;
 use crate::geometry::fixed::Flux;
 use crate::geometry::outline;

@@ -3,7 +3,7 @@
 use super::node::{Branch, Node};
 use super::solid::Solid;
 use crate::geometry::plane::Lattice;
-use crate::mesh::source::TriangleMesh;
+use crate::mesh::triangles::TriangleMesh;
 
 /// Cuts and elements that an operation on solids may have to look at, counted up to a limit.
 ///

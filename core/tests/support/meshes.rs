@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use bspcsg::extract::round::{self, Mesh};
+use bspcsg::extract::{mesh::Mesh, round};
 use bspcsg::merge::SetOp;
 use bspcsg::tree::solid::Solid;
 

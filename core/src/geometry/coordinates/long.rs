@@ -1,6 +1,6 @@
 //! Meets of any planes.
 
-use super::Homogeneous;
+use super::homogeneous::Homogeneous;
 use crate::arith::Int;
 use crate::geometry::plane::{Lattice, Plane};
 

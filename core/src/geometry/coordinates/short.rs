@@ -2,7 +2,7 @@
 //!
 //! The widths are those of `arith::bounds::SHORT_NORMAL_BITS` and what is asserted beside it.
 
-use super::Homogeneous;
+use super::homogeneous::Homogeneous;
 use crate::arith::Int;
 use crate::geometry::plane::{Lattice, ShortPlane};
 

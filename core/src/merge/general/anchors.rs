@@ -5,8 +5,7 @@
 
 use std::sync::Arc;
 
-use super::fates::Cut;
-use super::scene::{Element, Place, Triangle};
+use super::scene::{Element, Name, Place, Triangle};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::{Carrier, Corner, Polygon};
@@ -17,18 +16,6 @@ use crate::geometry::vertex::Vertex;
 pub(super) struct Anchor {
     pub(super) name: Name,
     pub(super) place: Spot,
-}
-
-/// What tells points apart that several elements may have in common.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Name {
-    /// A vertex of a source.
-    Vertex(u32, u32),
-    /// A corner of a part: pieces that share the corner share the object at this address.
-    Corner(usize),
-    /// The point in which an edge of a source leaves the cell: the edge's ends, and twice the axis
-    /// of the wall, with one more for the upper one.
-    Crossing(u32, [u32; 2], u8),
 }
 
 /// Where an anchor is.
@@ -100,12 +87,8 @@ impl Anchor {
         })
     }
 
-    /// A part that has the anchor as a corner.
-    pub(super) fn part(&self, cut: &Cut) -> Option<usize> {
-        cut.part_with(|corner| self.is_at(corner))
-    }
-
-    fn is_at(&self, corner: &Arc<Vertex>) -> bool {
+    /// Whether a corner is the anchor.
+    pub(super) fn is_at(&self, corner: &Arc<Vertex>) -> bool {
         match &self.place {
             Spot::Lattice(p) => corner.as_lattice() == Some(p),
             Spot::Exact(vertex) => Arc::ptr_eq(vertex, corner),

@@ -160,6 +160,11 @@ impl Parts {
 }
 
 impl Cut {
+    /// A part that has an anchor as a corner.
+    pub(super) fn part_at(&self, anchor: &Anchor) -> Option<usize> {
+        self.part_with(|corner| anchor.is_at(corner))
+    }
+
     /// The first part that has such a corner.
     pub(super) fn part_with(&self, is_it: impl Fn(&Arc<Vertex>) -> bool) -> Option<usize> {
         let has = |piece: &Polygon| piece.corners().iter().any(|c| is_it(&c.at));

@@ -2,9 +2,9 @@
 
 use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
-use super::anchors::{Anchor, Name};
+use super::anchors::Anchor;
 use super::fates::Fate;
-use super::scene::{Element, Place, Scene};
+use super::scene::{Element, Name, Place, Scene};
 use super::Labels;
 use crate::geometry::cell::Cell;
 use crate::interrupt::poll;
@@ -113,7 +113,7 @@ impl Known {
             let Fate::Cut(cut) = &fates[*i as usize] else {
                 return None;
             };
-            let part = cut.anchors[*place as usize].part(cut)?;
+            let part = cut.part_at(&cut.anchors[*place as usize])?;
             Some((*i as usize, part, label))
         })
         .collect()

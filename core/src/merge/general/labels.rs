@@ -41,7 +41,7 @@ impl Scene<'_> {
     fn start(&self, operand: usize, cut: &Cut, known: &mut Known) -> Option<(usize, Labels)> {
         if let Some(anchor) = cut.anchors.first() {
             let label = known.label(self, operand, anchor)?;
-            return Some((anchor.part(cut)?, label));
+            return Some((cut.part_at(anchor)?, label));
         }
         let base = &cut.polygon.corners()[0].at;
         let part = cut.part_with(|at| Arc::ptr_eq(at, base))?;
@@ -65,7 +65,7 @@ impl Scene<'_> {
             };
             labels[i] = spread(&cut.parts, part, start)?;
             for anchor in &cut.anchors {
-                let label = labels[i][anchor.part(cut)?];
+                let label = labels[i][cut.part_at(anchor)?];
                 let root = known.root_of(self.elements[i].operand, anchor.name) as usize;
                 match known.labels[root].replace(label) {
                     Some(other) if other != label => return None,

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use super::super::cutting::Face;
 use super::super::list::{List, Record, Sources};
 use super::super::pairs::Swept;
-use super::anchors::Name;
 use super::Labels;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
@@ -121,6 +120,18 @@ impl<'a> Scene<'a> {
         };
         &self.elements[start..self.ends[operand]]
     }
+}
+
+/// What tells points apart that several elements may have in common.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Name {
+    /// A vertex of a source.
+    Vertex(u32, u32),
+    /// A corner of a part: pieces that share the corner share the object at this address.
+    Corner(usize),
+    /// The point in which an edge of a source leaves the cell: the edge's ends, and twice the axis
+    /// of the wall, with one more for the upper one.
+    Crossing(u32, [u32; 2], u8),
 }
 
 /// A box around elements; one that holds nothing if there are none.

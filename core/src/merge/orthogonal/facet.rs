@@ -6,7 +6,6 @@ use smallvec::SmallVec;
 
 use super::super::list::{List, PartRecord, Record, Sources};
 use super::super::stays::Owner;
-use super::grid::{Grid, Reach};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
@@ -28,17 +27,7 @@ pub(super) struct Facet<'a> {
     /// By how much the winding number behind it exceeds that in front of it.
     weight: i32,
     slants: SmallVec<[Slant; 1]>,
-    place: Place<'a>,
-}
-
-/// Where a facet lies in a grid.
-pub(super) struct Extent {
-    /// The number of the line that is its plane.
-    pub(super) line: usize,
-    /// Its rows.
-    pub(super) rows: Reach,
-    /// Its bits.
-    pub(super) bits: Reach,
+    pub(super) place: Place<'a>,
 }
 
 /// Where a facet comes from.
@@ -214,29 +203,6 @@ impl<'a> Facet<'a> {
             -self.weight
         } else {
             self.weight
-        }
-    }
-
-    /// Where the facet's bounds lie on an axis.
-    fn reach(&self, grid: &Grid, axis: usize) -> Reach {
-        match &self.place {
-            Place::Face(_, _, _, corners) => {
-                let along = corners.map(|p| 2 * p[axis]);
-                let [a, b, c] = along;
-                grid.between(axis, a.min(b).min(c), a.max(b).max(c))
-            }
-            Place::Plane(..) => Reach::all(grid.count(axis)),
-            Place::Piece(_, polygon) => grid.under(axis, polygon),
-        }
-    }
-
-    /// Where the facet lies in a grid.
-    pub(super) fn extent(&self, grid: &Grid) -> Extent {
-        let (row, bit) = ACROSS[self.axis];
-        Extent {
-            line: grid.find(self.axis, self.at),
-            rows: self.reach(grid, row),
-            bits: self.reach(grid, bit),
         }
     }
 

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::facet::{Extent, Facet, ACROSS};
+use super::extent::Extent;
+use super::facet::{Facet, ACROSS};
 use super::grid::{mask, Grid, Reach};
 use crate::interrupt::poll;
 

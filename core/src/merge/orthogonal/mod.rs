@@ -4,6 +4,7 @@
 //! that sets of regions are bits, expressions are evaluated a word at a time, and faces in one plane
 //! need no special care. What a face keeps is found on the rectangles of its plane.
 
+mod extent;
 mod facet;
 mod grid;
 mod keep;
@@ -14,7 +15,8 @@ use super::expression::Expression;
 use super::kept::Kept;
 use super::list::{List, Sources};
 use crate::geometry::cell::Cell;
-use facet::{Extent, Facets};
+use extent::Extent;
+use facet::Facets;
 use grid::Grid;
 use keep::Scene;
 

@@ -1,7 +1,9 @@
 //! Lines to sweep along, and how elements lie along them.
 
-use super::sweep::MANY;
 use super::Swept;
+
+/// Among fewer elements than this other lines than the axes are not worth finding.
+pub const MANY: usize = 512;
 
 /// Projections are widened by this share of the largest coordinate, far above their rounding.
 pub const SLACK: f64 = 1e-14;

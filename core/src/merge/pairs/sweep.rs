@@ -6,14 +6,11 @@
 
 use rayon::prelude::*;
 
-use super::line::{dot, longest_edge, Line, Span};
+use super::line::{dot, longest_edge, Line, Span, MANY};
 use super::rim::{largest_coordinate, rims, HalfPlane};
 use super::Swept;
 use crate::interrupt::{carried, spend};
 use crate::mesh::tasks::in_pool;
-
-/// Among fewer elements than this other lines than the axes are not worth finding.
-pub const MANY: usize = 512;
 
 /// A sweep that compares more pairs, at about a nanosecond each, costs more than halving the cell.
 const CROWDED: f64 = 3e8;

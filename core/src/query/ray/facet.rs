@@ -11,6 +11,9 @@ use super::line::Ray;
 use super::ratio::Ratio;
 use crate::arith::Int;
 
+/// The corners of a facet: a point in 1D, a segment in 2D, a triangle in 3D.
+pub type Facet<const D: usize> = [[f64; D]; D];
+
 /// Corners relative to a ray's origin.
 pub type Corners<const D: usize> = [[i64; D]; D];
 

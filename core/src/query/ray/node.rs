@@ -9,7 +9,7 @@
 
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use super::scene::Facet;
+use super::facet::Facet;
 use crate::interrupt::poll;
 use crate::mesh::tasks::both;
 

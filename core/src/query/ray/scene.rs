@@ -4,14 +4,12 @@ use std::cmp::Ordering;
 use std::sync::OnceLock;
 
 use super::closed::require_closed;
+use super::facet::Facet;
 use super::node::{Cell, Node};
 use super::ratio::Ratio;
 use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt::poll;
 use crate::mesh::grid::Pitch;
-
-/// The corners of a facet: a point in 1D, a segment in 2D, a triangle in 3D.
-pub type Facet<const D: usize> = [[f64; D]; D];
 
 /// Facets on a lattice, and a tree of axis cuts over them that grows where rays go.
 ///
@@ -99,7 +97,7 @@ impl<const D: usize> Scene<D> {
             return known.clone();
         }
         // Not within `get_or_init`: a thread of the pool that waits there could be asked again.
-        let found = require_closed(self);
+        let found = require_closed(&self.facets, &self.numbers);
         self.closed.get_or_init(|| found).clone()
     }
 

@@ -10,7 +10,8 @@ use crate::geometry::dim3::Dim3;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::mesh::grid::Pitch;
-use crate::query::measure::{big, in_powers, pairwise_sum, Fraction};
+use crate::query::exact::big;
+use crate::query::measure::{in_powers, pairwise_sum, Fraction};
 use crate::tree::partition::{is_bounded, walls, PartitionTree};
 
 type Ratio = (BigInt, BigInt);

@@ -9,7 +9,7 @@ use crate::extract::assemble::assemble;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::vertex::{Homogeneous, Vertex};
 use crate::interrupt::poll;
-use crate::query::measure::{big, homogeneous};
+use crate::query::exact::{big, homogeneous};
 use crate::tree::solid::Solid;
 
 /// The directed edges in which a plane cuts a bounded solid's boundary.

@@ -1,5 +1,6 @@
 //! What a space must tell of its hyperplanes for rays to stab them.
 
+use crate::arith::bounds::COORDINATE_BITS;
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::dim1::{Dim1, Direction, Point1};
@@ -36,7 +37,7 @@ fn without_extent() -> Error {
 }
 
 impl Cast<1> for Dim1 {
-    const REACH: i64 = (1 << 53) - 1;
+    const REACH: i64 = (1 << COORDINATE_BITS) - 1;
 
     fn fragment(corners: &[[i64; 1]; 1]) -> Result<Point1> {
         Ok(Point1::new(corners[0][0], Direction::Below))
@@ -84,7 +85,7 @@ impl Cast<2> for Dim2 {
 }
 
 impl Cast<3> for Dim3 {
-    const REACH: i64 = (1 << 53) - 1;
+    const REACH: i64 = (1 << COORDINATE_BITS) - 1;
 
     fn fragment(corners: &[[i64; 3]; 3]) -> Result<Polygon> {
         let [a, b, c] = corners;

@@ -11,6 +11,7 @@ pub mod record;
 pub mod tree;
 
 mod cut;
+pub mod node;
 mod trace;
 mod walk;
 

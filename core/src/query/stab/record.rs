@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::cast::Cast;
 use super::heap::{Entry, Heap};
-use super::tree::{Content, Growth, StabTree};
+use super::node::{Content, Growth};
+use super::tree::StabTree;
 use crate::error::{Error, ErrorKind, Result};
 use crate::query::ray::Scene;
 

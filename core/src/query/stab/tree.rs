@@ -11,6 +11,7 @@ use smallvec::SmallVec;
 use super::cast::Cast;
 use super::cut::Cut;
 use super::heap::{Entry, Heap};
+use super::node::{Content, Growth, Inner, Node};
 use super::trace::Trace;
 use super::walk::Walk;
 use crate::error::{Error, ErrorKind, Result};
@@ -20,15 +21,6 @@ use crate::query::ray::first::{Found, Query};
 use crate::query::ray::walk::clip;
 use crate::query::ray::{Ray, Scene};
 
-/// When leaves are divided.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Growth {
-    /// After more visits than this.
-    Visits(u64),
-    /// Not by rays.
-    Never,
-}
-
 /// A tree of supporting hyperplanes over the facets of a scene.
 #[derive(Debug)]
 pub struct StabTree<S: Cast<D>, const D: usize> {
@@ -37,28 +29,6 @@ pub struct StabTree<S: Cast<D>, const D: usize> {
     growth: Growth,
     subdivisions: u64,
     pub(super) rays: u64,
-}
-
-#[derive(Debug)]
-pub(super) struct Node<S: Cast<D>, const D: usize> {
-    pub(super) visits: u64,
-    pub(super) depth: u32,
-    pub(super) content: Content<S, D>,
-}
-
-#[derive(Debug)]
-pub(super) enum Content<S: Cast<D>, const D: usize> {
-    Leaf(Heap<S::Fragment>),
-    Inner(Box<Inner<D>>),
-}
-
-#[derive(Debug)]
-pub(super) struct Inner<const D: usize> {
-    pub(super) cut: Cut<D>,
-    pub(super) coplanar: Vec<u32>,
-    pub(super) children: [u32; 2],
-    /// Whether a facet of each child may have a point in the interior of a facet in the cut.
-    pub(super) touched: [bool; 2],
 }
 
 /// The size and the past of a tree.
@@ -246,15 +216,4 @@ fn parts<S: Cast<D>, const D: usize>(
         touched,
     };
     (inner, [below, above])
-}
-
-impl<S: Cast<D>, const D: usize> Node<S, D> {
-    fn leaf(list: Heap<S::Fragment>, depth: u32) -> Self {
-        let (visits, content) = (0, Content::Leaf(list));
-        Self {
-            visits,
-            depth,
-            content,
-        }
-    }
 }

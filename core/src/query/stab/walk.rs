@@ -4,8 +4,8 @@ use smallvec::SmallVec;
 
 use super::cast::Cast;
 use super::cut::Stab;
+use super::node::{Content, Growth, Inner, Node};
 use super::trace::Trace;
-use super::tree::{Content, Growth, Inner, Node};
 use crate::query::ray::filter::Probe;
 use crate::query::ray::first::{Candidate, Query};
 use crate::query::ray::Ray;

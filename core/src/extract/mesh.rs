@@ -1,0 +1,78 @@
+//! Closed triangle meshes, exact and in doubles.
+
+use super::vertices::VertexTable;
+use crate::geometry::plane::normal;
+use crate::merge::list::Sources;
+use crate::mesh::finding::Finding;
+use crate::mesh::source::Shape;
+
+/// A closed triangle mesh with exact vertices.
+#[derive(Debug, Default)]
+pub struct ExactMesh {
+    /// Where each vertex is.
+    pub vertices: Vec<Corner>,
+    /// Triangles, counterclockwise as seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// For each triangle the face it lies in.
+    pub faces: Vec<TriangleFace>,
+    /// How many triangles at the start are faces of sources as they came.
+    pub untouched: usize,
+    /// The constructed points that [`Corner::Point`] names.
+    pub table: VertexTable,
+    /// What was noticed on the way.
+    pub findings: Vec<Finding>,
+}
+
+/// Where a vertex of an [`ExactMesh`] is.
+#[derive(Clone, Copy, Debug)]
+pub enum Corner {
+    /// A vertex of a source: slot and index.
+    Source(u32, u32),
+    /// A point of the table.
+    Point(u32),
+}
+
+/// The face a triangle lies in, as the source has it, and whether it is turned around.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct TriangleFace {
+    /// The source's slot.
+    pub slot: u32,
+    /// The face.
+    pub face: u32,
+    /// Whether the triangle faces the other way.
+    pub flip: bool,
+}
+
+impl TriangleFace {
+    /// The outward normal of the face, up to a positive factor.
+    pub fn normal(&self, sources: &Sources) -> [i128; 3] {
+        let n = match sources.get(self.slot as usize).shape() {
+            Shape::Mesh(mesh) => {
+                let [a, b, c] = mesh.corners(self.face);
+                normal(&a, &b, &c)
+            }
+            Shape::HalfSpace(plane) => *plane.normal(),
+        };
+        if self.flip {
+            n.map(|c| -c)
+        } else {
+            n
+        }
+    }
+}
+
+/// A triangle mesh in doubles.
+#[derive(Debug, Default)]
+pub struct Mesh {
+    /// Vertices in model units.
+    pub vertices: Vec<[f64; 3]>,
+    /// Triangles, counterclockwise as seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// For each triangle the source's slot and the number of the face in its input.
+    pub origins: Vec<[u32; 2]>,
+    /// What was noticed on the way.
+    pub findings: Vec<Finding>,
+    /// How many triangles were compared exactly with all near them, because they are not faces of
+    /// inputs as they came; those that cross something are a finding.
+    pub compared: u64,
+}

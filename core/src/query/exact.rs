@@ -1,0 +1,62 @@
+//! Exact places of a mesh's vertices, and integers without a bound on their width.
+
+use num_bigint::{BigInt, Sign};
+use num_integer::Integer;
+
+use crate::arith::Int;
+use crate::extract::mesh::{Corner, ExactMesh};
+use crate::geometry::plane::Lattice;
+use crate::geometry::vertex::Homogeneous;
+use crate::tree::solid::Solid;
+
+/// The place of a vertex, if it is a lattice point.
+pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Option<Lattice> {
+    match mesh.vertices[vertex as usize] {
+        Corner::Source(slot, index) => {
+            Some(solid.sources().get(slot as usize).mesh()?.vertices[index as usize])
+        }
+        Corner::Point(point) => mesh.table.point(point).as_lattice().copied(),
+    }
+}
+
+/// The place of a vertex.
+pub(super) fn homogeneous(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Homogeneous {
+    if let Some(p) = lattice(solid, mesh, vertex) {
+        return Homogeneous {
+            x: p.map(Int::from_i64),
+            w: Int::ONE,
+        };
+    }
+    match mesh.vertices[vertex as usize] {
+        Corner::Point(point) => mesh.table.point(point).coordinates(),
+        Corner::Source(..) => Homogeneous {
+            x: [Int::ZERO; 3],
+            w: Int::ONE,
+        },
+    }
+}
+
+/// A fraction in lowest terms.
+pub(super) fn lowest(numerator: BigInt, denominator: BigInt) -> (BigInt, BigInt) {
+    let g = numerator.gcd(&denominator);
+    if g == BigInt::from(1) || g == BigInt::ZERO {
+        return (numerator, denominator);
+    }
+    (numerator / &g, denominator / g)
+}
+
+/// The integer without a bound on its width.
+pub fn big<const N: usize>(value: &Int<N>) -> BigInt {
+    let size = value.abs();
+    let digits: Vec<u32> = size
+        .limbs()
+        .iter()
+        .flat_map(|l| [*l as u32, (*l >> 32) as u32])
+        .collect();
+    let sign = if value.is_negative() {
+        Sign::Minus
+    } else {
+        Sign::Plus
+    };
+    BigInt::from_slice(sign, &digits)
+}

@@ -1,0 +1,26 @@
+//! What a part of a boundary contributes to the volume.
+
+use crate::geometry::fixed::Flux;
+
+/// What a node's boundary contributes to the volume.
+#[derive(Clone, Copy, Debug)]
+pub struct Share {
+    /// Six times the flux through the boundary in the node's cell.
+    pub flux: Flux,
+    /// Whether the boundary may reach infinity, so that the flux means nothing.
+    pub open: bool,
+}
+
+impl Share {
+    /// Nothing.
+    pub const NONE: Self = Self {
+        flux: Flux::ZERO,
+        open: false,
+    };
+
+    /// Adds what another part contributes, or takes it away.
+    pub fn add(&mut self, other: &Self, negative: bool) {
+        self.flux.add(&other.flux, negative);
+        self.open |= other.open;
+    }
+}
