@@ -6,7 +6,7 @@ mod support;
 use std::hint::black_box;
 use std::sync::Arc;
 
-use bspcsg::extract::round;
+use bspcsg::extract::rounding::round;
 use bspcsg::geometry::dim3::Dim3;
 use bspcsg::geometry::plane::{Lattice, Plane};
 use bspcsg::geometry::polygon::Polygon;

@@ -9,7 +9,7 @@ mod support;
 use std::hint::black_box;
 use std::sync::Arc;
 
-use bspcsg::extract::round;
+use bspcsg::extract::rounding::round;
 use bspcsg::merge::evaluate::evaluate;
 use bspcsg::merge::expression::{Expression, Term};
 use bspcsg::merge::SetOp;

@@ -12,6 +12,7 @@ pub mod interrupt;
 pub mod merge;
 pub mod mesh;
 pub mod query;
+pub mod store;
 pub mod tree;
 
 #[cfg(feature = "python")]

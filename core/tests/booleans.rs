@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use bspcsg::extract::collect::has_no_boundary;
-use bspcsg::extract::round;
+use bspcsg::extract::boundary::collect::has_no_boundary;
+use bspcsg::extract::rounding::round;
 use bspcsg::merge::evaluate::evaluate;
 use bspcsg::merge::expression::{Expression, Term};
 use bspcsg::mesh::import::import;

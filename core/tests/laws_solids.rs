@@ -7,15 +7,15 @@ use std::sync::Arc;
 use bspcsg::arith::bounds::{self, COORDINATE_BITS, HALF_SPACE_NORMAL_BITS};
 use bspcsg::arith::Int;
 use bspcsg::error::ErrorKind;
-use bspcsg::extract::snapshot::{Motion, Snapshot};
 use bspcsg::geometry::plane::{Lattice, Plane};
-use bspcsg::merge::choice::LEAF;
+use bspcsg::merge::descent::choice::LEAF;
 use bspcsg::merge::expression::Term;
-use bspcsg::merge::leaf::Rule;
+use bspcsg::merge::kernels::leaf::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::half_space::half_space;
 use bspcsg::query::classify::Location;
+use bspcsg::store::snapshot::{Motion, Snapshot};
 use bspcsg::tree::solid::Solid;
 
 use support::{

@@ -1,13 +1,15 @@
-//! The layers of the crate point one way: a module uses only what lies below it.
+//! The layers of the crate point one way: a module uses only what lies below it, and no file uses
+//! itself by way of others.
 //!
-//! Read from the sources: every path that starts at `crate::` or climbs out of its folder by
-//! `super::` names the layer that it reaches into.
+//! Read from the sources: every path that starts at `crate::`, `super::` or `self::` names what it
+//! reaches into.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the bottom to the top.
-const LAYERS: [&str; 10] = [
+const LAYERS: [&str; 11] = [
     "error",
     "interrupt",
     "arith",
@@ -16,6 +18,7 @@ const LAYERS: [&str; 10] = [
     "tree",
     "merge",
     "extract",
+    "store",
     "query",
     "python",
 ];
@@ -106,6 +109,107 @@ fn place(relative: &Path) -> (String, usize) {
     (layer, parts.len() - usize::from(is_folder_page))
 }
 
+/// The paths after `prefix` in code without comments, groups taken apart.
+fn paths_after(code: &str, prefix: &str) -> Vec<String> {
+    let starts = code.match_indices(prefix).map(|(at, _)| at);
+    let is_start =
+        |at: &usize| !code[..*at].ends_with(|c: char| c.is_alphanumeric() || "_:$".contains(c));
+    let ends = starts.filter(is_start).map(|at| at + prefix.len());
+    ends.flat_map(|at| taken_apart(&code[at..])).collect()
+}
+
+/// `a::{b::C, d}` gives `a::b::C` and `a::d`.
+fn taken_apart(path: &str) -> Vec<String> {
+    let is_plain = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
+    let plain = &path[..path.find(|c| !is_plain(c)).unwrap_or(path.len())];
+    let Some(group) = path[plain.len()..].strip_prefix('{') else {
+        return vec![plain.to_owned()];
+    };
+    let mut level = 0;
+    let mut members = vec![0];
+    for (at, c) in group.char_indices() {
+        match c {
+            '{' => level += 1,
+            ',' if level == 0 => members.push(at + 1),
+            '}' if level == 0 => break,
+            '}' => level -= 1,
+            _ => {}
+        }
+    }
+    let member = |at: usize| taken_apart(group[at..].trim_start());
+    let names = members.into_iter().flat_map(member);
+    names.map(|name| format!("{plain}{name}")).collect()
+}
+
+/// The module of a file: `tree/node.rs` is `tree::node`, `tree/mod.rs` is `tree`.
+fn module_of(relative: &Path) -> String {
+    let text = relative
+        .with_extension("")
+        .to_string_lossy()
+        .replace('/', "::");
+    text.strip_suffix("::mod")
+        .map_or(text.clone(), str::to_owned)
+}
+
+/// For each module those that it uses, tests inside modules left out.
+fn uses(root: &Path) -> BTreeMap<String, BTreeSet<String>> {
+    let mut files = Vec::new();
+    rust_files(root, &mut files);
+    let module = |file: &PathBuf| module_of(file.strip_prefix(root).expect("found below the root"));
+    let known: BTreeSet<String> = files.iter().map(module).collect();
+    let owner = |path: &str| {
+        let mut path = path.to_owned();
+        while !known.contains(&path) {
+            path = path.rsplit_once("::")?.0.to_owned();
+        }
+        Some(path)
+    };
+    let used = |file: &PathBuf| {
+        let own = module(file);
+        let source = fs::read_to_string(file).expect("a source file can be read");
+        let code = without_comments(&source);
+        let code = code.split("#[cfg(test)]\nmod tests {").next().unwrap_or("");
+        let mut above: Vec<&str> = own.split("::").collect();
+        let mut paths = paths_after(code, "crate::");
+        let within = paths_after(code, "self::").into_iter();
+        paths.extend(within.map(|path| format!("{own}::{path}")));
+        let mut climb = String::new();
+        while above.pop().is_some() {
+            climb += "super::";
+            let inside = above.join("::");
+            let climbed = paths_after(code, &climb).into_iter();
+            let outside = climbed.filter(|path| !path.starts_with("super::"));
+            paths.extend(outside.map(|path| format!("{inside}::{path}")));
+        }
+        let all = paths.iter().filter_map(|path| owner(path));
+        let others = all.filter(|other| *other != own).collect();
+        (own, others)
+    };
+    files.iter().map(used).collect()
+}
+
+#[test]
+fn no_file_uses_itself_by_way_of_others() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut open = uses(&root);
+    assert!(open.values().map(BTreeSet::len).sum::<usize>() > 500);
+    loop {
+        let done: BTreeSet<String> = open
+            .iter()
+            .filter(|(_, used)| used.is_empty())
+            .map(|(module, _)| module.clone())
+            .collect();
+        if done.is_empty() {
+            break;
+        }
+        open.retain(|module, _| !done.contains(module));
+        for used in open.values_mut() {
+            used.retain(|module| !done.contains(module));
+        }
+    }
+    assert!(open.is_empty(), "circles among or below: {open:#?}");
+}
+
 #[test]
 fn no_layer_reaches_upwards() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
@@ -149,6 +253,15 @@ fn every_way_to_name_a_layer_is_seen() {
         Vec::<String>::new()
     );
     assert_eq!(reached("pub(crate) use super::merge::x;", 1), ["merge"]);
+}
+
+#[test]
+fn groups_of_paths_are_taken_apart() {
+    let expected = ["a::B", "a::c::D", "a::c::e"];
+    assert_eq!(taken_apart("a::{B, c::{D, e}};"), expected);
+    assert_eq!(paths_after("use super::a::b;", "super::"), ["a::b"]);
+    assert_eq!(module_of(Path::new("tree/node.rs")), "tree::node");
+    assert_eq!(module_of(Path::new("tree/mod.rs")), "tree");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Bytes to start from: snapshots of mixed solids, and numbers for all else.
 
-use bspcsg::extract::snapshot::Snapshot;
 use bspcsg::merge::expression::Term;
+use bspcsg::store::snapshot::Snapshot;
 
 use crate::support::{combined, Numbers, Shape};
 

@@ -26,7 +26,7 @@ def test_a_run_without_findings() -> None:
     [
         ("panicked at src/targets/evaluate.rs:12:5:\nleft is not right", "wrong"),
         ("panicked at src/../../core/tests/support/meshes.rs:18:5:\nan edge", "wrong"),
-        ("panicked at /home/me/core/src/merge/list.rs:31:21:\noverflow", "crash"),
+        ("panicked at /home/me/core/src/merge/lists/list.rs:31:21:\noverflow", "crash"),
         ("==7== ERROR: libFuzzer: timeout after 10 seconds", "hang"),
         ("==7== ERROR: libFuzzer: out-of-memory (used: 2049Mb)", "memory"),
         ("=== Uncaught Python exception: ===\nAssertionError: ['raw: x']", "wrong"),

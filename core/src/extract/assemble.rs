@@ -4,21 +4,21 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::assembly::{Assembly, NONE};
-use super::collect::collect;
+use super::boundary::collect::collect;
+use super::boundary::leaves::Fate;
+use super::boundary::rim::{half_edge_ends, FrontierEdge, Rims};
 use super::contacts;
+use super::emission::assembly::{Assembly, NONE};
+use super::emission::untouched::{Untouched, WholeFaces};
 use super::failure::Failure;
-use super::leaves::Fate;
+use super::joining::planes::{group, PlaneGroup};
+use super::joining::seams::{find_touching, subdivisions, Edge, InnerPoints, LinePoints};
 use super::mesh::{Corner, ExactMesh};
-use super::planes::{group, PlaneGroup};
-use super::rim::{half_edge_ends, FrontierEdge, Rims};
-use super::seams::{find_touching, subdivisions, Edge, InnerPoints, LinePoints};
-use super::untouched::{Untouched, WholeFaces};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::outline::BareEdge;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
-use crate::merge::list::Sources;
+use crate::merge::lists::list::Sources;
 use crate::tree::solid::Solid;
 
 /// Groups of as many edges are looked through faster than a table of their points is made.

@@ -2,7 +2,7 @@
 
 use super::vertices::VertexTable;
 use crate::geometry::plane::normal;
-use crate::merge::list::Sources;
+use crate::merge::lists::list::Sources;
 use crate::mesh::finding::Finding;
 use crate::mesh::source::Shape;
 

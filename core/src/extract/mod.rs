@@ -2,27 +2,12 @@
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
 pub mod assemble;
-mod assembly;
-pub mod collect;
-pub mod company;
-mod contacts;
-pub mod crossings;
+pub mod boundary;
+pub mod contacts;
+pub mod emission;
 mod failure;
-pub mod fans;
-mod leaves;
-pub mod mend;
+pub mod joining;
 pub mod mesh;
-mod origin;
-pub mod planes;
-mod polygons;
-pub mod rim;
-pub mod round;
-pub mod sealed;
-pub mod seams;
-pub mod settle;
-pub mod snapshot;
-mod sound;
+pub mod rounding;
 pub mod triangulate;
-pub mod unfold;
-mod untouched;
 pub mod vertices;

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::descend::{Counters, Descent};
+use super::descent::descend::{Counters, Descent};
 use super::expression::{Expression, Term};
-use super::leaf::Rule;
-use super::list::Sources;
+use super::kernels::leaf::Rule;
+use super::lists::list::Sources;
 use super::simple::is_simple;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grid::Pitch;

@@ -8,9 +8,9 @@ use super::arrays::{array, rows, wide};
 use super::errors::to_python;
 use super::run::run;
 use crate::error::{Error, ErrorKind, Result};
-use crate::extract::company::Faces;
-use crate::extract::crossings::{all_faults, Faults};
-use crate::extract::settle::{settle_in_single, Rounded};
+use crate::extract::rounding::company::Faces;
+use crate::extract::rounding::crossings::{all_faults, Faults};
+use crate::extract::rounding::settle::{settle_in_single, Rounded};
 
 /// The pairs of triangles that cross or overlap, and the triangles without area.
 #[pyfunction]

@@ -1,8 +1,8 @@
 //! Trees that rays have grown as bytes.
 
 use crate::error::Result;
-use crate::extract::sealed::{seal, unseal, Kind};
 use crate::query::stab::record::Record;
+use crate::store::sealed::{seal, unseal, Kind};
 
 /// A record as bytes.
 pub fn to_bytes(record: &Record) -> Result<Vec<u8>> {

@@ -8,12 +8,12 @@ use super::each::Set;
 use crate::arith::bounds::{normal, offset, COORDINATE_BITS};
 use crate::arith::Int;
 use crate::error::{Error, Result};
-use crate::extract::sealed::{seal, unseal, Kind};
 use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::{Direction, Point1};
 use crate::geometry::dim2::Line2;
 use crate::geometry::plane::Plane;
 use crate::mesh::grid::Pitch;
+use crate::store::sealed::{seal, unseal, Kind};
 use crate::tree::partition::{from_preorder, preorder, Entry, Label, PartitionTree};
 
 /// The widths of a plane's coefficients.

@@ -5,8 +5,8 @@ use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
 use crate::interrupt::poll;
-use crate::merge::leaf::LeafTree;
-use crate::merge::list::{List, Sources};
+use crate::merge::kernels::leaf::LeafTree;
+use crate::merge::lists::list::{List, Sources};
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 

@@ -2,7 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use bspcsg::extract::{mesh::Mesh, round};
+use bspcsg::extract::mesh::Mesh;
+use bspcsg::extract::rounding::round;
 use bspcsg::merge::SetOp;
 use bspcsg::tree::solid::Solid;
 

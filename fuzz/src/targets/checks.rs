@@ -1,10 +1,10 @@
 //! What several targets check.
 
 use bspcsg::error::ErrorKind;
-use bspcsg::extract::round;
-use bspcsg::extract::snapshot::Snapshot;
-use bspcsg::merge::leaf::Rule;
+use bspcsg::extract::rounding::round;
+use bspcsg::merge::kernels::leaf::Rule;
 use bspcsg::merge::SetOp;
+use bspcsg::store::snapshot::Snapshot;
 use bspcsg::tree::solid::Solid;
 
 use crate::support::{applied, is_empty, manifold_mesh, normalized};

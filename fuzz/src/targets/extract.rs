@@ -1,10 +1,10 @@
 //! Scenes, taken out of the tree, stored and moved.
 
 use arbitrary::{Arbitrary, Unstructured};
-use bspcsg::extract::snapshot::Motion;
-use bspcsg::extract::snapshot::Snapshot;
 use bspcsg::geometry::plane::Lattice;
-use bspcsg::merge::leaf::Rule;
+use bspcsg::merge::kernels::leaf::Rule;
+use bspcsg::store::snapshot::Motion;
+use bspcsg::store::snapshot::Snapshot;
 
 use super::checks::{assert_same, kept, manifold_or_unbounded};
 use crate::scene::whole_units;

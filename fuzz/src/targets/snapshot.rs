@@ -1,8 +1,7 @@
 //! Any bytes as a snapshot.
 
 use bspcsg::arith::Int;
-use bspcsg::extract::round;
-use bspcsg::extract::snapshot::Snapshot;
+use bspcsg::extract::rounding::round;
 use bspcsg::merge::evaluate::evaluate as run;
 use bspcsg::merge::expression::Expression;
 use bspcsg::merge::expression::Term;
@@ -11,6 +10,7 @@ use bspcsg::query::classify::classify;
 use bspcsg::query::measure;
 use bspcsg::query::region::hyperplane::plane;
 use bspcsg::query::region::section as sections;
+use bspcsg::store::snapshot::Snapshot;
 use bspcsg::tree::solid::Solid;
 
 use super::checks::kept;

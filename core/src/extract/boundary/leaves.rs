@@ -1,0 +1,418 @@
+//! What each leaf of a tree says of the faces it lists, for all leaves at once.
+
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use rayon::prelude::*;
+use rustc_hash::FxHashMap as HashMap;
+use smallvec::{smallvec, SmallVec};
+
+use crate::geometry::cell::Cell;
+use crate::geometry::outline::{cancel, Outline, OutlineEdge};
+use crate::geometry::plane::Lattice;
+use crate::interrupt::{carried, poll};
+use crate::merge::lists::list::Sources;
+use crate::mesh::source::Source;
+use crate::mesh::tasks::{in_pool, CHUNK};
+use crate::mesh::triangles::TriangleMesh;
+use crate::tree::node::{Branch, Deferred, Group, Node, Part, Work};
+
+/// A face that reaches out of a leaf that lists it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Spanning {
+    /// The source's slot.
+    pub slot: u32,
+    /// The face.
+    pub face: u32,
+    /// Whether inside and outside are exchanged.
+    pub flip: bool,
+    /// The number of the leaf.
+    pub leaf: u32,
+}
+
+/// What of a face one leaf lists.
+pub struct Piece<'a> {
+    /// The source's slot.
+    pub slot: u32,
+    /// The face.
+    pub face: u32,
+    /// Whether inside and outside are exchanged.
+    pub flip: bool,
+    extent: Extent<'a>,
+}
+
+/// Where a piece ends; most outlines are looked up or made when it is their turn.
+enum Extent<'a> {
+    /// The face's own edges, and the border of the cell of the leaf with this number.
+    Face(u32),
+    /// As the part says.
+    Part(&'a Part),
+    /// These edges.
+    Edges(Vec<OutlineEdge>),
+}
+
+impl From<&Spanning> for Piece<'_> {
+    fn from(s: &Spanning) -> Self {
+        Self {
+            slot: s.slot,
+            face: s.face,
+            flip: s.flip,
+            extent: Extent::Face(s.leaf),
+        }
+    }
+}
+
+impl Piece<'_> {
+    /// The outline of a piece that is all there is of its face.
+    pub fn outline(&mut self, sources: &Sources, cells: &[Cell]) -> Outline {
+        match self.extent {
+            Extent::Part(part) => Outline::of_bare(&part.edges),
+            _ => Outline::of(self.take_edges(sources, cells)),
+        }
+    }
+
+    /// The edges around the piece; taken out of it if it has them.
+    pub fn take_edges(&mut self, sources: &Sources, cells: &[Cell]) -> Vec<OutlineEdge> {
+        match &mut self.extent {
+            Extent::Face(leaf) => {
+                let source = sources.get(self.slot as usize);
+                let polygon = source.clip(self.face, &cells[*leaf as usize]);
+                polygon.map_or_else(Vec::new, |p| OutlineEdge::all_of(&p).collect())
+            }
+            Extent::Part(part) => part.outline(),
+            Extent::Edges(edges) => std::mem::take(edges),
+        }
+    }
+}
+
+/// What the leaves say, in their order.
+#[derive(Default)]
+pub struct Listed<'a> {
+    /// Faces inside a leaf's cell are whole, those with a part in one are cut; by slot.
+    pub fates: Vec<Vec<Fate>>,
+    /// The faces that reach out of leaves.
+    pub spanning: Vec<Spanning>,
+    /// The pieces that the parts are in the leaves, by slot, face and orientation.
+    pub parts: Vec<Piece<'a>>,
+    /// Faces in cells where several operands met, by slot.
+    pub near: Vec<(u32, u32)>,
+    /// The leaves' cells.
+    pub cells: Vec<Cell>,
+}
+
+/// What one leaf says but for the faces inside its cell.
+#[derive(Default)]
+struct Found<'a> {
+    spanning: Vec<Spanning>,
+    parts: Vec<Listing<'a>>,
+    near: Vec<(u32, u32)>,
+}
+
+/// A part that a leaf lists.
+struct Listing<'a> {
+    slot: u32,
+    flip: bool,
+    leaf: u32,
+    part: &'a Part,
+}
+
+impl Listing<'_> {
+    fn key(&self) -> (u32, u32, bool) {
+        (self.slot, self.part.face, self.flip)
+    }
+}
+
+/// A leaf, its number and its element groups' slots.
+struct Leaf<'a> {
+    number: u32,
+    cell: Cell,
+    complement: bool,
+    content: &'a Deferred,
+}
+
+/// Asks all leaves.
+pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
+    let leaves = leaves_of(root);
+    let fates = Fates::of(&leaves, sources);
+    let visit = carried(|leaf: &Leaf<'a>| leaf.visit(sources, &fates));
+    let size: usize = leaves.iter().map(|l| l.content.len()).sum();
+    let found: Vec<Found> = if in_pool() && size > CHUNK {
+        leaves.par_iter().map(visit).collect()
+    } else {
+        leaves.iter().map(visit).collect()
+    };
+    let mut all = Listed {
+        cells: leaves.iter().map(|l| l.cell).collect(),
+        ..Listed::default()
+    };
+    let mut parts: Vec<Listing> = Vec::new();
+    for leaf in found {
+        poll();
+        all.spanning.extend(leaf.spanning);
+        parts.extend(leaf.parts);
+        all.near.extend(leaf.near);
+    }
+    parts.sort_by_key(Listing::key);
+    all.parts = pieces(&parts, &all.cells);
+    for piece in &all.parts {
+        fates.0[piece.slot as usize][piece.face as usize].store(CUT, Ordering::Relaxed);
+    }
+    all.fates = fates.into_plain();
+    all
+}
+
+/// The pieces of one face: mostly one.
+type Pieces<'a> = SmallVec<[Piece<'a>; 1]>;
+
+type Extents<'a> = SmallVec<[Extent<'a>; 1]>;
+
+/// What listed parts, by their keys, are in their leaves.
+fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
+    let runs: Vec<&[Listing]> = parts.chunk_by(|a, b| a.key() == b.key()).collect();
+    let face = carried(|run: &&[Listing<'a>]| pieces_of_face(run, cells));
+    let pieces: Vec<Pieces> = if in_pool() && parts.len() > CHUNK {
+        runs.par_iter().map(face).collect()
+    } else {
+        runs.iter().map(face).collect()
+    };
+    pieces.into_iter().flatten().collect()
+}
+
+/// The pieces of one face: all of a part where that is still there, else what leaves have of it.
+fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Pieces<'a> {
+    let extents = match run {
+        [single] => extents(single.part, &[single.leaf], cells),
+        _ => extents_by_part(run, cells),
+    };
+    let (slot, face, flip) = run[0].key();
+    let piece = |extent| Piece {
+        slot,
+        face,
+        flip,
+        extent,
+    };
+    extents.into_iter().map(piece).collect()
+}
+
+fn extents_by_part<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Extents<'a> {
+    let mut places: HashMap<*const Part, usize> = HashMap::default();
+    let mut by_part: Vec<(&'a Part, SmallVec<[u32; 4]>)> = Vec::new();
+    for listing in run {
+        poll();
+        let next = by_part.len();
+        let place = *places.entry(listing.part).or_insert(next);
+        if place == next {
+            by_part.push((listing.part, SmallVec::new()));
+        }
+        by_part[place].1.push(listing.leaf);
+    }
+    let by_part = by_part.into_iter();
+    by_part
+        .flat_map(|(part, leaves)| extents(part, &leaves, cells))
+        .collect()
+}
+
+/// Where a part ends that some leaves list.
+fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
+    if is_whole(part, leaves, cells) {
+        return smallvec![Extent::Part(part)];
+    }
+    let edges = leaves.iter().map(|l| part_edges(part, &cells[*l as usize]));
+    edges.filter(|e| !e.is_empty()).map(Extent::Edges).collect()
+}
+
+/// Whether the leaves that list a part have all of it; errs on no.
+fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
+    if let [leaf] = leaves {
+        if cells[*leaf as usize] == part.home {
+            return !part.edges.is_empty();
+        }
+    }
+    let once = leaves.windows(2).all(|pair| pair[0] != pair[1]);
+    once && fill(part_box(part), leaves.iter().copied(), cells)
+}
+
+/// A lattice box around a part inside its home cell.
+fn part_box(part: &Part) -> (Lattice, Lattice) {
+    let ((low, high), home) = (part.bounds(), (part.home.low(), part.home.high()));
+    (
+        [0, 1, 2].map(|i| (low[i].floor() as i64).max(home.0[i])),
+        [0, 1, 2].map(|i| (high[i].ceil() as i64).min(home.1[i])),
+    )
+}
+
+/// Whether the cells of different leaves make up a box; errs on no.
+///
+/// Leaves are apart, so that it is enough to count lattice points.
+pub fn fill(
+    (low, high): (Lattice, Lattice),
+    leaves: impl Iterator<Item = u32>,
+    cells: &[Cell],
+) -> bool {
+    let Some(mut rest) = count(&low, &high).filter(|all| *all > 0) else {
+        return false;
+    };
+    for leaf in leaves {
+        poll();
+        let cell = &cells[leaf as usize];
+        let (bottom, top) = (cell.low(), cell.high());
+        let a = [0, 1, 2].map(|i| low[i].max(bottom[i]));
+        let b = [0, 1, 2].map(|i| high[i].min(top[i]));
+        let Some(less) = count(&a, &b).and_then(|part| rest.checked_sub(part)) else {
+            return false;
+        };
+        rest = less;
+    }
+    rest == 0
+}
+
+/// How many lattice points a box has; `None` for huge ones.
+fn count(low: &Lattice, high: &Lattice) -> Option<u128> {
+    let extent = |i: usize| u64::try_from(high[i] - low[i] + 1).unwrap_or(0);
+    let area = u128::from(extent(0)) * u128::from(extent(1));
+    area.checked_mul(u128::from(extent(2)))
+}
+
+fn leaves_of(root: &Branch) -> Vec<Leaf<'_>> {
+    let mut leaves = Vec::new();
+    let mut open = vec![(root, root.complement)];
+    while let Some((branch, complement)) = open.pop() {
+        poll();
+        match &*branch.node {
+            Node::Leaf(_) => {}
+            Node::Deferred(content) => leaves.push(Leaf {
+                number: leaves.len() as u32,
+                cell: branch.cell,
+                complement,
+                content,
+            }),
+            Node::Cut(halves) => {
+                let [minus, plus] = &halves.children;
+                for child in [plus, minus] {
+                    open.push((child, complement ^ child.complement));
+                }
+            }
+        }
+    }
+    leaves
+}
+
+/// The fate of a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// No part of it is boundary.
+    Gone,
+    /// All of it is boundary; turned around if the flag is set. Never said of a half-space's face,
+    /// which only the border of the universe ends.
+    Whole(bool),
+    /// Some of it is boundary, or it joins a polygon of its plane.
+    Cut,
+}
+
+/// Fates that several threads mark, by slot; empty for sources that no leaf names.
+struct Fates(Vec<Vec<AtomicU8>>);
+
+const GONE: u8 = 0;
+const WHOLE: u8 = 1;
+const TURNED: u8 = 2;
+const CUT: u8 = 3;
+
+impl Fates {
+    fn of(leaves: &[Leaf], sources: &Sources) -> Self {
+        let mut fates: Vec<Vec<AtomicU8>> = Vec::new();
+        fates.resize_with(sources.table().len(), Vec::new);
+        let mut enter = |source: &Source, slot: usize| {
+            if fates[slot].is_empty() {
+                fates[slot].resize_with(source.face_count(), || AtomicU8::new(GONE));
+            }
+        };
+        for leaf in leaves {
+            poll();
+            for group in &leaf.content.groups {
+                enter(&group.source, sources.slot(&group.source));
+            }
+            for element in &leaf.content.parts {
+                enter(&element.part.source, sources.slot(&element.part.source));
+            }
+        }
+        Self(fates)
+    }
+
+    fn into_plain(self) -> Vec<Vec<Fate>> {
+        let plain = |mark: AtomicU8| match mark.into_inner() {
+            GONE => Fate::Gone,
+            WHOLE => Fate::Whole(false),
+            TURNED => Fate::Whole(true),
+            _ => Fate::Cut,
+        };
+        let slots = self.0.into_iter();
+        slots.map(|s| s.into_iter().map(plain).collect()).collect()
+    }
+}
+
+impl<'a> Leaf<'a> {
+    fn visit(&self, sources: &Sources, fates: &Fates) -> Found<'a> {
+        let mut found = Found::default();
+        for group in &self.content.groups {
+            let slot = sources.slot(&group.source);
+            if self.content.work == Work::Trees {
+                let faces = group.faces.iter();
+                found.near.extend(faces.map(|f| (slot as u32, *f)));
+            }
+            self.visit_group(group, slot as u32, &fates.0[slot], &mut found);
+        }
+        for element in &self.content.parts {
+            let part = &*element.part;
+            found.parts.push(Listing {
+                slot: sources.slot(&part.source) as u32,
+                flip: element.flip ^ self.complement,
+                leaf: self.number,
+                part,
+            });
+        }
+        found
+    }
+
+    fn visit_group(&self, group: &Group, slot: u32, fates: &[AtomicU8], found: &mut Found<'a>) {
+        let flip = group.flip ^ self.complement;
+        let mesh = group.source.mesh();
+        let holds_all = mesh.is_some() && group.source.cell().is_some_and(|c| self.cell.holds(&c));
+        let holds = mesh.map(|mesh| holder(mesh, &self.cell));
+        for &face in &group.faces {
+            if holds_all || holds.as_ref().is_some_and(|holds| holds(face)) {
+                let mark = if flip { TURNED } else { WHOLE };
+                fates[face as usize].store(mark, Ordering::Relaxed);
+            } else {
+                found.spanning.push(Spanning {
+                    slot,
+                    face,
+                    flip,
+                    leaf: self.number,
+                });
+            }
+        }
+    }
+}
+
+/// Whether a face's corners lie in a cell.
+fn holder<'a>(mesh: &'a TriangleMesh, cell: &Cell) -> impl Fn(u32) -> bool + 'a {
+    let (low, high) = (*cell.low(), cell.high());
+    move |face| {
+        mesh.faces[face as usize].iter().all(|v| {
+            let p = &mesh.vertices[*v as usize];
+            (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i])
+        })
+    }
+}
+
+/// The edges of a part inside a leaf's cell.
+fn part_edges(part: &Part, cell: &Cell) -> Vec<OutlineEdge> {
+    if part.home == *cell {
+        return part.outline();
+    }
+    let clipped = part.pieces().into_iter().filter_map(|p| p.clipped(cell));
+    cancel(
+        clipped
+            .flat_map(|p| OutlineEdge::all_of(&p).collect::<Vec<_>>())
+            .collect(),
+    )
+}

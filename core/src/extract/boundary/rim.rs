@@ -1,0 +1,287 @@
+//! Where a source's whole faces end: found by vertices, so that no mates are needed.
+//!
+//! Two faces of an edge share both its ends. So only faces whose corners are touched by faces of
+//! another fate, too, can lie beside such a face. They are few, and are compared by their edges.
+
+use std::collections::BTreeSet;
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+use rustc_hash::FxHashMap as HashMap;
+
+use super::leaves::Fate;
+use crate::geometry::line::LineKey;
+use crate::interrupt::{carried, poll};
+use crate::merge::lists::list::Sources;
+use crate::mesh::source::Source;
+use crate::mesh::tasks::{in_pool, CHUNK};
+use crate::mesh::triangles::TriangleMesh;
+
+/// What meets at a vertex: a whole face, one turned around, another one.
+const KEPT: u8 = 1;
+const TURNED: u8 = 2;
+const OTHER: u8 = 4;
+/// The vertex lies on edges that cancel along lines only, and have no opposite by index.
+const OPEN: u8 = 8;
+
+/// The rims of all sources, by slot.
+#[derive(Debug)]
+pub struct Rims {
+    by_slot: Vec<Rim>,
+    /// The half-edges near a rim by their ends, found on first use.
+    by_ends: Vec<OnceLock<HashMap<[u32; 2], u32>>>,
+    /// The faces around each vertex of a source, found on first use.
+    around: Vec<OnceLock<Around>>,
+    /// Slots of which fates have changed.
+    outdated: BTreeSet<u32>,
+}
+
+/// An edge of a whole face whose mate is not a whole face of the same orientation.
+#[derive(Clone, Copy, Debug)]
+pub struct FrontierEdge {
+    /// The source's slot.
+    pub slot: u32,
+    /// The half-edge.
+    pub half: u32,
+}
+
+impl FrontierEdge {
+    /// The line it lies on.
+    pub fn line(&self, sources: &Sources) -> LineKey {
+        let mesh = sources.get(self.slot as usize).mesh();
+        let ends = mesh.map(|m| half_edge_ends(m, self.half).map(|v| m.vertices[v as usize]));
+        let [a, b] = ends.unwrap_or([[0; 3], [1, 0, 0]]);
+        LineKey::of_edge(&a, &b)
+    }
+}
+
+impl Rims {
+    /// The rims of these fates.
+    pub fn of(fates: &[Vec<Fate>], sources: &Sources) -> Self {
+        let slots: Vec<usize> = (0..fates.len()).collect();
+        let rim = carried(|slot: &usize| Rim::of(sources.get(*slot), &fates[*slot]));
+        let large = in_pool() && fates.iter().map(Vec::len).sum::<usize>() > CHUNK;
+        Self {
+            by_slot: if large {
+                slots.par_iter().map(rim).collect()
+            } else {
+                slots.iter().map(rim).collect()
+            },
+            by_ends: vec![OnceLock::new(); fates.len()],
+            around: vec![OnceLock::new(); fates.len()],
+            outdated: BTreeSet::new(),
+        }
+    }
+
+    /// Remembers that the fates of a source have changed.
+    pub fn outdated(&mut self, slot: u32) {
+        self.outdated.insert(slot);
+    }
+
+    /// Finds the rims again whose fates have changed.
+    pub fn renew(&mut self, fates: &[Vec<Fate>], sources: &Sources) {
+        for slot in std::mem::take(&mut self.outdated) {
+            let slot = slot as usize;
+            self.by_slot[slot] = Rim::of(sources.get(slot), &fates[slot]);
+            self.by_ends[slot] = OnceLock::new();
+        }
+    }
+
+    /// The rim of a source.
+    pub fn get(&self, slot: u32) -> &Rim {
+        &self.by_slot[slot as usize]
+    }
+
+    /// The frontier: half-edges of whole faces whose mates are not whole and turned alike.
+    pub fn frontier(&self, fates: &[Vec<Fate>], sources: &Sources) -> Vec<FrontierEdge> {
+        let mut found = Vec::new();
+        for ((slot, rim), fates) in (0u32..).zip(&self.by_slot).zip(fates) {
+            if let Some(mesh) = sources.get(slot as usize).mesh() {
+                let halves = rim.half_edges(mesh, fates).into_iter();
+                found.extend(halves.map(|half| FrontierEdge { slot, half }));
+            }
+        }
+        found
+    }
+
+    /// The face across a half-edge, if that may be whole.
+    ///
+    /// Near the rim the faces are known by their edges; far from it by their corners.
+    pub fn across(&self, slot: u32, half: u32, sources: &Sources) -> Option<u32> {
+        let mesh = sources.get(slot as usize).mesh()?;
+        let rim = &self.by_slot[slot as usize];
+        let [a, b] = half_edge_ends(mesh, half);
+        if !rim.is_used(a) || !rim.is_used(b) {
+            return None;
+        }
+        if rim.is_mixed(a) || rim.is_mixed(b) {
+            let by_ends = self.by_ends[slot as usize].get_or_init(|| rim.by_ends(mesh));
+            return by_ends.get(&[b, a]).map(|mate| mate / 3);
+        }
+        let around = self.around[slot as usize].get_or_init(|| Around::of(mesh));
+        let mut faces = around.faces(a).iter();
+        let has_mate = |face: &&u32| {
+            let mut halves = 3 * **face..3 * **face + 3;
+            halves.any(|h| half_edge_ends(mesh, h) == [b, a])
+        };
+        faces.find(has_mate).copied()
+    }
+}
+
+/// The faces around each vertex of a mesh.
+#[derive(Clone, Debug)]
+struct Around {
+    /// By vertex, where its faces start; ends with where the last one's end.
+    starts: Vec<u32>,
+    faces: Vec<u32>,
+}
+
+impl Around {
+    fn of(mesh: &TriangleMesh) -> Self {
+        let mut starts = vec![0u32; mesh.vertices.len() + 1];
+        for vertex in mesh.faces.iter().flatten() {
+            starts[*vertex as usize] += 1;
+        }
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut faces = vec![0; sum as usize];
+        for (face, corners) in mesh.faces.iter().enumerate().rev() {
+            poll();
+            for vertex in corners {
+                let start = &mut starts[*vertex as usize];
+                *start -= 1;
+                faces[*start as usize] = face as u32;
+            }
+        }
+        Self { starts, faces }
+    }
+
+    /// The faces around a vertex, ascending.
+    fn faces(&self, vertex: u32) -> &[u32] {
+        let [start, end] = [0, 1].map(|i| self.starts[vertex as usize + i] as usize);
+        &self.faces[start..end]
+    }
+}
+
+/// The vertices at which a source's faces of different fates meet, and the whole faces there.
+#[derive(Debug, Default)]
+pub struct Rim {
+    /// By vertex, which of the above meet there.
+    touch: Vec<u8>,
+    /// The whole faces with a mixed corner, ascending.
+    near: Vec<u32>,
+}
+
+impl Rim {
+    /// The rim of a source's whole faces; nothing for a source of which nothing is left.
+    fn of(source: &Source, fates: &[Fate]) -> Self {
+        let (Some(mesh), false) = (source.mesh(), fates.is_empty()) else {
+            return Self::default();
+        };
+        let mut rim = Self {
+            touch: touch(mesh, fates),
+            near: Vec::new(),
+        };
+        for vertex in source.joints().map_or(&[][..], |j| &j.open) {
+            rim.touch[*vertex as usize] |= OPEN;
+        }
+        if (0..mesh.vertices.len() as u32).any(|v| rim.is_mixed(v)) {
+            let near = |(_, (corners, fate)): &(u32, (&[u32; 3], &Fate))| {
+                matches!(fate, Fate::Whole(_)) && corners.iter().any(|v| rim.is_mixed(*v))
+            };
+            let faces = (0u32..).zip(mesh.faces.iter().zip(fates));
+            rim.near = faces.filter(near).map(|f| f.0).collect();
+        }
+        rim
+    }
+
+    /// Whether a whole face has this corner.
+    pub fn is_used(&self, vertex: u32) -> bool {
+        self.touch[vertex as usize] & (KEPT | TURNED) != 0
+    }
+
+    /// Whether faces of different fates meet at a vertex.
+    fn is_mixed(&self, vertex: u32) -> bool {
+        !self.touch[vertex as usize].is_power_of_two() && self.touch[vertex as usize] != 0
+    }
+
+    /// The half-edges of whole faces that have no opposite among those turned alike, ascending.
+    fn half_edges(&self, mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u32> {
+        let mut halves: Vec<Half> = Vec::new();
+        for &face in &self.near {
+            poll();
+            for number in 3 * face..3 * face + 3 {
+                let ends = half_edge_ends(mesh, number);
+                if ends.iter().all(|v| self.is_mixed(*v)) {
+                    halves.push(Half::new(number, ends, fates[face as usize]));
+                }
+            }
+        }
+        halves.sort_unstable_by_key(|h| (h.edge, h.turned, h.backward, h.number));
+        let mut alone = Vec::new();
+        for edge in halves.chunk_by(|a, b| (a.edge, a.turned) == (b.edge, b.turned)) {
+            poll();
+            let (forward, backward) = edge.split_at(edge.partition_point(|h| !h.backward));
+            let pairs = forward.len().min(backward.len());
+            let rest = forward[pairs..].iter().chain(&backward[pairs..]);
+            alone.extend(rest.map(|h| h.number));
+        }
+        alone.sort_unstable();
+        alone
+    }
+
+    /// The half-edges of the whole faces with a mixed corner by their ends.
+    fn by_ends(&self, mesh: &TriangleMesh) -> HashMap<[u32; 2], u32> {
+        let halves = self.near.iter().flat_map(|face| 3 * face..3 * face + 3);
+        let mut by_ends = HashMap::default();
+        for half in halves {
+            by_ends.entry(half_edge_ends(mesh, half)).or_insert(half);
+        }
+        by_ends
+    }
+}
+
+/// A half-edge of a whole face, to be sorted by its edge.
+struct Half {
+    edge: [u32; 2],
+    turned: bool,
+    backward: bool,
+    number: u32,
+}
+
+impl Half {
+    fn new(number: u32, [a, b]: [u32; 2], fate: Fate) -> Self {
+        Self {
+            edge: [a.min(b), a.max(b)],
+            turned: fate == Fate::Whole(true),
+            backward: a > b,
+            number,
+        }
+    }
+}
+
+fn touch(mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u8> {
+    let mut touch = vec![0; mesh.vertices.len()];
+    for (corners, fate) in mesh.faces.iter().zip(fates) {
+        poll();
+        let kind = match fate {
+            Fate::Whole(false) => KEPT,
+            Fate::Whole(true) => TURNED,
+            Fate::Cut | Fate::Gone => OTHER,
+        };
+        for corner in corners {
+            touch[*corner as usize] |= kind;
+        }
+    }
+    touch
+}
+
+/// The end vertices of a half-edge.
+pub fn half_edge_ends(mesh: &TriangleMesh, half: u32) -> [u32; 2] {
+    let face = &mesh.faces[half as usize / 3];
+    let corner = half as usize % 3;
+    [face[corner], face[(corner + 1) % 3]]
+}

@@ -1,0 +1,173 @@
+//! Where a solid touches itself: edges of four or more faces, vertices of several fans.
+
+pub mod fans;
+
+use rustc_hash::FxHashSet as HashSet;
+
+use self::fans::{split_fans, Radial};
+use super::emission::assembly::Assembly;
+use super::failure::{Failure, Overlap};
+use super::vertices::direction;
+use crate::error::Error;
+use crate::interrupt::poll;
+use crate::mesh::finding::{Finding, Severity};
+
+/// Splits contacts, so that every directed edge has exactly one opposite by index and every vertex
+/// one fan; reports them.
+pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>, Failure> {
+    let special: Vec<u32> = assembly.special_triangles().collect();
+    if is_manifold(assembly, &special)? {
+        return Ok(Vec::new());
+    }
+    let count = assembly.vertices.len() as u32;
+    let split = split_fans(&assembly.triangles, count, &Geometry(assembly))
+        .map_err(|e| Error::internal(format!("contacts could not be split: {e}")))?;
+    let place = |ids: &[u32]| ids.iter().map(|v| u64::from(*v)).collect::<Vec<_>>();
+    let edges: Vec<u32> = split.split_edges.iter().map(|e| e[0]).collect();
+    let mut findings = Vec::new();
+    if !edges.is_empty() {
+        let text = "the solid touches itself along edges, here split (start vertices)";
+        findings.push(Finding::about(
+            "edge_contact",
+            Severity::Note,
+            &place(&edges),
+            text,
+        ));
+    }
+    let ends: HashSet<u32> = split.split_edges.iter().flatten().copied().collect();
+    let alone: Vec<u32> = split
+        .split_vertices
+        .iter()
+        .copied()
+        .filter(|v| !ends.contains(v))
+        .collect();
+    if !alone.is_empty() {
+        let text = "the solid touches itself at vertices, here split";
+        let places = place(&alone);
+        findings.push(Finding::about(
+            "vertex_contact",
+            Severity::Note,
+            &places,
+            text,
+        ));
+    }
+    assembly.vertices = split
+        .origin
+        .iter()
+        .map(|v| assembly.vertices[*v as usize])
+        .collect();
+    assembly.triangles = split.corners;
+    Ok(findings)
+}
+
+/// Whether the triangles around special vertices form one closed fan each.
+///
+/// # Errors
+/// `Overlap` if an edge at a special vertex has no opposite: the assembly is not closed.
+fn is_manifold(assembly: &Assembly, triangles: &[u32]) -> Result<bool, Failure> {
+    let mut fans = Fans::of(assembly, triangles);
+    let mut single = fans.edges_apart_are_single();
+    for place in 0..fans.starts.len() - 1 {
+        poll();
+        let fan = &mut fans.corners[fans.starts[place]..fans.starts[place + 1]];
+        if !is_single_fan(fan) {
+            if !is_balanced(fan) {
+                let vertex = assembly.special_vertex(place as u32);
+                return Err(Failure::Overlap(Overlap {
+                    sign: format!("the assembled boundary is open at vertex {vertex}"),
+                    faces: assembly.faces_at(vertex),
+                }));
+            }
+            single = false;
+        }
+    }
+    Ok(single)
+}
+
+/// The corners at special vertices, by vertex: where their triangles go on, and come from.
+struct Fans {
+    starts: Vec<usize>,
+    corners: Vec<[u32; 2]>,
+    /// Directed edges between other vertices, of triangles that have a special one.
+    apart: Vec<[u32; 2]>,
+}
+
+impl Fans {
+    fn of(assembly: &Assembly, triangles: &[u32]) -> Self {
+        let mut starts = vec![0; assembly.special_count() + 1];
+        let corners = || triangles.iter().map(|t| assembly.triangles[*t as usize]);
+        let places = |t: [u32; 3]| t.map(|v| assembly.special_place(v));
+        for place in corners().flat_map(places).flatten() {
+            starts[place as usize] += 1;
+        }
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut fans = Self {
+            corners: vec![[0; 2]; sum],
+            apart: Vec::new(),
+            starts,
+        };
+        for t in corners() {
+            let place = places(t);
+            for i in 0..3 {
+                let (b, c) = ((i + 1) % 3, (i + 2) % 3);
+                if let Some(a) = place[i] {
+                    fans.starts[a as usize] -= 1;
+                    fans.corners[fans.starts[a as usize]] = [t[b], t[c]];
+                } else if place[b].is_none() {
+                    fans.apart.push([t[i], t[b]]);
+                }
+            }
+        }
+        fans
+    }
+
+    /// Whether no directed edge between vertices that are not special occurs twice.
+    fn edges_apart_are_single(&mut self) -> bool {
+        self.apart.sort_unstable();
+        self.apart.windows(2).all(|pair| pair[0] != pair[1])
+    }
+}
+
+/// Whether as many triangles leave along each edge at a vertex as arrive.
+fn is_balanced(fan: &[[u32; 2]]) -> bool {
+    let mut starts: Vec<u32> = fan.iter().map(|c| c[0]).collect();
+    let mut ends: Vec<u32> = fan.iter().map(|c| c[1]).collect();
+    starts.sort_unstable();
+    ends.sort_unstable();
+    starts == ends
+}
+
+/// Whether corners are one closed fan that leaves along each edge once; sorts them.
+fn is_single_fan(fan: &mut [[u32; 2]]) -> bool {
+    fan.sort_unstable();
+    if fan.windows(2).any(|pair| pair[0][0] == pair[1][0]) {
+        return false;
+    }
+    let Some([first, mut next]) = fan.first().copied() else {
+        return true;
+    };
+    for _ in 1..fan.len() {
+        let corner = fan.binary_search_by_key(&next, |c| c[0]);
+        match corner {
+            Ok(at) if next != first => next = fan[at][1],
+            _ => return false,
+        }
+    }
+    next == first
+}
+
+struct Geometry<'a, 'b>(&'a Assembly<'b>);
+
+impl Radial for Geometry<'_, '_> {
+    fn normal(&self, triangle: u32) -> [i128; 3] {
+        self.0.faces[triangle as usize].normal(self.0.sources)
+    }
+
+    fn direction(&self, a: u32, b: u32) -> [i32; 3] {
+        direction(&self.0.position(a), &self.0.position(b))
+    }
+}

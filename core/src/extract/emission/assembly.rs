@@ -1,0 +1,199 @@
+//! A mesh in the making: its vertices by number, whatever they were made from, and its triangles.
+
+use std::sync::Arc;
+
+use rustc_hash::FxHashMap as HashMap;
+
+use super::untouched::Untouched;
+use crate::extract::boundary::leaves::Fate;
+use crate::extract::mesh::{Corner, ExactMesh, TriangleFace};
+use crate::extract::vertices::VertexTable;
+use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
+use crate::merge::lists::list::Sources;
+use crate::mesh::finding::Finding;
+use crate::mesh::triangles::TriangleMesh;
+
+/// The mesh in the making.
+pub(in crate::extract) struct Assembly<'a> {
+    pub(in crate::extract) sources: &'a Sources,
+    pub(in crate::extract) table: VertexTable,
+    /// For each slot the output vertex of each of its vertices.
+    pub(in crate::extract) images: Vec<Vec<u32>>,
+    /// For each table point its output vertex.
+    pub(in crate::extract) point_images: Vec<u32>,
+    /// For each table point the first source vertex there.
+    pub(in crate::extract) names: HashMap<u32, (u32, u32)>,
+    pub(in crate::extract) vertices: Vec<Corner>,
+    pub(in crate::extract) triangles: Vec<[u32; 3]>,
+    pub(in crate::extract) faces: Vec<TriangleFace>,
+    /// The triangles, at the start, that are faces of sources as they came.
+    pub(in crate::extract) untouched: Untouched,
+    /// Whether to compare areas, because faces of one plane might overlap.
+    pub(in crate::extract) verify: bool,
+}
+
+/// Of a vertex that has no number yet.
+pub(in crate::extract) const NONE: u32 = u32::MAX;
+
+impl<'a> Assembly<'a> {
+    pub(in crate::extract) fn new(sources: &'a Sources, fates: &[Vec<Fate>]) -> Self {
+        let image = |(slot, fates): (usize, &Vec<Fate>)| {
+            let count = sources.get(slot).mesh().map_or(0, |m| m.vertices.len());
+            vec![NONE; if fates.is_empty() { 0 } else { count }]
+        };
+        Self {
+            sources,
+            table: VertexTable::default(),
+            images: fates.iter().enumerate().map(image).collect(),
+            point_images: Vec::new(),
+            names: HashMap::default(),
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+            faces: Vec::new(),
+            untouched: Untouched::default(),
+            verify: false,
+        }
+    }
+
+    /// The table number of a source's vertex; from now on the vertex is that point.
+    pub(in crate::extract) fn point_of(
+        &mut self,
+        slot: u32,
+        mesh: &TriangleMesh,
+        vertex: u32,
+    ) -> u32 {
+        let image = self.images[slot as usize][vertex as usize];
+        if let Some(Corner::Point(point)) = self.vertices.get(image as usize) {
+            return *point;
+        }
+        let point = self.table.number_at(mesh.vertices[vertex as usize]);
+        self.names.entry(point).or_insert((slot, vertex));
+        let image = self.image_of_point(point);
+        self.images[slot as usize][vertex as usize] = image;
+        point
+    }
+
+    pub(in crate::extract) fn image_of_point(&mut self, point: u32) -> u32 {
+        if self.point_images.len() < self.table.len() {
+            self.point_images.resize(self.table.len(), NONE);
+        }
+        let image = &mut self.point_images[point as usize];
+        if *image == NONE {
+            *image = self.vertices.len() as u32;
+            self.vertices.push(Corner::Point(point));
+        }
+        *image
+    }
+
+    /// The triangles with a special vertex.
+    pub(in crate::extract) fn special_triangles(&self) -> impl Iterator<Item = u32> + '_ {
+        let last = self.untouched.count as u32..self.triangles.len() as u32;
+        self.untouched.special.iter().copied().chain(last)
+    }
+
+    /// Whether an output vertex lies where something was cut or may touch.
+    fn is_special(&self, vertex: u32) -> bool {
+        !self.untouched.vertices.contains(&vertex)
+    }
+
+    /// How many vertices are special.
+    pub(in crate::extract) fn special_count(&self) -> usize {
+        self.vertices.len() - self.untouched.vertices.len()
+    }
+
+    /// The place of a vertex among the special ones, if it is one.
+    pub(in crate::extract) fn special_place(&self, vertex: u32) -> Option<u32> {
+        let others = &self.untouched.vertices;
+        if vertex < others.start {
+            Some(vertex)
+        } else {
+            (vertex >= others.end).then(|| vertex - others.len() as u32)
+        }
+    }
+
+    /// The special vertex in a place.
+    pub(in crate::extract) fn special_vertex(&self, place: u32) -> u32 {
+        let others = &self.untouched.vertices;
+        if place < others.start {
+            place
+        } else {
+            place + others.len() as u32
+        }
+    }
+
+    /// The faces of the triangles at a vertex.
+    pub(in crate::extract) fn faces_at(&self, vertex: u32) -> Vec<TriangleFace> {
+        let around = self.triangles.iter().zip(&self.faces);
+        let around = around.filter(|(triangle, _)| triangle.contains(&vertex));
+        around.map(|(_, face)| *face).collect()
+    }
+
+    /// Emits a triangle of table points.
+    pub(in crate::extract) fn push(&mut self, triangle: [u32; 3], face: TriangleFace) {
+        let triangle = triangle.map(|p| self.image_of_point(p));
+        self.triangles.push(triangle);
+        self.faces.push(face);
+    }
+
+    pub(in crate::extract) fn finish(mut self, findings: Vec<Finding>) -> ExactMesh {
+        for vertex in &mut self.vertices {
+            if let Corner::Point(point) = *vertex {
+                if let Some((slot, index)) = self.names.get(&point) {
+                    *vertex = Corner::Source(*slot, *index);
+                }
+            }
+        }
+        self.drop_unused();
+        ExactMesh {
+            vertices: self.vertices,
+            triangles: self.triangles,
+            faces: self.faces,
+            untouched: self.untouched.count,
+            table: self.table,
+            findings,
+        }
+    }
+
+    /// Leaves out vertices that no triangle uses; the others keep their order.
+    fn drop_unused(&mut self) {
+        let mut used: Vec<bool> = (0..self.vertices.len() as u32)
+            .map(|v| !self.is_special(v))
+            .collect();
+        for triangle in self.special_triangles() {
+            poll();
+            for vertex in self.triangles[triangle as usize] {
+                used[vertex as usize] = true;
+            }
+        }
+        if used.iter().all(|u| *u) {
+            return;
+        }
+        let mut next = 0;
+        let image: Vec<u32> = used
+            .iter()
+            .map(|u| {
+                next += u32::from(*u);
+                next - u32::from(*u)
+            })
+            .collect();
+        let mut keep = used.iter();
+        self.vertices
+            .retain(|_| keep.next().copied().unwrap_or(false));
+        for vertex in self.triangles.iter_mut().flatten() {
+            *vertex = image[*vertex as usize];
+        }
+    }
+
+    /// The exact position of an output vertex.
+    pub(in crate::extract) fn position(&self, vertex: u32) -> Arc<Vertex> {
+        match self.vertices[vertex as usize] {
+            Corner::Point(point) => Arc::clone(self.table.point(point)),
+            Corner::Source(slot, index) => {
+                let mesh = self.sources.get(slot as usize).mesh();
+                let place = mesh.map_or([0; 3], |m| m.vertices[index as usize]);
+                Arc::new(Vertex::lattice(place))
+            }
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Polygons of a mesh in the making, triangulated: plane groups, and whole faces with new vertices.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use rustc_hash::FxHashMap as HashMap;
+
+use super::assembly::Assembly;
+use super::origin::Owners;
+use crate::extract::boundary::leaves::Fate;
+use crate::extract::failure::Overlap;
+use crate::extract::joining::planes::PlaneGroup;
+use crate::extract::joining::seams::{Edge, InnerPoints};
+use crate::extract::mesh::TriangleFace;
+use crate::extract::triangulate::{triangulate, Planar};
+use crate::extract::vertices::Projection;
+use crate::geometry::plane::Plane;
+use crate::interrupt::{carried, poll};
+use crate::mesh::tasks::{in_pool, CHUNK};
+
+/// Triangles, and the face that each lies in.
+type Triangles = Vec<([u32; 3], TriangleFace)>;
+
+impl Assembly<'_> {
+    /// Triangulates a whole face that received vertices on its edges.
+    pub(in crate::extract) fn emit_split(
+        &mut self,
+        slot: u32,
+        face: u32,
+        fates: &[Vec<Fate>],
+        split: &HashMap<(u32, u32), [Vec<u32>; 3]>,
+    ) -> Result<(), Overlap> {
+        let source = Arc::clone(self.sources.get(slot as usize));
+        let Some(mesh) = source.mesh() else {
+            return Ok(());
+        };
+        let flip = fates[slot as usize][face as usize] == Fate::Whole(true);
+        let corners = mesh.faces[face as usize].map(|v| self.point_of(slot, mesh, v));
+        let mut ring = Vec::new();
+        for i in 0..3 {
+            ring.push(corners[i]);
+            let inner = split[&(slot, face)][i].iter();
+            if flip {
+                ring.extend(inner.rev());
+            } else {
+                ring.extend(inner);
+            }
+        }
+        if flip {
+            ring.reverse();
+        }
+        let edges: Vec<(u32, u32)> = (0..ring.len())
+            .map(|i| (ring[i], ring[(i + 1) % ring.len()]))
+            .collect();
+        let plane = source.plane(face);
+        let plane = if flip {
+            plane.flipped()
+        } else {
+            (*plane).clone()
+        };
+        let own = TriangleFace { slot, face, flip };
+        for triangle in self.triangulated(&plane, &edges, &[own])? {
+            self.push(triangle, own);
+        }
+        Ok(())
+    }
+
+    /// Triangulates the groups; each is given up as soon as that is done.
+    pub(in crate::extract) fn emit_groups(
+        &mut self,
+        groups: Vec<PlaneGroup>,
+        mut edges: &[Edge],
+        inner: &InnerPoints,
+    ) -> Result<(), Overlap> {
+        let mut groups = groups.into_iter().peekable();
+        let mut first = 0;
+        while groups.peek().is_some() {
+            poll();
+            let mut batch = Vec::new();
+            let mut size = 0;
+            while let Some(group) = groups.next_if(|_| size < CHUNK) {
+                let (own, rest) = edges.split_at(group.edges().len());
+                batch.push((group, first, own));
+                first += own.len();
+                size += own.len();
+                edges = rest;
+            }
+            let triangulate = carried(|(group, first, own): (PlaneGroup, usize, &[Edge])| {
+                self.triangulated_group(&group, &chain(own, first, inner))
+            });
+            let made: Vec<Result<Triangles, Overlap>> = if in_pool() && batch.len() > 1 {
+                batch.into_par_iter().map(triangulate).collect()
+            } else {
+                batch.into_iter().map(triangulate).collect()
+            };
+            for triangles in made {
+                for (triangle, face) in triangles? {
+                    self.push(triangle, face);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The triangles of a group, and the face that each lies in.
+    fn triangulated_group(
+        &self,
+        group: &PlaneGroup,
+        chain: &[(u32, u32)],
+    ) -> Result<Triangles, Overlap> {
+        let triangles = self.triangulated(&group.plane, chain, &group.faces)?;
+        if let [face] = group.faces[..] {
+            return Ok(triangles.into_iter().map(|t| (t, face)).collect());
+        }
+        let view = Projection::onto(&group.plane, &self.table);
+        let owners = Owners::new(group, &view, self.sources);
+        let triangles = triangles.into_iter();
+        Ok(triangles.map(|t| (t, owners.at_centre(t, &view))).collect())
+    }
+
+    /// The triangles of a region in a plane, which some faces make up.
+    fn triangulated(
+        &self,
+        plane: &Plane,
+        edges: &[(u32, u32)],
+        faces: &[TriangleFace],
+    ) -> Result<Vec<[u32; 3]>, Overlap> {
+        let view = Projection::onto(plane, &self.table);
+        let overlap = |sign: String| Overlap {
+            sign,
+            faces: faces.to_vec(),
+        };
+        let triangles = triangulate(&view, edges)
+            .map_err(|e| overlap(format!("an outline could not be triangulated: {e}")))?;
+        if self.verify && !covers_once(&view, edges, &triangles) {
+            return Err(overlap("faces of one plane overlap".to_owned()));
+        }
+        Ok(triangles)
+    }
+}
+
+/// Edges, numbered from `first` on, divided at their inner points.
+fn chain(edges: &[Edge], first: usize, inner: &InnerPoints) -> Vec<(u32, u32)> {
+    let mut chain = Vec::with_capacity(edges.len());
+    for (edge, i) in edges.iter().zip(first..) {
+        poll();
+        let mut at = edge.from;
+        for next in inner.get(&i).into_iter().flatten() {
+            chain.push((at, *next));
+            at = *next;
+        }
+        chain.push((at, edge.to));
+    }
+    chain
+}
+
+/// Whether the triangles' area is the one the outline encloses, as far as doubles can tell.
+fn covers_once(view: &Projection, edges: &[(u32, u32)], triangles: &[[u32; 3]]) -> bool {
+    let Some(origin) = edges.first().map(|e| view.approx(e.0)) else {
+        return true;
+    };
+    let at = |p: u32| {
+        let [x, y] = view.approx(p);
+        [x - origin[0], y - origin[1]]
+    };
+    let turn = |a: u32, b: u32| {
+        let (p, q) = (at(a), at(b));
+        p[0] * q[1] - p[1] * q[0]
+    };
+    let enclosed: f64 = edges.iter().map(|e| turn(e.0, e.1)).sum();
+    let covered: f64 = triangles
+        .iter()
+        .map(|t| turn(t[0], t[1]) + turn(t[1], t[2]) + turn(t[2], t[0]))
+        .sum();
+    (enclosed - covered).abs() <= 1e-6 * covered.abs()
+}

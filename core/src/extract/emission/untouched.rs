@@ -1,0 +1,141 @@
+//! Whole faces on their way out: the bulk of most meshes, in linear passes.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::extract::boundary::leaves::Fate;
+use crate::extract::mesh::TriangleFace;
+use crate::interrupt::{carried, spend};
+use crate::mesh::tasks::{each_chunk, in_pool, CHUNK};
+use crate::mesh::triangles::TriangleMesh;
+
+/// The triangles at the start of a mesh that are faces of sources as they came.
+#[derive(Debug, Default)]
+pub struct Untouched {
+    /// The vertices that only such triangles have.
+    pub vertices: Range<u32>,
+    /// How many triangles there are.
+    pub count: usize,
+    /// Those with other vertices, too, ascending.
+    pub special: Vec<u32>,
+}
+
+/// The faces of a source, of which the whole ones are to be emitted.
+pub struct WholeFaces<'a> {
+    /// The source's slot.
+    pub slot: u32,
+    /// The fates of its faces.
+    pub fates: &'a [Fate],
+    /// Slot and number of the whole faces that are left out, ascending.
+    pub split: &'a [(u32, u32)],
+}
+
+/// A chunk of faces and the places of its triangles.
+struct Task<'a> {
+    first_face: usize,
+    first_triangle: u32,
+    fates: &'a [Fate],
+    triangles: &'a mut [[u32; 3]],
+    faces: &'a mut [TriangleFace],
+}
+
+impl Untouched {
+    /// No triangles yet; these are the vertices they have for themselves.
+    pub fn new(vertices: Range<u32>) -> Self {
+        Self {
+            vertices,
+            ..Self::default()
+        }
+    }
+
+    /// Appends the whole faces of a source; `images` has the number of each of its vertices.
+    pub fn emit(
+        &mut self,
+        mesh: &TriangleMesh,
+        images: &[u32],
+        whole: &WholeFaces,
+        triangles: &mut Vec<[u32; 3]>,
+        faces: &mut Vec<TriangleFace>,
+    ) {
+        let counts = each_chunk(whole.fates, |first, fates| whole.kept(first, fates).count());
+        let start = triangles.len();
+        self.count = start + counts.iter().sum::<usize>();
+        triangles.resize(self.count, [0; 3]);
+        faces.resize(self.count, TriangleFace::default());
+        let mut tasks = Vec::with_capacity(counts.len());
+        let mut rest = (&mut triangles[start..], &mut faces[start..]);
+        let mut first_triangle = start as u32;
+        let chunks = whole.fates.chunks(CHUNK).enumerate();
+        for ((chunk, fates), count) in chunks.zip(counts) {
+            let (triangles, later) = rest.0.split_at_mut(count);
+            let (faces, later_faces) = rest.1.split_at_mut(count);
+            rest = (later, later_faces);
+            tasks.push(Task {
+                first_face: chunk * CHUNK,
+                first_triangle,
+                fates,
+                triangles,
+                faces,
+            });
+            first_triangle += count as u32;
+        }
+        let emit = carried(|task: Task| {
+            spend(task.fates.len());
+            task.run(mesh, images, whole, &self.vertices)
+        });
+        let special: Vec<Vec<u32>> = if in_pool() && tasks.len() > 1 {
+            tasks.into_par_iter().map(emit).collect()
+        } else {
+            tasks.into_iter().map(emit).collect()
+        };
+        self.special.extend(special.concat());
+    }
+}
+
+impl WholeFaces<'_> {
+    /// The faces to emit among a run of faces, and whether they are turned around.
+    fn kept<'a>(
+        &'a self,
+        first: usize,
+        fates: &'a [Fate],
+    ) -> impl Iterator<Item = (u32, bool)> + 'a {
+        let start = self.split.partition_point(|s| (s.1 as usize) < first);
+        let mut split = self.split[start..].iter().map(|s| s.1).peekable();
+        (first as u32..).zip(fates).filter_map(move |(face, fate)| {
+            let Fate::Whole(flip) = *fate else {
+                return None;
+            };
+            split.next_if_eq(&face).is_none().then_some((face, flip))
+        })
+    }
+}
+
+impl Task<'_> {
+    /// Fills in the triangles; returns the numbers of those with other vertices than `own`.
+    fn run(
+        self,
+        mesh: &TriangleMesh,
+        images: &[u32],
+        whole: &WholeFaces,
+        own: &Range<u32>,
+    ) -> Vec<u32> {
+        let mut special = Vec::new();
+        let out = self.triangles.iter_mut().zip(self.faces.iter_mut());
+        let kept = whole.kept(self.first_face, self.fates);
+        for (((face, flip), (triangle, origin)), number) in kept.zip(out).zip(self.first_triangle..)
+        {
+            let [a, b, c] = mesh.faces[face as usize].map(|v| images[v as usize]);
+            *triangle = if flip { [a, c, b] } else { [a, b, c] };
+            *origin = TriangleFace {
+                slot: whole.slot,
+                face,
+                flip,
+            };
+            if [a, b, c].iter().any(|v| !own.contains(v)) {
+                special.push(number);
+            }
+        }
+        special
+    }
+}

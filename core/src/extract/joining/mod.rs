@@ -1,0 +1,4 @@
+//! Cut faces joined by plane, and edges subdivided until they pair.
+
+pub mod planes;
+pub mod seams;

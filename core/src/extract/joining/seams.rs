@@ -1,0 +1,226 @@
+//! No T-junctions: edges that do not pair are subdivided along their lines until they do.
+
+use std::sync::Arc;
+
+use rustc_hash::FxHashMap as HashMap;
+
+use super::planes::PlaneGroup;
+use crate::extract::triangulate::Planar;
+use crate::extract::vertices::{Projection, VertexTable};
+use crate::geometry::line::LineKey;
+use crate::interrupt::poll;
+
+/// Numbered points by the line they lie on.
+pub type LinePoints = HashMap<LineKey, Vec<u32>>;
+
+/// Points inside edges, from start to end, by the edges' numbers.
+pub type InnerPoints = HashMap<usize, Vec<u32>>;
+
+/// A directed edge between numbered points.
+#[derive(Clone, Copy, Debug)]
+pub struct Edge {
+    /// Start.
+    pub from: u32,
+    /// End.
+    pub to: u32,
+}
+
+/// For the edges at which there are any, the points at which they must be subdivided.
+///
+/// Opposite edges with equal ends pair and stay. The others still form a closed chain, for a
+/// boundary has no boundary: subdivided at each other's ends, line by line, they pair too.
+///
+/// # Source
+/// Design review F6.
+pub fn subdivisions(
+    edges: &[Edge],
+    mut line: impl FnMut(usize) -> LineKey,
+    touching: &LinePoints,
+    table: &VertexTable,
+) -> InnerPoints {
+    let mut inner = InnerPoints::default();
+    let mut open: Vec<(LineKey, usize)> = unpaired(edges, &mut line, touching, table);
+    open.sort_unstable();
+    for run in open.chunk_by(|a, b| a.0 == b.0) {
+        poll();
+        let extra = touching.get(&run[0].0).map_or(&[][..], |t| t);
+        subdivide_line(run, edges, extra, table, &mut inner);
+    }
+    inner
+}
+
+/// An edge with its box in a projection.
+struct Boxed<'a> {
+    edge: &'a Edge,
+    /// Its number in the outline.
+    number: usize,
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+/// Adds the points at which a polygon touches or crosses itself inside edges, by line.
+///
+/// Such an edge must have the point as a vertex, on both its sides, or the polygon cannot be
+/// triangulated. Edges of one polygon cross where three or more lines meet and the wedges between
+/// them are in and out by turns.
+pub fn find_touching(
+    edges: &[Edge],
+    group: &mut PlaneGroup,
+    table: &mut VertexTable,
+    touching: &mut LinePoints,
+) {
+    if edges.len() <= 3 {
+        return;
+    }
+    let view = Projection::onto(&group.plane, table);
+    let mut boxed: Vec<Boxed> = edges
+        .iter()
+        .enumerate()
+        .map(|(number, edge)| Boxed::new(edge, number, &view))
+        .collect();
+    boxed.sort_by(|a, b| a.low[0].total_cmp(&b.low[0]));
+    let (mut touches, mut crossings) = (Vec::new(), Vec::new());
+    for (i, a) in boxed.iter().enumerate() {
+        poll();
+        let near = boxed[i + 1..].iter().take_while(|b| b.low[0] <= a.high[0]);
+        for b in near.filter(|b| b.low[1] <= a.high[1] && a.low[1] <= b.high[1]) {
+            poll();
+            for (near, point) in [(a, b.edge.from), (b, a.edge.from)] {
+                let between = || view.is_between(near.edge.from, point, near.edge.to);
+                if near.may_hold(view.approx(point)) && between() {
+                    touches.push((near.number, point));
+                }
+            }
+            if view.crosses([a.edge.from, a.edge.to], [b.edge.from, b.edge.to]) {
+                crossings.push((a.number, b.number));
+            }
+        }
+    }
+    for (a, b) in crossings {
+        poll();
+        let (first, second) = (&group.edges()[a].carrier, &group.edges()[b].carrier);
+        let cut = Arc::new(second.plane(&group.plane));
+        if let Some(vertex) = first.meet(&group.plane, &cut) {
+            let point = table.number(&Arc::new(vertex));
+            touches.extend([(a, point), (b, point)]);
+        }
+    }
+    for (edge, point) in touches {
+        poll();
+        touching.entry(group.lines()[edge]).or_default().push(point);
+    }
+}
+
+impl<'a> Boxed<'a> {
+    /// The box is widened by the rounding of its ends.
+    fn new(edge: &'a Edge, number: usize, view: &Projection) -> Self {
+        let (a, b) = (view.approx(edge.from), view.approx(edge.to));
+        let slack = [0, 1].map(|i| (a[i].abs() + b[i].abs()) * 8.0 * f64::EPSILON);
+        Self {
+            edge,
+            number,
+            low: [0, 1].map(|i| a[i].min(b[i]) - slack[i]),
+            high: [0, 1].map(|i| a[i].max(b[i]) + slack[i]),
+        }
+    }
+
+    /// Whether a point may lie on the edge; a rounded one that does lies in the box.
+    fn may_hold(&self, p: [f64; 2]) -> bool {
+        (0..2).all(|i| self.low[i] <= p[i] && p[i] <= self.high[i])
+    }
+}
+
+/// The edges left after opposite ones with equal ends cancel, and all on lines with touching points.
+fn unpaired(
+    edges: &[Edge],
+    line: &mut impl FnMut(usize) -> LineKey,
+    touching: &LinePoints,
+    table: &VertexTable,
+) -> Vec<(LineKey, usize)> {
+    let paired = paired(edges, table.len());
+    let keyed = (0..edges.len()).filter_map(|i| {
+        if paired[i] && touching.is_empty() {
+            return None;
+        }
+        let line = line(i);
+        (!paired[i] || touching.contains_key(&line)).then_some((line, i))
+    });
+    keyed.collect()
+}
+
+/// Which edges have an opposite one with equal ends for themselves.
+fn paired(edges: &[Edge], points: usize) -> Vec<bool> {
+    let mut paired = vec![false; edges.len()];
+    let mut waiting: Vec<u32> = Vec::new();
+    let (starts, mut order) = by_lower_end(edges, points);
+    for bounds in starts.windows(2) {
+        poll();
+        let around = &mut order[bounds[0] as usize..bounds[1] as usize];
+        let higher = |i: &u32| edges[*i as usize].from.max(edges[*i as usize].to);
+        around.sort_unstable_by_key(|i| (higher(i), *i));
+        for same in around.chunk_by(|a, b| higher(a) == higher(b)) {
+            waiting.clear();
+            for i in same {
+                let opposite = |j: &mut u32| edges[*j as usize].from == edges[*i as usize].to;
+                if let Some(j) = waiting.pop_if(opposite) {
+                    paired[*i as usize] = true;
+                    paired[j as usize] = true;
+                } else {
+                    waiting.push(*i);
+                }
+            }
+        }
+    }
+    paired
+}
+
+/// The edges sorted by the lower number of their ends, and where those of each number start.
+fn by_lower_end(edges: &[Edge], points: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0u32; points + 1];
+    for edge in edges {
+        poll();
+        starts[edge.from.min(edge.to) as usize] += 1;
+    }
+    let mut sum = 0;
+    for start in &mut starts {
+        sum += *start;
+        *start = sum;
+    }
+    let mut order = vec![0u32; edges.len()];
+    for (i, edge) in (0u32..).zip(edges) {
+        let start = &mut starts[edge.from.min(edge.to) as usize];
+        *start -= 1;
+        order[*start as usize] = i;
+    }
+    (starts, order)
+}
+
+fn subdivide_line(
+    run: &[(LineKey, usize)],
+    edges: &[Edge],
+    extra: &[u32],
+    table: &VertexTable,
+    inner: &mut InnerPoints,
+) {
+    let axis = run[0].0.axis();
+    let mut points: Vec<u32> = run
+        .iter()
+        .flat_map(|(_, i)| [edges[*i].from, edges[*i].to])
+        .chain(extra.iter().copied())
+        .collect();
+    points.sort_unstable();
+    points.dedup();
+    points.sort_by(|a, b| table.point(*a).compare(table.point(*b), axis));
+    let rank: HashMap<u32, usize> = points.iter().enumerate().map(|(r, p)| (*p, r)).collect();
+    for (_, i) in run {
+        let (from, to) = (rank[&edges[*i].from], rank[&edges[*i].to]);
+        let between: Vec<u32> = if from < to {
+            points[from + 1..to].to_vec()
+        } else {
+            points[to + 1..from].iter().rev().copied().collect()
+        };
+        if !between.is_empty() {
+            inner.insert(*i, between);
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! The part of a mesh that is being mended, and a change of it.
+
+use std::collections::BTreeSet;
+
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+
+use crate::extract::rounding::crossings::Faults;
+use crate::geometry::doubles::{Point, Triangle};
+use crate::geometry::extent::Extent;
+
+/// The numbers in which coordinates are delivered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// 53 binary places.
+    Double,
+    /// 24 binary places.
+    Single,
+}
+
+impl Precision {
+    /// The nearest number.
+    pub fn round(self, x: f64) -> f64 {
+        match self {
+            Self::Double => x,
+            Self::Single => f64::from(x as f32),
+        }
+    }
+
+    /// The distance of neighbouring numbers of this size.
+    pub(super) fn spacing(self, x: f64) -> f64 {
+        match self {
+            Self::Double => x.abs().next_up() - x.abs(),
+            Self::Single => f64::from((x.abs() as f32).next_up()) - self.round(x.abs()),
+        }
+    }
+}
+
+/// How far a change may move the surface, in spacings of the largest coordinate: rounding moves a
+/// point by half a spacing on each axis, and two surfaces in opposite directions.
+const FARTHEST: f64 = 4.0;
+
+/// Comparisons of boxes, at about a nanosecond each, after which mending gives up.
+const WORK: usize = 4_000_000_000;
+
+/// Part of a mesh that is being mended. Triangles keep their numbers; removed ones are `None`.
+pub struct Mending {
+    /// The vertices; copies are added at the end.
+    pub vertices: Vec<Point>,
+    /// The triangles.
+    pub triangles: Vec<Option<[u32; 3]>>,
+    /// Vertices that stay: not all of their triangles are in this part.
+    pub(super) fixed: Vec<bool>,
+    /// Vertices of inputs, which others go to.
+    pub(super) given: Vec<bool>,
+    pub(super) extents: Vec<Extent>,
+    pub(super) flat: BTreeSet<u32>,
+    pub(super) crossings: BTreeSet<[u32; 2]>,
+    pub(super) halves: HashMap<[u32; 2], u32>,
+    pub(super) precision: Precision,
+    /// Of the largest coordinate.
+    pub(super) spacing: f64,
+    /// For each vertex how far it, and those merged with it, were moved at most.
+    pub(super) drifts: Vec<f64>,
+    pub(super) work: usize,
+    pub(super) moved: HashSet<u32>,
+}
+
+/// A change that is tried: where vertices go, and what becomes of triangles.
+#[derive(Debug, Default)]
+pub(super) struct Edit {
+    pub(super) moves: Vec<(u32, Point)>,
+    pub(super) triangles: Vec<(u32, Option<[u32; 3]>)>,
+    /// How far the vertex that another was merged with has moved it.
+    pub(super) drift: Option<(u32, f64)>,
+    /// Copies of vertices, in order, made for surfaces that no longer hang together.
+    pub(super) copies: Vec<u32>,
+}
+
+impl Mending {
+    /// The part, all faults of which are known.
+    pub fn new(
+        vertices: Vec<Point>,
+        triangles: Vec<[u32; 3]>,
+        [fixed, given]: [Vec<bool>; 2],
+        precision: Precision,
+        faults: &Faults,
+    ) -> Self {
+        let largest = vertices
+            .iter()
+            .flatten()
+            .fold(0.0f64, |m, x| m.max(x.abs()));
+        let corners = |t: &[u32; 3]| t.map(|v| vertices[v as usize]);
+        let extents = triangles.iter().map(|t| Extent::of(&corners(t))).collect();
+        let ends = |(t, c): (usize, &[u32; 3])| edges(c).map(|e| (e, t as u32));
+        let drifts = vec![0.0; vertices.len()];
+        let halves = triangles.iter().enumerate().flat_map(ends).collect();
+        Self {
+            triangles: triangles.into_iter().map(Some).collect(),
+            vertices,
+            fixed,
+            given,
+            extents,
+            flat: faults.flat.iter().copied().collect(),
+            crossings: faults.crossings.iter().copied().collect(),
+            halves,
+            precision,
+            spacing: precision.spacing(largest),
+            drifts,
+            work: WORK,
+            moved: HashSet::default(),
+        }
+    }
+
+    /// Whether a vertex was moved.
+    pub fn is_moved(&self, vertex: u32) -> bool {
+        self.moved.contains(&vertex)
+    }
+
+    /// The faults left; a flat triangle is a pair with itself.
+    pub fn faults(&self) -> Vec<[u32; 2]> {
+        let flat = self.flat.iter().map(|t| [*t, *t]);
+        self.crossings.iter().copied().chain(flat).collect()
+    }
+
+    /// How far a vertex, or one that was merged with it, is from where it came when it is here.
+    pub(super) fn drift(&self, v: u32, place: &Point) -> f64 {
+        self.drifts[v as usize] + distance(&self.vertices[v as usize], place)
+    }
+
+    pub(super) fn reach(&self) -> f64 {
+        FARTHEST * self.spacing
+    }
+
+    pub(super) fn star(&self, v: u32) -> Vec<u32> {
+        let has = |t: &Option<[u32; 3]>| t.is_some_and(|t| t.contains(&v));
+        let triangles = self.triangles.iter().enumerate();
+        triangles
+            .filter(|(_, t)| has(t))
+            .map(|(t, _)| t as u32)
+            .collect()
+    }
+
+    pub(super) fn corners(&self, t: u32) -> Option<Triangle> {
+        let corners = self.triangles[t as usize]?;
+        Some(corners.map(|v| self.vertices[v as usize]))
+    }
+}
+
+pub(super) fn edges(corners: &[u32; 3]) -> [[u32; 2]; 3] {
+    [0, 1, 2].map(|i| [corners[i], corners[(i + 1) % 3]])
+}
+
+pub(super) fn distance(p: &Point, q: &Point) -> f64 {
+    let square = |i: usize| (p[i] - q[i]) * (p[i] - q[i]);
+    (square(0) + square(1) + square(2)).sqrt()
+}

@@ -1,0 +1,128 @@
+//! Changes carried out and taken back, and the faults that are left.
+
+use super::part::{edges, Edit, Mending};
+use crate::extract::rounding::crossings::crosses_at;
+use crate::geometry::extent::Extent;
+use crate::geometry::meeting::{has_no_area, meeting, Meeting};
+
+impl Mending {
+    /// Carries a change out; returns the change back.
+    pub(super) fn apply(&mut self, edit: &Edit) -> Edit {
+        let mut undo = Edit::default();
+        for &v in &edit.copies {
+            self.vertices.push(self.vertices[v as usize]);
+            self.fixed.push(self.fixed[v as usize]);
+            self.given.push(self.given[v as usize]);
+            self.drifts.push(self.drifts[v as usize]);
+        }
+        for &(v, place) in &edit.moves {
+            undo.moves.push((v, self.vertices[v as usize]));
+            self.vertices[v as usize] = place;
+        }
+        self.exchange(&edit.triangles, &mut undo);
+        let moved: Vec<u32> = edit.moves.iter().flat_map(|m| self.star(m.0)).collect();
+        for t in moved {
+            self.measure(t);
+        }
+        undo
+    }
+
+    pub(super) fn revert(&mut self, edit: &Edit, undo: &Edit) {
+        let mut nothing = Edit::default();
+        for &(v, place) in undo.moves.iter().rev() {
+            self.vertices[v as usize] = place;
+        }
+        self.exchange(&undo.triangles, &mut nothing);
+        let moved: Vec<u32> = edit.moves.iter().flat_map(|m| self.star(m.0)).collect();
+        for t in moved {
+            self.measure(t);
+        }
+        let count = self.vertices.len() - edit.copies.len();
+        self.vertices.truncate(count);
+        self.fixed.truncate(count);
+        self.given.truncate(count);
+        self.drifts.truncate(count);
+    }
+
+    fn exchange(&mut self, triangles: &[(u32, Option<[u32; 3]>)], undo: &mut Edit) {
+        for (t, _) in triangles {
+            let old = self.triangles[*t as usize].take();
+            undo.triangles.push((*t, old));
+            for edge in old.iter().flat_map(edges) {
+                self.halves.remove(&edge);
+            }
+        }
+        for &(t, corners) in triangles {
+            self.triangles[t as usize] = corners;
+            for edge in corners.iter().flat_map(edges) {
+                self.halves.insert(edge, t);
+            }
+            self.measure(t);
+        }
+    }
+
+    fn measure(&mut self, t: u32) {
+        if let Some(corners) = self.corners(t) {
+            self.extents[t as usize] = Extent::of(&corners);
+        }
+    }
+
+    /// The faults of some triangles, ascending, if they are fewer than a number.
+    pub(super) fn faults_of(
+        &mut self,
+        some: &[u32],
+        most: usize,
+    ) -> Option<(Vec<[u32; 2]>, Vec<u32>)> {
+        let left = some.iter().copied().filter(|t| self.corners(*t).is_some());
+        let area = |t: &u32| self.corners(*t).is_some_and(|c| !has_no_area(&c));
+        let (solid, flat): (Vec<u32>, Vec<u32>) = left.partition(area);
+        let mut crossings = Vec::new();
+        if flat.len() >= most {
+            return None;
+        }
+        for t in solid {
+            self.work = self.work.saturating_sub(self.triangles.len());
+            for u in 0..self.triangles.len() as u32 {
+                let first = u > t || some.binary_search(&u).is_err();
+                let near =
+                    first && u != t && !self.extents[t as usize].misses(&self.extents[u as usize]);
+                if near && self.cross(t, u, &flat) {
+                    crossings.push([t.min(u), t.max(u)]);
+                    if crossings.len() + flat.len() >= most {
+                        return None;
+                    }
+                }
+            }
+        }
+        Some((crossings, flat))
+    }
+
+    fn cross(&self, t: u32, u: u32, flat: &[u32]) -> bool {
+        let pair = [t.min(u), t.max(u)];
+        let is_flat = |t: &u32| self.flat.contains(t) || flat.contains(t);
+        let (Some(p), Some(q)) = (self.corners(pair[0]), self.corners(pair[1])) else {
+            return false;
+        };
+        if is_flat(&u) && has_no_area(if u == pair[0] { &p } else { &q }) {
+            return false;
+        }
+        let met = meeting(&p, &q);
+        if let Meeting::Edges(i, j) = met {
+            if self.ends(pair[0], i) == self.ends(pair[1], j).map(|[a, b]| [b, a]) {
+                return false;
+            }
+        }
+        let mate = |which: usize, edge: usize| {
+            let [a, b] = self.ends(pair[which], edge)?;
+            let mate = self.triangles[*self.halves.get(&[b, a])? as usize]?;
+            let apex = mate.iter().find(|v| **v != a && **v != b)?;
+            Some(self.vertices[*apex as usize])
+        };
+        crosses_at(met, &[p, q], mate)
+    }
+
+    fn ends(&self, t: u32, edge: usize) -> Option<[u32; 2]> {
+        let corners = self.triangles[t as usize]?;
+        Some([corners[edge], corners[(edge + 1) % 3]])
+    }
+}

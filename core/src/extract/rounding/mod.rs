@@ -1,0 +1,8 @@
+//! From exact vertices to doubles or singles, without crossings.
+
+pub mod company;
+pub mod crossings;
+pub mod mend;
+pub mod round;
+pub mod settle;
+pub mod unfold;

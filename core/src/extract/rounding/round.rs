@@ -1,0 +1,179 @@
+//! From exact vertices to doubles: the only rounding, and what it did.
+
+use super::mend::Precision;
+use super::settle::{settle, Rounded, Settled};
+use super::unfold::{turned, unfold};
+use crate::error::Result;
+use crate::extract::assemble::assemble;
+use crate::extract::mesh::{Corner, ExactMesh, Mesh, TriangleFace};
+use crate::geometry::vertex::Vertex;
+use crate::merge::lists::list::Sources;
+use crate::mesh::finding::{Finding, Severity};
+use crate::mesh::tasks::fill_chunks;
+use crate::tree::solid::Solid;
+
+/// The mesh of a bounded solid, each vertex at the nearest double.
+///
+/// A vertex of an input mesh returns with its original doubles.
+///
+/// # Errors
+/// `Unbounded`.
+pub fn mesh(solid: &Solid) -> Result<Mesh> {
+    let mut exact = assemble(solid)?;
+    let mut vertices = vec![[0.0; 3]; exact.vertices.len()];
+    fill_chunks(&exact.vertices, &mut vertices, |_, corners, out| {
+        for (corner, place) in corners.iter().zip(out) {
+            *place = position(solid, &exact, *corner);
+        }
+    });
+    let mut mesh = Mesh {
+        vertices,
+        triangles: std::mem::take(&mut exact.triangles),
+        origins: Vec::new(),
+        findings: std::mem::take(&mut exact.findings),
+        compared: 0,
+    };
+    let sources = Sources::new(solid.sources().clone());
+    let unfolded = unfold(&mut mesh, &exact, &sources);
+    let settled = settle_mesh(&mut mesh, solid, &exact);
+    let left = if unfolded.left.is_empty() && settled.mended.is_empty() {
+        Vec::new()
+    } else {
+        turned(&mesh, &exact, &sources)
+    };
+    let origin = |f: TriangleFace| [f.slot, sources.get(f.slot as usize).number(f.face)];
+    mesh.origins = exact.faces.iter().copied().map(origin).collect();
+    let renumbered = drop_removed(&mut mesh);
+    report(&mut mesh, &unfolded.repaired, &left, &settled, &renumbered);
+    mesh.compared = settled.compared as u64;
+    Ok(mesh)
+}
+
+/// Mends the crossings that rounding made.
+///
+/// Triangles that are not as they came are compared with all near them, and faces of different
+/// inputs with each other: on the lattice they do not cross, but their given doubles may.
+fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Settled {
+    let changed: Vec<u32> = (exact.untouched as u32..mesh.triangles.len() as u32).collect();
+    let party = |t: u32| exact.faces[t as usize].slot;
+    let corner = |v: u32| exact.vertices.get(v as usize);
+    let on_lattice = |v: u32| match corner(v) {
+        Some(Corner::Source(slot, vertex)) => {
+            let mesh = solid.sources().get(*slot as usize).mesh()?;
+            let place = Vertex::lattice(mesh.vertices[*vertex as usize]);
+            Some(solid.pitch().position(&place))
+        }
+        _ => None,
+    };
+    let given = |v: u32| matches!(corner(v), Some(Corner::Source(..)));
+    let mut rounded = Rounded {
+        vertices: std::mem::take(&mut mesh.vertices),
+        triangles: std::mem::take(&mut mesh.triangles),
+    };
+    let precision = Precision::Double;
+    let settled = settle(&mut rounded, changed, precision, on_lattice, given, party);
+    mesh.vertices = rounded.vertices;
+    mesh.triangles = rounded.triangles;
+    settled
+}
+
+/// Leaves out the triangles that mending removed, and vertices that no triangle uses any more;
+/// returns the new numbers of triangles.
+fn drop_removed(mesh: &mut Mesh) -> Vec<u64> {
+    let is_left = |t: &[u32; 3]| t[0] != t[1];
+    if mesh.triangles.iter().all(is_left) {
+        return Vec::new();
+    }
+    let next = |next: &mut u64, t: &[u32; 3]| {
+        *next += u64::from(is_left(t));
+        Some(*next - u64::from(is_left(t)))
+    };
+    let numbers = mesh.triangles.iter().scan(0, next).collect();
+    let mut kept = mesh.triangles.iter().map(is_left);
+    mesh.origins.retain(|_| kept.next().unwrap_or(true));
+    mesh.triangles.retain(is_left);
+    drop_unused(mesh);
+    numbers
+}
+
+fn drop_unused(mesh: &mut Mesh) {
+    let mut used = vec![false; mesh.vertices.len()];
+    for v in mesh.triangles.iter().flatten() {
+        used[*v as usize] = true;
+    }
+    let count = |next: &mut u32, used: &bool| {
+        *next += u32::from(*used);
+        Some(*next - u32::from(*used))
+    };
+    let numbers: Vec<u32> = used.iter().scan(0, count).collect();
+    for v in mesh.triangles.iter_mut().flatten() {
+        *v = numbers[*v as usize];
+    }
+    // So far findings name vertices only: those at which the solid touches itself.
+    for place in mesh.findings.iter_mut().flat_map(|f| &mut f.place) {
+        *place = u64::from(numbers[*place as usize]);
+    }
+    let mut kept = used.iter();
+    mesh.vertices
+        .retain(|_| kept.next().copied().unwrap_or(false));
+}
+
+fn position(solid: &Solid, exact: &ExactMesh, corner: Corner) -> [f64; 3] {
+    match corner {
+        Corner::Point(point) => solid.pitch().position(exact.table.point(point)),
+        Corner::Source(slot, vertex) => {
+            let mesh = solid.sources().get(slot as usize).mesh();
+            mesh.map_or([0.0; 3], |m| m.doubles[vertex as usize])
+        }
+    }
+}
+
+/// Reports the triangles that rounding changed, by what became of them; `numbers` are their new
+/// ones, if some were removed.
+fn report(mesh: &mut Mesh, swapped: &[u64], turned: &[u64], settled: &Settled, numbers: &[u64]) {
+    let number = |t: &u64| numbers.get(*t as usize).copied().unwrap_or(*t);
+    let numbered = |ids: &[u64]| ids.iter().map(number).collect::<Vec<u64>>();
+    let wide = |ids: &mut dyn Iterator<Item = &u32>| ids.map(|t| number(&u64::from(*t))).collect();
+    let mut crossing: Vec<u64> = wide(&mut settled.left.crossings.iter().flatten());
+    crossing.sort_unstable();
+    crossing.dedup();
+    let mut faulty = numbered(turned);
+    faulty.extend(wide(&mut settled.left.flat.iter()).iter());
+    faulty.sort_unstable();
+    faulty.dedup();
+    let (collapsed, over): (Vec<u64>, Vec<u64>) =
+        faulty.iter().partition(|t| is_collapsed(mesh, **t));
+    let moved: Vec<u64> = settled.moved.iter().map(|v| u64::from(*v)).collect();
+    let mended: Vec<u64> = wide(&mut settled.mended.iter());
+    for (code, severity, places, text) in [
+        ("swapped", Severity::Note, &numbered(swapped), SWAPPED),
+        ("moved", Severity::Note, &moved, MOVED),
+        ("mended", Severity::Note, &mended, MENDED),
+        ("collapsed", Severity::Note, &collapsed, COLLAPSED),
+        ("turned", Severity::Warning, &over, TURNED),
+        ("crossing", Severity::Warning, &crossing, CROSSING),
+    ] {
+        if !places.is_empty() {
+            let finding = Finding::about(code, severity, places, text);
+            mesh.findings.push(finding);
+        }
+    }
+}
+
+const SWAPPED: &str = "rounding to doubles turned triangles over; an edge of these was swapped";
+const MOVED: &str =
+    "surfaces would cross between the given corners and the lattice; these corners \
+    were put on the lattice, less than a step away";
+const MENDED: &str = "rounding to doubles made surfaces cross or left triangles no area; these \
+    triangles were changed by the width of the rounding";
+const COLLAPSED: &str = "rounding to doubles put two corners of these triangles in one place";
+const TURNED: &str = "rounding to doubles turned these triangles over or left them no area";
+const CROSSING: &str = "rounding to doubles makes these triangles cross or overlap others, which \
+    could not be mended";
+
+/// Whether two corners of a triangle were rounded to the same place.
+#[allow(clippy::float_cmp)]
+fn is_collapsed(mesh: &Mesh, triangle: u64) -> bool {
+    let [a, b, c] = mesh.triangles[triangle as usize].map(|v| mesh.vertices[v as usize]);
+    a == b || b == c || c == a
+}

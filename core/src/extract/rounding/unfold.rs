@@ -1,0 +1,166 @@
+//! Triangles that rounding to doubles turned over, put right by swapping edges.
+//!
+//! A constructed vertex moves by half a unit in its last place at most. A triangle narrower than
+//! that may turn over; together with a neighbour of its plane it mostly has another diagonal with
+//! which both face the right way.
+
+use rustc_hash::FxHashMap as HashMap;
+
+use crate::extract::mesh::{Corner, ExactMesh, Mesh};
+use crate::geometry::doubles::{seen_along, turn};
+use crate::geometry::plane::Plane;
+use crate::merge::lists::list::Sources;
+
+/// Swaps tried per triangle found turned over; each lowers the number of such triangles.
+const TRIES: usize = 8;
+
+/// What rounding did to the triangles of a mesh.
+#[derive(Debug, Default)]
+pub struct Unfolded {
+    /// Triangles made by swapping an edge.
+    pub repaired: Vec<u64>,
+    /// Triangles that still have no area or face the wrong way.
+    pub left: Vec<u64>,
+}
+
+/// Swaps edges inside planes until no triangle, or none that this could help, faces the wrong way.
+///
+/// # Order
+/// Triangles by their numbers, and in each the edges from its first corner on.
+pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded {
+    let turned = turned(mesh, exact, sources);
+    if turned.is_empty() {
+        return Unfolded::default();
+    }
+    let mut surface = Surface::new(mesh, Planes { exact, sources });
+    let mut tries = TRIES * turned.len();
+    let mut found = Unfolded::default();
+    let mut open: Vec<usize> = turned.iter().rev().map(|t| *t as usize).collect();
+    while let Some(t) = open.pop() {
+        if tries == 0 || !surface.is_turned(t) {
+            continue;
+        }
+        tries -= 1;
+        if let Some(pair) = (3 * t..3 * t + 3).find_map(|half| surface.swap(half)) {
+            found.repaired.extend(pair.map(|t| t as u64));
+            open.extend(pair);
+        } else {
+            found.left.push(t as u64);
+        }
+    }
+    found.repaired.sort_unstable();
+    found.repaired.dedup();
+    found.left.retain(|&t| surface.is_turned(t as usize));
+    found
+}
+
+/// The triangles with a constructed corner that do not face as their planes do, ascending.
+pub fn turned(mesh: &Mesh, exact: &ExactMesh, sources: &Sources) -> Vec<u64> {
+    let planes = Planes { exact, sources };
+    let is_given = |v: &u32| matches!(exact.vertices.get(*v as usize), Some(Corner::Source(..)));
+    let is_left = |t: &[u32; 3]| t[0] != t[1];
+    let late = mesh.triangles.iter().enumerate().skip(exact.untouched);
+    late.filter(|(_, t)| is_left(t) && !t.iter().all(is_given))
+        .filter(|(t, _)| planes.is_turned(mesh, *t))
+        .map(|(t, _)| t as u64)
+        .collect()
+}
+
+/// The exact planes of the triangles.
+struct Planes<'a> {
+    exact: &'a ExactMesh,
+    sources: &'a Sources,
+}
+
+impl Planes<'_> {
+    fn of(&self, triangle: usize) -> Plane {
+        let face = &self.exact.faces[triangle];
+        let plane = self.sources.get(face.slot as usize).plane(face.face);
+        if face.flip {
+            plane.flipped()
+        } else {
+            (*plane).clone()
+        }
+    }
+
+    fn is_turned(&self, mesh: &Mesh, triangle: usize) -> bool {
+        let normal = self.exact.faces[triangle].normal(self.sources);
+        is_turned(mesh, &mesh.triangles[triangle], &normal)
+    }
+}
+
+/// Whether a rounded triangle does not face as its plane does, seen along its main axis.
+fn is_turned(mesh: &Mesh, corners: &[u32; 3], normal: &[i128; 3]) -> bool {
+    let axis = (0..3).rev().max_by_key(|i| normal[*i].unsigned_abs());
+    let axis = axis.unwrap_or(0);
+    let corners = corners.map(|c| mesh.vertices[c as usize]);
+    let facing = if normal[axis] > 0 { 1 } else { -1 };
+    turn(seen_along(&corners, axis)) != facing
+}
+
+/// A mesh whose edges can be swapped; half-edge 3t + i runs from corner i of triangle t.
+struct Surface<'a> {
+    mesh: &'a mut Mesh,
+    planes: Planes<'a>,
+    halves: HashMap<(u32, u32), usize>,
+}
+
+impl<'a> Surface<'a> {
+    fn new(mesh: &'a mut Mesh, planes: Planes<'a>) -> Self {
+        let ends = |(t, c): (usize, &[u32; 3])| {
+            let c = *c;
+            (0..3).map(move |i| ((c[i], c[(i + 1) % 3]), 3 * t + i))
+        };
+        let halves = mesh.triangles.iter().enumerate().flat_map(ends).collect();
+        Self {
+            mesh,
+            planes,
+            halves,
+        }
+    }
+
+    fn is_turned(&self, triangle: usize) -> bool {
+        self.planes.is_turned(self.mesh, triangle)
+    }
+
+    /// Puts the other diagonal into the two triangles beside an edge, if fewer are turned then.
+    fn swap(&mut self, half: usize) -> Option<[usize; 2]> {
+        let corner = |h: usize| self.mesh.triangles[h / 3][h % 3];
+        let next = |h: usize| h - h % 3 + (h % 3 + 1) % 3;
+        let (a, b, c) = (corner(half), corner(next(half)), corner(next(next(half))));
+        let mate = *self.halves.get(&(b, a))?;
+        let d = corner(next(next(mate)));
+        let pair = [half / 3, mate / 3];
+        let plane = self.planes.of(pair[0]);
+        let taken = [(c, d), (d, c)].iter().any(|e| self.halves.contains_key(e));
+        if c == d || taken || plane != self.planes.of(pair[1]) {
+            return None;
+        }
+        let made = [[a, d, c], [d, b, c]];
+        let before = pair.iter().filter(|t| self.is_turned(**t)).count();
+        let after = made
+            .iter()
+            .filter(|t| is_turned(self.mesh, t, plane.normal()))
+            .count();
+        (after < before).then(|| self.replace(pair, made))
+    }
+
+    fn replace(&mut self, pair: [usize; 2], made: [[u32; 3]; 2]) -> [usize; 2] {
+        for t in pair {
+            for edge in edges(&self.mesh.triangles[t]) {
+                self.halves.remove(&edge);
+            }
+        }
+        for (t, corners) in pair.into_iter().zip(made) {
+            for (i, edge) in edges(&corners).into_iter().enumerate() {
+                self.halves.insert(edge, 3 * t + i);
+            }
+            self.mesh.triangles[t] = corners;
+        }
+        pair
+    }
+}
+
+fn edges(corners: &[u32; 3]) -> [(u32, u32); 3] {
+    [0, 1, 2].map(|i| (corners[i], corners[(i + 1) % 3]))
+}

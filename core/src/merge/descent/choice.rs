@@ -1,0 +1,124 @@
+//! Which cells are for a kernel, and which are halved.
+
+use super::state::{State, States};
+use crate::geometry::cell::Cell;
+use crate::merge::kernels::general::MOST;
+
+/// Lists that together hold at most this many elements are worked on by a leaf kernel, whatever
+/// their position: local trees cost the square, smaller cells cost halvings and cut faces.
+pub const LEAF: usize = 32;
+
+/// States that together hold at most this many are tried without local trees: in larger leaves the
+/// next operation has more to do again, in smaller ones more faces are cut by walls.
+const GENERAL: usize = 64;
+
+/// The same, where no state is an operation's result, and the next operation may never come.
+///
+/// More are halved, to be shared among threads.
+const FRESH: usize = 1 << 13;
+
+/// States that together hold at most this many for each operand are worked on at once, if all faces
+/// are perpendicular to axes.
+///
+/// Few operands are as a rule a step of a chain: the next one cuts the leaf up again.
+pub const ORTHOGONAL: usize = 32;
+
+/// More elements than this are halved even so, to be shared among threads.
+pub const CROWD: usize = 512;
+
+/// Three halvings, one round of the axes, should leave at most 7/8 of the elements in a child.
+const ROUND: u32 = 3;
+
+/// Longer lists than this are halved on, stuck or not: the kernel's cost grows with their square.
+pub const STUCK: usize = 2048;
+
+/// A kernel that refused a cell is asked again when one in so many elements is left: from `FRESH`
+/// down to `LEAF` at most three times in vain.
+const RETRY: usize = 8;
+
+/// Parts of a cell that tell whether several operands have elements there are about this small.
+const SAMPLE: usize = 16;
+
+/// How the element count fared in the current round of three halvings.
+#[derive(Clone, Copy)]
+pub struct Round {
+    depth: u32,
+    start: usize,
+    stuck: bool,
+    /// How many elements the kernel for general position refused.
+    refused: usize,
+}
+
+impl Round {
+    /// Nothing was halved yet.
+    pub const START: Self = Self {
+        depth: 0,
+        start: usize::MAX / 8,
+        stuck: false,
+        refused: usize::MAX,
+    };
+
+    /// After a halving of a cell with so many elements.
+    #[must_use]
+    pub fn next(self, total: usize) -> Self {
+        if self.depth + 1 < ROUND {
+            return Self {
+                depth: self.depth + 1,
+                ..self
+            };
+        }
+        Self {
+            depth: 0,
+            start: total,
+            stuck: total * 8 > self.start * 7,
+            ..self
+        }
+    }
+
+    /// The kernel for general position refused so many elements.
+    pub fn refused(&mut self, total: usize) {
+        self.refused = total;
+    }
+
+    /// Whether halving has stopped separating: a round kept nearly all elements, and nearly all of
+    /// them reach out of the cell, as around a vertex of many faces.
+    pub fn is_stuck(&self, cell: &Cell, states: &States, total: usize) -> bool {
+        let reaching = |s: &(u32, State)| match &s.1 {
+            State::List(list) => list.reaching_out(cell),
+            State::Constant(_) | State::Tree(_) | State::Bins(_) => 0,
+        };
+        self.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
+    }
+
+    /// Whether a cell of so many elements is for the kernel for general position.
+    ///
+    /// That looks at all elements, halving only at where they are: so at least half of them should
+    /// lie in small parts of the cell where several operands have some.
+    pub fn suits_general_position(&self, cell: &Cell, states: &States, total: usize) -> bool {
+        if states.len() > MOST || total > self.refused / RETRY {
+            return false;
+        }
+        if states.iter().all(|s| s.1.is_given()) {
+            return total <= FRESH && mixed(cell, states, total) >= 0.5;
+        }
+        total <= GENERAL && states.iter().all(|s| matches!(s.1, State::List(_)))
+    }
+}
+
+/// About what share of the elements lies in small parts of the cell where several operands have
+/// some.
+fn mixed(cell: &Cell, states: &States, total: usize) -> f64 {
+    let mut open = vec![(*cell, total)];
+    let (mut mixed, mut all) = (0, 0);
+    while let Some((part, most)) = open.pop() {
+        let counts = states.iter().map(|s| s.1.count_in(&part));
+        let (present, sum) = counts.fold((0, 0), |(k, n), c| (k + usize::from(c > 0), n + c));
+        if let Some(cut) = part.cut().filter(|_| most > SAMPLE && sum > 0) {
+            open.extend([false, true].map(|plus| (part.half(cut, plus), most / 2)));
+            continue;
+        }
+        all += sum;
+        mixed += if present > 1 { sum } else { 0 };
+    }
+    mixed as f64 / all.max(1) as f64
+}

@@ -1,0 +1,319 @@
+//! One descent for a whole expression: operands are folded away cell by cell.
+//!
+//! # Source
+//! Naylor, Amanatides, Thibault 1990 (merging: a leaf decides, a common cut is descended);
+//! design review F12 (residual expressions), F14 (one hierarchy for all solids).
+
+use std::borrow::Cow;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::choice::{Round, CROWD, LEAF, ORTHOGONAL, STUCK};
+use super::join;
+use super::state::{find, has_constant, nested, State, States, MANY, TASK};
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::cell::{Cell, Cut};
+use crate::interrupt::{carried, poll};
+use crate::merge::expression::{Expression, Residual};
+use crate::merge::kernels::leaf::{self, Rule};
+use crate::merge::lists::list::{List, Sources};
+use crate::mesh::tasks::{both, in_pool};
+use crate::tree::node::Branch;
+
+/// Counts of what an evaluation did.
+#[derive(Debug, Default)]
+pub struct Counters {
+    /// Cells visited.
+    pub cells: AtomicU64,
+    /// Faces sorted into bins.
+    pub binned: AtomicU64,
+    /// Elements of lists that were halved, once for each halving.
+    pub halved: AtomicU64,
+    /// Cells worked on by the leaf kernel.
+    pub leaves: AtomicU64,
+    /// Elements in these.
+    pub leaf_elements: AtomicU64,
+}
+
+impl Counters {
+    /// The counts with their names.
+    pub fn named(&self) -> [(&'static str, u64); 5] {
+        [
+            ("cells", &self.cells),
+            ("binned", &self.binned),
+            ("halved", &self.halved),
+            ("kernels", &self.leaves),
+            ("kernel_elements", &self.leaf_elements),
+        ]
+        .map(|(name, count)| (name, count.load(Ordering::Relaxed)))
+    }
+}
+
+/// What all cells of an evaluation share.
+#[derive(Debug)]
+pub struct Descent<'a> {
+    /// The sources of all operands.
+    pub sources: &'a Sources,
+    /// Which winding numbers of an operand are inside.
+    pub rule: Rule,
+    /// Whether a single operand's boundary is taken as it is, or made the reduced boundary.
+    pub share: bool,
+    /// What was done.
+    pub counters: Counters,
+    /// For each operand whether a visited cell showed that it overlaps itself.
+    pub overlaps: Vec<AtomicBool>,
+}
+
+impl<'a> Descent<'a> {
+    /// A descent over this many operands.
+    pub fn new(sources: &'a Sources, rule: Rule, share: bool, operands: usize) -> Self {
+        Self {
+            sources,
+            rule,
+            share,
+            counters: Counters::default(),
+            overlaps: (0..operands).map(|_| AtomicBool::new(false)).collect(),
+        }
+    }
+
+    /// The operands that a visited cell showed to overlap themselves.
+    pub fn overlapping(&self) -> Vec<usize> {
+        let seen = |k: &usize| self.overlaps[*k].load(Ordering::Relaxed);
+        (0..self.overlaps.len()).filter(seen).collect()
+    }
+
+    /// The value of an expression over solids, from their root branches.
+    pub fn run(&self, expression: Expression, roots: Vec<Branch>) -> Result<Branch> {
+        let cell = roots.iter().map(|r| r.cell).reduce(|a, b| a.join(&b));
+        let Some(cell) = cell else {
+            let text = "the expression has no operands";
+            return Err(Error::new(ErrorKind::Shape, text));
+        };
+        let mut scratch = Vec::new();
+        let outside = expression.value(
+            |k| self.rule.inside(roots[k as usize].outside),
+            &mut scratch,
+        );
+        let mut states: States = (0u32..).zip(roots.into_iter().map(State::Tree)).collect();
+        for (_, state) in &mut states {
+            state.settle(&cell);
+        }
+        let round = Round::START;
+        let residual = if self.share || has_constant(&states) {
+            self.residual(&expression, &states)
+        } else {
+            Residual::Open(Arc::new(expression))
+        };
+        let branch = self.resolve(cell, residual, states, round)?;
+        Ok(match branch.constant() {
+            Some(w) => Branch::uniform(branch.cell, w),
+            None => Branch {
+                outside: i32::from(outside),
+                ..branch
+            },
+        })
+    }
+
+    fn residual(&self, expression: &Expression, states: &States) -> Residual {
+        expression.residual(|k| match find(states, k) {
+            Some(State::Constant(w)) => Some(self.rule.inside(*w)),
+            _ => None,
+        })
+    }
+
+    /// A cell below one in which several operands mattered.
+    fn cell(
+        &self,
+        cell: Cell,
+        expression: Arc<Expression>,
+        mut states: States,
+        round: Round,
+    ) -> Result<Branch> {
+        poll();
+        self.counters.cells.fetch_add(1, Ordering::Relaxed);
+        for (_, state) in &mut states {
+            state.settle(&cell);
+        }
+        let residual = if has_constant(&states) {
+            self.residual(&expression, &states)
+        } else {
+            Residual::Open(expression)
+        };
+        self.resolve(cell, residual, states, round)
+    }
+
+    fn resolve(
+        &self,
+        cell: Cell,
+        residual: Residual,
+        mut states: States,
+        round: Round,
+    ) -> Result<Branch> {
+        match residual {
+            Residual::Constant(v) => Ok(Branch::uniform(cell, i32::from(v))),
+            Residual::Literal(k, negate) if self.share => {
+                let at = states.iter().position(|s| s.0 == k).unwrap_or(0);
+                Ok(states.swap_remove(at).1.shared(cell, negate, self.sources))
+            }
+            Residual::Literal(..) => Err(Error::internal("a literal where nothing is shared")),
+            Residual::Open(expression) => {
+                let support = expression.operands();
+                states.retain(|s| support.binary_search(&s.0).is_ok());
+                self.open_cell(cell, expression, states, round)
+            }
+        }
+    }
+
+    /// A cell in which the expression still depends on several operands.
+    fn open_cell(
+        &self,
+        cell: Cell,
+        expression: Arc<Expression>,
+        states: States,
+        round: Round,
+    ) -> Result<Branch> {
+        if let Some(inner) = nested(&cell, &states) {
+            let outside = self.value_outside(&expression, &states);
+            let branch = self.cell(inner, expression, states, round)?;
+            return Ok(match branch.constant() {
+                Some(w) if (w > 0) == outside => Branch::uniform(cell, w),
+                _ => Branch {
+                    outside: i32::from(outside),
+                    ..branch
+                },
+            });
+        }
+        let opening: usize = states.iter().map(|s| s.1.len_to_open(&cell)).sum();
+        let states = self.opened(&cell, states, opening);
+        let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
+        let mut round = round;
+        let stuck = round.is_stuck(&cell, &states, total);
+        let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
+        let small = total <= LEAF || stuck && total <= STUCK;
+        let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
+            return Ok(self.leaf(cell, &expression, states, total));
+        };
+        if total <= (ORTHOGONAL * states.len()).min(CROWD) {
+            if let Some(branch) = self.among_orthogonal(cell, &expression, &states, total) {
+                return Ok(branch);
+            }
+        }
+        // No level of bins suited these faces, so halving will not separate them either.
+        let long = listed && opening >= MANY;
+        if long || listed && stuck || round.suits_general_position(&cell, &states, total) {
+            if let Some(branch) = self.in_general_position(cell, &expression, &states, total) {
+                return Ok(branch);
+            }
+            round.refused(total);
+        }
+        self.halves(cell, cut, &expression, states, round.next(total), total)
+    }
+
+    /// The states with the leaves of this cell, of so many elements, opened.
+    fn opened(&self, cell: &Cell, states: States, opening: usize) -> States {
+        let open =
+            |(k, state): (u32, State)| (k, state.opened(cell, self.sources, &self.counters.binned));
+        if in_pool() && opening >= 8 * MANY {
+            return states.into_par_iter().map(carried(open)).collect();
+        }
+        states.into_iter().map(open).collect()
+    }
+
+    fn value_outside(&self, expression: &Expression, states: &States) -> bool {
+        let outside = |k: u32| match find(states, k) {
+            Some(State::Tree(branch)) => self.rule.inside(branch.outside),
+            _ => false,
+        };
+        expression.value(outside, &mut Vec::new())
+    }
+
+    fn halves(
+        &self,
+        cell: Cell,
+        cut: Cut,
+        expression: &Arc<Expression>,
+        states: States,
+        round: Round,
+        total: usize,
+    ) -> Result<Branch> {
+        let halved = states.iter().map(|s| s.1.listed()).sum::<usize>();
+        self.counters
+            .halved
+            .fetch_add(halved as u64, Ordering::Relaxed);
+        let mut below = Vec::with_capacity(states.len());
+        let mut above = Vec::with_capacity(states.len());
+        for (k, state) in states {
+            let (minus, plus) = state.divided(&cell, cut, self.sources);
+            below.push((k, minus));
+            above.push((k, plus));
+        }
+        let half = |plus: bool, states: States| {
+            self.cell(cell.half(cut, plus), Arc::clone(expression), states, round)
+        };
+        let (minus, plus) = both(total >= TASK, || half(false, below), || half(true, above));
+        Ok(join::branch(cell, cut, minus?, plus?, self.sources))
+    }
+
+    fn count_leaf(&self, total: usize) {
+        self.counters.leaves.fetch_add(1, Ordering::Relaxed);
+        self.counters
+            .leaf_elements
+            .fetch_add(total as u64, Ordering::Relaxed);
+    }
+
+    /// All operands' elements as lists of the cell, if they can be.
+    fn lists_in<'s>(&self, cell: &Cell, states: &'s States) -> Option<Vec<(u32, Cow<'s, List>)>> {
+        let list = |(k, state): &'s (u32, State)| Some((*k, state.list_in(cell, self.sources)?));
+        states.iter().map(list).collect()
+    }
+
+    /// The result in a cell of more elements, if nothing there is special.
+    fn in_general_position(
+        &self,
+        cell: Cell,
+        expression: &Expression,
+        states: &States,
+        total: usize,
+    ) -> Option<Branch> {
+        let lists = self.lists_in(&cell, states)?;
+        let lists: Vec<(u32, &List)> = lists.iter().map(|(k, list)| (*k, &**list)).collect();
+        let node = leaf::in_general_position(&cell, expression, self.rule, &lists, self.sources)?;
+        self.count_leaf(total);
+        Some(Branch::of_node(cell, node))
+    }
+
+    /// The result in a cell of which all faces are perpendicular to axes.
+    fn among_orthogonal(
+        &self,
+        cell: Cell,
+        expression: &Expression,
+        states: &States,
+        total: usize,
+    ) -> Option<Branch> {
+        if !states.iter().all(|s| s.1.is_orthogonal(self.sources)) {
+            return None;
+        }
+        let lists = self.lists_in(&cell, states)?;
+        let lists: Vec<(u32, &List)> = lists.iter().map(|(k, list)| (*k, &**list)).collect();
+        let node = leaf::among_orthogonal(&cell, expression, &lists, self.sources)?;
+        self.count_leaf(total);
+        Some(Branch::of_node(cell, node))
+    }
+
+    fn leaf(&self, cell: Cell, expression: &Expression, states: States, total: usize) -> Branch {
+        self.count_leaf(total);
+        let lists = states
+            .into_iter()
+            .filter_map(|(k, s)| match s {
+                State::List(list) => Some((k, list)),
+                State::Constant(_) | State::Tree(_) | State::Bins(_) => None,
+            })
+            .collect();
+        let node = leaf::evaluate(&cell, expression, self.rule, lists, self.sources, |k| {
+            self.overlaps[k as usize].store(true, Ordering::Relaxed);
+        });
+        Branch::of_node(cell, node)
+    }
+}

@@ -1,0 +1,210 @@
+//! Putting the two halves of a cell together again.
+
+use std::sync::Arc;
+
+use crate::geometry::cell::{Cell, Cut};
+use crate::geometry::crossing::{plane_change, triangle_change, Segment};
+use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::interrupt::poll;
+use crate::merge::kernels::kept::is_whole;
+use crate::merge::lists::list::Sources;
+use crate::mesh::cached::Cached;
+use crate::mesh::source::{Shape, Source};
+use crate::tree::node::{Branch, Deferred, Group, Node};
+
+/// Two deferred leaves that together list at most this many faces become one.
+///
+/// Half the size at which leaves are worked on, so that a joined leaf is not split at once again.
+pub const JOINED: usize = 16;
+
+/// The branch for a cell from the branches for its halves.
+///
+/// No boundary lies in a dyadic cut, so that next to a uniform half the other one is uniform
+/// along the cut: it then stands for the whole cell (path compression).
+pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch, sources: &Sources) -> Branch {
+    match (minus.constant(), plus.constant()) {
+        (Some(w), Some(v)) if (w > 0) == (v > 0) => Branch::uniform(cell, w),
+        (Some(w), None) => Branch { outside: w, ..plus },
+        (None, Some(w)) => Branch {
+            outside: w,
+            ..minus
+        },
+        _ => {
+            let outside = minus.outside;
+            let node = joined(&cell, cut, &minus, &plus, sources)
+                .unwrap_or_else(|| Node::cut(minus, plus));
+            Branch {
+                cell,
+                outside,
+                complement: false,
+                node: Arc::new(node),
+            }
+        }
+    }
+}
+
+/// One deferred leaf for both halves, if they are small and hold whole faces only.
+fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Sources) -> Option<Node> {
+    let (a, b) = (small_leaf(minus)?, small_leaf(plus)?);
+    if a.len() + b.len() > 2 * JOINED {
+        return None;
+    }
+    let mut faces = listed(minus, a);
+    for element in listed(plus, b) {
+        poll();
+        if !faces.iter().any(|f| f.same_as(&element)) {
+            faces.push(element);
+        }
+    }
+    if faces.len() > JOINED {
+        return None;
+    }
+    let halves = [
+        (minus, a, cell.half(cut, false)),
+        (plus, b, cell.half(cut, true)),
+    ];
+    let mut held = Vec::with_capacity(faces.len());
+    for face in faces {
+        poll();
+        match face.extent_in(cell, &halves) {
+            Extent::All => held.push(face),
+            Extent::Nothing => {}
+            Extent::Some => return None,
+        }
+    }
+    let mut faces = held;
+    faces.sort_by_key(|f| (sources.slot(&f.source), f.flip, f.face));
+    let corner = corner_of(minus, a, cell);
+    let plus_corner = corner_of(plus, b, &halves[1].2);
+    if plus_corner != corner + change_along_edge(&faces, cell, cut) {
+        return None;
+    }
+    Some(Node::Deferred(Deferred {
+        groups: grouped(faces),
+        parts: Vec::new(),
+        corner,
+        work: a.work.max(b.work),
+        share: Cached::new(),
+    }))
+}
+
+/// The winding number at the low corner of the cell that a branch stands for.
+fn corner_of(branch: &Branch, leaf: &Deferred, cell: &Cell) -> i32 {
+    if branch.cell.low() == cell.low() {
+        branch.oriented(leaf.corner)
+    } else {
+        branch.outside
+    }
+}
+
+/// The change of the winding number from the cell's low corner to the plus half's.
+///
+/// An operand taken as it is may count more than one inside where the leaf kernel says one: leaves
+/// that do not agree across the cut must not become one.
+fn change_along_edge(faces: &[Listed], cell: &Cell, cut: Cut) -> i32 {
+    let segment = Segment {
+        from: cell.corner(),
+        axis: cut.axis,
+        to: 2 * cut.at - 1,
+    };
+    let across = |f: &Listed| match f.source.shape() {
+        Shape::Mesh(mesh) => triangle_change(&mesh.corners(f.face), &segment),
+        Shape::HalfSpace(plane) => plane_change(plane, &segment),
+    };
+    faces
+        .iter()
+        .map(|f| if f.flip { -across(f) } else { across(f) })
+        .sum()
+}
+
+fn small_leaf(branch: &Branch) -> Option<&Deferred> {
+    match &*branch.node {
+        Node::Deferred(leaf) if leaf.parts.is_empty() && leaf.len() <= JOINED => Some(leaf),
+        _ => None,
+    }
+}
+
+struct Listed {
+    source: Arc<Source>,
+    flip: bool,
+    face: u32,
+}
+
+fn listed(branch: &Branch, leaf: &Deferred) -> Vec<Listed> {
+    let entry = |g: &Group, face: &u32| Listed {
+        source: Arc::clone(&g.source),
+        flip: g.flip ^ branch.complement,
+        face: *face,
+    };
+    leaf.groups
+        .iter()
+        .flat_map(|g| g.faces.iter().map(move |f| entry(g, f)))
+        .collect()
+}
+
+impl Listed {
+    fn same_as(&self, other: &Self) -> bool {
+        self.face == other.face
+            && self.flip == other.flip
+            && Arc::ptr_eq(&self.source, &other.source)
+    }
+
+    fn is_in(&self, branch: &Branch, leaf: &Deferred) -> bool {
+        leaf.groups.iter().any(|g| {
+            g.flip ^ branch.complement == self.flip
+                && Arc::ptr_eq(&g.source, &self.source)
+                && g.faces.binary_search(&self.face).is_ok()
+        })
+    }
+
+    /// How much of the face's part in the cell the two leaves hold.
+    fn extent_in(&self, cell: &Cell, halves: &[(&Branch, &Deferred, Cell); 2]) -> Extent {
+        let (low, high) = self.source.face_box(self.face);
+        let holders: Vec<_> = halves
+            .iter()
+            .filter(|(branch, leaf, _)| self.is_in(branch, leaf))
+            .collect();
+        let enclosed = holders.iter().any(|h| h.0.cell.holds_box(&low, &high));
+        if enclosed || holders.iter().filter(|h| h.0.cell == h.2).count() == 2 {
+            return Extent::All;
+        }
+        let clipped = holders
+            .iter()
+            .filter_map(|h| self.source.clip(self.face, &h.0.cell));
+        let edges: Vec<OutlineEdge> = clipped
+            .flat_map(|p| OutlineEdge::all_of(&p).collect::<Vec<_>>())
+            .collect();
+        if edges.is_empty() {
+            Extent::Nothing
+        } else if is_whole(&cancel(edges), &self.source, self.face, cell) {
+            Extent::All
+        } else {
+            Extent::Some
+        }
+    }
+}
+
+/// How much of a face inside a cell is boundary.
+enum Extent {
+    All,
+    Some,
+    Nothing,
+}
+
+fn grouped(faces: Vec<Listed>) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    for f in faces {
+        poll();
+        match groups.last_mut() {
+            Some(g) if Arc::ptr_eq(&g.source, &f.source) && g.flip == f.flip => {
+                g.faces.push(f.face);
+            }
+            _ => groups.push(Group {
+                source: f.source,
+                flip: f.flip,
+                faces: vec![f.face],
+            }),
+        }
+    }
+    groups
+}

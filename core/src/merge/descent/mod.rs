@@ -1,0 +1,7 @@
+//! The descent: one walk through space for a whole expression, which divides cells until a kernel
+//! takes them, and puts the results together.
+
+pub mod choice;
+pub mod descend;
+pub(super) mod join;
+pub(super) mod state;

@@ -1,0 +1,230 @@
+//! What is known of an operand in a cell of the descent.
+
+use std::borrow::Cow;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::Arc;
+
+use crate::geometry::cell::{Cell, Cut};
+use crate::merge::lists::bins::Bins;
+use crate::merge::lists::list::{List, PartRecord, Record, Sources};
+use crate::tree::node::{Branch, Node, Work};
+
+/// Lists at least this long are worth a task of their own.
+pub const TASK: usize = 512;
+
+/// Deferred leaves at least this long are sorted into bins instead of being halved.
+pub const MANY: usize = 1024;
+
+/// With so few entries in a cell the bins give way to a list.
+const FEW: usize = 64;
+
+/// What is known of an operand in a cell.
+#[derive(Clone, Debug)]
+pub enum State {
+    /// One winding number.
+    Constant(i32),
+    /// A subtree whose cell lies in the cell.
+    Tree(Branch),
+    /// The elements that meet the cell.
+    List(List),
+    /// Many faces, of which those of the cell are found by its place.
+    Bins(Arc<Bins>),
+}
+
+/// The operands that matter, by number, ascending.
+pub type States = Vec<(u32, State)>;
+
+/// What is known of an operand.
+pub fn find(states: &States, operand: u32) -> Option<&State> {
+    let at = states.binary_search_by_key(&operand, |s| s.0).ok()?;
+    Some(&states[at].1)
+}
+
+/// The smallest cell around all operands' boundaries, if it is smaller than `cell`.
+pub fn nested(cell: &Cell, states: &States) -> Option<Cell> {
+    let mut inner: Option<Cell> = None;
+    for (_, state) in states {
+        match state {
+            State::Tree(branch) if branch.cell != *cell => {
+                inner = Some(inner.map_or(branch.cell, |c| c.join(&branch.cell)));
+            }
+            _ => return None,
+        }
+    }
+    inner.filter(|c| c != cell)
+}
+
+/// Whether there is an operand without boundary in the cell.
+pub fn has_constant(states: &States) -> bool {
+    states.iter().any(|s| matches!(s.1, State::Constant(_)))
+}
+
+impl State {
+    /// About how many elements it has in the cell.
+    pub fn len_in(&self, cell: &Cell) -> usize {
+        match self {
+            Self::Constant(_) => 0,
+            Self::Tree(branch) => match &*branch.node {
+                Node::Deferred(leaf) => leaf.len(),
+                Node::Cut(_) => TASK,
+                Node::Leaf(_) => 0,
+            },
+            Self::List(list) => list.len(),
+            Self::Bins(bins) => bins.len_in(cell),
+        }
+    }
+
+    /// About how many it has in a part of the cell.
+    pub fn count_in(&self, part: &Cell) -> usize {
+        match self {
+            Self::Tree(branch) if !branch.cell.meets(part) => 0,
+            state => state.len_in(part),
+        }
+    }
+
+    /// Whether it lists an operand's boundary as that was given.
+    pub fn is_given(&self) -> bool {
+        match self {
+            Self::Constant(_) => false,
+            Self::Tree(branch) => match &*branch.node {
+                Node::Deferred(leaf) => leaf.work == Work::Given,
+                Node::Leaf(_) | Node::Cut(_) => false,
+            },
+            Self::List(list) => list.work() == Work::Given,
+            Self::Bins(bins) => bins.work() == Work::Given,
+        }
+    }
+
+    /// The number of elements in a deferred leaf of this very cell.
+    pub fn len_to_open(&self, cell: &Cell) -> usize {
+        match self {
+            Self::Tree(branch) if branch.cell == *cell => match &*branch.node {
+                Node::Deferred(leaf) => leaf.len(),
+                Node::Cut(_) | Node::Leaf(_) => 0,
+            },
+            Self::Constant(_) | Self::Tree(_) | Self::List(_) | Self::Bins(_) => 0,
+        }
+    }
+
+    /// The number of elements that halving the state would move.
+    pub fn listed(&self) -> usize {
+        match self {
+            Self::List(list) => list.len(),
+            Self::Constant(_) | Self::Tree(_) | Self::Bins(_) => 0,
+        }
+    }
+
+    /// Whether all elements are known, and perpendicular to axes.
+    pub fn is_orthogonal(&self, sources: &Sources) -> bool {
+        match self {
+            Self::List(list) => {
+                let flat = |r: &Record| sources.get(r.slot()).is_orthogonal(r.face);
+                let part =
+                    |p: &PartRecord| p.element.part.source.is_orthogonal(p.element.part.face);
+                list.records.iter().all(flat) && list.parts.iter().all(part)
+            }
+            Self::Tree(branch) => match &*branch.node {
+                Node::Deferred(leaf) => leaf.is_orthogonal(),
+                Node::Leaf(_) | Node::Cut(_) => false,
+            },
+            Self::Constant(_) | Self::Bins(_) => false,
+        }
+    }
+
+    /// The elements as a list of the cell, if nothing reaches out of the part they are listed for.
+    pub fn list_in(&self, cell: &Cell, sources: &Sources) -> Option<Cow<'_, List>> {
+        match self {
+            Self::List(list) => Some(Cow::Borrowed(list)),
+            Self::Tree(branch) => List::lifted(branch, cell, sources).map(Cow::Owned),
+            Self::Bins(bins) => List::lifted(&bins.branch_in(cell), cell, sources).map(Cow::Owned),
+            Self::Constant(_) => None,
+        }
+    }
+
+    /// Becomes a constant if there is no boundary in the cell.
+    pub fn settle(&mut self, cell: &Cell) {
+        let constant = match self {
+            Self::Constant(_) => None,
+            Self::Tree(branch) => match (branch.constant(), &*branch.node) {
+                (Some(w), _) => Some(w),
+                (None, Node::Leaf(w)) if branch.cell == *cell => Some(branch.oriented(*w)),
+                (None, _) => None,
+            },
+            Self::List(list) => list.is_empty().then_some(list.corner),
+            Self::Bins(bins) => (bins.len_in(cell) == 0).then(|| bins.corner_of(cell)),
+        };
+        if let Some(w) = constant {
+            *self = Self::Constant(w);
+        }
+    }
+
+    /// The state with deferred leaves of this cell opened; counts the faces sorted into bins.
+    pub fn opened(self, cell: &Cell, sources: &Sources, binned: &AtomicU64) -> Self {
+        match self {
+            Self::Tree(branch) if branch.cell == *cell => opened_leaf(branch, sources, binned),
+            Self::Bins(bins) if !bins.divide(cell) || bins.len_in(cell) <= FEW => {
+                opened_leaf(bins.branch_in(cell), sources, binned)
+            }
+            other => other,
+        }
+    }
+
+    /// The states in the two halves of the cell.
+    pub fn divided(self, cell: &Cell, cut: Cut, sources: &Sources) -> (Self, Self) {
+        match self {
+            Self::Constant(w) => (Self::Constant(w), Self::Constant(w)),
+            Self::List(list) => {
+                let (minus, plus) = list.divide(cell, cut, sources);
+                (Self::List(minus), Self::List(plus))
+            }
+            Self::Tree(branch) => divide_tree(branch, cell, cut),
+            Self::Bins(bins) => (Self::Bins(Arc::clone(&bins)), Self::Bins(bins)),
+        }
+    }
+
+    /// This operand, perhaps turned inside out, as the result in the cell.
+    pub fn shared(self, cell: Cell, negate: bool, sources: &Sources) -> Branch {
+        match self {
+            Self::Constant(w) => Branch::uniform(cell, if negate { 1 - w } else { w }),
+            Self::Tree(branch) if negate => branch.complemented(),
+            Self::Tree(branch) => branch,
+            Self::Bins(bins) => Self::Tree(bins.branch_in(&cell)).shared(cell, negate, sources),
+            Self::List(list) => Branch::of_node(cell, list.close(negate, sources)),
+        }
+    }
+}
+
+/// A branch of the cell at hand; a deferred leaf becomes bins or a list.
+fn opened_leaf(branch: Branch, sources: &Sources, binned: &AtomicU64) -> State {
+    let Node::Deferred(leaf) = &*branch.node else {
+        return State::Tree(branch);
+    };
+    let bins = if leaf.len() >= MANY {
+        Bins::new(&branch)
+    } else {
+        None
+    };
+    if let Some(bins) = bins {
+        binned.fetch_add(leaf.len() as u64, Ordering::Relaxed);
+        return State::Bins(Arc::new(bins));
+    }
+    State::List(List::open(leaf, &branch, sources))
+}
+
+fn divide_tree(branch: Branch, cell: &Cell, cut: Cut) -> (State, State) {
+    if branch.cell == *cell {
+        if let Node::Cut(halves) = &*branch.node {
+            let [minus, plus] = &halves.children;
+            return (
+                State::Tree(branch.child(minus)),
+                State::Tree(branch.child(plus)),
+            );
+        }
+    }
+    let around = State::Constant(branch.outside);
+    if cell.half(cut, false).holds(&branch.cell) {
+        (State::Tree(branch), around)
+    } else {
+        (around, State::Tree(branch))
+    }
+}

@@ -1,0 +1,5 @@
+//! Merging of partition trees of any dimension, node by node.
+
+pub mod merge_trees;
+pub mod partition_tree;
+pub mod split_tree;

@@ -1,0 +1,179 @@
+//! What becomes of the elements: those that faces of other operands cross are divided.
+
+use std::sync::Arc;
+
+use smallvec::SmallVec;
+
+use super::anchors::Anchor;
+use super::points::Points;
+use super::scene::{Element, Place, Scene};
+use super::segment::{Crossed, Crosser};
+use super::trace::Trace;
+use crate::geometry::apart::are_apart;
+use crate::geometry::polygon::Polygon;
+use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
+use crate::merge::kernels::cutting::{contact, cut_up, Contact, Cutter, Cutting};
+use crate::merge::pairs::{pairs, shift_of, Boxed};
+
+/// Elements that may meet another one, by number: rarely more than six.
+type Neighbours = SmallVec<[u32; 6]>;
+
+/// What became of an element.
+pub(super) enum Fate {
+    /// It does not meet the cell.
+    Absent,
+    /// A whole face near which there is no other, and of which a vertex lies in the cell.
+    Untouched,
+    /// Nothing crosses it, and it has these anchors, at least one.
+    Uncut(Vec<Anchor>),
+    /// It was divided.
+    Cut(Box<Cut>),
+}
+
+/// A divided element.
+pub(super) struct Cut {
+    /// All of it inside the cell.
+    pub(super) polygon: Polygon,
+    pub(super) parts: Parts,
+    pub(super) anchors: Vec<Anchor>,
+}
+
+/// What an element is divided into.
+pub(super) enum Parts {
+    /// What lies outside one operand, and what inside.
+    Sides(Trace),
+    /// Convex pieces, by the faces of any operands.
+    Pieces(Cutting),
+}
+
+impl Scene<'_> {
+    /// The fates of all elements; `None` if two meet in a special way.
+    pub(super) fn fates(&self) -> Option<Vec<Fate>> {
+        let neighbours = self.neighbours()?;
+        let mut points = Points::default();
+        (0..self.elements.len())
+            .map(|i| self.fate(i, &neighbours[i], &mut points))
+            .collect()
+    }
+
+    /// For each element those of other operands that may meet it inside the cell; `None` if they
+    /// are too many to be found by a sweep.
+    fn neighbours(&self) -> Option<Vec<Neighbours>> {
+        let size = self.cell.size().into_iter().max().unwrap_or(0);
+        let shift = shift_of(1 << size);
+        let boxed = |(number, element): (u32, &Element)| {
+            let [low, high] = element.extent(self.cell);
+            Boxed::new(element.operand, number, [&low, &high], shift)
+        };
+        let boxes = (0..).zip(&self.elements).map(boxed).collect();
+        let swept = |number: u32| self.elements[number as usize].swept(self.cell);
+        let mut found = vec![Neighbours::new(); self.elements.len()];
+        pairs(boxes, swept, |a, b| {
+            poll();
+            let (i, j) = (a as usize, b as usize);
+            if !self.separated(i, j) {
+                found[i].push(b);
+                found[j].push(a);
+            }
+        })?;
+        // The order in which pairs are found is not that of the elements.
+        for list in &mut found {
+            poll();
+            list.sort_unstable();
+        }
+        Some(found)
+    }
+
+    /// Whether two elements certainly do not touch.
+    fn separated(&self, i: usize, j: usize) -> bool {
+        match (&self.elements[i].place, &self.elements[j].place) {
+            (Place::Face(a), Place::Face(b)) => are_apart(&a.corners, &b.corners),
+            _ => false,
+        }
+    }
+
+    fn fate(&self, i: usize, neighbours: &[u32], points: &mut Points) -> Option<Fate> {
+        let element = &self.elements[i];
+        if neighbours.is_empty() && element.vertices_in(self.cell).next().is_some() {
+            return Some(Fate::Untouched);
+        }
+        let anchors = element.anchors(self.cell);
+        if !anchors.is_empty() && neighbours.is_empty() {
+            return Some(Fate::Uncut(anchors));
+        }
+        let Some(polygon) = element.polygon_in(self.cell) else {
+            return Some(Fate::Absent);
+        };
+        let anchors = if anchors.is_empty() {
+            element.anchors_at_walls(&polygon)
+        } else {
+            anchors
+        };
+        let crossers = self.crossers(&polygon, neighbours)?;
+        if !anchors.is_empty() && crossers.is_empty() {
+            return Some(Fate::Uncut(anchors));
+        }
+        let crossed = Crossed {
+            polygon: &polygon,
+            number: i as u32,
+        };
+        let parts = Parts::of(&crossed, &crossers, points)?;
+        Some(Fate::Cut(Box::new(Cut {
+            polygon,
+            parts,
+            anchors,
+        })))
+    }
+
+    /// Those neighbours that may cross a polygon; `None` if one touches it in a special way.
+    fn crossers(&self, polygon: &Polygon, neighbours: &[u32]) -> Option<Vec<Crosser<'_>>> {
+        let mut crossers = Vec::with_capacity(neighbours.len());
+        for j in neighbours {
+            poll();
+            let other = &self.elements[*j as usize];
+            match contact(polygon, other.shape()) {
+                Contact::Special => return None,
+                Contact::None => {}
+                Contact::Crossing(ours, theirs) => crossers.push(Crosser {
+                    face: other.shape(),
+                    number: *j,
+                    operand: other.operand,
+                    weight: other.weight,
+                    ours,
+                    theirs,
+                }),
+            }
+        }
+        Some(crossers)
+    }
+}
+
+impl Parts {
+    fn of(crossed: &Crossed, crossers: &[Crosser], points: &mut Points) -> Option<Self> {
+        if let Some(trace) = Trace::new(crossed, crossers, points) {
+            return Some(Self::Sides(trace));
+        }
+        let cutters: Vec<Cutter> = crossers.iter().map(Crosser::cutter).collect();
+        Some(Self::Pieces(cut_up(crossed.polygon.clone(), &cutters)?))
+    }
+}
+
+impl Cut {
+    /// A part that has an anchor as a corner.
+    pub(super) fn part_at(&self, anchor: &Anchor) -> Option<usize> {
+        self.part_with(|corner| anchor.is_at(corner))
+    }
+
+    /// The first part that has such a corner.
+    pub(super) fn part_with(&self, is_it: impl Fn(&Arc<Vertex>) -> bool) -> Option<usize> {
+        let has = |piece: &Polygon| piece.corners().iter().any(|c| is_it(&c.at));
+        match &self.parts {
+            Parts::Pieces(cutting) => cutting.pieces.iter().position(has),
+            Parts::Sides(trace) => {
+                let corner = self.polygon.corners().iter().position(|c| is_it(&c.at))?;
+                Some(usize::from(trace.holds_corner(corner)))
+            }
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! What an expression leaves of the elements.
+
+use rustc_hash::FxHashMap as HashMap;
+use smallvec::SmallVec;
+
+use super::fates::{Fate, Parts};
+use super::scene::{Element, Place, Scene};
+use super::{Labels, OnPieces};
+use crate::interrupt::poll;
+use crate::merge::kernels::kept::Kept;
+use crate::merge::kernels::stays::{kept, Owner, Stays};
+
+impl Scene<'_> {
+    /// What stays of all elements, given their labels and the expression's value for labels.
+    pub(super) fn keep(
+        &self,
+        fates: Vec<Fate>,
+        labels: &[OnPieces],
+        value: &mut impl FnMut(Labels) -> bool,
+    ) -> Vec<Kept> {
+        let present = fates.into_iter().enumerate();
+        let present = present.filter(|(_, fate)| !matches!(fate, Fate::Absent));
+        let mut values = Values::of(value);
+        let settled = present.map(|(i, fate)| {
+            let element = &self.elements[i];
+            let owner = match &element.place {
+                Place::Face(t) => Owner::Face((t.slot, t.face)),
+                Place::Plane(slot, _) => Owner::Face((*slot, 0)),
+                Place::Piece(part, _) => Owner::Part(*part),
+            };
+            (i, owner, element.stays(fate, &labels[i], &mut values))
+        });
+        kept(settled, &self.parts, |i| {
+            self.elements[i].polygon_in(self.cell)
+        })
+    }
+}
+
+impl Element<'_> {
+    /// What stays as the source has the face, and what stays turned.
+    fn stays(
+        &self,
+        fate: Fate,
+        labels: &[Labels],
+        values: &mut Values<impl FnMut(Labels) -> bool>,
+    ) -> [Stays; 2] {
+        let side = |others: &Labels| self.side(*others, values);
+        let sides: SmallVec<[Option<usize>; 4]> = labels.iter().map(side).collect();
+        let mut stays = [Stays::Nothing, Stays::Nothing];
+        match sides[0] {
+            Some(first) if sides.iter().all(|s| *s == Some(first)) => {
+                stays[first] = Stays::All;
+                stays
+            }
+            _ => stays_of_parts(fate, &sides),
+        }
+    }
+
+    /// Whether a piece where the others have these labels stays, and as what: 1 is turned.
+    fn side(
+        &self,
+        others: Labels,
+        values: &mut Values<impl FnMut(Labels) -> bool>,
+    ) -> Option<usize> {
+        let own: Labels = 1 << self.operand;
+        let [inside, outside] = values.on_sides(own, others & !own);
+        let turned = outside != (self.weight < 0);
+        (inside != outside).then_some(usize::from(turned))
+    }
+}
+
+/// An expression's values for labels, each computed once.
+struct Values<F> {
+    value: F,
+    known: HashMap<Labels, bool>,
+    /// Elements that follow each other mostly ask for the same.
+    last: Option<((Labels, Labels), [bool; 2])>,
+}
+
+impl<F: FnMut(Labels) -> bool> Values<F> {
+    fn of(value: F) -> Self {
+        Self {
+            value,
+            known: HashMap::default(),
+            last: None,
+        }
+    }
+
+    /// The values inside and outside an operand.
+    fn on_sides(&mut self, own: Labels, others: Labels) -> [bool; 2] {
+        if let Some((_, found)) = self.last.filter(|(asked, _)| *asked == (own, others)) {
+            return found;
+        }
+        let found = [others | own, others].map(|labels| {
+            let value = &mut self.value;
+            *self.known.entry(labels).or_insert_with(|| value(labels))
+        });
+        self.last = Some(((own, others), found));
+        found
+    }
+}
+
+/// The parts by the sides on which they stay.
+fn stays_of_parts(fate: Fate, sides: &[Option<usize>]) -> [Stays; 2] {
+    let Fate::Cut(cut) = fate else {
+        return [Stays::Nothing, Stays::Nothing];
+    };
+    match cut.parts {
+        Parts::Sides(trace) => [0, 1].map(|side| {
+            let stays = |inside: &bool| sides[usize::from(*inside)] == Some(side);
+            let inside = [false, true].into_iter().find(stays);
+            inside.map_or(Stays::Nothing, |i| {
+                Stays::Outline(trace.outline(&cut.polygon, i))
+            })
+        }),
+        Parts::Pieces(cutting) => {
+            let mut found = [Vec::new(), Vec::new()];
+            for (piece, side) in cutting.pieces.into_iter().zip(sides) {
+                poll();
+                if let Some(side) = side {
+                    found[*side].push(piece);
+                }
+            }
+            found.map(Stays::of)
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! On which pieces of an element which other operands are inside.
+//!
+//! Labels spread from piece to piece along ties and, at anchors, from element to element; only where
+//! nothing is known yet they are counted, along a path from the cell's corner.
+
+use std::sync::Arc;
+
+use super::anchors::Spot;
+use super::fates::{Cut, Fate, Parts};
+use super::known::Known;
+use super::scene::{Element, Place, Scene};
+use super::{Labels, OnPieces};
+use crate::geometry::path::{triangle_on_path, Way};
+use crate::geometry::plane::Lattice;
+use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
+use crate::merge::kernels::cutting::{Cutting, Tie};
+
+impl Scene<'_> {
+    /// For each element the labels of the other operands on its pieces.
+    pub(super) fn labels(&self, fates: &[Fate]) -> Option<Vec<OnPieces>> {
+        let mut known = Known::new(self, fates);
+        let mut labels = vec![OnPieces::new(); fates.len()];
+        for (i, fate) in fates.iter().enumerate() {
+            poll();
+            if let (Fate::Cut(cut), true) = (fate, labels[i].is_empty()) {
+                let (part, start) = self.start(self.elements[i].operand, cut, &mut known)?;
+                self.flood(fates, (i, part, start), &mut known, &mut labels)?;
+            }
+        }
+        for (i, fate) in fates.iter().enumerate() {
+            poll();
+            if let Fate::Untouched | Fate::Uncut(_) = fate {
+                labels[i].push(known.label_of(self, i, fate)?);
+            }
+        }
+        Some(labels)
+    }
+
+    /// A part of a cut element, and its labels.
+    fn start(&self, operand: usize, cut: &Cut, known: &mut Known) -> Option<(usize, Labels)> {
+        if let Some(anchor) = cut.anchors.first() {
+            let label = known.label(self, operand, anchor)?;
+            return Some((cut.part_at(anchor)?, label));
+        }
+        let base = &cut.polygon.corners()[0].at;
+        let part = cut.part_with(|at| Arc::ptr_eq(at, base))?;
+        Some((part, self.count(operand, base)?))
+    }
+
+    /// Labels the parts of a cut element from one of them, and of all cut elements that share
+    /// anchors with it.
+    fn flood(
+        &self,
+        fates: &[Fate],
+        start: (usize, usize, Labels),
+        known: &mut Known,
+        labels: &mut [OnPieces],
+    ) -> Option<()> {
+        let mut open = vec![start];
+        while let Some((i, part, start)) = open.pop() {
+            poll();
+            let (Fate::Cut(cut), true) = (&fates[i], labels[i].is_empty()) else {
+                continue;
+            };
+            labels[i] = spread(&cut.parts, part, start)?;
+            for anchor in &cut.anchors {
+                let label = labels[i][cut.part_at(anchor)?];
+                let root = known.root_of(self.elements[i].operand, anchor.name) as usize;
+                match known.labels[root].replace(label) {
+                    Some(other) if other != label => return None,
+                    Some(_) => {}
+                    None => open.extend(known.cut_at(root, fates, label)?),
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// The labels of all operands but one at a place on that one's boundary.
+    pub(super) fn count_at(&self, own: usize, place: &Spot) -> Option<Labels> {
+        match place {
+            Spot::Lattice(point) => self.count_at_lattice(own, point),
+            Spot::Exact(point) => self.count(own, point),
+        }
+    }
+
+    /// The labels of all operands but one at an exact point of that one's boundary.
+    fn count(&self, own: usize, point: &Vertex) -> Option<Labels> {
+        let across = |e: &Element| e.shape().on_path(&self.corner, point);
+        self.count_by(own, point.approx(), across)
+    }
+
+    /// The labels of all operands but one at a lattice vertex of that one.
+    pub(super) fn count_at_lattice(&self, own: usize, point: &Lattice) -> Option<Labels> {
+        let exact = Vertex::lattice(*point);
+        let across = |e: &Element| match &e.place {
+            Place::Face(t) => triangle_on_path(&t.corners, &self.corner, point),
+            _ => e.shape().on_path(&self.corner, &exact),
+        };
+        self.count_by(own, point.map(|x| x as f64), across)
+    }
+
+    /// The labels at a point close to one, given the change across an element on the way there.
+    fn count_by(
+        &self,
+        own: usize,
+        point: [f64; 3],
+        across: impl Fn(&Element) -> Option<i32>,
+    ) -> Option<Labels> {
+        let way = Way::new(self.corner.map(|x| 0.5 * x as f64), point);
+        let near = |e: &&Element| way.may_meet(&e.low, &e.high);
+        let mut labels = 0;
+        for operand in (0..self.corners.len()).filter(|k| *k != own) {
+            let mut w = self.corners[operand];
+            let [low, high] = &self.boxes[operand];
+            let elements = if way.may_meet(low, high) {
+                self.of_operand(operand)
+            } else {
+                &[]
+            };
+            for element in elements.iter().filter(near) {
+                poll();
+                w += element.weight * across(element)?;
+            }
+            if !(0..=1).contains(&w) {
+                return None;
+            }
+            labels |= Labels::from(w == 1) << operand;
+        }
+        Some(labels)
+    }
+}
+
+/// The labels of all parts from those of one; `None` if they contradict each other.
+fn spread(parts: &Parts, first: usize, start: Labels) -> Option<OnPieces> {
+    match parts {
+        Parts::Pieces(cutting) => spread_along_ties(cutting, first, start),
+        Parts::Sides(trace) => {
+            let bit: Labels = 1 << trace.operand;
+            let inside = first == 1;
+            let agrees = (start & bit != 0) == inside;
+            agrees.then(|| OnPieces::from_buf([start & !bit, start | bit]))
+        }
+    }
+}
+
+/// The labels of all pieces from those of one; `None` if the ties contradict each other, or a
+/// number is neither 0 nor 1.
+fn spread_along_ties(cutting: &Cutting, first: usize, start: Labels) -> Option<OnPieces> {
+    let mut labels: Vec<Option<Labels>> = vec![None; cutting.pieces.len()];
+    labels[first] = Some(start);
+    let mut changed = true;
+    while changed {
+        changed = false;
+        for tie in &cutting.ties {
+            poll();
+            let (minus, plus) = (tie.minus as usize, tie.plus as usize);
+            match (labels[minus], labels[plus]) {
+                (Some(w), None) => labels[plus] = Some(across(tie, w, true)?),
+                (None, Some(w)) => labels[minus] = Some(across(tie, w, false)?),
+                (Some(v), Some(w)) if across(tie, v, true) != Some(w) => return None,
+                _ => continue,
+            }
+            changed = true;
+        }
+    }
+    labels.into_iter().collect()
+}
+
+/// The labels on the other side of a tie, from its minus to its plus piece or back.
+fn across(tie: &Tie, labels: Labels, onward: bool) -> Option<Labels> {
+    let bit: Labels = 1 << tie.operand;
+    let rises = (tie.change > 0) == onward;
+    ((labels & bit == 0) == rises).then_some(labels ^ bit)
+}

@@ -1,0 +1,249 @@
+//! The elements of a cell: whole faces, faces of half-spaces, and convex pieces of parts.
+
+use std::borrow::Cow;
+use std::cell::OnceCell;
+use std::sync::Arc;
+
+use super::Labels;
+use crate::geometry::cell::Cell;
+use crate::geometry::plane::Lattice;
+use crate::geometry::polygon::Polygon;
+use crate::interrupt::poll;
+use crate::merge::kernels::cutting::Face;
+use crate::merge::lists::list::{List, Record, Sources};
+use crate::merge::pairs::Swept;
+use crate::mesh::source::{Shape, Source};
+use crate::tree::node::Part;
+
+/// All operands in a cell.
+pub(super) struct Scene<'a> {
+    pub(super) cell: &'a Cell,
+    /// The cell's low corner, doubled.
+    pub(super) corner: Lattice,
+    /// The operands' winding numbers there.
+    pub(super) corners: Vec<i32>,
+    /// The elements by operand.
+    pub(super) elements: Vec<Element<'a>>,
+    /// For each operand where its elements end.
+    ends: Vec<usize>,
+    /// For each operand a box around its elements.
+    pub(super) boxes: Vec<[Lattice; 2]>,
+    /// The parts that pieces belong to, and the slots of their sources.
+    pub(super) parts: Vec<(&'a Arc<Part>, u32)>,
+}
+
+/// A whole face or a convex piece of a part.
+pub(super) struct Element<'a> {
+    pub(super) operand: usize,
+    /// By how much the winding number behind the face exceeds that in front of it.
+    pub(super) weight: i32,
+    pub(super) place: Place<'a>,
+    /// Whether all of it is known to lie in the cell.
+    inside: bool,
+    pub(super) low: Lattice,
+    pub(super) high: Lattice,
+}
+
+/// What an element is, and where.
+pub(super) enum Place<'a> {
+    Face(Triangle<'a>),
+    /// The face of a half-space: its slot, and its part in the cell.
+    Plane(u32, Box<Face<'a>>),
+    /// A piece of a part: the part's number in the scene.
+    Piece(usize, Box<Face<'a>>),
+}
+
+/// A whole face.
+pub(super) struct Triangle<'a> {
+    source: &'a Source,
+    pub(super) slot: u32,
+    pub(super) face: u32,
+    pub(super) vertices: [u32; 3],
+    pub(super) corners: [Lattice; 3],
+    shape: OnceCell<Box<Face<'a>>>,
+}
+
+impl<'a> Scene<'a> {
+    pub(super) fn new(cell: &'a Cell, lists: &[(u32, &'a List)], sources: &'a Sources) -> Self {
+        let mut scene = Self {
+            cell,
+            corner: cell.corner(),
+            corners: lists.iter().map(|l| l.1.corner).collect(),
+            elements: Vec::with_capacity(lists.iter().map(|l| l.1.len()).sum()),
+            ends: Vec::with_capacity(lists.len()),
+            boxes: Vec::with_capacity(lists.len()),
+            parts: Vec::new(),
+        };
+        for (operand, (_, list)) in lists.iter().enumerate() {
+            let faces = list.records.iter();
+            let faces = faces.filter_map(|r| Element::of_record(operand, r, cell, sources));
+            scene.elements.extend(faces);
+            scene.add_parts(operand, list, sources);
+            scene.ends.push(scene.elements.len());
+            scene.boxes.push(box_around(scene.of_operand(operand)));
+        }
+        scene
+    }
+
+    fn add_parts(&mut self, operand: usize, list: &'a List, sources: &Sources) {
+        for p in &list.parts {
+            poll();
+            let part = self.parts.len();
+            let slot = sources.slot(&p.element.part.source) as u32;
+            self.parts.push((&p.element.part, slot));
+            let inside = self.cell.holds(&p.element.part.home);
+            for piece in p.pieces() {
+                poll();
+                let (low, high) = piece.bounds();
+                self.elements.push(Element {
+                    operand,
+                    weight: if p.element.flip { -1 } else { 1 },
+                    place: Place::Piece(part, Box::new(Face::new(Cow::Borrowed(piece)))),
+                    inside,
+                    low: low.map(|x| x.floor() as i64),
+                    high: high.map(|x| x.ceil() as i64),
+                });
+            }
+        }
+    }
+
+    /// The labels at the cell's low corner.
+    pub(super) fn at_corner(&self) -> Labels {
+        let numbers = self.corners.iter().enumerate();
+        numbers.fold(0, |all, (i, w)| all | Labels::from(*w > 0) << i)
+    }
+
+    pub(super) fn of_operand(&self, operand: usize) -> &[Element<'a>] {
+        let start = match operand {
+            0 => 0,
+            _ => self.ends[operand - 1],
+        };
+        &self.elements[start..self.ends[operand]]
+    }
+}
+
+/// What tells points apart that several elements may have in common.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Name {
+    /// A vertex of a source.
+    Vertex(u32, u32),
+    /// A corner of a part: pieces that share the corner share the object at this address.
+    Corner(usize),
+    /// The point in which an edge of a source leaves the cell: the edge's ends, and twice the axis
+    /// of the wall, with one more for the upper one.
+    Crossing(u32, [u32; 2], u8),
+}
+
+/// A box around elements; one that holds nothing if there are none.
+fn box_around(elements: &[Element]) -> [Lattice; 2] {
+    let nothing = [[i64::MAX; 3], [i64::MIN; 3]];
+    elements.iter().fold(nothing, |[low, high], e| {
+        [
+            [0, 1, 2].map(|i| low[i].min(e.low[i])),
+            [0, 1, 2].map(|i| high[i].max(e.high[i])),
+        ]
+    })
+}
+
+impl Triangle<'_> {
+    /// The name of a vertex.
+    pub(super) fn name(&self, corner: usize) -> Name {
+        Name::Vertex(self.slot, self.vertices[corner])
+    }
+
+    /// The vertices at the ends of an edge that is given by its places.
+    pub(super) fn ends_of(&self, edge: [&Lattice; 2]) -> Option<[u32; 2]> {
+        let at = |place: &Lattice| self.corners.iter().position(|c| c == place);
+        Some([self.vertices[at(edge[0])?], self.vertices[at(edge[1])?]])
+    }
+}
+
+impl<'a> Element<'a> {
+    /// A listed face; `None` for the face of a half-space that misses the cell.
+    fn of_record(
+        operand: usize,
+        record: &Record,
+        cell: &Cell,
+        sources: &'a Sources,
+    ) -> Option<Self> {
+        let source = sources.get(record.slot());
+        let place = match source.shape() {
+            Shape::Mesh(mesh) => Place::Face(Triangle {
+                source,
+                slot: record.slot() as u32,
+                face: record.face,
+                vertices: mesh.faces[record.face as usize],
+                corners: mesh.corners(record.face),
+                shape: OnceCell::new(),
+            }),
+            Shape::HalfSpace(plane) => {
+                let polygon = Polygon::span(plane, cell)?;
+                Place::Plane(
+                    record.slot() as u32,
+                    Box::new(Face::new(Cow::Owned(polygon))),
+                )
+            }
+        };
+        let (low, high) = source.face_box(record.face);
+        Some(Self {
+            operand,
+            weight: if record.flip() { -1 } else { 1 },
+            place,
+            inside: cell.holds_box(&low, &high),
+            low,
+            high,
+        })
+    }
+
+    /// Which vertices of a whole face lie in the cell.
+    pub(super) fn vertices_in(&self, cell: &Cell) -> impl Iterator<Item = usize> {
+        let inside = match &self.place {
+            Place::Face(_) if self.inside => [true; 3],
+            Place::Face(triangle) => triangle.corners.map(|p| cell.holds_box(&p, &p)),
+            Place::Plane(..) | Place::Piece(..) => [false; 3],
+        };
+        (0..3).filter(move |i| inside[*i])
+    }
+
+    /// The ends of the element's box inside the cell, relative to its low corner: at most a step
+    /// outside, even if the element misses the cell.
+    pub(super) fn extent(&self, cell: &Cell) -> [Lattice; 2] {
+        let (low, high) = (cell.low(), cell.high());
+        let within = |p: &Lattice, i: usize| p[i].clamp(low[i] - 1, high[i] + 1) - low[i];
+        [&self.low, &self.high].map(|p| [0, 1, 2].map(|i| within(p, i)))
+    }
+
+    /// The element as a sweep sees it.
+    pub(super) fn swept(&self, cell: &Cell) -> Swept {
+        let origin = cell.low();
+        let relative = |p: &Lattice| [0, 1, 2].map(|i| (p[i] - origin[i]) as f64);
+        let [low, high] = self.extent(cell);
+        Swept {
+            operand: self.operand,
+            low,
+            high,
+            corners: match &self.place {
+                Place::Face(t) => Some([0, 1, 2].map(|i| relative(&t.corners[i]))),
+                Place::Plane(..) | Place::Piece(..) => None,
+            },
+        }
+    }
+
+    pub(super) fn shape(&self) -> &Face<'a> {
+        match &self.place {
+            Place::Face(t) => t.shape.get_or_init(|| {
+                let plane = t.source.plane(t.face);
+                Box::new(Face::new(Cow::Owned(Polygon::triangle(&t.corners, plane))))
+            }),
+            Place::Plane(_, shape) | Place::Piece(_, shape) => shape,
+        }
+    }
+
+    pub(super) fn polygon_in(&self, cell: &Cell) -> Option<Polygon> {
+        let polygon = self.shape().polygon.as_ref().clone();
+        if self.inside {
+            return Some(polygon);
+        }
+        polygon.clipped(cell)
+    }
+}

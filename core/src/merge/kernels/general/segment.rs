@@ -1,0 +1,153 @@
+//! The segments in which elements cross each other.
+
+use std::sync::Arc;
+
+use super::points::Points;
+use crate::geometry::path::determinant;
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::polygon::{Carrier, Polygon, Sides};
+use crate::geometry::vertex::Vertex;
+use crate::merge::kernels::cutting::{Cutter, Face};
+
+/// A directed segment on an element, with the inside of another operand on its left.
+pub(super) struct Segment {
+    pub(super) from: End,
+    pub(super) to: End,
+    /// The plane of the face in which it lies.
+    pub(super) plane: Arc<Plane>,
+    /// Whether that operand's inside is on the plus side of the plane.
+    pub(super) plus: bool,
+}
+
+/// An end of a segment.
+#[derive(Clone)]
+pub(super) struct End {
+    pub(super) at: Arc<Vertex>,
+    /// The edge of the element on which it lies, if it lies on its border.
+    pub(super) edge: Option<usize>,
+}
+
+/// A face of another operand that may cross an element.
+pub(super) struct Crosser<'a> {
+    pub(super) face: &'a Face<'a>,
+    /// The element it is.
+    pub(super) number: u32,
+    pub(super) operand: usize,
+    /// By how much the winding number on its minus side exceeds that on its plus side.
+    pub(super) weight: i32,
+    /// On which sides of its plane the element's corners lie.
+    pub(super) ours: Sides,
+    /// On which sides of the element's plane its corners lie.
+    pub(super) theirs: Sides,
+}
+
+impl<'a> Crosser<'a> {
+    /// The face as the autopartition sees it.
+    pub(super) fn cutter(&self) -> Cutter<'a> {
+        Cutter {
+            face: self.face,
+            operand: self.operand,
+            weight: self.weight,
+        }
+    }
+}
+
+/// Two borders meet in a point, or a corner lies in the other plane.
+pub(super) struct Doubt;
+
+/// An element that is crossed.
+pub(super) struct Crossed<'a> {
+    pub(super) polygon: &'a Polygon,
+    pub(super) number: u32,
+}
+
+impl Crossed<'_> {
+    /// The segment in which a face crosses the element, if it does.
+    ///
+    /// Along the line in which the planes meet, with the face's minus side on the left, the element
+    /// reaches from x to x′ and the face from y to y′; the segment is what both have.
+    pub(super) fn segment(
+        &self,
+        other: &Crosser,
+        points: &mut Points,
+    ) -> Result<Option<Segment>, Doubt> {
+        if other.ours.contains(&0) || other.theirs.contains(&0) {
+            return Err(Doubt);
+        }
+        let face = &other.face.polygon;
+        let [x, x_end] = [change(&other.ours, true)?, change(&other.ours, false)?];
+        let [y, y_end] = [change(&other.theirs, false)?, change(&other.theirs, true)?];
+        let mut inside = |edge: (usize, bool), rim: usize| self.inside(edge, other, rim, points);
+        if !inside((x_end, false), y)? || !inside((x, true), y_end)? {
+            return Ok(None);
+        }
+        let starts_here = inside((x, true), y)?;
+        let ends_here = inside((x_end, false), y_end)?;
+        let mut end = |here: bool, own: usize, theirs: usize| {
+            let plane = (face.support(), other.number);
+            let at = if here {
+                points.at((self.polygon, own), plane)
+            } else {
+                points.at((face, theirs), (self.polygon.support(), self.number))
+            };
+            let edge = here.then_some(own);
+            at.map(|at| End { at, edge }).ok_or(Doubt)
+        };
+        let (from, to) = (end(starts_here, x, y)?, end(ends_here, x_end, y_end)?);
+        let plus = other.weight < 0;
+        let (from, to) = if plus { (to, from) } else { (from, to) };
+        let plane = Arc::clone(face.support());
+        Ok(Some(Segment {
+            from,
+            to,
+            plane,
+            plus,
+        }))
+    }
+
+    /// Whether the point in which an edge of the element, on its way to the face's plus side or
+    /// back, crosses the face's plane lies on the inner side of one of the face's own edges.
+    fn inside(
+        &self,
+        (edge, rises): (usize, bool),
+        other: &Crosser,
+        rim: usize,
+        points: &mut Points,
+    ) -> Result<bool, Doubt> {
+        let face = &other.face.polygon;
+        let carriers = (
+            &self.polygon.corners()[edge].edge,
+            &face.corners()[rim].edge,
+        );
+        let side = if let (Carrier::Edge(edge), Carrier::Edge(rim)) = carriers {
+            let turn = passes(edge.ends(), rim.ends());
+            if rises {
+                turn
+            } else {
+                -turn
+            }
+        } else {
+            let plane = (face.support(), other.number);
+            let at = points.at((self.polygon, edge), plane).ok_or(Doubt)?;
+            -at.side_of(&other.face.rims()[rim])
+        };
+        match side {
+            0 => Err(Doubt),
+            side => Ok(side > 0),
+        }
+    }
+}
+
+/// The edge on which a polygon with corners on these sides changes to the plus side, or back.
+fn change(sides: &[i32], rises: bool) -> Result<usize, Doubt> {
+    let n = sides.len();
+    let wanted = if rises { (-1, 1) } else { (1, -1) };
+    let found = (0..n).find(|i| (sides[*i], sides[(i + 1) % n]) == wanted);
+    found.ok_or(Doubt)
+}
+
+/// On which side of a directed edge another one passes: 1 if it rises on its left.
+fn passes((a, b): (&Lattice, &Lattice), (c, d): (&Lattice, &Lattice)) -> i32 {
+    let from = |p: &Lattice| [0, 1, 2].map(|i| p[i] - c[i]);
+    determinant(&from(d), &from(a), &from(b))
+}

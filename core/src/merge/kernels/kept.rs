@@ -1,0 +1,254 @@
+//! What stays of the faces in a cell, joined again to the elements of a leaf.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use crate::geometry::cell::Cell;
+use crate::geometry::line::LineKey;
+use crate::geometry::outline::{cancel, BareEdge, OutlineEdge};
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::polygon::{Carrier, Polygon};
+use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
+use crate::merge::lists::list::Sources;
+use crate::mesh::source::{Shape, Source};
+use crate::tree::node::{Deferred, Group, Node, Part, PartElement, Work};
+
+/// What stays of one element with one orientation.
+#[derive(Debug)]
+pub struct Kept {
+    face: (u32, u32),
+    flip: bool,
+    what: What,
+}
+
+#[derive(Debug)]
+enum What {
+    /// All of a whole face inside the cell.
+    Whole,
+    /// All of a part inside the cell.
+    Part(Arc<Part>),
+    /// Some convex pieces, and what some edges bound.
+    Pieces(Vec<Polygon>, Vec<BareEdge>),
+    /// What an outline bounds that needs no joining, and is not all of the face in the cell.
+    Outline(Vec<BareEdge>),
+}
+
+impl Kept {
+    /// All of a face in the cell: of a slot and a number.
+    pub fn whole(face: (u32, u32), flip: bool) -> Self {
+        let what = What::Whole;
+        Self { face, flip, what }
+    }
+
+    /// All of a part in the cell.
+    pub fn part(face: (u32, u32), flip: bool, part: Arc<Part>) -> Self {
+        let what = What::Part(part);
+        Self { face, flip, what }
+    }
+
+    /// Convex pieces of a face.
+    pub fn pieces(face: (u32, u32), flip: bool, pieces: Vec<Polygon>) -> Self {
+        Self::joined(face, flip, pieces, Vec::new())
+    }
+
+    /// Convex pieces of a face, and what some edges on it bound.
+    pub fn joined(
+        face: (u32, u32),
+        flip: bool,
+        pieces: Vec<Polygon>,
+        edges: Vec<BareEdge>,
+    ) -> Self {
+        let what = What::Pieces(pieces, edges);
+        Self { face, flip, what }
+    }
+
+    /// What an outline bounds: some, but not all of a face in the cell; no two of its edges that
+    /// follow each other lie on one line.
+    pub fn outlined(face: (u32, u32), flip: bool, edges: Vec<BareEdge>) -> Self {
+        let what = What::Outline(edges);
+        Self { face, flip, what }
+    }
+
+    /// Edges that bound some of it, beside the convex pieces.
+    fn edges(&self) -> &[BareEdge] {
+        match &self.what {
+            What::Pieces(_, edges) | What::Outline(edges) => edges,
+            What::Whole | What::Part(_) => &[],
+        }
+    }
+
+    /// The convex pieces inside the cell.
+    fn polygons(&self, source: &Source, cell: &Cell) -> Cow<'_, [Polygon]> {
+        match &self.what {
+            What::Whole => source.clip(self.face.1, cell).into_iter().collect(),
+            What::Part(part) => {
+                let clipped = part.pieces().into_iter().filter_map(|p| p.clipped(cell));
+                clipped.collect()
+            }
+            What::Pieces(pieces, _) => Cow::Borrowed(pieces),
+            What::Outline(_) => Cow::Borrowed(&[]),
+        }
+    }
+}
+
+/// Joins the pieces of each face again and lists them, as the work of a kernel.
+pub fn assemble(
+    mut kept: Vec<Kept>,
+    corner: i32,
+    work: Work,
+    cell: &Cell,
+    sources: &Sources,
+) -> Node {
+    if kept.is_empty() {
+        return Node::Leaf(corner);
+    }
+    kept.sort_by_key(|k| (k.face.0, k.flip, k.face.1));
+    let mut leaf = Deferred {
+        corner,
+        work,
+        ..Deferred::default()
+    };
+    for run in kept.chunk_by_mut(|a, b| a.face == b.face && a.flip == b.flip) {
+        poll();
+        let (slot, face) = run[0].face;
+        let source = sources.get(slot as usize);
+        let flip = run[0].flip;
+        match run {
+            [Kept {
+                what: What::Whole, ..
+            }] => {
+                list_whole(&mut leaf.groups, source, face, flip);
+                continue;
+            }
+            [Kept {
+                what: What::Part(part),
+                ..
+            }] => {
+                let part = Arc::clone(part);
+                leaf.parts.push(PartElement { part, flip });
+                continue;
+            }
+            [Kept {
+                what: What::Outline(edges),
+                ..
+            }] => {
+                let edges = std::mem::take(edges);
+                let part = Arc::new(Part::new(Arc::clone(source), face, *cell, edges));
+                leaf.parts.push(PartElement { part, flip });
+                continue;
+            }
+            _ => {}
+        }
+        if let Some(edges) = outline(run, source, face, cell) {
+            let part = Arc::new(Part::new(Arc::clone(source), face, *cell, edges));
+            leaf.parts.push(PartElement { part, flip });
+        } else {
+            list_whole(&mut leaf.groups, source, face, flip);
+        }
+    }
+    Node::Deferred(leaf)
+}
+
+/// The outline of what stays of a face with one orientation; `None` if that is all of it.
+fn outline(run: &[Kept], source: &Source, face: u32, cell: &Cell) -> Option<Vec<BareEdge>> {
+    let polygons: Vec<Cow<[Polygon]>> = run.iter().map(|k| k.polygons(source, cell)).collect();
+    let polygons: Vec<&Polygon> = polygons.iter().flat_map(|p| p.iter()).collect();
+    let mut edges: Vec<BareEdge> = run.iter().flat_map(Kept::edges).cloned().collect();
+    if let ([single], []) = (&polygons[..], &edges[..]) {
+        // A convex piece has no edges that cancel.
+        if has_inner(single.edges(), source, face, cell) {
+            return Some(BareEdge::all_of(single).collect());
+        }
+    }
+    edges.extend(polygons.iter().flat_map(|p| BareEdge::all_of(p)));
+    let edges = cancel(OutlineEdge::keyed(edges, &source.plane_residues(face)));
+    let whole = is_whole(&edges, source, face, cell);
+    (!whole).then(|| edges.into_iter().map(BareEdge::from).collect())
+}
+
+fn list_whole(groups: &mut Vec<Group>, source: &Arc<Source>, face: u32, flip: bool) {
+    match groups.last_mut() {
+        Some(g) if Arc::ptr_eq(&g.source, source) && g.flip == flip => g.faces.push(face),
+        _ => groups.push(Group {
+            source: Arc::clone(source),
+            flip,
+            faces: vec![face],
+        }),
+    }
+}
+
+/// Whether an outline runs only on the face's own edges and the cell's border: then it is the
+/// border of the whole face inside the cell, for a part of a connected set with no border of its
+/// own is all of it.
+pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: u32, cell: &Cell) -> bool {
+    let ends = edges.iter().map(|e| (&e.from, &e.to, &e.carrier));
+    if has_inner(ends, source, face, cell) {
+        return false;
+    }
+    let own: Vec<LineKey> = match source.shape() {
+        Shape::Mesh(mesh) => {
+            let c = mesh.corners(face);
+            (0..3)
+                .map(|i| LineKey::of_edge(&c[i], &c[(i + 1) % 3]))
+                .collect()
+        }
+        Shape::HalfSpace(_) => Vec::new(),
+    };
+    let foreign = |e: &&OutlineEdge| !own.contains(&e.line);
+    let others: Vec<&OutlineEdge> = edges.iter().filter(foreign).collect();
+    if others.is_empty() {
+        return !edges.is_empty();
+    }
+    // No wall is slanted.
+    let is_slanted = |carrier: &Carrier| match carrier {
+        Carrier::Cut(plane, _) => plane.only_axis().is_none(),
+        Carrier::Edge(_) => false,
+    };
+    if others.iter().any(|e| is_slanted(&e.carrier)) {
+        return false;
+    }
+    let border = border_lines(&source.plane(face), cell);
+    others.iter().all(|e| border.contains(&e.line))
+}
+
+/// Whether some edge of a face surely lies on none of the face's edges and in no wall of the cell;
+/// errs on no.
+fn has_inner<'a>(
+    mut edges: impl Iterator<Item = (&'a Arc<Vertex>, &'a Arc<Vertex>, &'a Carrier)>,
+    source: &Source,
+    face: u32,
+    cell: &Cell,
+) -> bool {
+    let corners = source.mesh().map(|mesh| mesh.corners(face));
+    let holds_own = |plane: &Plane| {
+        let on = |p: &&Lattice| plane.side_of_lattice(p) == 0;
+        corners.is_some_and(|c| c.iter().filter(on).count() >= 2)
+    };
+    edges.any(|(from, to, carrier)| match carrier {
+        Carrier::Cut(plane, _) => !may_share_wall(from, to, cell) && !holds_own(plane),
+        Carrier::Edge(_) => false,
+    })
+}
+
+/// Whether two points may lie in one wall of a cell that holds both; errs on yes.
+fn may_share_wall(a: &Vertex, b: &Vertex, cell: &Cell) -> bool {
+    let (ends, low, high) = ([a, b].map(Vertex::bounds), cell.low(), cell.high());
+    (0..3).any(|i| {
+        let below = ends.iter().all(|(least, _)| least[i] < low[i] as f64);
+        below || ends.iter().all(|(_, most)| most[i] > high[i] as f64)
+    })
+}
+
+/// The lines in which a plane meets the planes of a cell's walls.
+fn border_lines(plane: &Plane, cell: &Cell) -> Vec<LineKey> {
+    let crossed = |wall: &Plane| {
+        let axis = wall.main_axis();
+        (0..3).any(|i| i != axis && plane.normal()[i] != 0)
+    };
+    cell.walls()
+        .iter()
+        .filter(|w| crossed(w))
+        .map(|w| LineKey::of_planes(plane, w))
+        .collect()
+}

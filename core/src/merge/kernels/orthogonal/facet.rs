@@ -1,0 +1,281 @@
+//! The elements of a cell as rectangles of which slanted edges cut something off.
+
+use std::sync::Arc;
+
+use smallvec::SmallVec;
+
+use crate::geometry::cell::Cell;
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::polygon::{Carrier, Polygon};
+use crate::interrupt::poll;
+use crate::merge::kernels::stays::Owner;
+use crate::merge::lists::list::{List, PartRecord, Record, Sources};
+use crate::mesh::source::{Shape, Source};
+use crate::tree::node::Part;
+
+/// The axes along the rows and along the bits of a sheet perpendicular to an axis.
+pub(super) const ACROSS: [(usize, usize); 3] = [(1, 2), (0, 2), (0, 1)];
+
+/// A face or a convex piece of a part, perpendicular to an axis.
+pub(super) struct Facet<'a> {
+    pub(super) operand: usize,
+    pub(super) axis: usize,
+    /// The lattice coordinate of its plane.
+    pub(super) at: i64,
+    /// Whether its normal points to larger coordinates.
+    pub(super) upward: bool,
+    /// By how much the winding number behind it exceeds that in front of it.
+    weight: i32,
+    slants: SmallVec<[Slant; 1]>,
+    pub(super) place: Place<'a>,
+}
+
+/// Where a facet comes from.
+pub(super) enum Place<'a> {
+    /// A triangle: its source and slot, and its number.
+    Face(&'a Source, u32, u32, [Lattice; 3]),
+    /// The face of a half-space.
+    Plane(&'a Source, u32),
+    /// A convex piece of a part: the part's number in the scene.
+    Piece(usize, &'a Polygon),
+}
+
+/// A slanted edge in the coordinates of rows and bits, the facet on its left.
+#[derive(Clone, Copy)]
+struct Slant {
+    from: [i64; 2],
+    to: [i64; 2],
+}
+
+/// The facets of a cell by operand, and the parts that pieces belong to with the slots of their
+/// sources.
+pub(super) struct Facets<'a> {
+    pub(super) all: Vec<Facet<'a>>,
+    pub(super) parts: Vec<(&'a Arc<Part>, u32)>,
+}
+
+impl<'a> Facets<'a> {
+    /// The facets of lists; `None` if an element is not perpendicular to an axis, or has a slanted
+    /// edge that is not its face's own.
+    pub(super) fn new(
+        cell: &Cell,
+        lists: &[(u32, &'a List)],
+        sources: &'a Sources,
+    ) -> Option<Self> {
+        let mut facets = Self {
+            all: Vec::with_capacity(lists.iter().map(|(_, list)| list.len()).sum()),
+            parts: Vec::new(),
+        };
+        for (operand, (_, list)) in lists.iter().enumerate() {
+            for record in &list.records {
+                poll();
+                let facet = Facet::of_record(operand, record, sources)?;
+                facets.all.extend(Some(facet).filter(|f| f.may_meet(cell)));
+            }
+            for part in &list.parts {
+                poll();
+                facets.add_part(operand, part, cell, sources)?;
+            }
+        }
+        Some(facets)
+    }
+
+    fn add_part(
+        &mut self,
+        operand: usize,
+        record: &'a PartRecord,
+        cell: &Cell,
+        sources: &Sources,
+    ) -> Option<()> {
+        let slot = sources.slot(&record.element.part.source) as u32;
+        let part = self.parts.len();
+        self.parts.push((&record.element.part, slot));
+        let weight = if record.element.flip { -1 } else { 1 };
+        for piece in record.pieces() {
+            let facet = Facet::of_piece(operand, weight, part, piece)?;
+            self.all.extend(Some(facet).filter(|f| f.may_meet(cell)));
+        }
+        Some(())
+    }
+}
+
+impl<'a> Facet<'a> {
+    fn of_record(operand: usize, record: &Record, sources: &'a Sources) -> Option<Self> {
+        let weight = if record.flip() { -1 } else { 1 };
+        let (slot, source) = (record.slot() as u32, &**sources.get(record.slot()));
+        match source.shape() {
+            Shape::Mesh(mesh) => {
+                let corners = mesh.corners(record.face);
+                let place = Place::Face(source, slot, record.face, corners);
+                Self::of_triangle(operand, weight, &corners, place)
+            }
+            Shape::HalfSpace(plane) => {
+                let (axis, at, upward) = upright(plane)?;
+                Some(Self {
+                    operand,
+                    axis,
+                    at,
+                    upward,
+                    weight,
+                    slants: SmallVec::new(),
+                    place: Place::Plane(source, slot),
+                })
+            }
+        }
+    }
+
+    fn of_triangle(
+        operand: usize,
+        weight: i32,
+        corners: &[Lattice; 3],
+        place: Place<'a>,
+    ) -> Option<Self> {
+        let [a, b, c] = corners;
+        let axis = (0..3).find(|i| a[*i] == b[*i] && b[*i] == c[*i])?;
+        let (row, bit) = ACROSS[axis];
+        let flat = corners.map(|p| [p[row], p[bit]]);
+        let counterclockwise = turn(&flat[0], &flat[1], &flat[2]) > 0;
+        let edges = (0..3).map(|i| Slant::new(flat[i], flat[(i + 1) % 3], counterclockwise));
+        Some(Self {
+            operand,
+            axis,
+            at: a[axis],
+            upward: counterclockwise != (axis == 1),
+            weight,
+            slants: edges.flatten().collect(),
+            place,
+        })
+    }
+
+    fn of_piece(operand: usize, weight: i32, part: usize, piece: &'a Polygon) -> Option<Self> {
+        let (axis, at, upward) = upright(piece.support())?;
+        let (row, bit) = ACROSS[axis];
+        let counterclockwise = upward != (axis == 1);
+        let mut slants = SmallVec::new();
+        for corner in piece.corners() {
+            match &corner.edge {
+                Carrier::Edge(edge) => {
+                    let (a, b) = edge.ends();
+                    let (a, b) = ([a[row], a[bit]], [b[row], b[bit]]);
+                    slants.extend(Slant::new(a, b, counterclockwise));
+                }
+                Carrier::Cut(plane, _) => {
+                    plane.only_axis()?;
+                }
+            }
+        }
+        Some(Self {
+            operand,
+            axis,
+            at,
+            upward,
+            weight,
+            slants,
+            place: Place::Piece(part, piece),
+        })
+    }
+
+    /// Whether the facet's plane meets the cell, and its bounds do.
+    fn may_meet(&self, cell: &Cell) -> bool {
+        let (low, high) = (cell.low(), cell.high());
+        let within = |i: usize, p: &Lattice| p[i] >= low[i];
+        let below = |i: usize, p: &Lattice| p[i] <= high[i];
+        let bounded = match &self.place {
+            Place::Face(_, _, _, corners) => (0..3).all(|i| {
+                corners.iter().any(|p| within(i, p)) && corners.iter().any(|p| below(i, p))
+            }),
+            Place::Plane(..) | Place::Piece(..) => true,
+        };
+        bounded && (low[self.axis]..=high[self.axis]).contains(&self.at)
+    }
+
+    pub(super) fn owner(&self) -> Owner {
+        match &self.place {
+            Place::Face(_, slot, face, _) => Owner::Face((*slot, *face)),
+            Place::Plane(_, slot) => Owner::Face((*slot, 0)),
+            Place::Piece(part, _) => Owner::Part(*part),
+        }
+    }
+
+    /// By how much the winding number changes across the facet in the direction of its axis.
+    pub(super) fn change(&self) -> i32 {
+        if self.upward {
+            -self.weight
+        } else {
+            self.weight
+        }
+    }
+
+    /// Whether the point just beyond the lower lines of a row and of a bit lies beside no slanted
+    /// edge.
+    pub(super) fn holds(&self, corner: [i64; 2]) -> bool {
+        self.slants.iter().all(|s| s.is_left(corner))
+    }
+
+    /// Whether the slanted edges leave something of a rectangle.
+    pub(super) fn touches(&self, low: [i64; 2], high: [i64; 2]) -> bool {
+        self.slants.iter().all(|s| s.reaches(low, high))
+    }
+
+    /// Whether no slanted edge cuts anything off the facet's bounds.
+    pub(super) fn is_rectangle(&self) -> bool {
+        self.slants.is_empty()
+    }
+
+    /// The facet inside the cell.
+    pub(super) fn polygon_in(&self, cell: &Cell) -> Option<Polygon> {
+        match &self.place {
+            Place::Face(source, _, face, _) => source.clip(*face, cell),
+            Place::Plane(source, _) => source.clip(0, cell),
+            Place::Piece(_, polygon) => (*polygon).clone().clipped(cell),
+        }
+    }
+}
+
+/// The axis of a plane's normal, the plane's lattice coordinate there, and whether the normal
+/// points upward.
+fn upright(plane: &Plane) -> Option<(usize, i64, bool)> {
+    let axis = plane.only_axis()?;
+    let at = plane.lattice_coordinate(axis)?;
+    Some((axis, at, plane.normal()[axis] > 0))
+}
+
+/// Twice the signed area of a triangle.
+fn turn(a: &[i64; 2], b: &[i64; 2], c: &[i64; 2]) -> i128 {
+    let d = |p: &[i64; 2], i: usize| i128::from(p[i]) - i128::from(a[i]);
+    d(b, 0) * d(c, 1) - d(b, 1) * d(c, 0)
+}
+
+impl Slant {
+    /// An edge run with the facet on its left, or on its right; `None` if it is parallel to an
+    /// axis.
+    fn new(from: [i64; 2], to: [i64; 2], left: bool) -> Option<Self> {
+        let (from, to) = if left { (from, to) } else { (to, from) };
+        let (from, to) = (from.map(|c| 2 * c), to.map(|c| 2 * c));
+        (from[0] != to[0] && from[1] != to[1]).then_some(Self { from, to })
+    }
+
+    /// Whether the point (ε, ε²) beyond a doubled one lies on the left.
+    fn is_left(&self, point: [i64; 2]) -> bool {
+        match turn(&self.from, &self.to, &point) {
+            0 => self.to[1] < self.from[1],
+            area => area > 0,
+        }
+    }
+
+    /// Whether a rectangle has points on the left.
+    fn reaches(&self, low: [i64; 2], high: [i64; 2]) -> bool {
+        // The left is where the coordinate of a row falls if the edge rises along the bits.
+        let row = if self.to[1] > self.from[1] {
+            low[0]
+        } else {
+            high[0]
+        };
+        let bit = if self.to[0] > self.from[0] {
+            high[1]
+        } else {
+            low[1]
+        };
+        turn(&self.from, &self.to, &[row, bit]) > 0
+    }
+}

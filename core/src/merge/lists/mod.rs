@@ -1,0 +1,7 @@
+//! What meets a cell: lists of elements, divided with the cells, and bins for long ones.
+
+pub(super) mod bins;
+pub(super) mod crossings;
+pub mod list;
+pub mod separation;
+pub(super) mod window;

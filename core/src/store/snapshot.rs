@@ -1,0 +1,580 @@
+//! A solid's exact boundary as plain data: stored, moved, refined, and made into a tree again.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::sealed::{seal, unseal, Kind};
+use super::sound::is_sound;
+use crate::arith::bounds::{self, COORDINATE_BITS};
+use crate::arith::Int;
+use crate::error::{Error, ErrorKind, Result};
+use crate::extract::boundary::collect::{collect, CutFace};
+use crate::extract::boundary::leaves::Fate;
+use crate::geometry::cell::Cell;
+use crate::geometry::edge::LatticeEdge;
+use crate::geometry::line::{LineKey, PlaneResidues};
+use crate::geometry::outline::{settled, BareEdge, OutlineEdge};
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::polygon::Carrier;
+use crate::geometry::vertex::{cross, Vertex};
+use crate::interrupt::poll;
+use crate::merge::lists::list::Sources;
+use crate::mesh::grid::Pitch;
+use crate::mesh::import::is_flat;
+use crate::mesh::source::{Shape, Source};
+use crate::mesh::triangles::TriangleMesh;
+use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
+use crate::tree::solid::Solid;
+
+/// An exact boundary without its tree.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Snapshot {
+    pitch: i64,
+    outside: i32,
+    reduced: bool,
+    sources: Vec<SourceData>,
+    wholes: Vec<WholeFaces>,
+    parts: Vec<PartData>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+enum SourceData {
+    Mesh {
+        vertices: Vec<Lattice>,
+        doubles: Vec<[f64; 3]>,
+        faces: Vec<[u32; 3]>,
+        numbers: Option<Vec<u32>>,
+    },
+    HalfSpace(PlaneData),
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct WholeFaces {
+    slot: u32,
+    flip: bool,
+    faces: Vec<u32>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct PartData {
+    slot: u32,
+    face: u32,
+    flip: bool,
+    edges: Vec<EdgeData>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct EdgeData {
+    from: VertexData,
+    to: VertexData,
+    carrier: CarrierData,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+enum CarrierData {
+    Edge(Lattice, Lattice),
+    Cut(PlaneData, bool),
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+enum VertexData {
+    Lattice(Lattice),
+    Meet([[u64; 6]; 3], [u64; 6]),
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct PlaneData([i128; 3], [u64; 3]);
+
+/// A map of the lattice onto itself: a signed permutation of the axes, a scale and a shift.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// For each new axis the old axis it takes and its sign.
+    pub axes: [(usize, i64); 3],
+    /// Steps added after the permutation.
+    pub shift: Lattice,
+    /// A positive factor applied first.
+    pub scale: i64,
+}
+
+impl Motion {
+    /// The motion that leaves everything where it is.
+    pub const IDENTITY: Self = Self {
+        axes: [(0, 1), (1, 1), (2, 1)],
+        shift: [0; 3],
+        scale: 1,
+    };
+
+    /// Whether the motion turns right hands into left ones.
+    pub fn mirrors(&self) -> bool {
+        let order = self.axes.map(|a| a.0);
+        let even = matches!(order, [0, 1, 2] | [1, 2, 0] | [2, 0, 1]);
+        let signs: i64 = self.axes.iter().map(|a| a.1).product();
+        even != (signs > 0)
+    }
+
+    fn point(&self, p: &Lattice) -> Result<Lattice> {
+        let mut image = [0; 3];
+        for (i, (axis, sign)) in self.axes.into_iter().enumerate() {
+            image[i] = p[axis]
+                .checked_mul(self.scale * sign)
+                .and_then(|k| k.checked_add(self.shift[i]))
+                .filter(|k| k.unsigned_abs() < 1 << COORDINATE_BITS)
+                .ok_or_else(too_large)?;
+        }
+        Ok(image)
+    }
+
+    fn double(&self, pitch: Pitch, p: &[f64; 3], image: &Lattice) -> [f64; 3] {
+        [0, 1, 2].map(|i| {
+            let (axis, sign) = self.axes[i];
+            if self.shift[i] == 0 {
+                p[axis] * sign as f64
+            } else {
+                pitch.coordinate(image[i])
+            }
+        })
+    }
+
+    fn plane(&self, data: &PlaneData) -> Result<PlaneData> {
+        let plane = data.plane()?.scaled(self.scale).ok_or_else(too_large)?;
+        let moved = plane.moved(&self.axes, &self.shift).ok_or_else(too_large)?;
+        Ok(PlaneData::of(&moved))
+    }
+
+    fn vertex(&self, data: &VertexData) -> Result<VertexData> {
+        match data {
+            VertexData::Lattice(p) => Ok(VertexData::Lattice(self.point(p)?)),
+            VertexData::Meet(x, w) => {
+                let w6 = Int::from_limbs(*w);
+                let mut image = [[0; 6]; 3];
+                for (i, (axis, sign)) in self.axes.into_iter().enumerate() {
+                    let turned: Int<8> = Int::from_limbs(x[axis]).mul_i64(sign * self.scale);
+                    let shifted: Int<8> = w6.mul_i64(self.shift[i]);
+                    let sum = (turned + shifted).narrow::<6>().ok_or_else(too_large)?;
+                    image[i] = *sum.limbs();
+                }
+                Ok(VertexData::Meet(image, *w))
+            }
+        }
+    }
+}
+
+fn too_large() -> Error {
+    let text = "the moved or refined solid does not fit the lattice of 2^53 steps";
+    Error::new(ErrorKind::TooLarge, text)
+}
+
+fn bad_snapshot() -> Error {
+    Kind::Solid.contradiction()
+}
+
+impl Snapshot {
+    /// The exact boundary of a solid.
+    pub fn of(solid: &Solid) -> Self {
+        let sources = Sources::new(solid.sources().clone());
+        let boundary = collect(solid, &sources);
+        let mut wholes = Vec::new();
+        for (slot, fates) in (0u32..).zip(&boundary.fates) {
+            for flip in [false, true] {
+                let like = |(_, f): &(u32, &Fate)| **f == Fate::Whole(flip);
+                let faces: Vec<u32> = (0u32..).zip(fates).filter(like).map(|(i, _)| i).collect();
+                if !faces.is_empty() {
+                    wholes.push(WholeFaces { slot, flip, faces });
+                }
+            }
+        }
+        let (planes, cut): (Vec<_>, Vec<_>) = boundary.cut.iter().partition(|c| is_full_plane(c));
+        wholes.extend(planes.into_iter().map(WholeFaces::plane));
+        let parts = cut.into_iter().map(|c| PartData {
+            slot: c.slot,
+            face: c.face,
+            flip: c.flip,
+            edges: c.outline.edges().iter().map(EdgeData::of).collect(),
+        });
+        Self {
+            pitch: solid.pitch().exponent(),
+            outside: solid.root().outside,
+            reduced: solid.is_reduced(),
+            sources: solid.sources().iter().map(|s| SourceData::of(s)).collect(),
+            wholes,
+            parts: parts.collect(),
+        }
+    }
+
+    /// The solid with this boundary, in one deferred leaf.
+    ///
+    /// # Errors
+    /// `BadSnapshot` if the data contradict themselves.
+    pub fn solid(&self) -> Result<Solid> {
+        let pitch = Pitch::new(self.pitch)?;
+        let sources = self
+            .sources
+            .iter()
+            .map(|s| Ok(Arc::new(s.source(pitch)?)))
+            .collect::<Result<Vec<_>>>()?;
+        let cell = sources
+            .iter()
+            .filter_map(|s| s.cell())
+            .reduce(|a, b| a.join(&b));
+        let Some(cell) = cell.filter(|_| !(self.wholes.is_empty() && self.parts.is_empty())) else {
+            return Ok(Solid::uniform(pitch, self.outside > 0));
+        };
+        let mut leaf = Deferred {
+            corner: self.outside,
+            ..Deferred::default()
+        };
+        for w in &self.wholes {
+            poll();
+            let source = sources.get(w.slot as usize).ok_or_else(bad_snapshot)?;
+            let known = w.faces.iter().all(|f| (*f as usize) < source.face_count());
+            if !known || !w.faces.is_sorted_by(|a, b| a < b) {
+                return Err(bad_snapshot());
+            }
+            let source = Arc::clone(source);
+            leaf.groups.push(Group {
+                source,
+                flip: w.flip,
+                faces: w.faces.clone(),
+            });
+        }
+        for p in &self.parts {
+            poll();
+            leaf.parts.push(p.element(&sources, cell)?);
+        }
+        let node = Arc::new(Node::Deferred(leaf));
+        let root = Branch {
+            cell,
+            outside: self.outside,
+            complement: false,
+            node,
+        };
+        Ok(Solid::new(
+            root,
+            pitch,
+            sources.iter().collect(),
+            self.reduced,
+        ))
+    }
+
+    /// The image under a motion of the lattice, on a lattice of the given pitch.
+    ///
+    /// # Errors
+    /// `TooLarge` if something leaves the lattice.
+    pub fn moved(&self, motion: &Motion, pitch: Pitch) -> Result<Self> {
+        if self.reaches_infinity() {
+            let text = "an unbounded boundary other than one plane cannot be moved";
+            return Err(Error::new(ErrorKind::Unbounded, text));
+        }
+        let mut image = self.clone();
+        image.pitch = pitch.exponent();
+        for source in &mut image.sources {
+            source.apply(motion, pitch)?;
+        }
+        for edge in image.parts.iter_mut().flat_map(|p| &mut p.edges) {
+            edge.apply(motion)?;
+        }
+        image.outside = image.label_at_infinity()?;
+        Ok(image)
+    }
+
+    /// Whether an unbounded face is boundary beside others, or cut at the border of the universe.
+    fn reaches_infinity(&self) -> bool {
+        let unbounded = |slot: u32| {
+            matches!(
+                self.sources.get(slot as usize),
+                Some(SourceData::HalfSpace(_))
+            )
+        };
+        let alone = self.wholes.len() == 1 && self.parts.is_empty();
+        let edges = self
+            .parts
+            .iter()
+            .filter(|p| unbounded(p.slot))
+            .flat_map(|p| &p.edges);
+        (self.wholes.iter().any(|w| unbounded(w.slot)) && !alone)
+            || edges
+                .into_iter()
+                .any(|e| e.carrier.carrier().is_ok_and(|c| c.is_border()))
+    }
+
+    /// The label at the low corner of the universe: a lone plane decides it by its side there.
+    fn label_at_infinity(&self) -> Result<i32> {
+        if let [only] = self.wholes.as_slice() {
+            if let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot as usize) {
+                let side = plane.plane()?.side_of_corner(&Cell::UNIVERSE.corner());
+                return Ok(i32::from((side < 0) != only.flip));
+            }
+        }
+        Ok(self.outside)
+    }
+
+    /// The data as bytes.
+    ///
+    /// # Errors
+    /// `Internal` if encoding fails.
+    pub fn to_bytes(&self) -> Result<Vec<u8>> {
+        seal(Kind::Solid, self)
+    }
+
+    /// The solid that bytes hold; they are looked at in full.
+    ///
+    /// That its faces are the reduced boundary is their word ([`Solid::claimed`]): to find that out
+    /// costs ten times as much as all the rest.
+    ///
+    /// # Errors
+    /// `BadSnapshot`.
+    pub fn solid_from_bytes(bytes: &[u8]) -> Result<Solid> {
+        let snapshot: Self = unseal(Kind::Solid, bytes)?;
+        let solid = snapshot.solid().map_err(|_| bad_snapshot())?;
+        if !matches!(snapshot.outside, 0 | 1) || !is_sound(&solid) {
+            return Err(bad_snapshot());
+        }
+        Ok(solid.claimed())
+    }
+}
+
+/// Whether nothing but the border of the universe bounds a half-space's face.
+fn is_full_plane(cut: &CutFace) -> bool {
+    let mut edges = cut.outline.edges().iter();
+    edges.all(|e| e.carrier.is_border())
+}
+
+impl WholeFaces {
+    fn plane(cut: &CutFace) -> Self {
+        Self {
+            slot: cut.slot,
+            flip: cut.flip,
+            faces: vec![cut.face],
+        }
+    }
+}
+
+impl SourceData {
+    fn of(source: &Source) -> Self {
+        match source.shape() {
+            Shape::Mesh(m) => Self::Mesh {
+                vertices: m.vertices.clone(),
+                doubles: m.doubles.clone(),
+                faces: m.faces.clone(),
+                numbers: m.numbers.clone(),
+            },
+            Shape::HalfSpace(plane) => Self::HalfSpace(PlaneData::of(plane)),
+        }
+    }
+
+    fn source(&self, pitch: Pitch) -> Result<Source> {
+        let shape = match self {
+            Self::HalfSpace(plane) => Shape::HalfSpace(Arc::new(plane.plane()?)),
+            Self::Mesh {
+                vertices,
+                doubles,
+                faces,
+                numbers,
+            } => {
+                let count = vertices.len();
+                let named = faces.iter().flatten().all(|v| (*v as usize) < count);
+                let fits = vertices
+                    .iter()
+                    .flatten()
+                    .all(|k| k.unsigned_abs() < 1 << COORDINATE_BITS);
+                let numbered = numbers.as_ref().is_none_or(|n| n.len() == faces.len());
+                let flat = |f: &[u32; 3]| is_flat(&f.map(|v| vertices[v as usize]));
+                let sound = named && fits && numbered && doubles.len() == count;
+                if !sound || faces.iter().any(flat) {
+                    return Err(bad_snapshot());
+                }
+                Shape::Mesh(TriangleMesh {
+                    vertices: vertices.clone(),
+                    doubles: doubles.clone(),
+                    faces: faces.clone(),
+                    numbers: numbers.clone(),
+                })
+            }
+        };
+        Ok(Source::new(pitch, shape, Vec::new()))
+    }
+
+    fn apply(&mut self, motion: &Motion, pitch: Pitch) -> Result<()> {
+        match self {
+            Self::HalfSpace(plane) => *plane = motion.plane(plane)?,
+            Self::Mesh {
+                vertices,
+                doubles,
+                faces,
+                ..
+            } => {
+                for (vertex, double) in vertices.iter_mut().zip(doubles) {
+                    *vertex = motion.point(vertex)?;
+                    *double = motion.double(pitch, double, vertex);
+                }
+                if motion.mirrors() {
+                    for face in faces {
+                        face.swap(1, 2);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl PartData {
+    fn element(&self, sources: &[Arc<Source>], home: Cell) -> Result<PartElement> {
+        let source = sources.get(self.slot as usize).ok_or_else(bad_snapshot)?;
+        if self.face as usize >= source.face_count() {
+            return Err(bad_snapshot());
+        }
+        let support = source.plane(self.face);
+        let edges = self
+            .edges
+            .iter()
+            .map(|e| e.edge(&support))
+            .collect::<Result<Vec<_>>>()?;
+        if !is_balanced(&edges) {
+            return Err(bad_snapshot());
+        }
+        let part = Part::new(Arc::clone(source), self.face, home, settled(edges));
+        Ok(PartElement {
+            part: Arc::new(part),
+            flip: self.flip,
+        })
+    }
+}
+
+impl EdgeData {
+    fn of(edge: &BareEdge) -> Self {
+        let carrier = match &edge.carrier {
+            Carrier::Edge(edge) => {
+                let (a, b) = edge.ends();
+                CarrierData::Edge(*a, *b)
+            }
+            Carrier::Cut(plane, flip) => CarrierData::Cut(PlaneData::of(plane), *flip),
+        };
+        Self {
+            from: VertexData::of(&edge.from),
+            to: VertexData::of(&edge.to),
+            carrier,
+        }
+    }
+
+    fn edge(&self, support: &Plane) -> Result<OutlineEdge> {
+        let carrier = self.carrier.carrier()?;
+        let (from, to) = (self.from.vertex()?, self.to.vertex()?);
+        if !carries(&carrier, support, &from, &to) {
+            return Err(bad_snapshot());
+        }
+        let line = LineKey::of(&carrier.line(&PlaneResidues::of(support)));
+        Ok(OutlineEdge {
+            from: Arc::new(from),
+            to: Arc::new(to),
+            carrier,
+            line,
+        })
+    }
+
+    fn apply(&mut self, motion: &Motion) -> Result<()> {
+        self.from = motion.vertex(&self.from)?;
+        self.to = motion.vertex(&self.to)?;
+        self.carrier = match &self.carrier {
+            CarrierData::Edge(a, b) => CarrierData::Edge(motion.point(a)?, motion.point(b)?),
+            CarrierData::Cut(plane, flip) => CarrierData::Cut(motion.plane(plane)?, *flip),
+        };
+        if motion.mirrors() {
+            std::mem::swap(&mut self.from, &mut self.to);
+            if let CarrierData::Edge(a, b) = &mut self.carrier {
+                std::mem::swap(a, b);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl CarrierData {
+    fn carrier(&self) -> Result<Carrier> {
+        Ok(match self {
+            Self::Edge(a, b) => Carrier::Edge(LatticeEdge::new(*a, *b)),
+            Self::Cut(plane, flip) => Carrier::Cut(Arc::new(plane.plane()?), *flip),
+        })
+    }
+}
+
+/// Whether a carrier and a support meet in a line that both ends lie on.
+fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bool {
+    let on = |plane: &Plane| from.side_of(plane) == 0 && to.side_of(plane) == 0;
+    let crosses = |plane: &Plane| {
+        cross(plane.normal(), support.normal())
+            .iter()
+            .any(|c| !c.is_zero())
+    };
+    let carried = match carrier {
+        Carrier::Edge(edge) => {
+            let (a, b) = edge.ends();
+            let near = [a, b]
+                .iter()
+                .all(|p| p.iter().all(|k| k.unsigned_abs() < 1 << COORDINATE_BITS));
+            near && a != b
+                && support.side_of_lattice(a) == 0
+                && support.side_of_lattice(b) == 0
+                && on(&carrier.plane(support))
+        }
+        Carrier::Cut(plane, _) => crosses(plane) && on(plane),
+    };
+    carried && on(support) && !from.same(to)
+}
+
+/// Whether as many edges of an outline leave each point as arrive.
+fn is_balanced(edges: &[OutlineEdge]) -> bool {
+    let mut ends: Vec<_> = edges.iter().map(|e| e.from.key()).collect();
+    let mut starts: Vec<_> = edges.iter().map(|e| e.to.key()).collect();
+    ends.sort_unstable();
+    starts.sort_unstable();
+    ends == starts
+}
+
+impl VertexData {
+    fn of(vertex: &Vertex) -> Self {
+        if let Some(p) = vertex.as_lattice() {
+            return Self::Lattice(*p);
+        }
+        let h = vertex.coordinates();
+        Self::Meet(h.x.map(|c| *c.limbs()), *h.w.limbs())
+    }
+
+    fn vertex(&self) -> Result<Vertex> {
+        match self {
+            Self::Lattice(p) if p.iter().all(|k| k.unsigned_abs() < 1 << COORDINATE_BITS) => {
+                Ok(Vertex::lattice(*p))
+            }
+            Self::Lattice(_) => Err(bad_snapshot()),
+            Self::Meet(x, w) => {
+                let (x, w) = (x.map(Int::from_limbs), Int::from_limbs(*w));
+                let fits = |c: &Int<6>, bits| c.bit_length() <= bits;
+                let numerators = x
+                    .iter()
+                    .all(|c| fits(c, bounds::point_numerator(COORDINATE_BITS)));
+                let weight = fits(&w, bounds::point_weight(COORDINATE_BITS));
+                if w.signum() <= 0 || !numerators || !weight {
+                    return Err(bad_snapshot());
+                }
+                Ok(Vertex::homogeneous(x, w))
+            }
+        }
+    }
+}
+
+impl PlaneData {
+    fn of(plane: &Plane) -> Self {
+        Self(*plane.normal(), *plane.offset().limbs())
+    }
+
+    fn plane(&self) -> Result<Plane> {
+        let offset: Int<3> = Int::from_limbs(self.1);
+        let limit = 1u128 << bounds::normal(COORDINATE_BITS);
+        let normal = self.0.iter().all(|c| c.unsigned_abs() < limit);
+        if !normal || offset.bit_length() > bounds::offset(COORDINATE_BITS) {
+            return Err(bad_snapshot());
+        }
+        Plane::new(self.0, offset).ok_or_else(bad_snapshot)
+    }
+}

@@ -1,0 +1,159 @@
+//! Whether a boundary from outside bounds a set: all that the kernel takes for granted.
+//!
+//! A closed boundary gives every point a winding number that does not depend on the path to it, and
+//! with that the kernel is right: whether faces overlap or cross is for it to find out.
+
+use std::sync::Arc;
+
+use crate::extract::boundary::leaves::Fate;
+use crate::extract::boundary::rim::{half_edge_ends, FrontierEdge, Rims};
+use crate::geometry::edge::LatticeEdge;
+use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::polygon::{Carrier, Polygon};
+use crate::geometry::vertex::Vertex;
+use crate::merge::lists::list::Sources;
+use crate::mesh::grid::Pitch;
+use crate::mesh::source::Source;
+use crate::mesh::triangles::TriangleMesh;
+use crate::tree::node::{Deferred, Node, Part, PartElement};
+use crate::tree::solid::Solid;
+
+/// Whether the one leaf of a solid, of which the indices and ranges have been checked, is the
+/// boundary of a set.
+pub fn is_sound(solid: &Solid) -> bool {
+    let Node::Deferred(leaf) = &*solid.root().node else {
+        return true;
+    };
+    let sources = Sources::new(solid.sources().clone());
+    let proper = sources.table().iter().all(|s| is_proper(s));
+    proper
+        && leaf.parts.iter().all(|p| lies_on_face(&p.part))
+        && fates(leaf, &sources).is_some_and(|fates| is_closed(leaf, &fates, &sources))
+}
+
+/// Whether a source could be that of an import that was moved and refined.
+fn is_proper(source: &Source) -> bool {
+    let Some(mesh) = source.mesh() else {
+        return true;
+    };
+    let numbers = mesh.numbers.iter();
+    let ascending = |n: &Vec<u32>| n.is_sorted_by(|a, b| a < b);
+    numbers.into_iter().all(ascending) && doubles_fit(mesh, source.pitch()) && source.closes()
+}
+
+/// Whether each vertex is what its doubles are snapped to, on this lattice or, where all
+/// coordinates are its steps, on a coarser one.
+fn doubles_fit(mesh: &TriangleMesh, pitch: Pitch) -> bool {
+    (0..3).all(|axis| {
+        let slack = coarsest_step(&mesh.vertices, axis) as f64 * 0.5;
+        let near = |(vertex, double): (&Lattice, &[f64; 3])| {
+            let (k, x) = (vertex[axis] as f64, pitch.steps(double[axis]));
+            // Both are rounded to three units in the last place.
+            (x - k).abs() <= slack + (k.abs() + slack) * 4.0 * f64::EPSILON
+        };
+        mesh.vertices.iter().zip(&mesh.doubles).all(near)
+    })
+}
+
+/// The largest power of ten that divides all coordinates across an axis; at most 10^18.
+fn coarsest_step(vertices: &[Lattice], axis: usize) -> i64 {
+    let mut step = 10i64.pow(18);
+    for vertex in vertices {
+        while vertex[axis] % step != 0 {
+            step /= 10;
+        }
+    }
+    step
+}
+
+/// Whether the outline bounds a part of the face, with the part on its left everywhere.
+///
+/// The convex pieces are disjoint parts of the face. If their edges and the outline's cancel, it
+/// bounds them and nothing else.
+fn lies_on_face(part: &Part) -> bool {
+    let Some(face) = part.source.clip(part.face, &part.home) else {
+        return false;
+    };
+    if !is_within(part, &face) {
+        return false;
+    }
+    let pieces = part.pieces();
+    let bounds = pieces.iter().flat_map(OutlineEdge::all_of);
+    let outline = part.outline();
+    let reversed = outline.iter().map(OutlineEdge::reversed);
+    !pieces.is_empty() && cancel(bounds.chain(reversed).collect()).is_empty()
+}
+
+/// Whether no corner of an outline lies outside of a face, and its lattice edges are the face's.
+fn is_within(part: &Part, face: &Polygon) -> bool {
+    let own: Vec<&Carrier> = face.edges().map(|(_, _, carrier)| carrier).collect();
+    let walls: Vec<Plane> = own.iter().map(|c| c.plane(face.support())).collect();
+    let inside = |vertex: &Vertex| walls.iter().all(|wall| vertex.side_of(wall) <= 0);
+    let known = |carrier: &Carrier| match carrier {
+        Carrier::Edge(edge) => own
+            .iter()
+            .any(|c| matches!(c, Carrier::Edge(own) if own.ends() == edge.ends())),
+        Carrier::Cut(..) => true,
+    };
+    let edges = part.edges.iter();
+    edges
+        .into_iter()
+        .all(|e| inside(&e.from) && known(&e.carrier))
+}
+
+/// What is listed of each face; `None` if something is listed twice.
+fn fates(leaf: &Deferred, sources: &Sources) -> Option<Vec<Vec<Fate>>> {
+    let gone = |s: &Arc<Source>| vec![Fate::Gone; s.face_count()];
+    let mut fates: Vec<Vec<Fate>> = sources.table().iter().map(gone).collect();
+    for group in &leaf.groups {
+        let fates = &mut fates[sources.slot(&group.source)];
+        for face in &group.faces {
+            let fate = &mut fates[*face as usize];
+            if *fate != Fate::Gone {
+                return None;
+            }
+            *fate = Fate::Whole(group.flip);
+        }
+    }
+    let place = |p: &PartElement| (sources.slot(&p.part.source), p.part.face, p.flip);
+    let mut parts: Vec<(usize, u32, bool)> = leaf.parts.iter().map(place).collect();
+    parts.sort_unstable();
+    for (slot, face, flip) in &parts {
+        let fate = &mut fates[*slot][*face as usize];
+        match fate {
+            Fate::Whole(whole) if whole == flip => return None,
+            Fate::Whole(_) => {}
+            Fate::Cut | Fate::Gone => *fate = Fate::Cut,
+        }
+    }
+    let once = parts.is_sorted_by(|a, b| a < b);
+    once.then_some(fates)
+}
+
+/// Whether the edges of all that is listed cancel, but at the border of the universe.
+fn is_closed(leaf: &Deferred, fates: &[Vec<Fate>], sources: &Sources) -> bool {
+    let rims = Rims::of(fates, sources);
+    let frontier = rims.frontier(fates, sources).into_iter();
+    let rim = frontier.filter_map(|edge| rim_edge(edge, fates, sources));
+    let parts = leaf.parts.iter().flat_map(|p| {
+        let edges = p.part.outline().into_iter();
+        let inner = edges.filter(|e| !e.carrier.is_border());
+        inner.map(|e| if p.flip { e.reversed() } else { e })
+    });
+    cancel(rim.chain(parts).collect()).is_empty()
+}
+
+/// An edge of a whole face, run as the face is turned.
+fn rim_edge(edge: FrontierEdge, fates: &[Vec<Fate>], sources: &Sources) -> Option<OutlineEdge> {
+    let mesh = sources.get(edge.slot as usize).mesh()?;
+    let [from, to] = half_edge_ends(mesh, edge.half).map(|v| mesh.vertices[v as usize]);
+    let forward = OutlineEdge {
+        from: Arc::new(Vertex::lattice(from)),
+        to: Arc::new(Vertex::lattice(to)),
+        carrier: Carrier::Edge(LatticeEdge::new(from, to)),
+        line: edge.line(sources),
+    };
+    let turned = fates[edge.slot as usize][edge.half as usize / 3] == Fate::Whole(true);
+    Some(if turned { forward.reversed() } else { forward })
+}
