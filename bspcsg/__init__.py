@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ._core import __version__
-    from .check import CheckReport, Verdict, validate
     from .errors import (
         BspcsgError,
         Finding,
@@ -28,9 +27,11 @@ if TYPE_CHECKING:
         UnboundedError,
     )
     from .io import load, save
-    from .mesh import Mesh
+    from .mesh.mesh import Mesh
+    from .operations.setops import boolean, difference, intersection, union, xor
     from .parameters import set_threads
-    from .primitives import (
+    from .script.run import run_script, show
+    from .shapes.primitives import (
         box,
         cone,
         cube,
@@ -42,9 +43,8 @@ if TYPE_CHECKING:
         sphere,
         torus,
     )
-    from .script import run_script, show
-    from .setops import boolean, difference, intersection, union, xor
-    from .solid import Solid
+    from .solid.solid import Solid
+    from .verify.check import CheckReport, Verdict, validate
 
 __all__ = [
     "BspcsgError",
@@ -87,16 +87,16 @@ __all__ = [
 #: command line starts without numpy.
 _MODULES = {
     "_core": "__version__",
-    "check": "CheckReport Verdict validate",
+    "verify.check": "CheckReport Verdict validate",
     "errors": "BspcsgError Finding FormatError InternalError InvalidMeshError LimitError"
     " MissingPartError UnboundedError",
     "io": "load save",
-    "mesh": "Mesh",
+    "mesh.mesh": "Mesh",
     "parameters": "set_threads",
-    "primitives": "box cone cube cylinder extrude half_space prism revolve sphere torus",
-    "script": "run_script show",
-    "setops": "boolean difference intersection union xor",
-    "solid": "Solid",
+    "shapes.primitives": "box cone cube cylinder extrude half_space prism revolve sphere torus",
+    "script.run": "run_script show",
+    "operations.setops": "boolean difference intersection union xor",
+    "solid.solid": "Solid",
 }
 #: Parts of the package that need no import of their own.
 _PARTS = frozenset({"bsp", "csg", "errors", "io", "trimesh_engine"})

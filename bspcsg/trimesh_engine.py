@@ -13,10 +13,10 @@ trimesh has no public hook for engines: `register` writes into its table of engi
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
-from .counting import uncounted
 from .errors import MissingPartError, invalid_parameter
-from .setops import difference, intersection, union
-from .solid import Solid
+from .operations.setops import difference, intersection, union
+from .solid.counting import uncounted
+from .solid.solid import Solid
 
 if TYPE_CHECKING:
     import trimesh

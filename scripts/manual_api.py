@@ -18,34 +18,27 @@ _PACKAGES = (
     "bspcsg.trimesh_engine",
 )
 
-#: On which page the names of a module stand; on one of its package's name if it is not here.
+#: On which page the names of a module or package stand.
 _PAGES = {
     "bspcsg.solid": "solid",
     "bspcsg.mesh": "solid",
-    "bspcsg.primitives": "shapes",
-    "bspcsg.setops": "operations",
-    "bspcsg.block": "operations",
+    "bspcsg.shapes": "shapes",
+    "bspcsg.operations": "operations",
     "bspcsg.trimesh_engine": "trimesh",
     "bspcsg.errors": "errors",
-    "bspcsg.check": "check",
-    "bspcsg.verdict": "check",
-    "bspcsg.profile": "shapes",
+    "bspcsg.verify": "check",
     "bspcsg.script": "scripts",
-    "bspcsg.bsp.region": "regions",
-    "bspcsg.bsp.interval": "regions",
-    "bspcsg.bsp.loops": "regions",
-    "bspcsg.bsp.slicing": "regions",
-    "bspcsg.bsp.drawing_svg": "regions",
-    "bspcsg.bsp.drawing_dxf": "regions",
+    "bspcsg.bsp.sets.region": "regions",
+    "bspcsg.bsp.sets.interval": "regions",
+    "bspcsg.bsp.sets.loops": "regions",
+    "bspcsg.bsp.sets.slicing": "regions",
+    "bspcsg.bsp.drawings": "regions",
     "bspcsg.bsp.rays": "rays",
-    "bspcsg.bsp.adaptive": "rays",
-    "bspcsg.bsp.distribution": "rays",
-    "bspcsg.bsp.picture": "pictures",
-    "bspcsg.bsp.panorama": "pictures",
-    "bspcsg.bsp.camera": "pictures",
+    "bspcsg.bsp.painting": "pictures",
     "bspcsg.bsp": "trees",
     "bspcsg.csg": "scripts",
     "bspcsg.io": "files",
+    "bspcsg.formats": "files",
     "bspcsg": "others",
 }
 
@@ -87,7 +80,7 @@ def api_pages() -> dict[str, str]:
             entity = None if name.startswith("_") else _target(module[name])
             if entity is not None and entity.path not in seen:
                 seen.add(entity.path)
-                placed[_page(entity, package)].append((f"{package}.{name}", entity))
+                placed[_page(entity)].append((f"{package}.{name}", entity))
     pages = {name: _page_text(_TITLES[name], held) for name, held in placed.items() if held}
     return {"index": _index(placed), **pages}
 
@@ -113,11 +106,11 @@ def _target(member: Any) -> Any | None:
     return found
 
 
-def _page(entity: Any, package: str) -> str:
+def _page(entity: Any) -> str:
     home = entity.module.path
     while home not in _PAGES:
         home = home.rpartition(".")[0]
-    return _PAGES[home] if home.startswith(package) else _PAGES[package]
+    return _PAGES[home]
 
 
 def _index(placed: dict[str, list[tuple[str, Any]]]) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import FormatError
-from ..io.atomic import write_file
+from ..formats.atomic import write_file
 from .engines import installed
 
 #: Raised whenever a field changes its meaning.

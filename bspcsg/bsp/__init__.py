@@ -6,25 +6,26 @@ leaves are in or out of a set. Everything is decided exactly on a decimal lattic
 are snapped to first.
 """
 
-from .adaptive import AdaptiveTree, StabStats, StabTree, StaticTree, Tests
-from .camera import Camera
-from .cost import Comparison, PolicyRow, Query, Stats, compare_policies
-from .distribution import optimised_tree, scores
-from .drawing_dxf import load_dxf, save_dxf
-from .drawing_svg import load_svg, save_svg
-from .fragments import Fragments
-from .interval import Intervals
-from .loops import Outline
-from .node import Leaf, Node
-from .objects import ObjectTree, merge, partition_tree, split_tree
-from .panorama import panorama
-from .picture import Picture, picture
-from .pieces import NodeTable, Pieces
-from .policy import POLICIES, Policy
-from .rays import EDGE, INTERIOR, MISS, VERTEX, HitLists, Hits, InsideSpans, RayCaster
-from .region import Region
-from .slicing import plane_frame, slice_solid
-from .tree import PartitionTree
+from .drawings.dxf import load_dxf, save_dxf
+from .drawings.svg import load_svg, save_svg
+from .painting.camera import Camera
+from .painting.panorama import panorama
+from .painting.picture import Picture, picture
+from .rays.adaptive import AdaptiveTree, StabStats, StabTree, StaticTree, Tests
+from .rays.caster import EDGE, INTERIOR, MISS, VERTEX, HitLists, Hits, InsideSpans, RayCaster
+from .rays.distribution import optimised_tree, scores
+from .sets.interval import Intervals
+from .sets.loops import Outline
+from .sets.objects import ObjectTree, merge, partition_tree, split_tree
+from .sets.pieces import NodeTable, Pieces
+from .sets.region import Region
+from .sets.slicing import plane_frame, slice_solid
+from .trees import analysis as analysis
+from .trees.cost import Comparison, PolicyRow, Query, Stats, compare_policies
+from .trees.fragments import Fragments
+from .trees.node import Leaf, Node
+from .trees.policy import POLICIES, Policy
+from .trees.tree import PartitionTree
 
 __all__ = [
     "EDGE",

@@ -43,7 +43,7 @@ class Drawing(ABC):
 
     def run(self) -> int:
         """Do it, and return the exit code."""
-        from .. import set_threads
+        from ..parameters import set_threads
 
         set_threads(self.settings["threads"])
         began = time.perf_counter()

@@ -14,9 +14,9 @@ from ..errors import Finding, FormatError, InvalidMeshError
 from .output import Output, counted, discard_output
 
 if TYPE_CHECKING:
-    from ..io import RawMesh
-    from ..mesh import Mesh
-    from ..solid import Solid
+    from ..formats.raw import RawMesh
+    from ..mesh.mesh import Mesh
+    from ..solid.solid import Solid
 
 #: The name that stands for standard input or standard output.
 STREAM = "-"
@@ -65,7 +65,7 @@ class Inputs:
 
     def refuse_early(self, paths: Sequence[Path]) -> None:
         """Refuse what can be known to fail before anything is read."""
-        from ..io import format_of
+        from ..formats.files import format_of
 
         if sum(str(path) == STREAM for path in paths) > 1:
             raise click.UsageError("standard input can be read only once; name “-” once.")
@@ -80,7 +80,7 @@ class Inputs:
 
     def tell_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
         """Say once which inputs have no unit although their outputs state one."""
-        from ..io import FORMATS
+        from ..formats.files import FORMATS
 
         unknown = [
             path
@@ -95,14 +95,14 @@ class Inputs:
 
     def suffix_of(self, path: Path) -> str:
         """Return the suffix of the format that a file is read as."""
-        from ..io import FORMATS
+        from ..formats.files import FORMATS
 
         own = path.suffix.lower()
         return own if own in FORMATS or not self.suffix else self.suffix
 
     def raw(self, path: Path) -> "RawMesh":
         """Read a mesh as it is, in millimetres if a unit is known or said."""
-        from ..io import decoded, read_as
+        from ..formats.files import decoded, read_as
 
         if str(path) == STREAM:
             raw = decoded(STREAM, sys.stdin.buffer.read(), self.suffix)
@@ -144,13 +144,13 @@ class Inputs:
         return solid_of(raw, shown(path), winding=self.winding, pitch=self.pitch)
 
     def _left_out(self, error: InvalidMeshError) -> "Solid":
-        from ..solid import Solid
+        from ..solid.solid import Solid
 
         self.out.warning(f"{error.message} It is left out.")
         return Solid.empty()
 
     def _repaired(self, raw: "RawMesh", path: Path) -> "Solid":
-        from ..repair import repair
+        from ..repair.repair import repair
 
         made = repair(raw)
         try:
@@ -222,7 +222,7 @@ class Target:
         FormatError
             If the format is unknown or the folder cannot be written to.
         """
-        from ..io import form_of
+        from ..formats.files import form_of
 
         if self.is_stream and not self.suffix:
             raise click.UsageError("to write to standard output, say the format: --to stl.")
@@ -234,13 +234,13 @@ class Target:
 
     def rounded(self, mesh: "Mesh | RawMesh") -> "tuple[Mesh | RawMesh, tuple[Finding, ...]]":
         """Return the mesh with the digits asked for, and what that did."""
-        from ..io.rounding import rounded
+        from ..formats.rounding import rounded
 
         return (mesh, ()) if self.digits is None else rounded(mesh, self.digits)
 
     def write(self, mesh: "Mesh | RawMesh") -> tuple[Finding, ...]:
         """Write a mesh, and return what the format or the number of digits could not keep."""
-        from ..io import encoded
+        from ..formats.files import encoded
 
         shortened, moved = self.rounded(mesh)
         made = encoded(shortened, shown(self.path), self.suffix, self.text)
@@ -258,7 +258,7 @@ def put(
 
     What `prove` refuses is written to neither.
     """
-    from ..io.atomic import write_file
+    from ..formats.atomic import write_file
 
     if str(path) != STREAM:
         refuse_unwritable(path, overwrite)

@@ -11,10 +11,10 @@ from .files import Inputs, Target, shown
 from .output import Output, counted
 
 if TYPE_CHECKING:
-    from ..check import CheckReport
     from ..errors import Finding
-    from ..mesh import Mesh
-    from ..solid import Solid
+    from ..mesh.mesh import Mesh
+    from ..solid.solid import Solid
+    from ..verify.check import CheckReport
 
 #: Triangles and bits up to which the exact volume is printed; of more, its digits fill pages.
 _EXACT_FACES, _EXACT_BITS = 500, 10_000
@@ -50,7 +50,7 @@ class Job(ABC):
 
     def compared(self, result: "Solid") -> "CheckReport | None":
         """Return what manifold3d says, or None if there is nothing to compare."""
-        from ..check import check_result
+        from ..verify.check import check_result
 
         return None if result.last_operation is None else check_result(result)
 
@@ -65,7 +65,7 @@ class Job(ABC):
 
     def run(self) -> int:
         """Do it, and return the exit code."""
-        from .. import set_threads
+        from ..parameters import set_threads
 
         set_threads(self.settings["threads"])
         self.target.refuse_early(self.out.as_json)

@@ -10,7 +10,7 @@ from io import TextIOWrapper
 
 import click
 
-from .. import __version__
+from .._core import __version__
 from ..errors import BspcsgError, FormatError, InternalError
 from . import output
 
@@ -44,17 +44,17 @@ _VERBS = {
     "difference": ("combine", "difference"),
     "intersection": ("combine", "intersection"),
     "xor": ("combine", "xor"),
-    "eval": ("evaluate", "evaluate"),
+    "eval": ("eval", "evaluate"),
     "run": ("run", "run"),
     "tree": ("tree", "tree"),
     "split": ("split", "split"),
-    "slice": ("section", "section"),
+    "slice": ("slice", "section"),
     "render": ("render", "render"),
     "convert": ("convert", "convert"),
-    "info": ("inform", "info"),
-    "check": ("examine", "check"),
-    "repair": ("mend", "repair"),
-    "compare": ("differ", "compare"),
+    "info": ("info", "info"),
+    "check": ("check", "check"),
+    "repair": ("repair", "repair"),
+    "compare": ("compare", "compare"),
     "validate": ("validate", "validate"),
     "report": ("report", "report"),
     "view": ("view", "view"),
@@ -82,7 +82,7 @@ class _Verbs(click.Group):
         if verb not in _VERBS:
             return None
         module, name = _VERBS[verb]
-        found: click.Command = getattr(import_module(f".{module}", __package__), name)
+        found: click.Command = getattr(import_module(f".verbs.{module}", __package__), name)
         return found
 
     def resolve_command(

@@ -37,7 +37,7 @@ _COMMON = [
 
 def _as_suffix(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
     """Return the suffix of a format given with or without its dot."""
-    from ..io import FORMATS
+    from ..formats.files import FORMATS
 
     if value is None:
         return None

@@ -11,18 +11,18 @@ Examples
 True
 """
 
-from .drawn import graph, outline
 from .evaluator import evaluate, node_names
 from .from_solid import tree_of
-from .json_form import from_json, to_json
 from .loading import dump, dumps, load, loads, read_tree
+from .making.polish import Polish
+from .nodes.registry import CsgWarning
 from .openscad import read_scad
-from .parser import parse, value_of
-from .polish import Polish
-from .registry import CsgWarning
-from .simplified import simplified
-from .tree import Argument, CsgTree, Node, Place
-from .writer import written
+from .syntax.drawn import graph, outline
+from .syntax.json_form import from_json, to_json
+from .syntax.parser import parse, value_of
+from .syntax.simplified import simplified
+from .syntax.tree import Argument, CsgTree, Node, Place
+from .syntax.writer import written
 
 __all__ = [
     "Argument",

@@ -6,24 +6,22 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..bsp import Region
-from ..counting import counted
 from ..errors import BspcsgError, FormatError
-from ..solid import Solid
-from . import (
-    nodes_file,
-    nodes_hull,
-    nodes_move,
-    nodes_plane,
-    nodes_project,
-    nodes_set,
-    nodes_solid,
-    nodes_sweep,
-)
-from .polish import Polish, corners_and_levels, pitch_of, polished_pitch, snapped
-from .registry import RECIPES, Evaluation, Geometry, OnInvalid
+from ..solid.counting import counted
+from ..solid.solid import Solid
+from .making.polish import Polish, corners_and_levels, pitch_of, polished_pitch, snapped
+from .nodes import files as nodes_file
+from .nodes import hulls as nodes_hull
+from .nodes import moves as nodes_move
+from .nodes import plane as nodes_plane
+from .nodes import projection as nodes_project
+from .nodes import sets as nodes_set
+from .nodes import solids as nodes_solid
+from .nodes import sweeps as nodes_sweep
+from .nodes.registry import RECIPES, Evaluation, Geometry, OnInvalid
 from .scope import Scope, inherited, with_scope
-from .source import error_at
-from .tree import CsgTree, Node
+from .syntax.source import error_at
+from .syntax.tree import CsgTree, Node
 
 #: The modules that register nodes when they are imported.
 MAKERS = (

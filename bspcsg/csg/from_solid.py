@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import expression
-from ..counting import uncounted
 from ..errors import UnboundedError
-from ..expression import Pending, Placed, Plan, make_plan
-from ..leaf import ConstantLeaf, PlaneLeaf, TreeLeaf
-from ..solid import Solid
-from ..transform import Factor, Factors
-from .tree import Argument, CsgTree, Node, Value
+from ..geometry.transform import Factor, Factors
+from ..solid import expression
+from ..solid.counting import uncounted
+from ..solid.expression import Pending, Placed, Plan, make_plan
+from ..solid.leaf import ConstantLeaf, PlaneLeaf, TreeLeaf
+from ..solid.solid import Solid
+from .syntax.tree import Argument, CsgTree, Node, Value
 
 #: Corners and triangles beyond which an expression is not written out but given up for one
 #: polyhedron: some 60 bytes each make half of the largest script that is read.

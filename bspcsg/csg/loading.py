@@ -6,19 +6,19 @@ from pathlib import Path
 from typing import Any
 
 from ..bsp import Region
-from ..counting import counted
 from ..errors import BspcsgError, FormatError
-from ..io.atomic import write_file
-from ..io.source import limited_content
-from ..solid import Solid
+from ..formats.atomic import write_file
+from ..formats.source import limited_content
+from ..solid.counting import counted
+from ..solid.solid import Solid
 from .evaluator import evaluate
 from .from_solid import tree_of
-from .json_form import from_json
-from .parser import parse
-from .polish import Polish
-from .registry import Geometry, OnInvalid
-from .tree import CsgTree
-from .writer import written
+from .making.polish import Polish
+from .nodes.registry import Geometry, OnInvalid
+from .syntax.json_form import from_json
+from .syntax.parser import parse
+from .syntax.tree import CsgTree
+from .syntax.writer import written
 
 
 @counted

@@ -9,10 +9,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..errors import FormatError
-from .intermediate import Intermediate
-from .parser import parse
-from .tree import CsgTree, Value
-from .writer import value_text
+from .syntax.intermediate import Intermediate
+from .syntax.parser import parse
+from .syntax.tree import CsgTree, Value
+from .syntax.writer import value_text
 
 #: Longest time for a conversion, in seconds.
 TIMEOUT = 300.0

@@ -7,7 +7,7 @@ script written by hand a node without them takes those of the nodes around it.
 from dataclasses import replace
 from typing import TypeAlias
 
-from .tree import Argument, Node
+from .syntax.tree import Argument, Node
 
 #: The special variables that hold inside a node, at most one argument of each name.
 Scope: TypeAlias = tuple[Argument, ...]

@@ -5,7 +5,7 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from ..errors import missing_part
-from .packing import compressed
+from .viewer.packing import compressed
 
 if TYPE_CHECKING:
     import jinja2

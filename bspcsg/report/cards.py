@@ -7,11 +7,11 @@ from typing import Any
 
 from ..campaign.record import CaseRecord, Results, is_failure
 from ..errors import BspcsgError
-from .layer import Layer
 from .merging import rank
-from .packing import packed
-from .still import camera_for, ring, still
 from .stored import Stored, stored_meshes
+from .viewer.layer import Layer
+from .viewer.packing import packed
+from .viewer.still import camera_for, ring, still
 from .wording import tone, whole
 
 #: Characters of a page with so many cards; a page with more cards may be longer in proportion.

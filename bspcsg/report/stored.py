@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..campaign.meshes import unpacked
+from ..campaign.cases.meshes import unpacked
 from ..errors import FormatError
-from ..mesh import Mesh
-from .layer import COLOURS, DIFFERENCE, RESULT, Layer
+from ..mesh.mesh import Mesh
+from .viewer.layer import COLOURS, DIFFERENCE, RESULT, Layer
 
 #: Operands are seen through when they are shown with the result.
 _OPERAND_OPACITY = 0.4

@@ -26,7 +26,7 @@ from bspcsg import bsp, csg
 from bspcsg._core import Tree
 from bspcsg.errors import core_errors
 from bspcsg.io import RawMesh, encoded
-from bspcsg.leaf import TreeLeaf
+from bspcsg.solid.leaf import TreeLeaf
 from corpus.broken import glb_chunks, glb_of
 from support.shapes import cuboid, joined, octahedron, tetrahedron
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import bspcsg as b
-from bspcsg import oracle
+from bspcsg.verify import oracle
 
 from .places import Point, Surface, UndecidedError, dot, less, location, normal, windings
 from .scenes import CALLS, PITCH, UNIT, Body, Scene

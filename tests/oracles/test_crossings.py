@@ -9,7 +9,7 @@ import trimesh
 
 import bspcsg as b
 from bspcsg._core import mesh_faults, mesh_in_single
-from bspcsg.io.single import settled
+from bspcsg.formats.single import settled
 from support import DEEP
 from support.checks import assert_closed
 from support.degenerate import scene

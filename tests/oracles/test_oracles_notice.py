@@ -16,9 +16,10 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg import bsp, oracle
-from bspcsg.check import Verdict, check_result
-from bspcsg.referee import count_agreeing
+from bspcsg import bsp
+from bspcsg.verify import oracle
+from bspcsg.verify.check import Verdict, check_result
+from bspcsg.verify.referee import count_agreeing
 from fuzzing.files import good_file, judge_file
 from fuzzing.judge import Kernel, judge
 from fuzzing.places import Point

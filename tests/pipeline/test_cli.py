@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg import check as checking
 from bspcsg.cli.main import _VERBS, run
 from bspcsg.io import RawMesh, read, write
+from bspcsg.verify import check as checking
 from support.cli import Capture, process, put, ran
 from support.shapes import Arrays, cube, cuboid, flipped, icosphere, joined, moved
 
@@ -122,7 +122,7 @@ def test_disagreement_is_exit_code_1(
 def test_what_fails_by_itself_is_not_written(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from bspcsg import verdict
+    from bspcsg.verify import verdict
 
     monkeypatch.setattr(verdict, "count_open_edges", lambda mesh: 7)
     code, out, _ = ran(capsys, "union", "a.off", "c.stl", "-o", "x.off")

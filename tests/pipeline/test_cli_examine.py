@@ -239,7 +239,7 @@ def test_doctor_names_what_is_missing(
     (tmp_path / "pymeshlab.py").write_text("plugin_number = lambda: 49")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     monkeypatch.setenv("PATH", "")
-    monkeypatch.setattr("bspcsg.cli.doctor.find_spec", lambda name: name != "meshio" or None)
+    monkeypatch.setattr("bspcsg.cli.verbs.doctor.find_spec", lambda name: name != "meshio" or None)
     code, out, _ = ran(capsys, "doctor")
     assert code == 0 and "49 of 58 plug-ins" in out and "libgl1 libopengl0" in out
     lines = {line.split()[0]: line for line in out.splitlines() if line.split()}
@@ -250,6 +250,6 @@ def test_doctor_names_what_is_missing(
 def test_doctor_fails_without_what_is_required(
     capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("bspcsg.cli.doctor.find_spec", lambda name: name != "rich" or None)
+    monkeypatch.setattr("bspcsg.cli.verbs.doctor.find_spec", lambda name: name != "rich" or None)
     code, out, _ = ran(capsys, "doctor", "--json")
     assert code == 6 and not json.loads(out)["complete"]

@@ -99,9 +99,9 @@ def test_compare_takes_invalid_files_as_well(opened: Path, capsys: Capture) -> N
 def test_repairs_that_close_nothing(
     opened: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from bspcsg.repair import Repair
+    from bspcsg.repair.repair import Repair
 
-    monkeypatch.setattr("bspcsg.repair.repair", lambda raw: Repair(raw, {}, 0))
+    monkeypatch.setattr("bspcsg.repair.repair.repair", lambda raw: Repair(raw, {}, 0))
     code, _, err = ran(capsys, "union", "a.off", "open.off", "-o", "x", "--to", "off",
                        "--on-invalid", "repair")  # fmt: skip
     assert code == 4 and "A repair did not close it" in err and not Path("x").exists()

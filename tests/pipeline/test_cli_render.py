@@ -87,7 +87,7 @@ def test_a_missing_part_is_code_6(
 
 
 def test_doctor_knows_what_pictures_need(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("bspcsg.cli.doctor.find_spec", lambda name: name != "PIL" or None)
+    monkeypatch.setattr("bspcsg.cli.verbs.doctor.find_spec", lambda name: name != "PIL" or None)
     code, out, _ = ran(capsys, "doctor", "--json")
     parts = {part["name"]: part for part in json.loads(out)["parts"]}
     assert code == 0 and parts["pillow"]["found"] == ""

@@ -71,7 +71,7 @@ def test_python_keeps_standard_output_free(folder: Path) -> None:
 
 
 FORGED = """import bspcsg as b
-from bspcsg.leaf import TreeLeaf
+from bspcsg.solid.leaf import TreeLeaf
 result = b.cube(2) - b.cube(1).translate(1, 1, 1)
 assert result.volume == 7
 result._node.content = TreeLeaf(b.cube(2).tree, result._node.content.record)

@@ -11,7 +11,7 @@ from xml.etree import ElementTree as Xml
 import pytest
 
 import bspcsg as b
-from bspcsg.campaign.meshes import unpacked
+from bspcsg.campaign.cases.meshes import unpacked
 from bspcsg.campaign.record import CaseRecord, read_results
 from support.cli import Capture, finished, process, put, ran
 from support.shapes import cuboid, icosphere, moved

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from bspcsg.campaign import cluster
+from bspcsg.campaign.running import cluster
 from support.cli import Capture, ran
 
 # Dask starts its event loop and threads in ways that it warns about itself.

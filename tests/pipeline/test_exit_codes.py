@@ -16,9 +16,9 @@ from typing import Any
 import pytest
 
 import bspcsg as b
-from bspcsg import check as checking
 from bspcsg.cli.main import _VERBS, run
 from bspcsg.errors import missing_part
+from bspcsg.verify import check as checking
 from support.cli import Capture, finished, process, put, ran
 from support.results import disagreeing, header, write_results
 from support.shapes import cube, cuboid, icosphere, joined, moved

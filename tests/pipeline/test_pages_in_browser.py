@@ -9,10 +9,10 @@ from PIL import Image
 from selenium.webdriver.common.keys import Keys
 
 import bspcsg as b
-from bspcsg.report.layer import COLOURS, Layer
 from bspcsg.report.merging import merged
 from bspcsg.report.page import report_page
-from bspcsg.report.view import view_page
+from bspcsg.report.viewer.layer import COLOURS, Layer
+from bspcsg.report.viewer.view import view_page
 from support.browser import Browser, started
 from support.results import records, write_results
 

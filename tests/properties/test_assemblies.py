@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bspcsg.formats.raw import parts_of
 from bspcsg.io import FORMATS, RawMesh, encoded, read, write
-from bspcsg.io.raw import parts_of
 from support.shapes import Arrays, cuboid, joined, octahedron, tetrahedron
 
 FORMS = [(suffix, False) for suffix in FORMATS] + [(".stl", True), (".ply", True)]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import bspcsg as b
-from bspcsg.campaign.meshes import packed
+from bspcsg.campaign.cases.meshes import packed
 
 Record = dict[str, Any]
 

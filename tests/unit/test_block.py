@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import bspcsg as b
-from bspcsg import counting
+from bspcsg.solid import counting
 
 
 def test_a_difference_takes_the_first_less_the_rest() -> None:

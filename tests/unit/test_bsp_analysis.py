@@ -9,7 +9,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg import bsp
-from bspcsg.bsp import analysis
+from bspcsg.bsp.trees import analysis
 
 #: A chance below this is taken for impossible; it holds for any seed.
 FAILURE = 1e-6

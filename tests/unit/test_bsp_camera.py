@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bspcsg import InvalidMeshError, bsp
-from bspcsg.bsp.camera import View
+from bspcsg.bsp.painting.camera import View
 
 BOX = np.array([(0.0, 0, 0), (4, 3, 2)])
 

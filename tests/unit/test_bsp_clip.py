@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from bspcsg.bsp.clip import Polygons, clip
-from bspcsg.bsp.outline import outlines, polylines, straightened
+from bspcsg.bsp.painting.clip import Polygons, clip
+from bspcsg.bsp.painting.outline import outlines, polylines, straightened
 
 
 def test_clipping_keeps_marks_of_old_edges_only() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg import bsp
-from bspcsg.bsp.pieces import SplitCase
+from bspcsg.bsp.sets.pieces import SplitCase
 
 DIMENSIONS = (1, 2, 3)
 SIDE = 4

@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 
 import bspcsg as b
-from bspcsg.campaign.case import Case, Operand
-from bspcsg.campaign.evaluation import Settings, evaluate
-from bspcsg.campaign.meshes import unpacked
+from bspcsg.campaign.cases.case import Case, Operand
+from bspcsg.campaign.cases.meshes import unpacked
+from bspcsg.campaign.judging.evaluation import Settings, evaluate
 from bspcsg.campaign.record import CaseRecord
-from bspcsg.check import COMBINE
+from bspcsg.verify.check import COMBINE
 
 Settle = pytest.MonkeyPatch
 
@@ -107,7 +107,7 @@ def test_empty_result_agrees() -> None:
 
 
 def test_manifold_that_fails_is_overruled_by_pymeshlab(monkeypatch: Settle) -> None:
-    from bspcsg import oracle
+    from bspcsg.verify import oracle
 
     def fails(*_: Any) -> Any:
         raise oracle.OracleFailedError("manifold3d raised RuntimeError: no")

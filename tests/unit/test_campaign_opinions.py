@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg.campaign import openscad_engine, pymeshlab_engine
-from bspcsg.campaign.opinions import crossings_opinion, opinion, script_opinion
-from bspcsg.campaign.questions import NoOpinionError, Question
-from bspcsg.campaign.ruling import ruled
-from bspcsg.check import CheckReport, Facts, Verdict, examine
-from bspcsg.mesh import Mesh
+from bspcsg.campaign.engines import openscad as openscad_engine
+from bspcsg.campaign.engines import pymeshlab as pymeshlab_engine
+from bspcsg.campaign.engines.questions import NoOpinionError, Question
+from bspcsg.campaign.judging.opinions import crossings_opinion, opinion, script_opinion
+from bspcsg.campaign.judging.ruling import ruled
+from bspcsg.mesh.mesh import Mesh
+from bspcsg.verify.check import CheckReport, Facts, Verdict, examine
 
 needs_openscad = pytest.mark.skipif(
     not shutil.which("openscad"), reason="openscad is not installed"

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from bspcsg.campaign.child import Child, CrashedError, TimedOutError
-from bspcsg.campaign.evaluation import Settings
-from bspcsg.campaign.pool import LocalPool
-from bspcsg.campaign.runner import greeting, survey
+from bspcsg.campaign.judging.evaluation import Settings
+from bspcsg.campaign.running.child import Child, CrashedError, TimedOutError
+from bspcsg.campaign.running.pool import LocalPool
+from bspcsg.campaign.running.runner import greeting, survey
 from support.cli import put
 from support.shapes import cube
 

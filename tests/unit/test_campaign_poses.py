@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bspcsg.campaign.poses import COINCIDENT, POSES, placed, pose_matrix, shuffled
+from bspcsg.campaign.cases.poses import COINCIDENT, POSES, placed, pose_matrix, shuffled
 from support.shapes import Arrays, cuboid, icosphere
 
 FIRST = cuboid((1, 2, 3), (4, 7, 4))

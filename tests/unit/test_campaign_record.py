@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 
 import bspcsg as b
-from bspcsg.campaign.case import Case, Operand
-from bspcsg.campaign.evaluation import blank_record
+from bspcsg.campaign.cases.case import Case, Operand
+from bspcsg.campaign.judging.evaluation import blank_record
 from bspcsg.campaign.record import Journal, is_failure, read_results
-from bspcsg.campaign.runner import run_record
+from bspcsg.campaign.running.runner import run_record
 
 
 def record(name: str, verdict: str = "agree") -> Any:

@@ -5,10 +5,10 @@ from xml.etree import ElementTree as Xml
 
 import pytest
 
-from bspcsg.campaign.case import Case, Operand
-from bspcsg.campaign.evaluation import blank_record
+from bspcsg.campaign.cases.case import Case, Operand
+from bspcsg.campaign.judging.evaluation import blank_record
 from bspcsg.campaign.record import VERDICTS
-from bspcsg.campaign.runner import run_record
+from bspcsg.campaign.running.runner import run_record
 from bspcsg.campaign.summary import conclusion, summary_of
 from bspcsg.report.junit import junit_text
 from bspcsg.report.markdown import markdown_text

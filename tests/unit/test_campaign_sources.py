@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 import bspcsg as b
-from bspcsg.campaign.case import OPERATIONS
-from bspcsg.campaign.sources import Draw, cases_of, inputs_in
+from bspcsg.campaign.cases.case import OPERATIONS
+from bspcsg.campaign.cases.sources import Draw, cases_of, inputs_in
 from support.cli import put
 from support.shapes import cube
 

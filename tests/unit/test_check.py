@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg import oracle
-from bspcsg.check import Verdict, check_result, validate
-from bspcsg.verdict import count_open_edges
+from bspcsg.verify import oracle
+from bspcsg.verify.check import Verdict, check_result, validate
+from bspcsg.verify.verdict import count_open_edges
 from support.shapes import cube, cuboid, flipped, joined, moved, random_rotation, turned
 
 OPS: list[Any] = ["union", "intersection", "difference", "xor"]
@@ -253,7 +253,7 @@ def test_inverted_operands_are_empty_to_both() -> None:
 
 def test_needles_are_no_pieces() -> None:
     # Far longer than wide: in doubles, its volume is all rounding.
-    from bspcsg.pieces import _exact_volume, _measures
+    from bspcsg.mesh.pieces import _exact_volume, _measures
 
     far = np.array([4868.5, -19325.25, 1819.875])
     tip = far + [69.4, 192.3, 187.8]

@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 import bspcsg as b
-from bspcsg.comparison import compare
 from bspcsg.errors import MissingPartError
+from bspcsg.verify.comparison import compare
 
 
 def test_equal_sets_of_different_meshes() -> None:

@@ -6,8 +6,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from bspcsg.diagnosis import diagnose
 from bspcsg.io import RawMesh
+from bspcsg.repair.diagnosis import diagnose
 from support.shapes import Arrays, cube, cuboid, flipped, joined, moved
 
 

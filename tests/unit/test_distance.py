@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bspcsg.distance import distances_to_triangles
+from bspcsg.mesh.distance import distances_to_triangles
 
 RIGHT = np.array([(0.0, 0, 0), (4, 0, 0), (0, 3, 0)])
 

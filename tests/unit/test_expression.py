@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg.expression import Pending, evaluate, make_plan
-from bspcsg.leaf import TreeLeaf
+from bspcsg.solid.expression import Pending, evaluate, make_plan
+from bspcsg.solid.leaf import TreeLeaf
 
 
 def operators(solid: b.Solid) -> list[str]:

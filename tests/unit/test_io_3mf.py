@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg.io import RawMesh, read, threemf, write
+from bspcsg.formats.threemf import file as threemf
+from bspcsg.io import RawMesh, read, write
 from support.io import cube_mesh, refusal
 
 NAMESPACE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from bspcsg.errors import FormatError
+from bspcsg.formats.atomic import write_file
 from bspcsg.io import RawMesh, read, write
-from bspcsg.io.atomic import write_file
-from bspcsg.weld import welded
+from bspcsg.mesh.weld import welded
 from support.io import cube_mesh
 
 

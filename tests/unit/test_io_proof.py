@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from bspcsg.errors import FormatError
-from bspcsg.io import FORMATS, RawMesh, encoded, formats, read, write
-from bspcsg.io.formats import Form
-from bspcsg.mesh import Mesh
+from bspcsg.formats import files as formats
+from bspcsg.formats.files import Form
+from bspcsg.io import FORMATS, RawMesh, encoded, read, write
+from bspcsg.mesh.mesh import Mesh
 from support.io import cube_mesh
 from support.shapes import cube, icosphere, joined, moved
 

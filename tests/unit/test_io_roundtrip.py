@@ -8,7 +8,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg.io import FORMATS, RawMesh, read, write
-from bspcsg.roundtrip import losses_between
+from bspcsg.verify.roundtrip import losses_between
 from support.io import cube_mesh, read_text, same_mesh
 from support.shapes import cube, icosphere, joined, moved
 

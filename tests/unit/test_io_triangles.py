@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from bspcsg._types import FloatArray
+from bspcsg.formats.triangles import are_flat, are_turned
 from bspcsg.io import RawMesh, write
-from bspcsg.io.triangles import are_flat, are_turned
-from bspcsg.weld import distinct, welded
+from bspcsg.mesh.weld import distinct, welded
 from support.shapes import cube, icosphere, moved
 
 Vector = tuple[Fraction, ...]

@@ -10,7 +10,8 @@ import pytest
 
 import bspcsg as b
 from bspcsg.errors import FormatError, MissingPartError
-from bspcsg.io import RawMesh, read, vtk, write
+from bspcsg.formats import vtk
+from bspcsg.io import RawMesh, read, write
 from support.io import cube_mesh, refusal, same_mesh
 
 SUFFIXES = pytest.mark.parametrize("suffix", ["vtk", "vtu"])

@@ -13,7 +13,8 @@ import pytest
 import bspcsg as b
 from bspcsg import csg
 from bspcsg.bsp import Region, load_dxf, load_svg
-from bspcsg.io import decoded, formats
+from bspcsg.formats import files as formats
+from bspcsg.io import decoded
 
 HUGE = 10**5000
 

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import pytest
 
 import bspcsg as b
-from bspcsg.report import notebook
+from bspcsg.report.viewer import notebook
 
 
 def test_the_view_is_a_page_in_a_frame() -> None:

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 import bspcsg as b
-from bspcsg.parts import connected_parts, sides_of_plane
+from bspcsg.operations.parts import connected_parts, sides_of_plane
 from support.checks import assert_sound
 from support.shapes import cuboid, flipped, joined
 

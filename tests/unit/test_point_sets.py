@@ -11,7 +11,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg import bsp
-from bspcsg.point_set import PointSet
+from bspcsg.solid.point_set import PointSet
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg.bsp import Region
-from bspcsg.polygon import runs_clockwise
+from bspcsg.geometry.polygon import runs_clockwise
 
 shapely = pytest.importorskip("shapely")
 

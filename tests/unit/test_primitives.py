@@ -8,8 +8,14 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg.polygon import contours_of, directed_edges, signed_area, triangulate, triangulate_face
-from bspcsg.sweep import unit_circle
+from bspcsg.geometry.polygon import (
+    contours_of,
+    directed_edges,
+    signed_area,
+    triangulate,
+    triangulate_face,
+)
+from bspcsg.shapes.sweep import unit_circle
 
 SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
 HOLE = [(1, 1), (3, 1), (3, 3), (1, 3)]

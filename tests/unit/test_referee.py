@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg.pieces import Pieces
-from bspcsg.referee import Ruling, is_inside, settle
+from bspcsg.mesh.pieces import Pieces
+from bspcsg.verify.referee import Ruling, is_inside, settle
 from support.shapes import Arrays, cube, flipped, icosphere, joined, moved
 
 

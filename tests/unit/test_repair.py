@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg import repair as repairing
-from bspcsg.diagnosis import diagnose
 from bspcsg.errors import BspcsgError, InvalidMeshError, MissingPartError
 from bspcsg.io import RawMesh
-from bspcsg.repair import repair
+from bspcsg.repair import repair as repairing
+from bspcsg.repair.diagnosis import diagnose
+from bspcsg.repair.repair import repair
 from support.shapes import Arrays, cube, cuboid, flipped, icosphere, joined
 
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bspcsg.report.layer import Layer, bounds_of
-from bspcsg.report.packing import compressed, packed
+from bspcsg.report.viewer.layer import Layer, bounds_of
+from bspcsg.report.viewer.packing import compressed, packed
 from support.shapes import Arrays, cube, cuboid, icosphere, moved
 
 

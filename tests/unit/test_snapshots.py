@@ -27,7 +27,7 @@ def forged(data: bytes, rng: random.Random) -> bytes:
 
 
 def loaded(data: bytes) -> b.Solid:
-    from bspcsg.leaf import TreeLeaf
+    from bspcsg.solid.leaf import TreeLeaf
 
     with core_errors():
         return b.Solid.from_leaf(TreeLeaf(_core.Tree.load(data)))

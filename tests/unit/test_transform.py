@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import bspcsg as b
-from bspcsg import transform
-from bspcsg.transform import Factor, LatticeMotion
+from bspcsg.geometry import transform
+from bspcsg.geometry.transform import Factor, LatticeMotion
 
 PITCH = -9
 

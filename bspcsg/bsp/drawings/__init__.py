@@ -1,0 +1,1 @@
+"""Regions of the plane as drawings: SVG and DXF."""

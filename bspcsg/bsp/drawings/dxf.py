@@ -1,0 +1,164 @@
+"""Regions as DXF drawings: closed outlines in, polylines out."""
+
+import io
+import os
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray, Scalar, WindingRule
+from ...errors import FormatError, format_errors, words_of
+from ...formats.atomic import write_file
+from ...formats.source import limited_content
+from ...mesh.interop import optional
+from ...parameters import positive
+from ..sets.region import Region
+
+_OUTLINES = "LINE ARC CIRCLE ELLIPSE SPLINE LWPOLYLINE POLYLINE"
+
+
+def load_dxf(
+    path: str | os.PathLike[str],
+    *,
+    tolerance: Scalar = 0.01,
+    layers: Iterable[str] | None = None,
+    winding: WindingRule = "even-odd",
+    pitch: int | None = None,
+) -> Region:
+    """Read the closed outlines in the model space of a DXF file as one region.
+
+    Lines, arcs, circles, ellipses, splines and polylines count; pieces are joined where their ends
+    agree in every bit or within a millionth of the drawing's size.
+
+    Parameters
+    ----------
+    path : path
+    tolerance : float
+        Largest distance between a curve and the chords that replace it, in drawing units.
+    layers : iterable of str, optional
+        Which layers to read; all by default.
+    winding : {"even-odd", "nonzero", "positive"}
+        By default an outline inside another is a hole, whichever way they run.
+    pitch : int, optional
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be read, is no DXF, or an outline is open or branches (`code`
+        ``"not_closed"``).
+    """
+    chord = positive(tolerance, "tolerance")
+    document = read_document(path)
+    wanted = None if layers is None else set(layers)
+    with format_errors(os.fspath(path), "DXF"):
+        entities = [
+            entity
+            for entity in document.modelspace().query(_OUTLINES)
+            if wanted is None or entity.dxf.layer in wanted
+        ]
+        chains = [chain for entity in entities for chain in _flattened(entity, chord)]
+    return Region(_closed(chains, os.fspath(path)), winding=winding, pitch=pitch)
+
+
+def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
+    """Write the outlines of a bounded region as closed polylines on layer 0.
+
+    Coordinates are written so that reading them gives the same doubles again.
+
+    Raises
+    ------
+    UnboundedError
+        If the region reaches to infinity.
+    FormatError
+        If the file cannot be written.
+    """
+    write_file(path, [dxf_data(region)])
+
+
+def dxf_data(region: Region) -> bytes:
+    """Return what `save_dxf` writes."""
+    ezdxf = optional("ezdxf", "2d")
+    outlines = region.to_polygons()
+    document = ezdxf.new("R2010")
+    for points in outlines:
+        document.modelspace().add_lwpolyline(points.tolist(), close=True)
+    text = io.StringIO()
+    document.write(text)
+    data: bytes = text.getvalue().encode(document.output_encoding, errors="dxfreplace")
+    return data
+
+
+def read_document(path: str | os.PathLike[str]) -> Any:
+    """Return the ezdxf document of a file; `FormatError` if it is none."""
+    ezdxf = optional("ezdxf", "2d")
+    name = os.fspath(path)
+    text = limited_content(name).decode("utf-8", errors="surrogateescape")
+    try:
+        return ezdxf.read(io.StringIO(text.replace("\r\n", "\n")))
+    except Exception as error:  # what ezdxf raises on damaged files is of any kind
+        raise FormatError(f"{name}: this is no valid DXF: {words_of(error)}.", "syntax") from error
+
+
+def _flattened(entity: Any, chord: float) -> list[FloatArray]:
+    from ezdxf import path
+
+    outline = path.make_path(entity)
+    parts = outline.sub_paths() if outline.has_sub_paths else [outline]
+    return [
+        np.array([(p.x, p.y) for p in part.flattening(chord)]).reshape(-1, 2)
+        for part in parts
+        if len(part)
+    ]
+
+
+def _closed(chains: list[FloatArray], name: str) -> list[FloatArray]:
+    """Return closed loops; open chains are joined at their ends."""
+    loops = [chain[:-1] for chain in chains if (chain[0] == chain[-1]).all()]
+    rest = [chain for chain in chains if (chain[0] != chain[-1]).any()]
+    if rest:
+        ends = np.array([(chain[0], chain[-1]) for chain in rest])
+        loops += _joined(rest, _places(ends), name)
+    return [loop for loop in loops if len(loop) >= 3]
+
+
+def _places(ends: FloatArray) -> Any:
+    """Return the number of the place of each of (n, 2, 2) ends."""
+    step = max(float(np.ptp(ends.reshape(-1, 2), axis=0).max()), 1e-300) * 1e-6
+    cells = np.round(ends.reshape(-1, 2) / step)
+    _, places = np.unique(cells, axis=0, return_inverse=True)
+    return places.reshape(-1, 2)
+
+
+def _joined(chains: list[FloatArray], places: Any, name: str) -> list[FloatArray]:
+    at: dict[int, list[int]] = {}
+    for chain, pair in enumerate(places.tolist()):
+        for place in pair:
+            at.setdefault(place, []).append(chain)
+    for place, found in at.items():
+        if len(found) != 2:
+            x, y = chains[found[0]][0 if places[found[0]][0] == place else -1]
+            what = "open" if len(found) == 1 else "branching"
+            raise FormatError(f"{name}: an outline is {what} at ({x:g}, {y:g}).", "not_closed")
+    loops, left = [], set(range(len(chains)))
+    while left:
+        loops.append(_walk(chains, places, at, left))
+    return loops
+
+
+def _walk(
+    chains: list[FloatArray], places: Any, at: dict[int, list[int]], left: set[int]
+) -> FloatArray:
+    """Follow the chains from the first one left until it is reached again."""
+    chain = min(left)
+    start = place = int(places[chain][0])
+    parts = []
+    while True:
+        left.discard(chain)
+        forward = places[chain][0] == place
+        parts.append(chains[chain][:-1] if forward else chains[chain][:0:-1])
+        place = int(places[chain][1 if forward else 0])
+        following = [other for other in at[place] if other in left]
+        if place == start or not following:
+            return np.concatenate(parts)
+        chain = following[0]

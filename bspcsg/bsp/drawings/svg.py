@@ -1,0 +1,232 @@
+"""Regions as SVG drawings: filled shapes in, one path out."""
+
+import io
+import os
+from collections.abc import Iterator
+from typing import Any
+from xml.etree import ElementTree
+from xml.parsers import expat
+
+import numpy as np
+
+from ..._types import FloatArray, Scalar, WindingRule
+from ...errors import FormatError, format_errors, words_of
+from ...formats.atomic import write_file
+from ...formats.source import limited_content
+from ...mesh.interop import optional
+from ...parameters import positive
+from ..sets.region import Region
+
+
+def load_svg(
+    path: str | os.PathLike[str],
+    *,
+    tolerance: Scalar = 0.01,
+    winding: WindingRule | None = None,
+    pitch: int | None = None,
+) -> Region:
+    """Read the filled shapes of an SVG file as one region, their union.
+
+    Parameters
+    ----------
+    path : path
+    tolerance : float
+        Largest distance between a curve and the chords that replace it, in user units.
+    winding : {"positive", "nonzero", "even-odd"}, optional
+        By default what each shape's ``fill-rule`` says.
+    pitch : int, optional
+
+    Returns
+    -------
+    Region
+        In the user units of the outermost element (its size on paper and its view box do not
+        matter), y upwards: the point (x, y) of the drawing becomes (x, -y). Strokes, text, images
+        and what is not filled are left out; an open subpath counts as closed, as when it is filled.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be read, is no well-formed SVG, or declares a document type or an entity.
+    """
+    chord = positive(tolerance, "tolerance")
+    region = Region(pitch=pitch)
+    for shape in shown_shapes(path):
+        if _is_filled(shape):
+            with format_errors(os.fspath(path), "SVG"):
+                loops = [corners for corners, _ in outlines_of(shape, chord) if len(corners) >= 3]
+            region = region | Region(loops, winding=winding or _rule(shape), pitch=pitch)
+    return region
+
+
+def shown_shapes(path: str | os.PathLike[str]) -> list[Any]:
+    """Return svgelements' shapes of a file, in user units, but for those that are not shown.
+
+    Raises
+    ------
+    FormatError
+        As `load_svg` does.
+    """
+    data = _checked(path)
+    elements = optional("svgelements", "2d")
+    try:
+        drawing = elements.SVG.parse(io.BytesIO(_in_user_units(data)), reify=True, ppi=96.0)
+        shapes = [shape for shape in drawing.elements() if isinstance(shape, elements.Shape)]
+    except Exception as error:  # what svgelements raises is of any kind
+        message = f"{os.fspath(path)}: this is no valid SVG: {words_of(error)}."
+        raise FormatError(message, "syntax") from error
+    return [shape for shape in shapes if _is_shown(shape)]
+
+
+def save_svg(
+    region: Region, path: str | os.PathLike[str], *, fill: str = "#9db8d9", margin: Scalar = 0.05
+) -> None:
+    """Write a region as an SVG file with one path, y upwards on the page.
+
+    Coordinates are written so that reading them gives the same doubles again.
+
+    Parameters
+    ----------
+    region : Region
+        Bounded.
+    path : path
+    fill : str
+        Colour of the inside; the outline is black.
+    margin : float
+        Space around the region, as a part of its size.
+
+    Raises
+    ------
+    UnboundedError
+        If the region reaches to infinity.
+    FormatError
+        If the file cannot be written.
+    """
+    write_file(path, [svg_data(region, fill=fill, margin=margin)])
+
+
+def svg_data(region: Region, *, fill: str = "#9db8d9", margin: Scalar = 0.05) -> bytes:
+    """Return what `save_svg` writes."""
+    bounds = region.bounds
+    low, high = (np.zeros(2), np.ones(2)) if bounds is None else bounds
+    space = float((high - low).max()) * float(margin)
+    width, height = (high - low + 2 * space).tolist()
+    x, y = float(low[0]) - space, -float(high[1]) - space
+    outlines = " ".join(_path_of(points) for points in region.to_polygons())
+    return (
+        '<svg xmlns="http://www.w3.org/2000/svg"'
+        f' viewBox="{x!r} {y!r} {width!r} {height!r}">\n'
+        f'<path fill-rule="nonzero" fill="{fill}" stroke="black"'
+        f' stroke-width="{max(width, height) / 400!r}" d="{outlines}"/>\n</svg>\n'
+    ).encode()
+
+
+def _path_of(points: FloatArray) -> str:
+    corners = (f"{x!r},{-y + 0.0!r}" for x, y in points.tolist())
+    return f"M{' L'.join(corners)} Z"
+
+
+def _checked(path: str | os.PathLike[str]) -> bytes:
+    """Return the file's bytes if they are XML without a document type."""
+    name = os.fspath(path)
+    data = limited_content(name)
+    parser = expat.ParserCreate()
+
+    def refuse(*_: object) -> None:
+        raise FormatError(f"{name}: document types and entities are not allowed here.", "syntax")
+
+    parser.StartDoctypeDeclHandler = refuse
+    parser.EntityDeclHandler = refuse
+    try:
+        parser.Parse(data, True)
+    except expat.ExpatError as error:
+        reason = expat.ErrorString(error.code)
+        raise FormatError(
+            f"{name}:{error.lineno}: the XML is not well-formed: {reason}.",
+            "syntax",
+            [error.lineno],
+        ) from None
+    except (LookupError, ValueError) as error:
+        message = f"{name}:1: the XML cannot be decoded: {words_of(error)}."
+        raise FormatError(message, "syntax", [1]) from error
+    return data
+
+
+def _in_user_units(data: bytes) -> bytes:
+    """Return the drawing without the window that would scale and shift its coordinates."""
+    root = ElementTree.fromstring(data)
+    if root.tag.rpartition("}")[2] != "svg":
+        raise ValueError("the outermost element is not svg")
+    for name in ("viewBox", "width", "height", "x", "y", "preserveAspectRatio"):
+        root.attrib.pop(name, None)
+    return ElementTree.tostring(root)
+
+
+def _is_shown(shape: Any) -> bool:
+    values: dict[str, Any] = shape.values
+    return values.get("display") != "none" and values.get("visibility") != "hidden"
+
+
+def _is_filled(shape: Any) -> bool:
+    # What says nothing of its fill is black.
+    return shape.values.get("fill") is None or shape.fill.value is not None
+
+
+def _rule(shape: Any) -> WindingRule:
+    return "even-odd" if shape.values.get("fill-rule") == "evenodd" else "nonzero"
+
+
+def outlines_of(shape: Any, chord: float) -> Iterator[tuple[FloatArray, bool]]:
+    """Yield the corners of each subpath of a shape, y upwards, and whether it is closed.
+
+    Parameters
+    ----------
+    shape : object
+        One of `shown_shapes`.
+    chord : float
+        Largest distance between a curve and the chords that replace it.
+    """
+    elements = optional("svgelements", "2d")
+    # A rotated rectangle keeps its transform until its path is asked for absolute coordinates.
+    for subpath in abs(elements.Path(shape)).as_subpaths():
+        segments = list(elements.Path(subpath))
+        points = [point for segment in segments for point in _points_of(elements, segment, chord)]
+        corners = np.array([(p.real, 0.0 - p.imag) for p in points]).reshape(-1, 2)
+        different = np.any(corners != np.roll(corners, 1, axis=0), axis=1)
+        yield corners[different], any(isinstance(one, elements.Close) for one in segments)
+
+
+def _points_of(elements: Any, segment: Any, chord: float) -> list[complex]:
+    """Return the end of a segment, after points between for a curve."""
+    if segment.end is None:
+        return []
+    if isinstance(segment, (elements.Move, elements.Line, elements.Close)):
+        return [_complex(segment.end)]
+    steps = _steps(segment, chord)
+    inner = [_complex(segment.point(k / steps)) for k in range(1, steps)]
+    return [*inner, _complex(segment.end)]
+
+
+def _complex(point: Any) -> complex:
+    return complex(float(point.x), float(point.y))
+
+
+def _steps(segment: Any, chord: float) -> int:
+    """Return how many chords stay within the tolerance, tried at points between."""
+    steps = 2
+    while steps < 1 << 12:
+        t = np.arange(4 * steps + 1) / (4 * steps)
+        curve = np.array([_complex(segment.point(float(k))) for k in t])
+        start, end = curve[:-4:4], curve[4::4]
+        if max(_distance(curve[k::4], start, end) for k in (1, 2, 3)) <= chord:
+            break
+        steps *= 2
+    return steps
+
+
+def _distance(points: Any, start: Any, end: Any) -> float:
+    """Return the largest distance of points from the chords below them."""
+    offset, along = points - start, end - start
+    length = np.abs(along)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        height = np.abs((offset * np.conj(along)).imag) / length
+    return float(np.where(length > 0, height, np.abs(offset)).max())

@@ -1,0 +1,291 @@
+"""`Camera`: from where a scene is looked at, and how its points come into the picture."""
+
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...errors import invalid_parameter
+from ...parameters import number, positive, shown
+
+#: Views by name; z is up. "front" looks along +y, with x to the right; "iso" looks from the right
+#: front top.
+View: TypeAlias = Literal["iso", "front", "back", "left", "right", "top", "bottom"]
+
+_DIRECTIONS: dict[str, tuple[int, int, int]] = {
+    "iso": (-1, 1, -1),
+    "front": (0, 1, 0),
+    "back": (0, -1, 0),
+    "left": (1, 0, 0),
+    "right": (-1, 0, 0),
+    "top": (0, 0, -1),
+    "bottom": (0, 0, 1),
+}
+
+#: Share of the picture's height and width that stays empty on each side of a fitted scene.
+MARGIN = 0.04
+
+#: Below this sine of their angle two directions count as parallel.
+_PARALLEL = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """A perspective or parallel projection; make one with one of the class methods.
+
+    Parameters
+    ----------
+    axes : (3, 3) float64
+        The unit vectors to the right, up, and away from the viewer, as rows.
+    origin : (3,) float64
+        The eye of a perspective; the point in the middle of a parallel picture.
+    half_height : float
+        Half of the picture's height: for a perspective at distance 1, so the tangent of half the
+        field of view; for a parallel projection in model units.
+    is_perspective : bool
+    """
+
+    axes: FloatArray
+    origin: FloatArray
+    half_height: float
+    is_perspective: bool
+
+    @classmethod
+    def perspective(
+        cls, eye: Any, target: Any, up: Any = None, field_of_view: float = 35.0
+    ) -> "Camera":
+        """Return a camera at an eye point.
+
+        Parameters
+        ----------
+        eye, target : (3,) array_like
+            Where the viewer is, and the point in the middle of the picture, in model units.
+        up : (3,) array_like, optional
+            What is upwards in the picture; by default z, or y for looking along z.
+        field_of_view : float
+            Angle between the top and the bottom of the picture in degrees, between 0 and 180.
+
+        Raises
+        ------
+        InvalidMeshError
+            If a vector is not three finite numbers, target and eye are the same point, `up` is zero
+            or along the direction of view, or the angle is out of its range.
+        """
+        place = vector(eye, "eye")
+        direction = vector(target, "target") - place
+        if not direction.any():
+            raise invalid_parameter("The target must be another point than the eye.")
+        return cls(_axes(direction, up), place, _tangent(field_of_view), True)
+
+    @classmethod
+    def orthographic(
+        cls, direction: Any, up: Any = None, scale: float = 1.0, target: Any = (0, 0, 0)
+    ) -> "Camera":
+        """Return a camera infinitely far away.
+
+        Parameters
+        ----------
+        direction : (3,) array_like
+            The direction of view, away from the viewer.
+        up : (3,) array_like, optional
+            As for `perspective`.
+        scale : float
+            The height of the picture in model units.
+        target : (3,) array_like
+            The point in the middle of the picture.
+
+        Raises
+        ------
+        InvalidMeshError
+            If a vector is not three finite numbers, the direction or `up` is zero, both are
+            parallel, or the scale is not above 0.
+        """
+        axes = _axes(vector(direction, "direction"), up)
+        return cls(axes, vector(target, "target"), positive(scale, "scale") / 2, False)
+
+    @classmethod
+    def named(
+        cls,
+        view: View,
+        points: Any,
+        aspect: float = 4 / 3,
+        field_of_view: float | None = None,
+        margin: float = MARGIN,
+    ) -> "Camera":
+        """Return a camera that sees all points from one of the usual sides.
+
+        Parameters
+        ----------
+        view : {"iso", "front", "back", "left", "right", "top", "bottom"}
+        points : (n, 3) array_like
+            What has to be in the picture; (2, 3) are the lowest and highest corner of a box.
+            Without points the unit cube around the origin is looked at.
+        aspect : float
+            Width of the picture divided by its height.
+        field_of_view : float, optional
+            Degrees, for a perspective; by default the projection is parallel.
+        margin : float
+            Share of the picture that stays empty on each side.
+        """
+        if view not in _DIRECTIONS:
+            raise invalid_parameter(f"The view is one of {get_args(View)}, not {view!r}.")
+        camera = cls.orthographic(_DIRECTIONS[view])
+        if field_of_view is not None:
+            camera = replace(camera, is_perspective=True, half_height=_tangent(field_of_view))
+        return camera.fitted(points, aspect, margin)
+
+    def fitted(self, points: Any, aspect: float = 4 / 3, margin: float = MARGIN) -> "Camera":
+        """Return this camera moved so that all points are in the picture.
+
+        A parallel picture is scaled as well. The direction of view and the field of view stay;
+        parameters are those of `named`.
+        """
+        if not 0 <= number(margin, "margin") < 0.5:
+            raise invalid_parameter(f"The margin must be from 0 to below 0.5, not {margin}.")
+        wanted = _spread(points)
+        middle = (wanted.min(axis=0) + wanted.max(axis=0)) / 2
+        x, y, depth = self.axes @ (wanted - middle).T
+        inner = 1 - 2 * margin
+        limits = np.array([positive(aspect, "aspect") * inner, inner])
+        if self.is_perspective:
+            return self._receded(middle, np.abs([x, y]).T / limits, depth)
+        low, high = np.array([(x.min(), y.min()), (x.max(), y.max())])
+        origin = middle + (low + high) / 2 @ self.axes[:2]
+        half = float(((high - low) / 2 / limits).max())
+        return replace(self, origin=origin, half_height=half if half > 0 else 0.5)
+
+    def _receded(self, middle: FloatArray, reach: FloatArray, depth: FloatArray) -> "Camera":
+        """Return this camera so far from the middle that no point reaches beyond the picture."""
+        distance = float((reach.max(axis=1) / self.half_height - depth).max())
+        # A single point would be at the eye.
+        distance = distance if distance > 0 else 1.0
+        return replace(self, origin=middle - distance * self.axes[2])
+
+    @property
+    def eye(self) -> FloatArray | None:
+        """The eye point (3,) of a perspective, None for a parallel projection."""
+        return self.origin if self.is_perspective else None
+
+    @property
+    def direction(self) -> FloatArray:
+        """The unit direction of view (3,) in the middle of the picture, away from the viewer."""
+        direction: FloatArray = self.axes[2]
+        return direction
+
+    def place(self, points: FloatArray) -> FloatArray:
+        """Return (n, 3) coordinates to the right, upwards, and away from the viewer."""
+        placed: FloatArray = (points - self.origin) @ self.axes.T
+        return placed
+
+    def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
+        """Return where points come to be in the picture.
+
+        Parameters
+        ----------
+        points : (n, 3) array_like
+            In model units.
+
+        Returns
+        -------
+        image : (n, 2) float64
+            To the right and upwards from the picture's middle, in halves of its height. NaN in a
+            perspective for points that are not in front of the eye.
+        depth : (n,) float64
+            Along the direction of view: from the eye, or from the target of a parallel projection.
+        """
+        placed = self.place(np.asarray(points, dtype=np.float64).reshape(-1, 3))
+        depth = placed[:, 2]
+        return self.flatten(placed), depth
+
+    def flatten(self, placed: FloatArray) -> FloatArray:
+        """Return the (n, 2) image of points that `place` has placed."""
+        if not self.is_perspective:
+            return placed[:, :2] / self.half_height
+        depth = np.where(placed[:, 2] > 0, placed[:, 2], np.nan)
+        image: FloatArray = placed[:, :2] / (depth * self.half_height)[:, None]
+        return image
+
+    def facing(self, corners: FloatArray, normals: FloatArray) -> FloatArray:
+        """Return (n,) cosines between normals and the directions towards the viewer.
+
+        Parameters
+        ----------
+        corners, normals : (n, 3) float64
+            A point and the unit normal of each plane.
+        """
+        if not self.is_perspective:
+            return -normals @ self.direction
+        arms = self.origin - corners
+        lengths = np.linalg.norm(arms, axis=1)
+        cosines: FloatArray = np.einsum("ij,ij->i", arms, normals) / np.where(
+            lengths > 0, lengths, 1
+        )
+        return cosines
+
+    def __repr__(self) -> str:
+        """Say from where the camera looks."""
+        kind = "perspective" if self.is_perspective else "orthographic"
+        origin, direction = (", ".join(f"{x:.4g}" for x in v) for v in (self.origin, self.axes[2]))
+        return f"Camera({kind}, origin=({origin}), direction=({direction}))"
+
+
+def vector(value: Any, name: str) -> FloatArray:
+    """Return three finite numbers, or raise an error that names the parameter."""
+    try:
+        result = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise invalid_parameter(f"The {name} must be three numbers.") from error
+    if result.shape != (3,) or not np.isfinite(result).all():
+        raise invalid_parameter(f"The {name} must be three finite numbers, not {shown(value)}.")
+    return result
+
+
+def _axes(direction: FloatArray, up: Any) -> FloatArray:
+    if not direction.any():
+        raise invalid_parameter("The direction of view must not be zero.")
+    away = _unit(direction)
+    if up is None:
+        along_z = np.hypot(away[0], away[1]) < _PARALLEL
+        up = (0, 1, 0) if along_z else (0, 0, 1)
+    upwards = vector(up, "up")
+    if not upwards.any():
+        raise invalid_parameter("The up vector must not be zero.")
+    right = np.cross(away, _unit(upwards))
+    if np.linalg.norm(right) < _PARALLEL:
+        message = "The up vector must not be parallel to the direction of view; leave it out."
+        raise invalid_parameter(message)
+    right = _unit(right)
+    # Adding 0 makes negative zeros positive, which would show when printed.
+    axes: FloatArray = np.stack([right, np.cross(right, away), away]) + 0.0
+    return axes
+
+
+def _unit(given: FloatArray) -> FloatArray:
+    # The squares of very large or small numbers would not be doubles.
+    scaled = given / np.abs(given).max()
+    unit: FloatArray = scaled / np.linalg.norm(scaled)
+    return unit
+
+
+def _tangent(field_of_view: float) -> float:
+    angle = number(field_of_view, "field_of_view")
+    if not 0 < angle < 180:
+        raise invalid_parameter(f"The field of view must be from 0 to 180 degrees, not {angle:g}.")
+    return float(np.tan(np.radians(angle / 2)))
+
+
+def _spread(points: Any) -> FloatArray:
+    """Return points, the corners of a box, or those of the unit cube if there is nothing."""
+    try:
+        wanted = np.asarray(points, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise invalid_parameter("The points to fit must be an (n, 3) array.") from error
+    if not wanted.size:
+        wanted = np.array([[-0.5] * 3, [0.5] * 3])
+    if wanted.ndim != 2 or wanted.shape[1] != 3 or not np.isfinite(wanted).all():
+        raise invalid_parameter("The points to fit must be an (n, 3) array of finite numbers.")
+    if len(wanted) == 2:
+        wanted = np.array(list(product(*wanted.T)), dtype=np.float64)
+    return wanted

@@ -1,0 +1,175 @@
+"""Hidden lines: the parts of edges over which no polygon is painted later."""
+
+from typing import TypeAlias
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ..trees.fragments import ranges
+from .clip import Polygons, following, owners
+
+#: A part of a segment, from 0 at its start to 1 at its end.
+Part: TypeAlias = tuple[float, float]
+
+#: Edges are looked at this many pixels to either side of them: one that borders on what is painted
+#: later is seen, one below the seam of two polygons is not.
+_ASIDE = 0.02
+
+#: Visible parts of fewer pixels come from looking aside, at the ends of hidden edges.
+_SHORTEST = 0.2
+
+#: Pairs of an edge and a polygon near it above which the answer would take seconds.
+_MOST_PAIRS = 4_000_000
+
+#: Width of the squares, in pixels, by which pairs are found.
+_SQUARE = 12.0
+
+
+def visible(polygons: Polygons, ends: FloatArray, owner: IndexArray) -> FloatArray | None:
+    """Return the visible parts of segments.
+
+    Parameters
+    ----------
+    polygons : Polygons
+        In pixels, in the order in which they are painted.
+    ends : (m, 2, 2) float64
+        Segments.
+    owner : (m,) int64
+        The polygon that each belongs to: those painted after it may hide the segment.
+
+    Returns
+    -------
+    (p, 2, 2) float64, or None
+        None if there are too many pairs of a segment and a polygon near it.
+    """
+    pairs = _near_pairs(polygons, ends, owner)
+    if pairs is None:
+        return None
+    along = ends[:, 1] - ends[:, 0]
+    lengths = np.hypot(along[:, 0], along[:, 1])
+    kept = lengths > 0
+    unit = along / np.where(kept, lengths, 1)[:, None]
+    aside = _ASIDE * np.column_stack([-unit[:, 1], unit[:, 0]])[:, None]
+    left, right = (_covered(polygons, ends + shift, *pairs) for shift in (aside, -aside))
+    parts, rows = [], []
+    for row in np.flatnonzero(kept).tolist():
+        hidden = _common(left.get(row, []), right.get(row, []))
+        seen = _gaps(hidden, _SHORTEST / float(lengths[row]))
+        parts += seen
+        rows += [row] * len(seen)
+    shares = np.array(parts).reshape(-1, 2, 1)
+    found: FloatArray = ends[rows, :1] + shares * along[rows][:, None]
+    return found
+
+
+def _near_pairs(
+    polygons: Polygons, ends: FloatArray, owner: IndexArray
+) -> tuple[IndexArray, IndexArray] | None:
+    """Return segments and later polygons whose boxes meet."""
+    low = np.minimum.reduceat(polygons.corners, polygons.offsets[:-1]) - _ASIDE
+    high = np.maximum.reduceat(polygons.corners, polygons.offsets[:-1]) + _ASIDE
+    squares, members = _squares(low, high)
+    order = np.argsort(squares, kind="stable")
+    squares, members = squares[order], members[order]
+    asked, segments = _squares(ends.min(axis=1), ends.max(axis=1))
+    first, last = (np.searchsorted(squares, asked, side) for side in ("left", "right"))
+    if (last - first).sum() > _MOST_PAIRS:
+        return None
+    segment = np.repeat(segments, last - first)
+    polygon = members[ranges(first, last)]
+    meets = polygon > owner[segment]
+    meets &= (low[polygon] <= ends.max(axis=1)[segment]).all(axis=1)
+    meets &= (high[polygon] >= ends.min(axis=1)[segment]).all(axis=1)
+    both = np.unique(segment[meets] * len(low) + polygon[meets])
+    return both // len(low), both % len(low)
+
+
+def _squares(low: FloatArray, high: FloatArray) -> tuple[IndexArray, IndexArray]:
+    """Return numbers of the squares that boxes meet, and the boxes."""
+    first = np.floor(low / _SQUARE).astype(np.int64)
+    sides = np.floor(high / _SQUARE).astype(np.int64) - first + 1
+    counts = sides[:, 0] * sides[:, 1]
+    box = np.repeat(np.arange(len(low)), counts)
+    place = ranges(np.zeros_like(counts), counts)
+    column, row = np.divmod(place, sides[box, 1])
+    # Pictures have fewer squares than this in a row.
+    return (first[box, 0] + column) * (1 << 20) + first[box, 1] + row, box
+
+
+def _covered(
+    polygons: Polygons, ends: FloatArray, segment: IndexArray, polygon: IndexArray
+) -> dict[int, list[Part]]:
+    """Return the parts of segments inside convex polygons, by segment."""
+    low, high = _inside(polygons, ends, segment, polygon)
+    some = high > low
+    found: dict[int, list[Part]] = {}
+    rows = zip(segment[some].tolist(), low[some].tolist(), high[some].tolist(), strict=True)
+    for row, start, end in rows:
+        found.setdefault(row, []).append((start, end))
+    return {row: _united(parts) for row, parts in found.items()}
+
+
+def _inside(
+    polygons: Polygons, ends: FloatArray, segment: IndexArray, polygon: IndexArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return where segments enter and leave convex polygons (Cyrus, Beck 1978)."""
+    starts, stops = polygons.offsets[:-1][polygon], polygons.offsets[1:][polygon]
+    corner = ranges(starts, stops)
+    pair = np.repeat(np.arange(len(polygon)), stops - starts)
+    after = following(polygons.offsets)
+    along = polygons.corners[after] - polygons.corners
+    turn = np.sign(_areas(polygons))[polygon[pair]]
+    tail, head = ends[segment[pair], 0], ends[segment[pair], 1]
+    # Distances to the left of each side, times its length; the inside is above 0.
+    first = turn * _cross(along[corner], tail - polygons.corners[corner])
+    second = turn * _cross(along[corner], head - polygons.corners[corner])
+    slope = second - first
+    share = -first / np.where(slope == 0, 1, slope)
+    never = (slope == 0) & (first <= 0)
+    enter = np.where(never, np.inf, np.where(slope > 0, share, 0.0))
+    leave = np.where(slope < 0, share, 1.0)
+    firsts = np.cumsum(stops - starts) - (stops - starts)
+    if not len(firsts):
+        return np.zeros(0), np.zeros(0)
+    low = np.maximum(np.maximum.reduceat(enter, firsts), 0.0)
+    high = np.minimum(np.minimum.reduceat(leave, firsts), 1.0)
+    return low, high
+
+
+def _areas(polygons: Polygons) -> FloatArray:
+    """Return twice the signed areas."""
+    owner, after = owners(polygons.offsets), following(polygons.offsets)
+    arms = polygons.corners - polygons.corners[polygons.offsets[:-1]][owner]
+    sums: FloatArray = np.add.reduceat(_cross(arms, arms[after]), polygons.offsets[:-1])
+    return sums
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    product: FloatArray = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return product
+
+
+def _united(parts: list[Part]) -> list[Part]:
+    united: list[Part] = []
+    for start, end in sorted(parts):
+        # Neighbours share a border up to rounding.
+        if united and start <= united[-1][1] + 1e-9:
+            united[-1] = (united[-1][0], max(end, united[-1][1]))
+        else:
+            united.append((start, end))
+    return united
+
+
+def _common(first: list[Part], second: list[Part]) -> list[Part]:
+    """Return where both of two sorted lists of disjoint parts are."""
+    pairs = ((max(a, c), min(b, d)) for a, b in first for c, d in second)
+    return [(start, end) for start, end in pairs if start < end]
+
+
+def _gaps(parts: list[Part], shortest: float) -> list[Part]:
+    """Return what sorted disjoint parts leave of a segment, without gaps up to `shortest`."""
+    if not parts:
+        return [(0.0, 1.0)]
+    borders = [0.0, *(border for part in parts for border in part), 1.0]
+    gaps = zip(borders[::2], borders[1::2], strict=True)
+    return [(start, end) for start, end in gaps if end - start > shortest]

@@ -1,0 +1,176 @@
+"""What a picture consists of: polygons in pixels, in the order in which they are painted."""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from ..._types import BoolArray, FloatArray, IndexArray
+from ..trees.fragments import Fragments
+from ..trees.tree import PartitionTree
+from .camera import Camera
+from .clip import Polygons, clip, following, owners
+from .colours import ColourArray, lit
+from .creases import Facets
+from .hidden import visible
+
+#: "shaded": light and edges; "hidden": white with black edges; "edges": edges alone, all of them.
+Style: TypeAlias = Literal["shaded", "hidden", "edges"]
+
+#: "feature": those that show the shape; "all": those of all facets.
+Edges: TypeAlias = Literal["feature", "all", "none"]
+
+#: Nearest distance from the eye that is painted, as a share of the scene's largest distance.
+_NEAR = 1e-6
+
+#: Cosine between normal and view up to which a facet is seen edge-on: its sign is rounding.
+_EDGE_ON = 1e-9
+
+#: How far beyond its frame a picture is painted, in pixels.
+_BLEED = 8.0
+
+
+@dataclass(frozen=True, eq=False)
+class Painting:
+    """Polygons in pixels, the farthest first.
+
+    Parameters
+    ----------
+    size : (int, int)
+        Width and height in pixels; x goes to the right, y downwards.
+    polygons : Polygons
+        (n, 2) corners; marked edges are drawn with their polygon, cut lines never are.
+    lines : (m, 2, 2) float64
+        Edges that are drawn when all polygons are painted: their visible parts.
+    fills : (k, 3) uint8, or None
+        Their colours; None for edges alone.
+    source : (k,) int64
+        The facet that each is a part of.
+    group : (k,) int64
+        Equal for coplanar polygons that follow each other.
+    """
+
+    size: tuple[int, int]
+    polygons: Polygons
+    lines: FloatArray
+    fills: ColourArray | None
+    source: IndexArray
+    group: IndexArray
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Facets, and how they are to look.
+
+    Parameters
+    ----------
+    facets : Facets
+    colours : (k, 3) uint8
+    drawn : (n,) bool
+        Edges that are drawn.
+    """
+
+    facets: Facets
+    colours: ColourArray
+    drawn: BoolArray
+
+    def take(self, indices: IndexArray) -> "Scene":
+        """Return the part of the scene with these facets, in this order."""
+        marks = Polygons(self.facets.corners, self.facets.offsets, self.drawn).take(indices)
+        facets = Facets(marks.corners, marks.offsets)
+        return Scene(facets, self.colours[indices], marks.marked)
+
+
+def facing(facets: Facets, camera: Camera) -> BoolArray:
+    """Return which facets turn their plus side to the viewer, (k,); none that are seen edge-on."""
+    return camera.facing(facets.firsts, facets.normals) > _EDGE_ON
+
+
+def painted(
+    tree: PartitionTree,
+    scene: Scene,
+    camera: Camera,
+    size: tuple[int, int],
+    style: Style,
+    hidden: BoolArray | None = None,
+) -> Painting:
+    """Return the picture of a tree whose facets are those of the scene.
+
+    Parameters
+    ----------
+    hidden : (k,) bool, optional
+        Facets that are left out.
+    """
+    viewpoint = {"eye": camera.eye} if camera.is_perspective else {"direction": camera.direction}
+    fragments = tree.back_to_front(**viewpoint)
+    if hidden is not None and hidden.any():
+        fragments = fragments.take(np.flatnonzero(~hidden[fragments.source]))
+    polygons, kept = _in_pixels(fragments, scene, camera, size)
+    source, node = fragments.source[kept], fragments.node[kept]
+    fills = None if style == "edges" else _fills(scene, camera, style)[source]
+    polygons, lines = _lined(polygons, style)
+    return Painting(size, polygons, lines, fills, source, _runs(node, fills))
+
+
+def _lined(polygons: Polygons, style: Style) -> tuple[Polygons, FloatArray]:
+    """Return polygons without marks and the edges to draw, or with marks if there are too many."""
+    marked = np.flatnonzero(polygons.marked)
+    ends = polygons.corners[np.stack([marked, following(polygons.offsets)[marked]], axis=1)]
+    lines = ends if style == "edges" else visible(polygons, ends, owners(polygons.offsets)[marked])
+    if lines is None:
+        return polygons, ends[:0]
+    plain = Polygons(polygons.corners, polygons.offsets, np.zeros_like(polygons.marked))
+    return plain, lines
+
+
+def _in_pixels(
+    fragments: Fragments, scene: Scene, camera: Camera, size: tuple[int, int]
+) -> tuple[Polygons, IndexArray]:
+    marked = scene.facets.drawn_edges(fragments, scene.drawn)
+    placed = camera.place(fragments.vertices)
+    polygons = Polygons(placed, fragments.offsets, marked)
+    polygons, kept = _framed(polygons, camera, size)
+    width, height = size
+    image = camera.flatten(polygons.corners) * (height / 2)
+    pixels = np.column_stack([width / 2 + image[:, 0], height / 2 - image[:, 1]])
+    return Polygons(pixels, polygons.offsets, polygons.marked), kept
+
+
+def _framed(
+    polygons: Polygons, camera: Camera, size: tuple[int, int]
+) -> tuple[Polygons, IndexArray]:
+    """Return the parts in front of the eye and in the picture, and whose parts they are."""
+    kept = np.arange(len(polygons.offsets) - 1)
+    for normal, least in _frame(polygons.corners, camera, size):
+        polygons, left = clip(polygons, normal, least)
+        kept = kept[left]
+    return polygons, kept
+
+
+def _frame(
+    placed: FloatArray, camera: Camera, size: tuple[int, int]
+) -> list[tuple[FloatArray, float]]:
+    """Return the half-spaces, in the camera's coordinates, that are seen."""
+    width, height = size
+    reaches = (np.array([width, height]) + 2 * _BLEED) / height * camera.half_height
+    sides = [(axis, sign, reaches[axis]) for axis in (0, 1) for sign in (1.0, -1.0)]
+    if not camera.is_perspective:
+        return [(sign * np.eye(3)[axis], -reach) for axis, sign, reach in sides]
+    farthest = float(np.abs(placed).max()) if len(placed) else 1.0
+    near = (np.eye(3)[2], _NEAR * farthest)
+    return [near] + [(sign * np.eye(3)[a] + reach * np.eye(3)[2], 0.0) for a, sign, reach in sides]
+
+
+def _fills(scene: Scene, camera: Camera, style: Style) -> ColourArray:
+    if style == "hidden":
+        return np.full((len(scene.facets), 3), 255, dtype=np.uint8)
+    normals = scene.facets.normals
+    turned = np.where(facing(scene.facets, camera)[:, None], normals, -normals)
+    return lit(scene.colours, turned, camera.axes)
+
+
+def _runs(node: IndexArray, fills: ColourArray | None) -> IndexArray:
+    """Return numbers that change where the node or the colour does."""
+    keys = node[:, None] if fills is None else np.column_stack([node, fills])
+    changes = (keys[1:] != keys[:-1]).any(axis=1)
+    return np.concatenate([[0], np.cumsum(changes)])[: len(node)]

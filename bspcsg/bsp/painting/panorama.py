@@ -1,0 +1,209 @@
+"""`panorama`: the painter's picture of segments in the plane, with the map it is painted from."""
+
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...errors import invalid_parameter
+from ...parameters import at_least
+from ..trees.fragments import Fragments
+from ..trees.tree import PartitionTree
+from .clip import Polygons, clip
+from .colours import ColourArray, colour, colours
+from .painting import Painting
+from .picture import Picture, checked_size
+
+_PALETTE = ["#d1495b", "#edae49", "#00798c", "#7a9e4b", "#30638e", "#9c6b98", "#c9713b", "#5f6b73"]
+_INK = np.array([26, 28, 32], dtype=np.uint8)
+
+#: Empty space around the map and the strip, in pixels.
+_SPACE = 12.0
+
+#: Share of the height that the strip takes.
+_STRIP = 0.16
+
+#: Half of the width of a segment on the map, in pixels.
+_HALF = 2.0
+
+
+def panorama(
+    scene: Any,
+    *,
+    eye: Any = None,
+    direction: Any = None,
+    size: tuple[int, int] = (640, 480),
+    colors: Any = None,
+    background: Any = "white",
+    samples: int = 3,
+) -> Picture:
+    """Return a map of segments, and under it what a viewer in the plane sees.
+
+    The strip is painted over from the farthest to the nearest fragment: for an eye all around, with
+    +y in the middle and clockwise to the right; for a direction across it.
+
+    Parameters
+    ----------
+    scene : PartitionTree or (n, 2, 2) array_like
+        A tree of segments, or segments for which a tree is made.
+    eye : (2,) array_like, optional
+        The viewpoint; a dot on the map.
+    direction : (2,) array_like, optional
+        Instead of an eye: the direction of view, an arrow on the map.
+    size : (int, int)
+        Width and height in pixels, at least 64 each.
+    colors : optional
+        As for `picture`, for each segment; by default eight colours in turn.
+    background : optional
+        A colour, or None for transparent.
+    samples : int
+        A pixel of a PNG is the mean of this many squared.
+
+    Returns
+    -------
+    Picture
+        Segments whose line goes through the eye have no extent in the strip.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the scene is not in the plane, not exactly one of eye and direction is given, one is not
+        two finite numbers, the direction is zero, or a parameter is not one of those above.
+    """
+    frame = checked_size(size)
+    if min(frame) < 64:
+        raise invalid_parameter(f"A panorama has at least 64 pixels a side, not {min(frame)}.")
+    tree = scene if isinstance(scene, PartitionTree) else PartitionTree(scene)
+    if tree.dimension != 2:
+        raise invalid_parameter("Panoramas show segments in the plane; `picture` shows facets.")
+    fragments = tree.back_to_front(eye=eye, direction=direction)
+    viewpoint = np.asarray(eye if direction is None else direction, dtype=np.float64)
+    strip, strip_source = _strip(fragments, viewpoint, direction is not None, frame)
+    flat, flat_source = _map(fragments, viewpoint, direction is not None, frame)
+    source = np.concatenate([flat_source, strip_source])
+    fills = _fills(source, len(tree.core.lattice()[1]) - 1, colors)
+    polygons = _joined(flat, strip)
+    painting = Painting(frame, polygons, _border(frame), fills, source, np.arange(len(source)))
+    back = None if background is None else colour(background, "background")
+    return Picture(painting, back, 1.0, at_least(1, samples, "samples"))
+
+
+def _fills(source: IndexArray, count: int, colors: Any) -> ColourArray:
+    """Return colours of polygons; those that belong to no segment are ink."""
+    if colors is None:
+        colors = [_PALETTE[k % len(_PALETTE)] for k in range(count)]
+    base = colours(colors, count, "colors") if count else np.zeros((0, 3), dtype=np.uint8)
+    return np.vstack([base, _INK[None]])[source]
+
+
+def _joined(first: Polygons, second: Polygons) -> Polygons:
+    offsets = np.concatenate([first.offsets, second.offsets[1:] + first.offsets[-1]])
+    corners = np.concatenate([first.corners, second.corners])
+    return Polygons(corners, offsets, np.zeros(len(corners), dtype=bool))
+
+
+def _quads(corners: FloatArray) -> Polygons:
+    """Return polygons from (k, m, 2) corners."""
+    count, sides, _ = corners.shape
+    flat = corners.reshape(-1, 2)
+    return Polygons(flat, sides * np.arange(count + 1), np.zeros(len(flat), dtype=bool))
+
+
+def _strip(
+    fragments: Fragments, viewpoint: FloatArray, parallel: bool, frame: tuple[int, int]
+) -> tuple[Polygons, IndexArray]:
+    ends = fragments.vertices.reshape(-1, 2, 2)
+    spans, of = _across(ends, viewpoint) if parallel else _around(ends, viewpoint)
+    width, height = frame
+    left, right = (_SPACE + spans * (width - 2 * _SPACE)).T
+    top, bottom = height * (1 - _STRIP), height - _SPACE
+    corners = [(left, top), (right, top), (right, bottom), (left, bottom)]
+    quads = _quads(np.stack([np.stack(np.broadcast_arrays(*c), axis=1) for c in corners], axis=1))
+    right_side = np.array([-1.0, 0.0])
+    quads, inner = clip(quads, -right_side, _SPACE)
+    quads, left_over = clip(quads, right_side, _SPACE - width)
+    return quads, fragments.source[of[inner[left_over]]]
+
+
+def _border(frame: tuple[int, int]) -> FloatArray:
+    """Return the four sides of the strip."""
+    left, right = _SPACE, frame[0] - _SPACE
+    top, bottom = frame[1] * (1 - _STRIP), frame[1] - _SPACE
+    around = np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
+    return np.stack([around, np.roll(around, -1, axis=0)], axis=1)
+
+
+def _across(ends: FloatArray, direction: FloatArray) -> tuple[FloatArray, IndexArray]:
+    """Return shares of the strip's width that segments cover seen along a direction."""
+    scaled = direction / np.abs(direction).max()
+    places = ends @ np.array([scaled[1], -scaled[0]])
+    low, high = (places.min(), places.max()) if len(places) else (0.0, 1.0)
+    shares = (np.sort(places, axis=1) - low) / (high - low if high > low else 1.0)
+    return shares, np.arange(len(ends))
+
+
+def _around(ends: FloatArray, eye: FloatArray) -> tuple[FloatArray, IndexArray]:
+    """Return shares of the strip's width that segments cover seen from an eye, and which they are.
+
+    Segments behind the viewer, who looks along +y, are there twice: at both ends of the strip.
+    """
+    arms = ends - eye
+    turns = np.arctan2(arms[..., 0], arms[..., 1]) / (2 * np.pi) + 0.5
+    cross = arms[:, 0, 0] * arms[:, 1, 1] - arms[:, 0, 1] * arms[:, 1, 0]
+    seen = np.flatnonzero(cross != 0)
+    first, second = turns[seen].T
+    # The shorter way round.
+    gap = (second - first + 0.5) % 1.0 - 0.5
+    spans = np.sort(np.stack([first, first + gap], axis=1), axis=1)
+    twice = np.stack([spans - 1, spans, spans + 1], axis=1).reshape(-1, 2)
+    return twice, np.repeat(seen, 3)
+
+
+def _map(
+    fragments: Fragments, viewpoint: FloatArray, parallel: bool, frame: tuple[int, int]
+) -> tuple[Polygons, IndexArray]:
+    ends = fragments.vertices.reshape(-1, 2, 2)
+    points = ends.reshape(-1, 2) if parallel else np.vstack([ends.reshape(-1, 2), viewpoint])
+    points = points if len(points) else np.zeros((1, 2))
+    low, high = points.min(axis=0), points.max(axis=0)
+    width, height = frame[0] - 4 * _SPACE, frame[1] * (1 - _STRIP) - 4 * _SPACE
+    extent = high - low
+    # A flat scene is as wide as the picture, a single point as large as you like.
+    extent = np.maximum(extent, 1e-9 * float(extent.max())) if extent.any() else np.ones(2)
+    scale = float((np.array([width, height]) / extent).min())
+    middle = np.array([frame[0] / 2, frame[1] * (1 - _STRIP) / 2])
+
+    def pixels(of: FloatArray) -> FloatArray:
+        turned: FloatArray = middle + (of - (low + high) / 2) * np.array([scale, -scale])
+        return turned
+
+    bands = _bands(pixels(ends))
+    marker = _arrow(viewpoint) if parallel else pixels(viewpoint) + _dot()
+    marks = _quads(marker[None])
+    source = np.concatenate([fragments.source, np.array([-1])])
+    return _joined(bands, marks), source
+
+
+def _bands(ends: FloatArray) -> Polygons:
+    along = ends[:, 1] - ends[:, 0]
+    lengths = np.hypot(along[:, 0], along[:, 1])[:, None]
+    side = _HALF * np.column_stack([-along[:, 1], along[:, 0]]) / np.where(lengths > 0, lengths, 1)
+    a, b = ends[:, 0], ends[:, 1]
+    return _quads(np.stack([a + side, b + side, b - side, a - side], axis=1))
+
+
+def _dot() -> FloatArray:
+    angles = np.arange(16) * (np.pi / 8)
+    return 5 * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def _arrow(direction: FloatArray) -> FloatArray:
+    scaled = direction / np.abs(direction).max()
+    x, y = scaled / np.hypot(*scaled)
+    # Pixels go downwards.
+    along, side = np.array([x, -y]), np.array([y, x])
+    tip = np.array([2.5 * _SPACE, 2.5 * _SPACE]) + 14 * along
+    back = tip - 28 * along
+    neck = tip - 10 * along
+    outline = [tip, neck + 6 * side, neck + 1.5 * side, back + 1.5 * side]
+    return np.array([*outline, back - 1.5 * side, neck - 1.5 * side, neck - 6 * side])

@@ -1,0 +1,273 @@
+"""`picture`: a scene painted from back to front, without a z-buffer."""
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+
+from ..._types import BoolArray, FloatArray
+from ...errors import FormatError, InvalidMeshError, LimitError, invalid_parameter
+from ...parameters import at_least, number, positive
+from ..trees.facets import mesh_triangles
+from ..trees.tree import PartitionTree
+from .camera import Camera, View
+from .colours import DEFAULT, ColourArray, colour, colours
+from .creases import Facets
+from .painting import Edges, Painting, Scene, Style, facing, painted
+from .png import png
+from .svg import svg
+
+#: Facets up to which the tree of a picture cuts as few as it can.
+_FEW = 3000
+
+#: Polygons up to which a notebook shows a picture as SVG, above as PNG.
+_MOST_IN_SVG = 5000
+
+#: The largest lattice of a tree ends well below this coordinate.
+_FARTHEST = 1e60
+
+#: Pixels along a side above which a picture is refused.
+_LARGEST = 16384
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A picture as SVG and as PNG; notebooks show the one that is smaller.
+
+    Parameters
+    ----------
+    painting : Painting
+        Polygons in pixels, the farthest first.
+    background : (3,) uint8 or None
+        None is transparent.
+    line_width : float
+        Of drawn edges, in pixels.
+    samples : int
+        A pixel of a PNG is the mean of this many squared.
+    """
+
+    painting: Painting
+    background: ColourArray | None
+    line_width: float
+    samples: int
+
+    @cached_property
+    def svg(self) -> str:
+        """The picture as SVG."""
+        return svg(self.painting, self.background, self.line_width)
+
+    @cached_property
+    def png(self) -> bytes:
+        """The picture as a PNG file; needs Pillow."""
+        return png(self.painting, self.background, self.line_width, self.samples)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the picture as what the ending of the path says, ``.svg`` or ``.png``.
+
+        Raises
+        ------
+        FormatError
+            If the ending is another.
+        BspcsgError
+            If a PNG is asked for and Pillow is not installed.
+        """
+        target = Path(path)
+        ending = target.suffix.lower()
+        if ending not in (".svg", ".png"):
+            message = f"Pictures are saved as .svg or .png, not {ending or 'without an ending'!r}."
+            raise FormatError(message, "unknown_format")
+        target.write_bytes(self.svg.encode() if ending == ".svg" else self.png)
+
+    # Notebooks ask for all forms at once; one is enough.
+
+    def _repr_svg_(self) -> str | None:
+        return None if self._is_large else self.svg
+
+    def _repr_png_(self) -> bytes | None:
+        return self.png if self._is_large else None
+
+    @property
+    def _is_large(self) -> bool:
+        return len(self.painting.source) > _MOST_IN_SVG
+
+    def __repr__(self) -> str:
+        """Say how large the picture is."""
+        width, height = self.painting.size
+        return f"Picture({width} x {height}, {len(self.painting.source)} polygons)"
+
+
+def picture(
+    scene: Any,
+    view: View = "iso",
+    *,
+    camera: Camera | None = None,
+    size: tuple[int, int] = (800, 600),
+    style: Style = "shaded",
+    edges: Edges = "feature",
+    crease: float = 25.0,
+    colors: Any = None,
+    background: Any = "white",
+    cull: bool | None = None,
+    line_width: float = 1.2,
+    samples: int = 3,
+) -> Picture:
+    """Return a picture of facets in space by the painter's algorithm.
+
+    What is painted later is never behind what it covers, cyclic overlaps and crossing facets
+    included: the tree has cut them.
+
+    Parameters
+    ----------
+    scene : PartitionTree or mesh
+        A tree of polygons; or a `Solid`, a pair (vertices, faces), or anything else that
+        `PartitionTree.from_mesh` takes, for which a tree is made.
+    view : str
+        One of `View`; parallel, and so large that the whole scene is in the picture.
+    camera : Camera, optional
+        Instead of a view.
+    size : (int, int)
+        Width and height in pixels.
+    style : {"shaded", "hidden", "edges"}
+        Light on coloured facets and dark edges; white facets that hide black edges behind them; or
+        edges alone, hidden ones too.
+    edges : {"feature", "all", "none"}
+        The edges of facets to draw. "feature": those of one facet only, those bent by more than
+        `crease`, and contours. Lines along which the tree has cut are never drawn.
+    crease : float
+        Degrees between the normals of two facets.
+    colors : optional
+        One colour, or one for each facet (for a mesh: face): "#rrggbb", or red, green and blue from
+        0 to 1, then of shape (3,) or (n, 3). Only for the style "shaded".
+    background : optional
+        A colour, or None for transparent.
+    cull : bool, optional
+        Whether to leave out facets that turn their minus side to the viewer. By default those of
+        closed surfaces seen from outside their box, where they are hidden anyway.
+    line_width : float
+        Of drawn edges, in pixels.
+    samples : int
+        A pixel of a PNG is the mean of this many squared.
+
+    Returns
+    -------
+    Picture
+        The background alone for a scene without facets. Facets seen edge-on, with the eye in their
+        plane, have no area in the picture and are not seen. A perspective shows only what is in
+        front of the eye.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the scene is not in space, a coordinate is not finite (`where` lists faces), or a
+        parameter is not one of those above.
+    LimitError
+        If coordinates do not fit the lattice of a tree.
+
+    Notes
+    -----
+    Fuchs, Kedem, Naylor 1980, "On visible surface generation by a priori tree structures".
+    """
+    frame = checked_size(size)
+    _checked("style", style, Style)
+    _checked("edges", edges, Edges)
+    facets, tree = _facets_of(scene)
+    camera = _camera(camera, view, facets, frame)
+    base = colours(DEFAULT if colors is None else colors, len(facets), "colors")
+    front = facing(facets, camera)
+    drawn = _drawn(facets, front, style, edges, number(crease, "crease"))
+    looks = Scene(facets, base, drawn)
+    culled = _is_culled(facets, camera, style) if cull is None else cull
+    hidden = ~front if culled else None
+    if tree is None and hidden is not None:
+        looks, hidden = looks.take(np.flatnonzero(front)), None
+    if tree is None:
+        tree = _tree(looks.facets)
+    return Picture(
+        painted(tree, looks, camera, frame, style, hidden),
+        None if background is None else colour(background, "background"),
+        positive(line_width, "line_width"),
+        at_least(1, samples, "samples"),
+    )
+
+
+def _camera(camera: Camera | None, view: View, facets: Facets, frame: tuple[int, int]) -> Camera:
+    if camera is None:
+        return Camera.named(view, facets.corners, frame[0] / frame[1])
+    if not isinstance(camera, Camera):
+        raise invalid_parameter(f"The camera must be a bsp.Camera, not {camera!r}.")
+    return camera
+
+
+def _facets_of(scene: Any) -> tuple[Facets, PartitionTree | None]:
+    """Return the scene's facets, and the tree if the scene is one."""
+    if isinstance(scene, PartitionTree):
+        if scene.dimension != 3:
+            message = "Pictures show facets in space; `panorama` shows segments in the plane."
+            raise invalid_parameter(message)
+        corners, offsets = scene.core.lattice()
+        units: FloatArray = np.asarray(corners * 10.0**scene.pitch, dtype=np.float64)
+        return Facets(units, offsets), scene
+    triangles = mesh_triangles(scene)
+    _check_coordinates(triangles)
+    return Facets(triangles.reshape(-1, 3), 3 * np.arange(len(triangles) + 1)), None
+
+
+def _check_coordinates(triangles: FloatArray) -> None:
+    """Raise an error for coordinates whose products are no doubles, before any are taken."""
+    finite = np.isfinite(triangles).all(axis=(1, 2))
+    if not finite.all():
+        where = np.flatnonzero(~finite)[:10].tolist()
+        message = f"Face {where[0]} has a coordinate that is not a finite number."
+        raise InvalidMeshError(message, "non_finite", where)
+    if len(triangles) and np.abs(triangles).max() > _FARTHEST:
+        message = f"Coordinates beyond {_FARTHEST:g} do not fit any lattice; scale the mesh."
+        raise LimitError(message, "too_large")
+
+
+def _tree(facets: Facets) -> PartitionTree:
+    triangles = facets.corners.reshape(-1, 3, 3)
+    if len(facets) <= _FEW:
+        return PartitionTree(triangles, "least-splits", degenerate="drop")
+    return PartitionTree(triangles, "random", top=16, degenerate="drop")
+
+
+def _drawn(
+    facets: Facets, front: BoolArray, style: Style, edges: Edges, crease: float
+) -> BoolArray:
+    if edges == "none":
+        return np.zeros(len(facets.corners), dtype=bool)
+    if edges == "all" or not len(facets):
+        return np.ones(len(facets.corners), dtype=bool)
+    return facets.features(front, crease)
+
+
+def _is_culled(facets: Facets, camera: Camera, style: Style) -> bool:
+    if style == "edges" or not len(facets) or not facets.is_closed:
+        return False
+    eye = camera.eye
+    if eye is None:
+        return True
+    low, high = facets.corners.min(axis=0), facets.corners.max(axis=0)
+    return bool(((eye < low) | (eye > high)).any())
+
+
+def _checked(name: str, value: Any, allowed: Any) -> None:
+    if value not in get_args(allowed):
+        raise invalid_parameter(f"The {name} must be one of {get_args(allowed)}, not {value!r}.")
+
+
+def checked_size(size: Any) -> tuple[int, int]:
+    """Return width and height, or raise an error if they are no size of a picture."""
+    try:
+        width, height = size
+    except (TypeError, ValueError) as error:
+        raise invalid_parameter("The size must be a width and a height in pixels.") from error
+    frame = at_least(1, width, "width"), at_least(1, height, "height")
+    if max(frame) > _LARGEST:
+        raise invalid_parameter(
+            f"A picture has at most {_LARGEST} pixels a side, not {max(frame)}."
+        )
+    return frame

@@ -1,0 +1,105 @@
+"""Paintings as PNG, painted with Pillow from back to front."""
+
+import io
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...errors import BspcsgError, LimitError
+from .clip import following, owners
+from .colours import ColourArray
+from .painting import Painting
+
+if TYPE_CHECKING:
+    from PIL import Image, ImageDraw
+
+#: Pixels before the mean of samples is taken: about a gigabyte.
+_MOST = 300_000_000
+
+_INK = (26, 28, 32)
+
+
+def png(painting: Painting, background: ColourArray | None, line: float, samples: int) -> bytes:
+    """Return the bytes of a PNG file.
+
+    Parameters
+    ----------
+    painting : Painting
+    background : (3,) uint8, optional
+        Transparent if left out.
+    line : float
+        Width of edges in pixels.
+    samples : int
+        Each pixel is the mean of this many squared.
+    """
+    buffer = io.BytesIO()
+    _image(painting, background, line, samples).save(buffer, "PNG", optimize=True)
+    return buffer.getvalue()
+
+
+def _image(
+    painting: Painting, background: ColourArray | None, line: float, samples: int
+) -> "Image.Image":
+    try:
+        from PIL import Image, ImageDraw
+    except ImportError as error:
+        message = "PNG pictures need Pillow: pip install 'bspcsg[pictures]'."
+        raise BspcsgError(message, "missing_dependency") from error
+    width, height = painting.size
+    if width * height * samples**2 > _MOST:
+        message = f"A picture is painted on at most {_MOST} pixels; choose fewer samples."
+        raise LimitError(message, "too_large")
+    large = samples * width, samples * height
+    back = (0, 0, 0, 0) if background is None else tuple(background.tolist())
+    canvas = Image.new("RGBA" if background is None else "RGB", large, back)
+    _paint(ImageDraw.Draw(canvas), painting, max(1, round(line * samples)), samples)
+    if background is None:
+        # With cover multiplied in, means are right at the border of what is transparent.
+        return canvas.convert("RGBa").reduce(samples).convert("RGBA")
+    return canvas.reduce(samples)
+
+
+def _paint(draw: "ImageDraw.ImageDraw", painting: Painting, width: int, samples: int) -> None:
+    polygons = painting.polygons
+    # Pillow takes whole coordinates only, those of pixels.
+    places = np.floor(polygons.corners * samples)
+    starts = polygons.offsets.tolist()
+    flat = places.ravel().tolist()
+    fills = _tuples(painting)
+    lines = _lines(painting, places)
+    for index, (start, end) in enumerate(pairwise(starts)):
+        if fills is not None:
+            corners = flat[2 * start : 2 * end]
+            draw.polygon(corners, fill=fills[index])
+            # Rounding parts a border from one on its other side that has more corners.
+            draw.line(corners + corners[:2], fill=fills[index])
+        for ends in lines.get(index, ()):
+            _line(draw, ends, width)
+    for ends in np.floor(painting.lines.reshape(-1, 4) * samples).tolist():
+        _line(draw, ends, width)
+
+
+def _line(draw: "ImageDraw.ImageDraw", ends: list[float], width: int) -> None:
+    """Draw a line with round ends, so that lines that meet leave no notch."""
+    draw.line(ends, fill=_INK, width=width)
+    if width > 2:
+        half = (width - 1) / 2
+        for x, y in (ends[:2], ends[2:]):
+            draw.ellipse((x - half, y - half, x + half, y + half), fill=_INK)
+
+
+def _tuples(painting: Painting) -> list[tuple[int, ...]] | None:
+    fills = painting.fills
+    return None if fills is None else [tuple(fill) for fill in fills.tolist()]
+
+
+def _lines(painting: Painting, places: FloatArray) -> dict[int, list[list[float]]]:
+    polygons = painting.polygons
+    marked = np.flatnonzero(polygons.marked)
+    ends = np.hstack([places[marked], places[following(polygons.offsets)[marked]]]).tolist()
+    found: dict[int, list[list[float]]] = {}
+    for owner, pair in zip(owners(polygons.offsets)[marked].tolist(), ends, strict=True):
+        found.setdefault(owner, []).append(pair)
+    return found

@@ -1,0 +1,91 @@
+"""Paintings as SVG: one path for each coplanar set, without the lines of the cuts."""
+
+from itertools import groupby, pairwise
+
+import numpy as np
+
+from ..._types import FloatArray
+from .clip import following
+from .colours import ColourArray, hexadecimal
+from .outline import Spot, Step, outlines, polylines, straightened
+from .painting import Painting
+
+#: Grid points in a pixel: coordinates are whole numbers in the file.
+_GRID = 50
+
+#: Fills reach half of this many pixels over their border, which hides the seams of the cuts.
+_SEAM = 0.7
+
+_INK = "#1a1c20"
+
+
+def svg(painting: Painting, background: ColourArray | None, line: float) -> str:
+    """Return the text of an SVG file.
+
+    Parameters
+    ----------
+    painting : Painting
+    background : (3,) uint8, optional
+        Transparent if left out.
+    line : float
+        Width of edges in pixels.
+    """
+    width, height = painting.size
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}"'
+        f' viewBox="0 0 {width * _GRID} {height * _GRID}">'
+    )
+    rules = (
+        f"path{{stroke-width:{_SEAM * _GRID:g};stroke-linejoin:round;stroke-linecap:round}}"
+        f".e{{fill:none;stroke:{_INK};stroke-width:{line * _GRID:g}}}"
+    )
+    lines = [head, f"<style>{rules}</style>"]
+    if background is not None:
+        lines.append(f'<rect width="100%" height="100%" fill="{hexadecimal(background)}"/>')
+    return "\n".join([*lines, *_paths(painting), "</svg>", ""])
+
+
+def _paths(painting: Painting) -> list[str]:
+    polygons = painting.polygons
+    spots = _spots(polygons.corners)
+    after = following(polygons.offsets).tolist()
+    marked, starts = polygons.marked.tolist(), polygons.offsets.tolist()
+    paths = []
+    for _, members in groupby(range(len(painting.group)), key=painting.group.tolist().__getitem__):
+        group = list(members)
+        if painting.fills is not None:
+            pieces = [_turned(spots[starts[i] : starts[i + 1]]) for i in group]
+            paths += _filled(pieces, hexadecimal(painting.fills[group[0]]))
+        corners = (corner for i in group for corner in range(starts[i], starts[i + 1]))
+        paths += _drawn([(spots[c], spots[after[c]]) for c in corners if marked[c]])
+    ends = _spots(painting.lines.reshape(-1, 2))
+    return paths + _drawn(list(zip(ends[::2], ends[1::2], strict=True)))
+
+
+def _spots(points: FloatArray) -> list[Spot]:
+    return [(x, y) for x, y in np.rint(points * _GRID).astype(np.int64).tolist()]
+
+
+def _turned(polygon: list[Spot]) -> list[Spot]:
+    """Return a polygon so that its area is not negative."""
+    pairs = zip(polygon, polygon[1:] + polygon[:1], strict=True)
+    area = sum(ax * by - ay * bx for (ax, ay), (bx, by) in pairs)
+    return polygon if area >= 0 else polygon[::-1]
+
+
+def _filled(pieces: list[list[Spot]], fill: str) -> list[str]:
+    loops = [straightened(loop) for loop in outlines(pieces)]
+    path = "".join(_relative(loop) + "z" for loop in loops if len(loop) > 2)
+    return [f'<path fill="{fill}" stroke="{fill}" d="{path}"/>'] if path else []
+
+
+def _drawn(steps: list[Step]) -> list[str]:
+    path = "".join(map(_relative, polylines(steps)))
+    return [f'<path class="e" d="{path}"/>'] if path else []
+
+
+def _relative(spots: list[Spot]) -> str:
+    """Return the commands that go to the first spot and on from each to the next."""
+    (x, y), *_ = spots
+    steps = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(spots)]
+    return f"M{x},{y}l" + " ".join(f"{dx},{dy}" for dx, dy in steps)

@@ -1,0 +1,1 @@
+"""Rays: exact hits, and trees that learn from what is asked."""

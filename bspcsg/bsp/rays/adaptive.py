@@ -1,0 +1,255 @@
+"""Trees of supporting hyperplanes that rays stab: self-organising, and static to compare with."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..._core import RayTree
+from ..._types import IndexArray
+from ...errors import core_errors, invalid_parameter
+from ...parameters import at_least, pitch_exponent, seed_number
+from .caster import Hits, hits_of
+from .targets import Facets, facets_from, ray_arrays
+
+
+@dataclass(frozen=True, eq=False)
+class Tests:
+    """First hits of rays, and what each ray cost.
+
+    Parameters
+    ----------
+    hits : Hits
+    nodes : (n,) int64
+        Nodes that the ray visited, leaves among them: the cost C(T) of the lecture notes.
+    leaves : (n,) int64
+        Leaves among them: the stabbed leaves.
+    tests : (n,) int64
+        Facets that the ray was tested against.
+    """
+
+    __test__ = False  # not a test class
+
+    hits: Hits
+    nodes: IndexArray
+    leaves: IndexArray
+    tests: IndexArray
+
+
+@dataclass(frozen=True)
+class StabStats:
+    """The size of a tree and what it has been through.
+
+    Parameters
+    ----------
+    nodes, leaves, depth : int
+        Inner nodes and leaves; leaves; the most cuts above a leaf.
+    fragments : int
+        Facets and parts of facets in the tree, in leaves and in cuts.
+    subdivisions : int
+        Leaves divided so far.
+    rays : int
+        Rays tested so far.
+    visits : int
+        Sum of the visit counters T(v) of all nodes.
+    """
+
+    nodes: int
+    leaves: int
+    depth: int
+    fragments: int
+    subdivisions: int
+    rays: int
+    visits: int
+
+
+class StabTree:
+    """What both kinds of trees have in common; make an `AdaptiveTree` or a `StaticTree`."""
+
+    _facets: Facets
+    _tree: RayTree
+    _threshold: int | None = None
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Pickle facets, cuts and all counters; copies are made so, too, and grow by themselves."""
+        with core_errors():
+            grown = self._tree.dump()
+        return _regrown, (type(self), self._facets, self.pitch, self._threshold, grown)
+
+    @property
+    def dimension(self) -> int:
+        """1, 2 or 3."""
+        return self._facets.dimension
+
+    @property
+    def pitch(self) -> int:
+        """The lattice step is ``10**pitch`` units."""
+        return self._tree.pitch
+
+    def __len__(self) -> int:
+        """Return the number of nodes."""
+        return self.stats().nodes
+
+    def __repr__(self) -> str:
+        """Say how large the tree is."""
+        stats = self.stats()
+        return f"{type(self).__name__}({stats.nodes} nodes, {stats.fragments} fragments)"
+
+    def stats(self) -> StabStats:
+        """Return the size of the tree and the counts of what it has been through."""
+        return StabStats(**self._tree.stats())
+
+    def test_ray(self, origins: Any, directions: Any) -> Tests:
+        """Return the first hit of each ray, in the order given, and what each ray cost.
+
+        Answers are exactly those of `RayCaster.first_hit` on the same lattice. All rays are
+        checked before the first is tested.
+
+        Parameters
+        ----------
+        origins, directions : (n, d) or (d,) array_like of float
+
+        Raises
+        ------
+        InvalidMeshError, LimitError
+            As for `RayCaster.first_hit`.
+        """
+        first, second = ray_arrays(origins, directions, self.dimension)
+        with core_errors():
+            columns, counts = self._tree.test(first.ravel(), second.ravel())
+        rows = counts.reshape(-1, 3)
+        nodes, leaves, tests = (np.ascontiguousarray(rows[:, k]) for k in range(3))
+        return Tests(hits_of(self._facets, columns), nodes, leaves, tests)
+
+
+class AdaptiveTree(StabTree):
+    """The augmented, self-organising BSP tree.
+
+    It starts as one preliminary leaf v with all facets in its list L(v). Each ray counts its
+    visits T(v) and, in the leaves it visits, its hits T(p). A leaf visited more than `threshold`
+    times is divided by the hyperplane of the facet with most hits (L(v) is a heap; of equal ones
+    the first of the input), the other facets being split exactly, so that what is hit often moves
+    to the top. Parts of a split facet inherit its counter.
+
+    Objects can be shared by threads: a call of `test_ray` has the tree for itself, others wait.
+    How the tree grows depends on the order of the rays; answers do not. Pickles and copies keep the
+    tree as it is, with its counters, and go on growing from there.
+
+    Parameters
+    ----------
+    facets : array_like, Solid, or mesh
+        As for `RayCaster`.
+    threshold : int
+        Visits that a leaf survives, at least 0.
+    pitch : int, optional
+        As for `RayCaster`.
+
+    Raises
+    ------
+    InvalidMeshError, LimitError
+        As for `RayCaster`, and for a threshold that is no count.
+
+    Notes
+    -----
+    Ar, Montag, Tal 2002, "Deferred, self-organizing BSP trees"; lecture notes, "Augmented
+    BSP-Tree".
+
+    Examples
+    --------
+    >>> from bspcsg import bsp
+    >>> tree = bsp.AdaptiveTree([[[0, 0], [0, 1]], [[1, 0], [1, 1]], [[2, 0], [2, 1]]], threshold=3)
+    >>> tests = tree.test_ray([[-1.0, 0.5]] * 5, [1.0, 0.0])
+    >>> tests.tests.tolist(), tests.nodes.tolist()
+    ([3, 3, 3, 3, 1], [1, 1, 1, 1, 2])
+    """
+
+    def __init__(self, facets: Any, *, threshold: int = 64, pitch: int | None = None) -> None:
+        self._facets = facets_from(facets)
+        self._threshold = min(at_least(0, threshold, "threshold"), 2**63)
+        step = self._facets.pitch if pitch is None else pitch_exponent(pitch)
+        with core_errors():
+            self._tree = RayTree(
+                self.dimension,
+                self._facets.corners.ravel(),
+                step,
+                threshold=self._threshold,
+            )
+
+
+class StaticTree(StabTree):
+    """An autopartition made at once, which rays do not change.
+
+    Every leaf keeps at most one facet (several only in the coplanar set of a cut), and each cut is
+    the hyperplane of the first facet of the order that is left in its region.
+
+    Parameters
+    ----------
+    facets : array_like, Solid, or mesh
+        As for `RayCaster`.
+    order : "given", "random", or (n,) array_like of int
+        A permutation of the facets, first cut first.
+    seed : int
+        Names the random order.
+    pitch : int, optional
+        As for `AdaptiveTree`.
+    max_nodes : int
+        The construction stops with an error beyond this.
+
+    Raises
+    ------
+    InvalidMeshError
+        As for `RayCaster`, and for an order that is no permutation.
+    LimitError
+        As for `RayCaster`, and if the tree needs more nodes.
+    """
+
+    def __init__(
+        self,
+        facets: Any,
+        *,
+        order: Any = "random",
+        seed: int = 0,
+        pitch: int | None = None,
+        max_nodes: int = 4_000_000,
+    ) -> None:
+        self._facets = facets_from(facets)
+        permutation = _permutation(order, seed_number(seed), len(self._facets.corners))
+        step = self._facets.pitch if pitch is None else pitch_exponent(pitch)
+        # The heap takes most hits first.
+        hits = np.zeros(len(permutation), dtype=np.int64)
+        hits[permutation] = np.arange(len(permutation), 0, -1)
+        with core_errors():
+            self._tree = RayTree(
+                self.dimension,
+                self._facets.corners.ravel(),
+                step,
+                hits=hits.tolist(),
+                limit=at_least(1, max_nodes, "max_nodes"),
+            )
+
+
+def _regrown(
+    kind: type[StabTree], facets: Facets, pitch: int, threshold: int | None, grown: bytes
+) -> StabTree:
+    tree = kind.__new__(kind)
+    tree._facets, tree._threshold = facets, threshold
+    with core_errors():
+        corners = facets.corners.ravel()
+        tree._tree = RayTree(facets.dimension, corners, pitch, threshold=threshold, grown=grown)
+    return tree
+
+
+def _permutation(order: Any, seed: int, count: int) -> IndexArray:
+    if isinstance(order, str):
+        if order == "given":
+            return np.arange(count)
+        if order == "random":
+            return np.random.default_rng(seed).permutation(count)
+        raise invalid_parameter(f"Unknown order {order!r}; use 'given', 'random' or an array.")
+    try:
+        permutation = np.asarray(order, dtype=np.int64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise invalid_parameter("The order must be an array of indices.") from error
+    if permutation.shape != (count,) or (np.sort(permutation) != np.arange(count)).any():
+        raise invalid_parameter(f"The order must be a permutation of {count} facets.")
+    return permutation

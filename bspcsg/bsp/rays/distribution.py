@@ -1,0 +1,118 @@
+"""Trees for a given distribution of rays: most likely hit facets first.
+
+The score of a facet p for rays l with the density ω is
+``score(p) = ∫ ω(l) · |n · l_d| · area(p) / area(S) dl``, the integral being a sum over a sample
+(lecture notes, "Distribution optimized BSP").
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...errors import InvalidMeshError, invalid_parameter
+from .adaptive import StaticTree
+from .targets import Facets, facets_from, ray_arrays
+
+#: Rays whose scores are added up at a time.
+_CHUNK = 256
+
+#: A density of rays: ω(origins, directions) of (n, d) arrays gives n weights.
+Density = Callable[[FloatArray, FloatArray], Any]
+
+
+def scores(
+    facets: Any,
+    origins: Any,
+    directions: Any,
+    *,
+    weights: Any = None,
+    density: Density | None = None,
+) -> FloatArray:
+    """Return score(p) of each facet, (n,) float64.
+
+    Parameters
+    ----------
+    facets : array_like, Solid, or mesh
+        As for `RayCaster`.
+    origins, directions : (k, d) or (d,) array_like of float
+        The sample of rays; directions need no unit length.
+    weights : (k,) array_like of float, optional
+        ω of each ray, at least 0; by default every ray counts 1/k.
+    density : callable, optional
+        Instead of weights: ``density(origins, directions)`` returns ω of each ray of the sample,
+        which then stands for rays drawn uniformly, so that each counts ω/k.
+
+    Returns
+    -------
+    (n,) float64
+        Sums over the rays of ω · abs(n · l_d) · area(p) / area(S), with unit normal n, unit
+        direction l_d, and S all facets. In 2D areas are lengths, in 1D 1.
+
+    Raises
+    ------
+    InvalidMeshError
+        For a direction of length zero, weights that are negative or not finite, other shapes.
+    """
+    return _scores(facets_from(facets), origins, directions, weights, density)
+
+
+def optimised_tree(
+    facets: Any,
+    origins: Any,
+    directions: Any,
+    *,
+    weights: Any = None,
+    density: Density | None = None,
+    pitch: int | None = None,
+    max_nodes: int = 4_000_000,
+) -> StaticTree:
+    """Return the autopartition that takes facets of high score first.
+
+    Parameters are those of `scores` and `StaticTree`; facets of equal score keep their order.
+    """
+    found = facets_from(facets)
+    score = _scores(found, origins, directions, weights, density)
+    order = np.argsort(-score, kind="stable")
+    return StaticTree(facets, order=order, pitch=pitch, max_nodes=max_nodes)
+
+
+def _scores(
+    facets: Facets, origins: Any, directions: Any, weights: Any, density: Density | None
+) -> FloatArray:
+    starts, heads = ray_arrays(origins, directions, facets.dimension)
+    omega = _weights(starts, heads, weights, density)
+    heads = _unit(heads)
+    normals, total = facets.normals(), np.zeros(len(facets.corners))
+    for first in range(0, len(heads), _CHUNK):
+        rows = slice(first, first + _CHUNK)
+        total += np.abs(normals @ heads[rows].T) @ omega[rows]
+    sizes = facets.sizes()
+    whole = sizes.sum()
+    return np.asarray(total * sizes / (whole if whole > 0 else 1))
+
+
+def _unit(directions: FloatArray) -> FloatArray:
+    # Scaling first keeps lengths of very long and very short directions within doubles.
+    largest = np.abs(directions).max(axis=1, keepdims=True, initial=0)
+    bad = np.flatnonzero(~(np.isfinite(largest) & (largest > 0))[:, 0])
+    if len(bad):
+        message = f"Ray {bad[0]} has a direction that is zero or not finite."
+        raise InvalidMeshError(message, "bad_normal", bad[:10].tolist())
+    scaled = directions / largest
+    return np.asarray(scaled / np.linalg.norm(scaled, axis=1, keepdims=True))
+
+
+def _weights(
+    origins: FloatArray, directions: FloatArray, weights: Any, density: Density | None
+) -> FloatArray:
+    count = len(origins)
+    if weights is not None and density is not None:
+        raise invalid_parameter("Give either weights or a density.")
+    if density is not None:
+        weights = np.asarray(density(origins, directions), dtype=np.float64) / max(count, 1)
+    omega = np.full(count, 1 / max(count, 1)) if weights is None else np.asarray(weights, float)
+    if omega.shape != (count,) or not (np.isfinite(omega) & (omega >= 0)).all():
+        raise invalid_parameter(f"Weights must be {count} finite numbers of at least 0.")
+    return omega

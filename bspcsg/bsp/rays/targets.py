@@ -1,0 +1,155 @@
+"""What rays are cast at: points, segments or triangles out of whatever holds them."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...errors import InvalidMeshError
+from ...mesh import interop
+from ...solid.counting import uncounted
+from ...solid.solid import Solid
+
+
+@dataclass(frozen=True, eq=False)
+class Facets:
+    """Facets of one dimension.
+
+    Parameters
+    ----------
+    corners : (n, d, d) float64
+        The corners of each: one in 1D, two in 2D, three in 3D.
+    source : (n, 2) int64 or None
+        Input mesh and face of each triangle, if they are those of a solid.
+    pitch : int or None
+        The solid's lattice, if they are a solid's.
+    unbounded : bool
+        Whether they bound a set that reaches to infinity on all sides.
+    """
+
+    corners: FloatArray
+    source: IndexArray | None = None
+    pitch: int | None = None
+    unbounded: bool = False
+
+    @property
+    def dimension(self) -> int:
+        """1, 2 or 3."""
+        return int(self.corners.shape[2])
+
+    def normals(self) -> FloatArray:
+        """Return unit normals (n, d): +1, the right of a segment, or by the right-hand rule."""
+        edges = self.corners[:, 1:] - self.corners[:, :1]
+        if self.dimension == 1:
+            return np.ones((len(edges), 1))
+        normals: FloatArray
+        if self.dimension == 2:
+            normals = np.stack([edges[:, 0, 1], -edges[:, 0, 0]], axis=1)
+        else:
+            normals = np.cross(edges[:, 0], edges[:, 1])
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+        return np.asarray(normals / np.where(lengths > 0, lengths, 1))
+
+    def sizes(self) -> FloatArray:
+        """Return areas of triangles, lengths of segments, 1 for points, (n,)."""
+        edges = self.corners[:, 1:] - self.corners[:, :1]
+        if self.dimension == 1:
+            return np.ones(len(edges))
+        if self.dimension == 2:
+            return np.asarray(np.linalg.norm(edges[:, 0], axis=1))
+        return np.asarray(np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1) / 2)
+
+
+def facets_from(given: Any) -> Facets:
+    """Return the facets of an array, a solid, or whatever holds a mesh.
+
+    Parameters
+    ----------
+    given : array_like, Solid, or mesh
+        ``(n,)`` for points of the line, ``(n, 2, 2)`` for segments of the plane, ``(n, 3, 3)`` for
+        triangles; a `Solid`; a *tuple* ``(vertices, faces)``; or what `Solid.from_mesh` takes. A
+        mesh need not be closed.
+
+    Raises
+    ------
+    InvalidMeshError
+        If nothing of the kind is found, or an index is out of range.
+    UnboundedError
+        If a solid and its complement both reach to infinity, so that its boundary does, too.
+    """
+    if isinstance(given, Solid):
+        return _boundary_of(given)
+    if isinstance(given, (list, np.ndarray)):
+        return Facets(_corner_array(given))
+    vertices, faces = interop.own_arrays(*interop.arrays_from(given))
+    if faces.size and not (faces.min() >= 0 and faces.max() < len(vertices)):
+        bad = np.flatnonzero(((faces < 0) | (faces >= len(vertices))).any(axis=1))
+        message = f"Face {bad[0]} names a vertex that does not exist."
+        raise InvalidMeshError(message, "index_out_of_range", bad[:10].tolist())
+    return Facets(vertices[faces])
+
+
+@uncounted
+def _boundary_of(solid: Solid) -> Facets:
+    """Return the finite boundary of a solid, or that of its complement turned over."""
+    reduced = solid.normalized()
+    outside = reduced if reduced.is_bounded else (~solid).normalized()
+    unbounded = outside is not reduced and outside.is_bounded
+    mesh = (outside if unbounded else reduced).to_mesh()
+    faces = mesh.faces[:, ::-1] if unbounded else mesh.faces
+    return Facets(mesh.vertices[faces], mesh.source, reduced.pitch, unbounded)
+
+
+def _corner_array(given: Any) -> FloatArray:
+    try:
+        array = np.array(given, dtype=np.float64, order="C")
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InvalidMeshError("Facets must be an array of numbers.", "shape") from error
+    if array.ndim == 1:
+        return array.reshape(-1, 1, 1)
+    if array.ndim == 3 and array.shape[1:] in ((1, 1), (2, 2), (3, 3)):
+        return array
+    raise InvalidMeshError(
+        f"Facets must have shape (n,), (n, 2, 2) or (n, 3, 3), not {array.shape}.", "shape"
+    )
+
+
+def vectors(given: Any, dimension: int, name: str) -> FloatArray:
+    """Return (n, d) float64 of points or directions; one alone becomes the only row.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the shape is another.
+    """
+    try:
+        array = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InvalidMeshError(f"{name} must be an array of numbers.", "shape") from error
+    if dimension == 1 and array.ndim == 1:
+        array = array[:, None]
+    array = np.atleast_2d(array)
+    if array.ndim != 2 or array.shape[1] != dimension:
+        shape = np.shape(given)
+        message = f"{name} must have shape (n, {dimension}) or ({dimension},), not {shape}."
+        raise InvalidMeshError(message, "shape")
+    return array
+
+
+def ray_arrays(
+    origins: Any, heads: Any, dimension: int, names: tuple[str, str] = ("Origins", "Directions")
+) -> tuple[FloatArray, FloatArray]:
+    """Return origins and directions (or targets) of as many rays, (n, d) each, in C order.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the shapes are others, or neither is one for all.
+    """
+    first, second = vectors(origins, dimension, names[0]), vectors(heads, dimension, names[1])
+    if len(first) != len(second) and 1 not in (len(first), len(second)):
+        message = f"There are {len(first)} origins and {len(second)} {names[1].lower()}."
+        raise InvalidMeshError(message, "shape")
+    first, second = np.broadcast_arrays(first, second)
+    return np.ascontiguousarray(first), np.ascontiguousarray(second)

@@ -1,0 +1,89 @@
+"""Closed boundaries in one, two and three dimensions, as rows for the core."""
+
+from typing import Any
+
+import numpy as np
+
+from ... import _core
+from ..._types import FloatArray, IndexArray
+from ...errors import InvalidMeshError, core_errors, invalid_parameter
+from ...parameters import pitch_exponent
+
+
+def boundary_arrays(facets: Any) -> tuple[int, FloatArray, IndexArray | None]:
+    """Return the dimension, the rows that the core takes, and the triangles in space.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the array has none of the shapes (n, 2), (n, 2, 2) and (n, 3, 3), or the segments do not
+        close.
+    """
+    array = _numbers(facets)
+    if array.ndim == 2 and array.shape[1] == 2:
+        return 1, interval_rows(array), None
+    if array.ndim == 3 and array.shape[1:] == (2, 2):
+        return 2, segment_rows(array), None
+    if array.ndim == 3 and array.shape[1:] == (3, 3):
+        faces = np.arange(3 * len(array), dtype=np.int64).reshape(-1, 3)
+        return 3, np.ascontiguousarray(array.reshape(-1, 3)), faces
+    raise InvalidMeshError(
+        f"A boundary has shape (n, 2), (n, 2, 2) or (n, 3, 3), not {array.shape}.", "shape"
+    )
+
+
+def interval_rows(ends: FloatArray) -> FloatArray:
+    """Return rows (x, side): side +1 where an interval begins, -1 where it ends."""
+    sides = np.tile([1.0, -1.0], len(ends))
+    return np.column_stack([ends.reshape(-1), sides])
+
+
+def segment_rows(segments: FloatArray) -> FloatArray:
+    """Return rows (x, y, x', y') of segments that close.
+
+    Raises
+    ------
+    InvalidMeshError
+        If more segments begin than end in some point; `where` lists segments.
+    """
+    _check_closed(segments)
+    return np.ascontiguousarray(segments.reshape(-1, 4))
+
+
+def chosen_pitch(given: Any, points: FloatArray) -> int:
+    """Return the exponent of the lattice step: the given one, or what suits these points."""
+    return _suited_pitch(points) if given is None else pitch_exponent(given)
+
+
+def _suited_pitch(points: FloatArray) -> int:
+    """Return the exponent of the lattice step for these points: -9 unless their size asks else."""
+    if len(points) == 0 or not np.isfinite(points).all():
+        return -9
+    extent = float(np.ptp(points, axis=0).max())
+    with core_errors():
+        return _core.suited_pitch(float(np.abs(points).max()), extent)
+
+
+def _numbers(facets: Any) -> FloatArray:
+    try:
+        array = np.asarray(facets, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InvalidMeshError("A boundary must be an array of numbers.", "shape") from error
+    if array.size == 0:
+        raise invalid_parameter("A boundary without facets is no set; use the empty set instead.")
+    return array
+
+
+def _check_closed(segments: FloatArray) -> None:
+    points, index = np.unique(segments.reshape(-1, 2) + 0.0, axis=0, return_inverse=True)
+    balance = np.bincount(index.reshape(-1), np.tile([1, -1], len(segments)), len(points))
+    if not np.isfinite(points).all() or not balance.any():
+        return
+    place = int(np.flatnonzero(balance)[0])
+    where = np.flatnonzero(index.reshape(-1) == place) // 2
+    raise InvalidMeshError(
+        f"The outline is not closed at ({points[place][0]:g}, {points[place][1]:g}): as many"
+        " segments must end there as begin.",
+        "not_closed",
+        [int(k) for k in where],
+    )

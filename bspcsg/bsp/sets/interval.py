@@ -1,0 +1,182 @@
+"""`Intervals`: a set of points on the line, as an immutable value."""
+
+from fractions import Fraction
+from typing import Any, Self
+
+import numpy as np
+
+from ... import _core
+from ..._types import FloatArray, Scalar
+from ...errors import InvalidMeshError, core_errors, invalid_parameter
+from ...geometry.hyperplane import Hyperplane
+from ...geometry.transform import whole_steps
+from ...parameters import number
+from .boundary import chosen_pitch, interval_rows
+from .objects import ObjectTree
+from .settle import Settled
+
+
+class Intervals(Settled, ObjectTree):
+    """A union of intervals on the line.
+
+    Ends belong to the boundary, so that intervals that touch are one and single points are nothing
+    (regularised sets). Coordinates are snapped to the lattice of step ``10**pitch``. ``==``,
+    ``<=``, ``<``, ``in`` and the like compare sets of points, exactly, as for `Solid`.
+
+    Parameters
+    ----------
+    pairs : (n, 2) array_like of float
+        Lower and upper ends, in any order of intervals; may overlap, may be infinite. None of them
+        makes the empty set.
+    pitch : int, optional
+
+    Raises
+    ------
+    InvalidMeshError
+        If an end is NaN or an interval ends before it begins or where it begins.
+    LimitError
+        If the ends do not fit on the lattice.
+
+    Examples
+    --------
+    >>> from bspcsg import bsp
+    >>> a = bsp.Intervals([(0, 2), (5, 7)])
+    >>> a - bsp.Intervals([(1, 6)])
+    Intervals((0, 1), (6, 7))
+    """
+
+    __slots__ = ()
+
+    _DIMENSION = 1
+
+    def __init__(self, pairs: Any = (), *, pitch: int | None = None) -> None:
+        ends = _pairs(pairs)
+        finite = ends[np.isfinite(ends)]
+        chosen = chosen_pitch(pitch, finite[:, None])
+        bounded = np.isfinite(ends).all(axis=1)
+        with core_errors():
+            tree = _core.ObjectTree.uniform(1, False, chosen)
+            if bounded.any():
+                rows = interval_rows(ends[bounded])
+                tree = _core.ObjectTree.build(1, rows, chosen)
+            for low, high in ends[~bounded].tolist():
+                tree = tree.merge(_unbounded(low, high, chosen), "union")
+        self._set(tree)
+
+    @classmethod
+    def empty(cls) -> Self:
+        """Return the empty set."""
+        return cls()
+
+    @classmethod
+    def full(cls) -> Self:
+        """Return the whole line."""
+        return cls([(-np.inf, np.inf)])
+
+    @property
+    def pairs(self) -> FloatArray:
+        """Lower and upper ends of the intervals, (n, 2) float64 in order; infinite if unbounded."""
+        if self.is_empty or self.is_full:
+            return np.array([[-np.inf, np.inf]]) if self.is_full else np.zeros((0, 2))
+        ends = np.sort(self.boundary().vertices[:, 0])
+        if self._holds_lowest():
+            ends = np.concatenate([[-np.inf], ends])
+        if len(ends) % 2:
+            ends = np.append(ends, np.inf)
+        return ends.reshape(-1, 2)
+
+    def _holds_lowest(self) -> bool:
+        """Whether the set reaches to minus infinity."""
+        nodes = self.nodes
+        at = 0
+        while at >= 0:
+            below = nodes.minus if nodes.hyperplanes[at, 0] > 0 else nodes.plus
+            at = int(below[at])
+        return at == nodes.IN
+
+    @property
+    def length(self) -> float:
+        """Total length, rounded once; `measure` is the exact one.
+
+        Raises
+        ------
+        UnboundedError
+            If the set reaches to infinity.
+        """
+        return float(self.measure)
+
+    @property
+    def centroid(self) -> float:
+        """Middle of the length; NaN for the empty set."""
+        total = self.measure
+        if total == 0:
+            return float("nan")
+        moment = sum((Fraction(b) ** 2 - Fraction(a) ** 2) / 2 for a, b in self.pairs.tolist())
+        return float(moment / total)
+
+    @property
+    def bounds(self) -> tuple[float, float] | None:
+        """Lowest and highest point, or None for the empty set."""
+        pairs = self.pairs
+        return None if self.is_empty else (float(pairs[0, 0]), float(pairs[-1, 1]))
+
+    @property
+    def components(self) -> tuple["Intervals", ...]:
+        """The intervals one by one, in order."""
+        return tuple(type(self)([pair], pitch=self.pitch) for pair in self.pairs)
+
+    def translate(self, offset: Scalar) -> "Intervals":
+        """Return the set moved; exact if the offset is a whole number of lattice steps."""
+        shift = number(offset, "offset")
+        steps = whole_steps(shift, self.pitch)
+        if steps is None:
+            return type(self)(self.pairs + shift)
+        with core_errors():
+            return self._of(self._moved([1], [steps], 1, self.pitch))
+
+    def scale(self, factor: Scalar) -> "Intervals":
+        """Return the set scaled about 0; a negative factor mirrors it."""
+        by = number(factor, "factor")
+        if by == 0:
+            raise invalid_parameter("The factor must not be 0.")
+        return type(self)(np.sort(self.pairs * by, axis=1))
+
+    def __repr__(self) -> str:
+        """Show the intervals, as long as they are few."""
+        pairs = self.pairs.tolist()
+        shown = [f"({low:.12g}, {high:.12g})" for low, high in pairs[:6]]
+        if len(pairs) > 6:
+            shown.append(f"... {len(pairs) - 6} more")
+        return f"Intervals({', '.join(shown)})"
+
+
+def _pairs(pairs: Any) -> FloatArray:
+    try:
+        array = np.asarray(pairs, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise invalid_parameter("Intervals are pairs of numbers.") from error
+    if array.size == 0:
+        return np.zeros((0, 2))
+    if array.ndim == 1 and len(array) == 2:
+        array = array[None]
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise InvalidMeshError(f"Intervals must have shape (n, 2), not {array.shape}.", "shape")
+    wrong = np.flatnonzero(~(array[:, 0] < array[:, 1]))
+    if len(wrong):
+        low, high = array[wrong[0]]
+        raise InvalidMeshError(
+            f"Interval {wrong[0]} from {low:g} to {high:g} does not begin before it ends.",
+            "invalid_parameter",
+            wrong.tolist(),
+        )
+    return array
+
+
+def _unbounded(low: float, high: float, pitch: int) -> _core.ObjectTree:
+    def below(x: float, side: float) -> _core.ObjectTree:
+        row = Hyperplane.from_numbers([side], side * x).on_lattice(pitch).row
+        return _core.ObjectTree.half_space(row, pitch)
+
+    if low == -np.inf and high == np.inf:
+        return _core.ObjectTree.uniform(1, True, pitch)
+    return below(high, 1.0) if low == -np.inf else below(low, -1.0)

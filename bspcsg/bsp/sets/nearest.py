@@ -1,0 +1,62 @@
+"""The nearest points of segments and polygons, in doubles."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray
+from .pieces import Pieces
+
+#: How many pairs of point and piece are looked at together.
+_PAIRS = 1 << 20
+
+
+def nearest_on_segments(points: FloatArray, segments: FloatArray) -> FloatArray:
+    """Return the point of any of (n, 2, d) segments that is nearest to each of (k, d) points."""
+    start = segments[:, 0]
+    along = segments[:, 1] - start
+    squared = (along**2).sum(axis=1)
+    length = np.where(squared > 0, squared, 1.0)
+
+    def candidates(block: FloatArray) -> FloatArray:
+        t = ((block[:, None, :] - start) * along).sum(axis=2) / length
+        return np.asarray(start + np.clip(t, 0.0, 1.0)[:, :, None] * along)
+
+    return _nearest(points, len(segments), candidates)
+
+
+def nearest_on_polygons(points: FloatArray, polygons: Pieces) -> FloatArray:
+    """Return the point of any convex polygon in space that is nearest to each of (k, 3) points."""
+    # It takes most of a second to import, which pictures need not wait for.
+    import trimesh
+
+    triangles = np.concatenate([_fan(polygons[k]) for k in range(len(polygons))])
+
+    def candidates(block: FloatArray) -> FloatArray:
+        pairs = np.repeat(block, len(triangles), axis=0)
+        copies = np.tile(triangles, (len(block), 1, 1))
+        closest: Any = trimesh.triangles.closest_point
+        found = closest(copies, pairs)
+        return np.asarray(found).reshape(len(block), len(triangles), 3)
+
+    return _nearest(points, len(triangles), candidates)
+
+
+def _fan(corners: FloatArray) -> FloatArray:
+    first = np.broadcast_to(corners[0], (len(corners) - 2, 3))
+    return np.stack([first, corners[1:-1], corners[2:]], axis=1)
+
+
+def _nearest(
+    points: FloatArray, pieces: int, candidates: Callable[[FloatArray], FloatArray]
+) -> FloatArray:
+    """Return the nearest of each point's candidates, block by block."""
+    nearest = np.empty_like(points)
+    step = max(_PAIRS // pieces, 1)
+    for start in range(0, len(points), step):
+        block = points[start : start + step]
+        found = candidates(block)
+        best = ((found - block[:, None, :]) ** 2).sum(axis=2).argmin(axis=1)
+        nearest[start : start + step] = found[np.arange(len(block)), best]
+    return nearest

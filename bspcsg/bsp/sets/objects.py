@@ -1,0 +1,353 @@
+"""`ObjectTree`: a set of points as a partition tree with in and out leaves, in any dimension.
+
+The same tree stands for a set on the line, in the plane and in space: its inner nodes divide a
+convex region by a hyperplane, its leaves are in or out. Set operations merge two trees; nothing is
+rounded after the coordinates have been snapped to the lattice of step ``10**pitch``.
+
+Sources: Thibault, Naylor 1987; Naylor, Amanatides, Thibault 1990.
+"""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar, Self
+
+from ... import _core
+from ..._types import Scalar, SetOp, WindingRule
+from ...errors import core_errors, invalid_parameter
+from ...mesh import interop
+from ...parameters import at_least, pitch_exponent, seed_number, winding_rule
+from ...solid.point_set import PointSet
+from .boundary import boundary_arrays, chosen_pitch
+from .pieces import BuildPolicy, Hyperplane, SplitCase
+from .rows import hyperplane, hyperplane_row, hyperplane_rows
+from .tree_queries import TreeQueries
+
+
+class ObjectTree(TreeQueries, PointSet):
+    """A set of points as a partition tree; an immutable value.
+
+    ``==``, ``<=``, ``<``, ``in`` and the like are those of Python's sets, for the points: two trees
+    are equal if they stand for the same set, however they divide it. They are exact.
+
+    Parameters
+    ----------
+    facets : array_like
+        The closed boundary: (n, 2) interval ends (1D); (n, 2, 2) segments with the inside on their
+        left (2D); (n, 3, 3) triangles counterclockwise seen from outside (3D). They may cross,
+        overlap and repeat: inside is where the winding number satisfies the rule.
+    winding : {"positive", "nonzero", "even-odd"}
+    pitch : int, optional
+        The lattice step is ``10**pitch`` units; by default -9, or what the size asks for.
+    policy : {"balanced", "random", "first", "fewest-splits"}
+        How the tree is divided. Only "balanced" keeps convex outlines from becoming chains; the
+        others are autopartitions.
+    seed : int
+        For the random order.
+    cuts : sequence of (normal, offset)
+        Hyperplanes to be cut along first, in this order, wherever facets lie: a partition that is
+        there before the boundary.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the boundary is not closed, a number is not finite or an array has another shape.
+    LimitError
+        If the coordinates do not fit on the lattice.
+
+    Examples
+    --------
+    >>> from bspcsg import bsp
+    >>> a = bsp.ObjectTree([[0, 2], [5, 6]])
+    >>> b = bsp.ObjectTree([[1, 3]])
+    >>> (a | b).measure, (a & b).measure, (a - b).measure
+    (Fraction(4, 1), Fraction(1, 1), Fraction(2, 1))
+    """
+
+    __slots__ = ("_settled_size",)
+
+    #: The dimension of all sets of a class, if they have one.
+    _DIMENSION: ClassVar[int | None] = None
+
+    def __init__(
+        self,
+        facets: Any,
+        *,
+        winding: WindingRule = "positive",
+        pitch: int | None = None,
+        policy: BuildPolicy = "balanced",
+        seed: int = 0,
+        cuts: Sequence[Hyperplane] = (),
+    ) -> None:
+        dimension, rows, faces = boundary_arrays(facets)
+        rule, order = winding_rule(winding), seed_number(seed)
+        chosen = chosen_pitch(pitch, rows[:, :dimension])
+        with core_errors():
+            self._set(
+                _core.ObjectTree.build(
+                    dimension,
+                    rows,
+                    chosen,
+                    faces=faces,
+                    winding=rule,
+                    policy=policy,
+                    seed=order,
+                    cuts=hyperplane_rows(cuts, dimension, chosen),
+                )
+            )
+
+    def _set(self, tree: _core.ObjectTree) -> None:
+        self._tree = tree
+        self._settled_size = 0
+
+    @classmethod
+    def _of(cls, tree: _core.ObjectTree) -> Self:
+        made = cls.__new__(cls)
+        made._set(tree)
+        return made
+
+    # Making
+
+    @classmethod
+    def from_mesh(cls, mesh: Any, **options: Any) -> Self:
+        """Return the set inside a closed mesh, or whatever holds one (see `Solid.from_mesh`).
+
+        An autopartition in space grows with the square of the faces: meant for small meshes.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the class has another dimension, or as for `Solid.from_mesh`.
+        """
+        cls._check_dimension(3)
+        vertices, faces = interop.own_arrays(*interop.arrays_from(mesh))
+        return cls._of(ObjectTree(vertices[faces], **options)._tree)
+
+    @classmethod
+    def half_space(cls, normal: Any, offset: Scalar = 0.0, *, pitch: int | None = None) -> Self:
+        """Return the minus side of a hyperplane: all points x with ``normal . x <= offset``.
+
+        The numbers count as the decimals they are written as. A hyperplane that holds lattice
+        points is this very one; others are moved to the nearest of their direction that does, at
+        most half a step, as coordinates are. The same goes for all hyperplanes given to trees.
+        (Normals of more than 62 bits in the plane, or 106 in space, are rounded to 61.)
+
+        Parameters
+        ----------
+        normal : (1,), (2,) or (3,) float, or one number
+            As many as the class has dimensions.
+        offset : float
+        pitch : int, optional
+            By default -9, or down to -12 if the hyperplane needs it.
+        """
+        wanted = hyperplane(normal, offset)
+        cls._check_dimension(len(wanted.normal))
+        chosen = wanted.pitch if pitch is None else pitch_exponent(pitch)
+        with core_errors():
+            return cls._of(_core.ObjectTree.half_space(wanted.on_lattice(chosen).row, chosen))
+
+    @classmethod
+    def uniform(cls, dimension: int, *, full: bool, pitch: int = -9) -> Self:
+        """Return the empty set, or everything, in 1, 2 or 3 dimensions."""
+        count, step = at_least(1, dimension, "dimension"), pitch_exponent(pitch)
+        cls._check_dimension(count)
+        with core_errors():
+            return cls._of(_core.ObjectTree.uniform(count, full, step))
+
+    @classmethod
+    def _check_dimension(cls, dimension: int) -> None:
+        """Refuse to make a set of another dimension than the class has."""
+        if cls._DIMENSION not in (None, dimension):
+            raise invalid_parameter(
+                f"{cls.__name__} has dimension {cls._DIMENSION}, not {dimension}; use ObjectTree"
+                " for sets of any dimension."
+            )
+
+    # Set operations
+
+    def __or__(self, other: object) -> Self:
+        """Union."""
+        return self._merged(other, "union")
+
+    def __and__(self, other: object) -> Self:
+        """Intersection."""
+        return self._merged(other, "intersection")
+
+    def __sub__(self, other: object) -> Self:
+        """Difference."""
+        return self._merged(other, "difference")
+
+    def __xor__(self, other: object) -> Self:
+        """Symmetric difference."""
+        return self._merged(other, "xor")
+
+    def __invert__(self) -> Self:
+        """Complement; all nodes are shared."""
+        return self._of(self._tree.complement())
+
+    def _merged(self, other: object, op: SetOp) -> Self:
+        if not isinstance(other, ObjectTree):
+            refused: Any = NotImplemented
+            return refused  # type: ignore[no-any-return]
+        a, b = self._aligned(other)
+        with core_errors():
+            return self._of(a.merge(b, op))
+
+    def _aligned(self, other: "ObjectTree") -> tuple[_core.ObjectTree, _core.ObjectTree]:
+        """Return both trees on the finer lattice."""
+        if self.dimension != other.dimension:
+            raise invalid_parameter(
+                f"A set of dimension {self.dimension} cannot be combined with one of dimension"
+                f" {other.dimension}."
+            )
+        # Nothing and everything live on any lattice.
+        pitches = [s.pitch for s in (self, other) if not (s.is_empty or s.is_full)]
+        pitch = min(pitches, default=self.pitch)
+        return self._refined(pitch), other._refined(pitch)
+
+    def _settled_nodes(self) -> int:
+        """Return how many nodes the tree had when it was last built from a boundary."""
+        return self._settled_size or self.stats()["nodes"]
+
+    def _refined(self, pitch: int) -> _core.ObjectTree:
+        if pitch == self.pitch:
+            return self._tree
+        if self.is_empty or self.is_full:
+            return _core.ObjectTree.uniform(self.dimension, self.is_full, pitch)
+        axes = list(range(1, self.dimension + 1))
+        scale = 10 ** (self.pitch - pitch)
+        with core_errors():
+            return self._moved(axes, [0] * self.dimension, scale, pitch)
+
+    def _moved(self, axes: list[int], shift: list[int], scale: int, pitch: int) -> _core.ObjectTree:
+        return self._tree.moved(axes, shift, scale, pitch)
+
+    def equals(self, other: "ObjectTree") -> bool:
+        """Whether both are the same set of points, exactly; so says ``==``, too.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the other set has another dimension; for ``==`` the two are different then.
+        """
+        a, b = self._aligned(other)
+        with core_errors():
+            return a.equals(b)
+
+    def _is_alike(self, other: object) -> bool:
+        return isinstance(other, ObjectTree) and self.dimension == other.dimension
+
+    def _size_key(self) -> object:
+        if self.is_bounded:
+            return self.dimension, self.measure
+        outside = ~self
+        # Where both are unbounded, nothing that is cheap tells sets apart.
+        return self.dimension, -outside.measure - 1 if outside.is_bounded else None
+
+    def isdisjoint(self, other: "ObjectTree") -> bool:
+        """Whether the two have no interior point in common; contact is allowed."""
+        return (self & other).is_empty
+
+    # Division by a hyperplane
+
+    def partitioned(self, normal: Any, offset: Scalar = 0.0) -> Self:
+        """Return the same set as a tree whose root is cut by this hyperplane.
+
+        A leaf, whose halves would be equal, stays one.
+        """
+        row = self._row(normal, offset)
+        with core_errors():
+            return self._of(self._tree.partitioned(row))
+
+    def split(self, normal: Any, offset: Scalar = 0.0) -> tuple[Self, Self]:
+        """Return the parts on the minus and on the plus side of a hyperplane, as sets."""
+        row = self._row(normal, offset)
+        with core_errors():
+            minus, plus = self._tree.split(row)
+        return self._of(minus), self._of(plus)
+
+    def split_case(self, normal: Any, offset: Scalar = 0.0) -> SplitCase:
+        """Say how the root and a splitting hyperplane lie to each other.
+
+        Returns
+        -------
+        str
+            "leaf": the root is one. "same", "opposite": the hyperplane is the root's own, with
+            equal or exchanged sides. "crossing": each cuts the other. Else two sides: that of the
+            root's cut on which the hyperplane's part lies, then that of the hyperplane on which the
+            root's sub-hyperplane lies: "minus-minus", "minus-plus", "plus-minus" or "plus-plus".
+
+        Notes
+        -----
+        Naylor, Amanatides, Thibault 1990, section 4: the cases of their table.
+        """
+        row = self._row(normal, offset)
+        with core_errors():
+            return self._tree.split_case(row)
+
+    def _row(self, normal: Any, offset: Scalar) -> list[int]:
+        return hyperplane_row(normal, offset, self.dimension, self.pitch)
+
+    def condensed(self) -> Self:
+        """Return the same set as a balanced tree of its own boundary (1D and 2D).
+
+        Merging leaves cuts in the tree that the result no longer needs. In space the tree itself is
+        returned.
+        """
+        with core_errors():
+            return self._of(self._tree.condensed())
+
+    # As a value
+
+    def __repr__(self) -> str:
+        """Say what kind of tree it is."""
+        if self.is_empty or self.is_full:
+            what = "empty" if self.is_empty else "full"
+        else:
+            stats = self.stats()
+            what = f"{stats['nodes']} nodes, depth {stats['depth']}"
+        return f"{type(self).__name__}({self.dimension}D, {what})"
+
+    def __copy__(self) -> Self:
+        """Return the tree itself, which never changes."""
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        """Return the tree itself, which never changes."""
+        return self
+
+    def __reduce__(self) -> tuple[Any, tuple[type["ObjectTree"], bytes]]:
+        """Pickle the nodes, exactly; which input facets lie in them is not kept."""
+        return _restored, (type(self), self._tree.dump())
+
+
+def merge(a: ObjectTree, b: ObjectTree, op: SetOp) -> ObjectTree:
+    """Return the set operation on two trees of one dimension, by merging them.
+
+    Parameters
+    ----------
+    a, b : ObjectTree
+    op : {"union", "intersection", "difference", "xor"}
+
+    Notes
+    -----
+    Naylor, Amanatides, Thibault 1990, section 3. Nodes of `a` come before those of `b`.
+    """
+    return a._merged(b, op)
+
+
+def partition_tree(tree: ObjectTree, hyperplane: Hyperplane) -> ObjectTree:
+    """Return the same set with this hyperplane in the root (see `ObjectTree.partitioned`)."""
+    return tree.partitioned(*hyperplane)
+
+
+def split_tree(tree: ObjectTree, hyperplane: Hyperplane) -> tuple[ObjectTree, ObjectTree]:
+    """Return a tree's parts on the minus and the plus side (see `ObjectTree.split`).
+
+    The paper's third argument, the part of the hyperplane inside the root's region, follows from
+    the other two and is computed.
+    """
+    return tree.split(*hyperplane)
+
+
+def _restored(kind: type[ObjectTree], data: bytes) -> ObjectTree:
+    with core_errors():
+        return kind._of(_core.ObjectTree.load(data))

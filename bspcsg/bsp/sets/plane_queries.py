@@ -1,0 +1,181 @@
+"""What can be asked of a region of the plane: outlines, measures, lines, nearest points."""
+
+import math
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from ... import _core
+from ..._types import FloatArray, Vector
+from ...errors import core_errors, invalid_parameter
+from ...parameters import number
+from .loops import Outline
+from .objects import ObjectTree
+
+
+class PlaneQueries(ObjectTree):
+    """A set of the plane, as its questions see it."""
+
+    __slots__ = ("_outlines",)
+
+    _DIMENSION = 2
+
+    def _set(self, tree: _core.ObjectTree) -> None:
+        super()._set(tree)
+        self._outlines: tuple[Outline, ...] | None = None
+
+    # Outlines
+
+    @property
+    def outlines(self) -> tuple[Outline, ...]:
+        """Simple closed loops: outer ones counterclockwise, holes clockwise, with their nesting.
+
+        Collinear edges are joined; loops touch each other in corners at most, and where one has a
+        corner on another, so has that other. They depend on the set alone.
+
+        Raises
+        ------
+        UnboundedError
+            If the region reaches to infinity.
+        """
+        if self._outlines is None:
+            with core_errors():
+                points, offsets, parents = self._tree.outlines()
+            points.flags.writeable = False
+            loops = np.split(points, offsets[1:-1]) if len(parents) else []
+            nested = zip(loops, parents.tolist(), strict=True)
+            self._outlines = tuple(Outline(loop, parent) for loop, parent in nested)
+        return self._outlines
+
+    @property
+    def exact_outlines(self) -> list[list[tuple[Fraction, Fraction]]]:
+        """The corners of the outlines in model units, not rounded."""
+        with core_errors():
+            loops = self._tree.exact_outlines()
+        return [[(Fraction(*x), Fraction(*y)) for x, y in loop] for loop in loops]
+
+    def to_polygons(self) -> list[FloatArray]:
+        """Return the outlines as (n, 2) arrays; ``bspcsg.extrude`` and others take them."""
+        return [outline.points for outline in self.outlines]
+
+    # Measures
+
+    @property
+    def area_exact(self) -> Fraction:
+        """Area in square model units, exactly.
+
+        Raises
+        ------
+        UnboundedError
+            If the region reaches to infinity; so for all measures.
+        """
+        return self.measure
+
+    @property
+    def area(self) -> float:
+        """Area in square model units, rounded once."""
+        return float(self.measure)
+
+    @property
+    def perimeter(self) -> float:
+        """Length of the boundary in model units, which is that of the complement, too.
+
+        Raises
+        ------
+        UnboundedError
+            If the region and its complement both reach to infinity.
+        """
+        inner = self if self.is_bounded else ~self
+        return math.fsum(outline.length for outline in inner.outlines)
+
+    @property
+    def centroid_exact(self) -> tuple[Fraction, Fraction] | None:
+        """Centre of area (barycentre), exactly; None for the empty set."""
+        with core_errors():
+            area, x, y = (Fraction(*ratio) for ratio in self._tree.moments())
+        return None if area == 0 else (x / area, y / area)
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Centre of area, (2,) float64, each coordinate rounded once; NaN for the empty set."""
+        exact = self.centroid_exact
+        return np.full(2, np.nan) if exact is None else np.array([float(c) for c in exact])
+
+    @property
+    def bounds(self) -> FloatArray | None:
+        """Lowest and highest coordinates, (2, 2) float64, or None for the empty set."""
+        if self.is_empty:
+            return None
+        points = np.concatenate(self.to_polygons())
+        return np.array([points.min(axis=0), points.max(axis=0)])
+
+    # Questions
+
+    def cast(self, origin: Vector, direction: Vector) -> FloatArray:
+        """Return where a line runs through the inside.
+
+        Parameters
+        ----------
+        origin, direction : (2,) float
+            The origin is snapped to the lattice, the direction rounded to 53 bits.
+
+        Returns
+        -------
+        (k, 2) float64
+            Entry and exit of each stretch in the order of the line, as multiples t of `direction`
+            from `origin`; infinite where the region is. Stretches along the boundary do not count,
+            and one point of boundary separates two stretches. The order is exact, each t rounded.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the direction is zero or a number is not finite.
+        """
+        start, along = vector2(origin, "origin"), vector2(direction, "direction")
+        if not np.any(along):
+            raise invalid_parameter("The direction must not be zero.")
+        with core_errors():
+            points, _, _ = self._tree.cast(list(start), list(along))
+        axis = int(np.abs(along).argmax())
+        t = (points[:, axis] - start[axis]) / along[axis]
+        t[np.abs(points).max(axis=1) > self._border] *= np.inf
+        return np.asarray(t.reshape(-1, 2))
+
+    @property
+    def _border(self) -> float:
+        """What no finite coordinate exceeds."""
+        return (2**53 - 2) * 10.0**self.pitch
+
+    def convex_parts(self) -> list[FloatArray]:
+        """Return convex polygons that make up the region: the leaves of its tree that are inside.
+
+        Returns
+        -------
+        list of (n, 2) float64
+            Counterclockwise, in the order of the leaves, rounded.
+        """
+        cells = self.cells()
+        parts: list[list[FloatArray]] = []
+        for face, owner in enumerate(cells.owner.tolist()):
+            if owner == len(parts):
+                parts.append([])
+            parts[owner].append(cells[face])
+        return [_polygon_of(faces) for faces in parts]
+
+
+def vector2(value: Any, name: str) -> tuple[float, float]:
+    """Return two finite numbers."""
+    try:
+        x, y = value
+    except (TypeError, ValueError) as error:
+        raise invalid_parameter(f"{name} must have two numbers.") from error
+    return number(x, name), number(y, name)
+
+
+def _polygon_of(faces: list[FloatArray]) -> FloatArray:
+    """Return the corners of a convex polygon from its edges, in any order."""
+    edges = np.array(faces)
+    along = edges[:, 1] - edges[:, 0]
+    order = np.argsort(np.arctan2(along[:, 1], along[:, 0]), kind="stable")
+    return np.asarray(edges[order, 0])

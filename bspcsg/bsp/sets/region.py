@@ -1,0 +1,272 @@
+"""`Region`: a set of points in the plane with polygonal boundary, as an immutable value."""
+
+import os
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import Any, Self
+
+import numpy as np
+
+from ... import _core
+from ..._types import FloatArray, Scalar, Vector, WindingRule
+from ...errors import LimitError, UnboundedError, core_errors, invalid_parameter
+from ...geometry import transform
+from ...geometry.transform import Factor
+from ...mesh import interop
+from ...parameters import number, positive, sides_around, winding_rule
+from ...shapes.primitives import extrude, revolve
+from ...shapes.sweep import unit_circle
+from ...solid.solid import Solid
+from .boundary import chosen_pitch, segment_rows
+from .loops import closed_loops, loop_segments, moved_points
+from .plane_queries import PlaneQueries, vector2
+from .settle import Settled
+
+
+class Region(PlaneQueries, Settled):
+    """A polygonal set of the plane.
+
+    Inside is where the winding number of the outlines satisfies the rule; outlines may cross, touch
+    or overlap themselves and each other. The lattice is that of solids: coordinates are snapped to
+    steps of ``10**pitch``, at most 2**53 of them from the origin, and everything else is exact.
+    Points and edges without area on either side do not count (regularised sets). ``==``, ``<=``,
+    ``<``, ``in`` and the like compare sets of points, exactly, as for `Solid`.
+
+    Parameters
+    ----------
+    outlines : object
+        (n, 2) points of one closed outline; a sequence of such outlines; a `Region`; a manifold3d
+        cross section; or a shapely polygon, multipolygon or collection, or a list of these. With
+        the rule "positive", inside is on the left of outer outlines (counterclockwise) and holes
+        run clockwise. Rings of shapely shapes are turned so, which makes the region what any of
+        the polygons holds, also where they overlap; points and lines in collections are left out.
+    winding : {"positive", "nonzero", "even-odd"}
+    pitch : int, optional
+        By default -9, or what the size asks for.
+
+    Raises
+    ------
+    InvalidMeshError
+        If an outline has fewer than three points, another shape, or a coordinate that is not
+        finite.
+    LimitError
+        If the coordinates do not fit on the lattice.
+
+    Examples
+    --------
+    >>> from bspcsg import bsp
+    >>> plate = bsp.Region.rectangle(6, 4) - bsp.Region.rectangle(2, 2).translate(1, 1)
+    >>> plate.area, len(plate.outlines)
+    (20.0, 2)
+    """
+
+    __slots__ = ()
+
+    def __init__(
+        self, outlines: Any = (), *, winding: WindingRule = "positive", pitch: int | None = None
+    ) -> None:
+        loops = closed_loops(outlines)
+        points = np.concatenate(loops) if loops else np.zeros((0, 2))
+        rows = segment_rows(loop_segments(loops))
+        self._set(_built(rows, chosen_pitch(pitch, points), winding))
+
+    # Making
+
+    @classmethod
+    def from_segments(
+        cls, segments: Any, *, winding: WindingRule = "positive", pitch: int | None = None
+    ) -> Self:
+        """Return what oriented segments surround, (n, 2, 2), the inside on their left.
+
+        Raises
+        ------
+        InvalidMeshError
+            If they do not close (`where` lists segments).
+        """
+        array = np.asarray(segments, dtype=np.float64).reshape(-1, 2, 2)
+        chosen = chosen_pitch(pitch, array.reshape(-1, 2))
+        return cls._of(_built(segment_rows(array), chosen, winding))
+
+    @classmethod
+    def empty(cls) -> Self:
+        """Return the empty set."""
+        return cls()
+
+    @classmethod
+    def full(cls) -> Self:
+        """Return the whole plane."""
+        return ~cls()
+
+    @classmethod
+    def rectangle(
+        cls, width: Scalar, height: Scalar | None = None, *, center: bool = False
+    ) -> Self:
+        """Return a rectangle with its lowest corner, or its middle, at the origin."""
+        w = positive(width, "width")
+        h = w if height is None else positive(height, "height")
+        corners = np.array([(0, 0), (w, 0), (w, h), (0, h)], dtype=np.float64)
+        return cls(corners - (w / 2, h / 2) if center else corners)
+
+    @classmethod
+    def circle(cls, r: Scalar, segments: int = 64) -> Self:
+        """Return a regular polygon with its corners on the circle about the origin."""
+        return cls(unit_circle(sides_around(3, segments, "segments")) * positive(r, "r"))
+
+    @classmethod
+    def polygon(cls, points: Any, *, pitch: int | None = None) -> Self:
+        """Return what one outline surrounds, whichever way round it runs ("nonzero")."""
+        return cls([points], winding="nonzero", pitch=pitch)
+
+    @classmethod
+    def half_plane(cls, normal: Vector, offset: Scalar = 0.0, *, pitch: int | None = None) -> Self:
+        """Return all points x with ``normal . x <= offset`` (see `ObjectTree.half_space`)."""
+        return cls.half_space(vector2(normal, "normal"), offset, pitch=pitch)
+
+    @classmethod
+    def from_svg(cls, path: str | os.PathLike[str], **options: Any) -> "Region":
+        """Read the filled shapes of an SVG file (see `bspcsg.bsp.load_svg`)."""
+        from ..drawings.svg import load_svg
+
+        return load_svg(path, **options)
+
+    @classmethod
+    def from_dxf(cls, path: str | os.PathLike[str], **options: Any) -> "Region":
+        """Read the closed outlines of a DXF file (see `bspcsg.bsp.load_dxf`)."""
+        from ..drawings.dxf import load_dxf
+
+        return load_dxf(path, **options)
+
+    @property
+    def components(self) -> tuple["Region", ...]:
+        """The connected parts, in the order of their outlines; touching corners connect nothing."""
+        outer = [k for k, outline in enumerate(self.outlines) if not outline.is_hole]
+        return tuple(self._component(k) for k in outer)
+
+    def _component(self, outer: int) -> "Region":
+        holes = [o.points for o in self.outlines if o.parent == outer and o.is_hole]
+        return Region([self.outlines[outer].points, *holes], pitch=self.pitch)
+
+    # Transforms
+
+    def translate(self, *offset: Scalar | Vector) -> "Region":
+        """Return the region moved by two numbers or one vector; exact for whole lattice steps."""
+        vector: Any = offset[0] if len(offset) == 1 else offset
+        return self._placed(transform.translation([*vector2(vector, "offset"), 0.0]))
+
+    def rotate(self, angle: Scalar) -> "Region":
+        """Return the region turned counterclockwise about the origin, in degrees.
+
+        Quarter turns are exact.
+        """
+        return self._placed(transform.rotation(number(angle, "angle"), "z"))
+
+    def scale(self, factor: Scalar | Vector) -> "Region":
+        """Return the region scaled about the origin, by one factor or one per axis."""
+        both: Any = factor
+        x, y = vector2((both, both) if np.ndim(both) == 0 else both, "factor")
+        return self._placed(transform.scaling([x, y, 1.0]))
+
+    def mirror(self, normal: Vector) -> "Region":
+        """Return the mirror image in the line through the origin with this normal."""
+        return self._placed(transform.mirroring([*vector2(normal, "normal"), 0.0]))
+
+    def transform(self, matrix: Any) -> "Region":
+        """Return the image under an affine map, a (3, 3) or (2, 3) matrix for column vectors.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the matrix is no invertible affine map.
+        UnboundedError
+            If the map is no lattice motion, and the region and its complement are both unbounded.
+        """
+        rows = np.asarray(matrix, dtype=np.float64)
+        if rows.shape not in ((3, 3), (2, 3)) or (len(rows) == 3 and list(rows[2]) != [0, 0, 1]):
+            raise invalid_parameter("A map of the plane is a (3, 3) or (2, 3) affine matrix.")
+        wide = np.eye(4)
+        wide[:2, [0, 1, 3]] = rows[:2]
+        return self._placed(transform.matrix_factor(wide))
+
+    def _placed(self, factor: Factor) -> "Region":
+        motion = transform.lattice_motion((factor,), self.pitch)
+        if motion is not None:
+            # What leaves this lattice goes by its coordinates to a coarser one.
+            with suppress(LimitError), core_errors():
+                axes, shift = list(motion.axes[:2]), list(motion.shift[:2])
+                return self._of(self._moved(axes, shift, 1, self.pitch))
+        if self.is_bounded:
+            loops = [moved_points(factor, loop) for loop in self.to_polygons()]
+            return Region(loops, pitch=self._pitch_for(loops))
+        outside = ~self
+        if not outside.is_bounded:
+            raise UnboundedError(
+                "This region and its complement both reach to infinity; only moves by whole lattice"
+                " steps, quarter turns and mirrors of the axes act on it.",
+                "unbounded",
+            )
+        return ~outside._placed(factor)
+
+    def _pitch_for(self, loops: Sequence[FloatArray]) -> int | None:
+        """Return the region's own pitch if it holds these points."""
+        largest = max((float(np.abs(loop).max()) for loop in loops), default=0.0)
+        return self.pitch if largest < (2**53 - 1) * 10.0**self.pitch else None
+
+    # To space
+
+    def extrude(self, height: Scalar, *, center: bool = False) -> Solid:
+        """Return the upright prism over the region (see `bspcsg.extrude`), none if it is empty."""
+        positive(height, "height")
+        return extrude(self, height, center=center) if self.outlines else Solid.empty()
+
+    def revolve(self, *, angle: Scalar = 360.0, segments: int = 32) -> Solid:
+        """Return what the region sweeps around the z axis, x being the distance from the axis.
+
+        See `bspcsg.revolve`; empty for an empty region.
+        """
+        full = positive(angle, "angle") >= 360
+        sides_around(3 if full else 1, segments, "segments")
+        if not self.outlines:
+            return Solid.empty()
+        return revolve(self, angle=angle, segments=segments)
+
+    # Files and other libraries
+
+    def to_svg(self, path: str | os.PathLike[str], **options: Any) -> None:
+        """Write an SVG file (see `bspcsg.bsp.save_svg`)."""
+        from ..drawings.svg import save_svg
+
+        save_svg(self, path, **options)
+
+    def to_dxf(self, path: str | os.PathLike[str]) -> None:
+        """Write a DXF file (see `bspcsg.bsp.save_dxf`)."""
+        from ..drawings.dxf import save_dxf
+
+        save_dxf(self, path)
+
+    def to_shapely(self) -> Any:
+        """Return a ``shapely.MultiPolygon``; shapely must be installed."""
+        shapely = interop.optional("shapely", "2d")
+        shells = [k for k, outline in enumerate(self.outlines) if not outline.is_hole]
+        holes: Sequence[list[FloatArray]] = [
+            [o.points for o in self.outlines if o.is_hole and o.parent == k] for k in shells
+        ]
+        pairs = zip(shells, holes, strict=True)
+        return shapely.MultiPolygon([(self.outlines[k].points, inner) for k, inner in pairs])
+
+    def __repr__(self) -> str:
+        """Say how large it is, as far as that is cheap."""
+        if self.is_empty or self.is_full:
+            return f"Region({'empty' if self.is_empty else 'full'})"
+        if not self.is_bounded:
+            return "Region(unbounded)"
+        corners = sum(len(outline.points) for outline in self.outlines)
+        count = len(self.outlines)
+        return (
+            f"Region({count} outline{'s' * (count > 1)}, {corners} corners, area {self.area:.6g})"
+        )
+
+
+def _built(rows: FloatArray, pitch: int, winding: Any) -> _core.ObjectTree:
+    rule = winding_rule(winding)
+    with core_errors():
+        return _core.ObjectTree.build(2, rows, pitch, winding=rule)

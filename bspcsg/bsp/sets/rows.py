@@ -1,0 +1,49 @@
+"""Points and hyperplanes as rows for the core."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray, Scalar
+from ...errors import invalid_parameter
+from ...geometry import hyperplane as exact
+from .pieces import Hyperplane
+
+
+def hyperplane(normal: Any, offset: Scalar, dimension: int | None = None) -> exact.Hyperplane:
+    """Return the hyperplane of a normal, which one number may stand for, and an offset."""
+    entries = np.atleast_1d(np.asarray(normal, dtype=object)).tolist()
+    count = len(entries)
+    if dimension is None and not 1 <= count <= 3:
+        raise invalid_parameter("The normal of a hyperplane has one to three numbers.")
+    if dimension not in (None, count):
+        raise invalid_parameter(
+            f"The hyperplane's normal must have {dimension} numbers, not {count}."
+        )
+    return exact.Hyperplane.from_numbers(entries, offset)
+
+
+def hyperplane_row(normal: Any, offset: Scalar, dimension: int, pitch: int) -> list[int]:
+    """Return the normal and the offset of the nearest hyperplane of a lattice, in its steps."""
+    return hyperplane(normal, offset, dimension).on_lattice(pitch).row
+
+
+def hyperplane_rows(cuts: Sequence[Hyperplane], dimension: int, pitch: int) -> list[list[int]]:
+    """Return a row for each hyperplane."""
+    return [hyperplane_row(normal, offset, dimension, pitch) for normal, offset in cuts]
+
+
+def point_rows(points: Any, dimension: int) -> FloatArray:
+    """Return points as (k, dimension) float64."""
+    try:
+        array = np.ascontiguousarray(points, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise invalid_parameter("Points must be numbers.") from error
+    if dimension == 1 and array.ndim == 1:
+        array = array[:, None]
+    if array.size == 0:
+        return np.zeros((0, dimension))
+    if array.ndim != 2 or array.shape[1] != dimension:
+        raise invalid_parameter(f"Points must have shape (n, {dimension}), not {array.shape}.")
+    return array

@@ -1,0 +1,78 @@
+"""Sections of solids by planes, as regions."""
+
+from fractions import Fraction
+
+import numpy as np
+
+from ..._types import FloatArray, Scalar, Vector
+from ...errors import core_errors
+from ...geometry.hyperplane import Hyperplane, exact_number
+from ...geometry.transform import vector3
+from ...parameters import number
+from ...solid.solid import Solid
+from .region import Region
+
+#: For a normal along an axis: the axes of the section's coordinates, right-handed about the normal.
+_AXES = {
+    (1, 0, 0): (1, 2),
+    (-1, 0, 0): (2, 1),
+    (0, 1, 0): (2, 0),
+    (0, -1, 0): (0, 2),
+    (0, 0, 1): (0, 1),
+    (0, 0, -1): (1, 0),
+}
+
+
+def slice_solid(
+    solid: Solid,
+    offset: Scalar = 0.0,
+    normal: Vector = (0, 0, 1),
+    *,
+    origin: Vector | None = None,
+) -> Region:
+    """Return the section of a solid by a plane, in coordinates of the plane (see `Solid.slice`)."""
+    direction = vector3(normal, "normal")
+    plane = Hyperplane.from_numbers(direction.tolist(), _product(direction, offset, origin))
+    tree = solid.normalized().tree
+    with core_errors():
+        edges = tree.section(plane.on_lattice(tree.pitch).row)
+    flat = _in_plane(edges.reshape(-1, 3), direction)
+    segments = flat.reshape(-1, 2, 2)
+    proper = (segments[:, 0] != segments[:, 1]).any(axis=1)
+    return Region.from_segments(segments[proper], pitch=tree.pitch)
+
+
+def _product(normal: FloatArray, offset: Scalar, origin: Vector | None) -> Fraction:
+    """Return what the normal's product with all points of the plane is."""
+    if origin is None:
+        return exact_number(number(offset, "offset"))
+    pairs = zip(normal.tolist(), vector3(origin, "origin").tolist(), strict=True)
+    return sum((exact_number(n) * exact_number(x) for n, x in pairs), Fraction(0))
+
+
+def _in_plane(points: FloatArray, normal: FloatArray) -> FloatArray:
+    """Return (n, 2) coordinates of points in a plane."""
+    u, v = plane_frame(normal)
+    columns = [sum(points[:, k] * axis[k] for k in range(3)) for axis in (u, v)]
+    return np.column_stack(columns)
+
+
+def plane_frame(normal: Vector) -> tuple[FloatArray, FloatArray]:
+    """Return the two unit vectors of a plane's coordinates, right-handed about its normal.
+
+    A coordinate axis keeps the other two in cyclic order: z gives (x, y), x gives (y, z), y gives
+    (z, x); a negative axis exchanges them. Any other normal n gives the horizontal direction z × n
+    first, and what points up the slope, n × (z × n), second.
+    """
+    n = vector3(normal, "normal")
+    n = n / np.abs(n).max()
+    x, y, z = np.sign(n).astype(int).tolist()
+    axes = _AXES.get((x, y, z))
+    if axes is not None:
+        unit = np.eye(3)
+        return unit[axes[0]], unit[axes[1]]
+    n = n / np.linalg.norm(n)
+    # Not vertical: more than one component, so that z × n is zero for x = y = 0 alone.
+    u = np.array([-n[1], n[0], 0.0])
+    u /= np.linalg.norm(u)
+    return u, np.cross(n, u)

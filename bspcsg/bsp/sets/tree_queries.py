@@ -1,0 +1,144 @@
+"""What can be asked of a set in any dimension."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from ... import _core
+from ..._types import FloatArray, SideArray
+from ...errors import InvalidMeshError, core_errors, invalid_parameter
+from .nearest import nearest_on_polygons, nearest_on_segments
+from .pieces import NodeTable, PieceArrays, Pieces
+from .rows import point_rows
+
+
+class TreeQueries:
+    """A partition tree with in and out leaves, as its questions see it."""
+
+    __slots__ = ("_tree",)
+
+    _tree: _core.ObjectTree
+
+    def classify(self, points: Any) -> SideArray:
+        """Say of each point whether it is inside, exactly.
+
+        Parameters
+        ----------
+        points : (k, d) array_like of float
+            In model units, snapped to the lattice; on the line (k,) will do.
+
+        Returns
+        -------
+        (k,) int8
+            +1 inside, 0 on the boundary, -1 outside.
+        """
+        array = point_rows(points, self.dimension)
+        with core_errors():
+            return self._tree.classify(array)
+
+    @property
+    def measure(self) -> Fraction:
+        """Length, area or volume in model units, exactly.
+
+        Raises
+        ------
+        UnboundedError
+            If the set reaches to infinity.
+        """
+        with core_errors():
+            return Fraction(*self._tree.measure())
+
+    def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
+        """Return the boundary point nearest to each point, and how far it is.
+
+        Parameters
+        ----------
+        points : (k, d) array_like of float
+            In model units; on the line (k,) will do.
+
+        Returns
+        -------
+        nearest : (k, d) float64
+            Rounded; of several the one on the first piece of the boundary.
+        distance : (k,) float64
+
+        Raises
+        ------
+        InvalidMeshError
+            If the set has no boundary, or a point is not finite.
+        """
+        array = point_rows(points, self.dimension)
+        if not np.isfinite(array).all():
+            raise InvalidMeshError("Points must be finite.", "non_finite")
+        if self.is_empty or self.is_full:
+            raise invalid_parameter("A set without boundary has no nearest boundary point.")
+        nearest = self._nearest(array)
+        return nearest, np.sqrt(((nearest - array) ** 2).sum(axis=1))
+
+    def _nearest(self, points: FloatArray) -> FloatArray:
+        if self.dimension == 3:
+            return nearest_on_polygons(points, self.boundary())
+        if self.dimension == 1:
+            ends = self.boundary().vertices
+            return nearest_on_segments(points, np.stack([ends, ends], axis=1))
+        with core_errors():
+            edges, _, _ = self._tree.edges()
+        return nearest_on_segments(points, edges.reshape(-1, 2, 2))
+
+    def boundary(self) -> Pieces:
+        """Return the boundary in convex pieces, with the nodes in whose cuts they lie.
+
+        The pieces of an unbounded set end at the border of the lattice.
+        """
+        return self._pieces(self._tree.boundary)
+
+    def cells(self) -> Pieces:
+        """Return the faces of the leaves that are inside: a decomposition into convex cells.
+
+        Raises
+        ------
+        UnboundedError
+            If the set reaches to infinity.
+        """
+        return self._pieces(self._tree.cells)
+
+    def _pieces(self, ask: Callable[[], PieceArrays]) -> Pieces:
+        with core_errors():
+            return Pieces(*ask())
+
+    @property
+    def nodes(self) -> NodeTable:
+        """The inner nodes as arrays; none if the tree is a leaf."""
+        with core_errors():
+            return NodeTable(*self._tree.nodes)
+
+    def stats(self) -> dict[str, int]:
+        """Return the numbers of inner nodes, leaves and coplanar fragments, and the depth."""
+        return self._tree.stats()
+
+    @property
+    def dimension(self) -> int:
+        """1, 2 or 3."""
+        return self._tree.dimension
+
+    @property
+    def pitch(self) -> int:
+        """Exponent of the lattice step: it is ``10**pitch`` model units."""
+        return self._tree.pitch
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing is inside."""
+        return self._tree.is_empty
+
+    @property
+    def is_full(self) -> bool:
+        """Whether everything is inside."""
+        return self._tree.is_full
+
+    @property
+    def is_bounded(self) -> bool:
+        """Whether the set fits into some box."""
+        return self._tree.is_bounded

@@ -1,0 +1,1 @@
+"""Partition trees over facets: the order they give, their cost, their text."""

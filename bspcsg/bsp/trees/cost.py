@@ -1,0 +1,196 @@
+"""How good a partition tree is: its expected cost, its size, and policies compared.
+
+The cost of the notes, C(T) = 1 + P⁻ C(T⁻) + P⁺ C(T⁺) with C = 0 for an empty region, is the
+expected number of nodes that a query visits. With P± = μ(R(T±)) / μ(R(T)) the products along each
+way telescope: C(T) is the sum of μ(R(v)) / μ(R(root)) over all nodes v.
+"""
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, fields
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+
+from ...errors import core_errors, invalid_parameter
+from ...parameters import not_negative
+from .policy import POLICIES, Policy
+from .tree import PartitionTree
+
+#: Whom a cost is for: points spread evenly over the root's region, or lines through it.
+Query: TypeAlias = Literal["point", "ray"]
+
+
+def cost(tree: PartitionTree, query: Query = "point", margin: float | None = None) -> float:
+    """Return the expected number of nodes that a query visits.
+
+    Parameters
+    ----------
+    tree : PartitionTree
+    query : {"point", "ray"}
+        "point": points evenly spread over the root's region, μ the volume (area, length).
+        "ray": lines of even density that meet the root's region, μ the surface area (perimeter;
+        1 in 1D); no facet stops them.
+    margin : float, optional
+        How far the root's region reaches beyond the facets' box, in model units; by default the
+        tree's own.
+
+    Returns
+    -------
+    float
+        0 for a tree without facets. Regions are divided exactly; only their sizes are doubles, each
+        within about 1e-14 of the root's, times the ratio of its distance from the origin to its
+        size where that is above 1.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the query is another, or the margin is not finite.
+
+    Notes
+    -----
+    Naylor 1993, "Constructing good partitioning trees". That a line meets a convex body inside
+    another with the ratio of their surfaces is Crofton's formula.
+    """
+    if query not in ("point", "ray"):
+        raise invalid_parameter(f"The query is 'point' or 'ray', not {query!r}.")
+    reach = tree.margin if margin is None else not_negative(margin, "margin")
+    with core_errors():
+        volume, surface, volumes, surfaces = tree.core.measures(reach)
+    if query == "point":
+        return math.fsum(volumes) / volume
+    return math.fsum(surfaces) / surface
+
+
+@dataclass(frozen=True)
+class Stats:
+    """Size figures of a tree.
+
+    Parameters
+    ----------
+    facets : int
+        Input facets.
+    nodes : int
+        Inner nodes.
+    leaves : int
+        Empty regions.
+    fragments : int
+        Fragments in all coplanar sets.
+    splits : int
+        How often a node's hyperplane cut a fragment in two.
+    depth : int
+        Hyperplanes on the longest way from the root to a leaf.
+    mean_depth : float
+        The same on average over the leaves.
+    balance : float
+        log2(leaves) / mean_depth: 1 for a tree whose leaves are all at one depth, towards 0 for a
+        chain. (No binary tree has a mean depth below log2 of its leaves.)
+    """
+
+    facets: int
+    nodes: int
+    leaves: int
+    fragments: int
+    splits: int
+    depth: int
+    mean_depth: float
+    balance: float
+
+
+def stats(tree: PartitionTree) -> Stats:
+    """Return the size figures of a tree."""
+    arrays = tree.arrays
+    below = arrays["depth"] + 1
+    ends = np.concatenate([below[arrays["minus"] < 0], below[arrays["plus"] < 0]])
+    mean = float(ends.mean()) if len(ends) else 0.0
+    return Stats(
+        facets=len(tree.core.lattice()[1]) - 1,
+        nodes=len(tree),
+        leaves=len(tree) + 1,
+        fragments=len(tree.fragments),
+        splits=len(tree.splits),
+        depth=int(below.max()) if len(tree) else 0,
+        mean_depth=mean,
+        balance=math.log2(len(tree) + 1) / mean if len(tree) else 1.0,
+    )
+
+
+@dataclass(frozen=True)
+class PolicyRow:
+    """One policy's tree in figures.
+
+    Parameters
+    ----------
+    policy : str
+    nodes, depth, fragments, splits : int
+        As in `Stats`.
+    balance : float
+    point_cost, ray_cost : float
+        As `cost` has them.
+    seconds : float
+        Wall-clock time of the construction.
+    """
+
+    policy: str
+    nodes: int
+    depth: int
+    fragments: int
+    splits: int
+    balance: float
+    point_cost: float
+    ray_cost: float
+    seconds: float
+
+
+class Comparison(list[PolicyRow]):
+    """Rows that print as a table."""
+
+    def __str__(self) -> str:
+        """Return the rows under each other, with a heading."""
+        names = [field.name for field in fields(PolicyRow)]
+        cells = [names] + [[_cell(value) for value in asdict(row).values()] for row in self]
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        lines = (zip(row, widths, strict=True) for row in cells)
+        return "\n".join("  ".join(cell.rjust(width) for cell, width in line) for line in lines)
+
+
+def compare_policies(
+    facets: Any, policies: Sequence[Policy] = POLICIES, **options: Any
+) -> Comparison:
+    """Build one tree for each policy and compare them.
+
+    Parameters
+    ----------
+    facets, **options
+        As for `PartitionTree`.
+    policies : sequence of str
+
+    Returns
+    -------
+    list of PolicyRow
+        In the order of `policies`; as a string it is a table.
+    """
+    return Comparison(_row(facets, policy, options) for policy in policies)
+
+
+def _row(facets: Any, policy: Policy, options: dict[str, Any]) -> PolicyRow:
+    start = time.perf_counter()
+    tree = PartitionTree(facets, policy, **options)
+    seconds = time.perf_counter() - start
+    figures = stats(tree)
+    return PolicyRow(
+        policy=policy,
+        nodes=figures.nodes,
+        depth=figures.depth,
+        fragments=figures.fragments,
+        splits=figures.splits,
+        balance=figures.balance,
+        point_cost=cost(tree, "point"),
+        ray_cost=cost(tree, "ray"),
+        seconds=seconds,
+    )
+
+
+def _cell(value: Any) -> str:
+    return f"{value:.3f}" if isinstance(value, float) else str(value)

@@ -1,0 +1,139 @@
+"""Partition trees as text: JSON to keep them, DOT and SVG to look at them."""
+
+import json
+import zlib
+from typing import Any
+
+import numpy as np
+
+from ... import _core
+from ..._types import FloatArray, IndexArray
+from ...errors import BspcsgError, FormatError, core_errors, invalid_parameter
+from .tree import PartitionTree
+
+_FORMAT = "bspcsg partition tree"
+_VERSION = 2
+#: The version that had no checksum.
+_FIRST = 1
+
+
+def to_json(tree: PartitionTree) -> str:
+    """Return facets as lattice integers, the cuts in preorder, and a checksum of both."""
+    corners, offsets = tree.core.lattice()
+    content = {
+        "format": _FORMAT,
+        "version": _VERSION,
+        "dimension": tree.dimension,
+        "pitch": tree.pitch,
+        "non_planar": "triangulate" if tree.lenience[0] else "error",
+        "degenerate": "drop" if tree.lenience[1] else "error",
+        "margin": tree.margin,
+        "corners": corners.tolist(),
+        "offsets": offsets.tolist(),
+        "cuts": tree.arrays["cut"].tolist(),
+    }
+    return _text(content | {"checksum": _checksum(content)})
+
+
+def from_json(text: str) -> PartitionTree:
+    """Return the tree that `to_json` wrote."""
+    try:
+        content = json.loads(text)
+        known = content["format"] == _FORMAT and content["version"] in (_FIRST, _VERSION)
+    except (ValueError, TypeError, KeyError) as error:
+        raise FormatError("This is not a partition tree in JSON.", "bad_snapshot") from error
+    if not known:
+        message = f"Only versions up to {_VERSION} of the format {_FORMAT!r} can be read."
+        raise FormatError(message, "bad_snapshot")
+    checksum = content.pop("checksum", None)
+    if content["version"] != _FIRST and checksum != _checksum(content):
+        message = "The stored tree was damaged on its way: the checksum does not match."
+        raise FormatError(message, "bad_snapshot")
+    try:
+        return _rebuilt(content)
+    except BspcsgError as error:
+        raise FormatError(str(error), "bad_snapshot", error.where) from error
+    except (ValueError, TypeError, KeyError, OverflowError) as error:
+        message = f"The stored tree is incomplete or damaged ({error})."
+        raise FormatError(message, "bad_snapshot") from error
+
+
+def _text(content: dict[str, Any]) -> str:
+    return json.dumps(content, separators=(",", ":"))
+
+
+def _checksum(content: dict[str, Any]) -> int:
+    """Return the CRC-32 of the content, however its text is laid out."""
+    return zlib.crc32(json.dumps(content, separators=(",", ":"), sort_keys=True).encode())
+
+
+def _rebuilt(content: dict[str, Any]) -> PartitionTree:
+    lenience = content["non_planar"] == "triangulate", content["degenerate"] == "drop"
+    with core_errors():
+        core = _core.FragmentTree.rebuild(
+            _whole(content["corners"], int(content["dimension"])),
+            _whole(content["offsets"], 0),
+            int(content["pitch"]),
+            _whole(content["cuts"], 2),
+            lenience,
+        )
+    return PartitionTree.from_core(core, lenience, float(content["margin"]))
+
+
+def _whole(values: Any, columns: int) -> IndexArray:
+    """Return whole numbers as int64, in rows of `columns` unless it is 0."""
+    array = np.asarray(values if len(values) else np.zeros(0, dtype=np.int64))
+    if array.dtype.kind != "i":
+        raise ValueError("numbers that are not whole")
+    integers = np.ascontiguousarray(array, dtype=np.int64)
+    if not columns:
+        return integers
+    rows = integers if integers.size else integers.reshape(0, columns)
+    if rows.ndim != 2 or rows.shape[1] != columns:
+        raise ValueError(f"rows that do not have {columns} numbers")
+    return rows
+
+
+def to_dot(tree: PartitionTree) -> str:
+    """Return the tree in the language of Graphviz: minus edges solid, plus edges dashed."""
+    arrays = tree.arrays
+    lines = ["digraph partition_tree {", '  node [shape=box, fontname="sans-serif"];']
+    sources = tree.fragments.source
+    for index in range(len(tree)):
+        held = sources[arrays["start"][index] : arrays["end"][index]].tolist()
+        label = "free cut" if not held else " ".join(map(str, held))
+        lines.append(f'  n{index} [label="{label}"];')
+        for side, style in (("minus", "solid"), ("plus", "dashed")):
+            child = int(arrays[side][index])  # type: ignore[literal-required]
+            name = f"n{child}" if child >= 0 else f"{side}{index}"
+            if child < 0:
+                lines.append(f"  {name} [shape=point];")
+            lines.append(f"  n{index} -> {name} [style={style}];")
+    return "\n".join([*lines, "}", ""])
+
+
+def to_svg(tree: PartitionTree, size: int = 480) -> str:
+    """Return a picture of a tree in the plane, `size` pixels wide."""
+    if tree.dimension != 2:
+        raise invalid_parameter("Only trees in the plane are drawn as SVG.")
+    outline = np.asarray(tree.region())
+    low, high = outline.min(axis=0), outline.max(axis=0)
+    scale = size / float(high[0] - low[0])
+    height = scale * float(high[1] - low[1])
+
+    def line(ends: FloatArray, style: str) -> str:
+        (x1, y1), (x2, y2) = (ends - low) * scale
+        return (
+            f'<line x1="{x1:.3f}" y1="{height - y1:.3f}" x2="{x2:.3f}" y2="{height - y2:.3f}"'
+            f" {style}/>"
+        )
+
+    spans = [node.span for node in tree.nodes]
+    cuts = [line(span, 'stroke="#bbb"') for span in spans if len(span)]
+    pieces = [line(piece, 'stroke="#000" stroke-width="2"') for piece in tree.fragments]
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{size}" height="{height:.0f}"'
+        f' viewBox="0 0 {size} {height:.3f}">'
+    )
+    frame = f'<rect width="{size}" height="{height:.3f}" fill="#fff" stroke="#bbb"/>'
+    return "\n".join([head, frame, *cuts, *pieces, "</svg>", ""])

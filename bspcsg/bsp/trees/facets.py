@@ -1,0 +1,67 @@
+"""Points, segments and polygons in whatever form they come, as corners and offsets."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...errors import InvalidMeshError
+from ...mesh import interop
+from ...solid.solid import Solid
+
+#: Corners (n, d) float64, and offsets (k + 1,) int64 at which the facets start.
+Corners = tuple[FloatArray, IndexArray]
+
+_FORMS = "(n,) points, (n, 2, 2) segments, (n, 3, 3) triangles, or a list of (k, 3) polygons"
+
+
+def corners_of(facets: Any) -> Corners:
+    """Return the corners of facets one after another.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the shape is none of those that `PartitionTree` takes.
+    """
+    if isinstance(facets, Sequence) and not len(facets):
+        message = "An empty list has no dimension; use an empty array of one of the shapes."
+        raise InvalidMeshError(message, "shape")
+    try:
+        array = np.asarray(facets, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        return _polygons(facets, error)
+    if array.ndim == 1:
+        return array.reshape(-1, 1), np.arange(len(array) + 1)
+    is_segments = array.ndim == 3 and array.shape[1:] == (2, 2)
+    is_polygons = array.ndim == 3 and array.shape[1] >= 3 and array.shape[2] == 3
+    if not (is_segments or is_polygons):
+        raise InvalidMeshError(f"Facets must be {_FORMS}; not {array.shape}.", "shape")
+    count, corners, dimension = array.shape
+    flat = np.ascontiguousarray(array.reshape(-1, dimension))
+    return flat, np.arange(count + 1) * corners
+
+
+def _polygons(facets: Any, cause: Exception) -> Corners:
+    try:
+        polygons = [np.asarray(polygon, dtype=np.float64) for polygon in facets]
+    except (TypeError, ValueError):
+        raise InvalidMeshError(f"Facets must be {_FORMS}.", "shape") from cause
+    for number, polygon in enumerate(polygons):
+        if polygon.ndim != 2 or polygon.shape[1] != 3:
+            message = f"Polygon {number} must have shape (k, 3), not {polygon.shape}."
+            raise InvalidMeshError(message, "shape", [number])
+    lengths = [len(polygon) for polygon in polygons]
+    return np.concatenate(polygons), np.concatenate([[0], np.cumsum(lengths)])
+
+
+def mesh_triangles(mesh: Any) -> FloatArray:
+    """Return the (n, 3, 3) triangles of whatever holds a mesh; it need not be closed."""
+    if isinstance(mesh, Solid):
+        mesh = mesh.to_mesh()
+    vertices, faces = interop.own_arrays(*interop.arrays_from(mesh))
+    if faces.size and (faces.min() < 0 or faces.max() >= len(vertices)):
+        message = "A face names a vertex that does not exist."
+        raise InvalidMeshError(message, "index_out_of_range")
+    triangles: FloatArray = vertices[faces]
+    return triangles

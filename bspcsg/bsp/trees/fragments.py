@@ -1,0 +1,74 @@
+"""`Fragments`: convex pieces of facets in some order, as flat arrays."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..._types import BoolArray, FloatArray, IndexArray
+
+
+@dataclass(frozen=True, eq=False)
+class Fragments:
+    """Convex pieces in order: points (1D), segments (2D), polygons (3D).
+
+    Parameters
+    ----------
+    vertices : (n, d) float64
+        Corners of all fragments one after another, in model units, each within a few units in the
+        last place of its exact position. Counterclockwise seen from the plus side of the fragment.
+    offsets : (k + 1,) int64
+        Fragment i owns ``vertices[offsets[i]:offsets[i + 1]]``.
+    source : (k,) int64
+        Index of the input facet it is a part of.
+    node : (k,) int64
+        The tree node in whose coplanar set it lies.
+    original : (n,) bool
+        Whether the edge from this corner to the next lies on an edge of the input facet. In 2D:
+        whether this end is an end of the input segment.
+    flipped : (k,) bool
+        Whether the fragment faces against its node's hyperplane.
+    """
+
+    vertices: FloatArray
+    offsets: IndexArray
+    source: IndexArray
+    node: IndexArray
+    original: BoolArray
+    flipped: BoolArray
+
+    def __len__(self) -> int:
+        """Return the number of fragments."""
+        return len(self.source)
+
+    def __getitem__(self, index: int) -> FloatArray:
+        """Return the (m, d) corners of one fragment."""
+        if not -len(self) <= index < len(self):
+            raise IndexError(f"There are {len(self)} fragments, none is number {index}.")
+        index %= len(self)
+        return self.vertices[self.offsets[index] : self.offsets[index + 1]]
+
+    def __iter__(self) -> Iterator[FloatArray]:
+        """Yield the corners of each fragment."""
+        return (self[index] for index in range(len(self)))
+
+    def take(self, indices: IndexArray) -> "Fragments":
+        """Return the fragments with these indices, in this order."""
+        starts, ends = self.offsets[:-1][indices], self.offsets[1:][indices]
+        corners = ranges(starts, ends)
+        return Fragments(
+            self.vertices[corners],
+            np.concatenate([[0], np.cumsum(ends - starts)]),
+            self.source[indices],
+            self.node[indices],
+            self.original[corners],
+            self.flipped[indices],
+        )
+
+
+def ranges(starts: IndexArray, ends: IndexArray) -> IndexArray:
+    """Return ``starts[0], starts[0] + 1, …, ends[0] - 1, starts[1], …`` as one int64 array."""
+    counts = ends - starts
+    firsts = np.cumsum(counts) - counts
+    indices: IndexArray = np.arange(counts.sum()) + np.repeat(starts - firsts, counts)
+    return indices

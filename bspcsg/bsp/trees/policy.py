@@ -1,0 +1,64 @@
+"""Pivot policies: whose hyperplane divides a region.
+
+first
+    The first facet in the order given.
+random
+    The first facet in one random order of all; the seed makes it reproducible. The expected number
+    of fragments of n disjoint segments is at most n + 2 n ln n (de Berg et al., Computational
+    Geometry, section 12.3; Paterson, Yao 1990).
+least-splits
+    Of `sample` candidates, evenly spaced in the region's list, the one that cuts the fewest facets.
+balanced
+    The candidate with the least ``|n⁻ - n⁺|``.
+weighted
+    The least ``alpha * |n⁻ - n⁺| + (1 - alpha) * splits``; with ``alpha=0.5`` this is the candidate
+    whose larger side has the fewest facets.
+least-cost
+    The least P⁻n⁻ + P⁺n⁺, with P the shares of the region's volume: the expected number of facets
+    that a point query still has to do with after one step (after Naylor 1993, section 4, who has
+    the expected cost of the subtrees, unknown at this time, for their sizes). Regions are kept
+    while building, so that this policy is several times slower than the others.
+
+Each divides by supporting hyperplanes only (autopartition). With ``top=k``, regions with more than
+k facets are divided by axis-parallel hyperplanes through the median instead, as long as neither
+side gets more than three quarters of the facets (general partition).
+"""
+
+from typing import Any, Literal, TypeAlias, get_args
+
+from ...errors import invalid_parameter
+from ...parameters import at_least, number, optional_pitch, seed_number
+
+#: The names of the pivot policies.
+Policy: TypeAlias = Literal["first", "random", "least-splits", "balanced", "weighted", "least-cost"]
+
+#: All pivot policies.
+POLICIES: tuple[Policy, ...] = get_args(Policy)
+
+
+def checked_policy(policy: Any) -> Policy:
+    """Return the policy, or raise an error that lists the names."""
+    if policy not in POLICIES:
+        raise invalid_parameter(f"Unknown policy {policy!r}; there are {', '.join(POLICIES)}.")
+    result: Policy = policy
+    return result
+
+
+def core_options(seed: Any, sample: Any, alpha: Any, top: Any, pitch: Any) -> dict[str, Any]:
+    """Return the numbers of a construction as the core takes them.
+
+    Raises
+    ------
+    InvalidMeshError
+        If one is out of its range.
+    """
+    weight = number(alpha, "alpha")
+    if not 0 <= weight <= 1:
+        raise invalid_parameter(f"alpha must be from 0 to 1, not {alpha}.")
+    return {
+        "seed": seed_number(seed),
+        "sample": at_least(1, sample, "sample"),
+        "alpha": weight,
+        "top": at_least(0, top, "top"),
+        "pitch": optional_pitch(pitch),
+    }

@@ -1,0 +1,44 @@
+"""Exact volumes of the results of one pair have to add up."""
+
+from ...errors import BspcsgError
+from ...solid.solid import Solid
+from ..record import IdentityRecord
+
+#: What volumes are compared modulo; see `Measured.volume_residues`.
+_PRIMES = (2**61 - 1, 2**61 - 31)
+
+#: For each operation the equation, and how often A, B and their intersection count in its volume.
+_EQUATIONS = {
+    "union": ("|A ∪ B| = |A| + |B| − |A ∩ B|", (1, 1, -1)),
+    "difference": ("|A − B| = |A| − |A ∩ B|", (1, 0, -1)),
+    "xor": ("|A ⊕ B| = |A| + |B| − 2 |A ∩ B|", (1, 1, -2)),
+}
+
+
+def identity_of(op: str, operands: list[Solid], result: Solid) -> IdentityRecord | None:
+    """Return whether the volume of a result adds up with those it is made from, exactly.
+
+    None for other than two operands, for operands on different lattices, and for intersections,
+    from which the other results are counted.
+    """
+    if op not in _EQUATIONS or len(operands) != 2 or operands[0].pitch != operands[1].pitch:
+        return None
+    equation, weights = _EQUATIONS[op]
+    a, b = operands
+    volumes = [_residues(solid) for solid in (a, b, a & b, result)]
+    known = [volume for volume in volumes if volume is not None]
+    if len(known) < len(volumes):
+        return None
+    holds = all(
+        (sum(weight * part[k] for weight, part in zip(weights, known[:3], strict=True))
+         - known[3][k]) % prime == 0
+        for k, prime in enumerate(_PRIMES)
+    )  # fmt: skip
+    return {"equation": equation, "holds": holds}
+
+
+def _residues(solid: Solid) -> tuple[int, int] | None:
+    try:
+        return solid.volume_residues
+    except BspcsgError:
+        return None

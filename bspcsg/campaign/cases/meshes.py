@@ -1,0 +1,60 @@
+"""The meshes of one case in one file, for pictures and for looking again."""
+
+import io
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...mesh.mesh import Mesh
+
+
+@dataclass(frozen=True, eq=False)
+class CaseMeshes:
+    """What a file holds.
+
+    Parameters
+    ----------
+    operands : dict of str to Mesh
+        By letter.
+    result, difference : Mesh
+        The latter without faces if the sets are equal or were not compared.
+    """
+
+    operands: dict[str, Mesh]
+    result: Mesh
+    difference: Mesh
+
+
+def packed(operands: Sequence[Mesh], result: Mesh, difference: Mesh | None) -> bytes:
+    """Return the bytes of a `.npz` file: ``a_vertices``, ``a_faces``, ``result_vertices`` …."""
+    named = {chr(ord("a") + number): mesh for number, mesh in enumerate(operands)}
+    named["result"], named["difference"] = result, difference or _empty()
+    arrays: dict[str, np.ndarray] = {}
+    for name, mesh in named.items():
+        arrays[f"{name}_vertices"] = mesh.vertices
+        arrays[f"{name}_faces"] = mesh.faces.astype(np.int32)
+    buffer = io.BytesIO()
+    # The stubs of numpy take the arrays' names for its one option.
+    np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
+    return buffer.getvalue()
+
+
+def unpacked(path: str | os.PathLike[str]) -> CaseMeshes:
+    """Return what `packed` wrote to a file."""
+    with np.load(path, allow_pickle=False) as arrays:
+        names = [name.removesuffix("_faces") for name in arrays.files if name.endswith("_faces")]
+        meshes = {
+            name: _mesh(arrays[f"{name}_vertices"], arrays[f"{name}_faces"]) for name in names
+        }
+    return CaseMeshes(meshes, meshes.pop("result"), meshes.pop("difference"))
+
+
+def _mesh(vertices: np.ndarray, faces: np.ndarray) -> Mesh:
+    corners = faces.astype(np.int64)
+    return Mesh(vertices, corners, np.zeros((len(corners), 2), dtype=np.int64))
+
+
+def _empty() -> Mesh:
+    return _mesh(np.zeros((0, 3)), np.zeros((0, 3)))

@@ -1,0 +1,86 @@
+"""The operands of a case as solids."""
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...errors import InvalidMeshError, held
+from ...formats.files import read
+from ...solid.solid import Solid
+from .case import Case, Operand
+from .poses import OF_THE_FIRST, Arrays, placed, pose_matrix, shuffled
+
+#: Files that a worker keeps: the cases of a pair follow one another.
+_KEPT = 8
+
+
+def operands_of(case: Case) -> tuple[list[Solid], list[FloatArray | None]]:
+    """Return the operands in their places, and the rows of the map that put each there.
+
+    Raises
+    ------
+    FormatError
+        If a file cannot be read.
+    InvalidMeshError, LimitError
+        If a mesh is no solid; the message names it.
+    """
+    meshes = [_mesh_of(operand) for operand in case.operands]
+    rows = [_given_pose(operand) for operand in case.operands]
+    if case.pose is not None:
+        meshes[1], rows[1] = _drawn(case, meshes)
+    elif any(pose is not None for pose in rows):
+        meshes = [
+            mesh if pose is None else placed(mesh, pose)
+            for mesh, pose in zip(meshes, rows, strict=True)
+        ]
+    solids = [_solid(mesh, operand) for mesh, operand in zip(meshes, case.operands, strict=True)]
+    return solids, rows
+
+
+def _drawn(case: Case, meshes: Sequence[Arrays]) -> tuple[Arrays, FloatArray]:
+    """Return the second mesh in its drawn pose."""
+    pose = held(case.pose, "the pose")
+    seed, number = held(case.seed, "the seed"), held(case.number, "the number")
+    first, second = meshes
+    second = first if pose in OF_THE_FIRST else second
+    rows = pose_matrix(pose, _used(first), _used(second), seed, number)
+    moved = placed(second, rows)
+    return shuffled(moved, seed, number) if pose == "same" else moved, rows
+
+
+def _used(mesh: Arrays) -> FloatArray:
+    """Return the vertices that a face uses."""
+    used: FloatArray = mesh[0][np.unique(mesh[1])]
+    if len(used) == 0:
+        raise InvalidMeshError("There are no faces to place.", "empty_mesh")
+    return used
+
+
+def _given_pose(operand: Operand) -> FloatArray | None:
+    return None if operand.pose is None else np.array(operand.pose, dtype=np.float64)
+
+
+def _mesh_of(operand: Operand) -> Arrays:
+    if operand.file is None:
+        given: dict[str, Any] = operand.mesh or {}
+        vertices = np.array(given["vertices"], dtype=np.float64).reshape(-1, 3)
+        return vertices, np.array(given["faces"], dtype=np.int64).reshape(-1, 3)
+    return _read(operand.file, operand.sha256)
+
+
+@lru_cache(maxsize=_KEPT)
+def _read(file: str, sha256: str) -> Arrays:
+    del sha256  # what tells a file from itself after it was changed
+    raw = read(file)
+    return raw.vertices, raw.faces
+
+
+def _solid(mesh: Arrays, operand: Operand) -> Solid:
+    try:
+        return Solid(*mesh)
+    except InvalidMeshError as error:
+        name = operand.file or f"operand {operand.name}"
+        raise InvalidMeshError(f"{name}: {error.message}", error.code, error.where) from error

@@ -1,0 +1,141 @@
+"""How the second of two meshes is placed on the first: at random, or so that parts coincide.
+
+A pose is an affine map, given by the three rows of its matrix, which is applied to the vertices as
+they were read, in double precision.
+"""
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+
+Arrays: TypeAlias = tuple[FloatArray, IndexArray]
+Placing: TypeAlias = Callable[[FloatArray, FloatArray, np.random.Generator], FloatArray]
+
+_QUARTER_TURN = np.array([(0.0, -1, 0), (1, 0, 0), (0, 0, 1)])
+
+
+def pose_matrix(
+    name: str, first: FloatArray, second: FloatArray, seed: int, number: int
+) -> FloatArray:
+    """Return the rows of a pose, (3, 4) float64.
+
+    Parameters
+    ----------
+    name : str
+        One of `POSES`.
+    first, second : (n, 3) float64
+        Vertices. Poses out of `OF_THE_FIRST` place a copy of the first, so `second` is that.
+    seed, number : int
+        Of the random draw.
+    """
+    return POSES[name](first, second, np.random.default_rng([seed, number]))
+
+
+def placed(mesh: Arrays, rows: FloatArray) -> Arrays:
+    """Return a mesh under an affine map; a map that mirrors turns its faces round."""
+    vertices = mesh[0] @ rows[:, :3].T + rows[:, 3]
+    mirrors = np.linalg.det(rows[:, :3]) < 0
+    return vertices, mesh[1][:, ::-1].copy() if mirrors else mesh[1]
+
+
+def shuffled(mesh: Arrays, seed: int, number: int) -> Arrays:
+    """Return a mesh with its faces in another order."""
+    rng = np.random.default_rng([seed, number])
+    return mesh[0], mesh[1][rng.permutation(len(mesh[1]))]
+
+
+def _rows(linear: FloatArray, shift: FloatArray) -> FloatArray:
+    return np.concatenate([linear, shift[:, None]], axis=1)
+
+
+def _middle(points: FloatArray) -> FloatArray:
+    middle: FloatArray = (points.min(axis=0) + points.max(axis=0)) / 2
+    return middle
+
+
+def _size(points: FloatArray) -> float:
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def _random(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Turn, scale and shift the second mesh so that the two overlap in general position."""
+    scale = _size(first) / _size(second) * rng.uniform(0.5, 1.5)
+    linear = _rotation(rng) * scale
+    shift = rng.uniform(-0.4, 0.4, 3) * np.ptp(first, axis=0)
+    return _rows(linear, _middle(first) + shift - linear @ _middle(second))
+
+
+def _rotation(rng: np.random.Generator) -> FloatArray:
+    """Return a uniformly distributed rotation matrix, from a random quaternion."""
+    w, x, y, z = (q := rng.normal(size=4)) / np.linalg.norm(q)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def _alike_in_size(first: FloatArray, second: FloatArray) -> float:
+    # A power of ten keeps short decimals short, and coplanar faces coplanar.
+    return float(10.0 ** round(float(np.log10(_size(first) / _size(second)))))
+
+
+def _corner(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Put the lowest corners of both boxes together: outer faces become coplanar."""
+    scale = _alike_in_size(first, second)
+    return _rows(np.eye(3) * scale, first.min(axis=0) - (second * scale).min(axis=0))
+
+
+def _beside(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Put the second mesh against the first: outer faces touch from both sides."""
+    rows = _corner(first, second, rng)
+    axis = int(rng.integers(3))
+    rows[axis, 3] += np.ptp(first, axis=0)[axis]
+    return rows
+
+
+def _copy(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Shift a copy of the first along an axis: its faces slide in their own planes."""
+    shift, axis = np.zeros(3), int(rng.integers(3))
+    shift[axis] = rng.choice([0.25, 0.5, 1.0]) * np.ptp(first, axis=0)[axis]
+    return _rows(np.eye(3), shift)
+
+
+def _mirror(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Mirror a copy of the first in the middle of its box."""
+    linear, shift, axis = np.eye(3), np.zeros(3), int(rng.integers(3))
+    linear[axis, axis] = -1
+    shift[axis] = first[:, axis].max() + first[:, axis].min()
+    return _rows(linear, shift)
+
+
+def _turned(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Turn a copy of the first by a quarter about the middle of its box."""
+    return _rows(_QUARTER_TURN, _middle(first) - _QUARTER_TURN @ _middle(first))
+
+
+def _same(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Leave a copy of the first where it is; `shuffled` lists its faces in another order."""
+    return _rows(np.eye(3), np.zeros(3))
+
+
+POSES: dict[str, Placing] = {
+    "random": _random,
+    "corner": _corner,
+    "beside": _beside,
+    "copy": _copy,
+    "mirror": _mirror,
+    "turned": _turned,
+    "same": _same,
+}
+
+#: Poses in which parts of the two meshes coincide.
+COINCIDENT = tuple(name for name in POSES if name != "random")
+
+#: Poses of a copy of the first mesh.
+OF_THE_FIRST = frozenset({"copy", "mirror", "turned", "same"})

@@ -1,0 +1,1 @@
+"""Other engines that answer a campaign's questions."""

@@ -1,0 +1,124 @@
+"""The program openscad, whose booleans are exact, but which writes six digits."""
+
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import BspcsgError
+from ...formats.files import read
+from ...mesh.mesh import Mesh
+from .questions import Answer, NoOpinionError, Question, mesh_of
+
+#: Significant digits in what openscad writes.
+_DIGITS = 6
+
+#: Its grid for plane figures, in units.
+_PLANE_GRID = 2.0**-16
+
+#: Triangles up to which it is asked: its exact engine takes minutes for more.
+_MOST = 3000
+
+#: Seconds in which it says its version.
+_PATIENCE = 30
+
+
+def ask_openscad(question: Question) -> Answer:
+    """Return what openscad makes of the operands, as polyhedra with all digits.
+
+    Raises
+    ------
+    NoOpinionError
+        If it is not installed, fails or takes too long, or the operands are too large for it.
+    """
+    count = sum(len(mesh.faces) for mesh in question.operands)
+    if count > _MOST:
+        raise NoOpinionError(f"{count} triangles are too many for its exact engine")
+    with tempfile.TemporaryDirectory(prefix="bspcsg-") as name:
+        script = Path(name, "question.csg")
+        script.write_text(_as_script(question), encoding="utf-8")
+        return run_script(script, question.timeout)
+
+
+def _as_script(question: Question) -> str:
+    """Return the question in openscad's language, with all digits."""
+    bodies = [_polyhedron(mesh) for mesh in question.operands]
+    if question.operation != "xor":
+        return f"{question.operation}() {{\n{''.join(bodies)}}}\n"
+    text = bodies[0]
+    for body in bodies[1:]:
+        text = f"union() {{ difference() {{ {text} {body} }} difference() {{ {body} {text} }} }}\n"
+    return text
+
+
+def _polyhedron(mesh: Mesh) -> str:
+    if len(mesh.faces) == 0:
+        return "group() { }\n"
+    # Polyhedra list their corners clockwise.
+    faces = mesh.faces[:, ::-1].tolist()
+    return f"polyhedron(points = {mesh.vertices.tolist()}, faces = {faces});\n"
+
+
+def _scad_version() -> str:
+    if shutil.which("openscad") is None:
+        raise NoOpinionError("openscad is not on the PATH")
+    done = _ran(["openscad", "--version"], _PATIENCE)
+    return (done.stderr or done.stdout).strip().rpartition(" ")[2]
+
+
+def run_script(path: Path, timeout: float) -> Answer:
+    """Return what openscad makes of a script.
+
+    Raises
+    ------
+    NoOpinionError
+        If it is not installed, fails or takes too long.
+    """
+    version = _scad_version()
+    with tempfile.TemporaryDirectory(prefix="bspcsg-") as name:
+        target = Path(name, "answer.stl")
+        done = _ran(["openscad", "-o", str(target), str(path.absolute())], timeout)
+        # It leaves out what it cannot convert, says so, and ends as if all were well.
+        errors = [line.strip() for line in done.stderr.splitlines() if "ERROR" in line]
+        mesh = _written(target, done)
+    return Answer(version, mesh, _shift(mesh), errors[0] if errors else "")
+
+
+def _written(target: Path, done: "subprocess.CompletedProcess[str]") -> Mesh:
+    """Return the mesh that openscad wrote, or none if it says that nothing is left."""
+    if "Current top level object is empty" in done.stderr:
+        return mesh_of(np.zeros((0, 3)), np.zeros((0, 3)))
+    if done.returncode != 0 or not target.is_file():
+        lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
+        raise NoOpinionError(f"it failed: {(lines or ['no word'])[-1]}")
+    try:
+        raw = read(target)
+    except BspcsgError as error:
+        raise NoOpinionError(f"its STL cannot be read: {error.message}") from error
+    return mesh_of(raw.vertices, raw.faces)
+
+
+def _shift(mesh: Mesh) -> float:
+    """Return how far a vertex may be from where it was before it was written."""
+    largest = float(np.abs(mesh.vertices).max(initial=0))
+    unit = 10.0 ** (len(str(int(largest))) - _DIGITS)
+    return 3**0.5 * (unit / 2 + _PLANE_GRID)
+
+
+def _ran(command: list[str], timeout: float) -> "subprocess.CompletedProcess[str]":
+    environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
+    try:
+        return subprocess.run(
+            command,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=timeout,
+            env=environment,
+            check=False,
+        )
+    except subprocess.TimeoutExpired as error:
+        raise NoOpinionError(f"it took longer than {timeout:g} s") from error

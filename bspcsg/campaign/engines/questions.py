@@ -1,0 +1,69 @@
+"""What is asked of another engine, and what it answers."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..._types import IndexArray, ProgramLine
+from ...mesh.mesh import Mesh
+from ...mesh.weld import welded
+
+
+class NoOpinionError(Exception):
+    """An engine gave no usable answer; the message says why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """What is asked of an engine.
+
+    Parameters
+    ----------
+    operation : str
+    program : sequence of (str, list of int)
+    operands : sequence of Mesh
+        Reduced boundaries.
+    ours : Mesh
+    pitch : int
+        Of the lattice of our result.
+    timeout : float
+        Seconds for one engine.
+    """
+
+    operation: str
+    program: Sequence[ProgramLine]
+    operands: Sequence[Mesh]
+    ours: Mesh
+    pitch: int
+    timeout: float
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What an engine found.
+
+    Parameters
+    ----------
+    version : str
+    mesh : Mesh
+    shift : float
+        How far a vertex may be from its place because of how it was written, in model units.
+    complaint : str
+        What the engine said it could not do although it gave an answer, or empty.
+    """
+
+    version: str
+    mesh: Mesh
+    shift: float = 0.0
+    complaint: str = ""
+
+
+def mesh_of(vertices: np.ndarray, faces: np.ndarray) -> Mesh:
+    """Return a mesh of what another program gave, with equal corners joined."""
+    points = np.ascontiguousarray(vertices, dtype=np.float64).reshape(-1, 3)
+    corners: IndexArray = np.ascontiguousarray(faces, dtype=np.int64).reshape(-1, 3)
+    if len(corners):
+        points, same = welded(points)
+        corners = same[corners]
+    return Mesh(points, corners, np.zeros((len(corners), 2), dtype=np.int64))

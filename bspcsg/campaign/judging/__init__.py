@@ -1,0 +1,1 @@
+"""What a case comes to: its evaluation, opinions on it, and the ruling."""

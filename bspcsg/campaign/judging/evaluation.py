@@ -1,0 +1,291 @@
+"""What comes of one case: our answer, the other engines', and how they compare."""
+
+import time
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, cast
+
+from ..._types import FloatArray, SetOp
+from ...errors import BspcsgError, InternalError, MissingPartError
+from ...mesh.mesh import Mesh
+from ...solid.solid import Solid
+from ...verify import oracle
+from ...verify.check import COMBINE, Examination, examine
+from ...verify.comparison import hausdorff
+from ...verify.verdict import CheckReport, Facts, Verdict
+from ..cases.case import SCRIPT, Case
+from ..cases.identities import identity_of
+from ..cases.operands import operands_of
+from ..engines.questions import Question
+from ..memory import forget_peak, peak_mb
+from ..record import (
+    SCHEMA,
+    CaseRecord,
+    DifferenceRecord,
+    FactsRecord,
+    HausdorffRecord,
+    OracleRecord,
+)
+from .facts import facts_of
+from .opinions import crossings_opinion, is_installed, opinion, script_opinion
+from .ruling import ruled
+
+#: Verdicts after which further engines are asked.
+_DOUBTFUL = frozenset({Verdict.DISAGREE, Verdict.ORACLE_REFUSED, Verdict.ORACLE_FAILED})
+
+#: Verdicts whose meshes nobody needs to look at.
+_DULL = frozenset({str(Verdict.AGREE), str(Verdict.OTHER_TOPOLOGY)})
+
+#: Part of a case's time that one further engine may take.
+_SHARE = 0.4
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How cases are evaluated.
+
+    Parameters
+    ----------
+    against : tuple of str
+        Engines to ask in every case besides manifold3d; the others are asked where it matters.
+    samples : int
+        Points to measure distances from; 0 for none.
+    timeout : float
+        Seconds for a case.
+    meshes : str or None
+        Folder for the meshes of interesting cases, or None to keep none.
+    relative : str
+        What the records call that folder.
+    """
+
+    against: tuple[str, ...] = ()
+    samples: int = 500
+    timeout: float = 300.0
+    meshes: str | None = None
+    relative: str = ""
+
+
+@dataclass
+class _Clock:
+    """Seconds by part of a case."""
+
+    began: float = field(default_factory=time.perf_counter)
+    last: float = field(default_factory=time.perf_counter)
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    def lap(self, name: str) -> None:
+        now = time.perf_counter()
+        self.seconds[name] = round(now - self.last, 4)
+        self.last = now
+
+
+def blank_record(case: Case, verdict: str, reason: str) -> CaseRecord:
+    """Return the record of a case that nothing more is known about."""
+    return {
+        "schema": SCHEMA,
+        "type": "case",
+        "key": case.key,
+        "case": case.name,
+        "kind": case.kind,
+        "operation": case.operation,
+        "operands": [
+            {
+                "name": operand.name,
+                "file": operand.file,
+                "sha256": operand.sha256,
+                "pose": operand.pose,
+                "triangles": None,
+                "volume": None,
+            }
+            for operand in case.operands
+        ],
+        "command": case.command,
+        "seed": case.seed,
+        "pose": case.pose,
+        "verdict": verdict,
+        "reason": reason,
+        "ours": None,
+        "oracles": [],
+        "set_difference": None,
+        "hausdorff": None,
+        "bounds": None,
+        "identity": None,
+        "seconds": {"load": 0.0, "ours": 0.0, "check": 0.0, "total": 0.0},
+        "memory_mb": None,
+        "meshes": None,
+    }
+
+
+def evaluate(case: Case, settings: Settings, keep: bool = False) -> CaseRecord:
+    """Return what comes of a case; what the package refuses is an answer too.
+
+    Parameters
+    ----------
+    case : Case
+    settings : Settings
+    keep : bool
+        Keep the meshes even if nothing is interesting about them.
+    """
+    forget_peak()
+    clock = _Clock()
+    try:
+        record = _Evaluation(case, settings, clock).run(keep)
+    except InternalError as error:
+        record = blank_record(case, str(Verdict.SUBJECT_FAILED), error.message)
+    except MissingPartError:
+        raise
+    except BspcsgError as error:
+        record = blank_record(case, "refused", error.message)
+    seconds = {**record["seconds"], **clock.seconds}
+    seconds["total"] = round(time.perf_counter() - clock.began, 4)
+    record["seconds"] = cast(Any, seconds)
+    record["memory_mb"] = peak_mb()
+    return record
+
+
+class _Evaluation:
+    """One case on its way to a record."""
+
+    def __init__(self, case: Case, settings: Settings, clock: _Clock) -> None:
+        self._case, self._settings, self._clock = case, settings, clock
+        self._is_script = case.operation == SCRIPT
+
+    def run(self, keep: bool) -> CaseRecord:
+        solids, rows = self._loaded()
+        self._clock.lap("load")
+        result = solids[0] if self._is_script else COMBINE[self._case.operation](*solids)
+        result.normalized().to_mesh()
+        self._clock.lap("ours")
+        began = time.perf_counter()
+        found = self._examined(result, solids)
+        asked = time.perf_counter() - began
+        identity = None if self._is_script else identity_of(self._case.operation, solids, result)
+        others = self._further(found, solids, result)
+        verdict, reason = ruled(found.report, others, identity, self._is_script)
+        record = blank_record(self._case, verdict, reason)
+        self._describe_operands(record, solids, rows)
+        record["ours"] = facts_of(found.ours, found.report.ours, crossings=True)
+        record["oracles"] = [_manifold_record(found, asked), *others]
+        record["identity"] = identity
+        record["set_difference"] = _difference_record(found.report)
+        record["hausdorff"] = self._distances(found)
+        if found.report.set_difference is not None:
+            bounds = found.report.same_set_bound, found.report.rounding_bound
+            record["bounds"] = {"same_set": bounds[0], "rounding": bounds[1]}
+        self._clock.lap("check")
+        if self._settings.meshes and (keep or verdict not in _DULL):
+            record["meshes"] = self._kept(found)
+        return record
+
+    def _loaded(self) -> tuple[list[Solid], Sequence[FloatArray | None]]:
+        if not self._is_script:
+            return operands_of(self._case)
+        from ... import csg
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", csg.CsgWarning)
+            path = str(self._case.operands[0].file)
+            return [csg.load(path, on_invalid="warn")], [None]
+
+    def _examined(self, result: Solid, solids: list[Solid]) -> Examination:
+        if not self._is_script:
+            return examine(result, cast(SetOp, self._case.operation), solids)
+        if result.last_operation is None:
+            # A script of one primitive: manifold3d is asked whether it takes the mesh.
+            return examine(result, "union", [result])
+        return examine(result)
+
+    def _further(
+        self, found: Examination, solids: list[Solid], result: Solid
+    ) -> list[OracleRecord]:
+        """Return what the engines that have to be asked besides manifold3d say."""
+        wanted = [name for name in self._settings.against if name != "manifold3d"]
+        limit = self._settings.timeout * _SHARE
+        if self._is_script:
+            path = Path(str(self._case.operands[0].file))
+            ask = "openscad" in wanted or is_installed("openscad")
+            ours = result.normalized().to_mesh()
+            return [script_opinion(path, ours, result.pitch, limit)] if ask else []
+        doubtful = found.report.verdict in _DOUBTFUL
+        if doubtful and "pymeshlab" not in wanted and is_installed("pymeshlab"):
+            wanted.append("pymeshlab")
+        if not wanted and not doubtful:
+            return []
+        operands = [solid.normalized().to_mesh() for solid in solids]
+        place = (self._case.operation, found.program, operands, found.ours, result.pitch, limit)
+        question = Question(*place)
+        said = [opinion(name, question) for name in wanted]
+        if doubtful or any(record["agrees"] is False for record in said):
+            said.append(crossings_opinion(question))
+        return said
+
+    def _describe_operands(
+        self, record: CaseRecord, solids: list[Solid], rows: Sequence[FloatArray | None]
+    ) -> None:
+        if self._is_script:
+            return
+        for operand, solid, pose in zip(record["operands"], solids, rows, strict=True):
+            operand["triangles"] = len(solid.to_mesh().faces)
+            operand["volume"] = solid.volume
+            operand["pose"] = None if pose is None else pose.tolist()
+
+    def _distances(self, found: Examination) -> HausdorffRecord | None:
+        theirs, difference = found.theirs, found.difference
+        if theirs is None or not self._settings.samples or found.report.set_difference is None:
+            return None
+        if difference is not None and not (len(found.ours.faces) and len(theirs.faces)):
+            return None
+        forth, back, count = hausdorff(found.ours, theirs, difference, self._settings.samples)
+        return {"forward": forth, "backward": back, "samples": count}
+
+    def _kept(self, found: Examination) -> str:
+        """Write the meshes of a case; return the path that the record names."""
+        from ...formats.atomic import write_file
+        from ..cases.meshes import packed
+
+        folder = Path(str(self._settings.meshes))
+        folder.mkdir(parents=True, exist_ok=True)
+        name = f"{self._case.key}.npz"
+        write_file(folder / name, [packed(found.operands, found.ours, found.difference)])
+        return f"{self._settings.relative}/{name}"
+
+
+def _manifold_record(found: Examination, seconds: float) -> OracleRecord:
+    report = found.report
+    name, _, version = oracle.name().partition(" ")
+    return {
+        "name": name,
+        "version": version,
+        "agrees": _MANIFOLD_AGREES.get(report.verdict),
+        "says": report.summary(),
+        "facts": _their_facts(found.theirs, report.theirs),
+        "seconds": round(seconds, 4),
+    }
+
+
+_MANIFOLD_AGREES = {
+    Verdict.AGREE: True,
+    Verdict.OTHER_TOPOLOGY: True,
+    Verdict.WITHIN_ROUNDING: True,
+    Verdict.DISAGREE: False,
+}
+
+
+def _their_facts(mesh: Mesh | None, facts: Facts | None) -> FactsRecord | None:
+    return None if mesh is None else facts_of(mesh, facts)
+
+
+def _difference_record(report: CheckReport) -> DifferenceRecord | None:
+    found = report.set_difference
+    if found is None:
+        return None
+    equal = found.volume == 0
+    return {
+        "volume": found.volume,
+        "exact": "0" if equal else None,
+        "thickness": found.thickness,
+        "equal": equal,
+        "place": None if found.place is None else [float(x) for x in found.place],
+    }

@@ -1,0 +1,145 @@
+"""Further engines, asked when two disagree: pymeshlab, openscad, and counts of crossings.
+
+Each says what set it finds, and whether that is ours. None of them is asked about scripts but
+openscad, whose language they are in.
+"""
+
+import shutil
+import time
+from collections.abc import Callable, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+
+from ..._core import __version__
+from ...errors import BspcsgError, missing_part
+from ...mesh.mesh import Mesh
+from ...verify.check import TOLERANCES, same_set_bound
+from ...verify.comparison import require_distances
+from ...verify.discrepancy import SetDifference, difference_of
+from ...verify.referee import count_agreeing
+from ..engines.openscad import ask_openscad, run_script
+from ..engines.pymeshlab import ask_pymeshlab
+from ..engines.questions import Answer, NoOpinionError, Question
+from ..record import OracleRecord
+from .facts import facts_of
+
+#: Engines by name, and what installs each that is optional.
+ENGINES = {
+    "manifold3d": "",
+    "pymeshlab": 'pip install "bspcsg[repair]"',
+    "openscad": "apt-get install openscad",
+}
+
+#: Points at which crossings are counted, half of them beside the surfaces.
+_POINTS = 24
+
+#: How far beside, by the size of the model.
+_BESIDE = 1e-4
+
+
+def is_installed(engine: str) -> bool:
+    """Whether an engine can be asked."""
+    return bool(shutil.which(engine)) if engine == "openscad" else find_spec(engine) is not None
+
+
+def require(engines: Sequence[str], samples: int) -> None:
+    """Refuse engines, and points to measure distances from, if what they need is not installed.
+
+    Raises
+    ------
+    MissingPartError
+    """
+    if samples:
+        require_distances()
+    for engine in engines:
+        if not is_installed(engine):
+            raise missing_part(engine, "to compare with", ENGINES[engine])
+
+
+def opinion(engine: str, question: Question) -> OracleRecord:
+    """Ask an engine, and compare what it finds with ours as sets."""
+    return _recorded(engine, question, lambda: _ASKED[engine](question))
+
+
+def script_opinion(path: Path, ours: Mesh, pitch: int, timeout: float) -> OracleRecord:
+    """Ask openscad what it makes of a script."""
+    question = Question("csg", [], [], ours, pitch, timeout)
+    return _recorded("openscad", question, lambda: run_script(path, timeout))
+
+
+def _recorded(engine: str, question: Question, asked: Callable[[], Answer]) -> OracleRecord:
+    began = time.perf_counter()
+    version = ""
+    try:
+        answer = asked()
+        version, record = answer.version, _compared(question, answer)
+    except NoOpinionError as error:
+        record = _silent(str(error))
+    seconds = round(time.perf_counter() - began, 4)
+    return {**record, "name": engine, "version": version, "seconds": seconds}
+
+
+def crossings_opinion(question: Question, seed: int = 0) -> OracleRecord:
+    """Count how rays from some points cross the operands and our result, in rational numbers."""
+    began = time.perf_counter()
+    points = _points(question, np.random.default_rng(seed))
+    agreeing, settled = count_agreeing(
+        question.program, question.operands, question.ours, points.tolist()
+    )
+    record = _silent(f"{agreeing} of {settled} points are where they should be")
+    record["name"], record["version"] = "crossing counts", __version__
+    record["agrees"] = agreeing == settled if settled else None
+    record["seconds"] = round(time.perf_counter() - began, 4)
+    return record
+
+
+def _silent(says: str) -> OracleRecord:
+    return {"name": "", "version": "", "agrees": None, "says": says, "facts": None, "seconds": 0.0}
+
+
+def _compared(question: Question, answer: Answer) -> OracleRecord:
+    mesh = answer.mesh
+    bound = same_set_bound(question.pitch, question.ours, mesh) + TOLERANCES * answer.shift
+    try:
+        found, _ = difference_of(question.ours, mesh, question.pitch, bound)
+    except BspcsgError as error:
+        record = _silent(f"its mesh cannot be compared: {error.message}")
+        return {**record, "facts": facts_of(mesh)}
+    agrees = found.thickness <= bound
+    record = _silent(_words(found, bound))
+    if not agrees and answer.complaint:
+        record = _silent(f"{record['says']}; but it said: {answer.complaint}")
+        return {**record, "facts": facts_of(mesh)}
+    return {**record, "agrees": agrees, "facts": facts_of(mesh)}
+
+
+def _words(found: SetDifference, bound: float) -> str:
+    if found.volume == 0:
+        return "exactly the same set"
+    words = f"differs by volume {found.volume:.6g}, {found.thickness:.3g} thick"
+    return f"{words}; rounding explains {bound:.2g}"
+
+
+_ASKED: dict[str, Callable[[Question], Answer]] = {
+    "pymeshlab": ask_pymeshlab,
+    "openscad": ask_openscad,
+}
+
+
+def _points(question: Question, rng: np.random.Generator) -> np.ndarray:
+    """Return points all over the operands' boxes and beside the surfaces."""
+    meshes = [mesh for mesh in (*question.operands, question.ours) if len(mesh.faces)]
+    if not meshes:
+        return np.zeros((0, 3))
+    used = np.concatenate([mesh.vertices[np.unique(mesh.faces)] for mesh in meshes])
+    low, high = used.min(axis=0), used.max(axis=0)
+    anywhere = rng.uniform(low, high, (_POINTS // 2, 3))
+    beside = []
+    for _ in range(_POINTS // 2):
+        mesh = meshes[int(rng.integers(len(meshes)))]
+        corners = mesh.vertices[mesh.faces[int(rng.integers(len(mesh.faces)))]]
+        on_face = rng.dirichlet((1, 1, 1)) @ corners
+        beside.append(on_face + rng.normal(size=3) * _BESIDE * np.linalg.norm(high - low))
+    return np.concatenate([anywhere, np.array(beside)])

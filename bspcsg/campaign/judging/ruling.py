@@ -1,0 +1,77 @@
+"""The verdict on a case once everybody has spoken, and who stands alone."""
+
+from collections.abc import Sequence
+
+from ...verify.verdict import CheckReport, Verdict
+from ..record import IdentityRecord, OracleRecord
+
+
+def ruled(
+    report: CheckReport,
+    others: Sequence[OracleRecord],
+    identity: IdentityRecord | None,
+    is_script: bool = False,
+) -> tuple[str, str]:
+    """Return verdict and reason.
+
+    Parameters
+    ----------
+    report : CheckReport
+        Against manifold3d.
+    others : sequence of OracleRecord
+    identity : IdentityRecord or None
+    is_script : bool
+        Whether `others` is openscad about its own language.
+
+    Notes
+    -----
+    Counts of crossings are exact, so a point in the wrong place overrules everybody. Of engines
+    that round, one alone against ours and another is taken to be wrong; ours alone never is
+    excused. For scripts openscad counts alone: manifold3d gets the leaves that we have made.
+    """
+    verdict, reason = report.verdict, report.reason
+    if identity is not None and not identity["holds"]:
+        return str(Verdict.SUBJECT_FAILED), f"volumes do not add up: {identity['equation']}"
+    if verdict is Verdict.SUBJECT_FAILED:
+        return str(verdict), reason
+    counts = [other for other in others if other["name"] == "crossing counts"]
+    for other in counts:
+        if other["agrees"] is False:
+            return str(Verdict.DISAGREE), _joined(reason, f"crossing counts: {other['says']}")
+    engines = [other for other in others if other not in counts]
+    if is_script and any(engine["agrees"] is False for engine in engines):
+        said = "; ".join(f"{engine['name']} {engine['says']}" for engine in engines)
+        return str(Verdict.DISAGREE), _joined(reason, said)
+    return _weighed(verdict, reason, engines, bool(counts and counts[0]["agrees"]))
+
+
+def _weighed(
+    verdict: Verdict, reason: str, engines: Sequence[OracleRecord], counted: bool
+) -> tuple[str, str]:
+    """Return the verdict after engines have supported ours or not."""
+    for_us = [engine["name"] for engine in engines if engine["agrees"] is True]
+    against = [engine for engine in engines if engine["agrees"] is False]
+    if verdict is Verdict.DISAGREE:
+        if for_us and not against:
+            said = f"{_and(for_us)} finds our set, so manifold3d stands alone"
+            return str(Verdict.ORACLE_FAILED), _joined(reason, said)
+        alone = "bspcsg stands alone" if against else "nobody else could tell who is right"
+        return str(verdict), _joined(reason, alone)
+    if not against:
+        said = f"{_and(for_us)} finds our set" if for_us and reason else ""
+        return str(verdict), _joined(reason, said)
+    said = "; ".join(f"{engine['name']} {engine['says']}" for engine in against)
+    if verdict in (Verdict.ORACLE_FAILED, Verdict.ORACLE_REFUSED) and not counted:
+        return str(Verdict.DISAGREE), _joined(reason, said)
+    if verdict in (Verdict.ORACLE_FAILED, Verdict.ORACLE_REFUSED):
+        return str(Verdict.ORACLE_FAILED), _joined(reason, said, "crossing counts support ours")
+    names = _and([engine["name"] for engine in against])
+    return str(verdict), _joined(reason, said, f"{names} stands alone")
+
+
+def _joined(*parts: str) -> str:
+    return "; ".join(part for part in parts if part)
+
+
+def _and(names: Sequence[str]) -> str:
+    return " and ".join(names)

@@ -1,0 +1,1 @@
+"""Cases on workers: processes, pools and clusters."""

@@ -1,0 +1,187 @@
+"""A child process that can be killed: what it does cannot hurt the runner."""
+
+import json
+import os
+import queue
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Self
+
+from ...errors import held
+
+#: Seconds that a worker may take to start: it imports the package, which takes a quarter of a
+#: second on an idle machine, and a hundred times as long on one that is much too busy.
+_START = 300.0
+
+#: Seconds that a process may take to end after it has closed its output.
+_LAST_WORDS = 5.0
+
+
+class TimedOutError(Exception):
+    """The child did not answer in time, and was killed."""
+
+
+class CrashedError(Exception):
+    """The child ended without an answer; the message says how."""
+
+
+class Child:
+    """A worker (see `worker`), started when it is first needed and after each crash.
+
+    Parameters
+    ----------
+    greeting : dict
+        Its first line: ``settings``, ``memory`` in bytes or None, ``threads``.
+    """
+
+    def __init__(self, greeting: dict[str, Any]) -> None:
+        self._greeting = greeting
+        self._process: subprocess.Popen[str] | None = None
+        self._lines: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._said = tempfile.TemporaryFile()  # noqa: SIM115
+        self._lock = threading.Lock()
+        self._stopped = False
+
+    def __enter__(self) -> Self:
+        """Return the child."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End the process."""
+        self.stop()
+
+    def answer(self, request: dict[str, Any], seconds: float) -> Any:
+        """Return the answer to a request.
+
+        Raises
+        ------
+        TimedOutError
+            If there is none in time.
+        CrashedError
+            If the process ends before it answers.
+        """
+        try:
+            process = self._running()
+            requests = held(process.stdin, "the process's input")
+            requests.write(json.dumps(request) + "\n")
+            requests.flush()
+            line = self._lines.get(timeout=seconds)
+        except queue.Empty:
+            self._kill()
+            raise TimedOutError from None
+        except OSError:  # it ended while it was spoken to
+            line = ""
+        if not line:
+            raise CrashedError(self._buried())
+        return json.loads(line)
+
+    def stop(self) -> None:
+        """End the process for good; an answer that is waited for does not come any more."""
+        with self._lock:
+            self._stopped = True
+        self._kill()
+        with self._lock:
+            self._said.close()
+
+    def _running(self) -> "subprocess.Popen[str]":
+        with self._lock:
+            if self._stopped:
+                raise CrashedError("stopped")
+            fresh = self._process is None
+            if self._process is None:
+                self._process = self._started()
+            process = self._process
+        if fresh:
+            self._await_start()
+        return process
+
+    def _started(self) -> "subprocess.Popen[str]":
+        self._lines = queue.SimpleQueue()
+        self._said.seek(0)
+        self._said.truncate()
+        process = subprocess.Popen(
+            [sys.executable, "-P", "-m", "bspcsg.campaign.running.worker"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._said,
+            env=_environment(),
+            text=True,
+            encoding="utf-8",
+            # A group of its own, so that what it has started dies with it, and Ctrl-C does not
+            # reach it.
+            start_new_session=os.name == "posix",
+        )
+        listener = threading.Thread(target=_listen, args=(process, self._lines), daemon=True)
+        listener.start()
+        requests = held(process.stdin, "the process's input")
+        requests.write(json.dumps(self._greeting) + "\n")
+        requests.flush()
+        return process
+
+    def _await_start(self) -> None:
+        """Wait until the process has imported what it needs: that is no part of a case's time."""
+        try:
+            if not self._lines.get(timeout=_START):
+                raise CrashedError(self._buried())
+        except queue.Empty:
+            self._kill()
+            raise CrashedError(f"the process did not start within {_START:g} s") from None
+
+    def _buried(self) -> str:
+        """Return how the process has ended, and forget it."""
+        process, code = self._process, None
+        if process is not None:
+            try:
+                code = process.wait(_LAST_WORDS)
+            except subprocess.TimeoutExpired:
+                code = None
+        self._kill()
+        with self._lock:
+            if self._stopped:
+                return "stopped"
+            self._said.seek(0)
+            said = self._said.read().decode("utf-8", "replace")
+        last = [line.strip() for line in said.splitlines() if line.strip()][-1:]
+        return ": ".join([_how(code), *last])
+
+    def _kill(self) -> None:
+        with self._lock:
+            process, self._process = self._process, None
+        if process is None:
+            return
+        if os.name == "posix":
+            # A group whose members have all ended is no more.
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+        else:
+            process.kill()
+        process.wait()
+        # What was not sent any more cannot be.
+        with suppress(OSError):
+            held(process.stdin, "the process's input").close()
+
+
+def _how(code: int | None) -> str:
+    if code is not None and code < 0:
+        return f"the process was ended by {signal.Signals(-code).name}"
+    return f"the process ended with {code}"
+
+
+def _listen(process: "subprocess.Popen[str]", lines: "queue.SimpleQueue[str]") -> None:
+    """Pass the lines of a process on; an empty one says that there are no more."""
+    with held(process.stdout, "the process's output") as answers:
+        for line in answers:
+            lines.put(line)
+    lines.put("")
+
+
+def _environment() -> dict[str, str]:
+    """Return the environment in which the child finds this very package."""
+    home = str(Path(__file__).parents[3])
+    paths = [home, *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in paths if path)}

@@ -1,0 +1,112 @@
+"""Answers from a cluster: the workers of Dask distributed, each with children of its own.
+
+Dask neither limits the time of a task nor survives what crashes its worker, so a task only passes
+a request to a child process and waits, as `bspcsg.campaign.pool` does on one machine.
+"""
+
+import json
+import threading
+from collections.abc import Generator, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from ...errors import MissingPartError, missing_part
+from .child import Child
+from .pool import answer_of
+
+#: Seconds to wait for a scheduler.
+_PATIENCE = 30
+
+_children: dict[tuple[int, str], Child] = {}
+_lock = threading.Lock()
+
+
+def answer_on_worker(request: Any, greeting: str, seconds: float) -> Any:
+    """Answer a request on a worker of the cluster, by the child of the thread that runs this."""
+    key = threading.get_ident(), greeting
+    with _lock:
+        if key not in _children:
+            _children[key] = Child(json.loads(greeting))
+        child = _children[key]
+    return answer_of(child, request, seconds)
+
+
+def stop_children() -> None:
+    """End the children of this worker."""
+    with _lock:
+        children = list(_children.values())
+        _children.clear()
+    for child in children:
+        child.stop()
+
+
+class Cluster:
+    """The workers of a scheduler.
+
+    Parameters
+    ----------
+    scheduler : str
+        Its address, such as ``tcp://host:8786``, or the path of its JSON file.
+    greeting : dict
+        See `bspcsg.campaign.child.Child`.
+
+    Raises
+    ------
+    MissingPartError
+        If distributed is not installed.
+    """
+
+    def __init__(self, scheduler: str, greeting: dict[str, Any]) -> None:
+        if find_spec("distributed") is None:
+            remedy = 'pip install "bspcsg[cluster]"'
+            raise missing_part("distributed", "for --scheduler", remedy)
+        self._scheduler, self._greeting = scheduler, json.dumps(greeting)
+
+    def answers(
+        self, requests: Sequence[Any], seconds: float
+    ) -> Generator[tuple[int, Any], None, None]:
+        """Yield the number of each request and its answer as it comes.
+
+        Raises
+        ------
+        MissingPartError
+            If the scheduler cannot be reached; code "no_scheduler".
+        """
+        import distributed
+
+        # Dask has no types.
+        as_completed: Any = distributed.as_completed
+        client = self._client()
+        numbers = {}
+        try:
+            for number, request in enumerate(requests):
+                place = (answer_on_worker, request, self._greeting, seconds)
+                numbers[client.submit(*place, pure=False)] = number
+            for future in as_completed(list(numbers), loop=client.loop):
+                yield numbers[future], _result_of(future)
+        finally:
+            client.cancel(list(numbers), force=True)
+            client.run(stop_children)
+            client.close()
+
+    def _client(self) -> Any:
+        import distributed
+
+        client: Any = distributed.Client
+        is_file = Path(self._scheduler).is_file()
+        place = {"scheduler_file": self._scheduler} if is_file else {"address": self._scheduler}
+        try:
+            return client(**place, timeout=_PATIENCE, set_as_default=False)
+        except (OSError, ValueError, TypeError) as error:
+            message = f"{self._scheduler}: no scheduler answers there ({error})."
+            raise MissingPartError(message, "no_scheduler") from error
+
+
+def _result_of(future: Any) -> Any:
+    """Return the answer, or that the worker itself was lost."""
+    try:
+        return future.result()
+    except Exception as error:
+        reason = f"the worker was lost: {type(error).__name__}: {error}"
+        return {"failure": "crash", "reason": reason, "seconds": 0.0}

@@ -1,0 +1,164 @@
+"""Cases in, records out: what was finished is on file before the next thing happens."""
+
+import os
+import platform
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any, cast
+
+from ..._core import __version__
+from ..cases.case import Case
+from ..judging.evaluation import Settings, blank_record
+from ..memory import installed_gb
+from ..record import SCHEMA, CaseRecord, Journal, Machine, RunRecord, is_failure
+from .pool import Answering
+
+_VERSIONED = ("manifold3d", "pymeshlab", "trimesh", "numpy")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is to be run, and how.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+    known : dict of str to CaseRecord
+        Answers from an earlier run, by key; those cases are not asked again.
+    timeout : float
+        Seconds for a case.
+    keep : str
+        Whose meshes are kept: "interesting", "all", "none", or a number of others besides.
+    fail_fast : bool
+        Stop at the first failure.
+    """
+
+    cases: Sequence[Case]
+    known: dict[str, CaseRecord]
+    timeout: float
+    keep: str = "interesting"
+    fail_fast: bool = False
+
+    @property
+    def open_cases(self) -> list[Case]:
+        """The cases that have to be asked."""
+        return [case for case in self.cases if case.key not in self.known]
+
+
+def greeting(settings: Settings, memory: int | None, threads: int) -> dict[str, Any]:
+    """Return what a worker is told first."""
+    told = {"settings": asdict(settings), "memory": memory, "threads": threads}
+    return {**told, "folder": os.getcwd()}
+
+
+def run_cases(
+    plan: Plan,
+    answering: Answering,
+    journal: Journal | None,
+    notice: Callable[[CaseRecord], None],
+) -> list[CaseRecord]:
+    """Ask all cases that are open; return the records of all that were answered, now or before.
+
+    Parameters
+    ----------
+    plan : Plan
+    answering : Answering
+    journal : Journal or None
+        Where each record goes as it comes.
+    notice : callable
+        Told each new record.
+    """
+    found = {case.key: plan.known[case.key] for case in plan.cases if case.key in plan.known}
+    with closing(_records(plan, answering)) as records:
+        for record in records:
+            if journal is not None:
+                journal.append(record)
+            found[record["key"]] = record
+            notice(record)
+            if plan.fail_fast and is_failure(record):
+                break
+    return [found[case.key] for case in plan.cases if case.key in found]
+
+
+def _records(plan: Plan, answering: Answering) -> Generator[CaseRecord, None, None]:
+    cases = plan.open_cases
+    chosen = _chosen(len(cases), plan.keep)
+    requests = [{"case": case.to_dict(), "keep": n in chosen} for n, case in enumerate(cases)]
+    with closing(answering.answers(requests, plan.timeout)) as answers:
+        for number, answer in answers:
+            yield _record_of(cases[number], answer)
+
+
+def _record_of(case: Case, answer: Any) -> CaseRecord:
+    if "failure" not in answer:
+        return cast(CaseRecord, answer)
+    record = blank_record(case, answer["failure"], answer["reason"])
+    record["seconds"]["total"] = answer["seconds"]
+    return record
+
+
+def _chosen(count: int, keep: str) -> set[int]:
+    """Return the numbers of cases whose meshes are kept however dull they are."""
+    wanted = count if keep == "all" else int(keep) if keep.isdecimal() else 0
+    # Spread over all of them, so that every kind is seen.
+    return {number * count // wanted for number in range(min(wanted, count))} if wanted else set()
+
+
+def survey(
+    files: Sequence[Path], answering: Answering, seconds: float
+) -> dict[Path, dict[str, Any]]:
+    """Return for each file its ``triangles``, and why it is ``refused`` as a solid, or None.
+
+    A file on which the worker crashes or hangs counts as a solid without triangles: it stays in,
+    so that its cases say so, and the draw does not depend on how busy the machine is.
+    """
+    requests = [{"survey": str(file)} for file in files]
+    found: dict[Path, dict[str, Any]] = {}
+    for number, answer in answering.answers(requests, seconds):
+        names = ("triangles", "refused")
+        found[files[number]] = {"triangles": 0, "refused": None} | {
+            name: answer[name] for name in names if name in answer
+        }
+    return found
+
+
+def run_record(command: str, seed: int) -> RunRecord:
+    """Return the header of a run that begins now."""
+    found = {"bspcsg": __version__, "python": platform.python_version()}
+    for name in _VERSIONED:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return {
+        "schema": SCHEMA,
+        "type": "run",
+        "command": command,
+        "seed": seed,
+        "started": datetime.now(UTC).isoformat(timespec="seconds"),
+        "versions": found,
+        "machine": machine(),
+    }
+
+
+def machine() -> Machine:
+    """Describe this machine."""
+    return {
+        "processor": _processor(),
+        "cores": os.cpu_count() or 1,
+        "memory_gb": installed_gb(),
+        "system": f"{platform.system()} {platform.machine()}",
+    }
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.processor()
+    names = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+    return next(names, platform.processor())

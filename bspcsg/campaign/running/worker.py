@@ -1,0 +1,76 @@
+"""The process that evaluates cases: a JSON line in, a JSON line out.
+
+Started by `bspcsg.campaign.child`. When its input ends, because the runner has finished or was
+killed, it ends at once with everything it has started.
+"""
+
+import json
+import os
+import queue
+import signal
+import sys
+import threading
+from typing import Any
+
+from ...errors import BspcsgError
+from ...parameters import set_threads
+from ..cases.case import Case
+from ..judging.evaluation import Settings, blank_record, evaluate
+from ..memory import limit_memory
+
+
+def main() -> None:
+    """Answer requests until there are no more."""
+    lines: queue.SimpleQueue[str] = queue.SimpleQueue()
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    # What libraries print must not get between the answers.
+    os.dup2(2, 1)
+    started = json.loads(sys.stdin.readline())
+    os.chdir(started["folder"])
+    limit_memory(started["memory"])
+    set_threads(started["threads"])
+    settings = Settings(**{**started["settings"], "against": tuple(started["settings"]["against"])})
+    answers.write("ready\n")
+    answers.flush()
+    threading.Thread(target=_listen, args=(lines,), daemon=True).start()
+    while True:
+        answer = _answered(json.loads(lines.get()), settings)
+        answers.write(json.dumps(answer) + "\n")
+        answers.flush()
+
+
+def _listen(lines: "queue.SimpleQueue[str]") -> None:
+    for line in sys.stdin:
+        lines.put(line)
+    if os.name == "posix" and os.getpgrp() == os.getpid():
+        os.killpg(0, signal.SIGKILL)
+    os._exit(0)
+
+
+def _answered(request: dict[str, Any], settings: Settings) -> Any:
+    if "survey" in request:
+        return _surveyed(request["survey"])
+    case = Case.from_dict(request["case"])
+    try:
+        record = evaluate(case, settings, request["keep"])
+        json.dumps(record, allow_nan=False)
+        return record
+    except MemoryError:
+        return blank_record(case, "crash", "out of memory")
+    except Exception as error:
+        return blank_record(case, "crash", f"{type(error).__name__}: {error}")
+
+
+def _surveyed(file: str) -> dict[str, Any]:
+    """Say whether a file is a solid, and of how many triangles."""
+    from ...solid.solid import Solid
+
+    try:
+        solid = Solid.load(file)
+        return {"file": file, "triangles": len(solid.to_mesh().faces), "refused": None}
+    except BspcsgError as error:
+        return {"file": file, "triangles": 0, "refused": error.message}
+
+
+if __name__ == "__main__":
+    main()

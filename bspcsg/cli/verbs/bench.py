@@ -1,0 +1,291 @@
+"""The verb that measures: bench."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ...errors import FormatError
+from .. import output
+from ..files import STREAM, refuse_folder
+from ..tables import table_text
+
+if TYPE_CHECKING:
+    from ...bench.runner import Settings
+
+_EPILOG = """\b
+Examples:
+  bspcsg bench --list
+  bspcsg bench spheres-328k cubes --against manifold3d,trueform
+  bspcsg bench --json bench.json --plot sizes.svg        (all cases: an hour or more)
+  bspcsg bench --from bench.json --format md
+"""
+
+_PATH = click.Path(path_type=Path, dir_okay=False)
+
+
+def _as_engines(
+    context: click.Context, option: click.Parameter, value: str | None
+) -> list[str] | None:
+    """Return names of installed engines, ours first."""
+    from ...bench.engines import ENGINES, installed
+
+    if value is None:
+        return list(installed())
+    asked = [name.strip() for name in value.split(",") if name.strip()]
+    for name in asked:
+        if name not in ENGINES:
+            known = ", ".join(list(ENGINES)[1:])
+            raise click.BadParameter(f"{name!r} is no engine; known are {known}.", context, option)
+        if name not in installed():
+            raise click.BadParameter(
+                f"{name} is not installed: pip install {name}", context, option
+            )
+    return list(dict.fromkeys([next(iter(ENGINES)), *asked]))
+
+
+def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str, ...]) -> list[str]:
+    """Return names of cases; none means all."""
+    from ...bench.cases import CASES
+
+    for name in value:
+        if name not in CASES:
+            raise click.BadParameter(f"{name!r} is no case; see --list.", context, option)
+    return list(dict.fromkeys(value)) or list(CASES)
+
+
+@click.command("bench", short_help="Time set operations beside other engines.", epilog=_EPILOG)
+@click.argument("cases", nargs=-1, callback=_as_cases, metavar="[CASE]...")
+@click.option("--list", "listed", is_flag=True, help="Name the cases and what each is to reach.")
+@click.option(
+    "--against",
+    "engines",
+    metavar="ENGINES",
+    callback=_as_engines,
+    help="Engines to compare with, as in manifold3d,trueform; by default all that are installed.",
+)
+@click.option(
+    "--runs",
+    metavar="N",
+    type=click.IntRange(1),
+    default=5,
+    show_default=True,
+    help="Timed runs of each engine, after one that warms up.",
+)
+@click.option("--quick", is_flag=True, help="Small forms of the cases, in seconds.")
+@click.option(
+    "--limit",
+    metavar="SECONDS",
+    type=click.FloatRange(0, min_open=True),
+    help="Seconds after which a call is stopped; by default 300, and 900 for the dome.",
+)
+@click.option(
+    "--budget",
+    metavar="SECONDS",
+    type=click.FloatRange(0, min_open=True),
+    default=150.0,
+    show_default=True,
+    help="Seconds for all runs of an engine; slow ones are timed fewer times.",
+)
+@click.option(
+    "--steps",
+    metavar="N",
+    type=click.IntRange(1),
+    help="Steps of the dome that are carved; by default all.",
+)
+@click.option(
+    "--memory",
+    "memory_gb",
+    metavar="GIB",
+    type=click.FloatRange(0),
+    default=12.0,
+    show_default=True,
+    help="GiB of addresses beyond which an engine gets none; 0 for no bound.",
+)
+@click.option(
+    "--data",
+    "shared",
+    metavar="FOLDER",
+    type=click.Path(path_type=Path, file_okay=False),
+    default=Path("../shared"),
+    show_default=True,
+    help="Folder with meshes/ and chains/; cases that need them are left out without.",
+)
+@click.option("--core", type=_PATH, help="Measure with another build of the compiled core.")
+@click.option("--json", "record_path", type=_PATH, help="Write the record to this file.")
+@click.option("--plot", "plot_path", type=_PATH, help="Draw time against size, as SVG.")
+@click.option("--from", "source", type=_PATH, help="Measure nothing; show this record.")
+@click.option(
+    "--format",
+    "style",
+    type=click.Choice(["text", "md"]),
+    default="text",
+    show_default=True,
+    help="How the table is printed.",
+)
+@click.option("--counters", is_flag=True, help="Print what our core counted, too.")
+@click.option("-q", "--quiet", is_flag=True, help="Do not say what is under way.")
+@click.option("--debug", is_flag=True, help="Show where an error comes from.")
+def bench(cases: list[str], listed: bool, **given: Any) -> int:
+    """Time set operations beside other engines, and check each answer.
+
+    Engines take turns in one process, and the tables show medians. A call that takes longer than
+    the limit is stopped, and an engine that crashes is left out; the others go on.
+
+    The exit code is 1 if an answer differs from ours by more than rounding explains, or if we fail.
+    """
+    if listed:
+        click.echo(_listing(cases))
+        return output.DONE
+    _refuse_early(given)
+    source: Path | None = given["source"]
+    from ...bench import record as records
+
+    record = records.read(source) if source else _measured(cases, given)
+    with _whole_record(source):
+        text = _table(record, given["style"])
+        if given["counters"]:
+            text += _counters(record) + "\n"
+        plotted = _plot(record) if given["plot_path"] else ""
+        code = output.FOUND if _is_wrong(record) else output.DONE
+    click.echo(text, nl=False)
+    _write(record, plotted, given["record_path"], given["plot_path"])
+    return code
+
+
+def _refuse_early(given: dict[str, Any]) -> None:
+    """Refuse what would fail only after everything was measured."""
+    for path in (given["record_path"], given["plot_path"]):
+        if path and str(path) == STREAM:
+            raise click.UsageError("--json and --plot take names of files, not streams.")
+        if path:
+            refuse_folder(path)
+    core: Path | None = given["core"]
+    if core and not core.exists():
+        raise FormatError(f"{core}: there is no such build of the core.", "unreadable")
+
+
+@contextmanager
+def _whole_record(source: Path | None) -> Iterator[None]:
+    """Say which file lacks something, if a record was read and is not what we once wrote."""
+    try:
+        yield
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        if source is None:
+            raise
+        message = f"{source}: this record is damaged; measure it again."
+        raise FormatError(message, "malformed") from error
+
+
+def _listing(cases: list[str]) -> str:
+    from ...bench.cases import CASES
+
+    rows = [
+        [name, CASES[name].title, "; ".join(target.text for target in CASES[name].targets)]
+        for name in cases
+    ]
+    return table_text(["case", "what", "to reach"], rows)
+
+
+def _measured(cases: list[str], given: dict[str, Any]) -> dict[str, Any]:
+    from ...bench import record as records
+    from ...bench.runner import run_case
+
+    settings = _settings(given)
+    told = _silence if given["quiet"] else _tell
+    rows = []
+    for name in cases:
+        rows.append(run_case(name, settings, told))
+        if given["record_path"]:
+            # What is measured stays, whatever happens later.
+            records.write(_record(rows, given), given["record_path"])
+    _tell("") if not given["quiet"] else None
+    return _record(rows, given)
+
+
+def _record(rows: list[dict[str, Any]], given: dict[str, Any]) -> dict[str, Any]:
+    from ...bench import record as records
+
+    return records.record_of(rows, given["runs"], " ".join(["bspcsg", *sys.argv[1:]]))
+
+
+def _settings(given: dict[str, Any]) -> "Settings":
+    from ...bench.runner import Settings
+
+    return Settings(
+        engines=given["engines"],
+        runs=given["runs"],
+        small=given["quick"],
+        limit=given["limit"],
+        budget=given["budget"],
+        shared=given["shared"].absolute(),
+        core=given["core"],
+        memory_gb=given["memory_gb"],
+        steps=given["steps"] or 0,
+    )
+
+
+def _silence(line: str) -> None:
+    """Say nothing."""
+
+
+def _tell(line: str) -> None:
+    """Show what is under way, on a terminal in place of what was."""
+    if sys.stderr.isatty():
+        click.echo(f"\r\033[K{line}", nl=False, err=True)
+
+
+def _table(record: dict[str, Any], style: str) -> str:
+    from ...bench import table
+
+    if style == "md":
+        return table.markdown(record)
+    head, *lines = table.lines_of(record, titles=False)
+    return f"{table_text(head, lines)}\n{table.about(record)}\n"
+
+
+def _counters(record: dict[str, Any]) -> str:
+    from ...bench import table
+
+    head, *lines = table.counter_lines(record)
+    return table_text(head, lines, right=head[2:])
+
+
+def _plot(record: dict[str, Any]) -> str:
+    from ...bench.plot import plot
+
+    return plot(record)
+
+
+def _write(
+    record: dict[str, Any], plotted: str, record_path: Path | None, plot_path: Path | None
+) -> None:
+    from ...bench import record as records
+    from ...formats.atomic import write_file
+
+    if record_path:
+        records.write(record, record_path)
+    if plot_path:
+        write_file(plot_path, [plotted.encode("utf-8")])
+
+
+def _is_wrong(record: dict[str, Any]) -> bool:
+    """Whether an answer differs from ours, or we gave none."""
+    from ...bench.targets import OURS, result_of
+
+    for row in record["cases"]:
+        for item in row["items"]:
+            others = [*item["engines"].values(), item.get("at_once", {})]
+            ours = result_of(item, OURS)
+            if ours.get("state") in ("failed", "crashed") or _is_open(ours):
+                return True
+            if any(found.get("agrees") is False for found in others):
+                return True
+    return False
+
+
+def _is_open(found: dict[str, Any]) -> bool:
+    return bool(found.get("facts", {}).get("open_edges"))

@@ -1,0 +1,139 @@
+"""The verb that looks at files: check."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ...errors import BspcsgError, FormatError, MissingPartError
+from .. import output
+from ..files import Inputs, repair_command, shown
+from ..options import PATH, common, reading
+from ..output import Output, counted, grouped
+from ..tables import table_text
+
+if TYPE_CHECKING:
+    from ...repair.diagnosis import Diagnosis
+
+#: Relative difference up to which two volumes are told as one.
+_SAME = 1e-6
+
+_EPILOG = """\b
+Example:
+  bspcsg check parts/*.stl || echo "some are no solids"
+"""
+
+
+@click.command("check", epilog=_EPILOG)
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE [...]")
+@click.option("--strict", is_flag=True, help="Count warnings as failures too.")
+@reading
+@common
+def check(files: tuple[Path, ...], strict: bool, **given: Any) -> int:
+    """Say what is wrong with each file, and whether it is a solid.
+
+    Names open edges, triangles turned round, edges with more than two triangles, triangles without
+    area or over the same corners, faces that cross or overlap, and meshes that are inside out,
+    with places. A file that overlaps itself still is a solid, and a warning says so.
+    """
+    from ...parameters import set_threads
+
+    set_threads(given["threads"])
+    out = Output.of(given)
+    inputs = Inputs.of(out, given)
+    results = [_examined(inputs, path) for path in files]
+    codes = [_exit_code(found, strict) for _, found in results]
+    documents = [_document(path, found) for path, found in results]
+    out.result("" if given["as_json"] else _text(results, out), {"files": documents})
+    for path, found in results:
+        if isinstance(found, BspcsgError):
+            click.echo(f"bspcsg: error: {_named(path, found)}", err=True)
+    return max(codes)
+
+
+def _examined(inputs: Inputs, path: Path) -> tuple[Path, "Diagnosis | BspcsgError"]:
+    from ...repair.diagnosis import diagnose
+
+    try:
+        inputs.refuse_early([path])
+        return path, diagnose(inputs.raw(path))
+    except (FormatError, MissingPartError) as error:
+        return path, error
+
+
+def _exit_code(found: "Diagnosis | BspcsgError", strict: bool) -> int:
+    if isinstance(found, BspcsgError):
+        return output.exit_code_of(found)
+    warned = any(finding.severity == "warning" for finding in found.findings)
+    return output.FOUND if not found.is_solid or (strict and warned) else output.DONE
+
+
+def _document(path: Path, found: "Diagnosis | BspcsgError") -> dict[str, Any]:
+    if isinstance(found, BspcsgError):
+        said = {"code": found.code, "message": found.message, "where": list(found.where)}
+        return {"file": str(path), "verdict": "unreadable", "error": said}
+    return {"file": str(path), **found.to_dict()}
+
+
+def _named(path: Path, error: BspcsgError) -> str:
+    return error.message if error.message.startswith(str(path)) else f"{path}: {error.message}"
+
+
+def _text(results: list[tuple[Path, "Diagnosis | BspcsgError"]], out: Output) -> str:
+    """Return a table if there are several files, and what was found in each."""
+    read = [(path, found) for path, found in results if not isinstance(found, BspcsgError)]
+    blocks = [_table(read)] if len(read) > 1 else []
+    blocks += [_details(path, found, out) for path, found in read]
+    if len(results) > 1:
+        bad = sum(1 for _, found in results if isinstance(found, BspcsgError) or not found.is_solid)
+        blocks.append(_conclusion(bad, len(results)))
+    return "\n".join(block for block in blocks if block)
+
+
+def _conclusion(bad: int, count: int) -> str:
+    if bad == 0:
+        return f"All {count} files are solids."
+    return f"{bad} of {count} files {'is not a solid' if bad == 1 else 'are not solids'}."
+
+
+def _details(path: Path, found: "Diagnosis", out: Output) -> str:
+    lines = [f"{shown(path)}: {_measures(found)}"]
+    least = {"error": -1, "warning": 0, "note": 0}
+    for finding in found.findings:
+        if out.verbosity >= least[finding.severity]:
+            lines.append(f"  {finding.severity}: {finding.message.rstrip('.')}.")
+    if found.verdict == "not closed" and out.advises:
+        lines.append(f"  Try: {repair_command(path)}")
+    return "\n".join(lines)
+
+
+def _measures(found: "Diagnosis") -> str:
+    if found.triangles == 0:
+        return found.verdict
+    words = [
+        found.verdict,
+        counted(found.triangles, "triangle"),
+        counted(found.surfaces, "surface"),
+    ]
+    if found.genus is not None:
+        words.append(f"genus {found.genus}")
+    words.append(f"area {found.area:.9g}")
+    if found.volume is not None:
+        words.append(f"volume {found.volume:.9g}")
+    if found.volume is None or abs(found.volume - found.signed_volume) > _SAME * found.volume:
+        words.append(f"signed volume {found.signed_volume:.9g}")
+    return ", ".join(words)
+
+
+def _table(read: list[tuple[Path, "Diagnosis"]]) -> str:
+    rows = []
+    for path, found in read:
+        overlaps = "—" if found.self_overlapping is None else _yes(found.self_overlapping)
+        flags = [_yes(found.closed), _yes(found.oriented), _yes(found.manifold), overlaps]
+        rows.append((str(path), grouped(found.triangles), *flags, found.verdict))
+    columns = ("file", "triangles", "closed", "oriented", "manifold", "overlaps", "verdict")
+    return table_text(columns, rows, right=("triangles",))
+
+
+def _yes(flag: bool) -> str:
+    return "yes" if flag else "no"

@@ -1,0 +1,102 @@
+"""The verb that compares two files as sets: compare."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .. import output
+from ..files import Inputs, shown
+from ..options import PATH, common, reading, sets
+from ..output import Output, grouped
+from ..tables import table_text
+
+if TYPE_CHECKING:
+    from ...verify.comparison import Comparison
+
+_EPILOG = """\b
+Example:
+  bspcsg compare old.stl new.stl --tol 1e-6 || echo changed
+"""
+
+
+@click.command(
+    "compare", short_help="Say whether two files hold the same set of points.", epilog=_EPILOG
+)
+@click.argument("a", type=PATH)
+@click.argument("b", type=PATH)
+@click.option(
+    "--tol",
+    metavar="DISTANCE",
+    type=click.FloatRange(min=0),
+    default=0.0,
+    help="Distance of the surfaces, in model units, up to which they count as the same.",
+)
+@click.option(
+    "--samples",
+    metavar="N",
+    type=click.IntRange(min=0),
+    default=10_000,
+    help="Points on the difference to measure distances from; 0 for none.",
+)
+@click.option(
+    "--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Of the random points."
+)
+@reading
+@sets
+@common
+def compare(a: Path, b: Path, tol: float, samples: int, seed: int, **given: Any) -> int:
+    """Say whether two files hold the same set of points, and how they differ.
+
+    Triangles do not matter, only what is inside. Equality is decided exactly; the distance of the
+    surfaces is estimated from points of their difference. Exits with 1 if the sets differ.
+    """
+    from ...parameters import set_threads
+    from ...verify.comparison import compare as compared
+
+    if tol and not samples:
+        raise click.UsageError("--tol needs distances, so --samples must be above 0.")
+    set_threads(given["threads"])
+    out = Output.of(given)
+    inputs = Inputs.of(out, given)
+    inputs.refuse_early([a, b])
+    found = compared(inputs.solid(a), inputs.solid(b), samples, seed)
+    same = found.equal or _within(found, tol)
+    names = {"files": [str(a), str(b)], "same": same, "tolerance": tol}
+    document = {**names, **found.to_dict()} if out.as_json else {}
+    out.result(_text(found, shown(a), shown(b), same), document)
+    return output.DONE if same else output.FOUND
+
+
+def _within(found: "Comparison", tolerance: float) -> bool:
+    """Whether the surfaces are no farther apart than that, as far as samples tell."""
+    return found.hausdorff is not None and max(found.hausdorff, found.difference.thickness) <= (
+        tolerance
+    )
+
+
+def _text(found: "Comparison", a: str, b: str, same: bool) -> str:
+    rows = [
+        ("triangles", grouped(found.a.triangles), grouped(found.b.triangles)),
+        ("volume", f"{found.a.volume:.12g}", f"{found.b.volume:.12g}"),
+        ("area", f"{found.a.area:.12g}", f"{found.b.area:.12g}"),
+        ("surfaces", grouped(found.a.components), grouped(found.b.components)),
+        ("Euler number", str(found.a.euler_number), str(found.b.euler_number)),
+    ]
+    table = table_text(("", a, b), rows, right=(a, b))
+    return "\n".join([table, *_differences(found, same)])
+
+
+def _differences(found: "Comparison", same: bool) -> list[str]:
+    if found.equal:
+        return ["The sets are equal, exactly."]
+    part = found.difference
+    lines = [f"symmetric difference: volume {part.volume:.6g}, area {part.area:.6g}"]
+    if part.place is not None:
+        place = "({:.6g}, {:.6g}, {:.6g})".format(*part.place)
+        lines.append(f"thickest piece of it: {part.thickness:.3g} thick, near {place}")
+    if found.hausdorff is not None:
+        points = grouped(found.samples)
+        lines.append(f"Hausdorff distance: at least {found.hausdorff:.6g}, from {points} points")
+    lines.append("The sets differ, within the tolerance." if same else "The sets differ.")
+    return lines

@@ -1,0 +1,223 @@
+"""The verb that changes formats: convert."""
+
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ...errors import BspcsgError, Finding
+from .. import output
+from ..files import STREAM, Inputs, Target, expanded, put, shown
+from ..options import PATH, common, reading, writing
+from ..output import Output, counted
+
+if TYPE_CHECKING:
+    from ...formats.raw import RawMesh
+    from ...verify.roundtrip import Losses
+
+_EPILOG = """\b
+Examples:
+  bspcsg convert part.3mf -o part.ply --fail-on-loss
+  bspcsg convert parts/*.stl --to glb --outdir web
+"""
+
+#: Files from which on a bar shows how far it is.
+_MANY = 4
+
+
+@click.command("convert", epilog=_EPILOG)
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="IN [...]")
+@click.option(
+    "-o",
+    "--output",
+    "target",
+    metavar="FILE",
+    type=PATH,
+    help="File to write; with several inputs, % stands for the name of each.",
+)
+@click.option("--outdir", metavar="FOLDER", type=PATH, help="Folder for the files, with --to.")
+@writing
+@click.option(
+    "--up",
+    type=click.Choice(["y", "z"]),
+    help="Which axis is to be up in the output; y in GLB by default, z in all others.",
+)
+@click.option(
+    "--from-up",
+    type=click.Choice(["y", "z"]),
+    help="Which axis is up in the inputs; y in GLB by default, z in all others.",
+)
+@click.option("--fail-on-loss", is_flag=True, help="Exit with 1 if anything was lost.")
+@reading
+@common
+def convert(files: tuple[Path, ...], **given: Any) -> int:
+    """Write meshes in other formats, and say what was lost.
+
+    Every file is read back and compared. Meshes need not be closed; nothing is repaired. 3MF and
+    GLB state their unit: what comes from other formats is taken as millimetres unless --unit says
+    otherwise, and GLB is written in metres with y upwards. Where --up and --from-up differ, the
+    model is turned by a quarter about x.
+    """
+    return _Conversion(files, **given).run()
+
+
+class _Conversion:
+    """Some files, and where each goes."""
+
+    def __init__(
+        self, files: tuple[Path, ...], target: Path | None, outdir: Path | None, **settings: Any
+    ) -> None:
+        self._settings = settings
+        self._pairs = [
+            (path, Target.of(where, settings))
+            for path, where in _targets(files, target, outdir, settings["to_format"])
+        ]
+        self._out = Output.of(settings, any(where.is_stream for _, where in self._pairs))
+        self._inputs = Inputs.of(self._out, settings)
+        self._told: set[str] = set()
+
+    def run(self) -> int:
+        self._refuse_early()
+        documents, code = [], output.DONE
+        with _progress(self._pairs, self._out) as pairs:
+            for path, target in pairs:
+                try:
+                    document, lost = self._converted(path, target)
+                except BspcsgError as error:
+                    if len(self._pairs) == 1:
+                        raise
+                    # One bad file of many does not keep the others.
+                    found = output.exit_code_of(error)
+                    click.echo(f"bspcsg: error: {error.message}", err=True)
+                    document, lost = {"file": str(path), "error": error.message}, False
+                    code = max(code, found)
+                documents.append(document)
+                if lost and self._settings["fail_on_loss"]:
+                    code = max(code, output.FOUND)
+        if self._out.as_json:
+            self._out.result("", {"files": documents})
+        return code
+
+    def _refuse_early(self) -> None:
+        for _, target in self._pairs:
+            target.refuse_early(self._out.as_json)
+        self._inputs.refuse_early([path for path, _ in self._pairs])
+        self._inputs.tell_units(self._pairs)
+
+    def _converted(self, path: Path, target: Target) -> tuple[dict[str, Any], bool]:
+        """Convert one file; return what happened to it, and whether anything was lost."""
+        from ...formats.files import decoded, encoded
+        from ...verify.roundtrip import losses_between
+
+        began = time.perf_counter()
+        raw = self._turned(path, target)
+        self._inputs.tell(path, raw.findings)
+        shortened, _ = target.rounded(raw)
+        made = encoded(shortened, shown(target.path), target.suffix, target.text)
+        found: list[Losses] = []
+
+        def compare(data: bytes) -> None:
+            made.prove(data)
+            found.append(losses_between(raw, decoded(shown(target.path), data, target.suffix)))
+
+        put(target.path, made.chunks, target.overwrite, compare)
+        lost = found[0]
+        for finding in made.findings:
+            self._tell(target, finding)
+        seconds = time.perf_counter() - began
+        if not self._out.as_json:
+            self._out.result(_line(raw, target, lost, seconds), {})
+        document = {
+            "file": str(path),
+            "output": str(target.path),
+            "triangles": len(raw.faces),
+            "findings": output.finding_values(made.findings),
+            "lost": lost.to_dict(),
+            "seconds": round(seconds, 4),
+        }
+        return document, lost.any
+
+    def _turned(self, path: Path, target: Target) -> "RawMesh":
+        """Read a file, turned so that the axis asked for is up in the output."""
+        from ...formats.files import FORMATS
+        from ...formats.turning import turned
+
+        raw = self._inputs.raw(path)
+        usual_in = FORMATS[self._inputs.suffix_of(path)].up
+        usual_out = FORMATS[target.suffix.lower()].up
+        # Reading and writing turn by what is usual: what is left is the difference to that.
+        told_in = self._settings["from_up"] or usual_in
+        told_out = self._settings["up"] or usual_out
+        quarters = (told_in == "y") - (usual_in == "y") - (told_out == "y") + (usual_out == "y")
+        return turned(raw, quarters)
+
+    def _tell(self, target: Target, finding: Finding) -> None:
+        """Tell about a file; what is so for all files of a format is told once."""
+        if finding.code == "single_precision":  # its shift is told with the losses, as measured
+            return
+        if finding.code == "unit" and finding.message in self._told:
+            return
+        self._told.add(finding.message)
+        self._out.finding(shown(target.path), finding)
+
+
+def _line(raw: "RawMesh", target: Target, lost: "Losses", seconds: float) -> str:
+    words = "; ".join(lost.sentences())
+    return (
+        f"{shown(target.path)}  {counted(len(raw.faces), 'triangle')}"
+        f"  {'lost: ' + words if words else 'nothing lost'}  {seconds:.2f} s"
+    )
+
+
+def _targets(
+    files: tuple[Path, ...], target: Path | None, outdir: Path | None, suffix: str | None
+) -> list[tuple[Path, Path]]:
+    """Return each file with where it goes."""
+    if (target is None) == (outdir is None):
+        raise click.UsageError("say where to write: either -o FILE or --outdir DIR.")
+    if outdir is not None:
+        if suffix is None:
+            raise click.UsageError("--outdir needs the format: --to glb.")
+        pairs = [(path, outdir / f"{_stem(path)}{suffix}") for path in files]
+    elif len(files) == 1 or target is None:
+        return [(files[0], target or Path(STREAM))]
+    elif "%" not in target.name:
+        raise click.UsageError(
+            "for several inputs, -o needs a % for their names, as in 'web/%.glb'."
+        )
+    else:
+        pairs = [(path, expanded(target, _stem(path))) for path in files]
+    _refuse_twins(pairs)
+    return pairs
+
+
+def _stem(path: Path) -> str:
+    return "stdin" if str(path) == STREAM else path.stem
+
+
+def _refuse_twins(pairs: list[tuple[Path, Path]]) -> None:
+    seen: dict[Path, Path] = {}
+    for path, where in pairs:
+        if where in seen:
+            raise click.UsageError(f"{seen[where]} and {path} would both be written to {where}.")
+        seen[where] = path
+
+
+@contextmanager
+def _progress(
+    pairs: list[tuple[Path, Target]], out: Output
+) -> Iterator[Iterator[tuple[Path, Target]]]:
+    """Yield the pairs, under a bar on the terminal if there are many."""
+    if len(pairs) < _MANY or not sys.stderr.isatty() or out.verbosity < 0:
+        yield iter(pairs)
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
+
+    columns = ("converting", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        yield iter(bar.track(pairs))

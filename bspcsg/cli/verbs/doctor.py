@@ -1,0 +1,156 @@
+"""The verb that looks at the installation: doctor."""
+
+import platform
+import shutil
+import subprocess
+import sys
+from dataclasses import asdict, dataclass
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from typing import Any
+
+import click
+
+from ..._core import __version__
+from .. import output
+from ..options import common
+from ..output import Output
+from ..tables import table_text
+
+_EPILOG = """\b
+Example:
+  bspcsg doctor
+"""
+
+_REQUIRED = ("numpy", "click", "rich", "jinja2", "manifold3d", "trimesh")
+
+#: Optional packages, what each is for, and the extra that brings it.
+_OPTIONAL = (
+    ("pymeshlab", "repair", "repair"),
+    ("meshio", "VTK and VTU files", "vtk"),
+    ("scipy", "distances in compare", "compare"),
+    ("rtree", "distances in compare", "compare"),
+    ("pillow", "PNG files of render, small pictures in report", "pictures"),
+    ("ezdxf", "DXF files of slice", "2d"),
+    ("distributed", "validate on a cluster", "cluster"),
+)
+
+#: Names under which packages are imported that are called otherwise.
+_MODULES = {"pillow": "PIL"}
+
+#: Optional programs, what each is for, and how to install it.
+_PROGRAMS = (("openscad", ".scad files, validate", "apt-get install openscad"),)
+
+#: Seconds to wait for a program that says its version or loads its plug-ins.
+_PATIENCE = 30
+
+_ASK_PLUGINS = "import pymeshlab; print('plugins', pymeshlab.plugin_number())"
+
+
+@dataclass(frozen=True)
+class _Part:
+    """One part of the installation.
+
+    Parameters
+    ----------
+    name, found : str
+        What it is, and which version; empty if it is missing.
+    purpose : str
+        What needs it.
+    remedy : str
+        The line to type if it is missing or incomplete, else empty.
+    required : bool
+    """
+
+    name: str
+    found: str
+    purpose: str
+    remedy: str = ""
+    required: bool = False
+
+
+@click.command(
+    "doctor", short_help="Say what is installed, and how to get the rest.", epilog=_EPILOG
+)
+@common
+def doctor(**given: Any) -> int:
+    """Say which parts are installed, and how to get those that are not.
+
+    Missing optional parts are no failure; the exit code is 6 if a required one is missing.
+    """
+    out = Output.of(given)
+    parts = [*_own(), *map(_required, _REQUIRED), *_packages(), *_programs()]
+    broken = any(part.required and part.remedy for part in parts)
+    document = {"parts": [asdict(part) for part in parts], "complete": not broken}
+    out.result(_text(parts), document)
+    return output.MISSING if broken else output.DONE
+
+
+def _own() -> list[_Part]:
+    system = f"{platform.system()} {platform.release()} {platform.machine()}"
+    python = f"{platform.python_version()} ({sys.executable})"
+    return [
+        _Part("bspcsg", __version__, ""),
+        _Part("Python", python, ""),
+        _Part("system", system, ""),
+    ]
+
+
+def _required(name: str) -> _Part:
+    found = _version_of(name)
+    return _Part(name, found, "everything", "" if found else f"pip install {name}", required=True)
+
+
+def _packages() -> list[_Part]:
+    parts = []
+    for name, purpose, extra in _OPTIONAL:
+        found = _version_of(name)
+        install = f'pip install "bspcsg[{extra}]"'
+        parts.append(_Part(name, found, purpose, "" if found else install))
+    return [_with_libraries(part) if part.name == "pymeshlab" else part for part in parts]
+
+
+def _version_of(name: str) -> str:
+    """Return the version of a package that can be imported, or nothing."""
+    try:
+        return version(name) if find_spec(_MODULES.get(name, name)) is not None else ""
+    except (PackageNotFoundError, ImportError, ValueError):
+        return ""
+
+
+def _with_libraries(part: _Part) -> _Part:
+    """Ask pymeshlab, in a process of its own, whether the system libraries it needs are there."""
+    from ...repair.child import PLUGINS
+    from ...repair.repair import remedy
+
+    if not part.found:
+        return part
+    said = _output_of([sys.executable, "-P", "-c", _ASK_PLUGINS])
+    count = said.rpartition("plugins ")[2].strip()
+    if count.isdigit() and int(count) >= PLUGINS:
+        return part
+    reason = f"{count} of {PLUGINS} plug-ins" if count.isdigit() else "cannot be loaded"
+    remedied = remedy("plug-ins" if count.isdigit() else said)
+    return _Part(part.name, f"{part.found}, {reason}", part.purpose, remedied)
+
+
+def _programs() -> list[_Part]:
+    parts = []
+    for name, purpose, install in _PROGRAMS:
+        path = shutil.which(name)
+        found = _output_of([path, "--version"]).strip().splitlines()[-1:] if path else []
+        parts.append(_Part(name, " ".join(found) or path or "", purpose, "" if path else install))
+    return parts
+
+
+def _output_of(command: list[str]) -> str:
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=_PATIENCE, check=False)
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+    return (done.stdout + done.stderr).decode("utf-8", "replace")
+
+
+def _text(parts: list[_Part]) -> str:
+    rows = [(part.name, part.found or "missing", part.purpose, part.remedy) for part in parts]
+    return table_text(("part", "found", "needed for", "to install"), rows)

@@ -1,0 +1,83 @@
+"""The verb that works out a formula over files: eval."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ...errors import BspcsgError
+from ..formula import File, Formula, FormulaError, evaluated, files_of, parse
+from ..job import Job
+from ..options import from_files
+
+if TYPE_CHECKING:
+    from ...solid.solid import Solid
+
+_HELP = """Write the set that a FORMULA over file names stands for.
+
+\b
+a | b, a + b   union             a & b   intersection
+a - b          difference        a ^ b   what is inside exactly one
+~a             what is outside   (a)     first this
+
+~ binds tightest, then + and -, then &, then ^, then |, as in Python. Put names with blanks in
+quotes, and blanks around + and -, which may be part of a name.
+"""
+
+_EPILOG = """\b
+Example:
+  bspcsg eval '(plate.stl - "hole 1.stl") | knob.stl' -o part.stl
+"""
+
+
+@click.command("eval", help=_HELP, epilog=_EPILOG)
+@click.argument("formula")
+@from_files
+def evaluate(formula: str, **given: Any) -> int:
+    """Work out a formula; its help is above, where it can keep its line breaks."""
+    return _Evaluation(formula, **given).run()
+
+
+class _Evaluation(Job):
+    """A formula, each of whose files is read once."""
+
+    def __init__(self, formula: str, **settings: Any) -> None:
+        self._text = formula
+        try:
+            self._formula: Formula = parse(formula)
+        except FormulaError as error:
+            raise click.UsageError(_pointed(formula, error.message, error.column)) from None
+        super().__init__("eval", **settings)
+
+    def paths(self) -> Sequence[Path]:
+        return [Path(file.name) for file in files_of(self._formula)]
+
+    def combined(self) -> "Solid":
+        solids = {file.name: self._loaded(file) for file in files_of(self._formula)}
+        self.lap("read")
+        return evaluated(self._formula, lambda file: solids[file.name], _combined)
+
+    def _loaded(self, file: File) -> "Solid":
+        try:
+            return self.inputs.solid(Path(file.name))
+        except BspcsgError as error:
+            if error.code != "unreadable" or not any(sign in file.name for sign in "+-"):
+                raise
+            advice = "Put blanks around + and - if they are no part of the name."
+            message = _pointed(self._text, f"{error.message} {advice}", file.column)
+            raise type(error)(message, error.code, error.where) from error
+
+
+def _combined(name: str, solids: list["Solid"]) -> "Solid":
+    from ...verify.check import COMBINE
+
+    return ~solids[0] if name == "complement" else COMBINE[name](*solids)
+
+
+def _pointed(formula: str, message: str, column: int) -> str:
+    """Return a message with the formula and a mark under the column."""
+    if not formula.strip():
+        return f"formula:{column + 1}: {message}"
+    printed = "".join(" " if letter.isspace() else letter for letter in formula)
+    return f"formula:{column + 1}: {message}\n  {printed}\n  {' ' * column}^"

@@ -1,0 +1,223 @@
+"""The verb that evaluates scripts: run."""
+
+import ast
+import re
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.core import ParameterSource
+
+from ...errors import FormatError, InvalidMeshError
+from ..files import ON_INVALID, STREAM, shown, stream_text
+from ..job import Job
+from ..options import TIMEOUT, common, making
+
+if TYPE_CHECKING:
+    from ...csg import Polish
+    from ...solid.solid import Solid
+
+
+#: What needs no quotes on the command line; an expression is not taken for a text.
+_PLAIN_WORD = re.compile(r"[A-Za-z_][\w.-]*")
+
+
+def _list_nodes(context: click.Context, option: click.Parameter, wanted: bool) -> None:
+    """Print the names of the nodes that can be evaluated, and end."""
+    if wanted and not context.resilient_parsing:
+        from ...csg import node_names
+
+        click.echo("\n".join(node_names()))
+        context.exit()
+
+
+def _as_texts(
+    context: click.Context, option: click.Parameter, values: tuple[str, ...]
+) -> dict[str, str]:
+    """Return the texts given for variables by their names."""
+    texts = {}
+    for given in values:
+        name, equals, text = given.partition("=")
+        if not equals or not name.removeprefix("$").isidentifier():
+            raise click.BadParameter(f"{given!r} is not NAME=VALUE.", context, option)
+        texts[name] = text
+    return texts
+
+
+def _value(text: str) -> Any:
+    """Return the value of OpenSCAD's language that a text stands for; a plain word is a text."""
+    from ...csg import value_of
+
+    try:
+        return value_of(text)
+    except FormatError:
+        if _PLAIN_WORD.fullmatch(text):
+            return text
+        wanted = "a number, text, true, false or [list]"
+        message = f"{text!r} is no value; it takes {wanted}."
+        raise click.BadParameter(message, param_hint="-D") from None
+
+
+def _python_value(text: str) -> Any:
+    """Return the value that a text stands for in Python, where 2 is whole, else in OpenSCAD."""
+    try:
+        return ast.literal_eval(text)
+    except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
+        return _value(text)
+
+
+_EPILOG = """\b
+Examples:
+  bspcsg run bracket.scad -o bracket.3mf --polish -D width=12.5
+  bspcsg run part.py -o part.stl
+"""
+
+_SUFFIXES = (".csg", ".json", ".scad", ".py")
+
+#: Options that make sense for some scripts only, by their names, with those that they are not for.
+_NOT_FOR = {
+    "polish": (".py",),
+    "on_invalid": (".py",),
+    "allow_paths": (".py",),
+    "timeout": (".csg", ".json"),
+    "defines": (".csg", ".json"),
+}
+
+#: Options that are not spelled as their names are.
+_SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
+
+
+@click.command(
+    "run", short_help="Write the solid that an OpenSCAD or Python script makes.", epilog=_EPILOG
+)
+@click.argument("script", type=click.Path(path_type=Path, readable=False), metavar="SCRIPT")
+@click.option(
+    "-D",
+    "defines",
+    metavar="NAME=VALUE",
+    multiple=True,
+    callback=_as_texts,
+    help="Set a variable of a .scad or .py script, in place of what it assigns at its top level: a"
+    " number, text, true, false or [list]; can be repeated.",
+)
+@click.option(
+    "--list-nodes",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_list_nodes,
+    help="List the nodes that can be evaluated, and end.",
+)
+@click.option(
+    "--polish",
+    is_flag=True,
+    help="Undo OpenSCAD's rounding to six digits, and say how far corners moved; not for Python.",
+)
+@click.option(
+    "--on-invalid",
+    type=click.Choice(["error", "warn", "repair"]),
+    default="error",
+    show_default=True,
+    help="Refuse meshes that are not closed, leave them out, or close them; not for Python.",
+)
+@click.option(
+    "--allow-path",
+    "allow_paths",
+    metavar="DIR",
+    multiple=True,
+    type=click.Path(path_type=Path, exists=True, file_okay=False),
+    help="A folder beside the script's own whose files it may read; can be repeated; not for"
+    " Python.",
+)
+@TIMEOUT
+@making
+@common
+def run(script: Path, **given: Any) -> int:
+    """Evaluate a script and write the solid it makes.
+
+    A .csg file is read as OpenSCAD writes it, and so is standard input, for which - stands. A
+    .json file is the same tree (see bspcsg tree), a .scad file needs the program openscad. A .py
+    file leaves its solid in the variable result, or calls bspcsg.show; it runs with all your
+    rights, and what it prints goes to standard error.
+    """
+    return _Run(script, **given).run()
+
+
+class _Run(Job):
+    """One script."""
+
+    def __init__(self, script: Path, **settings: Any) -> None:
+        super().__init__("run", **settings)
+        self._script = script
+        self._suffix = ".csg" if str(script) == STREAM else script.suffix.lower()
+        self._defines: dict[str, Any] = {}
+
+    def paths(self) -> Sequence[Path]:
+        return [self._script]
+
+    def refuse_inputs(self) -> None:
+        if self._suffix not in _SUFFIXES:
+            known = ", ".join(_SUFFIXES)
+            message = f"{shown(self._script)}: this is no script; known are {known}."
+            raise FormatError(message, "unknown_format")
+        self._refuse_options()
+        value = _python_value if self._suffix == ".py" else _value
+        texts = self.settings["defines"].items()
+        self._defines = {name: value(text) for name, text in texts}
+
+    def _refuse_options(self) -> None:
+        context = click.get_current_context()
+        for name, useless in _NOT_FOR.items():
+            given = context.get_parameter_source(name) is not ParameterSource.DEFAULT
+            if given and self._suffix in useless:
+                option = _SPELLED.get(name, f"--{name.replace('_', '-')}")
+                raise click.UsageError(f"{option} is not for {self._suffix} files.")
+
+    def combined(self) -> "Solid":
+        from ...script.run import run_script
+
+        given = {"timeout": self.settings["timeout"], "defines": self._defines}
+        options = {name: value for name, value in given.items() if value}
+        if self._suffix == ".py":
+            return run_script(self._script, **options)
+        return self._loaded(**options)
+
+    def _loaded(self, **options: Any) -> "Solid":
+        """Return the solid of OpenSCAD's script; what was left out is told."""
+        from ... import csg
+
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", csg.CsgWarning)
+            names = ("polish", "on_invalid", "allow_paths")
+            options |= {name: self.settings[name] for name in names}
+            options["on_polish"] = self._tell_polish
+            with self._advised():
+                if str(self._script) == STREAM:
+                    solid = csg.loads(stream_text(), name=STREAM, **options)
+                else:
+                    solid = csg.load(self._script, **options)
+        # A polished model is evaluated twice, and warns as often.
+        for said in dict.fromkeys(str(warning.message) for warning in caught):
+            self.out.warning(said)
+        return solid
+
+    def _tell_polish(self, done: "Polish") -> None:
+        if done.pitch is None:
+            self.out.note("polish: no corners had to move")
+        else:
+            step = f"a lattice of step 1e{done.pitch:+03d}"
+            self.out.note(f"polish: corners moved by {done.moved:.2g} at most, to {step}")
+
+    @contextmanager
+    def _advised(self) -> Iterator[None]:
+        """Add to the refusal of a mesh that is not closed what can be done about it."""
+        try:
+            yield
+        except InvalidMeshError as error:
+            if error.code != "not_closed" or self.settings["on_invalid"] != "error":
+                raise
+            message = f"{error.message}\n{ON_INVALID}"
+            raise InvalidMeshError(message, error.code, error.where) from error

@@ -1,0 +1,132 @@
+"""The verb that cuts a solid by a plane: slice."""
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ...errors import Finding
+from .. import output
+from ..drawing import Drawing
+from ..files import shown
+from ..options import PATH, common, drawing, numbers, reading, sets
+from ..output import counted
+
+if TYPE_CHECKING:
+    from ...bsp import Region
+
+_EPILOG = """\b
+Example:
+  bspcsg slice part.stl -o layer.dxf --z 2.5
+"""
+
+_SUFFIXES = (".svg", ".dxf")
+_UPWARDS = (0.0, 0.0, 1.0)
+
+
+def _as_finite(
+    context: click.Context, option: click.Parameter, value: float | None
+) -> float | None:
+    """Return the number, which has to be finite."""
+    if value is not None and not math.isfinite(value):
+        raise click.BadParameter(f"{value} is not finite.", context, option)
+    return value
+
+
+@click.command("slice", short_help="Write the section of a solid by a plane.", epilog=_EPILOG)
+@click.argument("file", type=PATH, metavar="FILE")
+@drawing
+@click.option(
+    "--z", "height", type=float, metavar="HEIGHT", callback=_as_finite, help="Cut at this height."
+)
+@click.option(
+    "--normal",
+    metavar="NX,NY,NZ",
+    callback=numbers("normal", "nx,ny,nz", "1,0,0"),
+    help="Cut along nx x + ny y + nz z = d.",
+)
+@click.option(
+    "--offset",
+    type=float,
+    metavar="D",
+    callback=_as_finite,
+    help="The d of --normal; 0 by default.",
+)
+@reading
+@sets
+@common
+def section(file: Path, target: Path, **given: Any) -> int:
+    """Write the section of a solid by a plane as an SVG or DXF drawing.
+
+    It is seen from where the normal points: z gives the coordinates (x, y), x gives (y, z), y gives
+    (z, x). A face in the plane counts as above it, so a box standing on z = 0 is empty there and
+    full at its top. DXF needs ezdxf; bspcsg doctor says whether it is there.
+    """
+    return _Section(file, target, _SUFFIXES, **given).run()
+
+
+class _Section(Drawing):
+    """One solid, and a plane."""
+
+    def __init__(self, *paths: Any, **settings: Any) -> None:
+        super().__init__(*paths, **settings)
+        self._normal, self._offset = _plane(**{name: settings[name] for name in _PLANE})
+
+    def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
+        solid = self.inputs.solid(self.file)
+        region = solid.slice(self._offset, self._normal)
+        self._tell_of_plane(solid.pitch)
+        if region.is_empty:
+            raise output.EmptyResultError(self._missed(), "empty_result")
+        holes = sum(outline.is_hole for outline in region.outlines)
+        count = len(region.outlines)
+        values = {
+            "normal": list(self._normal),
+            "offset": self._offset,
+            "area": region.area,
+            "perimeter": region.perimeter,
+            "outlines": count,
+            "holes": holes,
+            "bounds": None if region.bounds is None else region.bounds.tolist(),
+        }
+        words = f"{counted(count, 'outline')}, {counted(holes, 'hole')} among them"
+        return self._data(region), f"area {region.area:.9g}  {words}", values
+
+    def _tell_of_plane(self, pitch: int) -> None:
+        """Say whether the plane is another one than was asked for."""
+        from ...geometry.hyperplane import Hyperplane
+
+        plane = Hyperplane.from_numbers(self._normal, self._offset).on_lattice(pitch)
+        if plane.note is not None:
+            finding = Finding("half_space_rounded", "note", plane.note, (), 1)
+            self.out.finding(shown(self.file), finding)
+
+    def _data(self, region: "Region") -> bytes:
+        from ...bsp.drawings.dxf import dxf_data
+        from ...bsp.drawings.svg import svg_data
+
+        return svg_data(region) if self.suffix == ".svg" else dxf_data(region)
+
+    def _missed(self) -> str:
+        normal = ",".join(f"{number:g}" for number in self._normal)
+        return (
+            f"{shown(self.file)}: the plane with normal {normal} and offset {self._offset:g} does"
+            " not cut it, so nothing was written; bspcsg info shows the bounds."
+        )
+
+
+_PLANE = ("height", "normal", "offset")
+
+
+def _plane(
+    height: float | None, normal: tuple[float, ...] | None, offset: float | None
+) -> tuple[tuple[float, ...], float]:
+    """Return normal and offset of the plane that the options say."""
+    if (height is None) == (normal is None):
+        raise click.UsageError("say where to cut: either --z HEIGHT or --normal NX,NY,NZ.")
+    if height is None:
+        return normal or _UPWARDS, offset or 0.0
+    if offset is not None:
+        raise click.UsageError("--offset goes with --normal; --z is a height already.")
+    return _UPWARDS, height

@@ -1,0 +1,379 @@
+"""The verb that compares many results with other engines': validate."""
+
+import fnmatch
+import os
+import shlex
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .. import output
+from ..campaign_options import (
+    OPERATIONS,
+    POSES,
+    as_bytes,
+    as_engines,
+    as_keep,
+    as_pose,
+    as_shard,
+)
+from ..files import STREAM, is_among, refuse_folder, shown
+from ..options import telling
+from ..output import Output, counted
+from ..tables import table_text
+
+if TYPE_CHECKING:
+    from ...campaign.cases.case import Case
+    from ...campaign.cases.sources import Inputs
+    from ...campaign.record import CaseRecord, RunRecord
+    from ...campaign.running.pool import Answering
+
+_EPILOG = """\b
+Examples:
+  bspcsg validate a.stl b.stl
+  bspcsg validate parts/ --poses 500 --results r.jsonl --resume --junit j.xml
+  bspcsg validate model.csg cases.json --against pymeshlab,openscad
+"""
+
+#: How many failures are named at the end; the results file has all.
+_NAMED = 20
+
+#: Why operands were refused is told as often without -v.
+_REASONS = 3
+
+_FILE = click.Path(path_type=Path, readable=False)
+
+
+@click.command("validate", short_help="Compare many results with other engines'.", epilog=_EPILOG)
+@click.argument("paths", nargs=-1, required=True, type=_FILE, metavar="CASES...")
+@click.option(
+    "--op",
+    "operations",
+    multiple=True,
+    type=click.Choice(OPERATIONS),
+    help="Operation on each pair; may be repeated, by default all four.",
+)
+@click.option(
+    "--poses",
+    metavar="N",
+    type=click.IntRange(min=1),
+    help="Draw so many pairs, half in random and half in coincident poses.",
+)
+@click.option(
+    "--pose",
+    metavar="NAME[:NUMBER]",
+    callback=as_pose,
+    help=f"Place the second of each pair so ({', '.join(POSES)}); a number for one draw.",
+)
+@click.option(
+    "--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Of the random draws."
+)
+@click.option(
+    "--max-triangles",
+    metavar="N",
+    type=click.IntRange(min=1),
+    help="Leave larger files out; files that are no solids are left out of --poses too.",
+)
+@click.option("--only", metavar="PATTERN", help="Only cases whose names match, as in '*-union'.")
+@click.option(
+    "--against",
+    metavar="ENGINES",
+    callback=as_engines,
+    help="Ask these in every case besides manifold3d: pymeshlab, openscad. By default they are"
+    " asked where manifold3d disagrees or has no answer, and openscad about scripts.",
+)
+@click.option(
+    "--results", metavar="FILE", type=_FILE, help="JSON lines to append each finished case to."
+)
+@click.option("--junit", metavar="FILE", type=_FILE, help="JUnit XML to write at the end.")
+@click.option(
+    "--markdown", metavar="FILE", type=_FILE, help="Markdown summary to write at the end."
+)
+@click.option(
+    "-j",
+    "--jobs",
+    metavar="N",
+    type=click.IntRange(0, 1024),
+    default=0,
+    help="Cases at once; 0 for all cores.",
+)
+@click.option(
+    "--timeout",
+    metavar="SECONDS",
+    type=click.FloatRange(min=0, min_open=True),
+    default=300.0,
+    show_default=True,
+    help="Seconds for a case, after which its process is killed.",
+)
+@click.option(
+    "--memory",
+    metavar="SIZE",
+    default="4G",
+    show_default=True,
+    callback=as_bytes,
+    help="Memory for a case; 0 for no limit.",
+)
+@click.option("--shard", metavar="I/N", callback=as_shard, help="Only the I-th of N parts.")
+@click.option("--resume", is_flag=True, help="Leave out what the results file has already.")
+@click.option(
+    "--fail-fast/--keep-going", default=False, help="Stop at the first failure, or go on (default)."
+)
+@click.option(
+    "--keep-meshes",
+    "keep",
+    metavar="WHICH",
+    default="interesting",
+    callback=as_keep,
+    help="Meshes to keep beside the results: interesting (default), all, none, or so many more.",
+)
+@click.option(
+    "--samples",
+    metavar="N",
+    type=click.IntRange(min=0),
+    default=500,
+    show_default=True,
+    help="Points to measure distances from; 0 for none.",
+)
+@click.option(
+    "--scheduler",
+    metavar="ADDRESS|FILE",
+    help="Run on the workers of this Dask scheduler, which see the same files.",
+)
+@telling
+def validate(paths: tuple[Path, ...], **given: Any) -> int:
+    """Compare results with manifold3d's, as exact sets, and with further engines in doubt.
+
+    CASES are mesh files (every pair of them), folders (every pair of meshes in them, and their
+    .csg scripts), scripts (.csg, .scad) and .json files of cases. Each case runs in a process of
+    its own that is killed at the limits. Exits with 1 if engines disagree with us, a result is not
+    sound, or a case ran into a limit or crashed.
+    """
+    return _Validation(paths, given).run()
+
+
+class _Validation:
+    """A campaign as the options say it."""
+
+    def __init__(self, paths: tuple[Path, ...], settings: dict[str, Any]) -> None:
+        self._paths, self._settings = paths, settings
+        self._out = Output.of(settings)
+        if settings["resume"] and settings["results"] is None:
+            raise click.UsageError("--resume needs the file to go on with: --results r.jsonl.")
+        if settings["poses"] and settings["pose"][1] is not None:
+            raise click.UsageError("--poses draws many; --pose NAME:NUMBER is one draw.")
+
+    def run(self) -> int:
+        from ...campaign.judging.opinions import require
+        from ...campaign.record import is_failure
+
+        self._refuse_early()
+        require(self._settings["against"], self._settings["samples"])
+        answering = self._answering()
+        cases = self._cases(answering)
+        header = self._header()
+        records = self._records(cases, answering, header)
+        self._write_reports(records, header)
+        self._tell(records)
+        return output.FOUND if any(map(is_failure, records)) else output.DONE
+
+    def _refuse_early(self) -> None:
+        for name in ("results", "junit", "markdown"):
+            path: Path | None = self._settings[name]
+            if path is None:
+                continue
+            if str(path) == STREAM:
+                raise click.UsageError(f"--{name} takes the name of a file, not a stream.")
+            refuse_folder(path)
+            if is_among(path, self._paths):
+                raise click.UsageError(f"--{name} would overwrite {path}, which is to be read.")
+        if Path(STREAM) in self._paths:
+            raise click.UsageError("validate reads files, not standard input.")
+
+    def _answering(self) -> "Answering":
+        from ...campaign.running.cluster import Cluster
+        from ...campaign.running.pool import LocalPool
+        from ...campaign.running.runner import greeting
+
+        cores = os.cpu_count() or 1
+        jobs = self._settings["jobs"] or cores
+        settings = self._case_settings()
+        scheduler = self._settings["scheduler"]
+        if scheduler is not None:
+            return Cluster(scheduler, greeting(settings, self._settings["memory"], 1))
+        told = greeting(settings, self._settings["memory"], max(1, cores // jobs))
+        return LocalPool(jobs, told)
+
+    def _case_settings(self) -> Any:
+        from ...campaign.judging.evaluation import Settings
+
+        results, keep = self._settings["results"], self._settings["keep"]
+        folder = None if results is None or keep == "none" else results.with_suffix(".meshes")
+        return Settings(
+            against=self._settings["against"],
+            samples=self._settings["samples"],
+            timeout=self._settings["timeout"],
+            meshes=None if folder is None else str(folder.absolute()),
+            relative="" if folder is None else folder.name,
+        )
+
+    def _cases(self, answering: "Answering") -> "list[Case]":
+        from ...campaign.cases.sources import Draw, cases_of, inputs_in
+
+        pose, number = self._settings["pose"]
+        draw = Draw(self._settings["poses"] or 0, self._settings["seed"], pose, number)
+        inputs = self._usable(inputs_in(self._paths), answering)
+        operations = self._settings["operations"] or OPERATIONS
+        cases = cases_of(inputs, tuple(dict.fromkeys(operations)), draw)
+        if not cases:
+            raise click.UsageError(
+                "there is nothing to validate; give at least two mesh files, a folder of them, a"
+                " script, or a file of cases."
+            )
+        if self._settings["only"] is not None:
+            cases = [one for one in cases if fnmatch.fnmatchcase(one.name, self._settings["only"])]
+            if not cases:
+                raise click.UsageError(f"no case is called {self._settings['only']}.")
+        if self._settings["shard"] is not None:
+            number, count = self._settings["shard"]
+            cases = cases[number - 1 :: count]
+        return cases
+
+    def _usable(self, inputs: "Inputs", answering: "Answering") -> "Inputs":
+        """Leave out meshes that are too large, and for random pairs those that are no solids."""
+        from dataclasses import replace
+
+        from ...campaign.running.runner import survey
+
+        most = self._settings["max_triangles"]
+        if not inputs.meshes or (most is None and not self._settings["poses"]):
+            return inputs
+        found = survey(inputs.meshes, answering, self._settings["timeout"])
+        bad = [path for path in inputs.meshes if found[path]["refused"]]
+        large = [path for path in inputs.meshes if most and found[path]["triangles"] > most]
+        for path in bad:
+            self._out.detail(f"{shown(path)}: left out: {found[path]['refused']}")
+        if bad:
+            words = (
+                "file left out that is no solid"
+                if len(bad) == 1
+                else ("files left out that are no solids")
+            )
+            self._out.note(f"{len(bad)} {words}")
+        if large:
+            self._out.note(f"{counted(len(large), 'file')} left out with over {most} triangles")
+        out = {*bad, *large}
+        return replace(inputs, meshes=tuple(path for path in inputs.meshes if path not in out))
+
+    def _header(self) -> "RunRecord":
+        from ...campaign.running.runner import run_record
+
+        arguments = click.get_current_context().find_root().obj
+        return run_record(shlex.join(["bspcsg", *arguments]), self._settings["seed"])
+
+    def _records(
+        self, cases: "Sequence[Case]", answering: "Answering", header: "RunRecord"
+    ) -> "list[CaseRecord]":
+        from ...campaign.record import Journal, read_results
+        from ...campaign.running.runner import Plan, run_cases
+
+        results, resume = self._settings["results"], self._settings["resume"]
+        known = read_results([results]).cases if resume and results.exists() else {}
+        plan = Plan(
+            cases,
+            known,
+            self._settings["timeout"],
+            self._settings["keep"],
+            self._settings["fail_fast"],
+        )
+        done = len(cases) - len(plan.open_cases)
+        if done:
+            self._out.note(f"{counted(done, 'case')} of {len(cases)} known from {shown(results)}")
+        with Journal(results) if results else nullcontext() as journal:
+            if journal is not None:
+                journal.append(header)
+            with self._progress(len(plan.open_cases)) as notice:
+                return run_cases(plan, answering, journal, notice)
+
+    @contextmanager
+    def _progress(self, count: int) -> "Iterator[Callable[[CaseRecord], None]]":
+        """Yield what is told each record: a bar on a terminal, else lines for those who ask."""
+        if not sys.stderr.isatty() or self._out.verbosity < 0:
+            yield lambda record: self._out.detail(_line(record))
+            return
+        from rich.console import Console
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            Progress,
+            TimeElapsedColumn,
+            TimeRemainingColumn,
+        )
+
+        from ...campaign.record import is_failure
+
+        times = TimeElapsedColumn(), TimeRemainingColumn()
+        columns = ("validating", BarColumn(), MofNCompleteColumn(), *times)
+        with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+            task = bar.add_task("", total=count)
+
+            def notice(record: "CaseRecord") -> None:
+                bar.advance(task)
+                if is_failure(record) or self._out.verbosity > 0:
+                    bar.console.print(_line(record), markup=False, highlight=False)
+
+            yield notice
+
+    def _write_reports(self, records: "Sequence[CaseRecord]", header: "RunRecord") -> None:
+        from ...formats.atomic import write_file
+        from ...report.junit import junit_text
+        from ...report.markdown import markdown_text
+
+        for name, writer in (("junit", junit_text), ("markdown", markdown_text)):
+            path = self._settings[name]
+            if path is not None:
+                write_file(path, [writer(records, [header]).encode()])
+
+    def _tell(self, records: "Sequence[CaseRecord]") -> None:
+        from ...campaign.summary import summary_of
+
+        document = summary_of(records) if self._out.as_json else {}
+        self._tell_refused(records)
+        self._out.result("" if self._out.as_json else self._text(records), document)
+
+    def _tell_refused(self, records: "Sequence[CaseRecord]") -> None:
+        """Say why nothing was compared in some cases, each reason once."""
+        refused = [record["reason"] for record in records if record["verdict"] == "refused"]
+        reasons = list(dict.fromkeys(refused))
+        for reason in reasons[:_REASONS]:
+            self._out.note(f"refused: {reason.rstrip('.')}.")
+        if len(reasons) > _REASONS:
+            self._out.note(
+                f"refused for other reasons as well ({len(reasons)} in all); -v tells them"
+            )
+
+    def _text(self, records: "Sequence[CaseRecord]") -> str:
+        from ...campaign.record import is_failure
+        from ...campaign.summary import conclusion, counts_by_verdict
+
+        counts = counts_by_verdict(records)
+        rows = [(verdict, str(count)) for verdict, count in counts.items()]
+        lines = [table_text(("verdict", "cases"), rows, right=("cases",))] if rows else []
+        failures = [record for record in records if is_failure(record)]
+        lines += [_failure(record) for record in failures[:_NAMED]]
+        if len(failures) > _NAMED:
+            lines.append(f"and {len(failures) - _NAMED} more")
+        return "\n".join([*lines, conclusion(records)])
+
+
+def _line(record: "CaseRecord") -> str:
+    reason = f": {record['reason']}" if record["reason"] else ""
+    return f"{record['case']}  {record['verdict']}{reason}  {record['seconds']['total']:.2f} s"
+
+
+def _failure(record: "CaseRecord") -> str:
+    reason = f": {record['reason']}" if record["reason"] else ""
+    return f"{record['verdict']}  {record['case']}{reason}\n  Again: {record['command']}"

@@ -1,0 +1,152 @@
+"""Drawings as OpenSCAD imports them: arcs in as many chords as circles get."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...bsp import Region
+from ...bsp.drawings.dxf import read_document
+from ...errors import format_errors
+from .tessellation import Fineness
+
+#: Blocks in blocks in blocks: deeper ones are left out.
+_DEEPEST_BLOCK = 16
+
+#: Ends of lines closer than this are one corner.
+_JOINED = 2.0**-10
+
+
+def dxf_region(
+    path: Path, layer: str, origin: FloatArray, scale: float, fineness: Fineness
+) -> Region:
+    """Return what the outlines of a DXF file surround, by the even-odd rule.
+
+    Lines, light polylines, circles, arcs, ellipses and inserted blocks count, as in OpenSCAD;
+    outlines that stay open are closed by a chord.
+
+    Parameters
+    ----------
+    path : Path
+    layer : str
+        Which layer to read; all if empty.
+    origin : (2,) float64
+        Subtracted first.
+    scale : float
+        Multiplied then.
+    fineness : Fineness
+
+    Raises
+    ------
+    FormatError
+        If the file is no DXF.
+    """
+    document = read_document(path)
+    with format_errors(str(path), "DXF"):
+        entities = [e for e in document.modelspace() if not layer or e.dxf.layer == layer]
+        chains = [
+            (np.array(chain, dtype=np.float64) - origin) * scale
+            for entity in entities
+            for chain in _chains(entity, fineness, abs(scale), 0)
+        ]
+    proper = [chain for chain in chains if len(chain) > 1]
+    loops = [loop for loop in _joined(proper) if len(np.unique(loop, axis=0)) >= 3]
+    return Region(loops, winding="even-odd")
+
+
+class _Places:
+    """Numbers of points; points less than a step of the grid apart are one."""
+
+    def __init__(self) -> None:
+        self._numbers: dict[tuple[int, int], int] = {}
+
+    def number(self, point: FloatArray) -> int:
+        x, y = (math.floor(c / _JOINED) for c in point.tolist())
+        near = [(x + dx, y + dy) for dx in (0, -1, 1) for dy in (0, -1, 1)]
+        known = next((cell for cell in near if cell in self._numbers), None)
+        return self._numbers.setdefault((x, y) if known is None else known, len(self._numbers))
+
+
+def _joined(chains: list[FloatArray]) -> list[FloatArray]:
+    """Return the chains joined where their ends meet, beginning with loose ends."""
+    places = _Places()
+    ends = [(places.number(chain[0]), places.number(chain[-1])) for chain in chains]
+    at: dict[int, list[int]] = {}
+    for number, pair in enumerate(ends):
+        for place in pair:
+            at.setdefault(place, []).append(number)
+    loose = [(k, pair.index(p)) for k, pair in enumerate(ends) for p in pair if len(at[p]) == 1]
+    left = set(range(len(chains)))
+    loops = []
+    for number, end in [*loose, *((k, 0) for k in range(len(chains)))]:
+        if number in left:
+            loops.append(_walk(number, end, chains, ends, at, left))
+    return loops
+
+
+def _walk(
+    number: int,
+    end: int,
+    chains: list[FloatArray],
+    ends: list[tuple[int, int]],
+    at: dict[int, list[int]],
+    left: set[int],
+) -> FloatArray:
+    """Follow chains from one end of the first until none is left where the last one ends."""
+    parts = []
+    following: int | None = number
+    while following is not None:
+        left.discard(following)
+        chain = chains[following] if end == 0 else chains[following][::-1]
+        parts.append(chain)
+        place = ends[following][1 - end]
+        following = next((k for k in at[place] if k in left), None)
+        if following is not None:
+            end = ends[following].index(place)
+            # The corner is there already.
+            parts[-1] = chain[:-1]
+    return np.concatenate(parts)
+
+
+def _chains(entity: Any, fineness: Fineness, scale: float, depth: int) -> Iterator[Any]:
+    kind = entity.dxftype()
+    if kind == "LINE":
+        yield [entity.dxf.start.vec2, entity.dxf.end.vec2]
+    elif kind == "LWPOLYLINE":
+        corners = [corner[:2] for corner in entity.get_points()]
+        yield corners + corners[:1] if entity.closed else corners
+    elif kind in ("CIRCLE", "ARC"):
+        yield _arc(entity, fineness, scale)
+    elif kind == "ELLIPSE":
+        yield _ellipse(entity, fineness, scale)
+    elif kind == "INSERT" and depth < _DEEPEST_BLOCK:
+        for part in entity.virtual_entities():
+            yield from _chains(part, fineness, scale, depth + 1)
+
+
+def _arc(entity: Any, fineness: Fineness, scale: float) -> FloatArray:
+    center, radius = np.array(entity.dxf.center.vec2), entity.dxf.radius
+    full = entity.dxftype() == "CIRCLE"
+    start = 0.0 if full else entity.dxf.start_angle
+    stop = 360.0 if full else entity.dxf.end_angle
+    sweep = stop - start if stop >= start else (stop - start) % 360
+    count = math.ceil(fineness.fragments(radius * scale) * sweep / 360)
+    angles = np.radians(start + sweep * np.arange(count + 1) / max(count, 1))
+    points = center + radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    return np.concatenate([points[:-1], points[:1]]) if full else points
+
+
+def _ellipse(entity: Any, fineness: Fineness, scale: float) -> FloatArray:
+    center, axis = np.array(entity.dxf.center.vec2), np.array(entity.dxf.major_axis.vec2)
+    start, stop = entity.dxf.start_param, entity.dxf.end_param
+    sweep = stop - start if stop >= start else (stop - start) % math.tau
+    sides = fineness.fragments(float(np.hypot(*axis)) * scale)
+    count = math.ceil(sides * sweep / math.tau - 1e-9)
+    angles = start + sweep * np.arange(count + 1) / max(count, 1)
+    other = np.array([-axis[1], axis[0]]) * entity.dxf.ratio
+    points = center + np.outer(np.cos(angles), axis) + np.outer(np.sin(angles), other)
+    closed = math.isclose(sweep, math.tau)
+    return np.concatenate([points[:-1], points[:1]]) if closed else points

@@ -1,0 +1,100 @@
+"""Bodies below tables of heights."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...errors import FormatError
+from ...formats.source import limited_content
+from ...geometry.polygon import directed_edges
+from ...shapes.sweep import strip
+from ...solid.solid import Solid
+
+
+class Heights(NamedTuple):
+    """A table of heights.
+
+    Parameters
+    ----------
+    table : (m, n) float64
+        Rows that are shorter than others are filled with zeros.
+    floor : float
+        One below the least height in the file, or 0; what fills rows up does not count.
+    """
+
+    table: FloatArray
+    floor: float
+
+
+def read_heights(path: Path) -> Heights:
+    """Return the rows of numbers in a text file.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be read, a word is no finite number, or there are fewer than two rows or
+        columns.
+    """
+    lines = limited_content(path).decode("utf-8", errors="replace").splitlines()
+    rows = [_row(path, k, line) for k, line in enumerate(lines, 1) if _holds_numbers(line)]
+    columns = max(map(len, rows), default=0)
+    if len(rows) < 2 or columns < 2:
+        raise FormatError(f"{path}: a surface needs two rows and columns of numbers.", "syntax")
+    table = np.array([row + [0.0] * (columns - len(row)) for row in rows])
+    return Heights(table, min(min(map(min, rows)) - 1, 0.0))
+
+
+def _holds_numbers(line: str) -> bool:
+    return bool(line.strip()) and not line.lstrip().startswith("#")
+
+
+def _row(path: Path, number: int, line: str) -> list[float]:
+    try:
+        row = [float(word) for word in line.split()]
+    except ValueError:
+        # What stands there is not repeated: the file may hold what its reader must not see.
+        raise FormatError(f"{path}:{number}: a word is no number.", "syntax", [number]) from None
+    if not np.isfinite(row).all():
+        raise FormatError(f"{path}:{number}: heights must be finite.", "non_finite", [number])
+    return row
+
+
+def height_map(heights: Heights, *, centered: bool) -> Solid:
+    """Return the body between a table of heights and its floor.
+
+    Columns run along x and rows along y, one unit apart; each field rises to the mean of its
+    corners in its middle.
+    """
+    rows, columns = heights.table.shape
+    shift = -(np.array([columns, rows]) - 1) / 2 if centered else np.zeros(2)
+    y, x = np.indices((rows, columns))
+    corners = np.column_stack([x.ravel(), y.ravel(), heights.table.ravel()])
+    middles = _middles(heights.table)
+    rim = _rim(rows, columns)
+    below = corners[rim] * (1, 1, 0) + (0, 0, heights.floor)
+    vertices = np.concatenate([corners, middles, below]) + (*shift, 0)
+    ids = np.arange(rows * columns).reshape(rows, columns)
+    a, b, d, c = (part.ravel() for part in (ids[:-1, :-1], ids[:-1, 1:], ids[1:, :-1], ids[1:, 1:]))
+    tips = len(corners) + np.arange(len(middles))
+    top = [np.column_stack([s, e, tips]) for s, e in ((a, b), (b, c), (c, d), (d, a))]
+    start, end = directed_edges([corners[rim]]).T
+    low = len(corners) + len(middles)
+    sides = strip(low + start, low + end, rim[start], rim[end])
+    fan = np.arange(1, len(rim) - 1)
+    bottom = np.column_stack([np.zeros_like(fan), fan + 1, fan]) + low
+    return Solid(vertices, np.concatenate([*top, sides, bottom]))
+
+
+def _middles(heights: FloatArray) -> FloatArray:
+    z = (heights[:-1, :-1] + heights[:-1, 1:] + heights[1:, :-1] + heights[1:, 1:]) / 4
+    y, x = np.indices(z.shape)
+    return np.column_stack([x.ravel() + 0.5, y.ravel() + 0.5, z.ravel()])
+
+
+def _rim(rows: int, columns: int) -> np.ndarray:
+    """Return the numbers of the table's outer corners, counter-clockwise from the first."""
+    ids = np.arange(rows * columns).reshape(rows, columns)
+    sides = (ids[0, :-1], ids[:-1, -1], ids[-1, :0:-1], ids[:0:-1, 0])
+    return np.concatenate(sides)

@@ -1,0 +1,111 @@
+"""SVG drawings as OpenSCAD imports them: in millimetres on their page, y upwards."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...bsp import Region
+from ...bsp.drawings.svg import outlines_of, shown_shapes
+from ...errors import format_errors
+from .offsetting import stroked
+
+_MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6}
+_LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%]*)\s*")
+
+#: Largest distance between a curve and its chords, in user units.
+_CHORD = 0.01
+
+#: Lines that say less of their width, in user units, are one wide.
+_THINNEST = 0.01
+
+#: Ends of a subpath that are closer than this, in user units, close it.
+_CLOSED = 0.1
+
+
+@dataclass(frozen=True)
+class _Page:
+    """Where user units lie on a page, in millimetres from its lower left corner."""
+
+    scale: float
+    x: float
+    y: float
+
+
+def svg_region(path: Path, dpi: float, centered: bool) -> Region:
+    """Return the shapes of an SVG file as OpenSCAD has them.
+
+    What is closed is filled, whatever its fill says, and what is open becomes as wide as its
+    stroke. The view box is fitted into its width and height, as browsers do; without a view box,
+    user units count as they are.
+
+    Parameters
+    ----------
+    path : Path
+    dpi : float
+        Pixels per inch, for lengths without a unit.
+    centered : bool
+        Whether the middle of the drawing is at the origin, rather than a corner of the page.
+    """
+    region = _drawn(path)
+    page = _page(path, dpi)
+    placed = region.scale(page.scale).translate(page.x, page.y)
+    bounds = placed.bounds
+    if centered and bounds is not None:
+        return placed.translate(*(-bounds.mean(axis=0)).tolist())
+    return placed
+
+
+def _drawn(path: Path) -> Region:
+    region = Region()
+    for shape in shown_shapes(path):
+        with format_errors(str(path), "SVG"):
+            outlines = list(outlines_of(shape, _CHORD))
+        closed = [corners for corners, is_closed in outlines if is_closed or _meets(corners)]
+        loops = [corners for corners in closed if len(corners) >= 3]
+        region = region | Region(loops, winding="even-odd")
+        for corners, is_closed in outlines:
+            if not is_closed and not _meets(corners) and len(corners) >= 2:
+                region = region | _stroke(shape, corners)
+    return region
+
+
+def _meets(corners: FloatArray) -> bool:
+    """Whether a subpath that nothing closes ends where it begins."""
+    return len(corners) > 2 and bool(np.hypot(*(corners[0] - corners[-1])) <= _CLOSED)
+
+
+def _stroke(shape: Any, corners: FloatArray) -> Region:
+    width = float(shape.stroke_width or 0.0)
+    width = width if width >= _THINNEST else 1.0
+    cap = shape.values.get("stroke-linecap")
+    return stroked(corners, width, cap if cap in ("butt", "round") else "square")
+
+
+def _page(path: Path, dpi: float) -> _Page:
+    # `load_svg` has refused files that declare a document type or an entity.
+    _, root = next(iter(ElementTree.iterparse(path, events=("start",))))
+    width, height = (_length(root.get(name, ""), dpi) for name in ("width", "height"))
+    with format_errors(str(path), "SVG"):
+        words = re.split(r"[\s,]+", root.get("viewBox", "").strip())
+        box = [float(word) for word in words if word]
+    if len(box) != 4 or min(box[2:]) <= 0:
+        return _Page(1.0, 0.0, height or 0.0)
+    left, top, wide, high = box
+    width = width or (height / high * wide if height else wide * 25.4 / dpi)
+    height = height or high * width / wide
+    scale = min(width / wide, height / high)
+    x = (width - wide * scale) / 2 - left * scale
+    return _Page(scale, x, height - (height - high * scale) / 2 + top * scale)
+
+
+def _length(text: str, dpi: float) -> float | None:
+    """Return a length in millimetres; None for what is missing or relative."""
+    match = _LENGTH.fullmatch(text)
+    if match is None or match.group(2) == "%":
+        return None
+    return float(match.group(1)) * _MILLIMETRES.get(match.group(2), 25.4 / dpi)

@@ -1,0 +1,127 @@
+"""What six digits took away: rotations that are not quite, faces that no longer meet."""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...bsp import Region
+from ...mesh.mesh import Mesh
+from ...solid.solid import Solid
+
+#: Entries of a matrix may be this far from a rotation's to be taken for one.
+NEARLY = 1e-5
+
+#: OpenSCAD writes so many digits.
+DIGITS = 6
+
+
+def polished_matrix(matrix: FloatArray) -> FloatArray:
+    """Return the matrix with its linear part replaced by the nearest rotation, if it is near.
+
+    Parameters
+    ----------
+    matrix : (4, 4) float64
+
+    Notes
+    -----
+    The nearest orthogonal matrix is U V' of the singular value decomposition U S V' (Schönemann
+    1966). Mirror images stay such. Entries that are 0 or ±1 up to rounding become so.
+    """
+    u, _, v = np.linalg.svd(matrix[:3, :3])
+    rotation = u @ v
+    if np.abs(rotation - matrix[:3, :3]).max() > NEARLY:
+        return matrix
+    whole = np.round(rotation)
+    rotation = np.where(np.abs(rotation - whole) < 1e-12, whole, rotation)
+    result = matrix.copy()
+    result[:3, :3] = rotation
+    return result
+
+
+class Polish(NamedTuple):
+    """What polishing did besides making matrices rotations.
+
+    Parameters
+    ----------
+    pitch : int or None
+        Exponent of the step of the lattice that corners were moved to; None if none had to move.
+    moved : float
+        How far the corner went that went farthest, in model units: each moves once, by half a step
+        along each axis at most, √3/2 · 10**pitch in all.
+    """
+
+    pitch: int | None = None
+    moved: float = 0.0
+
+
+def polished_pitch(kinds: Sequence[Sequence[FloatArray]], finest: int) -> int | None:
+    """Return the finest lattice that brings most of different parts together; None if none does.
+
+    What coincides within one part was told apart on purpose, and counts against a lattice. Lattices
+    go up to one whose step is a unit of the sixth digit of the largest coordinate: nothing was
+    written finer there, so what differs by rounding alone differs by less.
+
+    Parameters
+    ----------
+    kinds : sequence of sequence of (n, d) float64
+        Of each kind of thing that may coincide, such as corners, those of each part.
+    finest : int
+        Exponent of the step of the lattice that they lie on.
+    """
+    parts = [rows for kind in kinds for rows in kind]
+    largest = max((float(np.abs(rows).max(initial=0)) for rows in parts), default=0.0)
+    if largest == 0:
+        return None
+    coarsest = math.floor(math.log10(largest)) + 1 - DIGITS
+    gains = [sum(_gain(kind, pitch) for kind in kinds) for pitch in range(finest, coarsest + 1)]
+    if not gains or max(gains) == gains[0]:
+        return None
+    return finest + gains.index(max(gains))
+
+
+def _gain(parts: Sequence[FloatArray], pitch: int) -> int:
+    """Return what parts share on a lattice less what each loses on it, but for a constant."""
+    rounded = [np.unique(np.round(rows, -pitch), axis=0) for rows in parts]
+    # Each part's things count once for what they share, and once for what is left of them.
+    return 2 * sum(map(len, rounded)) - len(np.unique(np.concatenate(rounded), axis=0))
+
+
+def corners_and_levels(bodies: Sequence[Solid | Region]) -> list[list[FloatArray]]:
+    """Return what may coincide: corners, and for each axis the places of faces across it."""
+    meshes = [body.to_mesh() for body in bodies if isinstance(body, Solid)]
+    figures = [body.to_polygons() for body in bodies if isinstance(body, Region)]
+    corners = [mesh.vertices for mesh in meshes]
+    levels = [[_levels(mesh, axis) for mesh in meshes] for axis in range(3)]
+    outlines = [np.concatenate(loops) for loops in figures]
+    return [kind for kind in (corners, *levels, outlines) if kind]
+
+
+def _levels(mesh: Mesh, axis: int) -> FloatArray:
+    """Return where faces across an axis lie on it: (n, 1)."""
+    along = mesh.vertices[mesh.faces][:, :, axis]
+    levels: FloatArray = along[np.ptp(along, axis=1) == 0][:, :1]
+    return levels
+
+
+def pitch_of(body: Solid | Region) -> int:
+    """Return the exponent of the step of a body's lattice."""
+    return body.pitch if isinstance(body, Region) else body.tree.pitch
+
+
+def snapped(body: Solid | Region, pitch: int) -> tuple[Solid | Region, float]:
+    """Return a body with its corners on a lattice, and how far the farthest moved."""
+    if isinstance(body, Region):
+        loops = body.to_polygons()
+        on_lattice = [np.round(loop, -pitch) for loop in loops]
+        moved = max(_farthest(*pair) for pair in zip(loops, on_lattice, strict=True))
+        return Region(on_lattice, pitch=pitch), moved
+    mesh = body.normalized().to_mesh()
+    corners = np.round(mesh.vertices, -pitch)
+    return Solid(corners, mesh.faces, pitch=pitch), _farthest(mesh.vertices, corners)
+
+
+def _farthest(before: FloatArray, after: FloatArray) -> float:
+    return float(np.linalg.norm(after - before, axis=1).max(initial=0))

@@ -1,0 +1,96 @@
+"""How many sides round things get: OpenSCAD's rules, so that results have the same corners.
+
+``$fn`` above 0 is the number of sides; otherwise ``$fa``, the smallest angle of a side in degrees,
+and ``$fs``, its smallest length, say what is enough. Source: OpenSCAD's user manual, "Special
+variables"; the slices of twisted extrusions follow OpenSCAD 2021.01.
+"""
+
+import math
+from dataclasses import dataclass
+
+from ..syntax.arguments import Arguments
+
+#: Lengths below are zero: a 2**20th of a unit.
+_NOTHING = 2.0**-20
+
+
+@dataclass(frozen=True)
+class Fineness:
+    """The three special variables.
+
+    Parameters
+    ----------
+    fn, fa, fs : float
+        Number of sides or 0; degrees; model units.
+    """
+
+    fn: float = 0.0
+    fa: float = 12.0
+    fs: float = 2.0
+
+    @classmethod
+    def of(cls, arguments: Arguments) -> "Fineness":
+        """Return those of a node."""
+        fn = arguments.value("$fn")
+        if isinstance(fn, float) and not math.isfinite(fn):
+            # OpenSCAD makes triangles of it.
+            return cls(3.0)
+        fa, fs = arguments.number("$fa", 12.0), arguments.number("$fs", 2.0)
+        return cls(arguments.number("$fn", 0.0), max(fa, 0.01), max(fs, 0.01))
+
+    def fragments(self, radius: float) -> float:
+        """Return the sides of a full circle, a whole number."""
+        if radius < _NOTHING:
+            return 3
+        if self.fn > 0:
+            return math.floor(max(self.fn, 3))
+        return math.ceil(max(min(360 / self.fa, radius * 2 * math.pi / self.fs), 5))
+
+    def twist_slices(self, reach: float, height: float, twist: float, scale: float) -> float:
+        """Return the slices of a twisted extrusion.
+
+        Parameters
+        ----------
+        reach : float
+            The largest distance from the axis.
+        height, twist, scale : float
+            Twist in degrees; scale of the upper end, the same in x and y.
+        """
+        turn = abs(twist)
+        least = max(math.ceil(turn / 120), 1)
+        if reach < _NOTHING:
+            return least
+        if self.fn > 0:
+            return max(math.ceil(turn / 360 * self.fn), least)
+        length = _helix_length(reach, height, math.radians(turn), scale)
+        return max(min(math.ceil(turn / self.fa), math.ceil(length / self.fs)), least)
+
+    def taper_slices(self, shift: float, height: float) -> float:
+        """Return the slices of an extrusion that scales x and y differently.
+
+        Parameters
+        ----------
+        shift : float
+            How far the corner moves that moves farthest.
+        height : float
+        """
+        if shift < _NOTHING:
+            return 1
+        if self.fn > 0:
+            return max(math.floor(self.fn), 1)
+        return max(math.ceil(math.hypot(shift, height) / self.fs), 1)
+
+
+def _helix_length(reach: float, height: float, turn: float, scale: float) -> float:
+    """Return the length of a corner's path: a helix, on a cone if it is scaled."""
+    if scale == 1:
+        return math.hypot(turn * reach, height)
+    end = turn * scale / (scale - 1) if scale > 1 else turn / (1 - scale)
+    growth = reach / end
+    spiral = _archimedes(growth, end) - _archimedes(growth, end - turn)
+    return math.hypot(spiral, height)
+
+
+def _archimedes(growth: float, angle: float) -> float:
+    """Return the length of the spiral r = growth * angle from 0 on."""
+    return 0.5 * growth * (angle * math.hypot(1, angle) + math.asinh(angle))

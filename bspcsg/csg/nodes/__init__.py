@@ -1,0 +1,1 @@
+"""The nodes of a script, each with what it evaluates to."""

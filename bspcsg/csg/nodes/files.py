@@ -1,0 +1,82 @@
+"""Shapes from files: import and surface."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ...bsp import Region
+from ...formats import files
+from ...solid.solid import Solid
+from ..making.drawings import dxf_region
+from ..making.heights import height_map, read_heights
+from ..making.paper import svg_region
+from ..making.tessellation import Fineness
+from ..syntax.arguments import Arguments
+from ..syntax.tree import Node
+from .registry import Evaluation, Geometry, node
+
+
+@node("import")
+def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Read a mesh (STL, OFF, OBJ, PLY, 3MF) or a drawing (DXF, SVG)."""
+    del children
+    arguments = run.arguments(owner, ("file",))
+    path = _path(arguments, run)
+    suffix = path.suffix.lower()
+    if suffix == ".dxf":
+        return _dxf(path, arguments)
+    if suffix == ".svg":
+        return svg_region(path, arguments.number("dpi", 72.0), arguments.flag("center"))
+    if suffix not in files.FORMATS:
+        known = ", ".join(sorted([*files.FORMATS, ".dxf", ".svg"]))
+        message = f"“{suffix}” files are not supported; known are {known}."
+        raise arguments.error(message, "unsupported")
+    raw = files.read(path)
+    if raw.is_empty_set:
+        return Solid.empty()
+    return run.closed_solid(owner, raw.vertices, raw.faces)
+
+
+def _dxf(path: Path, arguments: Arguments) -> Region:
+    origin = arguments.vector("origin", 2, (0.0, 0.0))
+    layer = arguments.text("layer", "")
+    scale = arguments.number("scale", 1.0)
+    return dxf_region(path, layer, np.array(origin), scale, Fineness.of(arguments))
+
+
+@node("surface")
+def surface(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Make the body below a table of heights (a text file of numbers)."""
+    del children
+    arguments = run.arguments(owner, ("file", "center"))
+    path = _path(arguments, run)
+    if path.suffix.lower() == ".png":
+        raise arguments.error("pictures are not supported; give a table of heights.", "unsupported")
+    heights = read_heights(path)
+    arguments.limited(heights.table.size * 2, "this surface")
+    return height_map(heights, centered=arguments.flag("center"))
+
+
+def _path(arguments: Arguments, run: Evaluation) -> Path:
+    name = arguments.text("file")
+    path = run.folder / name
+    # What lies elsewhere is refused first, so that nobody learns whether it is there.
+    if name and "\0" not in name and not _is_allowed(path, run):
+        message = (
+            f"the file “{name}” lies outside the script's folder; --allow-path DIR (in Python,"
+            " allow_paths) names further folders that may be read."
+        )
+        raise arguments.error(message, "forbidden_path")
+    if not name or "\0" in name or not path.is_file():
+        message = f"there is no file “{name}”; names are relative to the script's folder."
+        raise arguments.error(message, "missing_file")
+    return path
+
+
+def _is_allowed(path: Path, run: Evaluation) -> bool:
+    """Whether a file lies where the script may read, wherever links lead."""
+    try:
+        target = path.resolve()
+        return any(target.is_relative_to(one) for one in (run.folder.resolve(), *run.allowed))
+    except (OSError, RuntimeError):  # links that lead in a circle
+        return False

@@ -1,0 +1,112 @@
+"""Affine maps: multmatrix and resize."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...bsp import Region
+from ...errors import invalid_parameter
+from ...geometry.transform import determinant_sign
+from ...solid.solid import Solid
+from ..making.polish import polished_matrix
+from ..syntax.arguments import LARGEST, Arguments
+from ..syntax.tree import Node
+from .registry import Evaluation, Geometry, node
+from .sets import union_of
+
+
+@node("multmatrix", makes_corners=False)
+def multmatrix(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Move the children by a matrix; what it flattens is left out."""
+    body = union_of(owner, children, run)
+    arguments = run.arguments(owner, ("m",))
+    matrix = _matrix(arguments)
+    if matrix is None:
+        run.warn(owner, "its matrix is not finite; it is left out")
+        return None
+    return _moved(owner, body, polished_matrix(matrix) if run.polish else matrix, run)
+
+
+def _moved(owner: Node, body: Geometry, matrix: FloatArray, run: Evaluation) -> Geometry:
+    if body is None or np.array_equal(matrix, np.eye(4)):
+        return body
+    if determinant_sign(_flat_map(matrix) if isinstance(body, Region) else matrix) == 0:
+        run.warn(owner, "its matrix flattens its children; it is left out")
+        return None
+    if isinstance(body, Region):
+        return body.transform(matrix[:2, [0, 1, 3]])
+    return body.transform(matrix)
+
+
+def _flat_map(matrix: FloatArray) -> FloatArray:
+    """Return what the matrix does in the plane z = 0, as a map of space."""
+    flat = np.eye(4)
+    flat[:2, :2] = matrix[:2, :2]
+    return flat
+
+
+def _matrix(arguments: Arguments) -> FloatArray | None:
+    """Return the (4, 4) matrix with 1 in its last place, None if it is not finite."""
+    value = arguments.value("m")
+    rows = value if isinstance(value, tuple) else ()
+    if not 3 <= len(rows) <= 4 or not all(_is_row(row) for row in rows):
+        raise arguments.error("its argument must be a matrix of 4 rows of 4 numbers.")
+    matrix = np.eye(4)
+    matrix[: len(rows)] = [list(_numbers(row)) for row in rows]
+    if not np.isfinite(matrix).all():
+        return None
+    if np.abs(matrix).max() > LARGEST:
+        raise arguments.error("its matrix has an entry beyond ±1e100.")
+    if matrix[3, :3].any() or matrix[3, 3] == 0:
+        raise arguments.error("the last row of its matrix must be 0, 0, 0, 1.")
+    return matrix / matrix[3, 3] if matrix[3, 3] != 1 else matrix
+
+
+def _is_row(row: object) -> bool:
+    return isinstance(row, tuple) and len(row) == 4 and len(_numbers(row)) == 4
+
+
+def _numbers(row: object) -> list[float]:
+    entries = row if isinstance(row, tuple) else ()
+    return [entry for entry in entries if isinstance(entry, float)]
+
+
+@node("resize", makes_corners=False)
+def resize(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Scale the children to new sizes along the axes; 0 keeps one, unless `auto` scales it too."""
+    arguments = run.arguments(owner, ("newsize", "auto"))
+    body = union_of(owner, children, run)
+    sizes = arguments.vector("newsize", 3, (0.0, 0.0, 0.0))
+    bounds = None if body is None else _bounds(body)
+    if body is None or bounds is None:
+        return body
+    factors = _factors(sizes, _auto(arguments), np.ptp(bounds, axis=0).tolist())
+    return _moved(owner, body, np.diag([*factors, 1.0]), run)
+
+
+def _auto(arguments: Arguments) -> list[bool]:
+    value = arguments.value("auto")
+    flags = value if isinstance(value, tuple) else (value,) * 3
+    return [bool(flag) for flag in flags] + [False] * (3 - len(flags))
+
+
+def _bounds(body: Solid | Region) -> FloatArray | None:
+    if isinstance(body, Region):
+        return body.bounds
+    return None if body.is_empty else body.normalized().to_mesh().bounds
+
+
+def _factors(sizes: Sequence[float], auto: Sequence[bool], old: Sequence[float]) -> list[float]:
+    old = [*old, 0.0][:3]
+    factors = [
+        new / length if new > 0 and length > 0 else 1.0
+        for new, length in zip(sizes, old, strict=True)
+    ]
+    leader = factors[int(np.argmax(sizes))]
+    chosen = zip(sizes, auto, factors, strict=True)
+    result = [leader if new == 0 and follows else own for new, follows, own in chosen]
+    if not all(map(math.isfinite, result)):
+        raise invalid_parameter("the new size is too many times the old one.")
+    return result

@@ -1,0 +1,75 @@
+"""Figures of the plane: square, circle, polygon, offset."""
+
+import numpy as np
+
+from ...bsp import Region
+from ...shapes.sweep import unit_circle
+from ..making.offsetting import cleaned, grown, is_combined
+from ..making.tessellation import Fineness
+from ..syntax.arguments import Arguments
+from ..syntax.tree import Node
+from .registry import Evaluation, Geometry, node
+from .sets import union_of
+
+
+@node("square")
+def square(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Make a rectangle; a side of length 0 or less leaves it empty."""
+    del children
+    arguments = run.arguments(owner, ("size", "center"))
+    width, height = arguments.vector("size", 2, (1.0, 1.0))
+    if min(width, height) <= 0:
+        return Region.empty()
+    return Region.rectangle(width, height, center=arguments.flag("center"))
+
+
+@node("circle")
+def circle(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Make a regular polygon with its first corner on the x axis."""
+    del children
+    arguments = run.arguments(owner, ("r",))
+    r = arguments.number("d") / 2 if "d" in arguments else arguments.number("r", 1.0)
+    if r <= 0:
+        return Region.empty()
+    sides = arguments.sides(Fineness.of(arguments).fragments(r), "this circle")
+    return Region(unit_circle(sides) * r)
+
+
+@node("polygon")
+def polygon(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Make what is inside an odd number of times of one path around all points, or of `paths`."""
+    del children
+    arguments = run.arguments(owner, ("points", "paths"))
+    points = np.array(arguments.points("points", 2)).reshape(-1, 2)
+    loops = [points[path] for path in _paths(arguments, len(points)) if len(path) >= 3]
+    return Region(loops, winding="even-odd")
+
+
+def _paths(arguments: Arguments, count: int) -> list[list[int]]:
+    if "paths" not in arguments or arguments.value("paths") == ():
+        return [list(range(count))]
+    return arguments.index_lists("paths", count, single=True)
+
+
+@node("offset")
+def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Grow or shrink the children, with round (`r`), mitred or chamfered (`delta`) corners."""
+    arguments = run.arguments(owner, ("r",))
+    figure = union_of(owner, children, run)
+    if figure is None:
+        return None
+    if not isinstance(figure, Region):
+        raise arguments.error("its children must be plane figures.")
+    is_round = "delta" not in arguments
+    delta = arguments.number("r", 1.0) if is_round else arguments.number("delta")
+    if figure.is_empty or delta == 0:
+        return figure
+    sides = arguments.sides(Fineness.of(arguments).fragments(abs(delta)), "a corner")
+    figure = cleaned(run.parts_of(figure)) if is_combined(owner) else figure
+    return figure if figure.is_empty else grown(figure, delta, _join(is_round, arguments), sides)
+
+
+def _join(is_round: bool, arguments: Arguments) -> str:
+    if is_round:
+        return "round"
+    return "square" if arguments.flag("chamfer") else "miter"

@@ -1,0 +1,134 @@
+"""Which function makes which node."""
+
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal, TypeAlias
+
+from ...bsp import Region
+from ...errors import InvalidMeshError
+from ...formats.raw import RawMesh
+from ...repair.repair import repair
+from ...solid.solid import Solid
+from ..syntax.arguments import Arguments
+from ..syntax.tree import Node
+
+#: What a node stands for; None is nothing at all, which has no dimension.
+Geometry: TypeAlias = Solid | Region | None
+
+
+OnInvalid: TypeAlias = Literal["error", "warn", "repair"]
+
+
+class CsgWarning(UserWarning):
+    """Something in a script was left out, as OpenSCAD leaves it out."""
+
+
+@dataclass
+class Evaluation:
+    """What nodes share while one tree is evaluated.
+
+    Parameters
+    ----------
+    script : str
+        Its name, for errors.
+    folder : Path
+        Where imported files are looked for.
+    allowed : tuple of Path
+        Folders beside it, links followed, in which imported files may lie.
+    polish : bool
+        Whether matrices are made exact rotations where they nearly are.
+    on_invalid : {"error", "warn", "repair"}
+        Whether polyhedra and imported meshes that are not closed are errors, left out, or closed.
+    united : dict
+        Unions of plane figures by their `id`, each with the figures that it is made of.
+    """
+
+    script: str = "<csg>"
+    folder: Path = field(default_factory=Path)
+    allowed: tuple[Path, ...] = ()
+    polish: bool = False
+    on_invalid: OnInvalid = "error"
+    united: dict[int, tuple[Region, list[Region]]] = field(default_factory=dict)
+
+    def arguments(self, node: Node, order: tuple[str, ...] = ()) -> Arguments:
+        """Return the arguments of a node."""
+        return Arguments(node, self.script, order)
+
+    def parts_of(self, figure: Region) -> list[Region]:
+        """Return the figures whose union a figure is; itself if it is none."""
+        return self.united[id(figure)][1] if id(figure) in self.united else [figure]
+
+    def warn(self, node: Node, message: str) -> None:
+        """Tell the caller what was left out."""
+        place = node.place
+        text = f"{self.script}:{place.line}:{place.column}: {node.name}(): {message}"
+        warnings.warn(text, CsgWarning, stacklevel=2)
+
+    def closed_solid(self, node: Node, vertices: Any, faces: Any) -> Solid | None:
+        """Return the solid of a mesh from outside, whichever way round it is oriented.
+
+        One that is not closed is an error, or left out or closed with a warning.
+        """
+        try:
+            return Solid(vertices, faces, winding="nonzero")
+        except InvalidMeshError as error:
+            if self.on_invalid == "error" or error.code != "not_closed":
+                raise
+            if self.on_invalid == "repair":
+                made = repair(RawMesh(vertices, faces)).mesh
+                self.warn(node, f"{error.message} It is repaired.")
+                return Solid(made.vertices, made.faces, winding="nonzero")
+            self.warn(node, f"{error.message} It is left out.")
+            return None
+
+    def same_kind(
+        self, node: Node, children: Sequence[Geometry]
+    ) -> tuple[list[Solid], list[Region]]:
+        """Return the solids or the regions among the children, whichever comes first.
+
+        Children of the other dimension do not count, as in OpenSCAD.
+        """
+        there = [child for child in children if child is not None]
+        solids = [child for child in there if isinstance(child, Solid)]
+        regions = [child for child in there if isinstance(child, Region)]
+        if not solids or not regions:
+            return solids, regions
+        flat = isinstance(there[0], Region)
+        left_out = "solids" if flat else "plane figures"
+        self.warn(node, f"its children are of 2D and 3D; the {left_out} among them are ignored")
+        return ([], regions) if flat else (solids, [])
+
+
+Maker: TypeAlias = Callable[[Node, list[Geometry], Evaluation], Geometry]
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How a node is evaluated.
+
+    Parameters
+    ----------
+    maker : callable
+        Takes the node, its children's geometries and the evaluation.
+    makes_corners : bool
+        Whether its result has corners that its children do not have.
+    """
+
+    maker: Maker
+    makes_corners: bool
+
+
+RECIPES: dict[str, Recipe] = {}
+
+
+def node(*names: str, makes_corners: bool = True) -> Callable[[Maker], Maker]:
+    """Register a function as the maker of the nodes with these names."""
+
+    def register(maker: Maker) -> Maker:
+        for name in names:
+            RECIPES[name] = Recipe(maker, makes_corners)
+        return maker
+
+    return register

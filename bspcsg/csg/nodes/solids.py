@@ -1,0 +1,91 @@
+"""Bodies of space: cube, sphere, cylinder, polyhedron."""
+
+import numpy as np
+
+from ...geometry.polygon import triangulate_face
+from ...mesh.weld import welded
+from ...shapes.primitives import box, cylinder, from_arrays
+from ...shapes.sweep import strip, unit_circle
+from ...solid.solid import Solid
+from ..making.tessellation import Fineness
+from ..syntax.tree import Node
+from .registry import Evaluation, Geometry, node
+
+
+@node("cube")
+def cube(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Make a box; an edge of length 0 or less leaves it empty."""
+    del children
+    arguments = run.arguments(owner, ("size", "center"))
+    size = arguments.vector("size", 3, (1.0, 1.0, 1.0))
+    return box(size, arguments.flag("center")) if min(size) > 0 else Solid.empty()
+
+
+@node("sphere")
+def sphere(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Make a sphere without poles: rings at the middles of equal angles from pole to pole."""
+    del children
+    arguments = run.arguments(owner, ("r",))
+    r = arguments.number("d") / 2 if "d" in arguments else arguments.number("r", 1.0)
+    if r <= 0:
+        return Solid.empty()
+    around = Fineness.of(arguments).fragments(r)
+    rings = (around + 1) // 2
+    arguments.limited(around * rings, "this sphere")
+    return _sphere(r, arguments.sides(around, "this sphere"), int(rings))
+
+
+def _sphere(r: float, around: int, rings: int) -> Solid:
+    # The middles of 2 * rings equal parts of the full turn, half of which is pole to pole.
+    half = unit_circle(4 * rings)[1 : 2 * rings : 2]
+    circle = unit_circle(around)
+    levels = [np.column_stack([circle * sine, np.full(around, cosine)]) for cosine, sine in half]
+    ids = np.arange(around * rings).reshape(rings, around)
+    following = np.roll(ids, -1, axis=1)
+    # The first ring is the upper one.
+    bands = [strip(ids[k + 1], following[k + 1], ids[k], following[k]) for k in range(rings - 1)]
+    cap = np.array([(0, k, k + 1) for k in range(1, around - 1)])
+    faces = [*bands, cap, cap[:, ::-1] + around * (rings - 1)]
+    return from_arrays(np.concatenate(levels) * r, np.concatenate(faces))
+
+
+@node("cylinder")
+def cylinder_node(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Make a cylinder or cone; what has no height or no radius is empty."""
+    del children
+    arguments = run.arguments(owner, ("h", "r1", "r2", "center"))
+    h = arguments.number("h", 1.0)
+    r = arguments.number("d") / 2 if "d" in arguments else arguments.number("r", 1.0)
+    low, high = (
+        arguments.number(f"d{end}") / 2
+        if f"d{end}" in arguments
+        else arguments.number(f"r{end}", r)
+        for end in "12"
+    )
+    if h <= 0 or min(low, high) < 0 or max(low, high) <= 0:
+        return Solid.empty()
+    sides = Fineness.of(arguments).fragments(max(low, high))
+    segments = arguments.sides(sides, "this cylinder")
+    return cylinder(h, r1=low, r2=high, segments=segments, center=arguments.flag("center"))
+
+
+@node("polyhedron")
+def polyhedron(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Make what polygons bound, clockwise seen from outside; inside out makes no difference."""
+    del children
+    arguments = run.arguments(owner, ("points", "faces"))
+    points = np.array(arguments.points("points", 3)).reshape(-1, 3)
+    name = "faces" if "faces" in arguments else "triangles"
+    faces = [face for face in arguments.index_lists(name, len(points)) if len(face) >= 3]
+    if not faces:
+        return Solid.empty()
+    triangles = np.concatenate([_triangles(points, face[::-1]) for face in faces])
+    vertices, same = welded(points)
+    triangles = same[triangles]
+    proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    return run.closed_solid(owner, vertices, triangles[proper]) if proper.any() else Solid.empty()
+
+
+def _triangles(points: np.ndarray, face: list[int]) -> np.ndarray:
+    corners = np.array(face)
+    return corners[triangulate_face(points[corners])]

@@ -1,0 +1,1 @@
+"""Scripts as text, as a tree of nodes, and as JSON."""

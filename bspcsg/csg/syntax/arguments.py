@@ -1,0 +1,149 @@
+"""A node's arguments, checked as they are asked for; errors name line and column."""
+
+from typing import Any
+
+from ...errors import FormatError
+from ...parameters import MOST_CORNERS, MOST_SEGMENTS
+from .source import error_at
+from .tree import Node, Value
+from .writer import value_text
+
+#: Larger numbers stand for no length or angle; products of three still are doubles.
+LARGEST = 1e100
+
+#: What an error shows of a value.
+_QUOTED = 40
+
+
+class Arguments:
+    """The arguments of one node.
+
+    Arguments without a name take the names of `order`, one after another; undef stands for the
+    default, as an argument that is missing does.
+
+    Parameters
+    ----------
+    node : Node
+    script : str
+        The script's name, for errors.
+    order : tuple of str
+    """
+
+    def __init__(self, node: Node, script: str, order: tuple[str, ...] = ()) -> None:
+        self.node = node
+        self._script = script
+        self._values: dict[str, Value] = {}
+        unnamed = iter(order)
+        for argument in node.arguments:
+            name = next(unnamed, None) if argument.name is None else argument.name
+            if name is not None:
+                self._values[name] = argument.value
+
+    def error(self, message: str, code: str = "bad_argument") -> FormatError:
+        """Return the error for this node; the message names script, line and column."""
+        message = f"{self.node.name}(): {message}"
+        return error_at(self._script, self.node.place, message, code)
+
+    def __contains__(self, name: str) -> bool:
+        """Whether the argument is there and not undef."""
+        return self._values.get(name) is not None
+
+    def value(self, name: str) -> Value:
+        """Return the argument as it is, None if it is missing."""
+        return self._values.get(name)
+
+    def number(self, name: str, default: float | None = None) -> float:
+        """Return a number, finite and not absurdly large."""
+        value = self._given(name, default)
+        if not _is_number(value) or not _is_usable(value):
+            raise self._wrong(name, "a number within ±1e100", value)
+        return float(value)
+
+    def flag(self, name: str, default: bool = False) -> bool:
+        """Return true or false; numbers count as what they are not zero."""
+        value = self._given(name, default)
+        if not isinstance(value, (bool, float, int)):
+            raise self._wrong(name, "true or false", value)
+        return bool(value)
+
+    def text(self, name: str, default: str | None = None) -> str:
+        """Return a text."""
+        value = self._given(name, default)
+        if not isinstance(value, str):
+            raise self._wrong(name, "a text", value)
+        return value
+
+    def vector(
+        self, name: str, size: int, default: tuple[float, ...] | None = None
+    ) -> tuple[float, ...]:
+        """Return `size` such numbers; one number stands for equal ones."""
+        value = self._given(name, default)
+        if _is_number(value):
+            value = (value,) * size
+        if not isinstance(value, tuple) or len(value) < size or not _all_usable(value[:size]):
+            raise self._wrong(name, f"{size} numbers within ±1e100", value)
+        return tuple(float(entry) for entry in value[:size])
+
+    def points(self, name: str, size: int) -> list[tuple[float, ...]]:
+        """Return points of `size` such numbers each."""
+        value = self._given(name, None)
+        if not isinstance(value, tuple):
+            raise self._wrong(name, "a list of points", value)
+        for number, point in enumerate(value):
+            if not isinstance(point, tuple) or len(point) != size or not _all_usable(point):
+                raise self._wrong(f"{name}[{number}]", f"{size} numbers within ±1e100", point)
+        return [tuple(map(float, point)) for point in value]
+
+    def index_lists(self, name: str, count: int, *, single: bool = False) -> list[list[int]]:
+        """Return lists of whole numbers from 0 up to below `count`; maybe a `single` one alone."""
+        value = self._given(name, None)
+        if single and isinstance(value, tuple) and value and _is_number(value[0]):
+            value = (value,)
+        if not isinstance(value, tuple):
+            raise self._wrong(name, "a list of lists of point numbers", value)
+        return [self._indices(f"{name}[{k}]", entry, count) for k, entry in enumerate(value)]
+
+    def _indices(self, name: str, value: Any, count: int) -> list[int]:
+        if not isinstance(value, tuple):
+            raise self._wrong(name, "a list of point numbers", value)
+        for entry in value:
+            if not _is_number(entry) or not 0 <= entry < count or entry != int(entry):
+                raise self._wrong(name, f"whole numbers from 0 to {count - 1}", value)
+        return [int(entry) for entry in value]
+
+    def limited(self, count: float, what: str) -> int:
+        """Return a number of corners, or raise an error if it would not fit into memory."""
+        if not count <= MOST_CORNERS:
+            message = f"{what} would take more than {MOST_CORNERS:,} corners."
+            raise self.error(message, "too_large")
+        return int(count)
+
+    def sides(self, count: float, what: str) -> int:
+        """Return a number of sides around, or raise an error if it is absurd."""
+        if not count <= MOST_SEGMENTS:
+            message = f"{what} would have more than {MOST_SEGMENTS:,} sides."
+            raise self.error(message, "too_large")
+        return int(count)
+
+    def _given(self, name: str, default: Any) -> Any:
+        value = self._values.get(name)
+        if value is None and default is None:
+            raise self.error(f"{name} is missing.")
+        return default if value is None else value
+
+    def _wrong(self, name: str, expected: str, value: Any) -> FormatError:
+        shown = value_text(value)
+        shown = shown if len(shown) <= _QUOTED else shown[:_QUOTED] + "…"
+        return self.error(f"{name} must be {expected}, not {shown}.")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _is_usable(value: float) -> bool:
+    return abs(value) <= LARGEST  # false for NaN
+
+
+def _all_usable(values: tuple[Any, ...]) -> bool:
+    return all(_is_number(value) and _is_usable(value) for value in values)

@@ -1,0 +1,63 @@
+"""What openscad made of a script: errors name its lines, which are not the script's."""
+
+import re
+from dataclasses import dataclass
+
+from ...errors import BspcsgError
+
+#: How much of a line an error quotes.
+_QUOTED = 100
+
+_COMMENT = re.compile(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
+_OTHER_FILES = re.compile(r"^\s*(?:use|include)\s*<", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Intermediate:
+    """A `.csg` text and the `.scad` script it was made from.
+
+    Parameters
+    ----------
+    script : str
+        The script's name.
+    source : str
+        The script's text.
+    text : str
+        The `.csg` text.
+    """
+
+    script: str
+    source: str
+    text: str
+
+    @property
+    def name(self) -> str:
+        """What errors call the `.csg` text."""
+        return f"{self.script}, as openscad's .csg"
+
+    def explained(self, error: BspcsgError) -> BspcsgError:
+        """Return an error with the line of the `.csg` text that it names, and the script's own.
+
+        The script's line is known where one line alone of it, and no other file, has the node.
+        """
+        place = re.match(rf"{re.escape(self.name)}:(\d+):(\d+): ", error.message)
+        lines = self.text.splitlines()
+        if place is None or int(place[1]) > len(lines):
+            return error
+        number, column = map(int, place.groups())
+        line = lines[number - 1]
+        message = f"{error.message}\n  line {number} of the .csg: {line.strip()[:_QUOTED]}"
+        own = self._own_line(line[column - 1 :])
+        if own is not None:
+            message = f"{message}\n  from {self.script}:{own}"
+        return type(error)(message, error.code, error.where)
+
+    def _own_line(self, text: str) -> int | None:
+        """Return the number of the script's only line with the node that a text begins with."""
+        node = re.match(r"[A-Za-z_]\w*", text)
+        if node is None or _OTHER_FILES.search(self.source):
+            return None
+        plain = _COMMENT.sub(lambda found: "\n" * found[0].count("\n"), self.source)
+        word = re.compile(rf"\b{node[0]}\s*\(")
+        found = [number for number, line in enumerate(plain.split("\n"), 1) if word.search(line)]
+        return found[0] if len(found) == 1 else None

@@ -1,0 +1,148 @@
+"""Trees as JSON, both ways.
+
+A document is ``{"format": "bspcsg-csg", "version": 1, "nodes": [...]}``; a node is
+``{"node": "cube", "arguments": [{"name": "size", "value": [1, 2, 3]}], "children": [...]}``, with
+``"modifiers"`` where it has some; an argument without a name goes by its position. Vectors are
+arrays, undef is null. JSON has no infinite numbers: they are ``{"number": "inf"}``, "-inf" or
+"nan".
+"""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+from ...errors import FormatError
+from .parser import DEEPEST_VECTOR
+from .tokens import WORD
+from .tree import Argument, CsgTree, Node, Value
+
+FORMAT = "bspcsg-csg"
+VERSION = 1
+
+#: Deeper trees are refused here; the text form holds any depth. Python's own reader of JSON, and
+#: what makes nodes of its answer, take up to three calls a node, and a program has 1000 to itself
+#: unless it asks for more: this leaves it a third.
+DEEPEST_NODE = 200
+
+_ODD = {"inf": math.inf, "-inf": -math.inf, "nan": math.nan}
+
+
+def to_json(tree: CsgTree, *, indent: int | None = None) -> str:
+    """Return a tree as a JSON document.
+
+    Raises
+    ------
+    FormatError
+        If nodes nest deeper than 200, which readers of JSON do not all take; code "too_deep".
+    """
+    nodes = [_node_data(node, 1, tree.name) for node in tree.nodes]
+    document = {"format": FORMAT, "version": VERSION, "nodes": nodes}
+    return json.dumps(document, indent=indent, ensure_ascii=False, allow_nan=False)
+
+
+def from_json(text: str, name: str = "<json>", folder: str | Path | None = None) -> CsgTree:
+    """Return the tree of a JSON document.
+
+    Raises
+    ------
+    FormatError
+        If the text is no JSON, or no such document; the message says where.
+    """
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise FormatError(f"{name}: this is no JSON: {error}.", "syntax") from error
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise FormatError(f"{name}: expected an object with the format “{FORMAT}”.", "syntax")
+    if data.get("version") != VERSION:
+        message = f"{name}: version {data.get('version')!r} is not known, only {VERSION}."
+        raise FormatError(message, "syntax")
+    nodes = _nodes(data.get("nodes"), "nodes", name, 1)
+    return CsgTree(nodes, name, Path() if folder is None else Path(folder))
+
+
+def _node_data(node: Node, depth: int, name: str) -> dict[str, Any]:
+    if depth > DEEPEST_NODE:
+        message = f"{name}: nodes nest deeper than {DEEPEST_NODE}; write .csg instead of JSON."
+        raise FormatError(message, "too_deep")
+    data: dict[str, Any] = {"node": node.name}
+    if node.modifiers:
+        data["modifiers"] = node.modifiers
+    data["arguments"] = [_argument_data(argument) for argument in node.arguments]
+    data["children"] = [_node_data(child, depth + 1, name) for child in node.children]
+    return data
+
+
+def _argument_data(argument: Argument) -> dict[str, Any]:
+    named = {} if argument.name is None else {"name": argument.name}
+    return {**named, "value": _value_data(argument.value)}
+
+
+def _value_data(value: Value) -> Any:
+    if isinstance(value, tuple):
+        return [_value_data(entry) for entry in value]
+    if not isinstance(value, float):
+        return value
+    if math.isfinite(value):
+        return int(value) if value == int(value) and abs(value) < 2**53 else value
+    return {"number": "nan" if math.isnan(value) else "inf" if value > 0 else "-inf"}
+
+
+def _nodes(data: Any, where: str, name: str, depth: int) -> tuple[Node, ...]:
+    if not isinstance(data, list):
+        raise _wrong(name, where, "a list of nodes")
+    if depth > DEEPEST_NODE:
+        raise FormatError(f"{name}: nodes nest deeper than {DEEPEST_NODE}.", "too_deep")
+    return tuple(_node(entry, f"{where}[{k}]", name, depth) for k, entry in enumerate(data))
+
+
+def _node(data: Any, where: str, name: str, depth: int) -> Node:
+    if not isinstance(data, dict) or not _is_name(data.get("node")):
+        raise _wrong(name, where, "a node with a name")
+    modifiers = data.get("modifiers", "")
+    if not isinstance(modifiers, str) or set(modifiers) - set("#%!*"):
+        raise _wrong(name, f"{where}.modifiers", "some of # % ! *")
+    arguments = data.get("arguments", [])
+    if not isinstance(arguments, list):
+        raise _wrong(name, f"{where}.arguments", "a list of arguments")
+    found = [_argument(a, f"{where}.arguments[{k}]", name) for k, a in enumerate(arguments)]
+    children = _nodes(data.get("children", []), f"{where}.children", name, depth + 1)
+    return Node(data["node"], tuple(found), children, modifiers)
+
+
+def _argument(data: Any, where: str, name: str) -> Argument:
+    named = data.get("name") if isinstance(data, dict) else None
+    if not isinstance(data, dict) or "value" not in data or not (named is None or _is_name(named)):
+        raise _wrong(name, where, "an argument with a value")
+    return Argument(named, _value(data["value"], f"{where}.value", name, 1))
+
+
+def _value(data: Any, where: str, name: str, depth: int) -> Value:
+    if isinstance(data, list) and depth <= DEEPEST_VECTOR:
+        return tuple(
+            _value(entry, f"{where}[{k}]", name, depth + 1) for k, entry in enumerate(data)
+        )
+    if isinstance(data, dict) and data.get("number") in _ODD:
+        return _ODD[data["number"]]
+    if isinstance(data, (bool, str)) or data is None:
+        return data
+    if isinstance(data, (int, float)) and math.isfinite(number := _double(data)):
+        return number
+    raise _wrong(name, where, "a number, text, true, false, null or array")
+
+
+def _double(number: int | float) -> float:
+    try:
+        return float(number)
+    except OverflowError:
+        return math.inf
+
+
+def _is_name(name: Any) -> bool:
+    match = WORD.fullmatch(name) if isinstance(name, str) else None
+    return match is not None and match.lastgroup == "name"
+
+
+def _wrong(name: str, where: str, expected: str) -> FormatError:
+    return FormatError(f"{name}: {where} must be {expected}.", "syntax")

@@ -1,0 +1,246 @@
+"""Scripts as trees.
+
+The grammar is OpenSCAD's own dump of an evaluated model, its `.csg` files::
+
+    file  = { node | ";" } ;
+    node  = { "#" | "%" | "!" | "*" } , name , "(" , [ arg , { "," , arg } ] , ")" , body ;
+    body  = ";" | "{" , { node | ";" } , "}" | node ;
+    arg   = [ name , "=" ] , value ;
+    value = number | text | "true" | "false" | "undef" | "inf" | "nan" | ( "-" | "+" ) , value
+          | "[" , [ value , { "," , value } ] , "]" ;
+
+Nodes nest to any depth: the parser keeps its own stack.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ...errors import FormatError
+from .source import Script
+from .tokens import Token, tokens, unquoted
+from .tree import Argument, CsgTree, Node, Place, Value
+
+#: Deepest vector in a vector; OpenSCAD writes two, for matrices and paths.
+DEEPEST_VECTOR = 64
+
+_WORDS: dict[str, Value] = {
+    "true": True,
+    "false": False,
+    "undef": None,
+    "inf": math.inf,
+    "nan": math.nan,
+}
+
+
+def parse(text: str, name: str = "<csg>", folder: str | Path | None = None) -> CsgTree:
+    """Return the tree of a script.
+
+    Parameters
+    ----------
+    text : str
+        OpenSCAD's `.csg` language.
+    name : str
+        What errors call the script.
+    folder : path, optional
+        Where the files that it imports are looked for; the current folder by default.
+
+    Raises
+    ------
+    FormatError
+        If the text is no such script. The message begins with name, line and column, `where`
+        holds the two numbers.
+
+    Examples
+    --------
+    >>> from bspcsg import csg
+    >>> csg.parse("sphere(r = 2);").nodes[0].name
+    'sphere'
+    """
+    script = Script(text, name, Path() if folder is None else Path(folder))
+    return CsgTree(_Parser(script).nodes(), name, script.folder)
+
+
+def value_of(text: str) -> Value:
+    """Return the value that a text stands for, such as ``1.5``, ``"text"`` or ``[1, 2]``.
+
+    Raises
+    ------
+    FormatError
+        If it stands for none.
+    """
+    return _Parser(Script(text, "<value>")).value()
+
+
+@dataclass
+class _Frame:
+    """A node whose children are being read."""
+
+    name: str
+    arguments: tuple[Argument, ...]
+    modifiers: str
+    place: Place
+    braced: bool
+    children: list[Node] = field(default_factory=list)
+
+    def node(self) -> Node:
+        return Node(self.name, self.arguments, tuple(self.children), self.modifiers, self.place)
+
+
+class _Parser:
+    def __init__(self, script: Script) -> None:
+        self._script = script
+        self._places = script.places()
+        self._words: Iterator[Token] = tokens(script)
+        self._next = next(self._words)
+
+    def value(self) -> Value:
+        found = self._value()
+        if self._next.kind != "end":
+            raise self._error(f"expected the end, found {self._next}.")
+        return found
+
+    def nodes(self) -> tuple[Node, ...]:
+        top: list[Node] = []
+        open_frames: list[_Frame] = []
+        while self._next.kind != "end" or open_frames:
+            if self._next.text == "}" and open_frames and open_frames[-1].braced:
+                self._take()
+                self._close(open_frames, top)
+            elif self._next.text == ";" and not (open_frames and not open_frames[-1].braced):
+                self._take()
+            else:
+                self._open(open_frames, top)
+        return tuple(top)
+
+    def _open(self, open_frames: list[_Frame], top: list[Node]) -> None:
+        """Read a node up to its body; one without children is complete."""
+        if self._next.kind == "end":
+            frame = open_frames[-1]
+            missing = "“}”" if frame.braced else "“;”"
+            message = f"{frame.name}() is not closed: {missing} is missing at the end of the file."
+            raise self._script.error(frame.place, message)
+        frame = self._head()
+        open_frames.append(frame)
+        if self._next.text == ";" and self._next.kind == "mark":
+            self._take()
+            self._close(open_frames, top)
+        elif self._next.text == "{":
+            self._take()
+            frame.braced = True
+
+    def _close(self, open_frames: list[_Frame], top: list[Node]) -> None:
+        """Give the innermost node to its parent, and parents of one child to theirs."""
+        while True:
+            node = open_frames.pop().node()
+            (open_frames[-1].children if open_frames else top).append(node)
+            if not open_frames or open_frames[-1].braced:
+                return
+
+    def _head(self) -> _Frame:
+        modifiers = ""
+        while self._next.text in ("#", "%", "!", "*"):
+            modifiers += self._take().text
+        word = self._next
+        if word.kind != "name":
+            raise self._error(f"expected a node, found {word}.")
+        self._take()
+        if self._next.text == "=" and self._next.kind == "mark":
+            message = (
+                "a .csg file has no variables; this looks like OpenSCAD's own language."
+                " Convert it: openscad -o model.csg model.scad"
+            )
+            raise self._error(message, word)
+        arguments = self._arguments(word)
+        place = self._places.at(word.offset)
+        return _Frame(word.text, arguments, modifiers, place, braced=False)
+
+    def _arguments(self, node: Token) -> tuple[Argument, ...]:
+        self._expect("(", f"after {node.text}")
+        found: list[Argument] = []
+        while self._next.text != ")" or self._next.kind != "mark":
+            found.append(self._argument())
+            if self._next.text == ",":
+                self._take()
+            elif self._next.text != ")":
+                raise self._error(f"expected “,” or “)”, found {self._next}.")
+        self._take()
+        return tuple(found)
+
+    def _argument(self) -> Argument:
+        if self._next.kind != "name" or self._next.text in _WORDS:
+            return Argument(None, self._value())
+        name = self._take().text
+        self._expect("=", f"after {name}")
+        return Argument(name, self._value())
+
+    def _value(self) -> Value:
+        """Read a value; the vectors around it are kept in a list, outermost first."""
+        vectors: list[list[Value]] = []
+        while True:
+            value: Value
+            if self._next.text == "[" and self._next.kind == "mark":
+                self._take()
+                vectors.append([])
+                if len(vectors) > DEEPEST_VECTOR:
+                    raise self._error(f"vectors are nested deeper than {DEEPEST_VECTOR}.")
+                if self._next.text != "]":
+                    continue
+                value = self._end_of(vectors)
+            else:
+                value = self._scalar()
+            while vectors:
+                vectors[-1].append(value)
+                if self._comma_before_value():
+                    break
+                value = self._end_of(vectors)
+            if not vectors:
+                return value
+
+    def _comma_before_value(self) -> bool:
+        """Pass a comma and say whether another value follows it."""
+        if self._next.text == ",":
+            self._take()
+            return self._next.text != "]"
+        return False
+
+    def _end_of(self, vectors: list[list[Value]]) -> Value:
+        self._expect("]", "to close a vector")
+        return tuple(vectors.pop())
+
+    def _scalar(self) -> Value:
+        sign = 1.0
+        signed = self._next
+        while self._next.text in ("-", "+"):
+            sign = -sign if self._take().text == "-" else sign
+        word = self._take()
+        if word.kind == "number":
+            return sign * self._number(word)
+        if word.kind == "name" and word.text in ("inf", "nan"):
+            return sign * (math.inf if word.text == "inf" else math.nan)
+        if signed is word and word.kind == "string":
+            return unquoted(word.text)
+        if signed is word and word.text in _WORDS:
+            return _WORDS[word.text]
+        raise self._error(f"expected a value, found {word}.", word)
+
+    def _number(self, word: Token) -> float:
+        value = float(word.text)
+        if math.isinf(value):
+            raise self._error(f"the number {word} is too large.", word)
+        return value
+
+    def _expect(self, mark: str, where: str) -> None:
+        if self._next.text != mark or self._next.kind != "mark":
+            raise self._error(f"expected “{mark}” {where}, found {self._next}.")
+        self._take()
+
+    def _take(self) -> Token:
+        taken = self._next
+        if taken.kind != "end":
+            self._next = next(self._words)
+        return taken
+
+    def _error(self, message: str, at: Token | None = None) -> FormatError:
+        return self._script.error(self._places.at((at or self._next).offset), message)

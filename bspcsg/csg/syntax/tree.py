@@ -1,0 +1,100 @@
+"""The tree that a script stands for: nodes with arguments and children, as plain values."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple, TypeAlias
+
+from ...errors import BspcsgError
+from .intermediate import Intermediate
+
+#: What an argument may be: a number, a text, true or false, undef (None), or a vector of values.
+Value: TypeAlias = "float | str | bool | tuple[Value, ...] | None"
+
+
+class Place(NamedTuple):
+    """Where something stands in a script, both numbers from 1; (0, 0) if nowhere."""
+
+    line: int
+    column: int
+
+
+NOWHERE = Place(0, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """One argument of a node.
+
+    Parameters
+    ----------
+    name : str or None
+        Such as ``"size"`` or ``"$fn"``; None for an argument that goes by its position.
+    value : Value
+    """
+
+    name: str | None
+    value: Value
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A node: a primitive, a transform or an operation on its children.
+
+    Parameters
+    ----------
+    name : str
+        Such as ``"cube"`` or ``"difference"``; names that cannot be evaluated are kept.
+    arguments : tuple of Argument
+        In the order of the script.
+    children : tuple of Node
+    modifiers : str
+        Some of ``#`` (kept), ``%`` and ``*`` (ignored) and ``!`` (this node alone counts).
+    place : Place
+        Where its name stands; it does not count when nodes are compared.
+    """
+
+    name: str
+    arguments: tuple[Argument, ...] = ()
+    children: tuple["Node", ...] = ()
+    modifiers: str = ""
+    place: Place = field(default=NOWHERE, compare=False)
+
+    @property
+    def is_ignored(self) -> bool:
+        """Whether a modifier takes the node out of the model."""
+        return "%" in self.modifiers or "*" in self.modifiers
+
+
+@dataclass(frozen=True)
+class CsgTree:
+    """What a script holds: its top nodes, which are united.
+
+    Parameters
+    ----------
+    nodes : tuple of Node
+    name : str
+        What errors call the script.
+    folder : Path
+        Where the files that it imports are looked for.
+    intermediate : Intermediate, optional
+        The text whose lines the nodes' places name, if that is not the script's.
+    """
+
+    nodes: tuple[Node, ...]
+    name: str = field(default="<csg>", compare=False)
+    folder: Path = field(default_factory=Path, compare=False)
+    intermediate: Intermediate | None = field(default=None, compare=False)
+
+    def explained(self, error: BspcsgError) -> BspcsgError:
+        """Return an error about a node with all that is known about its place."""
+        return error if self.intermediate is None else self.intermediate.explained(error)
+
+    def roots(self) -> tuple[Node, ...]:
+        """Return the nodes that count: the first one marked ``!``, else all top nodes."""
+        waiting = list(reversed(self.nodes))
+        while waiting:
+            node = waiting.pop()
+            if "!" in node.modifiers:
+                return (node,)
+            waiting.extend(reversed(node.children))
+        return self.nodes

@@ -1,0 +1,300 @@
+"""Which suffix stands for which format, and reading and writing by it."""
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+
+from ..errors import Finding, FormatError, format_errors
+from ..mesh.mesh import Mesh
+from . import held, obj, off, single, stl, vtk
+from .atomic import write_file
+from .glb import file as glb
+from .ply import file as ply
+from .proof import Called, Scan, prove
+from .raw import RawMesh, empty_set
+from .source import Source, content_of
+from .threemf import file as threemf
+from .threemf import write as threemf_write
+
+Encoder: TypeAlias = Callable[[Mesh | RawMesh], Iterator[bytes]]
+Losses: TypeAlias = Callable[[Mesh | RawMesh], tuple[Finding, ...]]
+
+
+@dataclass(frozen=True)
+class Form:
+    """One way to write a format, and to prove what was written.
+
+    Parameters
+    ----------
+    encode : callable
+    scan : callable
+        Takes a written file apart.
+    called : callable, optional
+        What the name of an object becomes; None if files do not tell objects apart.
+    losses : callable, optional
+        What the form cannot keep; raises OverflowError if it cannot hold the numbers.
+    repeats : bool
+        Whether it holds triangles that name a vertex twice.
+    is_single : bool
+        Whether it holds single precision only.
+    """
+
+    encode: Encoder
+    scan: Scan
+    called: Called | None = None
+    losses: Losses | None = None
+    repeats: bool = True
+    is_single: bool = False
+
+
+@dataclass(frozen=True)
+class Format:
+    """How one format is read and written; one of the written forms may be missing.
+
+    Parameters
+    ----------
+    read : callable
+    text, binary : Form, optional
+    unit : str
+        ``"mm"`` if files say how long a unit is, and are read and written in millimetres.
+    up : {"z", "y"}
+        Which axis is up in files; meshes in memory have z up.
+    """
+
+    read: Callable[[Source], RawMesh]
+    text: Form | None = None
+    binary: Form | None = None
+    unit: str = ""
+    up: str = "z"
+
+
+FORMATS = {
+    ".stl": Format(
+        stl.read,
+        Form(stl.text, held.text_stl, stl.called),
+        Form(stl.binary, held.binary_stl, losses=stl.losses, is_single=True),
+    ),
+    ".obj": Format(obj.read, Form(obj.text, held.obj, obj.called)),
+    ".ply": Format(ply.read, Form(ply.text, held.text_ply), Form(ply.binary, held.binary_ply)),
+    ".off": Format(off.read, Form(off.text, held.off)),
+    ".3mf": Format(
+        threemf.read,
+        None,
+        Form(
+            threemf_write.binary,
+            held.archive_3mf,
+            threemf_write.called,
+            threemf_write.losses,
+            repeats=False,
+        ),
+        "mm",
+    ),
+    ".glb": Format(
+        glb.read,
+        None,
+        Form(glb.binary, held.glb, glb.called, glb.losses, is_single=True),
+        "mm",
+        "y",
+    ),
+    **{
+        suffix: Format(
+            vtk.reader(suffix), None, Form(vtk.writer(suffix), partial(held.vtk_grid, suffix))
+        )
+        for suffix in (".vtk", ".vtu")
+    },
+}
+
+_BREP = (
+    "{} is a format of curved surfaces, and bspcsg reads meshes only. Make a mesh of it first, for"
+    " example with FreeCAD, Gmsh or the Python package cascadio."
+)
+_NO_LIBRARY = "{} is not read, for want of a well-kept library; have {} written instead."
+
+#: What to say of formats that people try, and that are not for us.
+_REFUSALS = {
+    **dict.fromkeys((".step", ".stp"), _BREP.format("STEP")),
+    **dict.fromkeys((".iges", ".igs"), _BREP.format("IGES")),
+    ".brep": _BREP.format("BREP"),
+    ".amf": _NO_LIBRARY.format("AMF", "3MF"),
+    ".vtp": "VTP is read by VTK's own package only, of some hundred megabytes, which is left out"
+    " here; have VTU written instead, or pass what pyvista read to Solid.from_mesh.",
+    ".gltf": "glTF with separate files is not read; pack it into one GLB file.",
+}
+
+
+def format_of(path: str | os.PathLike[str]) -> Format:
+    """Return the format that the suffix names.
+
+    Raises
+    ------
+    FormatError
+        If it names none; code ``"unknown_format"``.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix in FORMATS:
+        return FORMATS[suffix]
+    known = ", ".join(sorted(FORMATS))
+    message = f"“{suffix}” is no known mesh format; known are {known}."
+    if not suffix:
+        message = f"the name needs a suffix that says the format: {known}."
+    raise FormatError(f"{os.fspath(path)}: {_REFUSALS.get(suffix, message)}", "unknown_format")
+
+
+def form_of(path: str | os.PathLike[str], text: bool = False) -> Form:
+    """Return how the format that the suffix names is written.
+
+    Raises
+    ------
+    FormatError
+        If the format is unknown or has no form as text; code ``"unknown_format"``.
+    """
+    chosen = format_of(path)
+    form = chosen.text if text else chosen.binary or chosen.text
+    if form is None:
+        textual = ", ".join(sorted(suffix for suffix, one in FORMATS.items() if one.text))
+        message = f"{os.fspath(path)}: this format is never text; text can be {textual}."
+        raise FormatError(message, "unknown_format")
+    return form
+
+
+def read(path: str | os.PathLike[str]) -> RawMesh:
+    """Read a mesh file as it is; the suffix names the format.
+
+    Several objects in one file become one mesh, in the order of the file. Polygons become
+    triangles. STL corners are joined where their coordinates are equal, exactly; nothing else is
+    joined, dropped or repaired. A file that `write` made of no triangles, byte for byte, is the
+    empty set, with the finding "empty".
+
+    Parameters
+    ----------
+    path : str or path
+        Ending in one of `FORMATS`.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be opened, has no bytes or is cut off, is not of its format, or holds
+        numbers that are not finite or vertex numbers out of range. The message names file and line
+        (or byte), `where` holds that number.
+    MissingPartError
+        If the format needs a library that is not installed.
+    """
+    return read_as(path, Path(path).suffix)
+
+
+def read_as(path: str | os.PathLike[str], suffix: str) -> RawMesh:
+    """Read a mesh file as what a suffix names, whatever its own suffix; else as `read`."""
+    name = os.fspath(path)
+    if suffix.lower() not in FORMATS:
+        format_of(name)
+    try:
+        data = content_of(Path(path))
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error
+    return decoded(name, data, suffix)
+
+
+def decoded(name: str, data: bytes, suffix: str) -> RawMesh:
+    """Return the mesh in the bytes of a file; `name` is for errors, the rest as for `read`."""
+    if not data:
+        raise FormatError(f"{name}: the file is empty.", "empty_file")
+    chosen = FORMATS[suffix.lower()]
+    if any(form is not None and data == _nothing(form) for form in (chosen.text, chosen.binary)):
+        return replace(empty_set(), name=Path(name).stem, unit=chosen.unit)
+    with format_errors(name, suffix.removeprefix(".").upper()):
+        raw = chosen.read(Source(name, data))
+    return replace(raw, name=raw.name or Path(name).stem)
+
+
+def _nothing(form: Form) -> bytes:
+    """Return the file of the empty set."""
+    return b"".join(form.encode(empty_set()))
+
+
+def write(
+    mesh: Mesh | RawMesh, path: str | os.PathLike[str], *, text: bool = False
+) -> tuple[Finding, ...]:
+    """Write a mesh; the suffix names the format.
+
+    The file appears complete or not at all: before it gets its name it is read back, and every
+    corner of every triangle of every object in it is compared with the mesh. Every format but
+    binary STL and GLB keeps each coordinate's double; what single precision changes is returned as
+    findings.
+
+    Parameters
+    ----------
+    mesh : object
+        With ``vertices`` (n, 3) float64 and ``faces`` (m, 3) int64.
+    path : str or path
+        Ending in one of `FORMATS`.
+    text : bool
+        Write STL and PLY as text; OBJ and OFF always are.
+
+    Raises
+    ------
+    FormatError
+        If the format is unknown, cannot hold the coordinates, or the file cannot be written; code
+        ``"write_mismatch"`` if what was written reads back as another mesh.
+    MissingPartError
+        If the format needs a library that is not installed.
+    """
+    made = encoded(mesh, path, Path(path).suffix, text)
+    write_file(path, made.chunks, made.prove)
+    return made.findings
+
+
+@dataclass(frozen=True, eq=False)
+class Encoded:
+    """A file that is to be written.
+
+    Parameters
+    ----------
+    chunks : iterator of bytes
+    findings : tuple of Finding
+        What the format cannot keep.
+    prove : callable
+        Takes the bytes that were written, and raises FormatError if they are not the mesh.
+    """
+
+    chunks: Iterator[bytes]
+    findings: tuple[Finding, ...]
+    prove: Callable[[bytes], None]
+
+
+def encoded(
+    mesh: Mesh | RawMesh, path: str | os.PathLike[str], suffix: str, text: bool = False
+) -> Encoded:
+    """Return the bytes of a file, what the format cannot keep, and the proof, as for `write`."""
+    name = os.fspath(path)
+    form = form_of(f"mesh{suffix}", text)
+    _refuse_unwritable(name, mesh, form)
+    try:
+        findings = form.losses(mesh) if form.losses is not None else ()
+        if form.is_single and isinstance(mesh, Mesh):
+            mesh, mended = single.settled(mesh)
+            findings = (*findings, *mended)
+    except OverflowError:
+        message = f"{name}: coordinates are beyond single precision; write PLY, OBJ, OFF or 3MF."
+        raise FormatError(message, "too_large") from None
+    proof = partial(prove, name, mesh, form.scan, form.called, form.repeats)
+    return Encoded(form.encode(mesh), findings, proof)
+
+
+def _refuse_unwritable(name: str, mesh: Mesh | RawMesh, form: Form) -> None:
+    """Refuse what no file, or no file of this form, can hold."""
+    count = len(mesh.vertices)
+    if not np.isfinite(mesh.vertices).all():
+        raise FormatError(f"{name}: a coordinate is not a finite number.", "non_finite")
+    if len(mesh.faces) and not 0 <= mesh.faces.min() <= mesh.faces.max() < count:
+        message = f"{name}: a triangle names a vertex that does not exist."
+        raise FormatError(message, "index_out_of_range")
+    if form.encode is ply.binary and count > np.iinfo(np.int32).max:
+        raise FormatError(f"{name}: too many vertices for PLY; write OBJ.", "too_large")
+    if form.encode is glb.binary and glb.most_bytes(mesh) > np.iinfo(np.uint32).max:
+        raise FormatError(f"{name}: too many triangles for GLB; write 3MF.", "too_large")

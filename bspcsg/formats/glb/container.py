@@ -1,0 +1,219 @@
+"""What a GLB file claims, checked before anything is decoded: sizes, ranges, the tree of nodes."""
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from ...errors import Finding, FormatError
+from ..source import Source
+
+_MAGIC, _HEADER = b"glTF", 12
+_JSON, _BINARY = b"JSON", b"BIN\0"
+
+#: How many bytes a component has, and how many components an element, by glTF's names.
+_COMPONENT = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
+_ELEMENT = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+
+#: How many triangles all nodes together may show, and how deep nodes may lie in one another.
+_MOST_TRIANGLES = 1 << 27
+_DEEPEST = 64
+
+#: Extensions that change what the triangles are, and which are not decoded here.
+_GEOMETRIC = ("draco", "meshopt", "quantization", "instancing")
+
+#: Attributes of vertices by the first word of their names.
+_ATTRIBUTES = {"NORMAL": "normals", "TEXCOORD": "texture coordinates", "COLOR": "colours"}
+
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+
+
+@dataclass(frozen=True, eq=False)
+class Container:
+    """A file whose claims fit together.
+
+    Parameters
+    ----------
+    tree : dict
+        The description.
+    data : bytes
+        The binary chunk, which accessors lie in.
+    findings : tuple of Finding
+        Points and lines that are passed by.
+    dropped : tuple of str
+        As `RawMesh.dropped`.
+    """
+
+    tree: dict[str, Any]
+    data: bytes
+    findings: tuple[Finding, ...]
+    dropped: tuple[str, ...]
+
+
+def container_of(source: Source) -> Container:
+    """Return the description and the data of a file.
+
+    Raises
+    ------
+    FormatError
+        If it is cut off, is no GLB of version 2, or its claims do not fit together.
+    """
+    tree, data = _chunks(source)
+    try:
+        _Claims(source, tree, len(data)).check()
+        return Container(tree, data, _passed_by(tree), _dropped(tree))
+    except FormatError:
+        raise
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        reason = f"{type(error).__name__}: {error}"
+        raise source.error(f"the description in this GLB is not valid ({reason}).") from None
+
+
+def _chunks(source: Source) -> tuple[dict[str, Any], bytes]:
+    """Return the parsed JSON chunk and the binary one."""
+    data = source.data
+    if len(data) < _HEADER + 8 or data[:4] != _MAGIC:
+        raise source.error("this is no GLB: it does not begin with “glTF”.")
+    version, length = (int.from_bytes(data[at : at + 4], "little") for at in (4, 8))
+    if version != 2:
+        raise source.error(f"this is GLB of version {version}; only version 2 can be read.")
+    if length > len(data):
+        message = f"the file has {len(data)} bytes, but its header promises {length}."
+        raise source.error(message, "truncated", offset=len(data))
+    found: dict[bytes, bytes] = {}
+    at = _HEADER
+    while at + 8 <= length:
+        size, kind = int.from_bytes(data[at : at + 4], "little"), data[at + 4 : at + 8]
+        if at + 8 + size > length:
+            raise source.error("a chunk reaches beyond the end.", "truncated", offset=at)
+        found.setdefault(kind, data[at + 8 : at + 8 + size])
+        at += 8 + size
+    return _parsed(source, found.get(_JSON, b"")), found.get(_BINARY, b"")
+
+
+def _parsed(source: Source, chunk: bytes) -> dict[str, Any]:
+    try:
+        tree = json.loads(chunk)
+    except (ValueError, RecursionError) as error:
+        raise source.error(f"the description in this GLB is no JSON: {error}.") from None
+    if not isinstance(tree, dict):
+        raise source.error("the description in this GLB is no JSON object.")
+    return tree
+
+
+class _Claims:
+    """The description, and how many bytes there are to back it.
+
+    Parameters
+    ----------
+    source : Source
+    tree : dict
+    held : int
+        Length of the binary chunk.
+    """
+
+    def __init__(self, source: Source, tree: dict[str, Any], held: int) -> None:
+        self._source = source
+        self._tree = tree
+        self._held = held
+
+    def check(self) -> None:
+        """Check everything that decoding relies on."""
+        for extension in self._tree.get("extensionsRequired", []):
+            if any(word in extension.lower() for word in _GEOMETRIC):
+                message = f"the file needs the extension {extension}, which cannot be read here."
+                raise self._source.error(message, "unsupported")
+        for number, buffer in enumerate(self._tree.get("buffers", [])):
+            if "uri" in buffer:
+                message = "the data lies in another file; only self-contained GLB can be read."
+                raise self._source.error(message, "unsupported")
+            if number > 0 or not 0 <= buffer["byteLength"] <= self._held:
+                message = f"buffer {number} promises more than the {self._held} bytes of data."
+                raise self._source.error(message, "truncated")
+        for number, accessor in enumerate(self._tree.get("accessors", [])):
+            self._check_accessor(number, accessor)
+        self._check_nodes(self._tree.get("nodes", []))
+
+    def _entry(self, kind: str, index: Any) -> dict[str, Any]:
+        """Return what an index names; negative ones name nothing, though Python counts back."""
+        entries: list[dict[str, Any]] = self._tree.get(kind, [])
+        if type(index) is not int or not 0 <= index < len(entries):
+            message = f"the description names {kind} {index}, and has {len(entries)} of them."
+            raise self._source.error(message, "index_out_of_range")
+        return entries[index]
+
+    def _check_accessor(self, number: int, accessor: dict[str, Any]) -> None:
+        if "sparse" in accessor or "bufferView" not in accessor:
+            message = f"accessor {number} is sparse, which cannot be read here."
+            raise self._source.error(message, "unsupported")
+        view = self._entry("bufferViews", accessor["bufferView"])
+        self._entry("buffers", view["buffer"])
+        start, length = view.get("byteOffset", 0), view["byteLength"]
+        element = _COMPONENT[accessor["componentType"]] * _ELEMENT[accessor["type"]]
+        stride, count = view.get("byteStride") or element, accessor["count"]
+        needed = accessor.get("byteOffset", 0) + max(count - 1, 0) * stride + (count and element)
+        if min(start, length, stride, count, needed) < 0 or start + length > self._held:
+            message = f"accessor {number} lies outside the {self._held} bytes of data."
+            raise self._source.error(message, "truncated")
+        if stride < element:
+            message = f"the elements of accessor {number} overlap: {stride} bytes from one to next."
+            raise self._source.error(message)
+        if needed > length:
+            message = f"accessor {number} promises {count} elements, more than its data hold."
+            raise self._source.error(message, "truncated")
+
+    def _check_nodes(self, nodes: list[dict[str, Any]]) -> None:
+        """Refuse nodes with several parents: they could contain each other or multiply."""
+        parents = [-1] * len(nodes)
+        for number, node in enumerate(nodes):
+            for child in node.get("children", []):
+                if child < 0 or parents[child] != -1:
+                    raise self._source.error(f"node {child} has several parents.", "too_large")
+                parents[child] = number
+        for number in range(len(nodes)):
+            steps, above = 0, number
+            while (above := parents[above]) != -1:
+                steps += 1
+                if steps > _DEEPEST:
+                    message = "the nodes contain each other too often."
+                    raise self._source.error(message, "too_large")
+        shown = sum(self._triangles_of(node) for node in nodes)
+        if shown > _MOST_TRIANGLES:
+            raise self._source.error("the nodes show too many triangles.", "too_large")
+
+    def _triangles_of(self, node: dict[str, Any]) -> int:
+        if "mesh" not in node:
+            return 0
+        total = 0
+        for primitive in self._entry("meshes", node["mesh"])["primitives"]:
+            mode = primitive.get("mode", _TRIANGLES)
+            for accessor in primitive["attributes"].values():
+                self._entry("accessors", accessor)
+            if mode == _FAN:
+                message = "triangle fans cannot be read here; write single triangles."
+                raise self._source.error(message, "unsupported")
+            if mode in (_TRIANGLES, _STRIP):
+                corners = primitive.get("indices", primitive["attributes"]["POSITION"])
+                count = self._entry("accessors", corners)["count"]
+                total += count // 3 if mode == _TRIANGLES else count
+        return total
+
+
+def _dropped(tree: dict[str, Any]) -> tuple[str, ...]:
+    """Return what is said besides the shape."""
+    found = {key for key in ("materials", "textures", "animations", "skins") if tree.get(key)}
+    for mesh in tree.get("meshes", []):
+        for primitive in mesh["primitives"]:
+            found |= {_ATTRIBUTES.get(name.split("_")[0], "") for name in primitive["attributes"]}
+    return tuple(sorted(found - {""}))
+
+
+def _passed_by(tree: dict[str, Any]) -> tuple[Finding, ...]:
+    count = sum(
+        primitive.get("mode", _TRIANGLES) not in (_TRIANGLES, _STRIP)
+        for mesh in tree.get("meshes", [])
+        for primitive in mesh["primitives"]
+    )
+    if not count:
+        return ()
+    message = f"{count} groups of points or lines were ignored."
+    return (Finding("ignored", "warning", message, (), count),)

@@ -1,0 +1,117 @@
+"""OFF and its kin with colours, normals or texture coordinates, in text."""
+
+import re
+from collections.abc import Iterator
+
+from ..errors import Finding
+from ..mesh.mesh import Mesh
+from .raw import EMPTY_SET, Polygons, RawMesh, says_empty_set
+from .source import Source, quoted, whole
+
+_KEYWORD = re.compile(rb"(ST)?C?N?(4?)(n?)(?:OFF|off)")
+
+_Line = tuple[int, list[bytes]]
+
+
+def read(source: Source) -> RawMesh:
+    """Read the file.
+
+    Raises
+    ------
+    FormatError
+        If it is cut off, names a vertex that does not exist, or is not of this family; names the
+        line.
+    """
+    lines = list(_body(source))
+    vertex_count, face_count, lines = _counts(source, lines)
+    if vertex_count + face_count > len(lines):
+        message = (
+            f"the file ends after {len(lines)} lines of data, but its header promises"
+            f" {vertex_count} vertices and {face_count} faces."
+        )
+        raise source.error(message, "truncated", line=lines[-1][0] if lines else 1)
+    points, polygons = lines[:vertex_count], lines[vertex_count : vertex_count + face_count]
+    vertices = source.coordinates([row for _, row in points], [number for number, _ in points])
+    corners = [_corners(source, number, words) for number, words in polygons]
+    flat = Polygons.from_lists(corners)
+    faces = flat.triangles(
+        vertices, lambda k, message, code: source.error(message, code, line=polygons[k][0])
+    )
+    extra = _extra_lines(lines[vertex_count + face_count :])
+    dropped = (*_more_than_a_shape(points, polygons), *flat.dropped)
+    return RawMesh(vertices, faces, "", extra, dropped=dropped)
+
+
+def _more_than_a_shape(points: list[_Line], polygons: list[_Line]) -> tuple[str, ...]:
+    """Return what is said of vertices and faces besides the shape."""
+    found = []
+    if any(len(words) > 3 for _, words in points):
+        found.append("data of vertices")
+    if any(len(words) > whole(words[0]) + 1 for _, words in polygons):
+        found.append("colours of faces")
+    return tuple(found)
+
+
+def _body(source: Source) -> Iterator[_Line]:
+    """Yield the lines after the keyword, which may be absent, and may have the counts beside it."""
+    lines = source.text_lines(b"#")
+    number, words = next(lines, (1, [b""]))
+    keyword = _KEYWORD.fullmatch(words[0])
+    if keyword is None:
+        if not words[0].isdigit():
+            raise source.error(f"this is no OFF: it begins with {quoted(words[0])}.", line=number)
+        yield number, words
+    elif keyword[2] or keyword[3]:
+        raise source.error("only OFF in three dimensions can be read.", line=number)
+    elif len(words) > 1 and words[1].upper() == b"BINARY":
+        raise source.error("binary OFF cannot be read; save it as text, or as PLY.", line=number)
+    elif len(words) > 1:
+        yield number, words[1:]
+    yield from lines
+
+
+def _counts(source: Source, lines: list[_Line]) -> tuple[int, int, list[_Line]]:
+    """Return the numbers of vertices and faces, and the lines after them."""
+    number, words = lines[0] if lines else (1, [])
+    try:
+        counts = [whole(word) for word in words[:2]]
+    except ValueError:
+        counts = []
+    if len(counts) < 2 or min(counts) < 0:
+        found = quoted(b" ".join(words))
+        raise source.error(f"expected numbers of vertices and faces, found {found}.", line=number)
+    return counts[0], counts[1], lines[1:]
+
+
+def _corners(source: Source, number: int, words: list[bytes]) -> list[int]:
+    """Return the vertex indices of a face; a colour may follow them."""
+    try:
+        count = whole(words[0])
+        indices = [whole(word) for word in words[1 : count + 1]]
+    except ValueError:
+        message = f"expected a face of whole numbers, found {quoted(b' '.join(words))}."
+        raise source.error(message, line=number) from None
+    if len(indices) != count:
+        message = f"a face of {count} corners has only {len(indices)} vertex numbers."
+        raise source.error(message, line=number)
+    if any(not 0 <= index < 2**63 for index in indices):
+        message = f"a face names vertex {min(indices) if min(indices) < 0 else max(indices)}."
+        raise source.error(message, "index_out_of_range", line=number)
+    return indices
+
+
+def _extra_lines(lines: list[_Line]) -> tuple[Finding, ...]:
+    if not lines:
+        return ()
+    message = f"{len(lines)} lines after the last face were ignored."
+    return (Finding("extra_data", "warning", message, (lines[0][0],), len(lines)),)
+
+
+def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
+    """Yield the file; every coordinate reads back as the same double."""
+    yield b"OFF\n" + (EMPTY_SET if says_empty_set(mesh) else b"")
+    yield f"{len(mesh.vertices)} {len(mesh.faces)} 0\n".encode()
+    for point in mesh.vertices.tolist():
+        yield "{!r} {!r} {!r}\n".format(*point).encode()
+    for face in mesh.faces.tolist():
+        yield "3 {} {} {}\n".format(*face).encode()

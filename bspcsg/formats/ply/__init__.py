@@ -1,0 +1,1 @@
+"""The Stanford polygon format."""

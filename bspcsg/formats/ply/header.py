@@ -1,0 +1,146 @@
+"""The header of a PLY file: which elements follow, how many, and with which properties."""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from ..source import Source, quoted
+
+_TYPES = {
+    **dict.fromkeys(("char", "int8"), "i1"),
+    **dict.fromkeys(("uchar", "uint8"), "u1"),
+    **dict.fromkeys(("short", "int16"), "i2"),
+    **dict.fromkeys(("ushort", "uint16"), "u2"),
+    **dict.fromkeys(("int", "int32"), "i4"),
+    **dict.fromkeys(("uint", "uint32"), "u4"),
+    **dict.fromkeys(("float", "float32"), "f4"),
+    **dict.fromkeys(("double", "float64"), "f8"),
+}
+
+#: Byte order of binary data.
+Order: TypeAlias = Literal["<", ">"]
+
+#: Byte order of each form; none for text.
+_FORMS: dict[str, Order | None] = {
+    "ascii": None,
+    "binary_little_endian": "<",
+    "binary_big_endian": ">",
+}
+
+
+@dataclass(frozen=True)
+class Property:
+    """One property: a number, or a list if `count` names the type of its length."""
+
+    name: str
+    item: np.dtype[np.generic]
+    count: np.dtype[np.generic] | None = None
+
+
+@dataclass(frozen=True)
+class Element:
+    """One kind of record, and how many of them follow."""
+
+    name: str
+    number: int
+    properties: list[Property]
+
+    @property
+    def has_lists(self) -> bool:
+        """Whether records may differ in size."""
+        return any(prop.count is not None for prop in self.properties)
+
+    def index(self, *names: str) -> int | None:
+        """Return the position of the property with one of these names."""
+        found = (k for k, prop in enumerate(self.properties) if prop.name in names)
+        return next(found, None)
+
+
+@dataclass(frozen=True)
+class Header:
+    """What the header says, and where the data begin.
+
+    Parameters
+    ----------
+    order : {"<", ">"} or None
+        Byte order; None for text.
+    elements : list of Element
+        In the order of their data.
+    end : int
+        Bytes before the data.
+    lines : int
+        Lines before the data.
+    """
+
+    order: Order | None
+    elements: list[Element]
+    end: int
+    lines: int
+
+
+def read_header(source: Source) -> Header:
+    """Read the header.
+
+    Raises
+    ------
+    FormatError
+        If the file is no PLY, or its header is not valid or not complete.
+    """
+    form: str | None = None
+    elements: list[Element] = []
+    end = number = 0
+    while True:
+        line, end = _line(source, end, number)
+        number += 1
+        words = line.decode("latin-1").split()
+        key = words[0] if words else "comment"
+        if number == 1:
+            if key != "ply":
+                raise source.error(f"this is no PLY: it begins with {quoted(line)}.", line=1)
+        elif key == "end_header":
+            break
+        elif key == "format":
+            form = words[1] if len(words) > 1 else ""
+        elif key == "element":
+            elements.append(_element(source, number, words))
+        elif key == "property" and elements:
+            elements[-1].properties.append(_property(source, number, words))
+        elif key not in ("comment", "obj_info"):
+            raise source.error(f"expected a header line, found {quoted(line)}.", line=number)
+    if form is None or form not in _FORMS:
+        raise source.error(f"the header names no known form, but “{form}”.", line=number)
+    return Header(_FORMS[form], elements, end, number)
+
+
+def _line(source: Source, start: int, number: int) -> tuple[bytes, int]:
+    """Return the line that begins at `start`, and where the next one begins."""
+    data = source.data
+    stop = data.find(b"\n", start)
+    carriage = data.find(b"\r", start, None if stop < 0 else stop)
+    if carriage >= 0 and carriage + 1 != stop:
+        return data[start:carriage], carriage + 1
+    if stop < 0:
+        if number == 0:
+            raise source.error(f"this is no PLY: it begins with {quoted(data[:16])}.", line=1)
+        raise source.error("the file ends within its header.", "truncated", line=number)
+    return data[start:stop], stop + 1
+
+
+def _element(source: Source, line: int, words: list[str]) -> Element:
+    if len(words) != 3 or not words[2].isdecimal() or len(words[2]) > 18:
+        raise source.error("expected “element NAME NUMBER”.", line=line)
+    return Element(words[1], int(words[2]), [])
+
+
+def _property(source: Source, line: int, words: list[str]) -> Property:
+    try:
+        if words[1] == "list":
+            count = np.dtype(_TYPES[words[2]])
+            if count.kind == "f":
+                raise source.error("the length of a list must be a whole number.", line=line)
+            return Property(words[4], np.dtype(_TYPES[words[3]]), count)
+        return Property(words[2], np.dtype(_TYPES[words[1]]))
+    except (KeyError, IndexError):
+        found = quoted(" ".join(words).encode())
+        raise source.error(f"expected a property and its type, found {found}.", line=line) from None

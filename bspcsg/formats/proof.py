@@ -1,0 +1,147 @@
+"""The proof that a file holds what was written: every corner of every triangle of every object.
+
+Corners that are equal, each coordinate rounded once to the file's precision, make equal counts,
+bounds and volumes, so nothing is compared within a tolerance.
+"""
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._types import IndexArray
+from ..errors import FormatError, words_of
+from ..mesh.mesh import Mesh
+from .held import Held
+from .raw import RawMesh, parts_of
+
+#: Triangles compared together: their arrays fit into a processor's cache.
+_TOGETHER = 1 << 14
+
+#: Takes a file apart; raises an exception of any kind where it cannot.
+Scan: TypeAlias = Callable[[bytes], list[Held]]
+
+#: Returns what an object's name becomes in a file.
+Called: TypeAlias = Callable[[str], str]
+
+
+def prove(
+    path: str,
+    mesh: Mesh | RawMesh,
+    scan: Scan,
+    called: Called | None,
+    repeats: bool,
+    data: bytes,
+) -> None:
+    """Raise an error unless a file holds a mesh.
+
+    Parameters
+    ----------
+    path : str
+        For the message.
+    mesh : Mesh or RawMesh
+        What was written.
+    scan : callable
+    called : callable, optional
+        None where files do not tell objects apart.
+    repeats : bool
+        Whether the format holds triangles that name a vertex twice.
+    data : bytes
+        The file.
+
+    Raises
+    ------
+    FormatError
+        If it does not; code ``"write_mismatch"``, `where` holds the first triangle that differs,
+        if the number of triangles is right.
+    """
+    try:
+        held = [one for one in scan(data) if one.count]
+    except MemoryError:
+        raise
+    except Exception as error:  # of any kind: whatever a damaged file leads to
+        raise _mismatch(path, f"it cannot be read back ({words_of(error)})") from error
+    meant = _meant(mesh, called, repeats)
+    _compare_counts(path, meant, held)
+    if held:
+        _compare_corners(path, mesh, meant, held)
+
+
+def _mismatch(path: str, reason: str, where: tuple[int, ...] = ()) -> FormatError:
+    message = (
+        f"{path}: the file that was written is not the mesh, and was not put in place: {reason}."
+        " The disk may be at fault; if it happens again, please report it."
+    )
+    return FormatError(message, "write_mismatch", where)
+
+
+def _meant(
+    mesh: Mesh | RawMesh, called: Called | None, repeats: bool
+) -> list[tuple[str, IndexArray]]:
+    """Return names and triangles of the objects that a file is to hold."""
+    parts = [("", mesh.faces)] if called is None else parts_of(mesh)
+    if called is not None:
+        parts = [(called(name), faces) for name, faces in parts]
+    if not repeats:
+        parts = [(name, faces[_three_corners(faces)]) for name, faces in parts]
+    return [(name, faces) for name, faces in parts if len(faces)]
+
+
+def _three_corners(faces: IndexArray) -> npt.NDArray[np.bool_]:
+    a, b, c = faces.T
+    different: npt.NDArray[np.bool_] = (a != b) & (b != c) & (c != a)
+    return different
+
+
+def _compare_counts(path: str, meant: list[tuple[str, IndexArray]], held: list[Held]) -> None:
+    if len(meant) != len(held):
+        raise _mismatch(path, f"it holds {len(held)} objects instead of {len(meant)}")
+    for (name, faces), one in zip(meant, held, strict=True):
+        if name != one.name:
+            raise _mismatch(path, f"an object is called “{one.name}” instead of “{name}”")
+        if len(faces) != one.count:
+            told = f" in “{name}”" if name else ""
+            message = f"it holds {one.count} triangles{told} instead of {len(faces)}"
+            raise _mismatch(path, message)
+
+
+def _compare_corners(
+    path: str, mesh: Mesh | RawMesh, meant: list[tuple[str, IndexArray]], held: list[Held]
+) -> None:
+    rounded = mesh.vertices.astype(held[0].vertices.dtype, copy=False)
+    if len(held) == 1 and _has_arrays(held[0], rounded, meant[0][1]):
+        return
+    before = 0
+    for (_, faces), one in zip(meant, held, strict=True):
+        at = _first_difference(rounded, faces, one)
+        if at is not None:
+            message = f"the corners of triangle {before + at} are others"
+            raise _mismatch(path, message, (before + at,))
+        before += len(faces)
+
+
+def _has_arrays(held: Held, vertices: npt.NDArray[Any], faces: IndexArray) -> bool:
+    """Whether a file has the very arrays, which is the fastest of all proofs."""
+    if held.faces is None or held.vertices.shape != vertices.shape:
+        return False
+    return bool((held.faces == faces).all() and (held.vertices == vertices).all())
+
+
+def _first_difference(vertices: npt.NDArray[Any], faces: IndexArray, held: Held) -> int | None:
+    """Return the first triangle whose corners are not those that the file holds, if any."""
+    for start in range(0, len(faces), _TOGETHER):
+        meant = vertices[faces[start : start + _TOGETHER]]
+        differ = (meant != _corners(held, start, len(meant))).any(axis=(1, 2))
+        if differ.any():
+            return start + int(np.flatnonzero(differ)[0])
+    return None
+
+
+def _corners(held: Held, start: int, count: int) -> npt.NDArray[Any]:
+    if held.faces is None:
+        return held.vertices[3 * start : 3 * (start + count)].reshape(-1, 3, 3)
+    faces = held.faces[start : start + count]
+    if not 0 <= faces.min() <= faces.max() < len(held.vertices):
+        return np.full((count, 3, 3), np.nan)
+    return held.vertices[faces]

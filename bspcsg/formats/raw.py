@@ -1,0 +1,243 @@
+"""`RawMesh`: what a file says, before anything is made of it; polygons become triangles here.
+
+Readers neither weld, orient, repair nor drop anything, with one exception: STL has no indices, so
+its corners with equal coordinates become one vertex.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._types import FloatArray, IndexArray
+from ..errors import Finding, FormatError
+from ..geometry.polygon import triangulate_face
+from ..mesh.mesh import Mesh
+
+#: What to call it that faces of more corners became triangles.
+POLYGONS = "faces of more than three corners"
+
+
+@dataclass(frozen=True, eq=False)
+class RawMesh:
+    """Triangles as a file gives them; nothing says that they enclose anything.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64
+        In the file's unit; millimetres if the format has units.
+    faces : (m, 3) int64
+        Indices of `vertices`, all in range.
+    name : str
+        What the file calls the mesh, or the file's stem.
+    findings : tuple of Finding
+        What was noteworthy about the file.
+    objects : tuple of (str, int)
+        Names of the objects in the file and how many triangles each has, in order; empty if the
+        file does not tell objects apart.
+    unit : str
+        ``"mm"`` if the format says how long a unit is, else empty.
+    dropped : tuple of str
+        Kinds of data in the file that a mesh of triangles has no room for, such as "colours".
+    is_empty_set : bool
+        Whether the file is one that this package writes for the empty set. Any other file without
+        faces is no set: what should be in it may have got lost.
+    """
+
+    vertices: FloatArray
+    faces: IndexArray
+    name: str = ""
+    findings: tuple[Finding, ...] = ()
+    objects: tuple[tuple[str, int], ...] = ()
+    unit: str = ""
+    dropped: tuple[str, ...] = ()
+    is_empty_set: bool = False
+
+    @property
+    def passed_by(self) -> tuple[str, ...]:
+        """What the reader said it left out."""
+        return tuple(found.message for found in self.findings if found.code in _PASSED_BY)
+
+
+def says_empty_set(mesh: Mesh | RawMesh) -> bool:
+    """Whether a file of this mesh is to say that it is the empty set."""
+    return len(mesh.faces) == 0 and (isinstance(mesh, Mesh) or mesh.is_empty_set)
+
+
+#: The comment in a text of the empty set, by which it is told from one that lost what it held.
+EMPTY_SET = b"# bspcsg: the empty set\n"
+
+#: What readers say about parts of a file that they pass by.
+_PASSED_BY = frozenset({"ignored", "curves_ignored", "extra_data"})
+
+
+def empty_set() -> RawMesh:
+    """Return what is read from a file that this package wrote for the empty set."""
+    finding = Finding("empty", "note", "this file is the empty set.", (), 1)
+    faces = np.zeros((0, 3), dtype=np.int64)
+    return RawMesh(np.zeros((0, 3)), faces, "", (finding,), is_empty_set=True)
+
+
+def parts_of(mesh: Mesh | RawMesh) -> list[tuple[str, IndexArray]]:
+    """Return names and triangles of the objects of a mesh; one that has none is one object."""
+    objects = mesh.objects if isinstance(mesh, RawMesh) else ()
+    if sum(count for _, count in objects) != len(mesh.faces):
+        return [(mesh.name if isinstance(mesh, RawMesh) else "", mesh.faces)]
+    ends = np.cumsum([0] + [count for _, count in objects]).tolist()
+    names = [name for name, _ in objects]
+    return [
+        (name, mesh.faces[start:end])
+        for name, start, end in zip(names, ends, ends[1:], strict=False)
+    ]
+
+
+def on_one_line(name: str) -> str:
+    """Return a name as a line of text can hold it: words with a space between, in UTF-8."""
+    words = " ".join("".join(" " if ord(letter) < _SPACE else letter for letter in name).split())
+    return words.encode("utf-8", "replace").decode("utf-8")
+
+
+#: Below are the characters that control, such as line breaks and NUL.
+_SPACE = 32
+
+
+def compacted(faces: IndexArray) -> tuple[IndexArray, IndexArray]:
+    """Return the vertices that triangles use, rising, and the triangles that number only those."""
+    if len(faces) == 0:
+        return np.zeros(0, dtype=np.int64), faces
+    low = int(faces.min())
+    is_used = np.zeros(int(faces.max()) + 1 - low, dtype=bool)
+    is_used[faces - low] = True
+    numbers = np.cumsum(is_used) - 1
+    return np.flatnonzero(is_used) + low, numbers[faces - low]
+
+
+def joined(meshes: Sequence[RawMesh]) -> RawMesh:
+    """Return several meshes as one, each an object of its name; nothing is welded."""
+    starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes]).tolist()
+    vertices = [np.zeros((0, 3))] + [mesh.vertices for mesh in meshes]
+    faces = [np.zeros((0, 3), dtype=np.int64)]
+    faces += [mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]
+    objects = tuple((mesh.name, len(mesh.faces)) for mesh in meshes)
+    return RawMesh(np.concatenate(vertices), np.concatenate(faces), objects=objects)
+
+
+@dataclass(frozen=True, eq=False)
+class Polygons:
+    """Polygons as index lists of different lengths.
+
+    Parameters
+    ----------
+    corners : (sum of counts,) int64
+        Vertex indices, one polygon after another.
+    counts : (p,) int64
+        How many corners each polygon has.
+    """
+
+    corners: IndexArray
+    counts: IndexArray
+
+    @classmethod
+    def from_lists(cls, polygons: list[list[int]]) -> "Polygons":
+        """Return the polygons of a list of index lists.
+
+        Raises
+        ------
+        OverflowError
+            If an index does not fit into 64 bits.
+        """
+        counts = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
+        flat = [corner for polygon in polygons for corner in polygon]
+        return cls(np.array(flat, dtype=np.int64), counts)
+
+    @property
+    def dropped(self) -> tuple[str, ...]:
+        """What triangles do not keep of these polygons, as `RawMesh.dropped` says it."""
+        return (POLYGONS,) if self.counts.max(initial=0) > 3 else ()
+
+    @classmethod
+    def from_rows(cls, rows: IndexArray) -> "Polygons":
+        """Return polygons that all have as many corners as `rows` has columns."""
+        corners = np.ascontiguousarray(rows, dtype=np.int64).ravel()
+        return cls(corners, np.full(len(rows), rows.shape[1], dtype=np.int64))
+
+    def triangles(
+        self, vertices: FloatArray, error_at: Callable[[int, str, str], FormatError]
+    ) -> IndexArray:
+        """Return (m, 3) triangles, those of each polygon together, in the order of the polygons.
+
+        Polygons may be concave; the edges of each stay what they are, so a closed surface of
+        polygons gives a closed surface of triangles.
+
+        Parameters
+        ----------
+        vertices : (n, 3) float64
+        error_at : callable
+            Makes the error for polygon k from k, a sentence and a code.
+
+        Raises
+        ------
+        FormatError
+            If a polygon has fewer than three corners, or names a vertex that does not exist.
+        """
+        self._check(len(vertices), error_at)
+        starts = np.cumsum(self.counts) - self.counts
+        parts, owners = [np.zeros((0, 3), dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
+        for count in np.unique(self.counts).tolist():
+            which = np.flatnonzero(self.counts == count)
+            rows = self.corners[starts[which][:, None] + np.arange(count)]
+            faces, row = _triangulated(rows, vertices)
+            parts.append(faces)
+            owners.append(which[row])
+        order = np.argsort(np.concatenate(owners), kind="stable")
+        return np.concatenate(parts)[order]
+
+    def _check(self, vertex_count: int, error_at: Callable[[int, str, str], FormatError]) -> None:
+        if (self.counts < 3).any():
+            polygon = int(np.flatnonzero(self.counts < 3)[0])
+            number = int(self.counts[polygon])
+            raise error_at(polygon, f"a face with {number} corners is no polygon.", "syntax")
+        bad = (self.corners < 0) | (self.corners >= vertex_count)
+        if bad.any():
+            at = int(np.flatnonzero(bad)[0])
+            polygon = int(np.searchsorted(np.cumsum(self.counts), at, side="right"))
+            message = (
+                f"a face names vertex {int(self.corners[at])} (counted from 0),"
+                f" but the file has {vertex_count} vertices."
+            )
+            raise error_at(polygon, message, "index_out_of_range")
+
+
+def _triangulated(rows: IndexArray, vertices: FloatArray) -> tuple[IndexArray, IndexArray]:
+    """Return triangles of (k, n) polygons, and for each the row that it is from."""
+    count = rows.shape[1]
+    if count == 3:
+        return rows, np.arange(len(rows))
+    convex = _are_convex(vertices[rows])
+    fans = rows[convex][:, _fan(count)].reshape(-1, 3)
+    parts, owners = [fans], [np.repeat(np.flatnonzero(convex), count - 2)]
+    for row in np.flatnonzero(~convex).tolist():
+        corners = vertices[rows[row]]
+        # Measured from its own first corner, a small polygon far out keeps its shape.
+        faces = rows[row][triangulate_face(corners - corners[0])]
+        parts.append(faces)
+        owners.append(np.full(len(faces), row))
+    return np.concatenate(parts), np.concatenate(owners)
+
+
+def _fan(count: int) -> IndexArray:
+    second = np.arange(1, count - 1)
+    return np.column_stack([np.zeros_like(second), second, second + 1])
+
+
+def _are_convex(corners: FloatArray) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
+    """Whether each of (k, n, 3) polygons is strictly convex, and the fan of corner 0 is inside."""
+    local = corners - corners[:, :1]
+    with np.errstate(over="ignore", invalid="ignore"):
+        normal = np.cross(local, np.roll(local, -1, axis=1)).sum(axis=1)
+        ahead = np.roll(local, -1, axis=1) - local
+        turns = np.cross(np.roll(ahead, 1, axis=1), ahead)
+        fans = np.cross(local[:, 1:-1], local[:, 2:])
+        sides = np.einsum("kni,ki->kn", np.concatenate([turns, fans], axis=1), normal)
+    convex: np.ndarray[tuple[int], np.dtype[np.bool_]] = (sides > 0).all(axis=1)
+    return convex

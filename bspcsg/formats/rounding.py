@@ -1,0 +1,32 @@
+"""Meshes with coordinates of fewer digits."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..errors import Finding
+from ..mesh.mesh import Mesh
+from .raw import RawMesh
+
+#: Digits that tell any two doubles apart.
+MOST_DIGITS = 17
+
+
+def rounded(mesh: Mesh | RawMesh, digits: int) -> tuple[Mesh | RawMesh, tuple[Finding, ...]]:
+    """Return a mesh whose coordinates have so many significant digits, and how far that moved them.
+
+    Faces may cross, or lose their area, where they come closer to each other than that.
+
+    Parameters
+    ----------
+    mesh : Mesh or RawMesh
+    digits : int
+        From 1 to 17.
+    """
+    texts = [f"{value:.{digits - 1}e}" for value in mesh.vertices.ravel().tolist()]
+    vertices = np.array(texts, dtype=np.float64).reshape(-1, 3)
+    shift = float(np.abs(vertices - mesh.vertices).max(initial=0))
+    if shift == 0:
+        return mesh, ()
+    message = f"rounding to {digits} digits moved coordinates by up to {shift:.3g}"
+    return replace(mesh, vertices=vertices), (Finding("rounded", "note", message, (), 1),)

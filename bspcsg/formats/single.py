@@ -1,0 +1,186 @@
+"""What single precision changes about a mesh: binary STL and GLB hold no more."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from .._core import mesh_in_single
+from .._types import FloatArray, IndexArray
+from ..errors import Finding, core_errors
+from ..mesh.mesh import Mesh
+from ..mesh.weld import distinct
+from ..solid.solid import Solid
+from .raw import RawMesh
+from .triangles import are_flat, are_turned
+
+#: Triangles looked at together: their arrays fit into a processor's cache.
+_TOGETHER = 1 << 14
+
+#: How many triangles a finding names.
+_NAMED = 8
+
+
+def losses(mesh: Mesh | RawMesh, format_name: str) -> tuple[Finding, ...]:
+    """Return what single precision would change about a mesh.
+
+    Vertices that merge, triangles that lose their area and triangles that turn over are counted
+    exactly. A triangle turns over if its normals before and after are more than a right angle
+    apart; one that has no area before is neither lost nor turned.
+
+    Parameters
+    ----------
+    mesh : Mesh or RawMesh
+    format_name : str
+        What to call the format in the message.
+
+    Raises
+    ------
+    OverflowError
+        If a coordinate is beyond single precision.
+    """
+    with np.errstate(over="ignore"):
+        rounded = mesh.vertices.astype(np.float32).astype(np.float64)
+    if not np.isfinite(rounded).all():
+        raise OverflowError
+    shift = float(np.abs(rounded - mesh.vertices).max(initial=0.0))
+    if shift == 0:
+        return ()
+    message = (
+        f"{format_name} holds single precision: coordinates moved by up to {shift:.2g}."
+        " PLY, OBJ, OFF, 3MF and ASCII STL keep every digit."
+    )
+    return (
+        Finding("single_precision", "note", message, (), 1),
+        *_merged(mesh.vertices, rounded),
+        *_changed(mesh, rounded),
+    )
+
+
+def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
+    """Return a solid's mesh in single precision, crossing itself nowhere that could be mended.
+
+    Rounding moves every corner, so that surfaces near each other may cross and thin triangles lose
+    their area; such are taken out by changes of the width of the rounding.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Closed by index.
+
+    Returns
+    -------
+    mesh : Mesh
+        The given one if nothing had to be changed, or if single precision leaves nothing of it.
+    findings : tuple of Finding
+        How many triangles were changed, and the places where surfaces still cross.
+
+    Raises
+    ------
+    OverflowError
+        If a coordinate is beyond single precision.
+    """
+    with np.errstate(over="ignore"):
+        if not np.isfinite(mesh.vertices.astype(np.float32)).all():
+            raise OverflowError
+    result, mended, crossing = _rounded(mesh)
+    for _ in range(_ROUNDS):
+        if not len(crossing) or not len(result.faces):
+            break
+        mended += len(crossing)
+        result, more, crossing = _rounded(_united(result))
+        mended += more
+    if not len(result.faces):
+        return mesh, ()
+    findings = [
+        Finding("mended_in_single", "note", _MENDED.format(mended), (), mended),
+        Finding(
+            "crossing_in_single",
+            "warning",
+            _CROSSING.format(len(crossing)) + _REMEDY,
+            tuple(crossing[:_NAMED].tolist()),
+            len(crossing),
+        ),
+    ]
+    left = tuple(finding for finding in findings if finding.count)
+    return (result if mended else mesh), left
+
+
+#: Rounds of uniting what rounding made cross, and of rounding what that makes. One nearly always
+#: does: surfaces nearer each other than the rounding lie in one place after it, and are united.
+_ROUNDS = 4
+
+
+def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
+    """Return a mesh in single precision, how many triangles were mended, and which still cross."""
+    with core_errors():
+        found = mesh_in_single(mesh.vertices, mesh.faces)
+    result = Mesh(found["vertices"], found["triangles"], mesh.source[found["kept"]])
+    return result, found["mended"], np.unique(np.append(found["crossings"], found["flat"]))
+
+
+def _united(mesh: Mesh) -> Mesh:
+    """Return the mesh of the set of points that a mesh winds around, which crosses nowhere.
+
+    Iterated snap rounding: where triangles cross they are cut, exactly, and what is cut is rounded
+    again.
+    """
+    united = Solid(mesh.vertices, mesh.faces, winding="positive").normalized().to_mesh()
+    return Mesh(united.vertices, united.faces, mesh.source[united.source[:, 1]])
+
+
+_MENDED = (
+    "rounding to single precision makes surfaces cross or leaves triangles no area; {} triangles"
+    " were changed or left out by the width of that rounding."
+)
+_CROSSING = "in single precision {} triangles cross or overlap others"
+
+
+def _merged(vertices: FloatArray, rounded: FloatArray) -> tuple[Finding, ...]:
+    lost = distinct(vertices) - distinct(rounded)
+    if not lost:
+        return ()
+    message = f"single precision merges {lost} vertices with others{_REMEDY}"
+    return (Finding("merged_by_rounding", "warning", message, (), lost),)
+
+
+_REMEDY = "; write PLY, OBJ, OFF or 3MF to keep the mesh as it is."
+
+
+def _changed(mesh: Mesh | RawMesh, rounded: FloatArray) -> tuple[Finding, ...]:
+    """Return the findings about triangles that lose their area or turn over."""
+    flat, turned = _flat_and_turned(mesh.vertices, rounded, mesh.faces)
+    told = (
+        ("flattened_by_rounding", "takes the area of", flat),
+        ("turned_by_rounding", "turns over", turned),
+    )
+    return tuple(
+        Finding(
+            code,
+            "warning",
+            f"single precision {verb} {len(where)} triangles{_REMEDY}",
+            tuple(where[:_NAMED].tolist()),
+            len(where),
+        )
+        for code, verb, where in told
+        if len(where)
+    )
+
+
+def _flat_and_turned(
+    vertices: FloatArray, rounded: FloatArray, faces: IndexArray
+) -> tuple[IndexArray, IndexArray]:
+    """Return the numbers of the triangles that lose their area, and of those that turn over."""
+    flat, turned = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
+    for start in _starts(len(faces)):
+        some = faces[start : start + _TOGETHER]
+        before, after = vertices[some], rounded[some]
+        is_flat = are_flat(after)
+        lost = np.flatnonzero(is_flat)
+        flat.append(start + lost[~are_flat(before[lost])])
+        kept = np.flatnonzero(~is_flat)
+        turned.append(start + kept[are_turned(before[kept], after[kept])])
+    return np.concatenate(flat), np.concatenate(turned)
+
+
+def _starts(count: int) -> Iterator[int]:
+    return iter(range(0, count, _TOGETHER))

@@ -1,0 +1,178 @@
+"""STL, binary and ASCII: loose triangles, which are joined where coordinates are equal.
+
+The binary form holds single precision. Whether a file is binary follows from its size, never from
+its first word: binary files begin with "solid" often enough.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from .._types import FloatArray
+from ..errors import Finding
+from ..mesh.mesh import Mesh
+from ..mesh.weld import welded
+from . import single
+from .raw import EMPTY_SET, RawMesh, on_one_line, parts_of, says_empty_set
+from .source import BYTE_ORDER_MARK, Source, quoted
+
+_HEADER = 84
+_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+#: The lines of one facet, by their first word.
+_FACET = (b"facet", b"outer", b"vertex", b"vertex", b"vertex", b"endloop", b"endfacet")
+
+
+def read(source: Source) -> RawMesh:
+    """Read either form.
+
+    Raises
+    ------
+    FormatError
+        If the file is cut off, is no STL, or has coordinates that are not finite.
+    """
+    return _read_binary(source) if _is_binary(source.data) else _read_text(source)
+
+
+def _is_binary(data: bytes) -> bool:
+    if len(data) >= _HEADER and len(data) == _HEADER + _RECORD.itemsize * _promised(data):
+        return True
+    return (
+        data.removeprefix(BYTE_ORDER_MARK).lstrip()[:5].lower() != b"solid" or b"\0" in data[:1024]
+    )
+
+
+def _promised(data: bytes) -> int:
+    return int.from_bytes(data[_HEADER - 4 : _HEADER], "little")
+
+
+def _read_binary(source: Source) -> RawMesh:
+    data = source.data
+    if len(data) < _HEADER:
+        message = f"this is no STL: a binary one has at least {_HEADER} bytes, not {len(data)}."
+        raise source.error(message, "truncated", offset=len(data))
+    count, held = _promised(data), (len(data) - _HEADER) // _RECORD.itemsize
+    if count > held:
+        message = f"the file ends in triangle {held}, but its header promises {count} triangles."
+        raise source.error(message, "truncated", offset=len(data))
+    if count == 0 and held:
+        message = f"the header promises 0 triangles, but data for {held} follow."
+        raise source.error(message, offset=_HEADER)
+    records = np.frombuffer(data, _RECORD, count, _HEADER)
+    with np.errstate(invalid="ignore"):  # NaN, which the next line refuses
+        corners = records["corners"].reshape(-1, 3).astype(np.float64)
+    _check_finite(source, corners)
+    extra = len(data) - _HEADER - count * _RECORD.itemsize
+    name = data[: _HEADER - 4].split(b"\0")[0].strip().decode("latin-1")
+    coloured = ("colours",) if records["attribute"].any() else ()
+    return replace(_joined(corners, name, _extra_bytes(extra)), dropped=coloured)
+
+
+def _check_finite(source: Source, corners: FloatArray) -> None:
+    finite = np.isfinite(corners).all(axis=1)
+    if not finite.all():
+        triangle = int(np.flatnonzero(~finite)[0]) // 3
+        offset = _HEADER + triangle * _RECORD.itemsize
+        message = f"triangle {triangle} has a coordinate that is not a finite number."
+        raise source.error(message, "non_finite", offset=offset)
+
+
+def _extra_bytes(count: int) -> tuple[Finding, ...]:
+    if not count:
+        return ()
+    message = f"{count} bytes after the last triangle were ignored."
+    return (Finding("extra_data", "warning", message, (), count),)
+
+
+def _read_text(source: Source) -> RawMesh:
+    rows: list[list[bytes]] = []
+    lines: list[int] = []
+    solids: list[tuple[bytes, int]] = []
+    inside, step, number = False, 0, 0
+    for number, words in source.text_lines():
+        key = words[0].lower()
+        if step == 0 and key == (b"endsolid" if inside else b"solid"):
+            inside = not inside
+            if inside:
+                solids.append((b" ".join(words[1:]), len(rows)))
+            continue
+        if not inside or key != _FACET[step]:
+            expected = _FACET[step] if inside else b"solid"
+            message = f"expected “{expected.decode()}”, found {quoted(words[0])}."
+            raise source.error(message, line=number)
+        if key == b"vertex":
+            rows.append(words[1:4])
+            lines.append(number)
+        step = (step + 1) % len(_FACET)
+    if inside:
+        missing = _FACET[step].decode() if step else "endsolid"
+        raise source.error(
+            f"the file ends where “{missing}” must follow.", "truncated", line=number
+        )
+    raw = _joined(source.coordinates(rows, lines), "", ())
+    ends = [*(first for _, first in solids[1:]), len(rows)]
+    names = [name.decode("utf-8", "replace") for name, _ in solids]
+    starts = [first for _, first in solids]
+    objects = [(n, (end - start) // 3) for n, start, end in zip(names, starts, ends, strict=True)]
+    title = next(filter(None, names), "")
+    return replace(raw, name=title, objects=tuple(objects) if len(objects) > 1 else ())
+
+
+def _joined(corners: FloatArray, name: str, findings: tuple[Finding, ...]) -> RawMesh:
+    vertices, indices = welded(corners)
+    return RawMesh(vertices, indices.reshape(-1, 3), name, findings)
+
+
+def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
+    """Yield the binary form; coordinates are rounded to single precision."""
+    title = EMPTY_SET.strip(b"# \n") if says_empty_set(mesh) else b"bspcsg"
+    header = title.ljust(_HEADER - 4, b" ")
+    yield header + len(mesh.faces).to_bytes(4, "little")
+    records = np.zeros(len(mesh.faces), _RECORD)
+    corners = mesh.vertices.astype(np.float32)[mesh.faces]
+    records["corners"] = corners
+    records["normal"] = _normals(mesh.vertices[mesh.faces])
+    yield records.tobytes()
+
+
+def called(name: str) -> str:
+    """Return a solid's name as its first line can hold it; a solid without a name gets ours."""
+    return on_one_line(name) or "bspcsg"
+
+
+def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
+    """Yield the ASCII form, a solid for each object; every double reads back as it was."""
+    for name, faces in parts_of(mesh) or [("", mesh.faces)]:
+        title = called(name)
+        yield f"solid {title}\n".encode()
+        corners = mesh.vertices[faces]
+        for normal, triangle in zip(_normals(corners).tolist(), corners.tolist(), strict=True):
+            yield (
+                "facet normal {} {} {}\n outer loop\n".format(*normal)
+                + "".join("  vertex {!r} {!r} {!r}\n".format(*corner) for corner in triangle)
+                + " endloop\nendfacet\n"
+            ).encode()
+        yield f"endsolid {title}\n".encode()
+
+
+def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
+    """Return what single precision would change about a mesh.
+
+    Raises
+    ------
+    OverflowError
+        If a coordinate is beyond single precision.
+    """
+    return single.losses(mesh, "binary STL")
+
+
+def _normals(corners: FloatArray) -> FloatArray:
+    """Return unit normals of (m, 3, 3) triangles, zero for those that have none."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    with np.errstate(over="ignore", invalid="ignore"):
+        normals = np.cross(b - a, c - a)
+        lengths = np.linalg.norm(normals, axis=1)[:, None]
+        is_usual = (lengths > 0) & np.isfinite(lengths)
+    units: FloatArray = np.divide(normals, lengths, np.zeros_like(normals), where=is_usual)
+    return units

@@ -1,0 +1,223 @@
+"""One model part of a 3MF package: its objects and its build items."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import TypeAlias
+from xml.parsers import expat
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...errors import FormatError, words_of
+from ..source import Source, quoted
+
+#: Millimetres in each unit that a model may name.
+MILLIMETRES = {
+    "micron": 0.001,
+    "millimeter": 1.0,
+    "centimeter": 10.0,
+    "inch": 25.4,
+    "foot": 304.8,
+    "meter": 1000.0,
+}
+
+#: Elements about what a mesh of triangles has no room for.
+_DROPPED = {
+    "base": "materials",
+    "color": "colours",
+    "composite": "materials",
+    "tex2coord": "texture coordinates",
+    "texture2d": "textures",
+    "metadata": "metadata",
+}
+
+Start: TypeAlias = Callable[[str, dict[str, str]], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """An object under a transform, here or in another part.
+
+    Parameters
+    ----------
+    path : str
+        The other part, or empty.
+    item : str
+        Number of the object, as written.
+    transform : (4, 3) float64
+        Acts on row vectors.
+    """
+
+    path: str
+    item: str
+    transform: FloatArray
+
+
+@dataclass(eq=False)
+class Object:
+    """A mesh, or components, or neither."""
+
+    kind: str
+    vertices: list[tuple[float, float, float]] = field(default_factory=list)
+    triangles: list[tuple[int, int, int]] = field(default_factory=list)
+    components: list[Placed] = field(default_factory=list)
+    beams: int = 0
+    name: str = ""
+
+    def arrays(self) -> tuple[FloatArray, IndexArray]:
+        """Return vertices (n, 3) and triangles (m, 3)."""
+        vertices = np.array(self.vertices, dtype=np.float64).reshape(-1, 3)
+        return vertices, np.array(self.triangles, dtype=np.int64).reshape(-1, 3)
+
+
+@dataclass(eq=False)
+class Part:
+    """What one model part holds."""
+
+    unit: str = "millimeter"
+    objects: dict[str, Object] = field(default_factory=dict)
+    items: list[Placed] = field(default_factory=list)
+    dropped: set[str] = field(default_factory=set)
+
+
+def parse_xml(source: Source, chunks: Iterable[bytes], start: Start) -> None:
+    """Call `start` with the name (without namespace) and attributes of each element.
+
+    Parameters
+    ----------
+    source : Source
+        What errors name.
+    chunks : iterable of bytes
+        The XML.
+    start : callable
+
+    Raises
+    ------
+    FormatError
+        If the XML is not well-formed, or declares a document type or an unknown encoding.
+    """
+    parser = expat.ParserCreate(namespace_separator=" ")
+
+    def begin(tag: str, attributes: dict[str, str]) -> None:
+        named = {name.rpartition(" ")[2]: value for name, value in attributes.items()}
+        try:
+            start(tag.rpartition(" ")[2], named)
+        except (KeyError, ValueError, OverflowError) as error:
+            message = (
+                f"the element {quoted(tag.rpartition(' ')[2].encode())} is not valid: {error}."
+            )
+            raise source.error(message, line=parser.CurrentLineNumber) from None
+
+    def refuse(*_: object) -> None:
+        raise source.error("document types are not allowed here.", line=parser.CurrentLineNumber)
+
+    parser.StartElementHandler = begin
+    parser.StartDoctypeDeclHandler = refuse
+    try:
+        for chunk in chunks:
+            parser.Parse(chunk, False)
+        parser.Parse(b"", True)
+    except expat.ExpatError as error:
+        message = f"the XML is not well-formed: {expat.ErrorString(error.code)}."
+        raise source.error(message, line=error.lineno) from None
+    except (LookupError, ValueError) as error:  # of the encoding: `begin` lets out none of its own
+        raise source.error(f"the XML cannot be decoded: {words_of(error)}.", line=1) from error
+
+
+class PartReader:
+    """Collects a part from the elements of its XML.
+
+    Parameters
+    ----------
+    source : Source
+        What errors name.
+    chunks : iterable of bytes
+        The XML.
+    part_name : callable
+        Turns a path as written into the name of a part.
+    """
+
+    def __init__(
+        self, source: Source, chunks: Iterable[bytes], part_name: Callable[[str], str]
+    ) -> None:
+        self._source = source
+        self._chunks = chunks
+        self._part_name = part_name
+        self._part = Part()
+        self._current = Object("none")
+
+    def read(self) -> Part:
+        """Return the part.
+
+        Raises
+        ------
+        FormatError
+            If it is no valid XML or no valid model.
+        """
+        parse_xml(self._source, self._chunks, self._start)
+        for number, held in self._part.objects.items():
+            top = max(map(max, held.triangles), default=-1)
+            if top >= len(held.vertices):
+                raise self._bad_index(number, top, len(held.vertices))
+        return self._part
+
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        # The two frequent elements come first.
+        if tag == "vertex":
+            self._current.vertices.append(_point(attributes))
+        elif tag == "triangle":
+            self._current.triangles.append(_triangle(attributes))
+        elif tag == "component":
+            self._current.components.append(self._placed(attributes))
+        elif tag == "item":
+            self._part.items.append(self._placed(attributes))
+        elif tag == "object":
+            kind, name = attributes.get("type", "model"), attributes.get("name", "")
+            self._current = Object(kind, name=name)
+            if attributes["id"] in self._part.objects:
+                raise ValueError(f"two objects have the number {attributes['id']}")
+            self._part.objects[attributes["id"]] = self._current
+        elif tag == "model":
+            self._part.unit = attributes.get("unit", "millimeter")
+            if self._part.unit not in MILLIMETRES:
+                raise ValueError(f"unknown unit {self._part.unit}")
+        elif tag in _DROPPED:
+            self._part.dropped.add(_DROPPED[tag])
+        self._current.beams += tag == "beam"
+
+    def _placed(self, attributes: dict[str, str]) -> Placed:
+        path = attributes.get("path", "")
+        words = attributes.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0").split()
+        matrix = np.array([float(word) for word in words])
+        if len(matrix) != 12 or not np.isfinite(matrix).all():
+            raise ValueError("a transform needs 12 finite numbers")
+        name = self._part_name(path) if path else ""
+        return Placed(name, attributes["objectid"], matrix.reshape(4, 3))
+
+    def _bad_index(self, number: str, index: int, count: int) -> FormatError:
+        message = f"object {number} names vertex {index}, but has {count} vertices."
+        return self._source.error(message, "index_out_of_range")
+
+
+def _point(attributes: dict[str, str]) -> tuple[float, float, float]:
+    words = attributes["x"], attributes["y"], attributes["z"]
+    _refuse_underscores(words)
+    point = float(words[0]), float(words[1]), float(words[2])
+    if not all(abs(value) < float("inf") for value in point):
+        raise ValueError("coordinates must be finite")
+    return point
+
+
+def _refuse_underscores(words: tuple[str, ...]) -> None:
+    """Refuse ``1_0``, which Python takes for 10."""
+    if "_" in "".join(words):
+        raise ValueError("a number must not contain “_”")
+
+
+def _triangle(attributes: dict[str, str]) -> tuple[int, int, int]:
+    words = attributes["v1"], attributes["v2"], attributes["v3"]
+    _refuse_underscores(words)
+    corners = int(words[0]), int(words[1]), int(words[2])
+    if min(corners) < 0:
+        raise ValueError("a vertex number must not be negative")
+    return corners

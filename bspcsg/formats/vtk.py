@@ -1,0 +1,186 @@
+"""VTK's legacy and XML files of unstructured grids, through meshio (the extra ``bspcsg[vtk]``).
+
+meshio reads and writes files by name, so the bytes go through a temporary folder.
+"""
+
+import contextlib
+import io
+import sys
+import tempfile
+import warnings
+import zlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import Finding, FormatError, missing_part, words_of
+from ..mesh.mesh import Mesh
+from .raw import Polygons, RawMesh, says_empty_set
+from .source import Source
+
+#: Kinds of cells that are faces, and those that are passed by.
+_FACES = ("triangle", "quad", "polygon")
+_OTHER = ("vertex", "line")
+
+#: Size that the packed data of a file may unpack to, in bytes.
+_LARGEST = 1 << 31
+
+#: Files of nothing, which meshio neither writes nor reads.
+EMPTY = {
+    ".vtk": (
+        b"# vtk DataFile Version 3.0\nbspcsg\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+        b"POINTS 0 double\nCELLS 0 0\nCELL_TYPES 0\n"
+    ),
+    ".vtu": (
+        b'<?xml version="1.0"?>\n'
+        b'<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">\n'
+        b"<UnstructuredGrid>\n"
+        b'<Piece NumberOfPoints="0" NumberOfCells="0">\n'
+        b'<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii"/></Points>\n'
+        b'<Cells><DataArray type="Int64" Name="connectivity" format="ascii"/>'
+        b'<DataArray type="Int64" Name="offsets" format="ascii"/>'
+        b'<DataArray type="UInt8" Name="types" format="ascii"/></Cells>\n'
+        b"</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"
+    ),
+}
+
+
+def reader(suffix: str) -> Callable[[Source], RawMesh]:
+    """Return the reader for ``.vtk`` or ``.vtu``."""
+
+    def read(source: Source) -> RawMesh:
+        return _surface(source, grid_of(source, suffix, _LARGEST))
+
+    return read
+
+
+def writer(suffix: str) -> Callable[[Mesh | RawMesh], Iterator[bytes]]:
+    """Return what writes ``.vtk`` or ``.vtu``, in binary; every double is kept."""
+
+    def write(mesh: Mesh | RawMesh) -> Iterator[bytes]:
+        return _write(mesh, suffix)
+
+    return write
+
+
+def _meshio() -> Any:
+    try:
+        import meshio
+    except ImportError as error:
+        raise missing_part("meshio", "for VTK files", 'pip install "bspcsg[vtk]"') from error
+    return meshio
+
+
+def grid_of(source: Source, suffix: str, largest: int = sys.maxsize) -> Any:
+    """Return the `meshio.Mesh` of a file, whose packed data may unpack to so many bytes.
+
+    Raises
+    ------
+    FormatError
+        If meshio cannot read it.
+    """
+    meshio = _meshio()
+    if b"<!DOCTYPE" in source.data or b"<!ENTITY" in source.data:
+        raise source.error("document types are not allowed here.")
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"mesh{suffix}"
+        path.write_bytes(source.data)
+        said = io.StringIO()
+        try:
+            with (
+                contextlib.redirect_stdout(said),
+                contextlib.redirect_stderr(said),
+                _bounded(largest),
+                np.errstate(all="ignore"),
+                warnings.catch_warnings(action="ignore"),
+            ):
+                return meshio.read(path)
+        except (Exception, SystemExit) as error:  # of any kind: meshio checks little itself
+            reason = f"{type(error).__name__}: {words_of(error)}"
+            reason = reason.replace(str(path), source.name)
+            raise source.error(f"meshio cannot read this file ({reason}).") from error
+
+
+class _Unpacker:
+    """Stands for zlib in meshio, which unpacks whatever a few bytes claim to hold."""
+
+    def __init__(self, largest: int) -> None:
+        self._largest = self._left = largest
+
+    def decompress(self, data: bytes) -> bytes:
+        """Return the unpacked bytes, as long as all of them together are not too many."""
+        found = zlib.decompressobj().decompress(data, self._left)
+        self._left -= len(found)
+        if self._left <= 0:
+            raise MemoryError(f"its data unpack to more than {self._largest >> 20} MB")
+        return found
+
+
+class _Refuser:
+    """Stands for lzma in meshio, which has no way to unpack a part."""
+
+    @staticmethod
+    def decompress(data: bytes) -> bytes:
+        """Refuse."""
+        raise ValueError("data packed by LZMA are not read; pack them by zlib")
+
+
+@contextlib.contextmanager
+def _bounded(largest: int) -> Iterator[None]:
+    """Let meshio unpack no more than a bounded amount of data inside the block."""
+    from meshio.vtu import _vtu
+
+    kept = _vtu.zlib, _vtu.lzma
+    _vtu.zlib, _vtu.lzma = _Unpacker(largest), _Refuser()
+    try:
+        yield
+    finally:
+        _vtu.zlib, _vtu.lzma = kept
+
+
+def _surface(source: Source, grid: Any) -> RawMesh:
+    vertices = np.asarray(grid.points, dtype=np.float64)
+    if vertices.ndim != 2 or vertices.shape[1] != 3:
+        raise source.error("the points are not in space.")
+    if not np.isfinite(vertices).all():
+        raise source.error("a coordinate is not a finite number.", "non_finite")
+    unknown = sorted({block.type for block in grid.cells} - {*_FACES, *_OTHER})
+    if unknown:
+        message = f"cells of type {', '.join(unknown)} are no faces; extract the surface first."
+        raise source.error(message, "unsupported")
+    polygons = [
+        [int(corner) for corner in face]
+        for block in grid.cells
+        if block.type in _FACES
+        for face in block.data
+    ]
+    flat = Polygons.from_lists(polygons)
+    faces = flat.triangles(
+        vertices, lambda k, message, code: source.error(f"cell {k}: {message}", code)
+    )
+    ignored = sum(len(block.data) for block in grid.cells if block.type in _OTHER)
+    data = [f"data “{name}”" for name in (*grid.point_data, *grid.cell_data)]
+    return RawMesh(vertices, faces, "", _ignored(ignored), dropped=(*data, *flat.dropped))
+
+
+def _ignored(count: int) -> tuple[Finding, ...]:
+    if not count:
+        return ()
+    message = f"{count} points and lines were ignored."
+    return (Finding("ignored", "warning", message, (), count),)
+
+
+def _write(mesh: Mesh | RawMesh, suffix: str) -> Iterator[bytes]:
+    if says_empty_set(mesh):
+        yield EMPTY[suffix]
+        return
+    if len(mesh.faces) == 0:
+        raise FormatError(f"A mesh without faces cannot be written as {suffix}.", "unwritable")
+    meshio = _meshio()
+    grid = meshio.Mesh(np.array(mesh.vertices), [("triangle", np.array(mesh.faces))])
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"mesh{suffix}"
+        grid.write(path, binary=True)
+        yield path.read_bytes()

@@ -1,0 +1,1 @@
+"""Points, hyperplanes, polygons and motions, before there are meshes."""

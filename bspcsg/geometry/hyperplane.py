@@ -1,0 +1,191 @@
+"""Hyperplanes of half-spaces, in exact numbers, and as the lattice has them.
+
+A double stands for the decimal it was written as, the shortest one that names it: 0.1 is a tenth.
+So hyperplanes have rational coefficients, and transforms move them exactly.
+
+A hyperplane n·x = d of whole numbers n without a common divisor, x in lattice steps, holds lattice
+points exactly if d is whole. Such a one is taken as it is. Others go where a mesh's coordinates go,
+to the nearest of the lattice, so that a half-space and a mesh face at one coordinate meet; they say
+how far they were moved.
+
+Normals too wide for the core, after turns by odd angles, are rounded to those whose products fit a
+machine word, which turns the hyperplane by less than 2**-60.
+"""
+
+import math
+import numbers
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any, Self
+
+import numpy as np
+
+from .._core import normal_bits
+from ..errors import InvalidMeshError
+
+#: Exponent of the lattice step for sets that any lattice can hold.
+DEFAULT_PITCH = -9
+
+#: The finest lattice that is chosen for a hyperplane's sake: it reaches 9000 units.
+_FINEST_PITCH = -12
+
+#: Lattice coordinates are below this many steps.
+_REACH = 2**53
+
+#: Bits to which normals are rounded: one less than two of them may have to fit a machine word.
+_ROUNDED_BITS = 61
+
+#: Wider numbers are rounded to half as many bits while transforms multiply them.
+_KEPT_BITS = 1024
+
+
+@dataclass(frozen=True)
+class LatticeHyperplane:
+    """A hyperplane through lattice points.
+
+    Parameters
+    ----------
+    row : list of int
+        The normal, then its product with each of the hyperplane's points, in lattice steps.
+    moved : float or None
+        How far this is, at most, from the hyperplane that was asked for, anywhere on the lattice,
+        in model units; None if it is the very one.
+    """
+
+    row: list[int]
+    moved: float | None
+
+    @property
+    def note(self) -> str | None:
+        """What a finding says if it is not the hyperplane that was asked for."""
+        if self.moved is None:
+            return None
+        return (
+            "the plane holds no point of the lattice, or has too many digits; it was moved by at"
+            f" most {self.moved:.3e} units, to the nearest one that will do"
+        )
+
+
+@dataclass(frozen=True)
+class Hyperplane:
+    """The hyperplane of the points x with ``normal . x == offset``, in model units.
+
+    Parameters
+    ----------
+    normal : tuple of one to three int
+        Without a common divisor.
+    offset : Fraction
+    exact : bool
+        Whether nothing was rounded on the way.
+    """
+
+    normal: tuple[int, ...]
+    offset: Fraction
+    exact: bool = True
+
+    @classmethod
+    def of(cls, normal: Sequence[Fraction], offset: Fraction, exact: bool = True) -> Self:
+        """Return the hyperplane of any normal that is not zero."""
+        denominator = math.lcm(*(entry.denominator for entry in normal))
+        whole = [entry.numerator * (denominator // entry.denominator) for entry in normal]
+        divisor = math.gcd(*whole)
+        coprime = tuple(entry // divisor for entry in whole)
+        return cls(coprime, offset * Fraction(denominator, divisor), exact)
+
+    @classmethod
+    def from_numbers(cls, normal: Sequence[Any], offset: Any) -> Self:
+        """Return the hyperplane of given numbers.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the normal is zero or a number is not finite ("bad_normal").
+        """
+        try:
+            entries, product = [exact_number(entry) for entry in normal], exact_number(offset)
+        except (TypeError, ValueError, OverflowError) as error:
+            message = "A hyperplane is a normal and an offset, in finite numbers."
+            raise InvalidMeshError(message, "bad_normal") from error
+        if not any(entries):
+            raise InvalidMeshError("The normal of a hyperplane must not be zero.", "bad_normal")
+        return cls.of(entries, product)
+
+    def on_lattice(self, pitch: int) -> LatticeHyperplane:
+        """Return the nearest hyperplane of the lattice of step ``10**pitch``."""
+        steps = self.offset / Fraction(10) ** pitch
+        normal, scale = self._narrow()
+        offset = _nearest(scale * steps, scale * self._as_a_coordinate(pitch))
+        if self.exact and scale == 1 and offset == steps:
+            return LatticeHyperplane([*normal, offset], None)
+        turned = sum(abs(a - scale * b) for a, b in zip(normal, self.normal, strict=True))
+        off = turned * _REACH + abs(offset - scale * steps)
+        return LatticeHyperplane([*normal, offset], float(off) / math.hypot(*normal) * 10.0**pitch)
+
+    @property
+    def pitch(self) -> int:
+        """The coarsest lattice that holds the hyperplane, from the default one down to 10**-12."""
+        for pitch in range(DEFAULT_PITCH, _FINEST_PITCH - 1, -1):
+            if self.on_lattice(pitch).moved is None:
+                return pitch
+        return DEFAULT_PITCH
+
+    def _as_a_coordinate(self, pitch: int) -> Fraction:
+        """Return the offset as that of a mesh's coordinate: halves go where its double lies."""
+        near = abs(self.offset) < 2**1000
+        return (Fraction(float(self.offset)) if near else self.offset) / Fraction(10) ** pitch
+
+    def _narrow(self) -> tuple[tuple[int, ...], Fraction]:
+        """Return the normal as the core can have it, and by what it was multiplied about."""
+        bits = max(entry.bit_length() for entry in self.normal)
+        if bits <= _bits(len(self.normal)):
+            return self.normal, Fraction(1)
+        power = 1 << (bits - _ROUNDED_BITS)
+        rounded = [round(Fraction(entry, power)) for entry in self.normal]
+        divisor = math.gcd(*rounded)
+        return tuple(entry // divisor for entry in rounded), Fraction(1, power * divisor)
+
+    def shortened(self) -> Self:
+        """Return the hyperplane without digits far beyond what the lattice can show."""
+        ratio = self.offset.as_integer_ratio()
+        if max(entry.bit_length() for entry in (*self.normal, *ratio)) <= _KEPT_BITS:
+            return self
+        size = max(entry.bit_length() for entry in self.normal)
+        grain = Fraction(2) ** (size - _KEPT_BITS // 2)
+        normal = [round(entry / grain) * grain for entry in self.normal]
+        offset = self.offset.limit_denominator(1 << (_KEPT_BITS // 2))
+        return type(self).of(normal, offset, exact=False)
+
+
+def exact_number(value: Any) -> Fraction:
+    """Return a number exactly; a double is the shortest decimal that names it.
+
+    Raises
+    ------
+    ValueError, OverflowError
+        If it is not finite.
+    TypeError
+        If it is no number.
+    """
+    if isinstance(value, (bool, np.bool_, str, bytes)):
+        raise TypeError("truth values and texts are no numbers")
+    if isinstance(value, numbers.Rational):
+        return Fraction(int(value.numerator), int(value.denominator))
+    double = float(value)
+    return Fraction(int(double)) if double.is_integer() else Fraction(repr(double))
+
+
+def _nearest(value: Fraction, coordinate: Fraction) -> int:
+    """Return the nearest whole number; halves go to the coordinate's side, or away from zero."""
+    low = math.floor(value)
+    rest = value - low
+    if rest == Fraction(1, 2) and coordinate != value:
+        return low + (coordinate > value)
+    return low + (rest > Fraction(1, 2) or (rest == Fraction(1, 2) and value > 0))
+
+
+@lru_cache
+def _bits(dimension: int) -> int:
+    """Return how many bits the core's normals may have; points of the line have none to spare."""
+    return normal_bits(dimension)

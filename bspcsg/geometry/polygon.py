@@ -1,0 +1,243 @@
+"""Plane polygons with holes: reading, orienting and triangulating them."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
+from typing import Any
+
+import manifold3d
+import numpy as np
+
+from .._types import FloatArray, IndexArray
+from ..errors import invalid_parameter
+
+#: The share of the products of coordinates that rounding cannot reach in their sum: each has three
+#: roundings and the sum one for each doubling of their number, 2**-53 each.
+_CLEAR = 1e-12
+
+
+def contours_of(polygon: Any) -> list[FloatArray]:
+    """Return the closed contours of a polygon, outer ones counter-clockwise, holes clockwise.
+
+    Parameters
+    ----------
+    polygon : object
+        (n, 2) points; a sequence of such contours, in any order and orientation; or an object
+        with ``exterior`` and ``interiors``, with ``geoms``, or with ``to_polygons``, or a sequence
+        of the first two kinds.
+
+    Returns
+    -------
+    list of (n, 2) float64
+        Shapes say which of their contours are holes. Of bare contours whether one is a hole
+        follows from how many others contain it.
+
+    Raises
+    ------
+    InvalidMeshError
+        If there is no contour, one has fewer than 3 points, or a coordinate is not finite.
+    """
+    shapes = shape_contours(polygon)
+    contours = _bare_contours(polygon) if shapes is None else shapes
+    if not contours and not hasattr(polygon, "outlines"):
+        raise invalid_parameter("The polygon has no contour.")
+    return contours
+
+
+def shape_contours(given: Any) -> list[FloatArray] | None:
+    """Return the oriented contours of a shape or a sequence of shapes, None if it is neither.
+
+    Takes time in proportion to the points, since a shape knows its holes: the winding number of
+    the contours is the number of polygons at a point, whether these overlap or not. Parts of a
+    collection that have no area, such as lines, bound nothing and are left out.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the shape has no area by its kind, a contour has fewer than 3 points, or a coordinate is
+        not finite.
+    """
+    if _is_shape(given):
+        return _rings([given])
+    # A generator cannot be looked into and read again.
+    is_list = isinstance(given, Sequence) and not isinstance(given, (str, bytes))
+    return _rings(given) if is_list and given and all(map(_is_shape, given)) else None
+
+
+def triangulate(contours: Sequence[FloatArray]) -> IndexArray:
+    """Return (m, 3) triangles over the contours' points, counted one contour after another.
+
+    The directed edges that no other triangle cancels are exactly those of the contours, whatever
+    the input; triangles overlap only if the contours cross.
+    """
+    triangles = np.asarray(manifold3d.triangulate(list(contours)), dtype=np.int64).reshape(-1, 3)
+    return triangles if _has_border(triangles, contours) else _fans(contours)
+
+
+def triangulate_face(corners: FloatArray) -> IndexArray:
+    """Return (m, 3) triangles of one polygon in space, given by its (n, 3) corners in order."""
+    if len(corners) == 3:
+        return np.array([[0, 1, 2]])
+    following = np.roll(corners, -1, axis=0)
+    normal = np.cross(corners, following).sum(axis=0)
+    axis = int(np.abs(normal).argmax())
+    plane = [(1, 2), (2, 0), (0, 1)][axis]
+    flat = np.ascontiguousarray(corners[:, plane])
+    if normal[axis] >= 0:
+        return triangulate([flat])
+    # Seen from behind: triangulate the mirror image, which runs counter-clockwise.
+    flat[:, 0] = -flat[:, 0]
+    return triangulate([flat])
+
+
+def directed_edges(contours: Sequence[FloatArray]) -> IndexArray:
+    """Return the (n, 2) edges of the contours, points counted one contour after another."""
+    edges = []
+    start = 0
+    for contour in contours:
+        indices = np.arange(start, start + len(contour))
+        edges.append(np.column_stack([indices, np.roll(indices, -1)]))
+        start += len(contour)
+    return np.concatenate(edges)
+
+
+def signed_area(contour: FloatArray) -> float:
+    """Return the area of a contour, negative if it runs clockwise."""
+    x, y = (contour - contour[0]).T
+    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2)
+
+
+def runs_clockwise(contour: FloatArray) -> bool:
+    """Whether the area of a contour is negative, exactly."""
+    x, y = (contour - contour[0]).T
+    terms = np.concatenate([x * np.roll(y, -1), -np.roll(x, -1) * y])
+    area = float(terms.sum())
+    if abs(area) > _CLEAR * float(np.abs(terms).sum()):
+        return area < 0
+    points = [(Fraction(a), Fraction(b)) for a, b in contour.tolist()]
+    following = points[1:] + points[:1]
+    pairs = zip(points, following, strict=True)
+    return sum(a * d - c * b for (a, b), (c, d) in pairs) < 0
+
+
+def _is_shape(given: Any) -> bool:
+    return hasattr(given, "exterior") or hasattr(given, "geoms")
+
+
+def _rings(shapes: Iterable[Any]) -> list[FloatArray]:
+    contours = []
+    for part in _polygonal(shapes):
+        contours.append(_turned(_cleaned(part.exterior.coords), clockwise=False))
+        contours += [_turned(_cleaned(ring.coords), clockwise=True) for ring in part.interiors]
+    return contours
+
+
+def _polygonal(shapes: Iterable[Any]) -> Iterator[Any]:
+    """Yield the polygons of shapes and of the collections among them, in order."""
+    waiting = [(shape, False) for shape in shapes][::-1]
+    while waiting:
+        shape, inside = waiting.pop()
+        if hasattr(shape, "exterior"):
+            if not getattr(shape, "is_empty", False):
+                yield shape
+        elif hasattr(shape, "geoms"):
+            mixed = inside or getattr(shape, "geom_type", "") == "GeometryCollection"
+            waiting += [(part, mixed) for part in shape.geoms][::-1]
+        elif not inside:
+            kind = getattr(shape, "geom_type", type(shape).__name__)
+            raise invalid_parameter(f"A {kind} has no area, so it is no polygon.")
+
+
+def _turned(contour: FloatArray, *, clockwise: bool) -> FloatArray:
+    same = runs_clockwise(contour) == clockwise
+    return contour if same else np.ascontiguousarray(contour[::-1])
+
+
+def _bare_contours(polygon: Any) -> list[FloatArray]:
+    if hasattr(polygon, "to_polygons"):
+        contours = [_cleaned(contour) for contour in polygon.to_polygons()]
+        # Outlines of a region are oriented already.
+        return contours if hasattr(polygon, "outlines") else _oriented(contours)
+    try:
+        points = list(polygon)
+        # The entries of a single contour are points, whose entries are numbers.
+        single = bool(points) and np.ndim(points[0][0]) == 0
+    except (TypeError, IndexError) as error:
+        raise invalid_parameter("A polygon is a list of points, or of contours.") from error
+    return _oriented([_cleaned(contour) for contour in ([points] if single else points)])
+
+
+def _cleaned(contour: Any) -> FloatArray:
+    try:
+        points = np.asarray(contour, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise invalid_parameter("A contour must be a list of (x, y) points.") from error
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise invalid_parameter(f"A contour must have shape (n, 2), not {points.shape}.")
+    if not np.isfinite(points).all():
+        raise invalid_parameter("A contour must have finite coordinates.")
+    # Repeated points, such as a closing one, bound nothing.
+    points = points[(points != np.roll(points, 1, axis=0)).any(axis=1)]
+    if len(points) < 3:
+        raise invalid_parameter("A contour needs at least 3 different points.")
+    return np.ascontiguousarray(points)
+
+
+def _oriented(contours: list[FloatArray]) -> list[FloatArray]:
+    """Return the contours, those inside an odd number of others clockwise."""
+    depths = [0] * len(contours)
+    for outer, inner in _overlapping_boxes(contours):
+        depths[inner] += _contains(contours[outer], contours[inner])
+        depths[outer] += _contains(contours[inner], contours[outer])
+    pairs = zip(contours, depths, strict=True)
+    return [_turned(contour, clockwise=depth % 2 == 1) for contour, depth in pairs]
+
+
+def _overlapping_boxes(contours: list[FloatArray]) -> Iterator[tuple[int, int]]:
+    """Yield the pairs whose bounding boxes share area, found along the x axis."""
+    if not contours:
+        return
+    low = np.array([contour.min(axis=0) for contour in contours])
+    high = np.array([contour.max(axis=0) for contour in contours])
+    order = np.argsort(low[:, 0], kind="stable")
+    starts = low[order, 0]
+    for place, one in enumerate(order.tolist()):
+        later = order[place + 1 : np.searchsorted(starts, high[one, 0])]
+        met = (low[later, 1] < high[one, 1]) & (high[later, 1] > low[one, 1])
+        yield from ((one, other) for other in later[met].tolist())
+
+
+def _contains(outer: FloatArray, inner: FloatArray) -> bool:
+    """Whether most corners and edge midpoints of `inner` are inside; some may touch `outer`."""
+    probes = np.concatenate([inner, (inner + np.roll(inner, -1, axis=0)) / 2])
+    return bool(np.mean([_crossings(outer, probe) % 2 for probe in probes]) > 0.5)
+
+
+def _crossings(contour: FloatArray, point: FloatArray) -> int:
+    """Count the edges that a ray from the point to the right crosses."""
+    start, end = contour, np.roll(contour, -1, axis=0)
+    spans = (start[:, 1] <= point[1]) != (end[:, 1] <= point[1])
+    start, end = start[spans], end[spans]
+    along = (point[1] - start[:, 1]) / (end[:, 1] - start[:, 1])
+    return int((start[:, 0] + along * (end[:, 0] - start[:, 0]) > point[0]).sum())
+
+
+def _has_border(triangles: IndexArray, contours: Sequence[FloatArray]) -> bool:
+    """Whether the triangles' directed edges cancel to those of the contours."""
+    count = sum(len(contour) for contour in contours)
+    border = directed_edges(contours)
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    balance = np.concatenate([edges, border[:, ::-1]])
+    forward = np.sort(balance[:, 0] * count + balance[:, 1])
+    backward = np.sort(balance[:, 1] * count + balance[:, 0])
+    return np.array_equal(forward, backward)
+
+
+def _fans(contours: Sequence[FloatArray]) -> IndexArray:
+    """Return one fan per contour, triangles outside the polygon counting negatively."""
+    fans = []
+    start = 0
+    for contour in contours:
+        rest = np.arange(start + 1, start + len(contour) - 1)
+        fans.append(np.column_stack([np.full_like(rest, start), rest, rest + 1]))
+        start += len(contour)
+    return np.concatenate(fans)

@@ -1,0 +1,381 @@
+"""Transforms as lists of factors, and the exact motions among them.
+
+A solid carries its transform as a tuple of 4x4 factors, outermost first: ``(F1, F2)`` maps a point
+x to F1 (F2 x). Factors are never multiplied before they are applied, and never inverted, so that
+what two solids were moved by *together* can be recognised bit by bit and taken out.
+
+A factor whose linear part only permutes and mirrors axes, and which shifts by whole lattice steps,
+is a lattice motion: it acts on planes and lattice points without rounding.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from .._types import FloatArray, Scalar, Vector
+from ..errors import invalid_parameter
+from ..parameters import number, shown
+
+#: Largest number of lattice steps from the origin.
+LATTICE_REACH = 2**53
+
+_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+
+class Factor:
+    """One affine map, compared bit by bit.
+
+    Parameters
+    ----------
+    matrix : (4, 4) float64
+        Last row 0, 0, 0, 1; invertible.
+    """
+
+    __slots__ = ("key", "matrix")
+
+    def __init__(self, matrix: FloatArray) -> None:
+        # Adding zero turns -0.0 into 0.0, so that equal maps have equal bits.
+        self.matrix: FloatArray = np.array(matrix, dtype=np.float64) + 0.0
+        self.matrix.flags.writeable = False
+        self.key = self.matrix.tobytes()
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both matrices agree in every bit."""
+        return isinstance(other, Factor) and self.key == other.key
+
+    def __hash__(self) -> int:
+        """Hash of the matrix's bits."""
+        return hash(self.key)
+
+    def __reduce__(self) -> tuple[type["Factor"], tuple[FloatArray]]:
+        """Pickle the matrix only."""
+        return Factor, (self.matrix,)
+
+    def __repr__(self) -> str:
+        """Show the matrix."""
+        return f"Factor({self.matrix.tolist()})"
+
+    @property
+    def is_identity(self) -> bool:
+        """Whether the map moves nothing."""
+        return self.key == _IDENTITY_KEY
+
+
+_IDENTITY_KEY = np.eye(4).tobytes()
+
+_UNIT_ROWS = np.eye(3).tolist()
+
+#: A transform: factors, outermost first.
+Factors: TypeAlias = tuple[Factor, ...]
+
+
+def translation(offset: Vector) -> Factor:
+    """Return the translation by `offset`, in model units."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = vector3(offset, "offset")
+    return Factor(matrix)
+
+
+def scaling(factor: Scalar | Vector) -> Factor:
+    """Return the scaling about the origin by one number, or by one per axis."""
+    return matrix_factor(np.diag([*vector3(factor, "scale factor", spread=True), 1.0]))
+
+
+def mirroring(normal: Vector) -> Factor:
+    """Return the mirror image in the plane through the origin with this normal."""
+    unit = _unit(normal, "normal")
+    return _from_linear(_snapped(np.eye(3) - 2 * np.outer(unit, unit)))
+
+
+def rotation(angle: Scalar, axis: str | Vector) -> Factor:
+    """Return the rotation about an axis through the origin.
+
+    Parameters
+    ----------
+    angle : float
+        In degrees, counter-clockwise when the axis points at the viewer.
+    axis : "x", "y", "z" or (3,) float
+        Need not have unit length.
+    """
+    cosine, sine = cos_sin(number(angle, "angle"))
+    u = _unit(_axis(axis), "axis")
+    spin = np.array([[0, -u[2], u[1]], [u[2], 0, -u[0]], [-u[1], u[0], 0]])
+    along = np.outer(u, u)
+    # The form (I - uu') c + s [u] + uu' keeps coordinate axes and quarter turns exact.
+    return _from_linear(_snapped((np.eye(3) - along) * cosine + spin * sine + along))
+
+
+def euler_rotation(angles: Vector) -> Factors:
+    """Return the rotation about x, then y, then z (degrees) as separate factors."""
+    about = zip(vector3(angles, "angles"), "xyz", strict=True)
+    turns = [rotation(float(angle), axis) for angle, axis in about]
+    return tuple(turn for turn in reversed(turns) if not turn.is_identity)
+
+
+def matrix_factor(matrix: Any) -> Factor:
+    """Return the affine map of a (4, 4) or (3, 4) matrix.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the shape is another, an entry is not finite, the last row is not 0, 0, 0, 1, or the
+        map flattens space.
+    """
+    array = np.asarray(matrix, dtype=np.float64)
+    if array.shape == (3, 4):
+        array = np.vstack([array, [0.0, 0.0, 0.0, 1.0]])
+    if array.shape != (4, 4):
+        raise invalid_parameter(f"A transform is a 4x4 matrix, not one of shape {array.shape}.")
+    if not np.isfinite(array).all():
+        raise invalid_parameter("A transform needs finite entries.")
+    if array[3].tolist() != [0.0, 0.0, 0.0, 1.0]:
+        raise invalid_parameter("The last row of a transform must be 0, 0, 0, 1.")
+    if determinant_sign(array) == 0:
+        raise invalid_parameter("The transform flattens space: its determinant is zero.")
+    return Factor(array)
+
+
+def cos_sin(angle: float) -> tuple[float, float]:
+    """Return cosine and sine of a finite angle in degrees, exact wherever they are rational."""
+    quarter, rest = divmod(math.fmod(angle, 360.0), 90.0)
+    cosine, sine = _cos_sin_in_quarter(rest)
+    # Adding zero turns -0.0 into 0.0.
+    turned = ((cosine, sine), (-sine, cosine), (-cosine, -sine), (sine, -cosine))
+    x, y = turned[int(quarter) % 4]
+    return x + 0.0, y + 0.0
+
+
+def _cos_sin_in_quarter(angle: float) -> tuple[float, float]:
+    if angle > 45:
+        # Mirroring in the diagonal makes the answers of angle and 90 - angle agree bit by bit.
+        sine, cosine = _cos_sin_in_quarter(90 - angle)
+        return cosine, sine
+    if angle == 45:
+        return math.sqrt(0.5), math.sqrt(0.5)
+    sine = 0.5 if angle == 30 else math.sin(math.radians(angle))
+    return math.cos(math.radians(angle)), sine
+
+
+def common_prefix(transforms: Sequence[Factors]) -> Factors:
+    """Return the longest list of outermost factors that all transforms share."""
+    first = transforms[0]
+    length = min(len(transform) for transform in transforms)
+    for position in range(length):
+        if any(transform[position] != first[position] for transform in transforms):
+            return first[:position]
+    return first[:length]
+
+
+def product(factors: Factors) -> FloatArray:
+    """Return the product of the factors, each entry of each product rounded once."""
+    if len(factors) == 1:
+        return factors[0].matrix
+    result = np.eye(4)
+    for factor in factors:
+        columns = factor.matrix.T.tolist()
+        rows = result.tolist()
+        result = np.array([[_dot(row, column) for column in columns] for row in rows])
+    return result
+
+
+def _dot(a: list[float], b: list[float]) -> float:
+    return math.fsum(x * y for x, y in zip(a, b, strict=True))
+
+
+def apply(matrix: FloatArray, points: FloatArray) -> FloatArray:
+    """Return the images of (n, 3) points, in an order of operations that no platform changes."""
+    x, y, z = points.T
+    rows = [x * row[0] + y * row[1] + z * row[2] + row[3] for row in matrix[:3]]
+    # Adding zero turns -0.0 into 0.0.
+    return np.ascontiguousarray(np.array(rows).T) + 0.0
+
+
+def determinant_sign(matrix: FloatArray) -> int:
+    """Return the exact sign of the linear part's determinant."""
+    if matrix[:3, :3].tolist() == _UNIT_ROWS:
+        return 1
+    value = determinant(exact_linear(matrix))
+    return (value > 0) - (value < 0)
+
+
+def determinant(rows: list[list[Fraction]]) -> Fraction:
+    """Return the determinant of three rows."""
+    return exact_dot(rows[0], cofactors(rows)[0])
+
+
+def exact_linear(matrix: FloatArray) -> list[list[Fraction]]:
+    """Return the three rows of the linear part as fractions."""
+    return [[Fraction(entry) for entry in row] for row in matrix[:3, :3].tolist()]
+
+
+def exact_dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
+    """Return the inner product."""
+    return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))
+
+
+def cofactors(rows: list[list[Fraction]]) -> list[list[Fraction]]:
+    """Return the cofactor matrix: it maps normals as `rows` maps points, times the determinant."""
+    a, b, c = rows
+    return [_cross(b, c), _cross(c, a), _cross(a, b)]
+
+
+def _cross(a: list[Fraction], b: list[Fraction]) -> list[Fraction]:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+@dataclass(frozen=True)
+class LatticeMotion:
+    """A map of the lattice onto itself that keeps lengths.
+
+    Parameters
+    ----------
+    axes : tuple of int
+        For each new axis, which old one it is (1, 2, 3), negative if mirrored.
+    shift : tuple of int
+        In lattice steps, added afterwards.
+    """
+
+    axes: tuple[int, int, int] = (1, 2, 3)
+    shift: tuple[int, int, int] = (0, 0, 0)
+
+    @property
+    def is_identity(self) -> bool:
+        """Whether the motion moves nothing."""
+        return self == LatticeMotion()
+
+    def after(self, inner: "LatticeMotion") -> "LatticeMotion":
+        """Return the motion that does `inner` first and this one second."""
+        signs = [1 if axis > 0 else -1 for axis in self.axes]
+        olds = [abs(axis) - 1 for axis in self.axes]
+        axes = [sign * inner.axes[old] for sign, old in zip(signs, olds, strict=True)]
+        moved = [sign * inner.shift[old] for sign, old in zip(signs, olds, strict=True)]
+        shift = [a + b for a, b in zip(moved, self.shift, strict=True)]
+        return LatticeMotion((axes[0], axes[1], axes[2]), (shift[0], shift[1], shift[2]))
+
+
+def permuting_run(factors: Factors) -> Factors:
+    """Return the outermost factors that permute and mirror axes only, whatever they shift by."""
+    for position, factor in enumerate(factors):
+        if _signed_axes(factor) is None:
+            return factors[:position]
+    return factors
+
+
+def lattice_motion(factors: Factors, pitch: int) -> LatticeMotion | None:
+    """Return the exact motion that the factors are at this pitch, or None if they are not one.
+
+    Parameters
+    ----------
+    factors : tuple of Factor
+    pitch : int
+        The lattice step is ``10**pitch`` model units.
+    """
+    motion = LatticeMotion()
+    for factor in reversed(factors):
+        step = _motion_of(factor, pitch)
+        if step is None:
+            return None
+        motion = step.after(motion)
+    return motion
+
+
+def _motion_of(factor: Factor, pitch: int) -> LatticeMotion | None:
+    axes = _signed_axes(factor)
+    if axes is None:
+        return None
+    shift = [whole_steps(value, pitch) for value in factor.matrix[:3, 3].tolist()]
+    x, y, z = shift
+    if x is None or y is None or z is None:
+        return None
+    return LatticeMotion(axes, (x, y, z))
+
+
+def _signed_axes(factor: Factor) -> tuple[int, int, int] | None:
+    """Return the axes of a signed permutation; an invertible matrix with these rows is one."""
+    axes = []
+    for row in factor.matrix[:3, :3].tolist():
+        used = [axis for axis, entry in enumerate(row) if entry != 0]
+        if len(used) != 1 or abs(row[used[0]]) != 1:
+            return None
+        axes.append((used[0] + 1) * int(row[used[0]]))
+    return axes[0], axes[1], axes[2]
+
+
+def whole_steps(length: float, pitch: int) -> int | None:
+    """Return how many lattice steps a length is, or None if it is not a whole number of them.
+
+    A double counts as the decimal it was written as: 0.1 is 10**8 steps of 10**-9, because that
+    decimal's nearest double is 0.1.
+    """
+    numerator, denominator = length.as_integer_ratio()
+    scale = 10 ** abs(pitch)
+    # Whole numbers throughout: the quotient of two ints is rounded once, as that of fractions is.
+    if pitch < 0:
+        steps = _nearest(numerator * scale, denominator)
+        fits = abs(steps) < LATTICE_REACH and steps / scale == length
+    else:
+        steps = _nearest(numerator, denominator * scale)
+        fits = abs(steps) < LATTICE_REACH and float(steps * scale) == length
+    return steps if fits else None
+
+
+def _nearest(numerator: int, denominator: int) -> int:
+    """Return the whole number nearest to a quotient of positive denominator, ties to even."""
+    floor, rest = divmod(numerator, denominator)
+    above = 2 * rest - denominator
+    return floor + (above > 0 or (above == 0 and floor % 2 == 1))
+
+
+def _from_linear(linear: FloatArray) -> Factor:
+    matrix = np.eye(4)
+    matrix[:3, :3] = linear
+    return Factor(matrix)
+
+
+def _snapped(linear: FloatArray) -> FloatArray:
+    """Return the signed permutation that a rotation or mirror is up to rounding, or itself."""
+    nearest = np.round(linear)
+    return nearest if np.abs(linear - nearest).max() < 1e-15 else linear
+
+
+def _axis(axis: str | Vector) -> Vector:
+    if not isinstance(axis, str):
+        return axis
+    if axis.lower() not in _AXES:
+        raise invalid_parameter(f"An axis is 'x', 'y', 'z' or a vector, not {shown(axis)}.")
+    return _AXES[axis.lower()]
+
+
+def _unit(value: Vector, name: str) -> FloatArray:
+    vector = vector3(value, name)
+    if not vector.any():
+        raise invalid_parameter(f"The {name} must not be the zero vector.")
+    # Scaling by the largest entry first keeps huge and tiny vectors from over- and underflowing.
+    vector /= np.abs(vector).max()
+    vector /= math.hypot(*vector)
+    return vector
+
+
+def vector3(value: Any, name: str, *, spread: bool = False) -> FloatArray:
+    """Return (3,) float64, or raise an error that names the parameter.
+
+    Parameters
+    ----------
+    value : (3,) array_like of float
+    name : str
+    spread : bool
+        Whether one number stands for three equal ones.
+    """
+    try:
+        vector = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise invalid_parameter(f"The {name} must be three numbers, not {shown(value)}.") from error
+    if spread and vector.ndim == 0:
+        vector = np.full(3, vector)
+    if vector.shape != (3,) or not np.isfinite(vector).all():
+        raise invalid_parameter(f"The {name} must be three finite numbers, not {shown(value)}.")
+    return vector

@@ -1,0 +1,159 @@
+"""Mesh files: STL, OBJ, PLY, OFF, 3MF, GLB, and VTK through meshio, in and out.
+
+Everything is read and written in double precision where the format has it. A file that is cut off,
+or says what cannot be, is refused with its name and the line or byte; a file that is written
+appears complete or not at all, and only after it was read back and compared with the mesh.
+"""
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .errors import BspcsgError, Finding, FormatError
+from .formats.files import (
+    FORMATS,
+    decoded,
+    encoded,
+    form_of,
+    format_of,
+    read,
+    read_as,
+    write,
+)
+from .formats.raw import RawMesh
+from .solid.counting import counted
+
+if TYPE_CHECKING:
+    from .solid.solid import Solid
+
+#: Suffixes of scripts, which `load` evaluates.
+SCRIPTS = frozenset({".csg", ".json", ".scad"})
+
+__all__ = [
+    "FORMATS",
+    "SCRIPTS",
+    "RawMesh",
+    "decoded",
+    "encoded",
+    "form_of",
+    "format_of",
+    "load",
+    "loads",
+    "read",
+    "read_as",
+    "save",
+    "write",
+]
+
+
+@counted
+def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
+    """Read a mesh file or a script as a solid; the suffix names the format.
+
+    Parameters
+    ----------
+    path : str or path
+        Ending in one of `FORMATS`, or a script: ``.csg``, ``.json`` or ``.scad`` (see
+        `bspcsg.csg.load`).
+        3MF and GLB come in millimetres, the other formats in whatever
+        unit they were written in. What `save` wrote of the empty set is the empty set again; any
+        other file without faces is refused.
+    **options
+        For meshes as for `Solid`: ``pitch``, ``trusted``, ``winding``; for scripts as for
+        `bspcsg.csg.load`.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be read as what its suffix says.
+    InvalidMeshError, LimitError
+        If what it holds is no solid: the message names the file, `where` the faces.
+    """
+    if Path(path).suffix.lower() in SCRIPTS:
+        from . import csg
+
+        return csg.load(path, **options)
+    return solid_of(read(path), path, **options)
+
+
+@counted
+def loads(data: Any, suffix: str | None, **options: Any) -> "Solid":
+    """Return the solid in the bytes of a mesh file, or in one that is open for reading bytes.
+
+    Parameters
+    ----------
+    data : bytes or file
+    suffix : str
+        One of `FORMATS`, with or without its dot.
+    **options
+        As for `Solid`.
+
+    Raises
+    ------
+    FormatError
+        If the format is not said (code "unknown_format"), or as for `load`.
+    """
+    named = f".{(suffix or '').lower().removeprefix('.')}"
+    if named not in FORMATS:
+        known = ", ".join(name[1:] for name in sorted(FORMATS))
+        message = f"To read bytes, say their format: one of {known}, not {suffix!r}."
+        raise FormatError(message, "unknown_format")
+    content = data.read() if hasattr(data, "read") else bytes(data)
+    if not isinstance(content, bytes):
+        raise FormatError("A mesh is read from bytes; open the file with mode 'rb'.", "unreadable")
+    name = getattr(data, "name", None)
+    called = name if isinstance(name, str) else "<bytes>"
+    return solid_of(decoded(called, content, named), called, **options)
+
+
+def solid_of(raw: RawMesh, path: str | os.PathLike[str], **options: Any) -> "Solid":
+    """Return the solid of what was read from a file; errors name the file.
+
+    A file that `save` wrote of the empty set is the empty set again; any other without faces is
+    refused, as what should be in it may have got lost.
+    """
+    from .solid.solid import Solid
+
+    if raw.is_empty_set:
+        return Solid.empty()
+    try:
+        return Solid(raw.vertices, raw.faces, **options)
+    except BspcsgError as error:
+        message = f"{os.fspath(path)}: {error.message}"
+        raise type(error)(message, error.code, error.where) from error
+
+
+def save(
+    solid: "Solid", path: str | os.PathLike[str], *, text: bool = False
+) -> tuple[Finding, ...]:
+    """Write the reduced boundary of a solid; the suffix names the format.
+
+    Parameters
+    ----------
+    solid : Solid
+    path : str or path
+        Ending in one of `FORMATS`, or in ``.csg`` for the expression (see `bspcsg.csg.dump`).
+        Binary STL and GLB hold single precision; 3MF and GLB take the model as millimetres.
+    text : bool
+        Write STL and PLY as text; OBJ and OFF always are.
+
+    Returns
+    -------
+    tuple of Finding
+        What the format could not keep.
+
+    Raises
+    ------
+    FormatError
+        If the format is unknown, cannot hold the coordinates, or the file cannot be written; code
+        ``"write_mismatch"`` if what was written reads back as another mesh.
+    UnboundedError
+        If the solid reaches to infinity.
+    """
+    if Path(path).suffix.lower() == ".csg":
+        from . import csg
+
+        csg.dump(solid, path)
+        return ()
+    form_of(path, text)
+    return write(solid.normalized().to_mesh(), path, text=text)

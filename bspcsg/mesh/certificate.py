@@ -1,0 +1,91 @@
+"""`Certificate`: what an exact look at a mesh in its own precision proves.
+
+This layer knows arrays only; all arithmetic behind it is exact.
+"""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from .._core import mesh_faults
+from .._types import FloatArray, IndexArray
+from ..errors import core_errors
+
+#: The numbers in which coordinates are held.
+Precision: TypeAlias = Literal["double", "single"]
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What was proved of a mesh, triangle by triangle, for the coordinates as they are.
+
+    Parameters
+    ----------
+    precision : {"double", "single"}
+        The coarsest numbers that hold all coordinates.
+    triangles : int
+        How many were looked at.
+    open_edges : int
+        Directed edges without exactly one opposite, by index.
+    crossings : tuple of (int, int)
+        Pairs of triangles that cross or overlap. Surfaces may touch.
+    flat : tuple of int
+        Triangles without area.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> proof = (b.cube(2) - b.cube(1)).to_mesh().certificate
+    >>> proof.ok, proof.triangles, proof.crossings
+    (True, 24, ())
+    """
+
+    precision: Precision
+    triangles: int
+    open_edges: int
+    crossings: tuple[tuple[int, int], ...]
+    flat: tuple[int, ...]
+
+    @property
+    def ok(self) -> bool:
+        """Whether the mesh is closed, crosses itself nowhere, and each triangle has area."""
+        return not (self.open_edges or self.crossings or self.flat)
+
+
+def certify(vertices: FloatArray, faces: IndexArray) -> Certificate:
+    """Return whether a mesh is closed by index, crosses itself, and has triangles without area.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64
+    faces : (m, 3) int64
+        Indices of `vertices`.
+
+    Raises
+    ------
+    InvalidMeshError
+        If a coordinate is not finite or an index is out of range.
+
+    Notes
+    -----
+    Linear in the triangles, plus the pairs whose boxes overlap.
+    """
+    with core_errors():
+        found = mesh_faults(vertices, faces)
+    with np.errstate(over="ignore"):
+        is_single = bool((vertices.astype(np.float32) == vertices).all())
+    return Certificate(
+        "single" if is_single else "double",
+        len(faces),
+        _open_edges(faces, len(vertices)),
+        tuple((int(t), int(u)) for t, u in found["crossings"]),
+        tuple(int(t) for t in found["flat"]),
+    )
+
+
+def _open_edges(faces: IndexArray, count: int) -> int:
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    forth, uses = np.unique(start * np.int64(count) + end, return_counts=True)
+    back = np.unique(end * np.int64(count) + start)
+    return int(np.count_nonzero((uses != 1) | ~np.isin(forth, back)))

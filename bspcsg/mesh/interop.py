@@ -1,0 +1,291 @@
+"""Meshes of other libraries, in and out.
+
+Reading asks an object what it has, never where it comes from, so no library is imported for it.
+"""
+
+import importlib
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+
+import numpy as np
+
+from .._types import FloatArray, IndexArray
+from ..errors import InvalidMeshError, invalid_parameter
+from ..geometry.polygon import triangulate_face
+from .mesh import Mesh
+
+if TYPE_CHECKING:
+    import manifold3d
+    import trimesh
+
+#: What a reader returns: vertices and faces, in any form that `mesh_arrays` takes.
+Arrays: TypeAlias = tuple[Any, Any]
+
+_Array = TypeVar("_Array", FloatArray, IndexArray)
+
+#: Chord error for shapes that have to be tessellated first, in model units.
+TESSELLATION_TOLERANCE = 0.01
+
+
+def arrays_from(mesh: Any, tolerance: float = TESSELLATION_TOLERANCE) -> Arrays:
+    """Return vertices and faces of whatever holds a mesh.
+
+    Parameters
+    ----------
+    mesh : object
+    tolerance : float
+        Chord error for shapes that have to be tessellated first, in model units.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the object has nothing that looks like a mesh.
+    """
+    if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
+        return mesh[0], mesh[1]
+    if all(hasattr(mesh, name) for name in _SHAPE):
+        return _from_shape(mesh, tolerance)
+    for names, holder in _HOLDERS:
+        if all(hasattr(mesh, name) for name in names):
+            return arrays_from(holder(mesh), tolerance)
+    if all(hasattr(mesh, name) for name in _WORKPLANE):
+        return _joined([arrays_from(shape, tolerance) for shape in _shapes_on(mesh)])
+    for names, reader in _READERS:
+        if all(hasattr(mesh, name) for name in names):
+            return reader(mesh)
+    raise invalid_parameter(
+        f"Cannot find a mesh in {type(mesh).__name__}: expected vertices and faces, or a pair"
+        f" (vertices, faces).{_advice(mesh)}"
+    )
+
+
+def _advice(mesh: Any) -> str:
+    """Return what else to do with things that people try."""
+    if hasattr(mesh, "extract_surface"):
+        return " A grid of cells has a surface: pass mesh.extract_surface()."
+    return ""
+
+
+def are_empty(arrays: Arrays) -> bool:
+    """Whether there are neither vertices nor faces; vertices alone are a cloud of points."""
+    try:
+        return not any(map(len, arrays))
+    except TypeError:  # no arrays at all, which is said elsewhere
+        return False
+
+
+def mesh_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
+    """Return vertices (n, 3) float64 and triangles (m, 3) int64: the given ones if they are so.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the shapes are others, or the indices are no whole numbers.
+    """
+    points = points_array(vertices)
+    return points, face_array(faces, points)
+
+
+def own_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
+    """Return the arrays of `mesh_arrays` such that nobody else can change them."""
+    points, triangles = mesh_arrays(vertices, faces)
+    return _own(points, vertices), _own(triangles, faces)
+
+
+def points_array(points: Any) -> FloatArray:
+    """Return (n, 3) float64 in C order; a copy only if it has to be one."""
+    try:
+        array = np.ascontiguousarray(points, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InvalidMeshError("Vertices must be numbers, three for each.", "shape") from error
+    if array.size == 0:
+        return np.zeros((0, 3))
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise InvalidMeshError(f"Vertices must have shape (n, 3), not {array.shape}.", "shape")
+    return array
+
+
+def face_array(faces: Any, vertices: FloatArray) -> IndexArray:
+    """Return (m, 3) int64 in C order; faces of more corners are triangulated."""
+    try:
+        array = np.asarray(faces)
+    except ValueError:  # faces of different lengths
+        return _triangles(faces, vertices)
+    if array.size == 0:
+        return np.zeros((0, 3), dtype=np.int64)
+    if array.dtype == object:
+        return _triangles(faces, vertices)
+    if array.ndim != 2 or array.shape[1] < 3:
+        raise InvalidMeshError(f"Faces must have shape (m, 3), not {array.shape}.", "shape")
+    indices = np.ascontiguousarray(_whole(array))
+    return indices if indices.shape[1] == 3 else _triangles(indices, vertices)
+
+
+def _own(array: _Array, given: Any) -> _Array:
+    """Return the array, copied if it may share memory with what was given."""
+    return array if array is not given and array.base is None else array.copy()
+
+
+def _whole(array: Any) -> IndexArray:
+    """Return indices as int64; what is not an integer below 2**63 is refused, not wrapped."""
+    if array.dtype.kind not in "iuf":
+        raise InvalidMeshError(f"Face indices must be integers, not {array.dtype}.", "shape")
+    if array.dtype.kind == "i":
+        integers: IndexArray = array.astype(np.int64, copy=False)
+        return integers
+    with np.errstate(invalid="ignore"):  # NaN, which the comparison finds
+        indices: IndexArray = array.astype(np.int64)
+    if not (indices == array).all():
+        raise InvalidMeshError("Face indices must be whole numbers below 2**63.", "shape")
+    return indices
+
+
+def _triangles(faces: Iterable[Any], vertices: FloatArray) -> IndexArray:
+    triangles = []
+    for number, face in enumerate(faces):
+        corners = _whole(np.asarray(face))
+        if corners.ndim != 1 or len(corners) < 3:
+            raise InvalidMeshError(f"Face {number} has fewer than 3 corners.", "shape", [number])
+        if corners.min() < 0 or corners.max() >= len(vertices):
+            message = f"Face {number} names a vertex that does not exist."
+            raise InvalidMeshError(message, "index_out_of_range", [number])
+        triangles.append(corners[triangulate_face(vertices[corners])])
+    return np.concatenate(triangles) if triangles else np.zeros((0, 3), dtype=np.int64)
+
+
+# Readers. Each takes an object that has the attributes named in the table below.
+
+
+def _from_manifold(mesh: Any) -> Arrays:
+    return _from_manifold_mesh(mesh.to_mesh64())
+
+
+def _from_manifold_mesh(mesh: Any) -> Arrays:
+    vertices = np.asarray(mesh.vert_properties)[:, :3]
+    same = np.arange(len(vertices))
+    same[np.asarray(mesh.merge_from_vert, dtype=np.int64)] = mesh.merge_to_vert
+    return vertices, same[np.asarray(mesh.tri_verts, dtype=np.int64)]
+
+
+def _from_polydata(mesh: Any) -> Arrays:
+    return mesh.points, _unpadded(np.asarray(mesh.faces))
+
+
+def _unpadded(stream: IndexArray) -> Any:
+    """Split a stream of count, index, index, … into faces."""
+    if len(stream) % 4 == 0 and (stream[::4] == 3).all():
+        return stream.reshape(-1, 4)[:, 1:]
+    faces = []
+    position = 0
+    while position < len(stream):
+        end = position + 1 + int(stream[position])
+        faces.append(stream[position + 1 : end])
+        position = end
+    return faces
+
+
+def _from_vtk(mesh: Any) -> Arrays:
+    points = [mesh.GetPoint(index) for index in range(mesh.GetNumberOfPoints())]
+    faces = []
+    for index in range(mesh.GetNumberOfCells()):
+        cell = mesh.GetCell(index)  # the next call overwrites it
+        corners = [cell.GetPointId(k) for k in range(cell.GetNumberOfPoints())]
+        # Loose points and lines are no part of a surface.
+        if len(corners) >= 3:
+            faces.append(corners)
+    return points, faces
+
+
+def _from_meshio(mesh: Any) -> Arrays:
+    kinds = {block.type for block in mesh.cells}
+    surface = [block for block in mesh.cells if block.type in ("triangle", "quad", "polygon")]
+    unknown = kinds - {"triangle", "quad", "polygon", "vertex", "line"}
+    if unknown:
+        raise invalid_parameter(f"Cells of type {', '.join(sorted(unknown))} are no faces.")
+    if len(surface) == 1:
+        return mesh.points, surface[0].data
+    return mesh.points, [face for block in surface for face in block.data]
+
+
+def _from_shape(shape: Any, tolerance: float) -> Arrays:
+    vertices, faces = shape.tessellate(tolerance)
+    return [_coordinates(vertex) for vertex in vertices], faces
+
+
+def _coordinates(vector: Any) -> tuple[float, ...]:
+    return tuple(vector.toTuple() if hasattr(vector, "toTuple") else vector)
+
+
+def _shapes_on(workplane: Any) -> list[Any]:
+    return list(workplane.vals()) if hasattr(workplane, "vals") else [workplane.val()]
+
+
+def _joined(parts: list[Arrays]) -> Arrays:
+    """Return several meshes as one; where they overlap, winding numbers unite them."""
+    points = [points_array(vertices) for vertices, _ in parts]
+    starts = np.cumsum([0, *map(len, points)])
+    faces = [
+        face_array(given, corners) + start
+        for (_, given), corners, start in zip(parts, points, starts, strict=False)
+    ]
+    return np.concatenate(points), np.concatenate(faces)
+
+
+#: Shapes of CAD kernels have methods named vertices and faces: they come before plain meshes.
+_SHAPE = ("tessellate", "wrapped")
+
+_WORKPLANE = ("val", "plane")
+
+#: What holds a mesh or a shape, by its attributes, and how to get at that.
+_HOLDERS: tuple[tuple[tuple[str, ...], Callable[[Any], Any]], ...] = (
+    (("current_mesh",), lambda meshes: meshes.current_mesh()),
+    (("part", "pending_faces"), lambda builder: builder.part),
+    (("toCompound", "children"), lambda assembly: assembly.toCompound()),
+    (("geometry", "to_mesh"), lambda scene: scene.to_mesh()),
+    (("to_legacy",), lambda mesh: mesh.to_legacy()),
+)
+
+_READERS: tuple[tuple[tuple[str, ...], Callable[[Any], Arrays]], ...] = (
+    (("to_mesh64",), _from_manifold),
+    (("vert_properties", "tri_verts"), _from_manifold_mesh),
+    (("vertex_matrix", "face_matrix"), lambda mesh: (mesh.vertex_matrix(), mesh.face_matrix())),
+    (("points", "faces"), _from_polydata),
+    # Grids have points and cells too, but are no surface: the last name leaves them out.
+    (("points", "cells", "cell_sets"), _from_meshio),
+    (("GetPoint", "GetCell", "GetPolys"), _from_vtk),
+    (("vertices", "faces"), lambda mesh: (mesh.vertices, mesh.faces)),
+    (("vertices", "triangles"), lambda mesh: (mesh.vertices, mesh.triangles)),
+)
+
+
+def optional(name: str, extra: str) -> Any:
+    """Return a module that comes with one of this package's extras.
+
+    Raises
+    ------
+    InvalidMeshError
+        If it is not installed; code ``"missing_package"``.
+    """
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise InvalidMeshError(
+            f"This needs the package {name}: pip install 'bspcsg[{extra}]'.", "missing_package"
+        ) from error
+
+
+def to_trimesh(mesh: Mesh) -> "trimesh.Trimesh":
+    """Return a `trimesh.Trimesh` with copies of the same arrays."""
+    import trimesh
+
+    return trimesh.Trimesh(mesh.vertices.copy(), mesh.faces.copy(), process=False)
+
+
+def to_manifold(mesh: Mesh) -> "manifold3d.Manifold":
+    """Return a `manifold3d.Manifold` of the same vertices and faces."""
+    import manifold3d
+
+    # The binding takes writable arrays of these very types only.
+    vertices = np.array(mesh.vertices, dtype=np.float64, order="C")
+    faces = np.array(mesh.faces, dtype=np.uint64, order="C")
+    return manifold3d.Manifold(manifold3d.Mesh64(vertices, faces))

@@ -1,0 +1,178 @@
+"""`Mesh`: the triangles a solid leaves as, with the measures that follow from them.
+
+This layer knows arrays only; it does not know how a mesh was made.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from .._types import FloatArray, IndexArray
+from .certificate import Certificate, certify
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Mesh:
+    """A closed triangle mesh, counter-clockwise when seen from outside.
+
+    The arrays of a solid's mesh are read-only, because the solid hands out the same ones again;
+    copy them before you change them.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64
+        In model units.
+    faces : (m, 3) int64
+        Indices of `vertices`.
+    source : (m, 2) int64
+        Where each face came from: the number of the input mesh, counted from 0 in the order of
+        the expression, and the index of the face in that mesh.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> mesh = b.cube(2).to_mesh()
+    >>> mesh
+    Mesh(8 vertices, 12 faces)
+    >>> mesh.volume, mesh.area, mesh.euler_number
+    (8.0, 24.0, 2)
+    """
+
+    vertices: FloatArray
+    faces: IndexArray
+    source: IndexArray
+
+    def __repr__(self) -> str:
+        """Say how large the mesh is."""
+        return f"Mesh({len(self.vertices)} vertices, {len(self.faces)} faces)"
+
+    def __iter__(self) -> Iterator[Any]:
+        """Yield vertices and faces, so that ``vertices, faces = mesh`` works."""
+        yield self.vertices
+        yield self.faces
+
+    def frozen(self) -> "Mesh":
+        """Return this mesh after making its arrays read-only."""
+        for array in (self.vertices, self.faces, self.source):
+            array.flags.writeable = False
+        return self
+
+    @cached_property
+    def certificate(self) -> Certificate:
+        """What an exact look at all triangles proves: closed, no crossings, none without area."""
+        return certify(self.vertices, self.faces)
+
+    @property
+    def volume(self) -> float:
+        """Volume in cubic model units: signed tetrahedra, summed without further rounding."""
+        return math.fsum(self._signed_volumes(self._middle()).tolist())
+
+    @property
+    def area(self) -> float:
+        """Surface area in square model units."""
+        a, b, c = self._corners()
+        return math.fsum((np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2).tolist())
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Centre of volume, (3,) float64, in model units; NaN if the mesh has no volume."""
+        middle = self._middle()
+        weights = self._signed_volumes(middle)
+        volume = math.fsum(weights.tolist())
+        if volume == 0:
+            return np.full(3, np.nan)
+        # The fourth corner of every tetrahedron is the middle, which is the origin here.
+        moments = sum(corner - middle for corner in self._corners()) * weights[:, None] / 4
+        return middle + np.array([math.fsum(axis.tolist()) for axis in moments.T]) / volume
+
+    @property
+    def inertia(self) -> FloatArray:
+        """Moments of inertia about the centroid, (3, 3) float64, at density 1; NaN without volume.
+
+        In model units to the fifth power.
+        """
+        centroid = self.centroid
+        if np.isnan(centroid).any():
+            return np.full((3, 3), np.nan)
+        weights = self._signed_volumes(centroid)
+        corners = [corner - centroid for corner in self._corners()]
+        # A tetrahedron with a corner at the origin and p, q, r: V/20 times the sum of the products
+        # of p, q, r and of p + q + r, each with itself, is the integral of x x'.
+        points = [*corners, sum(corners)]
+        second = sum(np.einsum("m,mi,mj->ij", weights, point, point) for point in points) / 20
+        moments: FloatArray = np.trace(second) * np.eye(3) - second
+        return moments
+
+    @property
+    def bounds(self) -> FloatArray | None:
+        """Lowest and highest coordinates, (2, 3) float64, or None for an empty mesh."""
+        if len(self.faces) == 0:
+            return None
+        used = self.vertices[np.unique(self.faces)]
+        return np.array([used.min(axis=0), used.max(axis=0)])
+
+    @property
+    def euler_number(self) -> int:
+        """Vertices - edges + faces, counting only vertices that a face uses."""
+        if len(self.faces) == 0:
+            return 0
+        return len(np.unique(self.faces)) - len(self._edges()) + len(self.faces)
+
+    @property
+    def components(self) -> int:
+        """Number of connected surfaces; the wall of a closed cavity is one of its own."""
+        return len(np.unique(surfaces_of(self.faces, len(self.vertices))))
+
+    @property
+    def genus(self) -> int:
+        """Number of handles, summed over all connected surfaces."""
+        return self.components - self.euler_number // 2
+
+    def _corners(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        return (
+            self.vertices[self.faces[:, 0]],
+            self.vertices[self.faces[:, 1]],
+            self.vertices[self.faces[:, 2]],
+        )
+
+    def _middle(self) -> FloatArray:
+        # Measuring from inside the mesh keeps the digits that a far origin would cancel.
+        bounds = self.bounds
+        return np.zeros(3) if bounds is None else bounds[0] + (bounds[1] - bounds[0]) / 2
+
+    def _signed_volumes(self, middle: FloatArray) -> FloatArray:
+        a, b, c = (corner - middle for corner in self._corners())
+        volumes: FloatArray = np.einsum("ij,ij->i", np.cross(a, b), c) / 6
+        return volumes
+
+    def _edges(self) -> IndexArray:
+        ends = np.sort(self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        return np.unique(ends[:, 0] * np.int64(len(self.vertices)) + ends[:, 1])
+
+
+def surfaces_of(faces: IndexArray, vertex_count: int) -> IndexArray:
+    """Return for each face the number of its connected surface, from 0.
+
+    Parameters
+    ----------
+    faces : (m, k) int64
+        Corners of each face; those that share one are connected. With k = 2, edges and chains.
+    vertex_count : int
+
+    Returns
+    -------
+    (m,) int64
+    """
+    # Hooking and pointer jumping: every vertex points to a lower one it is connected to.
+    root = np.arange(vertex_count)
+    while True:
+        low = root[faces].min(axis=1)
+        np.minimum.at(root, root[faces].ravel(), np.repeat(low, faces.shape[1]))
+        while not np.array_equal(root, jumped := root[root]):
+            root = jumped
+        if (root[faces] == root[faces[:, :1]]).all():
+            return np.unique(root[faces[:, 0]], return_inverse=True)[1]

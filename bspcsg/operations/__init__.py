@@ -1,0 +1,1 @@
+"""What is made of several solids, or of the parts of one."""

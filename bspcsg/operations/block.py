@@ -1,0 +1,126 @@
+"""Blocks: operations on all solids that are made inside a ``with`` statement.
+
+``with difference() as d:`` takes, as OpenSCAD's block does, the first solid less all others::
+
+    with b.difference() as d:
+        b.cube([20, 20, 10])
+        b.cylinder(h=10, r=3).translate(10, 10, 0)
+    d.solid.save("plate.3mf")
+
+What counts is each solid that was made in the block and not used up there:
+
+* Every call that makes a solid counts it: primitives, `Solid`, `from_mesh`, `load`, operators,
+  transforms and the named operations.
+* A solid that an operator, a transform or a named operation was given no longer counts; the result
+  stands in its place, so ``cylinder(...).translate(...)`` counts once, where it began. Another
+  transform of the same solid counts as well, at the end: four translations of one pin are four
+  pins, and the pin itself is none.
+* Queries such as ``volume``, ``<=`` or `check` use nothing up.
+* Solids from outside do not count until something is made of them, or `Block.add` counts them;
+  `Block.discard` takes out one that only helped.
+* A block in a block counts as one solid, when it ends. What it uses up no longer counts in the
+  blocks around it either.
+
+Threads have blocks of their own, as asyncio's tasks do; one that was started inside a block counts
+there until the block ends.
+"""
+
+from collections.abc import Callable, Sequence
+from types import TracebackType
+
+from ..errors import InvalidMeshError, invalid_parameter
+from ..solid import counting
+from ..solid.expression import Node
+from ..solid.leaf import ConstantLeaf
+from ..solid.solid import Solid
+
+
+class Block:
+    """The solids that count in a ``with`` statement, and what they make.
+
+    Parameters
+    ----------
+    combined : callable
+        Takes the list of solids and returns the block's.
+    """
+
+    def __init__(self, combined: Callable[[Sequence[Solid]], Solid]) -> None:
+        self._combined = combined
+        self._ledger = counting.opened()
+        self._solid: Solid | None = None
+
+    @property
+    def solids(self) -> tuple[Solid, ...]:
+        """What counts so far, in order."""
+        return tuple(solid for solid in self._ledger.solids if isinstance(solid, Solid))
+
+    @property
+    def solid(self) -> Solid:
+        """What the operation makes of the solids that count.
+
+        Raises
+        ------
+        InvalidMeshError
+            While the block is open, and if it ended in an error; code ``"open_block"``.
+        """
+        if self._solid is None:
+            message = "A block has its solid after its with statement, if that ends without error."
+            raise InvalidMeshError(message, "open_block")
+        return self._solid
+
+    def add(self, *solids: Solid) -> None:
+        """Count solids that were made elsewhere, after all others."""
+        self._refuse_ended(solids)
+        for solid in solids:
+            self._ledger.put(solid)
+
+    def discard(self, *solids: Solid) -> None:
+        """Let solids no longer count."""
+        self._refuse_ended(solids)
+        self._ledger.discard(solids)
+
+    def _refuse_ended(self, solids: Sequence[Solid]) -> None:
+        if not self._ledger.is_open:
+            raise invalid_parameter("This block has ended; what counts in it is settled.")
+        for solid in solids:
+            if not isinstance(solid, Solid):
+                raise invalid_parameter(f"Expected solids, not {type(solid).__name__}.")
+
+    def end(self, failed: bool) -> None:
+        """Close the block; its solid counts in the block around it."""
+        counting.close(self._ledger)
+        if not failed:
+            self._solid = self._combined(self.solids)
+
+
+class Unfilled(Solid):
+    """An operation on no solids: a block if a ``with`` statement opens it, else the set it is.
+
+    Parameters
+    ----------
+    combined : callable
+        Carries out the operation on a list of solids.
+    full : bool
+        Whether the set is all of space, instead of the empty one.
+    """
+
+    __slots__ = ("_combined", "_open")
+
+    def __init__(self, combined: Callable[[Sequence[Solid]], Solid], full: bool = False) -> None:
+        self._set(Node(ConstantLeaf(full)), ())
+        self._combined = combined
+        self._open: list[Block] = []
+
+    def __enter__(self) -> Block:
+        """Open a block."""
+        self._open.append(Block(self._combined))
+        return self._open[-1]
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """End the block."""
+        self._open.pop().end(failed=kind is not None)

@@ -1,0 +1,201 @@
+"""Set operations on any number of solids, and on bare arrays."""
+
+import operator
+from collections.abc import Iterable, Sequence
+from functools import reduce
+from typing import Any, overload
+
+from .._core import CoreError, Tree
+from .._types import FloatArray, IndexArray, ProgramLine, SetOp
+from ..errors import core_errors, invalid_parameter
+from ..mesh import interop
+from ..solid.counting import counted
+from ..solid.expression import Operator
+from ..solid.leaf import at_pitch
+from ..solid.solid import Solid, combine
+from .block import Unfilled
+
+_PROGRAMS: dict[str, list[ProgramLine]] = {
+    "union": [("leaf", [0]), ("leaf", [1]), ("or", [0, 1])],
+    "intersection": [("leaf", [0]), ("leaf", [1]), ("and", [0, 1])],
+    "difference": [("leaf", [0]), ("leaf", [1]), ("not", [1]), ("and", [0, 2])],
+    "xor": [("leaf", [0]), ("leaf", [1]), ("xor", [0, 1])],
+}
+
+
+@overload
+def union() -> Unfilled: ...
+@overload
+def union(*solids: Solid | Iterable[Solid]) -> Solid: ...
+def union(*solids: Solid | Iterable[Solid]) -> Solid:
+    """Return what is inside at least one solid; the empty set if there is none.
+
+    Parameters
+    ----------
+    *solids : Solid or iterable of Solid
+        Without any, ``with union() as u:`` opens a block (see `bspcsg.block`).
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.union(b.cube(1).translate(i, 0, 0) for i in range(3)).volume
+    3.0
+    """
+    return _united(_flat(solids)) if solids else Unfilled(_united)
+
+
+@overload
+def intersection() -> Unfilled: ...
+@overload
+def intersection(*solids: Solid | Iterable[Solid]) -> Solid: ...
+def intersection(*solids: Solid | Iterable[Solid]) -> Solid:
+    """Return what is inside all solids; all of space if there is none.
+
+    Parameters
+    ----------
+    *solids : Solid or iterable of Solid
+        Without any, ``with intersection() as i:`` opens a block (see `bspcsg.block`).
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.intersection(b.cube(2), b.cube(2).translate(1, 1, 1)).volume
+    1.0
+    """
+    return _intersected(_flat(solids)) if solids else Unfilled(_intersected, full=True)
+
+
+@overload
+def difference() -> Unfilled: ...
+@overload
+def difference(*solids: Solid | Iterable[Solid]) -> Solid: ...
+def difference(*solids: Solid | Iterable[Solid]) -> Solid:
+    """Return what is inside the first solid and none of the others; the empty set if there is none.
+
+    Parameters
+    ----------
+    *solids : Solid or iterable of Solid
+        Without any, ``with difference() as d:`` opens a block (see `bspcsg.block`).
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.difference(b.cube(3), [b.cube(1), b.cube(1).translate(2, 0, 0)]).volume
+    25.0
+    >>> with b.difference() as plate:
+    ...     body = b.cube((20, 20, 10))
+    ...     hole = b.prism(4, h=10, r=3).translate(10, 10, 0)
+    >>> plate.solid.volume
+    3820.0
+    """
+    return _less(_flat(solids)) if solids else Unfilled(_less)
+
+
+@overload
+def xor() -> Unfilled: ...
+@overload
+def xor(*solids: Solid | Iterable[Solid]) -> Solid: ...
+def xor(*solids: Solid | Iterable[Solid]) -> Solid:
+    """Return what is inside an odd number of the solids; the empty set if there is none.
+
+    Parameters
+    ----------
+    *solids : Solid or iterable of Solid
+        Without any, ``with xor() as x:`` opens a block (see `bspcsg.block`).
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.xor(b.cube(2), b.cube(2)).is_empty
+    True
+    """
+    return _odd(_flat(solids)) if solids else Unfilled(_odd)
+
+
+def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, IndexArray]:
+    """Combine two meshes: arrays in, arrays out.
+
+    Parameters
+    ----------
+    va, vb : (n, 3) array_like of float
+        Vertices, in model units.
+    fa, fb : (m, 3) array_like of int
+        Indices of `va` and `vb`, counter-clockwise seen from outside.
+    op : {"union", "intersection", "difference", "xor"}
+
+    Returns
+    -------
+    vertices : (n, 3) float64
+    faces : (m, 3) int64
+
+    Raises
+    ------
+    InvalidMeshError
+        If a mesh is not closed, as for `Solid`, or the operation is another.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> a, c = b.cube(2).to_mesh(), b.cube(2).translate(1, 1, 1).to_mesh()
+    >>> vertices, faces = b.boolean(*a, *c, "intersection")
+    >>> vertices.shape, faces.shape
+    ((8, 3), (12, 3))
+    """
+    if op not in _PROGRAMS:
+        raise invalid_parameter(f"Unknown operation {op!r}; one of {', '.join(_PROGRAMS)}.")
+    trees = [_tree(va, fa), _tree(vb, fb)]
+    pitch = min(tree.pitch for tree in trees)
+    operands = [at_pitch(tree, pitch) for tree in trees]
+    with core_errors():
+        vertices, faces = Tree.evaluate(_PROGRAMS[op], operands).to_mesh()
+    return vertices, faces
+
+
+def _tree(vertices: Any, faces: Any) -> Tree:
+    try:
+        return Tree.from_mesh(vertices, faces)
+    except (TypeError, CoreError):
+        # Not arrays as the core has them; what they can become is settled at leisure.
+        return _converted_tree(vertices, faces)
+
+
+def _converted_tree(vertices: Any, faces: Any) -> Tree:
+    points = interop.points_array(vertices)
+    triangles = interop.face_array(faces, points)
+    with core_errors():
+        return Tree.from_mesh(points, triangles)
+
+
+@counted
+def _united(solids: Sequence[Solid]) -> Solid:
+    return _combined("or", solids) if solids else Solid.empty()
+
+
+@counted
+def _intersected(solids: Sequence[Solid]) -> Solid:
+    return _combined("and", solids) if solids else Solid.full()
+
+
+@counted
+def _less(solids: Sequence[Solid]) -> Solid:
+    operands = [*solids[:1], *(~other for other in solids[1:])]
+    return _combined("and", operands) if operands else Solid.empty()
+
+
+@counted
+def _odd(solids: Sequence[Solid]) -> Solid:
+    return reduce(operator.xor, solids) if solids else Solid.empty()
+
+
+def _combined(op: Operator, operands: Sequence[Solid]) -> Solid:
+    return operands[0] if len(operands) == 1 else combine(op, operands)
+
+
+def _flat(solids: Iterable[Solid | Iterable[Solid]]) -> list[Solid]:
+    flat: list[Solid] = []
+    for entry in solids:
+        flat.extend([entry] if isinstance(entry, Solid) else entry)
+    for solid in flat:
+        if not isinstance(solid, Solid):
+            raise invalid_parameter(f"Expected solids, not {type(solid).__name__}.")
+    return flat

@@ -1,0 +1,315 @@
+"""What is wrong with a mesh, by name, number and place.
+
+Connectivity is judged after joining corners with equal coordinates, as every reader has to do for
+STL. Whether faces cross or overlap is asked of the core, which decides it exactly.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from .._types import FloatArray, IndexArray
+from ..errors import BspcsgError, Finding
+from ..formats.raw import RawMesh
+from ..mesh.certificate import Certificate, Precision
+from ..mesh.mesh import Mesh, surfaces_of
+from ..mesh.weld import welded
+from ..solid.counting import uncounted
+from ..solid.solid import Solid
+
+#: How many places a finding keeps.
+_PLACES = 8
+
+#: Height by longest edge below which a triangle's area is computed exactly.
+_FLAT = 1e-6
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What was found out about a mesh.
+
+    Parameters
+    ----------
+    triangles, vertices : int
+        As the file has them.
+    closed, oriented, manifold : bool
+        Every edge has as many faces one way as the other; no edge is used twice in one direction;
+        no edge has more than two faces.
+    self_overlapping : bool or None
+        Whether faces cross, overlap or repeat on the lattice; None if the mesh is no solid.
+    precision : {"double", "single"} or None
+        The coarsest numbers that hold all coordinates; None if the mesh is not closed.
+    crossings : int or None
+        Pairs of triangles that cross or overlap with the coordinates as they are, exactly; None
+        if the mesh is not closed.
+    verdict : {"solid", "inside out", "not closed", "empty", "refused"}
+    findings : tuple of Finding
+        The worst first.
+    signed_volume, area : float
+        Of the triangles, whatever they enclose; in model units.
+    volume : float or None
+        Of the set with positive winding number; None if there is none.
+    surfaces, genus : int or None
+        Connected surfaces, and handles of all of them together.
+    bounds : tuple or None
+        Lowest and highest coordinates.
+    """
+
+    triangles: int
+    vertices: int
+    closed: bool
+    oriented: bool
+    manifold: bool
+    self_overlapping: bool | None
+    precision: Precision | None
+    crossings: int | None
+    verdict: str
+    findings: tuple[Finding, ...]
+    signed_volume: float
+    area: float
+    volume: float | None
+    surfaces: int
+    genus: int | None
+    bounds: tuple[tuple[float, ...], ...] | None
+
+    @property
+    def is_solid(self) -> bool:
+        """Whether the mesh bounds a set, the right way round."""
+        return self.verdict == "solid"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as JSON values; a measure that overflows a double is None."""
+        found = asdict(self)
+        for name in ("signed_volume", "area"):
+            found[name] = found[name] if math.isfinite(found[name]) else None
+        return found
+
+
+@uncounted
+def diagnose(raw: RawMesh) -> Diagnosis:
+    """Say what is wrong with a mesh."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _diagnosed(raw)
+
+
+def _diagnosed(raw: RawMesh) -> Diagnosis:
+    vertices, same = welded(raw.vertices) if len(raw.vertices) else (raw.vertices, np.zeros(0, int))
+    mesh = Mesh(vertices, same[raw.faces], np.zeros((len(raw.faces), 2), dtype=np.int64))
+    edges = _Edges(mesh.faces, len(vertices))
+    findings = [*raw.findings, *_edge_findings(mesh, edges), *_face_findings(mesh, edges)]
+    solid, verdict = _as_solid(raw, findings)
+    # Inside out, the set is empty, and comparing the mesh with its boundary says nothing.
+    overlapping = _overlaps(solid, findings) if solid is not None and verdict == "solid" else None
+    proof = None if solid is None else _proof(solid, findings)
+    return Diagnosis(
+        triangles=len(raw.faces),
+        vertices=len(raw.vertices),
+        closed=solid is not None or edges.are_closed,
+        oriented=len(edges.turned) == 0,
+        manifold=len(edges.crowded) == 0,
+        self_overlapping=overlapping,
+        precision=None if proof is None else proof.precision,
+        crossings=None if proof is None else len(proof.crossings),
+        verdict=verdict,
+        findings=tuple(sorted(findings, key=lambda found: _RANK[found.severity])),
+        signed_volume=mesh.volume,
+        area=mesh.area,
+        volume=None if solid is None else solid.volume,
+        surfaces=mesh.components if len(mesh.faces) else 0,
+        genus=mesh.genus if edges.are_manifold else None,
+        bounds=None if (box := mesh.bounds) is None else tuple(map(tuple, box.tolist())),
+    )
+
+
+_RANK = {"error": 0, "warning": 1, "note": 2}
+
+
+class _Edges:
+    """The undirected edges of triangles, and how often faces run along them either way.
+
+    Parameters
+    ----------
+    faces : (m, 3) int64
+    vertex_count : int
+    """
+
+    def __init__(self, faces: IndexArray, vertex_count: int) -> None:
+        start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+        proper = start != end
+        self.face = np.repeat(np.arange(len(faces)), 3)[proper]
+        start, end = start[proper], end[proper]
+        low, high = np.minimum(start, end), np.maximum(start, end)
+        keys, self.edge = np.unique(
+            low * np.int64(max(vertex_count, 1)) + high, return_inverse=True
+        )
+        self.ends = np.stack([keys // max(vertex_count, 1), keys % max(vertex_count, 1)], axis=1)
+        forth = np.bincount(self.edge[start < end], minlength=len(keys))
+        back = np.bincount(self.edge[start > end], minlength=len(keys))
+        self.open = np.flatnonzero(forth + back == 1)
+        self.turned = np.flatnonzero((forth != back) & (forth + back > 1))
+        self.crowded = np.flatnonzero(forth + back > 2)
+
+    @property
+    def are_closed(self) -> bool:
+        """Whether every edge has as many faces one way as the other."""
+        return len(self.open) == 0 and len(self.turned) == 0
+
+    @property
+    def are_manifold(self) -> bool:
+        """Whether every edge has two faces, one either way."""
+        return self.are_closed and len(self.crowded) == 0 and len(self.edge) > 0
+
+    def faces_at(self, edges: IndexArray) -> tuple[int, ...]:
+        """Return the first few faces at some edges."""
+        at = np.flatnonzero(np.isin(self.edge, edges[:_PLACES]))
+        return tuple(np.unique(self.face[at])[:_PLACES].tolist())
+
+
+def _edge_findings(mesh: Mesh, edges: _Edges) -> list[Finding]:
+    holes = f" around {_many(_chains(edges.ends[edges.open]), 'hole')}" if len(edges.open) else ""
+    kinds = (
+        ("open_edges", "error", edges.open, f"with one triangle only,{holes}"),
+        ("orientation", "error", edges.turned, "whose triangles do not run opposite ways"),
+        ("non_manifold", "warning", edges.crowded, "with more than two triangles"),
+    )
+    found = []
+    for code, severity, which, what in kinds:
+        if len(which):
+            first = _between(mesh.vertices, edges.ends[which[0]])
+            message = f"{_many(len(which), 'edge')} {what}; the first {first}"
+            found.append(Finding(code, severity, message, edges.faces_at(which), len(which)))
+    return found
+
+
+def _chains(ends: IndexArray) -> int:
+    """Count the connected chains of edges."""
+    used, edges = np.unique(ends, return_inverse=True)
+    return int(surfaces_of(edges.reshape(-1, 2), len(used)).max()) + 1
+
+
+def _face_findings(mesh: Mesh, edges: _Edges) -> list[Finding]:
+    del edges
+    found = []
+    flat = _flat_faces(mesh)
+    if len(flat):
+        message = f"{_many(len(flat), 'triangle')} without area{_first(mesh, flat)}"
+        found.append(Finding("degenerate", "warning", message, _few(flat), len(flat)))
+    repeated = _repeated_faces(mesh.faces)
+    if len(repeated):
+        message = f"{_many(len(repeated), 'triangle')} over the corners of another"
+        message += _first(mesh, repeated)
+        found.append(Finding("duplicate", "warning", message, _few(repeated), len(repeated)))
+    unused = len(mesh.vertices) - len(np.unique(mesh.faces))
+    if unused:
+        message = f"{_many(unused, 'vertex', 'vertices')} that no triangle uses"
+        found.append(Finding("unused_vertices", "note", message, (), unused))
+    return found
+
+
+def _flat_faces(mesh: Mesh) -> IndexArray:
+    """Return the faces whose area is exactly zero."""
+    corners = mesh.vertices[mesh.faces]
+    scale = np.abs(corners - corners[:, :1]).max(axis=(1, 2))[:, None]
+    # Scaled by its own size, no triangle's area over- or underflows.
+    local = np.divide(
+        corners - corners[:, :1], scale[:, None], np.zeros_like(corners), where=scale[:, None] > 0
+    )
+    doubled = np.linalg.norm(np.cross(local[:, 1], local[:, 2]), axis=1)
+    suspects = np.flatnonzero(doubled < _FLAT)
+    exact = [face for face in suspects.tolist() if _is_flat(corners[face])]
+    return np.array(exact, dtype=np.int64)
+
+
+def _is_flat(corners: FloatArray) -> bool:
+    a, b, c = ([Fraction(value) for value in corner] for corner in corners.tolist())
+    u, v = [q - p for p, q in zip(a, b, strict=True)], [q - p for p, q in zip(a, c, strict=True)]
+    return all(u[k] * v[k - 1] == u[k - 1] * v[k] for k in range(3))
+
+
+def _repeated_faces(faces: IndexArray) -> IndexArray:
+    """Return the faces over the same three corners as an earlier face."""
+    if len(faces) == 0:
+        return np.zeros(0, dtype=np.int64)
+    _, first = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
+    return np.setdiff1d(np.arange(len(faces)), first)
+
+
+def _as_solid(raw: RawMesh, findings: list[Finding]) -> tuple[Solid | None, str]:
+    """Return the mesh as a solid if it is one, and the verdict; add what the core found."""
+    try:
+        solid = Solid(raw.vertices, raw.faces)
+    except BspcsgError as error:
+        known = any(found.severity == "error" for found in findings)
+        if not known or error.code != "not_closed":
+            where = error.where[:_PLACES]
+            findings.append(Finding(error.code, "error", error.message, where, len(error.where)))
+        names = {"not_closed": "not closed", "empty_mesh": "empty"}
+        return None, names.get(error.code, "refused")
+    for index, found in enumerate(findings):
+        if found.code in ("open_edges", "orientation"):
+            message = f"{found.message}; the gaps are of no width, so the mesh counts as closed"
+            findings[index] = Finding(found.code, "note", message, found.where, found.count)
+    told = {found.code for found in findings} | {"zero_area"}
+    new = [Finding.from_core(found) for found in solid.tree.findings]
+    inverted = any(found.code == "inside_out" for found in new)
+    findings += [found for found in new if found.code not in told]
+    return solid, "inside out" if inverted else "solid"
+
+
+def _overlaps(solid: Solid, findings: list[Finding]) -> bool:
+    """Return whether faces cross, overlap or repeat, and add a finding if they do."""
+    reduced = solid.normalized()
+    if solid.tree.simple is not False:
+        return False
+    before, after = len(solid.to_mesh().faces), len(reduced.to_mesh().faces)
+    message = (
+        f"faces cross, overlap or touch: {_many(before, 'triangle')},"
+        f" where the boundary of the solid has {after}"
+    )
+    findings.append(Finding("self_overlap", "warning", message, (), 1))
+    return True
+
+
+def _proof(solid: Solid, findings: list[Finding]) -> Certificate:
+    """Return what an exact look at the coordinates as they are proves.
+
+    Adds a finding where they cross, unless the faces do so on the lattice already.
+    """
+    mesh = solid.to_mesh()
+    proof = mesh.certificate
+    told = any(found.code == "self_overlap" for found in findings)
+    if proof.crossings and not told:
+        crossing = np.unique(np.array(proof.crossings))
+        places = mesh.source[crossing, 1]
+        x, y, z = mesh.vertices[mesh.faces[crossing[0], 0]].tolist()
+        message = (
+            f"{_many(len(crossing), 'triangle')} cross or overlap others in {proof.precision}"
+            f" precision; the first near ({x:.6g}, {y:.6g}, {z:.6g})"
+        )
+        findings.append(Finding("crossing", "warning", message, _few(places), len(crossing)))
+    return proof
+
+
+def _many(count: int, one: str, more: str = "") -> str:
+    return f"{count} {one if count == 1 else more or one + 's'}"
+
+
+def _few(indices: IndexArray) -> tuple[int, ...]:
+    return tuple(indices[:_PLACES].tolist())
+
+
+def _between(vertices: FloatArray, ends: Sequence[int] | IndexArray) -> str:
+    return f"from {_point(vertices[ends[0]])} to {_point(vertices[ends[1]])}"
+
+
+def _first(mesh: Mesh, faces: IndexArray) -> str:
+    corner = mesh.vertices[mesh.faces[faces[0], 0]]
+    return f"; the first is triangle {int(faces[0])}, at {_point(corner)}"
+
+
+def _point(point: FloatArray) -> str:
+    return "({:.6g}, {:.6g}, {:.6g})".format(*point.tolist())

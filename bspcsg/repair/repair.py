@@ -1,0 +1,158 @@
+"""Closing and orienting meshes that are no solids, by pymeshlab in a process of its own."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .._types import FloatArray, IndexArray
+from ..errors import BspcsgError, invalid_parameter, missing_part
+from ..formats.raw import RawMesh
+from ..mesh.mesh import Mesh, surfaces_of
+from ..mesh.weld import welded
+
+#: The steps in the order in which they are taken.
+STEPS = ("weld", "dedup", "split", "orient", "fill")
+
+_CHILD = Path(__file__).with_name("child.py")
+_MISSING = 6
+
+
+@dataclass(frozen=True, eq=False)
+class Repair:
+    """What came of a repair.
+
+    Parameters
+    ----------
+    mesh : RawMesh
+    failed : dict of str to str
+        Steps that could not be taken, and why.
+    turned : int
+        How many triangles were turned round because they faced inwards.
+    """
+
+    mesh: RawMesh
+    failed: dict[str, str]
+    turned: int
+
+
+def repair(
+    raw: RawMesh,
+    steps: Sequence[str] = STEPS,
+    *,
+    weld: float = 0.0,
+    max_hole: int = 1000,
+    timeout: float | None = None,
+) -> Repair:
+    """Return a mesh with duplicates dropped, faces oriented and holes filled.
+
+    Parameters
+    ----------
+    raw : RawMesh
+    steps : sequence of str
+        Out of `STEPS`; they are taken in that order: join vertices, drop repeated and flat
+        triangles, split edges with more than two triangles, orient, fill holes.
+    weld : float
+        Distance in model units up to which vertices are joined; equal ones always are.
+    max_hole : int
+        Edges around the largest hole that is filled.
+    timeout : float, optional
+        Seconds after which to give up.
+
+    Raises
+    ------
+    InvalidMeshError
+        If a step is unknown.
+    MissingPartError
+        If pymeshlab, or a system library it needs, is missing.
+    BspcsgError
+        If pymeshlab crashes ("repair_failed") or takes too long ("timed_out").
+    """
+    unknown = set(steps) - set(STEPS)
+    if unknown:
+        message = f"Unknown step {sorted(unknown)[0]!r}; one of {', '.join(STEPS)}."
+        raise invalid_parameter(message)
+    ordered = [step for step in STEPS if step in steps]
+    settings = {"steps": ordered, "weld": weld, "max_hole": max_hole}
+    with tempfile.TemporaryDirectory() as folder:
+        np.savez(
+            Path(folder) / "mesh.npz",
+            vertices=raw.vertices,
+            faces=raw.faces,
+            settings=np.array(json.dumps(settings)),
+        )
+        failed = _asked(Path(folder), timeout)
+        with np.load(Path(folder) / "repaired.npz", allow_pickle=False) as found:
+            vertices = np.ascontiguousarray(found["vertices"], dtype=np.float64).reshape(-1, 3)
+            faces = np.ascontiguousarray(found["faces"], dtype=np.int64).reshape(-1, 3)
+    inward = _facing_inwards(Mesh(vertices, faces, faces[:, :2])) if "orient" in steps else None
+    turned = 0 if inward is None else int(inward.sum())
+    if inward is not None and turned:
+        faces[inward] = faces[inward][:, ::-1]
+    # What was split to be oriented and closed is joined again: equal points are one vertex.
+    points, same = welded(vertices[faces].reshape(-1, 3))
+    mesh = RawMesh(points, same.reshape(-1, 3), raw.name, (), (), raw.unit)
+    return Repair(mesh, failed, turned)
+
+
+def _asked(folder: Path, timeout: float | None) -> dict[str, str]:
+    """Run the child on a folder; return the steps that failed."""
+    # Without -P, this package's own folder would hide modules of the standard library.
+    command = [sys.executable, "-P", os.fspath(_CHILD), os.fspath(folder)]
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=timeout, check=False)
+    except subprocess.TimeoutExpired as error:
+        message = f"the repair took longer than {timeout:g} s and was stopped."
+        raise BspcsgError(message, "timed_out") from error
+    path = folder / "said.json"
+    said = json.loads(path.read_text()) if path.exists() else {}
+    if done.returncode == _MISSING and "missing" in said:
+        raise missing_part("pymeshlab", f"for repairs ({said['missing']})", remedy(said["missing"]))
+    if done.returncode != 0:
+        last = done.stderr.decode("utf-8", "replace").strip().splitlines()[-1:] or ["no word"]
+        message = f"pymeshlab failed with exit code {done.returncode}: {last[0]}"
+        raise BspcsgError(message, "repair_failed")
+    failed: dict[str, str] = said["failed"]
+    return failed
+
+
+def remedy(reason: str) -> str:
+    """Return the command that installs what pymeshlab misses."""
+    if "libGL" in reason or "libOpenGL" in reason or "plug-ins" in reason:
+        return "apt-get install --no-install-recommends libgl1 libopengl0"
+    return 'pip install "bspcsg[repair]"'
+
+
+def _facing_inwards(mesh: Mesh) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
+    """Return which faces belong to surfaces that are inside out.
+
+    A surface that lies in the box of another may be the wall of a cavity, and stays as it is.
+    """
+    inward = np.zeros(len(mesh.faces), dtype=np.bool_)
+    if len(mesh.faces) == 0:
+        return inward
+    owner = surfaces_of(mesh.faces, len(mesh.vertices))
+    shells = [mesh.faces[owner == number] for number in range(int(owner.max()) + 1)]
+    boxes = [_box(mesh, shell) for shell in shells]
+    volumes = [Mesh(mesh.vertices, shell, shell[:, :2]).volume for shell in shells]
+    # If all of it is inside out, so are the cavities.
+    sign = -1 if sum(volumes) < 0 else 1
+    for number, (low, high) in enumerate(boxes):
+        inner = any(
+            other != number and (low >= box[0]).all() and (high <= box[1]).all()
+            for other, box in enumerate(boxes)
+        )
+        if (sign if inner else volumes[number]) < 0:
+            inward |= owner == number
+    return inward
+
+
+def _box(mesh: Mesh, faces: IndexArray) -> tuple[FloatArray, FloatArray]:
+    used = mesh.vertices[np.unique(faces)]
+    return used.min(axis=0), used.max(axis=0)

@@ -1,0 +1,1 @@
+"""Meshes to turn in a browser."""

@@ -1,0 +1,71 @@
+"""`Layer`: one mesh of a view, and how it looks there."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...mesh.weld import welded
+
+#: Colours of operands in their order, taken again from the start after the last.
+COLOURS = ("#6f9bd1", "#e0a458", "#7fb285", "#a98bc9", "#c98b8b", "#79b7bd")
+
+#: Colours of a result, and of where two results differ.
+RESULT, DIFFERENCE = "#b4c2d1", "#f0283a"
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """One mesh of a view.
+
+    Parameters
+    ----------
+    name : str
+    vertices : (n, 3) float64
+        In model units.
+    faces : (m, 3) int64
+    colour : str
+        As ``"#rrggbb"``.
+    opacity : float
+        From 0 to 1.
+    shown : bool
+        Whether it is seen at first.
+    """
+
+    name: str
+    vertices: FloatArray
+    faces: IndexArray
+    colour: str = RESULT
+    opacity: float = 1.0
+    shown: bool = True
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether every directed edge has as many opposite ones, so that a section is filled."""
+        start, end = self.faces.ravel(), np.roll(self.faces, -1, axis=1).ravel()
+        size = max(len(self.vertices), 1)
+        low, high = np.minimum(start, end), np.maximum(start, end)
+        _, edge = np.unique(low * size + high, return_inverse=True)
+        return not np.bincount(edge.ravel(), np.sign(end - start)).any()
+
+    def simplified(self, cells: int) -> "Layer":
+        """Return the layer with the vertices in each cell made one, so many cells a side."""
+        if len(self.faces) == 0:
+            return self
+        low, high = bounds_of([self])
+        step = max(float((high - low).max()), np.finfo(np.float64).tiny) / cells
+        # In the order of the vertices, so that neighbours stay close to each other and pack well.
+        _, same = welded(np.rint((self.vertices - low) / step))
+        counts = np.bincount(same)[:, None]
+        sums = [np.bincount(same, axis) for axis in (self.vertices - low).T]
+        faces = same[self.faces]
+        kept = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
+        return replace(self, vertices=low + np.column_stack(sums) / counts, faces=kept)
+
+
+def bounds_of(layers: Sequence[Layer]) -> tuple[FloatArray, FloatArray]:
+    """Return lowest and highest coordinates, (3,) each, of all vertices that a face uses."""
+    used = [layer.vertices[np.unique(layer.faces)] for layer in layers if len(layer.faces)]
+    points = np.concatenate(used) if used else np.zeros((1, 3))
+    return points.min(axis=0), points.max(axis=0)

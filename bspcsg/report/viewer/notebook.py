@@ -1,0 +1,78 @@
+"""What a notebook shows for a solid: the interactive view, or a picture."""
+
+from html import escape
+from typing import TYPE_CHECKING
+
+from ...errors import MissingPartError
+from .layer import Layer
+from .still import drawing
+from .view import view_page
+
+if TYPE_CHECKING:
+    from ...solid.solid import Solid
+
+#: Triangles above which a cell gets a picture alone; the view of so many has about two megabytes.
+_MOST_IN_VIEW = 200_000
+
+#: Triangles above which a picture shows the shape roughly.
+_MOST_IN_PICTURE = 2_000
+
+#: Of the view in a cell, in pixels.
+_HEIGHT = 440
+
+_SIZE = (480, 360)
+
+
+def solid_html(solid: "Solid") -> str | None:
+    """Return the interactive view of a solid, or a sentence where there is nothing to be seen.
+
+    None if Jinja2 is not installed: a notebook then takes the picture.
+    """
+    sentence = _obstacle(solid)
+    if sentence:
+        return _paragraph(sentence)
+    layer = _layer(solid)
+    count = f"{len(layer.faces):,} triangles"
+    if len(layer.faces) > _MOST_IN_VIEW:
+        said = f"{count} are too many for a notebook; save the solid and use bspcsg view."
+        return solid_svg(solid) + _paragraph(said)
+    try:
+        page = view_page([layer], f"solid of {count}", embedded=True)
+    except MissingPartError:
+        return None
+    return (
+        f'<iframe srcdoc="{escape(page)}" title="solid of {count}" sandbox="allow-scripts"'
+        f' style="width:100%;height:{_HEIGHT}px;border:0"></iframe>'
+    )
+
+
+def solid_svg(solid: "Solid") -> str:
+    """Return a picture of a solid as SVG; above some thousand triangles it shows the shape only."""
+    sentence = _obstacle(solid)
+    if sentence:
+        return _words(sentence)
+    return drawing(_layer(solid), _SIZE, _MOST_IN_PICTURE)
+
+
+def _obstacle(solid: "Solid") -> str:
+    """Return why a solid has no boundary that can be shown, or nothing."""
+    if not solid.is_bounded:
+        return "This solid reaches to infinity; intersect it with a box to see a part of it."
+    return "This solid is empty." if len(solid.to_mesh().faces) == 0 else ""
+
+
+def _layer(solid: "Solid") -> Layer:
+    mesh = solid.to_mesh()
+    return Layer("solid", mesh.vertices, mesh.faces)
+
+
+def _paragraph(sentence: str) -> str:
+    return f"<p>{escape(sentence)}</p>"
+
+
+def _words(sentence: str) -> str:
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{_SIZE[0]}" height="30">'
+        f'<text x="4" y="20" font-family="sans-serif" font-size="13" fill="#808080">'
+        f"{escape(sentence)}</text></svg>"
+    )

@@ -1,0 +1,130 @@
+"""Small pictures of layers by the painter's algorithm, as addresses that hold the picture."""
+
+import base64
+import io
+from collections.abc import Sequence
+from urllib.parse import quote
+
+import numpy as np
+
+from ...bsp import Camera, Picture
+from ...bsp.painting.picture import picture
+from .layer import DIFFERENCE, Layer, bounds_of
+
+#: Triangles above which a mesh is simplified first, to so many cells a side: more are smaller than
+#: a pixel.
+_MOST_TRIANGLES, _CELLS = 6_000, 96
+
+#: Triangles above which edges are left out of small pictures, which they would blacken.
+_MOST_WITH_EDGES = 1_500
+
+#: Characters up to which a picture stays SVG, which is sharp at every size, and how many a polygon
+#: has at least.
+_FEW_CHARACTERS, _POLYGON = 5_000, 40
+
+#: Characters of SVG above which there is no picture if none of pixels can be made.
+_MOST_CHARACTERS = 150_000
+
+#: Of WebP: from 0 to 100, and how long to search, from 0 to 6.
+_QUALITY, _EFFORT = 66, 3
+
+
+def camera_for(layers: Sequence[Layer], size: tuple[int, int]) -> Camera:
+    """Return a camera that sees all layers, from the right front top."""
+    low, high = bounds_of(layers)
+    corners = np.array([[low, high][k >> a & 1][a] for k in range(8) for a in range(3)])
+    return Camera.named("iso", corners.reshape(8, 3), size[0] / size[1])
+
+
+def still(
+    layers: Sequence[Layer],
+    camera: Camera | None = None,
+    size: tuple[int, int] = (320, 240),
+    edges: bool = True,
+) -> str:
+    """Return a picture of opaque layers as the address of an image, or nothing if it is too large.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+    camera : Camera, optional
+        By default one that sees all of them.
+    size : (int, int)
+        Width and height in pixels.
+    edges : bool
+        Whether to draw those that show the shape, if they are not too many.
+    """
+    if not any(len(layer.faces) for layer in layers):
+        return ""
+    painted = _painted(layers, camera or camera_for(layers, size), size, edges)
+    few = len(painted.painting.source) * _POLYGON <= _FEW_CHARACTERS
+    if few and len(painted.svg) <= _FEW_CHARACTERS:
+        return _vector(painted.svg)
+    pixels = _pixels(painted)
+    if pixels:
+        return pixels
+    return _vector(painted.svg) if len(painted.svg) <= _MOST_CHARACTERS else ""
+
+
+def drawing(layer: Layer, size: tuple[int, int], most: int) -> str:
+    """Return the text of an SVG picture; of more than so many triangles it shows the rough shape.
+
+    Parameters
+    ----------
+    layer : Layer
+    size : (int, int)
+        Width and height in pixels.
+    most : int
+    """
+    shape, cells = layer, _CELLS
+    while len(shape.faces) > most and cells > 1:
+        cells = cells * 2 // 3
+        shape = layer.simplified(cells)
+    return _painted([shape], camera_for([layer], size), size, edges=shape is layer).svg
+
+
+def ring(place: Sequence[float], camera: Camera, size: tuple[int, int] = (320, 240)) -> str:
+    """Return the address of an image with a red ring around a point, as the camera sees it."""
+    width, height = size
+    (x, y), *_ = camera.flatten(camera.place(np.array([place]))) * (height / 2)
+    circle = f"<circle cx='{width / 2 + x:.1f}' cy='{height / 2 - y:.1f}' r='9'/>"
+    return _vector(
+        f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {width} {height}' fill='none'"
+        f" stroke='{DIFFERENCE}' stroke-width='2'>{circle}</svg>"
+    )
+
+
+def _painted(
+    layers: Sequence[Layer], camera: Camera, size: tuple[int, int], edges: bool
+) -> Picture:
+    count = sum(len(layer.faces) for layer in layers)
+    whole = count <= _MOST_TRIANGLES
+    meshes = list(layers) if whole else [layer.simplified(_CELLS) for layer in layers]
+    starts = np.cumsum([0, *(len(layer.vertices) for layer in meshes)]).tolist()
+    faces = [layer.faces + start for layer, start in zip(meshes, starts, strict=False)]
+    colours = [layer.colour for layer in meshes for _ in range(len(layer.faces))]
+    return picture(
+        (np.concatenate([layer.vertices for layer in meshes]), np.concatenate(faces)),
+        camera=camera,
+        size=size,
+        edges="feature" if edges and count <= _MOST_WITH_EDGES * size[0] / 320 else "none",
+        colors=colours or None,
+        background=None,
+        line_width=1.0,
+    )
+
+
+def _vector(svg: str) -> str:
+    return "data:image/svg+xml," + quote(svg.strip(), safe=" /:=,;'()-.")
+
+
+def _pixels(painted: Picture) -> str:
+    """Return the picture as WebP, or nothing if Pillow is not there."""
+    try:
+        from PIL import Image
+    except ImportError:
+        return ""
+    buffer = io.BytesIO()
+    with Image.open(io.BytesIO(painted.png)) as image:
+        image.save(buffer, "WEBP", quality=_QUALITY, method=_EFFORT)
+    return "data:image/webp;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")

@@ -1,0 +1,202 @@
+"""Python scripts that make a solid: they leave a `result`, or call `show`.
+
+A script is an ordinary Python program; ``python part.py`` runs it as well, `show` then does
+nothing. `run_script` runs it in a process of its own, so that it can be stopped, cannot take its
+caller with it, and keeps what it prints off the caller's standard output: that goes to standard
+error. It is a program with all its user's rights all the same: run no script you would not run
+with ``python``.
+"""
+
+import contextlib
+import os
+import pickle
+import subprocess
+import sys
+import tempfile
+import traceback
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any, TypeAlias
+
+from ..errors import BspcsgError, FormatError
+from ..geometry.transform import Factors
+from ..operations.setops import union
+from ..solid.counting import counted, uncounted
+from ..solid.solid import LastOperation, Solid, with_record
+from .values import VALUES, compiled
+
+#: Longest time for a script, in seconds, unless the caller says otherwise.
+TIMEOUT = 600.0
+
+#: What the child runs: Ctrl-C, which reaches it as well, ends it without a word; its parent tells.
+_SERVE = (
+    "import os, signal; signal.signal(signal.SIGINT, lambda *_: os._exit(130));"
+    " from bspcsg.script.run import serve; serve()"
+)
+
+#: A solid; of the result of an operation that, and the transform on it, for its pickle forgets it.
+_Made: TypeAlias = Solid | tuple[LastOperation, Factors]
+
+_shown: list[Solid] = []
+
+
+@uncounted
+def show(*solids: Any) -> None:
+    """Make solids part of a script's result; meshes of other libraries count as well.
+
+    Parameters
+    ----------
+    *solids : Solid or object
+        Whatever `Solid.from_mesh` takes.
+    """
+    _shown.extend(Solid.from_mesh(solid) for solid in solids)
+
+
+@counted
+def run_script(
+    path: str | os.PathLike[str],
+    *,
+    arguments: Sequence[str] = (),
+    defines: Mapping[str, Any] | None = None,
+    timeout: float | None = TIMEOUT,
+) -> Solid:
+    """Run a Python script in a process of its own and return the solid it makes.
+
+    Parameters
+    ----------
+    path : path
+        The script sees its own folder first in ``sys.path`` and ``__name__ == "__main__"``.
+    arguments : sequence of str
+        What follows the path in ``sys.argv``.
+    defines : mapping, optional
+        Values of variables by their names. Each takes the place of what the script assigns to the
+        variable at its top level, wherever it does; lines keep their numbers.
+    timeout : float, optional
+        In seconds; None waits for ever.
+
+    Returns
+    -------
+    Solid
+        The global variable ``result``, or the union of a list of solids there, or the union of all
+        that was shown. It knows the operation that made it (see `Solid.last_operation`).
+
+    Raises
+    ------
+    FormatError
+        If the script cannot be read ("unreadable"), fails ("script_failed": the message names file
+        and line), ends its process ("script_died"), takes too long ("timeout"), leaves no solid
+        ("no_result") or assigns no variable of a name in `defines` ("unknown_name").
+    """
+    name = os.fspath(path)
+    if not Path(path).is_file():
+        raise FormatError(f"{name}: cannot read this file: no such file.", "unreadable")
+    with tempfile.TemporaryDirectory(prefix="bspcsg-") as folder:
+        answer = Path(folder, "answer")
+        task = pickle.dumps((name, list(arguments), dict(defines or {}), str(answer)))
+        code = _run_child(task, name, timeout)
+        if not answer.is_file():
+            message = f"{name}: the script ended its process with code {code}."
+            raise FormatError(message, "script_died")
+        answered = pickle.loads(answer.read_bytes())
+    if isinstance(answered, BspcsgError):
+        raise answered
+    return answered if isinstance(answered, Solid) else with_record(*answered)
+
+
+def _run_child(task: bytes, name: str, timeout: float | None) -> int:
+    # -P keeps modules in the current folder from shadowing this package and what it needs.
+    command = [sys.executable, "-P", "-c", _SERVE]
+    package = str(Path(__file__).parents[2])
+    search = os.pathsep.join([package, *filter(None, [os.environ.get("PYTHONPATH")])])
+    try:
+        done = subprocess.run(
+            command,
+            input=task,
+            timeout=timeout,
+            check=False,
+            stdout=_standard_error(),
+            env={**os.environ, "PYTHONPATH": search},
+        )
+    except subprocess.TimeoutExpired as error:
+        message = f"{name}: the script took longer than {timeout:g} seconds."
+        raise FormatError(message, "timeout") from error
+    return done.returncode
+
+
+def _standard_error() -> int:
+    """Return a file number that a child can write to, whatever stands for standard error here."""
+    try:
+        return sys.stderr.fileno()
+    except (AttributeError, OSError, ValueError):
+        return subprocess.DEVNULL
+
+
+def _answer(name: str, arguments: list[str], defines: dict[str, Any]) -> _Made | BspcsgError:
+    sys.argv = [name, *arguments]
+    sys.path.insert(0, str(Path(name).parent.absolute()))
+    variables: dict[str, Any] = {}
+    try:
+        with contextlib.suppress(SystemExit):
+            variables = _ran(name, defines)
+        result = _result(name, variables)
+        return result if isinstance(result, BspcsgError) else _with_operation(result)
+    except BspcsgError as error:
+        return _located(error, name)
+    except Exception as error:
+        return _located(error, name)
+
+
+def _ran(name: str, defines: dict[str, Any]) -> dict[str, Any]:
+    """Run a script as the main program of this process and return its global variables."""
+    code = compiled(Path(name).read_bytes(), name, defines)
+    program = ModuleType("__main__")
+    vars(program).update({"__file__": name, VALUES: defines} if defines else {"__file__": name})
+    sys.modules["__main__"] = program
+    exec(code, vars(program))
+    return vars(program)
+
+
+def _result(name: str, variables: dict[str, Any]) -> Solid | BspcsgError:
+    result = variables.get("result")
+    if isinstance(result, (list, tuple)) and all(isinstance(one, Solid) for one in result):
+        return union(result)
+    if result is not None:
+        return Solid.from_mesh(result)
+    if not _shown:
+        message = f"{name}: the script left no variable “result” and called no bspcsg.show(solid)."
+        return FormatError(message, "no_result")
+    return union(_shown)
+
+
+def _with_operation(result: Solid) -> _Made:
+    """Return what the caller needs to know a solid and what made it."""
+    last = result.last_operation
+    return result if last is None else (last, result.expression.factors)
+
+
+def _located(error: Exception, name: str) -> BspcsgError:
+    """Return the error with the line of the script in which it arose."""
+    if isinstance(error, SyntaxError):
+        line = error.lineno
+    else:
+        frames = traceback.extract_tb(error.__traceback__)
+        line = next((f.lineno for f in reversed(frames) if f.filename == name), None)
+    place = name if line is None else f"{name}:{line}"
+    if isinstance(error, BspcsgError):
+        return type(error)(f"{place}: {error.message}", error.code, error.where)
+    detail = error.msg if isinstance(error, SyntaxError) else str(error)
+    message = f"{place}: {type(error).__name__}: {detail}".rstrip(": ")
+    return FormatError(message, "script_failed", [] if line is None else [line])
+
+
+def serve() -> None:
+    """Do the task on standard input, in the child process.
+
+    The answer goes into a file, complete or not at all.
+    """
+    name, arguments, defines, answer = pickle.load(sys.stdin.buffer)
+    pickled = pickle.dumps(_answer(name, arguments, defines))
+    unfinished = Path(f"{answer}.part")
+    unfinished.write_bytes(pickled)
+    unfinished.rename(answer)

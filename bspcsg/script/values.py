@@ -1,0 +1,111 @@
+"""Values that a caller sets in a Python script, in place of what its top level assigns."""
+
+import ast
+from collections import deque
+from collections.abc import Iterable, Iterator
+from difflib import get_close_matches
+from types import CodeType
+
+from ..errors import FormatError
+
+#: The global variable of a script that holds the values by their names.
+VALUES = "__defines__"
+
+#: Statements whose blocks are no part of the top level: names in them are their own.
+_OTHER_SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+
+
+def compiled(source: bytes, name: str, given: Iterable[str] = ()) -> CodeType:
+    """Return the code of a script in which the names given take their values from `VALUES`.
+
+    Every assignment of such a name at the top level assigns the value instead, also one in an
+    ``if`` or a loop; of ``a, b = 1, 2`` the others keep theirs. Lines keep their numbers.
+
+    Parameters
+    ----------
+    source : bytes
+    name : str
+        What errors and tracebacks call the script.
+    given : iterable of str
+
+    Raises
+    ------
+    FormatError
+        If the top level assigns no such name (code "unknown_name"); the message lists those that
+        it assigns.
+    SyntaxError, ValueError
+        If the source is no Python.
+    """
+    tree, wanted = ast.parse(source, name), tuple(given)
+    if wanted:
+        blocks = list(_top_level(tree))
+        assigned = {bound: None for block in blocks for one in block for bound in _bound(one)}
+        for unknown in (one for one in wanted if one not in assigned):
+            raise FormatError(_advice(unknown, list(assigned)), "unknown_name")
+        for block in blocks:
+            block[:] = [new for old in block for new in _replaced(old, wanted)]
+    return compile(ast.fix_missing_locations(tree), name, "exec", dont_inherit=True)
+
+
+def _advice(unknown: str, known: list[str]) -> str:
+    message = f"the script assigns no variable {unknown} at its top level"
+    if not known:
+        return f"{message}, nor any other."
+    close = get_close_matches(unknown, known, n=1)
+    guess = f" Did you mean {close[0]}?" if close else ""
+    return f"{message}.{guess} It assigns {', '.join(known)}."
+
+
+def _top_level(tree: ast.Module) -> Iterator[list[ast.stmt]]:
+    """Yield the blocks of statements that run in the script's own scope, outermost first."""
+    waiting: deque[ast.AST] = deque([tree])
+    while waiting:
+        owner = waiting.popleft()
+        for part in ("body", "orelse", "finalbody", "handlers", "cases"):
+            block = getattr(owner, part, ())
+            if part not in ("handlers", "cases") and block:
+                yield block
+            waiting.extend(one for one in block if not isinstance(one, _OTHER_SCOPES))
+
+
+def _bound(statement: ast.stmt) -> list[str]:
+    """Return the names that an assignment binds; none if the statement is something else."""
+    if isinstance(statement, ast.Assign):
+        targets = statement.targets
+    elif isinstance(statement, ast.AnnAssign):
+        targets = [statement.target]
+    else:
+        return []
+    nodes = (node for target in targets for node in ast.walk(target))
+    stored = (node for node in nodes if isinstance(node, ast.Name))
+    return [node.id for node in stored if isinstance(node.ctx, ast.Store)]
+
+
+def _replaced(statement: ast.stmt, wanted: tuple[str, ...]) -> list[ast.stmt]:
+    """Return what stands for a statement once the names wanted have their values from outside."""
+    names = [name for name in _bound(statement) if name in wanted]
+    if not names:
+        return [statement]
+    if isinstance(statement, ast.AnnAssign):
+        statement.value = _value(names[0], statement)
+        return [statement]
+    kept: list[ast.stmt] = []
+    if isinstance(statement, ast.Assign):
+        rest = [one for one in statement.targets if not _is_name(one, names)]
+        kept = [ast.copy_location(ast.Assign(rest, statement.value), statement)] if rest else []
+    return [*kept, *(_assignment(name, statement) for name in names)]
+
+
+def _is_name(target: ast.expr, names: list[str]) -> bool:
+    return isinstance(target, ast.Name) and target.id in names
+
+
+def _assignment(name: str, old: ast.stmt) -> ast.stmt:
+    target = ast.Name(name, ast.Store())
+    return ast.copy_location(ast.Assign([target], _value(name, old)), old)
+
+
+def _value(name: str, old: ast.stmt) -> ast.expr:
+    """Return the expression for a value from outside, at the place of an old statement."""
+    values = ast.Name(VALUES, ast.Load())
+    return ast.copy_location(ast.Subscript(values, ast.Constant(name), ast.Load()), old)

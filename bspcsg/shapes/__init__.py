@@ -1,0 +1,1 @@
+"""Solids by name, and solids swept from plane polygons."""

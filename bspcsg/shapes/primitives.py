@@ -1,0 +1,281 @@
+"""Solids by name: boxes, round bodies and half-spaces.
+
+Names and defaults follow OpenSCAD: bodies stand on the plane z = 0 and have their corner (boxes) or
+axis (round bodies) at the origin, unless ``center=True`` puts their middle there. Round bodies are
+polyhedra with `segments` sides around, their vertices on the true surface. Lengths are in model
+units; parameters that make no solid raise `InvalidMeshError` with the code "invalid_parameter".
+"""
+
+from typing import Any
+
+import numpy as np
+
+from .._types import FloatArray, IndexArray, Scalar, Vector
+from ..errors import InvalidMeshError, invalid_parameter
+from ..geometry.hyperplane import Hyperplane
+from ..geometry.polygon import triangulate
+from ..geometry.transform import vector3
+from ..parameters import number, positive, refuse_many_corners, sides_around
+from ..solid.counting import counted
+from ..solid.leaf import MeshLeaf, PlaneLeaf
+from ..solid.solid import Solid
+from .profile import extrude, revolve
+from .sweep import surface_of_revolution, unit_circle
+
+__all__ = [
+    "box",
+    "cone",
+    "cube",
+    "cylinder",
+    "extrude",
+    "half_space",
+    "prism",
+    "revolve",
+    "sphere",
+    "torus",
+]
+
+# Corners of a face of the unit cube, by corner number 4x + 2y + z.
+_BOX_FACES = np.array(
+    [
+        [0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5],
+        [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6],
+        [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3],
+    ],
+    dtype=np.int64,
+)  # fmt: skip
+
+
+@counted
+def box(size: Scalar | Vector, center: bool = False) -> Solid:
+    """Return a box.
+
+    Parameters
+    ----------
+    size : float or (3,) float
+        Edge lengths; one number makes a cube.
+    center : bool
+        Whether the middle is at the origin, instead of the lowest corner.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.box((1, 2, 3)).volume
+    6.0
+    """
+    lengths = vector3(size, "size", spread=True)
+    for length in lengths:
+        positive(length, "size")
+    corners = np.indices((2, 2, 2)).reshape(3, 8).T
+    vertices = (corners - 0.5) * lengths if center else corners * lengths
+    return from_arrays(vertices, _BOX_FACES)
+
+
+@counted
+def cube(size: Scalar | Vector, center: bool = False) -> Solid:
+    """Return a cube of this edge length, or a box: another name for `box`."""
+    return box(size, center)
+
+
+@counted
+def sphere(r: Scalar, segments: int = 32) -> Solid:
+    """Return a sphere about the origin, made of meridians and parallels.
+
+    Parameters
+    ----------
+    r : float
+    segments : int
+        Sides of the equator, at least 3; there are half as many bands from pole to pole.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.sphere(1, segments=4).to_mesh()
+    Mesh(6 vertices, 8 faces)
+    """
+    radius, around = positive(r, "r"), sides_around(3, segments, "segments")
+    bands = max(around // 2, 2)
+    refuse_many_corners(around * bands, "This sphere")
+    angles = unit_circle(2 * bands)[: bands + 1]
+    # From pole to pole; both poles are on the axis and become one vertex each.
+    profile = np.column_stack([angles[:, 1], -angles[:, 0]]) * radius
+    return from_arrays(*surface_of_revolution(profile, around, closed=False))
+
+
+@counted
+def cylinder(
+    h: Scalar,
+    r: Scalar | None = None,
+    *,
+    r1: Scalar | None = None,
+    r2: Scalar | None = None,
+    segments: int = 32,
+    center: bool = False,
+) -> Solid:
+    """Return a cylinder, cone or frustum along z.
+
+    Parameters
+    ----------
+    h : float
+        Height.
+    r : float
+        Radius of both ends, unless `r1` or `r2` says otherwise.
+    r1, r2 : float
+        Radius of the lower and the upper end; one of them may be 0.
+    segments : int
+        Sides around, at least 3.
+    center : bool
+        Whether the middle is at z = 0, instead of the lower end.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.cylinder(h=3, r=1, segments=4).volume
+    6.0
+    """
+    low, high = (_radius(given, r) for given in (r1, r2))
+    if low == high == 0:
+        raise invalid_parameter("A cylinder needs a radius above 0.")
+    height, around = positive(h, "h"), sides_around(3, segments, "segments")
+    base = -height / 2 if center else 0.0
+    ends = np.array([[low, base], [high, base + height]])
+    vertices, sides = surface_of_revolution(ends, around, closed=False)
+    cap = triangulate([unit_circle(around)])
+    # A ring has as many vertices as sides; an apex has one, and needs no cap.
+    bottom = cap[:, ::-1] if low else cap[:0]
+    top = cap + (len(vertices) - around) if high else cap[:0]
+    return from_arrays(vertices, np.concatenate([sides, bottom, top]))
+
+
+@counted
+def cone(h: Scalar, r: Scalar, *, segments: int = 32, center: bool = False) -> Solid:
+    """Return a cone along z with its apex up: a `cylinder` whose upper radius is 0."""
+    return cylinder(h, r1=r, r2=0, segments=segments, center=center)
+
+
+@counted
+def torus(r: Scalar, tube: Scalar, *, segments: int = 32, tube_segments: int = 16) -> Solid:
+    """Return a torus around the z axis.
+
+    Parameters
+    ----------
+    r : float
+        From the axis to the middle of the tube.
+    tube : float
+        Radius of the tube, below `r`.
+    segments, tube_segments : int
+        Sides around the axis and around the tube, at least 3.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.torus(3, 1).genus
+    1
+    """
+    major, minor = positive(r, "r"), positive(tube, "tube")
+    if minor >= major:
+        raise invalid_parameter("The tube of a torus must be thinner than its ring's radius.")
+    along = sides_around(3, segments, "segments")
+    across = sides_around(3, tube_segments, "tube_segments")
+    refuse_many_corners(along * across, "This torus")
+    profile = unit_circle(across) * minor + (major, 0)
+    return from_arrays(*surface_of_revolution(profile, along, closed=True))
+
+
+@counted
+def prism(sides: int, h: Scalar, r: Scalar, *, center: bool = False) -> Solid:
+    """Return an upright regular prism.
+
+    Parameters
+    ----------
+    sides : int
+        At least 3.
+    h : float
+        Height.
+    r : float
+        From the axis to a vertical edge; the first one is on the x axis.
+    center : bool
+        Whether the middle is at z = 0, instead of the lower end.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.prism(4, h=1, r=1).volume
+    2.0
+    """
+    return cylinder(h, r, segments=sides_around(3, sides, "sides"), center=center)
+
+
+@counted
+def half_space(normal: Vector, offset: Scalar = 0.0) -> Solid:
+    """Return all points x with ``normal . x <= offset``.
+
+    Parameters
+    ----------
+    normal : (3,) float
+        Points outwards; need not have unit length.
+    offset : float
+
+    Raises
+    ------
+    InvalidMeshError
+        If the normal is zero or a number is not finite ("bad_normal").
+    LimitError
+        If the plane misses the lattice of the solids it meets ("too_large").
+
+    Notes
+    -----
+    The numbers count as the decimals they are written as, and transforms move the plane by exact
+    arithmetic. If it holds points of the lattice on which it meets other solids, it is this very
+    plane, and lies in one plane with faces that have their corners there. Otherwise it is moved to
+    the nearest plane of that direction that does, at most half a step, as a mesh's coordinates are,
+    and the finding ``half_space_rounded`` says how far. Normals of more than 106 bits, after turns
+    by odd angles, are rounded to 61 bits, which the finding accounts for. Half-spaces by themselves
+    choose a step down to 10**-12 if a plane needs it.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> (b.cube(2) & b.half_space((0, 0, 1), 0.5)).volume
+    2.0
+    >>> b.half_space((1, 1, 1), 1).classify([(1, 0, 0), (0.5, 0.25, 0.25)]).tolist()
+    [0, 0]
+    """
+    try:
+        x, y, z = normal
+    except (TypeError, ValueError) as error:
+        raise InvalidMeshError("A normal has three numbers.", "bad_normal") from error
+    number(offset, "offset")
+    return Solid.from_leaf(PlaneLeaf(Hyperplane.from_numbers((x, y, z), offset)))
+
+
+def from_arrays(vertices: FloatArray, faces: IndexArray) -> Solid:
+    """Return the solid of a mesh whose faces do not cross, checked only where snapping could."""
+    own = np.ascontiguousarray(vertices, dtype=np.float64), np.ascontiguousarray(faces)
+    return Solid.from_leaf(MeshLeaf(*own, trusted=_survives_snapping(*own)))
+
+
+def _survives_snapping(vertices: FloatArray, faces: IndexArray) -> bool:
+    """Whether no triangle is so thin that moving its corners to the lattice could turn it over."""
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    sides = np.array(
+        [
+            np.linalg.norm(b - a, axis=1),
+            np.linalg.norm(c - b, axis=1),
+            np.linalg.norm(a - c, axis=1),
+        ]
+    )
+    with np.errstate(all="ignore"):
+        altitude = np.linalg.norm(np.cross(b - a, c - a), axis=1) / sides.max(axis=0)
+        # A thousand steps of the lattice that a solid of this size gets.
+        return bool(altitude.min() > 1e-6 * max(1.0, np.abs(vertices).max() / 1000))
+
+
+def _radius(given: Scalar | None, default: Any) -> float:
+    value = default if given is None else given
+    if value is None:
+        raise invalid_parameter("A cylinder needs r, or both r1 and r2.")
+    radius = number(value, "radius")
+    if radius < 0:
+        raise invalid_parameter(f"A radius must not be negative: {radius}.")
+    return radius

@@ -1,0 +1,40 @@
+"""What a solid's `repr` says: only what is known already."""
+
+from typing import Any
+
+import numpy as np
+
+from ..geometry.transform import Factors
+from ..mesh.mesh import Mesh
+from .expression import Node, Pending, make_plan
+from .leaf import ConstantLeaf, MeshLeaf, PlaneLeaf
+
+
+def describe(node: Node, factors: Factors, mesh: Mesh | None) -> str:
+    """Return a few words on an expression under a transform, without evaluating it."""
+    content = node.content
+    moved = ", transformed" if factors else ""
+    if mesh is not None:
+        return _size(len(mesh.faces), mesh.bounds)
+    if isinstance(content, Pending):
+        count = len(make_plan(node).operands)
+        return f"pending: {count} operand{'' if count == 1 else 's'}{moved}"
+    if isinstance(content, MeshLeaf):
+        vertices, faces = content.arrays()
+        bounds = np.array([vertices.min(axis=0), vertices.max(axis=0)])
+        return _size(len(faces), bounds) + moved
+    if isinstance(content, PlaneLeaf):
+        return "half-space" + moved
+    if isinstance(content, ConstantLeaf):
+        return "all of space" if content.full else "empty"
+    # Its bounds are not known before a mesh is made.
+    return ("empty" if content.result.is_empty else "evaluated") + moved
+
+
+def _size(faces: int, bounds: Any) -> str:
+    return "empty" if bounds is None else f"{faces} triangles, bounds {_box(bounds)}"
+
+
+def _box(bounds: Any) -> str:
+    low, high = ("(" + ", ".join(f"{x:.6g}" for x in corner) + ")" for corner in bounds)
+    return f"{low} to {high}"

@@ -1,0 +1,184 @@
+"""Lazy set expressions: a graph of operations over leaves, and its evaluation.
+
+Building an expression costs nothing. Evaluating a node flattens everything below it into one
+program for the core, which descends once for all of it; then the node becomes a leaf and the graph
+below it is let go. A node that appears under a transform is evaluated by itself first, because a
+transform acts on its result as a whole. There is no recursion: expressions may be any depth.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal, NamedTuple, TypeAlias
+
+from .._types import ProgramLine
+from ..errors import internal
+from ..geometry.transform import Factors
+from .leaf import Leaf, Record, TreeLeaf, run
+
+Operator: TypeAlias = Literal["or", "and", "xor", "not"]
+
+
+class Placed(NamedTuple):
+    """A node under a transform."""
+
+    node: "Node"
+    factors: Factors
+
+
+@dataclass(frozen=True, eq=False)
+class Pending:
+    """An operation that has not been carried out."""
+
+    operator: Operator
+    operands: tuple[Placed, ...]
+
+
+class Node:
+    """A vertex of the graph; only its identity counts.
+
+    `content` changes once, from `Pending` to the leaf that it evaluates to. It is one attribute,
+    so that another thread sees either all of the operation or all of the result.
+    """
+
+    __slots__ = ("__weakref__", "content")
+
+    def __init__(self, content: Pending | Leaf) -> None:
+        self.content = content
+
+
+def complement(placed: Placed) -> Placed:
+    """Return the complement; that of a complement is the original."""
+    content = placed.node.content
+    if isinstance(content, Pending) and content.operator == "not":
+        inner = content.operands[0]
+        return Placed(inner.node, placed.factors + inner.factors)
+    # The transform moves outside: M(not X) and not M(X) are the same set.
+    return Placed(Node(Pending("not", (Placed(placed.node, ()),))), placed.factors)
+
+
+def operation(operator: Operator, operands: Sequence[Placed]) -> Node:
+    """Return the node that combines the operands."""
+    return Node(Pending(operator, tuple(_settled(operand) for operand in operands)))
+
+
+def _settled(placed: Placed) -> Placed:
+    """Move a transform below a complement, so that it meets a bounded solid."""
+    content = placed.node.content
+    if not placed.factors or not isinstance(content, Pending) or content.operator != "not":
+        return placed
+    inner = content.operands[0]
+    below = Placed(inner.node, placed.factors + inner.factors)
+    return Placed(Node(Pending("not", (below,))), ())
+
+
+def evaluate(root: Node) -> Leaf:
+    """Return the leaf that a node stands for, evaluating what is needed.
+
+    Raises
+    ------
+    BspcsgError
+        What the core or the placing of a leaf raises; the expression then stays as it was.
+    """
+    waiting: list[tuple[Node, Plan | None]] = [(root, None)]
+    while waiting:
+        node, plan = waiting.pop()
+        content = node.content
+        if not isinstance(content, Pending):
+            continue
+        if plan is not None:
+            node.content = plan.execute()
+            continue
+        plan = make_plan(node)
+        waiting.append((node, plan))
+        waiting.extend((operand.node, None) for operand in reversed(plan.operands))
+    return _evaluated(root.content)
+
+
+@dataclass
+class Plan:
+    """A program for the core, and the operands that its leaf lines name."""
+
+    program: list[ProgramLine] = field(default_factory=list)
+    operands: list[Placed] = field(default_factory=list)
+
+    def execute(self) -> Leaf:
+        """Carry the program out; the operands must have been evaluated."""
+        leaves = [_operand_leaf(operand) for operand in self.operands]
+        return run(Record(self.program, tuple(leaves)))
+
+
+def make_plan(root: Node) -> Plan:
+    """Flatten the expression below a node into a program, operands in reading order."""
+    uses = _count_uses(root)
+    plan = Plan()
+    lines: dict[Placed, int] = {}
+    waiting: list[tuple[Placed, list[Placed] | None]] = [(Placed(root, ()), None)]
+    while waiting:
+        placed, arguments = waiting.pop()
+        if placed in lines:
+            continue
+        pending = _open_operation(placed)
+        if pending is None:
+            lines[placed] = len(plan.program)
+            plan.program.append(("leaf", [len(plan.operands)]))
+            plan.operands.append(placed)
+        elif arguments is None:
+            arguments = _arguments(pending, uses)
+            waiting.append((placed, arguments))
+            waiting.extend((argument, None) for argument in reversed(arguments))
+        else:
+            lines[placed] = len(plan.program)
+            plan.program.append((pending.operator, [lines[argument] for argument in arguments]))
+    return plan
+
+
+def _evaluated(content: Pending | Leaf) -> Leaf:
+    if isinstance(content, Pending):
+        raise internal("an operand has not been evaluated")
+    return content
+
+
+def _operand_leaf(placed: Placed) -> Leaf:
+    content = _evaluated(placed.node.content)
+    leaf = content.placed(placed.factors) if placed.factors else content
+    # What remembers its operands must not be remembered in turn, or a chain would keep all of it.
+    return leaf.forgetful() if isinstance(leaf, TreeLeaf) else leaf
+
+
+def _open_operation(placed: Placed) -> Pending | None:
+    """Return the operation that a program can contain in place, or None if this is an operand."""
+    content = placed.node.content
+    return content if isinstance(content, Pending) and not placed.factors else None
+
+
+def _arguments(pending: Pending, uses: dict[Node, int]) -> list[Placed]:
+    """Return the operands, with nested uses of the same associative operator spread out.
+
+    Only what nothing else uses is spread: a shared node keeps a line of its own.
+    """
+    arguments: list[Placed] = []
+    waiting = list(reversed(pending.operands))
+    while waiting:
+        placed = waiting.pop()
+        inner = _open_operation(placed)
+        nested = inner is not None and inner.operator == pending.operator in ("or", "and")
+        if inner is not None and nested and uses.get(placed.node) == 1:
+            waiting.extend(reversed(inner.operands))
+        else:
+            arguments.append(placed)
+    return arguments
+
+
+def _count_uses(root: Node) -> dict[Node, int]:
+    """Count how often the program below a node refers to each node."""
+    uses: dict[Node, int] = {}
+    open_nodes = {root}
+    waiting = [root]
+    while waiting:
+        content = waiting.pop().content
+        for node, factors in content.operands if isinstance(content, Pending) else ():
+            uses[node] = uses.get(node, 0) + 1
+            if not factors and node not in open_nodes:
+                open_nodes.add(node)
+                waiting.append(node)
+    return uses

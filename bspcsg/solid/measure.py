@@ -1,0 +1,219 @@
+"""What can be measured of a solid: the queries, apart from the value that answers them."""
+
+import math
+from abc import ABC, abstractmethod
+from fractions import Fraction
+from typing import Any, Self
+
+from .._core import Tree
+from .._types import FloatArray, IndexArray, SideArray
+from ..errors import Finding, core_errors
+from ..mesh import interop
+from ..mesh.mesh import Mesh
+
+#: What `Measured.volume_residues` are modulo of.
+_PRIMES = (2**61 - 1, 2**61 - 31)
+
+#: Fractions of more digits take more than about a second to bring to lowest terms.
+LONGEST_VOLUME = 200_000
+
+
+class Measured(ABC):
+    """A solid as the measures see it."""
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def tree(self) -> Tree:
+        """The partition tree of the set."""
+
+    @abstractmethod
+    def to_mesh(self) -> Mesh:
+        """Return the boundary as a closed mesh."""
+
+    @abstractmethod
+    def alias(self) -> Self:
+        """Return the same value as another object, with all that is known about it."""
+
+    @abstractmethod
+    def normalized(self) -> "Measured":
+        """Return the same set with the reduced boundary as its mesh."""
+
+    @abstractmethod
+    def _outside(self) -> "Measured":
+        """Return the complement with its reduced boundary."""
+
+    @property
+    def vertices(self) -> FloatArray:
+        """Vertices of the mesh, (n, 3) float64, in model units, read-only."""
+        return self.to_mesh().vertices
+
+    @property
+    def faces(self) -> IndexArray:
+        """Triangles of the mesh, (m, 3) int64, indices of `vertices`, read-only."""
+        return self.to_mesh().faces
+
+    @property
+    def sources(self) -> tuple[int, ...]:
+        """Identities of the input meshes, in the order in which `Mesh.source` counts them."""
+        return tuple(self.tree.sources)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What was noteworthy about the inputs and about making the mesh."""
+        found = self.tree.findings
+        if self.is_bounded:
+            self.to_mesh()
+            found = [*found, *self.tree.mesh_findings()]
+        return tuple(Finding.from_core(finding) for finding in found)
+
+    @property
+    def pitch(self) -> int:
+        """Exponent of the lattice step: it is ``10**pitch`` model units."""
+        return self.tree.pitch
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no volume is inside."""
+        return self.normalized().tree.is_empty
+
+    @property
+    def is_bounded(self) -> bool:
+        """Whether the solid fits into some box."""
+        return self.tree.is_bounded
+
+    @property
+    def volume_exact(self) -> Fraction:
+        """Volume of the set in cubic model units, exactly.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity; so for all measures.
+        LimitError
+            If it might be a fraction of more than 200 000 digits; see `exact_volume`.
+        """
+        return self.exact_volume()
+
+    def exact_volume(self, most_digits: int = LONGEST_VOLUME) -> Fraction:
+        """Return the volume of the set in cubic model units, exactly.
+
+        Its denominator grows by about one constructed corner's for each corner. Lowest terms cost
+        the square of the length, and cannot be interrupted.
+
+        Parameters
+        ----------
+        most_digits : int
+            How many decimal digits the numerator and the denominator may have.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+        LimitError
+            If they might have more; the message says how many.
+        """
+        bits = math.ceil(most_digits * math.log2(10))
+        with core_errors():
+            return Fraction(*self.normalized().tree.volume6_exact(bits))
+
+    @property
+    def volume_near(self) -> Fraction:
+        """Volume in cubic model units to within 2**-100 cubic lattice steps.
+
+        Far finer than a double and, unlike the exact volume, cheap for any number of cut faces.
+        """
+        with core_errors():
+            return Fraction(*self.normalized().tree.volume_near())
+
+    @property
+    def volume_residues(self) -> tuple[int, int] | None:
+        """Six times the exact volume in cubic lattice steps, modulo 2**61 - 1 and 2**61 - 31.
+
+        Sums of exact volumes of solids of one pitch agree if these do, but for a chance of
+        2**-122; comparing them costs one pass. None in the rare case of a denominator that is a
+        multiple of a prime.
+        """
+        with core_errors():
+            return self.normalized().tree.volume_residues()
+
+    @property
+    def volume(self) -> float:
+        """Volume of the set in cubic model units, rounded once."""
+        volume = self.normalized().tree.volume_rounded()
+        return float(self.volume_near) if volume is None else volume
+
+    @property
+    def area(self) -> float:
+        """Surface area in square model units, which is that of the complement, too.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid and its complement both reach to infinity.
+        """
+        reduced = self.normalized()
+        return (reduced if reduced.is_bounded else self._outside()).to_mesh().area
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Centre of volume, (3,) float64, in model units; NaN for the empty set."""
+        return self.normalized().to_mesh().centroid
+
+    @property
+    def bounds(self) -> FloatArray | None:
+        """Lowest and highest coordinates, (2, 3) float64, or None for the empty set."""
+        return self.normalized().to_mesh().bounds
+
+    @property
+    def euler_number(self) -> int:
+        """Vertices - edges + faces of the mesh."""
+        return self.normalized().to_mesh().euler_number
+
+    @property
+    def components(self) -> int:
+        """Number of connected surfaces; the wall of a closed cavity is one of its own."""
+        return self.normalized().to_mesh().components
+
+    @property
+    def genus(self) -> int:
+        """Number of handles, summed over all connected surfaces."""
+        return self.normalized().to_mesh().genus
+
+    def classify(self, points: Any) -> SideArray:
+        """Say of each point whether it is inside, exactly.
+
+        Parameters
+        ----------
+        points : (k, 3) array_like of float
+            In model units; snapped to the lattice.
+
+        Returns
+        -------
+        (k,) int8
+            +1 inside, 0 on the boundary, -1 outside.
+        """
+        array = interop.points_array(points)
+        with core_errors():
+            return self.normalized().tree.classify(array)
+
+
+def residues_of_volume(solid: Measured) -> tuple[int | None, ...]:
+    """Return six times the exact volume in cubic units, modulo two primes.
+
+    Unlike `Measured.volume_residues` they follow from the set alone, not from its lattice or its
+    triangles; None where the reduced denominator is a multiple of the prime.
+    """
+    steps = solid.volume_residues
+    if steps is not None:
+        pitch = 3 * solid.normalized().tree.pitch
+        pairs = zip(steps, _PRIMES, strict=True)
+        return tuple(count * pow(10, pitch, prime) % prime for count, prime in pairs)
+    volume = 6 * solid.volume_exact
+    return tuple(
+        volume.numerator * pow(volume.denominator, -1, prime) % prime
+        if volume.denominator % prime
+        else None
+        for prime in _PRIMES
+    )

@@ -1,0 +1,516 @@
+"""`Solid`: a set of points with a polyhedral boundary, as an immutable value.
+
+A solid is a lazy expression under a transform. The first query evaluates it, once; the answer is
+kept and the expression let go. Two things are promised, and two kinds of query ask for them:
+
+* the set is right, always: `to_mesh`, `vertices`, `faces` pay for this much and no more;
+* the mesh is the reduced boundary, every wall between inside and outside exactly once: `volume`,
+  `equals`, `save` and the like take `normalized`, which checks inputs that nobody has vouched for.
+"""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._core import Tree
+from .._types import ProgramLine, Scalar, Vector, WindingRule
+from ..errors import core_errors
+from ..geometry import transform
+from ..geometry.transform import Factors, common_prefix
+from ..mesh import interop
+from ..mesh.mesh import Mesh
+from ..parameters import optional_pitch, winding_rule
+from .counting import count, counted, uncounted
+from .describe import describe
+from .expression import Node, Operator, Placed, complement, evaluate, operation
+from .leaf import ConstantLeaf, Leaf, MeshLeaf, Record, TreeLeaf, tree_of
+from .measure import Measured, residues_of_volume
+from .point_set import PointSet
+
+if TYPE_CHECKING:
+    import manifold3d
+    import trimesh
+
+    from ..bsp import Region
+
+
+class Solid(Measured, PointSet):
+    """A closed triangle mesh as a set of points.
+
+    Inside is where the winding number of the faces satisfies the rule; faces may cross, overlap,
+    touch or repeat. Coordinates are snapped to a decimal lattice, by default of step 1e-9.
+
+    ``==``, ``<=``, ``<``, ``in`` and the like are those of Python's sets, for the points: solids
+    are equal if they are the same set, however they were made. They are exact, and evaluate the
+    solids, as `hash` does; whether two names mean one object says ``is``.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array_like of float
+        In model units.
+    faces : (m, 3) array_like of int, or sequence of index sequences
+        Indices of `vertices`, counter-clockwise seen from outside. Polygons are triangulated.
+    pitch : int, optional
+        The lattice step is ``10**pitch`` units. By default -9, or what the size asks for.
+    trusted : bool
+        Your word that faces meet in common edges and vertices only, which saves a check.
+    winding : {"positive", "nonzero", "even-odd"}
+        Which winding numbers are inside.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the mesh is not closed (`where` lists faces), has no faces, has coordinates that are not
+        finite, indices out of range, or arrays of another shape.
+    LimitError
+        If the coordinates do not fit on the lattice of the given pitch.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> part = b.cube(2) - b.cube(1)
+    >>> part
+    Solid(pending: 2 operands)
+    >>> part.volume
+    7.0
+    >>> (part | b.cube(1)).equals(b.cube(2))
+    True
+    """
+
+    __slots__ = ("__weakref__", "_factors", "_mesh", "_node", "_placed", "_reduced")
+
+    def __init__(
+        self,
+        vertices: Any,
+        faces: Any,
+        *,
+        pitch: int | None = None,
+        trusted: bool = False,
+        winding: WindingRule = "positive",
+    ) -> None:
+        rule, chosen = winding_rule(winding), optional_pitch(pitch)
+        arrays = interop.mesh_arrays(vertices, faces)
+        leaf = MeshLeaf(*arrays, pitch=chosen, trusted=trusted, winding=rule)
+        # Errors in a mesh belong to the line that gave it, not to the first query.
+        leaf.own_tree()
+        leaf.disown()
+        self._set(Node(leaf), ())
+        count(self)
+
+    def _set(self, node: Node, factors: Factors) -> None:
+        self._node = node
+        self._factors = factors
+        self._placed: Leaf | None = None
+        self._mesh: Mesh | None = None
+        self._reduced: Solid | None = None
+
+    @classmethod
+    def from_node(cls, node: Node, factors: Factors = ()) -> "Solid":
+        """Return the solid of an expression under a transform (for the modules of this package)."""
+        solid = cls.__new__(cls)
+        solid._set(node, factors)
+        return solid
+
+    @classmethod
+    def from_leaf(cls, leaf: Leaf) -> "Solid":
+        """Return the solid of a leaf (for the modules of this package)."""
+        return cls.from_node(Node(leaf))
+
+    @classmethod
+    @counted
+    def from_mesh(
+        cls,
+        mesh: Any,
+        *,
+        format: str | None = None,  # noqa: A002
+        tolerance: float = interop.TESSELLATION_TOLERANCE,
+        **options: Any,
+    ) -> "Solid":
+        """Return the solid of whatever holds a mesh.
+
+        Parameters
+        ----------
+        mesh : object
+            A trimesh, manifold3d, pymeshlab, open3d, pyvista, vtk or meshio mesh, a CadQuery or
+            build123d shape, a pair (vertices, faces) as libigl has it, a path, the bytes of a file
+            or an open one, or anything that has ``vertices`` and ``faces``. A `Solid` is returned
+            as it is; a mesh without vertices and faces is the empty set.
+        format : str, optional
+            Of bytes and open files: a suffix, such as ``"stl"``.
+        tolerance : float
+            How far from the true surface of a CAD shape its triangles may be, in model units.
+        **options
+            As for `Solid`.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the object holds no mesh, or as for `Solid`.
+        FormatError
+            If a file cannot be read as what it should be.
+
+        Notes
+        -----
+        Coordinates are taken as they are: those of pyvista and of files in binary STL have single
+        precision, unless a pyvista mesh was made of float64 points.
+        """
+        if isinstance(mesh, Solid):
+            return mesh
+        if isinstance(mesh, (str, os.PathLike)):
+            return cls.load(mesh, **options)
+        if isinstance(mesh, (bytes, bytearray, memoryview)) or hasattr(mesh, "readable"):
+            from .. import io
+
+            return io.loads(mesh, format, **options)
+        arrays = interop.arrays_from(mesh, tolerance)
+        return cls.empty() if interop.are_empty(arrays) else cls(*arrays, **options)
+
+    @classmethod
+    @counted
+    def empty(cls) -> "Solid":
+        """Return the empty set."""
+        return cls.from_leaf(ConstantLeaf(full=False))
+
+    @classmethod
+    @counted
+    def full(cls) -> "Solid":
+        """Return all of space."""
+        return cls.from_leaf(ConstantLeaf(full=True))
+
+    # Set operations
+
+    @counted
+    def __or__(self, other: object) -> "Solid":
+        """Union."""
+        return combine("or", (self, other)) if isinstance(other, Solid) else NotImplemented
+
+    __add__ = __or__
+
+    def __radd__(self, other: object) -> "Solid":
+        """Make ``sum(solids)`` work, which starts from 0."""
+        return self if isinstance(other, int) and other == 0 else NotImplemented
+
+    @counted
+    def __and__(self, other: object) -> "Solid":
+        """Intersection."""
+        return combine("and", (self, other)) if isinstance(other, Solid) else NotImplemented
+
+    @counted
+    def __sub__(self, other: object) -> "Solid":
+        """Difference."""
+        return combine("and", (self, ~other)) if isinstance(other, Solid) else NotImplemented
+
+    @counted
+    def __xor__(self, other: object) -> "Solid":
+        """Symmetric difference, as for Python's sets (manifold3d's ``^`` is the intersection)."""
+        return combine("xor", (self, other)) if isinstance(other, Solid) else NotImplemented
+
+    @counted
+    def __invert__(self) -> "Solid":
+        """Complement: everything outside."""
+        return Solid.from_node(*complement(Placed(self._node, self._factors)))
+
+    @uncounted
+    def equals(self, other: "Solid") -> bool:
+        """Whether both are the same set of points, exactly; so says ``==``, too."""
+        return (self ^ other).is_empty
+
+    @uncounted
+    def isdisjoint(self, other: "Solid") -> bool:
+        """Whether the two have no volume in common; contact is allowed."""
+        return (self & other).is_empty
+
+    def _is_alike(self, other: object) -> bool:
+        return isinstance(other, Solid)
+
+    @uncounted
+    def _size_key(self) -> object:
+        if self.normalized().is_bounded:
+            return residues_of_volume(self)
+        outside = self._outside()
+        # Where both are unbounded, nothing that is cheap tells solids apart.
+        bounded = outside.is_bounded
+        return ("outside", residues_of_volume(outside)) if bounded else "unbounded"
+
+    # Transforms
+
+    def translate(self, *offset: Scalar | Vector) -> "Solid":
+        """Return the solid moved by three numbers or one vector, in model units.
+
+        Exact if the numbers are whole lattice steps, as short decimals are.
+        """
+        vector: Any = offset[0] if len(offset) == 1 else offset
+        return self._moved((transform.translation(vector),))
+
+    def rotate(self, angle: Scalar | Vector, axis: str | Vector = "z") -> "Solid":
+        """Return the solid rotated about an axis through the origin.
+
+        Quarter turns about a coordinate axis are exact.
+
+        Parameters
+        ----------
+        angle : float or (3,) float
+            In degrees, counter-clockwise when the axis points at the viewer. Three angles turn
+            about x, then y, then z, and `axis` is ignored.
+        axis : {"x", "y", "z"} or (3,) float
+        """
+        about: Any = angle
+        if np.ndim(about) == 0:
+            return self._moved((transform.rotation(about, axis),))
+        return self._moved(transform.euler_rotation(about))
+
+    def scale(self, factor: Scalar | Vector) -> "Solid":
+        """Return the solid scaled about the origin, by one factor or one per axis."""
+        return self._moved((transform.scaling(factor),))
+
+    def mirror(self, normal: Vector) -> "Solid":
+        """Return the mirror image in the plane through the origin with this normal."""
+        return self._moved((transform.mirroring(normal),))
+
+    def transform(self, matrix: Any) -> "Solid":
+        """Return the image under an affine map, a (4, 4) or (3, 4) matrix for column vectors.
+
+        Solids that were moved by bitwise equal matrices are combined first and moved afterwards.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the matrix is no invertible affine map.
+        """
+        return self._moved((transform.matrix_factor(matrix),))
+
+    @counted
+    def _moved(self, factors: Factors) -> "Solid":
+        kept = tuple(factor for factor in factors if not factor.is_identity)
+        return Solid.from_node(self._node, kept + self._factors) if kept else self
+
+    # Results
+
+    @property
+    def tree(self) -> Tree:
+        """The partition tree (of the compiled core), after evaluating the solid."""
+        if self._placed is None:
+            leaf = evaluate(self._node)
+            self._placed = leaf.placed(self._factors) if self._factors else leaf
+        return tree_of(self._placed)
+
+    def to_mesh(self) -> Mesh:
+        """Return the boundary as a closed mesh; its arrays are read-only and kept.
+
+        What was not cut comes out as it came in. Walls inside an input that overlaps itself are
+        left where no operation met them; `normalized` removes them.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+        """
+        if self._mesh is None:
+            with core_errors():
+                tree = self.tree
+                self._mesh = Mesh(*tree.to_mesh(), tree.origins()).frozen()
+        return self._mesh
+
+    def normalized(self) -> "Solid":
+        """Return the same set with the reduced boundary as its mesh.
+
+        Inputs that nobody has vouched for are checked, once, and united with themselves if their
+        faces overlap. The queries of measure, comparison, check and file use this form.
+        """
+        tree = self.tree
+        if self._reduced is None and not _is_reduced(tree):
+            with core_errors():
+                reduced = tree.normalized()
+            # If the check found nothing to change, the tree itself is the reduced one.
+            if not _is_reduced(tree):
+                self._reduced = Solid.from_leaf(TreeLeaf(reduced))
+        return self if self._reduced is None else self._reduced
+
+    @uncounted
+    def _outside(self) -> "Solid":
+        return (~self).normalized()
+
+    def to_trimesh(self) -> "trimesh.Trimesh":
+        """Return a `trimesh.Trimesh` with the same vertices and faces."""
+        return interop.to_trimesh(self.normalized().to_mesh())
+
+    def to_manifold(self) -> "manifold3d.Manifold":
+        """Return a `manifold3d.Manifold`; ask its ``status()`` whether it was accepted."""
+        return interop.to_manifold(self.normalized().to_mesh())
+
+    def save(self, path: str | os.PathLike[str], **options: Any) -> None:
+        """Write the mesh to a file; the suffix names the format (see `bspcsg.save`)."""
+        from .. import io
+
+        io.save(self, path, **options)
+
+    def to_csg(self, *, flat: bool = False) -> str:
+        """Return the expression that made the solid as a `.csg` script (see `bspcsg.csg.dumps`)."""
+        from .. import csg
+
+        return csg.dumps(self, flat=flat)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], **options: Any) -> "Solid":
+        """Read a mesh file; the suffix names the format (see `bspcsg.load`)."""
+        from .. import io
+
+        return io.load(path, **options)
+
+    # Where it came from
+
+    @property
+    def last_operation(self) -> "LastOperation | None":
+        """The operation that made this solid, or None for a mesh, a loaded or a copied solid.
+
+        Exactly one evaluation is remembered: its program, its operands and no further. A chain
+        that asks for each of its results keeps one operation, however long it grows; one that asks
+        at its end only was evaluated as one operation, and that is remembered.
+        """
+        content = evaluate(self._node)
+        if not isinstance(content, TreeLeaf) or content.record is None:
+            return None
+        record = content.record
+        operands = tuple(Solid.from_leaf(leaf) for leaf in record.leaves)
+        return LastOperation(record.program, operands, Solid.from_node(self._node))
+
+    def slice(
+        self, offset: Scalar = 0.0, normal: Vector = (0, 0, 1), *, origin: Vector | None = None
+    ) -> "Region":
+        """Return the section by a plane as a region of the plane (`bspcsg.bsp.Region`).
+
+        The boundary is cut exactly, by the plane that `half_space` has for these numbers: the one
+        asked for if it holds lattice points, else the nearest of its direction that does. Each
+        corner of the section is rounded to the lattice point nearest to it, so that corners with
+        lattice coordinates are exact.
+
+        Parameters
+        ----------
+        offset : float
+            The plane holds the points x with ``normal . x == offset``: by default a height z.
+        normal : (3,) float
+            Need not have unit length. The region is seen from where it points: z gives coordinates
+            (x, y), x gives (y, z), y gives (z, x), negative axes exchange the two; for others see
+            `bspcsg.bsp.plane_frame`, whose coordinates are rounded once more.
+        origin : (3,) float, optional
+            A point of the plane, instead of `offset`.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the normal is zero or a number is not finite.
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Notes
+        -----
+        A face in the plane lies above it: the section is the limit from the minus side, that of a
+        box standing on z = 0 is empty at 0 and full at its top.
+        """
+        from ..bsp import slice_solid
+
+        return slice_solid(self, offset, normal, origin=origin)
+
+    @uncounted
+    def check(self, **options: Any) -> Any:
+        """Compare the operation that made this solid with manifold3d (see `bspcsg.check`)."""
+        from ..verify import check
+
+        return check.check_result(self, **options)
+
+    # As a value
+
+    def __repr__(self) -> str:
+        """Say what is known without evaluating anything."""
+        if self._placed is None:
+            return f"Solid({describe(self._node, self._factors, self._mesh)})"
+        return f"Solid({describe(Node(self._placed), (), self._mesh)})"
+
+    def _repr_html_(self) -> str | None:
+        """Return what a notebook shows: an interactive view, or why there is none."""
+        from ..report.viewer.notebook import solid_html
+
+        return solid_html(self)
+
+    def _repr_svg_(self) -> str:
+        """Return a picture, for notebooks that show no HTML."""
+        from ..report.viewer.notebook import solid_svg
+
+        return solid_svg(self)
+
+    @property
+    def expression(self) -> Placed:
+        """The expression's node and the transform on it, for the modules of this package."""
+        return Placed(self._node, self._factors)
+
+    def alias(self) -> "Solid":
+        """Return the same value as another object, for the modules of this package."""
+        other = Solid.from_node(self._node, self._factors)
+        other._placed, other._mesh, other._reduced = self._placed, self._mesh, self._reduced
+        return other
+
+    def __copy__(self) -> "Solid":
+        """Return the solid itself, which never changes."""
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "Solid":
+        """Return the solid itself, which never changes."""
+        return self
+
+    def __reduce__(self) -> tuple[Any, tuple[bytes, Factors]]:
+        """Pickle the evaluated tree, exactly, with the transform still apart.
+
+        What may have no mesh can be moved as long as its operands are known, which are not kept.
+        """
+        content = evaluate(self._node)
+        if content.extent is None:
+            return _restored, (self.tree.dump(), ())
+        return _restored, (tree_of(content).dump(), self._factors)
+
+
+@dataclass(frozen=True, eq=False)
+class LastOperation:
+    """The evaluation that made a solid.
+
+    Parameters
+    ----------
+    program : list of (str, list of int)
+        Lines ``("leaf", [k])`` for operand k, and "or", "and", "xor", "not" over earlier lines; the
+        last line is the result.
+    operands : tuple of Solid
+    result : Solid
+        Without the transform that was applied to it afterwards.
+    """
+
+    program: list[ProgramLine]
+    operands: tuple[Solid, ...]
+    result: Solid
+
+
+def with_record(last: LastOperation, factors: Factors) -> Solid:
+    """Return the solid of an operation under a transform, for the modules of this package.
+
+    It knows the operation, which pickling it leaves out.
+    """
+    leaves = tuple(evaluate(operand._node) for operand in last.operands)
+    leaf = TreeLeaf(last.result.tree, Record(last.program, leaves))
+    return Solid.from_node(Node(leaf), factors)
+
+
+def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:
+    """Return the lazy combination of solids; the transform they share goes to the result."""
+    prefix = common_prefix([solid._factors for solid in solids])
+    operands = [Placed(solid._node, solid._factors[len(prefix) :]) for solid in solids]
+    return Solid.from_node(operation(operator, operands), prefix)
+
+
+def _is_reduced(tree: Tree) -> bool:
+    return tree.simple is True
+
+
+def _restored(data: bytes, factors: Factors) -> Solid:
+    with core_errors():
+        return Solid.from_node(Node(TreeLeaf(Tree.load(data))), factors)

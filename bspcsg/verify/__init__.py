@@ -1,0 +1,1 @@
+"""Whether a result is right: other engines' answers, and exact rulings between them."""

@@ -1,0 +1,353 @@
+"""Is a result right? Each operation against manifold3d's answer, as sets.
+
+Both engines get the same operands: ours as they are, manifold3d the reduced boundaries of ours,
+in double precision (it has no notion of winding numbers, so a mesh that overlaps itself would mean
+something else to it). What is delivered, the rounded mesh, is read back and compared with
+manifold3d's mesh: the set of points around which the two wind differently is built exactly.
+Verdicts follow from the thickness t of its thickest piece, with s the lattice step, u the distance
+of neighbouring doubles at the farthest coordinate, and e the tolerance that manifold3d reports:
+
+* t ≤ 2 s + 8 u: the same set (both meshes are snapped by up to √3/2 steps per vertex);
+* t ≤ 2 s + 8 u + 4 e: within rounding, as manifold3d itself sees it;
+* beyond: the engines disagree, and points of the pieces beyond are settled by counting crossings
+  with the operands in rational arithmetic. If all of that supports us, the oracle has failed.
+
+Volumes and areas in floating point, Euler numbers and closedness are compared besides, because the
+symmetric difference comes from the engine that is being judged.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .._types import ProgramLine, SetOp
+from ..errors import BspcsgError, InternalError, invalid_parameter
+from ..mesh.mesh import Mesh
+from ..mesh.pieces import Pieces
+from ..operations.setops import difference, intersection, union, xor
+from ..shapes.primitives import box as box_of
+from ..solid.counting import uncounted
+from ..solid.solid import Solid
+from . import oracle
+from .discrepancy import SetDifference, difference_of
+from .oracle import Answer
+from .referee import Ruling, settle
+from .verdict import CheckReport, Facts, Verdict
+
+__all__ = [
+    "COMBINE",
+    "CheckReport",
+    "Examination",
+    "Facts",
+    "Verdict",
+    "check_result",
+    "examine",
+    "same_set_bound",
+    "validate",
+]
+
+#: How many lattice steps, neighbouring doubles and tolerances of manifold3d are forgiven.
+STEPS, ULPS, TOLERANCES = 2, 8, 4
+
+#: How many pieces of a dispute are settled, the thickest first.
+_MOST_PIECES = 50
+
+#: Relative error of volumes and areas summed in doubles.
+_SUMMING = 1e-11
+
+
+@uncounted
+def validate(op: SetOp, *operands: Solid) -> CheckReport:
+    """Carry out an operation and compare the result with manifold3d's.
+
+    Parameters
+    ----------
+    op : {"union", "intersection", "difference", "xor"}
+    *operands : Solid
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> report = b.validate("union", b.cube(1), b.cube(1).translate(1, 0, 0))
+    >>> report.ok, report.ours.triangles
+    (True, 12)
+    """
+    _program(op, len(operands))
+    return check_result(COMBINE[op](*operands), op, operands)
+
+
+@uncounted
+def check_result(
+    result: Solid, op: SetOp | None = None, operands: Sequence[Solid] | None = None
+) -> CheckReport:
+    """Compare a result with what manifold3d makes of the same operands.
+
+    Parameters
+    ----------
+    result : Solid
+    op : {"union", "intersection", "difference", "xor"}, optional
+        What made the result; by default the evaluation that the solid remembers.
+    operands : sequence of Solid, optional
+        What it was made from; needed with `op`.
+
+    Raises
+    ------
+    InvalidMeshError
+        If nothing is known about how the solid was made.
+    UnboundedError
+        If the result reaches to infinity.
+    """
+    return examine(result, op, operands).report
+
+
+@dataclass(frozen=True, eq=False)
+class Examination:
+    """A report and the meshes it rests on.
+
+    Parameters
+    ----------
+    report : CheckReport
+    program : sequence of (str, list of int)
+    operands : list of Mesh
+        As they came; cut to a box if an operand is unbounded, fewer if manifold3d was not asked.
+    ours : Mesh
+    theirs : Mesh or None
+        manifold3d's, if it gave one.
+    difference : Mesh or None
+        The boundary of the symmetric difference, if there is one.
+    """
+
+    report: CheckReport
+    program: Sequence[ProgramLine]
+    operands: list[Mesh]
+    ours: Mesh
+    theirs: Mesh | None = None
+    difference: Mesh | None = None
+
+
+def examine(
+    result: Solid, op: SetOp | None = None, operands: Sequence[Solid] | None = None
+) -> Examination:
+    """Compare as `check_result` does, and keep the meshes."""
+    if op is not None and operands is not None:
+        return _Check(op, _program(op, len(operands)), list(operands), result).run()
+    last = result.last_operation
+    if last is None or op is not None or operands is not None:
+        raise invalid_parameter(
+            "There is nothing to compare: this solid is no result of an operation. Name the"
+            " operation and give its operands."
+        )
+    return _Check(_name_of(last.program), last.program, list(last.operands), last.result).run()
+
+
+def same_set_bound(pitch: int, *meshes: Mesh) -> float:
+    """Return the thickness up to which a difference of meshes on a lattice is rounding."""
+    reach = max((float(np.abs(mesh.vertices).max(initial=0)) for mesh in meshes), default=0.0)
+    return STEPS * 10.0**pitch + ULPS * float(np.spacing(reach))
+
+
+#: The operations by name, each on any number of solids.
+COMBINE: dict[str, Callable[..., Solid]] = {
+    "union": union,
+    "intersection": intersection,
+    "difference": difference,
+    "xor": xor,
+}
+
+
+def _program(op: str, count: int) -> list[ProgramLine]:
+    """Return the program of a named operation on so many operands."""
+    if op not in COMBINE:
+        raise invalid_parameter(f"Unknown operation {op!r}; one of {', '.join(COMBINE)}.")
+    if count == 0:
+        raise invalid_parameter(f"The {op} of no operands cannot be compared.")
+    lines: list[ProgramLine] = [("leaf", [number]) for number in range(count)]
+    if op == "difference" and count > 1:
+        lines += [("or", list(range(1, count))), ("not", [count]), ("and", [0, count + 1])]
+    elif op == "xor":
+        for number in range(1, count):
+            lines.append(("xor", [len(lines) - 1 if number > 1 else 0, number]))
+    else:
+        lines.append(("or" if op == "union" else "and", list(range(count))))
+    return lines
+
+
+def _name_of(program: Sequence[ProgramLine]) -> str:
+    """Return what to call a program."""
+    operators = [operator for operator, _ in program if operator != "leaf"]
+    names = {"or": "union", "and": "intersection", "xor": "xor", "not": "complement"}
+    if len(operators) == 1:
+        return names[operators[0]]
+    if operators[-1:] == ["and"] and set(operators[:-1]) == {"not"}:
+        return "difference"
+    return "expression"
+
+
+@dataclass
+class _Check:
+    operation: str
+    program: Sequence[ProgramLine]
+    operands: list[Solid]
+    result: Solid
+    notes: list[str] = field(default_factory=list)
+    came: list[Mesh] = field(default_factory=list)
+    set_volume: float = 0.0
+    theirs: Mesh | None = None
+    difference: Mesh | None = None
+
+    def run(self) -> Examination:
+        mesh = self.result.normalized().to_mesh()
+        report = self._judged(mesh)
+        return Examination(report, self.program, self.came, mesh, self.theirs, self.difference)
+
+    def _judged(self, mesh: Mesh) -> CheckReport:
+        ours = Facts.of(mesh)
+        self.set_volume = self.result.volume
+        fault = self._fault(mesh, ours)
+        if fault:
+            return self._report(Verdict.SUBJECT_FAILED, fault, ours)
+        try:
+            box = self._box(mesh)
+            given = [self._operand(n, operand, box) for n, operand in enumerate(self.operands, 1)]
+            inside = None if box is None else box.to_mesh()
+            answer = oracle.ask(self.program, given, inside)
+        except oracle.OracleRefusedError as error:
+            return self._report(Verdict.ORACLE_REFUSED, str(error), ours)
+        except oracle.OracleFailedError as error:
+            return self._report(Verdict.ORACLE_FAILED, str(error), ours)
+        self.theirs = answer.mesh
+        return self._compared(mesh, ours, answer)
+
+    def _fault(self, mesh: Mesh, ours: Facts) -> str:
+        """Return what is wrong with our own result, whatever the oracle says."""
+        if ours.open_edges:
+            return f"the result has {ours.open_edges} open edges"
+        status = oracle.status_of(mesh)
+        if status != "NoError":
+            return f"manifold3d does not take the result: {status}"
+        gap = abs(ours.volume - self.set_volume)
+        if gap > same_set_bound(self.result.pitch, mesh) * ours.area + _SUMMING * abs(ours.volume):
+            return f"the mesh's volume differs from the set's by {gap:.3g}"
+        return ""
+
+    def _box(self, mesh: Mesh) -> Solid | None:
+        """Return a box around everything that is bounded, if an operand is not."""
+        if all(operand.is_bounded for operand in self.operands):
+            return None
+        bounds = [mesh.bounds, *(operand.bounds for operand in self.operands if operand.is_bounded)]
+        corners = np.concatenate([box for box in bounds if box is not None] or [np.zeros((1, 3))])
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        # Whole numbers lie on every lattice that is not coarser than the unit.
+        margin = np.ceil((high - low).max() / 8 + 1)
+        low, high = np.floor(low - margin), np.ceil(high + margin)
+        return box_of(high - low).translate(low)
+
+    def _operand(self, number: int, solid: Solid, box: Solid | None) -> Mesh:
+        if box is not None and not solid.is_bounded:
+            self.notes.append(
+                f"operand {number} is unbounded; results were compared inside a box around the rest"
+            )
+            solid = solid & box
+        mesh, reduced = solid.to_mesh(), solid.normalized().to_mesh()
+        self.came.append(mesh)
+        if not np.array_equal(mesh.faces, reduced.faces):
+            self.notes.append(
+                f"operand {number} overlaps itself; manifold3d got its reduced boundary,"
+                f" {len(reduced.faces)} triangles instead of {len(mesh.faces)}"
+            )
+        return reduced
+
+    def _compared(self, mesh: Mesh, ours: Facts, answer: Answer) -> CheckReport:
+        theirs = Facts.of(answer.mesh)
+        if theirs.open_edges:
+            reason = f"manifold3d's mesh has {theirs.open_edges} open edges"
+            return self._report(Verdict.ORACLE_FAILED, reason, ours, theirs)
+        same = same_set_bound(self.result.pitch, mesh, answer.mesh)
+        rounding = same + TOLERANCES * answer.tolerance
+        try:
+            found, pieces = difference_of(mesh, answer.mesh, self.result.pitch, same)
+        except InternalError as error:
+            reason = f"the symmetric difference from manifold3d's mesh failed: {error.message}"
+            return self._report(Verdict.SUBJECT_FAILED, reason, ours, theirs)
+        except BspcsgError as error:
+            reason = f"the meshes could not be compared: {error.message}"
+            return self._report(Verdict.ORACLE_FAILED, reason, ours, theirs)
+        self.difference = None if pieces is None else pieces.mesh
+        verdict, reason = _judged(ours, theirs, found, same, rounding, _edge_length(mesh))
+        if (
+            verdict is Verdict.DISAGREE
+            and pieces is not None
+            and self._ruling(mesh, answer.mesh, pieces, rounding) is Ruling.OURS
+        ):
+            reason = f"{reason}; exact counts of crossings show that manifold3d's mesh is wrong"
+            verdict = Verdict.ORACLE_FAILED
+        return self._report(verdict, reason, ours, theirs, found, (same, rounding))
+
+    def _ruling(self, ours: Mesh, theirs: Mesh, pieces: Pieces, rounding: float) -> Ruling:
+        """Return whom the operands as they came support in the pieces that rounding leaves."""
+        disputed = pieces.thicker_than(rounding)[:_MOST_PIECES]
+        points = [pieces.points_in(piece) for piece in disputed]
+        return settle(self.program, self.came, ours, theirs, points)
+
+    def _report(
+        self,
+        verdict: Verdict,
+        reason: str,
+        ours: Facts,
+        theirs: Facts | None = None,
+        found: SetDifference | None = None,
+        bounds: tuple[float, float] = (0.0, 0.0),
+    ) -> CheckReport:
+        return CheckReport(
+            self.operation,
+            verdict,
+            reason,
+            ours,
+            theirs,
+            self.set_volume,
+            found,
+            *bounds,
+            oracle.name(),
+            tuple(self.notes),
+        )
+
+
+def _judged(
+    ours: Facts,
+    theirs: Facts,
+    found: SetDifference,
+    same: float,
+    rounding: float,
+    edges: float,
+) -> tuple[Verdict, str]:
+    """Return the verdict on two meshes and the reason for it; `edges` is the length of ours."""
+    gap = abs(ours.volume - theirs.volume)
+    forgiven = rounding * (ours.area + theirs.area) + _SUMMING * abs(ours.volume)
+    if found.thickness > rounding:
+        x, y, z = found.place or (0.0, 0.0, 0.0)
+        return Verdict.DISAGREE, (
+            f"the sets differ by volume {found.volume:.6g}, {found.thickness:.3g} thick near"
+            f" ({x:.6g}, {y:.6g}, {z:.6g}); rounding explains {rounding:.2g}"
+        )
+    if gap > found.volume + forgiven:
+        return Verdict.DISAGREE, (
+            f"volumes differ by {gap:.6g}, but the sets by {found.volume:.6g} only"
+        )
+    if found.thickness > same:
+        reason = f"the sets differ by {found.thickness:.2g}, within manifold3d's tolerance"
+        return Verdict.WITHIN_ROUNDING, reason
+    if ours.euler_number != theirs.euler_number:
+        return Verdict.OTHER_TOPOLOGY, (
+            f"the Euler number is {ours.euler_number}, manifold3d's {theirs.euler_number}"
+        )
+    if abs(ours.area - theirs.area) > rounding * edges + _SUMMING * ours.area:
+        return Verdict.OTHER_TOPOLOGY, (
+            f"the area is {ours.area:.9g}, manifold3d's {theirs.area:.9g}"
+        )
+    return Verdict.AGREE, ""
+
+
+def _edge_length(mesh: Mesh) -> float:
+    corners = mesh.vertices[mesh.faces]
+    return float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).sum())

@@ -1,0 +1,166 @@
+"""Another engine's answer to the same question: programs carried out by manifold3d.
+
+manifold3d knows no complements, so every value here is a bounded solid and a flag that says
+whether its complement is meant; the laws of De Morgan do the rest.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._types import ProgramLine
+from ..mesh import interop
+from ..mesh.mesh import Mesh
+
+if TYPE_CHECKING:
+    import manifold3d
+
+
+class OracleRefusedError(Exception):
+    """manifold3d cannot take the question: an operand is unbounded or not to its liking."""
+
+
+class OracleFailedError(Exception):
+    """manifold3d took the question and gave no usable answer."""
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What manifold3d makes of a program.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Its result; `source` is zero.
+    tolerance : float
+        Largest distance in model units below which it does not tell things apart, over operands
+        and result.
+    """
+
+    mesh: Mesh
+    tolerance: float
+
+
+def name() -> str:
+    """Return the oracle's name and version."""
+    return f"manifold3d {version('manifold3d')}"
+
+
+def status_of(mesh: Mesh) -> str:
+    """Return manifold3d's word on a mesh, in double precision: ``"NoError"`` if it takes it."""
+    return "NoError" if len(mesh.faces) == 0 else str(interop.to_manifold(mesh).status().name)
+
+
+def ask(
+    program: Sequence[ProgramLine], operands: Sequence[Mesh], inside: Mesh | None = None
+) -> Answer:
+    """Return manifold3d's answer to a program.
+
+    Parameters
+    ----------
+    program : sequence of (str, list of int)
+        As the core takes it.
+    operands : sequence of Mesh
+    inside : Mesh, optional
+        Only what of the result lies in here is wanted.
+
+    Raises
+    ------
+    OracleRefusedError
+        If an operand is refused, or the result is unbounded.
+    OracleFailedError
+        If an operation raises, or its result is invalid.
+    """
+    solids = [_taken(number, operand) for number, operand in enumerate(operands, 1)]
+    limit = None if inside is None else interop.to_manifold(inside)
+    # An empty solid's tolerance is negative.
+    tolerance = max([0.0, *(solid.get_tolerance() for solid in solids)])
+    try:
+        result, outside = _carried_out(program, solids)
+        if limit is not None:
+            result, outside = _and([(result, outside), (limit, False)])
+        status = result.status().name
+    except (RuntimeError, MemoryError, ValueError) as error:
+        raise OracleFailedError(f"manifold3d raised {type(error).__name__}: {error}") from error
+    if outside:
+        raise OracleRefusedError("the result is unbounded, and manifold3d has no such solids")
+    if status != "NoError":
+        raise OracleFailedError(f"manifold3d's result has the status {status}")
+    return Answer(_mesh_of(result), max(tolerance, result.get_tolerance()))
+
+
+_Value = tuple["manifold3d.Manifold", bool]
+
+
+def _taken(number: int, operand: Mesh) -> "manifold3d.Manifold":
+    if len(operand.faces) == 0:
+        return _empty()
+    solid = interop.to_manifold(operand)
+    status = solid.status().name
+    if status != "NoError":
+        raise OracleRefusedError(f"manifold3d refuses operand {number}: {status}")
+    # It takes inverted meshes without a word, and their results mean nothing.
+    if solid.volume() <= 0 < operand.volume:
+        raise OracleRefusedError(f"operand {number} has no positive volume in manifold3d")
+    return solid
+
+
+def _empty() -> "manifold3d.Manifold":
+    import manifold3d
+
+    return manifold3d.Manifold()
+
+
+def _carried_out(program: Sequence[ProgramLine], solids: list["manifold3d.Manifold"]) -> _Value:
+    values: list[_Value] = []
+    for operator, arguments in program:
+        if operator == "leaf":
+            values.append((solids[arguments[0]], False))
+            continue
+        found = [values[argument] for argument in arguments]
+        values.append(_OPERATIONS[operator](found))
+    return values[-1]
+
+
+def _not(values: list[_Value]) -> _Value:
+    solid, outside = values[0]
+    return solid, not outside
+
+
+def _and(values: list[_Value]) -> _Value:
+    bounded = [solid for solid, outside in values if not outside]
+    holes = [solid for solid, outside in values if outside]
+    if not bounded:
+        return _batch(holes, "Add"), True
+    common = _batch(bounded, "Intersect")
+    return (common - _batch(holes, "Add") if holes else common), False
+
+
+def _or(values: list[_Value]) -> _Value:
+    return _not([_and([_not([value]) for value in values])])
+
+
+def _xor(values: list[_Value]) -> _Value:
+    (a, a_outside), (b, b_outside) = values
+    return (a - b) + (b - a), a_outside != b_outside
+
+
+_OPERATIONS = {"not": _not, "and": _and, "or": _or, "xor": _xor}
+
+
+def _batch(solids: list["manifold3d.Manifold"], operation: str) -> "manifold3d.Manifold":
+    import manifold3d
+
+    if len(solids) == 1:
+        return solids[0]
+    return manifold3d.Manifold.batch_boolean(solids, getattr(manifold3d.OpType, operation))
+
+
+def _mesh_of(solid: Any) -> Mesh:
+    found = solid.to_mesh64()
+    vertices = np.array(found.vert_properties[:, :3], dtype=np.float64, order="C")
+    faces = np.array(found.tri_verts, dtype=np.int64, order="C").reshape(-1, 3)
+    return Mesh(vertices.reshape(-1, 3), faces, np.zeros((len(faces), 2), dtype=np.int64))

@@ -1,0 +1,148 @@
+"""Who is right where two engines disagree: exact counts of crossings, with no tree in them.
+
+A point of the dispute is classified against the operands by counting, in rational arithmetic, how
+a ray from it crosses their triangles. This shares no code with the core.
+"""
+
+from collections.abc import Sequence
+from enum import Enum
+from fractions import Fraction
+
+import numpy as np
+
+from .._types import FloatArray, ProgramLine
+from ..mesh.mesh import Mesh
+from ..mesh.pieces import Point
+
+
+class Ruling(Enum):
+    """Whom the counts support, at every point that could be settled."""
+
+    OURS = "ours"
+    THEIRS = "theirs"
+    UNCLEAR = "unclear"
+
+
+def settle(
+    program: Sequence[ProgramLine],
+    operands: Sequence[Mesh],
+    ours: Mesh,
+    theirs: Mesh,
+    pieces: Sequence[Sequence[Point]],
+) -> Ruling:
+    """Say who is right in every piece of a dispute.
+
+    Parameters
+    ----------
+    program : sequence of (str, list of int)
+    operands : sequence of Mesh
+        A point is inside where the winding number is positive.
+    ours, theirs : Mesh
+    pieces : sequence of sequences of points
+        For each piece some points, of which at least one should be inside it.
+    """
+    rulings = {_settled_piece(program, operands, ours, theirs, points) for points in pieces}
+    return rulings.pop() if len(rulings) == 1 else Ruling.UNCLEAR
+
+
+def count_agreeing(
+    program: Sequence[ProgramLine],
+    operands: Sequence[Mesh],
+    ours: Mesh,
+    points: Sequence[Point],
+) -> tuple[int, int]:
+    """Return at how many points our result is right, and how many could be settled."""
+    agreeing = settled = 0
+    for point in points:
+        inside = is_inside(ours, point)
+        found = [is_inside(operand, point) for operand in operands]
+        known = [each for each in found if each is not None]
+        if inside is not None and len(known) == len(found):
+            settled += 1
+            agreeing += _value(program, known) == inside
+    return agreeing, settled
+
+
+def _settled_piece(
+    program: Sequence[ProgramLine],
+    operands: Sequence[Mesh],
+    ours: Mesh,
+    theirs: Mesh,
+    points: Sequence[Point],
+) -> Ruling:
+    for point in points:
+        in_ours, in_theirs = is_inside(ours, point), is_inside(theirs, point)
+        if in_ours is None or in_theirs is None or in_ours == in_theirs:
+            continue
+        found = [is_inside(operand, point) for operand in operands]
+        known = [inside for inside in found if inside is not None]
+        if len(known) == len(found):
+            return Ruling.OURS if _value(program, known) == in_ours else Ruling.THEIRS
+    return Ruling.UNCLEAR
+
+
+def _value(program: Sequence[ProgramLine], inside: Sequence[bool]) -> bool:
+    """Return whether a point is in the result, from whether it is in each operand."""
+    values: list[bool] = []
+    for operator, arguments in program:
+        if operator == "leaf":
+            values.append(inside[arguments[0]])
+            continue
+        found = [values[argument] for argument in arguments]
+        outcome = {
+            "or": any(found),
+            "and": all(found),
+            "xor": sum(found) % 2 == 1,
+            "not": not found[0],
+        }
+        values.append(outcome[operator])
+    return values[-1]
+
+
+def is_inside(mesh: Mesh, point: Point) -> bool | None:
+    """Return whether the winding number is positive, exactly; None if every ray grazes an edge."""
+    for axis in range(3):
+        winding = _winding_along(mesh, point, axis)
+        if winding is not None:
+            return winding > 0
+    return None
+
+
+def _winding_along(mesh: Mesh, point: Point, axis: int) -> int | None:
+    """Return the winding number, by a ray along an axis that must not touch an edge."""
+    order = [axis, (axis + 1) % 3, (axis + 2) % 3]
+    corners = mesh.vertices[mesh.faces][:, :, order]
+    at = np.array([point[k] for k in order])
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    near = (low[:, 1:] <= at[1:]).all(axis=1) & (high >= at).all(axis=1)
+    start = [Fraction(value) for value in at.tolist()]
+    winding = 0
+    for triangle in corners[near]:
+        crossing = _crossing(triangle, start)
+        if crossing is None:
+            return None
+        winding += crossing
+    return winding
+
+
+def _crossing(triangle: FloatArray, start: list[Fraction]) -> int | None:
+    """Return +1 if the ray leaves through the triangle, -1 if it enters, 0 if it misses."""
+    a, b, c = ([Fraction(value) for value in corner] for corner in triangle.tolist())
+    areas = [_doubled_area(b, c, start), _doubled_area(c, a, start), _doubled_area(a, b, start)]
+    if any(area > 0 for area in areas) and any(area < 0 for area in areas):
+        return 0
+    if any(area == 0 for area in areas):
+        return None
+    whole = sum(areas, Fraction(0))
+    height = sum((area * p[0] for area, p in zip(areas, (a, b, c), strict=True)), Fraction(0))
+    distance = height / whole - start[0]
+    if distance == 0:
+        return None
+    if distance < 0:
+        return 0
+    return 1 if whole > 0 else -1
+
+
+def _doubled_area(a: list[Fraction], b: list[Fraction], c: list[Fraction]) -> Fraction:
+    """Return twice the signed area, seen against the ray."""
+    return (b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1])

@@ -1,0 +1,139 @@
+"""What a file format lost: the mesh that was written against the one that reads back."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from .._types import FloatArray
+from ..errors import BspcsgError
+from ..formats.raw import RawMesh
+from ..mesh.mesh import Mesh
+from ..mesh.weld import welded
+from ..solid.counting import uncounted
+from ..solid.solid import Solid
+
+#: How many names are told.
+_TOLD = 4
+
+
+@dataclass(frozen=True)
+class Losses:
+    """How two meshes differ that should be the same.
+
+    Parameters
+    ----------
+    triangles, points : tuple of int
+        Numbers before and after; points are different positions.
+    shift : float or None
+        Largest change of a coordinate in model units; None if triangles do not correspond.
+    size : float
+        Largest extent, in model units.
+    volume : tuple of float
+        Signed, before and after.
+    solid : tuple of bool
+        Whether the mesh bounds a set, before and after.
+    names : tuple of str
+        Names of objects that are gone.
+    passed_by : tuple of str
+        What the reader of the input said it left out.
+    dropped : tuple of str
+        Kinds of data in the input that a mesh of triangles has no room for.
+    """
+
+    triangles: tuple[int, int]
+    points: tuple[int, int]
+    shift: float | None
+    size: float
+    volume: tuple[float, float]
+    solid: tuple[bool, bool]
+    names: tuple[str, ...] = ()
+    passed_by: tuple[str, ...] = ()
+    dropped: tuple[str, ...] = ()
+
+    @property
+    def any(self) -> bool:
+        """Whether anything was lost."""
+        return bool(self.sentences())
+
+    def sentences(self) -> list[str]:
+        """Return what was lost, a few words each."""
+        found = [sentence.rstrip(".") for sentence in self.passed_by]
+        found += [", ".join(self.dropped)] if self.dropped else []
+        if self.triangles[0] != self.triangles[1]:
+            found.append(f"{self.triangles[1]} triangles instead of {self.triangles[0]}")
+        if self.points[0] != self.points[1]:
+            found.append(f"{self.points[1]} different points instead of {self.points[0]}")
+        if self.shift is None:
+            found.append("triangles in another order")
+        elif self.shift:
+            relative = self.shift / self.size if self.size else self.shift
+            found.append(
+                f"coordinates moved by up to {self.shift:.2g} ({relative:.1g} of the size)"
+            )
+        if self.solid == (True, False):
+            found.append("no longer a solid")
+        if self.names:
+            told = ", ".join(f"“{name}”" for name in self.names[:_TOLD])
+            more = len(self.names) - _TOLD
+            found.append(f"names gone: {told}" + (f" and {more} more" if more > 0 else ""))
+        return found
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as JSON values."""
+        return {**asdict(self), "any": self.any}
+
+
+@uncounted
+def losses_between(before: RawMesh, after: RawMesh) -> Losses:
+    """Return what was lost on the way from one mesh to the other.
+
+    Parameters
+    ----------
+    before, after : RawMesh
+        What was written, with what its own file said, and what reads back.
+    """
+    kept = {name for name, _ in after.objects} | {after.name}
+    names = [name for name, _ in before.objects if name and name not in kept]
+    return Losses(
+        (len(before.faces), len(after.faces)),
+        (_points(before), _points(after)),
+        _shift(before, after),
+        float(np.ptp(before.vertices, axis=0).max()) if len(before.vertices) else 0.0,
+        (_volume(before), _volume(after)),
+        (_is_solid(before), _is_solid(after)),
+        tuple(dict.fromkeys(names)),
+        before.passed_by,
+        before.dropped,
+    )
+
+
+def _corners(raw: RawMesh) -> FloatArray:
+    corners: FloatArray = raw.vertices[raw.faces]
+    return corners
+
+
+def _points(raw: RawMesh) -> int:
+    return len(welded(_corners(raw).reshape(-1, 3))[0]) if len(raw.faces) else 0
+
+
+def _shift(before: RawMesh, after: RawMesh) -> float | None:
+    """Return how far corners moved, if the triangles are in the same order."""
+    if len(before.faces) != len(after.faces):
+        return None
+    with np.errstate(over="ignore"):
+        return float(np.abs(_corners(before) - _corners(after)).max(initial=0.0))
+
+
+def _volume(raw: RawMesh) -> float:
+    with np.errstate(over="ignore", invalid="ignore"):
+        volume = Mesh(raw.vertices, raw.faces, raw.faces[:, :2]).volume
+    return volume if np.isfinite(volume) else 0.0
+
+
+def _is_solid(raw: RawMesh) -> bool:
+    try:
+        Solid(raw.vertices, raw.faces)
+    except BspcsgError:
+        return False
+    return True

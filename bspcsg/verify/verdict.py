@@ -1,0 +1,151 @@
+"""What a check reports: verdicts, facts about meshes, and both in words and as JSON values."""
+
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+
+from ..mesh.mesh import Mesh
+from .discrepancy import SetDifference
+
+
+class Verdict(StrEnum):
+    """What came of a check."""
+
+    AGREE = "agree"
+    OTHER_TOPOLOGY = "same set, other topology"
+    WITHIN_ROUNDING = "within rounding"
+    DISAGREE = "DISAGREE"
+    ORACLE_REFUSED = "oracle refused"
+    ORACLE_FAILED = "oracle failed"
+    SUBJECT_FAILED = "subject failed"
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What a mesh is like.
+
+    Parameters
+    ----------
+    vertices, triangles : int
+    volume, area : float
+        In model units.
+    euler_number, components : int
+    open_edges : int
+        Directed edges without exactly one opposite, by index.
+    """
+
+    vertices: int
+    triangles: int
+    volume: float
+    area: float
+    euler_number: int
+    components: int
+    open_edges: int
+
+    @classmethod
+    def of(cls, mesh: Mesh) -> "Facts":
+        """Return the facts of a mesh."""
+        return cls(
+            len(mesh.vertices),
+            len(mesh.faces),
+            mesh.volume,
+            mesh.area,
+            mesh.euler_number,
+            mesh.components,
+            count_open_edges(mesh),
+        )
+
+    def __str__(self) -> str:
+        """Return one line."""
+        closed = "closed" if self.open_edges == 0 else f"{self.open_edges} open edges"
+        return (
+            f"{self.triangles} triangles, volume {self.volume:.12g}, area {self.area:.12g}, "
+            f"Euler number {self.euler_number}, {closed}"
+        )
+
+
+@dataclass(frozen=True)
+class CheckReport:
+    """The outcome of one comparison.
+
+    Parameters
+    ----------
+    operation : str
+    verdict : Verdict
+    reason : str
+        Why it is not `Verdict.AGREE`, or empty.
+    ours : Facts
+    theirs : Facts or None
+    set_volume : float
+        Of our set before its vertices were rounded, itself rounded once.
+    set_difference : SetDifference or None
+    same_set_bound, rounding_bound : float
+        Thicknesses up to which sets count as the same, and as within rounding; in model units.
+    oracle : str
+    notes : tuple of str
+        What was done to operands before manifold3d got them.
+    """
+
+    operation: str
+    verdict: Verdict
+    reason: str
+    ours: Facts
+    theirs: Facts | None
+    set_volume: float
+    set_difference: SetDifference | None
+    same_set_bound: float
+    rounding_bound: float
+    oracle: str
+    notes: tuple[str, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """Whether nothing speaks against the result; a silent oracle does not."""
+        return self.verdict not in (Verdict.DISAGREE, Verdict.SUBJECT_FAILED)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as JSON values."""
+        found = {**asdict(self), "verdict": str(self.verdict), "ok": self.ok}
+        found["notes"] = list(self.notes)
+        if self.set_difference is not None:
+            place = self.set_difference.place
+            found["set_difference"]["equal"] = self.set_difference.volume == 0
+            found["set_difference"]["place"] = None if place is None else list(place)
+        return found
+
+    def summary(self) -> str:
+        """Return the verdict and what it rests on, in one line."""
+        if self.reason:
+            return f"{self.verdict}: {self.reason}"
+        return f"{self.verdict} with {self.oracle}: {self._difference()}"
+
+    def __str__(self) -> str:
+        """Return a few lines for people."""
+        lines = [f"{self.operation}: {self.summary()}", f"  ours       {self.ours}"]
+        if self.theirs is not None:
+            lines.append(f"  oracle     {self.theirs}  ({self.oracle})")
+        if self.set_difference is not None:
+            lines.append(f"  difference {self._difference()}")
+        return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
+
+    def _difference(self) -> str:
+        found = self.set_difference
+        if found is None:
+            return "not compared"
+        if found.volume == 0:
+            return "exactly the same set"
+        return (
+            f"the sets differ by a film {found.thickness:.2g} thick"
+            f" (up to {self.same_set_bound:.2g} is rounding), of volume {found.volume:.3g}"
+        )
+
+
+def count_open_edges(mesh: Mesh) -> int:
+    """Return how many directed edges lack exactly one opposite, by index."""
+    start, end = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
+    size = np.int64(len(mesh.vertices))
+    edges, counts = np.unique(start * size + end, return_counts=True)
+    has_mate = np.isin(edges % size * size + edges // size, edges, assume_unique=True)
+    return int(((counts != 1) | ~has_mate | (edges % size == edges // size)).sum())
