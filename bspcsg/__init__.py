@@ -14,6 +14,8 @@ Examples
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from .conveniences import attach as _attach
+
 if TYPE_CHECKING:
     from ._core import __version__
     from .errors import (
@@ -82,6 +84,8 @@ __all__ = [
     "validate",
     "xor",
 ]
+
+_attach()
 
 #: Which module each name is from; it is imported when the name is first asked for, so that the
 #: command line starts without numpy.

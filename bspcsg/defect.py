@@ -11,7 +11,7 @@ import zipfile
 from collections.abc import Mapping
 from typing import Any
 
-from . import _core
+from ._core import ObjectTree, PanicException, Tree, __version__
 
 #: A program that goes on after a defect may meet it often: a process writes no more reports.
 _MOST = 16
@@ -38,7 +38,7 @@ def _written(message: str, call: str, inputs: Mapping[str, Any]) -> str:
     facts = {
         "message": message,
         "call": call,
-        "bspcsg": _core.__version__,
+        "bspcsg": __version__,
         "python": platform.python_version(),
         "numpy": np.__version__,
         "platform": platform.platform(),
@@ -66,11 +66,11 @@ def _put(archive: zipfile.ZipFile, name: str, value: Any) -> Any:
             content = io.BytesIO()
             np.save(content, value, allow_pickle=False)
             name, data = f"{name}.npy", content.getvalue()
-        elif isinstance(value, _core.Tree | _core.ObjectTree):
+        elif isinstance(value, Tree | ObjectTree):
             name, data = f"{name}.snapshot", value.dump()
         else:
             return value
-    except (Exception, _core.PanicException) as error:
+    except (Exception, PanicException) as error:
         return f"not written: {error!r}"
     archive.writestr(name, data)
     return name

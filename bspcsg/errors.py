@@ -8,9 +8,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from . import _core, defect
+from . import defect
+from ._core import CoreError as _CoreError
+from ._core import PanicException as _PanicException
+
+if TYPE_CHECKING:
+    from ._core import Finding as CoreFinding
 
 
 class BspcsgError(Exception):
@@ -110,7 +115,7 @@ _ADVICE = {
 }
 
 
-def from_core(error: "_core.CoreError") -> BaseException:
+def from_core(error: _CoreError) -> BaseException:
     """Return the exception of this package that says what the core's error says."""
     if error.code == "cancelled":
         return KeyboardInterrupt()
@@ -172,9 +177,9 @@ class _CoreErrors:
         pass
 
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
-        if isinstance(error, _core.CoreError):
+        if isinstance(error, _CoreError):
             raise from_core(error) from error
-        if isinstance(error, _core.PanicException):
+        if isinstance(error, _PanicException):
             raise internal(f"a panic: {error}") from error
 
 
@@ -234,7 +239,7 @@ class Finding:
     count: int
 
     @classmethod
-    def from_core(cls, finding: "_core.Finding") -> "Finding":
+    def from_core(cls, finding: "CoreFinding") -> "Finding":
         """Return the core's finding as a value."""
         return cls(
             finding["code"],

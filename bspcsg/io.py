@@ -7,9 +7,9 @@ appears complete or not at all, and only after it was read back and compared wit
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from .errors import BspcsgError, Finding, FormatError
+from .errors import Finding, FormatError
 from .formats.files import (
     FORMATS,
     decoded,
@@ -22,9 +22,8 @@ from .formats.files import (
 )
 from .formats.raw import RawMesh
 from .solid.counting import counted
-
-if TYPE_CHECKING:
-    from .solid.solid import Solid
+from .solid.reading import solid_of
+from .solid.solid import Solid
 
 #: Suffixes of scripts, which `load` evaluates.
 SCRIPTS = frozenset({".csg", ".json", ".scad"})
@@ -47,7 +46,7 @@ __all__ = [
 
 
 @counted
-def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
+def load(path: str | os.PathLike[str], **options: Any) -> Solid:
     """Read a mesh file or a script as a solid; the suffix names the format.
 
     Parameters
@@ -70,6 +69,7 @@ def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
         If what it holds is no solid: the message names the file, `where` the faces.
     """
     if Path(path).suffix.lower() in SCRIPTS:
+        # Scripts need much that mesh files do not.
         from . import csg
 
         return csg.load(path, **options)
@@ -77,7 +77,7 @@ def load(path: str | os.PathLike[str], **options: Any) -> "Solid":
 
 
 @counted
-def loads(data: Any, suffix: str | None, **options: Any) -> "Solid":
+def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
     """Return the solid in the bytes of a mesh file, or in one that is open for reading bytes.
 
     Parameters
@@ -106,26 +106,7 @@ def loads(data: Any, suffix: str | None, **options: Any) -> "Solid":
     return solid_of(decoded(called, content, named), called, **options)
 
 
-def solid_of(raw: RawMesh, path: str | os.PathLike[str], **options: Any) -> "Solid":
-    """Return the solid of what was read from a file; errors name the file.
-
-    A file that `save` wrote of the empty set is the empty set again; any other without faces is
-    refused, as what should be in it may have got lost.
-    """
-    from .solid.solid import Solid
-
-    if raw.is_empty_set:
-        return Solid.empty()
-    try:
-        return Solid(raw.vertices, raw.faces, **options)
-    except BspcsgError as error:
-        message = f"{os.fspath(path)}: {error.message}"
-        raise type(error)(message, error.code, error.where) from error
-
-
-def save(
-    solid: "Solid", path: str | os.PathLike[str], *, text: bool = False
-) -> tuple[Finding, ...]:
+def save(solid: Solid, path: str | os.PathLike[str], *, text: bool = False) -> tuple[Finding, ...]:
     """Write the reduced boundary of a solid; the suffix names the format.
 
     Parameters

@@ -69,15 +69,16 @@ class _Bspcsg(Engine):
     counts = True
 
     def __init__(self) -> None:
-        import bspcsg
+        from ..operations import setops
+        from ..solid.solid import Solid
 
-        self._package = bspcsg
+        self._setops, self._solid = setops, Solid
 
     def solid(self, mesh: Arrays) -> Any:
-        return self._package.Solid(*mesh)
+        return self._solid(*mesh)
 
     def combine(self, operation: Operation, solids: Sequence[Any]) -> Any:
-        return getattr(self._package, operation)(*solids)
+        return getattr(self._setops, operation)(*solids)
 
     def volume(self, solid: Any) -> float:
         return float(solid.volume)
@@ -91,7 +92,7 @@ class _Bspcsg(Engine):
         return 3**0.5 / 2 * 1e-9 + super().resolution(size)
 
     def boolean(self, first: Arrays, second: Arrays, operation: Operation) -> Arrays:
-        return self._package.boolean(*first, *second, operation)
+        return self._setops.boolean(*first, *second, operation)
 
     def counters(self, solid: Any) -> dict[str, int]:
         return dict(solid.tree.stats())

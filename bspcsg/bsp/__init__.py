@@ -21,9 +21,10 @@ from .sets.pieces import NodeTable, Pieces
 from .sets.region import Region
 from .sets.slicing import plane_frame, slice_solid
 from .trees import analysis as analysis
-from .trees.cost import Comparison, PolicyRow, Query, Stats, compare_policies
+from .trees.cost import Query, Stats
 from .trees.fragments import Fragments
 from .trees.node import Leaf, Node
+from .trees.policies import Comparison, PolicyRow, compare_policies
 from .trees.policy import POLICIES, Policy
 from .trees.tree import PartitionTree
 

@@ -15,6 +15,7 @@ from .evaluator import evaluate
 from .from_solid import tree_of
 from .making.polish import Polish
 from .nodes.registry import Geometry, OnInvalid
+from .openscad import read_scad
 from .syntax.json_form import from_json
 from .syntax.parser import parse
 from .syntax.tree import CsgTree
@@ -114,8 +115,6 @@ def read_tree(path: str | os.PathLike[str], **options: Any) -> CsgTree:
     file, name = Path(path), os.fspath(path)
     suffix = file.suffix.lower()
     if suffix == ".scad":
-        from .openscad import read_scad
-
         return read_scad(file, **options)
     if options:
         raise FormatError(f"{name}: {', '.join(options)} is for .scad files only.", "bad_argument")

@@ -17,6 +17,7 @@ import numpy as np
 
 from .._core import Tree
 from .._types import ProgramLine, Scalar, Vector, WindingRule
+from ..above import above
 from ..errors import core_errors
 from ..geometry import transform
 from ..geometry.transform import Factors, common_prefix
@@ -162,9 +163,8 @@ class Solid(Measured, PointSet):
         if isinstance(mesh, (str, os.PathLike)):
             return cls.load(mesh, **options)
         if isinstance(mesh, (bytes, bytearray, memoryview)) or hasattr(mesh, "readable"):
-            from .. import io
-
-            return io.loads(mesh, format, **options)
+            solid: Solid = above("loads")(mesh, format, **options)
+            return solid
         arrays = interop.arrays_from(mesh, tolerance)
         return cls.empty() if interop.are_empty(arrays) else cls(*arrays, **options)
 
@@ -343,22 +343,18 @@ class Solid(Measured, PointSet):
 
     def save(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Write the mesh to a file; the suffix names the format (see `bspcsg.save`)."""
-        from .. import io
-
-        io.save(self, path, **options)
+        above("save")(self, path, **options)
 
     def to_csg(self, *, flat: bool = False) -> str:
         """Return the expression that made the solid as a `.csg` script (see `bspcsg.csg.dumps`)."""
-        from .. import csg
-
-        return csg.dumps(self, flat=flat)
+        text: str = above("dumps")(self, flat=flat)
+        return text
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], **options: Any) -> "Solid":
         """Read a mesh file; the suffix names the format (see `bspcsg.load`)."""
-        from .. import io
-
-        return io.load(path, **options)
+        solid: Solid = above("load")(path, **options)
+        return solid
 
     # Where it came from
 
@@ -410,16 +406,13 @@ class Solid(Measured, PointSet):
         A face in the plane lies above it: the section is the limit from the minus side, that of a
         box standing on z = 0 is empty at 0 and full at its top.
         """
-        from ..bsp import slice_solid
-
-        return slice_solid(self, offset, normal, origin=origin)
+        region: Region = above("slice_solid")(self, offset, normal, origin)
+        return region
 
     @uncounted
     def check(self, **options: Any) -> Any:
         """Compare the operation that made this solid with manifold3d (see `bspcsg.check`)."""
-        from ..verify import check
-
-        return check.check_result(self, **options)
+        return above("check")(self, **options)
 
     # As a value
 
@@ -431,15 +424,13 @@ class Solid(Measured, PointSet):
 
     def _repr_html_(self) -> str | None:
         """Return what a notebook shows: an interactive view, or why there is none."""
-        from ..report.viewer.notebook import solid_html
-
-        return solid_html(self)
+        page: str | None = above("solid_html")(self)
+        return page
 
     def _repr_svg_(self) -> str:
         """Return a picture, for notebooks that show no HTML."""
-        from ..report.viewer.notebook import solid_svg
-
-        return solid_svg(self)
+        picture: str = above("solid_svg")(self)
+        return picture
 
     @property
     def expression(self) -> Placed:

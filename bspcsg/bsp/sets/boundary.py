@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ... import _core
+from ..._core import suited_pitch
 from ..._types import FloatArray, IndexArray
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
 from ...parameters import pitch_exponent
@@ -61,7 +61,7 @@ def _suited_pitch(points: FloatArray) -> int:
         return -9
     extent = float(np.ptp(points, axis=0).max())
     with core_errors():
-        return _core.suited_pitch(float(np.abs(points).max()), extent)
+        return suited_pitch(float(np.abs(points).max()), extent)
 
 
 def _numbers(facets: Any) -> FloatArray:

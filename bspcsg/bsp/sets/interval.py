@@ -5,7 +5,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from ... import _core
+from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Scalar
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
 from ...geometry.hyperplane import Hyperplane
@@ -55,10 +55,10 @@ class Intervals(Settled, ObjectTree):
         chosen = chosen_pitch(pitch, finite[:, None])
         bounded = np.isfinite(ends).all(axis=1)
         with core_errors():
-            tree = _core.ObjectTree.uniform(1, False, chosen)
+            tree = CoreTree.uniform(1, False, chosen)
             if bounded.any():
                 rows = interval_rows(ends[bounded])
-                tree = _core.ObjectTree.build(1, rows, chosen)
+                tree = CoreTree.build(1, rows, chosen)
             for low, high in ends[~bounded].tolist():
                 tree = tree.merge(_unbounded(low, high, chosen), "union")
         self._set(tree)
@@ -172,11 +172,11 @@ def _pairs(pairs: Any) -> FloatArray:
     return array
 
 
-def _unbounded(low: float, high: float, pitch: int) -> _core.ObjectTree:
-    def below(x: float, side: float) -> _core.ObjectTree:
+def _unbounded(low: float, high: float, pitch: int) -> CoreTree:
+    def below(x: float, side: float) -> CoreTree:
         row = Hyperplane.from_numbers([side], side * x).on_lattice(pitch).row
-        return _core.ObjectTree.half_space(row, pitch)
+        return CoreTree.half_space(row, pitch)
 
     if low == -np.inf and high == np.inf:
-        return _core.ObjectTree.uniform(1, True, pitch)
+        return CoreTree.uniform(1, True, pitch)
     return below(high, 1.0) if low == -np.inf else below(low, -1.0)

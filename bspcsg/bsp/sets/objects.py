@@ -10,7 +10,7 @@ Sources: Thibault, Naylor 1987; Naylor, Amanatides, Thibault 1990.
 from collections.abc import Sequence
 from typing import Any, ClassVar, Self
 
-from ... import _core
+from ..._core import ObjectTree as CoreTree
 from ..._types import Scalar, SetOp, WindingRule
 from ...errors import core_errors, invalid_parameter
 from ...mesh import interop
@@ -82,7 +82,7 @@ class ObjectTree(TreeQueries, PointSet):
         chosen = chosen_pitch(pitch, rows[:, :dimension])
         with core_errors():
             self._set(
-                _core.ObjectTree.build(
+                CoreTree.build(
                     dimension,
                     rows,
                     chosen,
@@ -94,12 +94,12 @@ class ObjectTree(TreeQueries, PointSet):
                 )
             )
 
-    def _set(self, tree: _core.ObjectTree) -> None:
+    def _set(self, tree: CoreTree) -> None:
         self._tree = tree
         self._settled_size = 0
 
     @classmethod
-    def _of(cls, tree: _core.ObjectTree) -> Self:
+    def _of(cls, tree: CoreTree) -> Self:
         made = cls.__new__(cls)
         made._set(tree)
         return made
@@ -142,7 +142,7 @@ class ObjectTree(TreeQueries, PointSet):
         cls._check_dimension(len(wanted.normal))
         chosen = wanted.pitch if pitch is None else pitch_exponent(pitch)
         with core_errors():
-            return cls._of(_core.ObjectTree.half_space(wanted.on_lattice(chosen).row, chosen))
+            return cls._of(CoreTree.half_space(wanted.on_lattice(chosen).row, chosen))
 
     @classmethod
     def uniform(cls, dimension: int, *, full: bool, pitch: int = -9) -> Self:
@@ -150,7 +150,7 @@ class ObjectTree(TreeQueries, PointSet):
         count, step = at_least(1, dimension, "dimension"), pitch_exponent(pitch)
         cls._check_dimension(count)
         with core_errors():
-            return cls._of(_core.ObjectTree.uniform(count, full, step))
+            return cls._of(CoreTree.uniform(count, full, step))
 
     @classmethod
     def _check_dimension(cls, dimension: int) -> None:
@@ -191,7 +191,7 @@ class ObjectTree(TreeQueries, PointSet):
         with core_errors():
             return self._of(a.merge(b, op))
 
-    def _aligned(self, other: "ObjectTree") -> tuple[_core.ObjectTree, _core.ObjectTree]:
+    def _aligned(self, other: "ObjectTree") -> tuple[CoreTree, CoreTree]:
         """Return both trees on the finer lattice."""
         if self.dimension != other.dimension:
             raise invalid_parameter(
@@ -207,17 +207,17 @@ class ObjectTree(TreeQueries, PointSet):
         """Return how many nodes the tree had when it was last built from a boundary."""
         return self._settled_size or self.stats()["nodes"]
 
-    def _refined(self, pitch: int) -> _core.ObjectTree:
+    def _refined(self, pitch: int) -> CoreTree:
         if pitch == self.pitch:
             return self._tree
         if self.is_empty or self.is_full:
-            return _core.ObjectTree.uniform(self.dimension, self.is_full, pitch)
+            return CoreTree.uniform(self.dimension, self.is_full, pitch)
         axes = list(range(1, self.dimension + 1))
         scale = 10 ** (self.pitch - pitch)
         with core_errors():
             return self._moved(axes, [0] * self.dimension, scale, pitch)
 
-    def _moved(self, axes: list[int], shift: list[int], scale: int, pitch: int) -> _core.ObjectTree:
+    def _moved(self, axes: list[int], shift: list[int], scale: int, pitch: int) -> CoreTree:
         return self._tree.moved(axes, shift, scale, pitch)
 
     def equals(self, other: "ObjectTree") -> bool:
@@ -350,4 +350,4 @@ def split_tree(tree: ObjectTree, hyperplane: Hyperplane) -> tuple[ObjectTree, Ob
 
 def _restored(kind: type[ObjectTree], data: bytes) -> ObjectTree:
     with core_errors():
-        return kind._of(_core.ObjectTree.load(data))
+        return kind._of(CoreTree.load(data))

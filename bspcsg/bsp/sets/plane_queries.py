@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ... import _core
+from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Vector
 from ...errors import core_errors, invalid_parameter
 from ...parameters import number
@@ -21,7 +21,7 @@ class PlaneQueries(ObjectTree):
 
     _DIMENSION = 2
 
-    def _set(self, tree: _core.ObjectTree) -> None:
+    def _set(self, tree: CoreTree) -> None:
         super()._set(tree)
         self._outlines: tuple[Outline, ...] | None = None
 

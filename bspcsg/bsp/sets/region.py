@@ -7,8 +7,9 @@ from typing import Any, Self
 
 import numpy as np
 
-from ... import _core
+from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Scalar, Vector, WindingRule
+from ...above import above
 from ...errors import LimitError, UnboundedError, core_errors, invalid_parameter
 from ...geometry import transform
 from ...geometry.transform import Factor
@@ -125,16 +126,14 @@ class Region(PlaneQueries, Settled):
     @classmethod
     def from_svg(cls, path: str | os.PathLike[str], **options: Any) -> "Region":
         """Read the filled shapes of an SVG file (see `bspcsg.bsp.load_svg`)."""
-        from ..drawings.svg import load_svg
-
-        return load_svg(path, **options)
+        region: Region = above("load_svg")(path, **options)
+        return region
 
     @classmethod
     def from_dxf(cls, path: str | os.PathLike[str], **options: Any) -> "Region":
         """Read the closed outlines of a DXF file (see `bspcsg.bsp.load_dxf`)."""
-        from ..drawings.dxf import load_dxf
-
-        return load_dxf(path, **options)
+        region: Region = above("load_dxf")(path, **options)
+        return region
 
     @property
     def components(self) -> tuple["Region", ...]:
@@ -233,15 +232,11 @@ class Region(PlaneQueries, Settled):
 
     def to_svg(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Write an SVG file (see `bspcsg.bsp.save_svg`)."""
-        from ..drawings.svg import save_svg
-
-        save_svg(self, path, **options)
+        above("save_svg")(self, path, **options)
 
     def to_dxf(self, path: str | os.PathLike[str]) -> None:
         """Write a DXF file (see `bspcsg.bsp.save_dxf`)."""
-        from ..drawings.dxf import save_dxf
-
-        save_dxf(self, path)
+        above("save_dxf")(self, path)
 
     def to_shapely(self) -> Any:
         """Return a ``shapely.MultiPolygon``; shapely must be installed."""
@@ -266,7 +261,7 @@ class Region(PlaneQueries, Settled):
         )
 
 
-def _built(rows: FloatArray, pitch: int, winding: Any) -> _core.ObjectTree:
+def _built(rows: FloatArray, pitch: int, winding: Any) -> CoreTree:
     rule = winding_rule(winding)
     with core_errors():
-        return _core.ObjectTree.build(2, rows, pitch, winding=rule)
+        return CoreTree.build(2, rows, pitch, winding=rule)

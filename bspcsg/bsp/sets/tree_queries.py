@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ... import _core
+from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, SideArray
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
 from .nearest import nearest_on_polygons, nearest_on_segments
@@ -19,7 +19,7 @@ class TreeQueries:
 
     __slots__ = ("_tree",)
 
-    _tree: _core.ObjectTree
+    _tree: CoreTree
 
     def classify(self, points: Any) -> SideArray:
         """Say of each point whether it is inside, exactly.

@@ -1,4 +1,4 @@
-"""How good a partition tree is: its expected cost, its size, and policies compared.
+"""How good a partition tree is: its expected cost and its size.
 
 The cost of the notes, C(T) = 1 + P⁻ C(T⁻) + P⁺ C(T⁺) with C = 0 for an empty region, is the
 expected number of nodes that a query visits. With P± = μ(R(T±)) / μ(R(T)) the products along each
@@ -6,23 +6,22 @@ way telescope: C(T) is the sum of μ(R(v)) / μ(R(root)) over all nodes v.
 """
 
 import math
-import time
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
-from typing import Any, Literal, TypeAlias
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
 from ...errors import core_errors, invalid_parameter
 from ...parameters import not_negative
-from .policy import POLICIES, Policy
-from .tree import PartitionTree
+
+if TYPE_CHECKING:
+    from .tree import PartitionTree
 
 #: Whom a cost is for: points spread evenly over the root's region, or lines through it.
 Query: TypeAlias = Literal["point", "ray"]
 
 
-def cost(tree: PartitionTree, query: Query = "point", margin: float | None = None) -> float:
+def cost(tree: "PartitionTree", query: Query = "point", margin: float | None = None) -> float:
     """Return the expected number of nodes that a query visits.
 
     Parameters
@@ -98,7 +97,7 @@ class Stats:
     balance: float
 
 
-def stats(tree: PartitionTree) -> Stats:
+def stats(tree: "PartitionTree") -> Stats:
     """Return the size figures of a tree."""
     arrays = tree.arrays
     below = arrays["depth"] + 1
@@ -114,83 +113,3 @@ def stats(tree: PartitionTree) -> Stats:
         mean_depth=mean,
         balance=math.log2(len(tree) + 1) / mean if len(tree) else 1.0,
     )
-
-
-@dataclass(frozen=True)
-class PolicyRow:
-    """One policy's tree in figures.
-
-    Parameters
-    ----------
-    policy : str
-    nodes, depth, fragments, splits : int
-        As in `Stats`.
-    balance : float
-    point_cost, ray_cost : float
-        As `cost` has them.
-    seconds : float
-        Wall-clock time of the construction.
-    """
-
-    policy: str
-    nodes: int
-    depth: int
-    fragments: int
-    splits: int
-    balance: float
-    point_cost: float
-    ray_cost: float
-    seconds: float
-
-
-class Comparison(list[PolicyRow]):
-    """Rows that print as a table."""
-
-    def __str__(self) -> str:
-        """Return the rows under each other, with a heading."""
-        names = [field.name for field in fields(PolicyRow)]
-        cells = [names] + [[_cell(value) for value in asdict(row).values()] for row in self]
-        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-        lines = (zip(row, widths, strict=True) for row in cells)
-        return "\n".join("  ".join(cell.rjust(width) for cell, width in line) for line in lines)
-
-
-def compare_policies(
-    facets: Any, policies: Sequence[Policy] = POLICIES, **options: Any
-) -> Comparison:
-    """Build one tree for each policy and compare them.
-
-    Parameters
-    ----------
-    facets, **options
-        As for `PartitionTree`.
-    policies : sequence of str
-
-    Returns
-    -------
-    list of PolicyRow
-        In the order of `policies`; as a string it is a table.
-    """
-    return Comparison(_row(facets, policy, options) for policy in policies)
-
-
-def _row(facets: Any, policy: Policy, options: dict[str, Any]) -> PolicyRow:
-    start = time.perf_counter()
-    tree = PartitionTree(facets, policy, **options)
-    seconds = time.perf_counter() - start
-    figures = stats(tree)
-    return PolicyRow(
-        policy=policy,
-        nodes=figures.nodes,
-        depth=figures.depth,
-        fragments=figures.fragments,
-        splits=figures.splits,
-        balance=figures.balance,
-        point_cost=cost(tree, "point"),
-        ray_cost=cost(tree, "ray"),
-        seconds=seconds,
-    )
-
-
-def _cell(value: Any) -> str:
-    return f"{value:.3f}" if isinstance(value, float) else str(value)

@@ -2,14 +2,19 @@
 
 import json
 import zlib
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from ... import _core
+from ..._core import FragmentTree
 from ..._types import FloatArray, IndexArray
 from ...errors import BspcsgError, FormatError, core_errors, invalid_parameter
-from .tree import PartitionTree
+
+if TYPE_CHECKING:
+    from .tree import PartitionTree
+
+#: What a stored tree is made of again: its core object, its lenience and its margin.
+Parts: TypeAlias = tuple[FragmentTree, tuple[bool, bool], float]
 
 _FORMAT = "bspcsg partition tree"
 _VERSION = 2
@@ -17,7 +22,7 @@ _VERSION = 2
 _FIRST = 1
 
 
-def to_json(tree: PartitionTree) -> str:
+def to_json(tree: "PartitionTree") -> str:
     """Return facets as lattice integers, the cuts in preorder, and a checksum of both."""
     corners, offsets = tree.core.lattice()
     content = {
@@ -35,8 +40,8 @@ def to_json(tree: PartitionTree) -> str:
     return _text(content | {"checksum": _checksum(content)})
 
 
-def from_json(text: str) -> PartitionTree:
-    """Return the tree that `to_json` wrote."""
+def parsed(text: str) -> Parts:
+    """Return what `to_json` wrote."""
     try:
         content = json.loads(text)
         known = content["format"] == _FORMAT and content["version"] in (_FIRST, _VERSION)
@@ -67,17 +72,17 @@ def _checksum(content: dict[str, Any]) -> int:
     return zlib.crc32(json.dumps(content, separators=(",", ":"), sort_keys=True).encode())
 
 
-def _rebuilt(content: dict[str, Any]) -> PartitionTree:
+def _rebuilt(content: dict[str, Any]) -> Parts:
     lenience = content["non_planar"] == "triangulate", content["degenerate"] == "drop"
     with core_errors():
-        core = _core.FragmentTree.rebuild(
+        core = FragmentTree.rebuild(
             _whole(content["corners"], int(content["dimension"])),
             _whole(content["offsets"], 0),
             int(content["pitch"]),
             _whole(content["cuts"], 2),
             lenience,
         )
-    return PartitionTree.from_core(core, lenience, float(content["margin"]))
+    return core, lenience, float(content["margin"])
 
 
 def _whole(values: Any, columns: int) -> IndexArray:
@@ -94,7 +99,7 @@ def _whole(values: Any, columns: int) -> IndexArray:
     return rows
 
 
-def to_dot(tree: PartitionTree) -> str:
+def to_dot(tree: "PartitionTree") -> str:
     """Return the tree in the language of Graphviz: minus edges solid, plus edges dashed."""
     arrays = tree.arrays
     lines = ["digraph partition_tree {", '  node [shape=box, fontname="sans-serif"];']
@@ -112,7 +117,7 @@ def to_dot(tree: PartitionTree) -> str:
     return "\n".join([*lines, "}", ""])
 
 
-def to_svg(tree: PartitionTree, size: int = 480) -> str:
+def to_svg(tree: "PartitionTree", size: int = 480) -> str:
     """Return a picture of a tree in the plane, `size` pixels wide."""
     if tree.dimension != 2:
         raise invalid_parameter("Only trees in the plane are drawn as SVG.")

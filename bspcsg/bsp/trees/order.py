@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ... import _core
+from ..._core import FragmentTree
 from ..._types import FloatArray, IndexArray, SideArray
 from ...errors import core_errors, invalid_parameter
 from .fragments import Fragments, ranges
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class Ordered(ABC):
     """The traversals of a tree."""
 
-    core: _core.FragmentTree
+    core: FragmentTree
 
     @property
     def root(self) -> Node | None:

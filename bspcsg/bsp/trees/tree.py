@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 
-from ... import _core
+from ..._core import FragmentTree
 from ..._types import FloatArray, IndexArray
 from ...errors import core_errors, invalid_parameter
 from ...parameters import not_negative
+from .cost import Query, Stats, cost, stats
+from .dump import parsed, to_dot, to_json, to_svg
 from .facets import corners_of, mesh_triangles
 from .fragments import Fragments
 from .node import Leaf, Node, RegionShape, Side
@@ -17,7 +19,7 @@ from .order import Ordered
 from .policy import Policy, checked_policy, core_options
 
 if TYPE_CHECKING:
-    from .cost import Query, Stats
+    from ..._core import NodeArrays
 
 #: Margin around the facets for regions, as a share of their largest extent.
 MARGIN = 0.05
@@ -104,19 +106,17 @@ class PartitionTree(Ordered):
         corners, offsets = corners_of(facets)
         lenience = non_planar == "triangulate", degenerate == "drop"
         with core_errors():
-            core = _core.FragmentTree.build(corners, offsets, name, lenience=lenience, **options)
+            core = FragmentTree.build(corners, offsets, name, lenience=lenience, **options)
         self._set(core, lenience, margin)
 
-    def _set(
-        self, core: _core.FragmentTree, lenience: tuple[bool, bool], margin: float | None
-    ) -> None:
+    def _set(self, core: FragmentTree, lenience: tuple[bool, bool], margin: float | None) -> None:
         self.core = core
         self.lenience = lenience
         self._margin = None if margin is None else not_negative(margin, "margin")
 
     @classmethod
     def from_core(
-        cls, core: _core.FragmentTree, lenience: tuple[bool, bool], margin: float | None = None
+        cls, core: FragmentTree, lenience: tuple[bool, bool], margin: float | None = None
     ) -> "PartitionTree":
         """Return the tree of a core object (for the modules of this package)."""
         tree = cls.__new__(cls)
@@ -167,7 +167,7 @@ class PartitionTree(Ordered):
             if cuts is None:
                 return None
             corners, offsets = tree.core.lattice()
-            core = _core.FragmentTree.rebuild(corners, offsets, tree.pitch, cuts, tree.lenience)
+            core = FragmentTree.rebuild(corners, offsets, tree.pitch, cuts, tree.lenience)
         return cls.from_core(core, tree.lenience, tree._margin)
 
     # Parts
@@ -187,7 +187,7 @@ class PartitionTree(Ordered):
         return len(self.core)
 
     @cached_property
-    def arrays(self) -> "_core.NodeArrays":
+    def arrays(self) -> "NodeArrays":
         """All nodes in preorder as arrays.
 
         ``normal`` (n, d) and ``offset`` (n,) as in `Node.hyperplane`; ``minus``, ``plus``,
@@ -252,24 +252,18 @@ class PartitionTree(Ordered):
 
     # Quality
 
-    def stats(self) -> "Stats":
-        """Return size, depth, splits and balance (see `bspcsg.bsp.cost`)."""
-        from .cost import stats
-
+    def stats(self) -> Stats:
+        """Return size, depth, splits and balance (see `bspcsg.bsp.trees.cost`)."""
         return stats(self)
 
-    def cost(self, query: "Query" = "point", margin: float | None = None) -> float:
-        """Return the expected number of nodes that a query visits (see `bspcsg.bsp.cost`)."""
-        from .cost import cost
-
+    def cost(self, query: Query = "point", margin: float | None = None) -> float:
+        """Return the expected number of nodes that a query visits (see `bspcsg.bsp.trees.cost`)."""
         return cost(self, query, margin)
 
     # Files
 
     def to_json(self) -> str:
         """Return facets and cuts as JSON, exactly; `from_json` makes an equal tree of it."""
-        from .dump import to_json
-
         return to_json(self)
 
     @classmethod
@@ -281,9 +275,7 @@ class PartitionTree(Ordered):
         FormatError
             If the text is something else, or its cuts do not suit its facets.
         """
-        from .dump import from_json
-
-        return from_json(text)
+        return cls.from_core(*parsed(text))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write `to_json` to a file."""
@@ -298,14 +290,10 @@ class PartitionTree(Ordered):
 
     def to_dot(self) -> str:
         """Return the tree in the language of Graphviz; leaves are drawn as dots."""
-        from .dump import to_dot
-
         return to_dot(self)
 
     def to_svg(self, size: int = 480) -> str:
         """Return a picture of a 2D tree: regions in grey, fragments in black, as SVG."""
-        from .dump import to_svg
-
         return to_svg(self, size)
 
     # As a value
@@ -347,7 +335,7 @@ class PartitionTree(Ordered):
 
 def _restored(kind: type[PartitionTree], parts: Any, margin: float | None) -> PartitionTree:
     with core_errors():
-        return kind.from_core(_core.FragmentTree.rebuild(*parts), parts[-1], margin)
+        return kind.from_core(FragmentTree.rebuild(*parts), parts[-1], margin)
 
 
 def _place(of: Node | Leaf | None) -> tuple[int | None, int]:

@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
 
+from ... import csg
 from ..._types import FloatArray, SetOp
 from ...errors import BspcsgError, InternalError, MissingPartError
+from ...formats.atomic import write_file
 from ...mesh.mesh import Mesh
 from ...solid.solid import Solid
 from ...verify import oracle
@@ -17,6 +19,7 @@ from ...verify.comparison import hausdorff
 from ...verify.verdict import CheckReport, Facts, Verdict
 from ..cases.case import SCRIPT, Case
 from ..cases.identities import identity_of
+from ..cases.meshes import packed
 from ..cases.operands import operands_of
 from ..engines.questions import Question
 from ..memory import forget_peak, peak_mb
@@ -182,8 +185,6 @@ class _Evaluation:
     def _loaded(self) -> tuple[list[Solid], Sequence[FloatArray | None]]:
         if not self._is_script:
             return operands_of(self._case)
-        from ... import csg
-
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", csg.CsgWarning)
             path = str(self._case.operands[0].file)
@@ -242,9 +243,6 @@ class _Evaluation:
 
     def _kept(self, found: Examination) -> str:
         """Write the meshes of a case; return the path that the record names."""
-        from ...formats.atomic import write_file
-        from ..cases.meshes import packed
-
         folder = Path(str(self._settings.meshes))
         folder.mkdir(parents=True, exist_ok=True)
         name = f"{self._case.key}.npz"

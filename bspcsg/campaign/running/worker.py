@@ -14,6 +14,7 @@ from typing import Any
 
 from ...errors import BspcsgError
 from ...parameters import set_threads
+from ...solid.solid import Solid
 from ..cases.case import Case
 from ..judging.evaluation import Settings, blank_record, evaluate
 from ..memory import limit_memory
@@ -63,8 +64,6 @@ def _answered(request: dict[str, Any], settings: Settings) -> Any:
 
 def _surveyed(file: str) -> dict[str, Any]:
     """Say whether a file is a solid, and of how many triangles."""
-    from ...solid.solid import Solid
-
     try:
         solid = Solid.load(file)
         return {"file": file, "triangles": len(solid.to_mesh().faces), "refused": None}

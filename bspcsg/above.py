@@ -1,0 +1,37 @@
+"""What methods ask of the floors above them.
+
+Files, scripts, sections, checks and pictures are made of solids and regions, and are methods of
+them, too. So that imports go one way all the same, such a method asks here, and
+`bspcsg.conveniences` says once, when the package is imported, which function answers.
+"""
+
+from collections.abc import Callable
+from typing import Any, Literal, TypeAlias
+
+#: What is asked for.
+Convenience: TypeAlias = Literal[
+    "check",
+    "dumps",
+    "load",
+    "load_dxf",
+    "load_svg",
+    "loads",
+    "save",
+    "save_dxf",
+    "save_svg",
+    "slice_solid",
+    "solid_html",
+    "solid_svg",
+]
+
+_answers: dict[Convenience, Callable[..., Any]] = {}
+
+
+def answer(name: Convenience, function: Callable[..., Any]) -> None:
+    """Let a function of an upper floor answer."""
+    _answers[name] = function
+
+
+def above(name: Convenience) -> Callable[..., Any]:
+    """Return the function that answers."""
+    return _answers[name]

@@ -1,0 +1,90 @@
+"""Pivot policies compared: one tree for each, in figures."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+from .cost import cost, stats
+from .policy import POLICIES, Policy
+from .tree import PartitionTree
+
+
+@dataclass(frozen=True)
+class PolicyRow:
+    """One policy's tree in figures.
+
+    Parameters
+    ----------
+    policy : str
+    nodes, depth, fragments, splits : int
+        As in `Stats`.
+    balance : float
+    point_cost, ray_cost : float
+        As `cost` has them.
+    seconds : float
+        Wall-clock time of the construction.
+    """
+
+    policy: str
+    nodes: int
+    depth: int
+    fragments: int
+    splits: int
+    balance: float
+    point_cost: float
+    ray_cost: float
+    seconds: float
+
+
+class Comparison(list[PolicyRow]):
+    """Rows that print as a table."""
+
+    def __str__(self) -> str:
+        """Return the rows under each other, with a heading."""
+        names = [field.name for field in fields(PolicyRow)]
+        cells = [names] + [[_cell(value) for value in asdict(row).values()] for row in self]
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        lines = (zip(row, widths, strict=True) for row in cells)
+        return "\n".join("  ".join(cell.rjust(width) for cell, width in line) for line in lines)
+
+
+def compare_policies(
+    facets: Any, policies: Sequence[Policy] = POLICIES, **options: Any
+) -> Comparison:
+    """Build one tree for each policy and compare them.
+
+    Parameters
+    ----------
+    facets, **options
+        As for `PartitionTree`.
+    policies : sequence of str
+
+    Returns
+    -------
+    list of PolicyRow
+        In the order of `policies`; as a string it is a table.
+    """
+    return Comparison(_row(facets, policy, options) for policy in policies)
+
+
+def _row(facets: Any, policy: Policy, options: dict[str, Any]) -> PolicyRow:
+    start = time.perf_counter()
+    tree = PartitionTree(facets, policy, **options)
+    seconds = time.perf_counter() - start
+    figures = stats(tree)
+    return PolicyRow(
+        policy=policy,
+        nodes=figures.nodes,
+        depth=figures.depth,
+        fragments=figures.fragments,
+        splits=figures.splits,
+        balance=figures.balance,
+        point_cost=cost(tree, "point"),
+        ray_cost=cost(tree, "ray"),
+        seconds=seconds,
+    )
+
+
+def _cell(value: Any) -> str:
+    return f"{value:.3f}" if isinstance(value, float) else str(value)

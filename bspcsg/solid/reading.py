@@ -1,0 +1,23 @@
+"""Solids of what mesh files hold."""
+
+import os
+from typing import Any
+
+from ..errors import BspcsgError
+from ..formats.raw import RawMesh
+from .solid import Solid
+
+
+def solid_of(raw: RawMesh, path: str | os.PathLike[str], **options: Any) -> Solid:
+    """Return the solid of what was read from a file; errors name the file.
+
+    A file that `save` wrote of the empty set is the empty set again; any other without faces is
+    refused, as what should be in it may have got lost.
+    """
+    if raw.is_empty_set:
+        return Solid.empty()
+    try:
+        return Solid(raw.vertices, raw.faces, **options)
+    except BspcsgError as error:
+        message = f"{os.fspath(path)}: {error.message}"
+        raise type(error)(message, error.code, error.where) from error
