@@ -21,8 +21,8 @@ from .formats.files import (
     write,
 )
 from .formats.raw import RawMesh
+from .formats.solids import solid_of
 from .solid.counting import counted
-from .solid.reading import solid_of
 from .solid.solid import Solid
 
 #: Suffixes of scripts, which `load` evaluates.

@@ -139,7 +139,7 @@ class Inputs:
             raise InvalidMeshError(message, error.code, error.where) from error
 
     def _solid_of(self, raw: "RawMesh", path: Path) -> "Solid":
-        from ..solid.reading import solid_of
+        from ..formats.solids import solid_of
 
         return solid_of(raw, shown(path), winding=self.winding, pitch=self.pitch)
 

@@ -4,8 +4,8 @@ import os
 from typing import Any
 
 from ..errors import BspcsgError
-from ..formats.raw import RawMesh
-from .solid import Solid
+from ..solid.solid import Solid
+from .raw import RawMesh
 
 
 def solid_of(raw: RawMesh, path: str | os.PathLike[str], **options: Any) -> Solid:
