@@ -10,11 +10,11 @@ scripts that are there already exact::
 trimesh has no public hook for engines: `register` writes into its table of engines.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from .errors import MissingPartError, invalid_parameter
-from .operations.setops import difference, intersection, union
+from .operations.setops import OPERATIONS
 from .solid.counting import uncounted
 from .solid.solid import Solid
 
@@ -24,11 +24,8 @@ if TYPE_CHECKING:
 #: What trimesh is to call this engine.
 NAME = "bspcsg"
 
-_OPERATIONS: dict[str, Callable[..., Solid]] = {
-    "difference": difference,
-    "intersection": intersection,
-    "union": union,
-}
+#: What trimesh can ask for.
+_KNOWN = ("difference", "intersection", "union")
 
 
 def register(default: bool = False) -> None:
@@ -102,15 +99,15 @@ def boolean(
         fewer than two meshes.
     """
     given = list(meshes)
-    if operation not in _OPERATIONS:
-        known = ", ".join(_OPERATIONS)
+    if operation not in _KNOWN:
+        known = ", ".join(_KNOWN)
         raise invalid_parameter(f"Unknown operation {operation!r}; this engine has {known}.")
     if operation == "difference" and len(given) < 2:
         raise invalid_parameter("A difference needs at least two meshes.")
     if check_volume:
         _refuse_surfaces(given)
     solids = [Solid.from_mesh(mesh, **options) for mesh in given]
-    return _OPERATIONS[operation](*solids).to_trimesh()
+    return OPERATIONS[operation](*solids).to_trimesh()
 
 
 def _refuse_surfaces(meshes: list[Any]) -> None:

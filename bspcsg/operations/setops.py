@@ -1,26 +1,19 @@
 """Set operations on any number of solids, and on bare arrays."""
 
 import operator
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import reduce
 from typing import Any, overload
 
 from .._core import CoreError, Tree
-from .._types import FloatArray, IndexArray, ProgramLine, SetOp
+from .._types import FloatArray, IndexArray, SetOp
 from ..errors import core_errors, invalid_parameter
 from ..mesh import interop
 from ..solid.counting import counted
-from ..solid.expression import Operator
 from ..solid.leaf import at_pitch
+from ..solid.program import Operator, program_of
 from ..solid.solid import Solid, combine
 from .block import Unfilled
-
-_PROGRAMS: dict[str, list[ProgramLine]] = {
-    "union": [("leaf", [0]), ("leaf", [1]), ("or", [0, 1])],
-    "intersection": [("leaf", [0]), ("leaf", [1]), ("and", [0, 1])],
-    "difference": [("leaf", [0]), ("leaf", [1]), ("not", [1]), ("and", [0, 2])],
-    "xor": [("leaf", [0]), ("leaf", [1]), ("xor", [0, 1])],
-}
 
 
 @overload
@@ -141,14 +134,22 @@ def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, 
     >>> vertices.shape, faces.shape
     ((8, 3), (12, 3))
     """
-    if op not in _PROGRAMS:
-        raise invalid_parameter(f"Unknown operation {op!r}; one of {', '.join(_PROGRAMS)}.")
+    program = program_of(op, 2)
     trees = [_tree(va, fa), _tree(vb, fb)]
     pitch = min(tree.pitch for tree in trees)
     operands = [at_pitch(tree, pitch) for tree in trees]
     with core_errors():
-        vertices, faces = Tree.evaluate(_PROGRAMS[op], operands).to_mesh()
+        vertices, faces = Tree.evaluate(program, operands).to_mesh()
     return vertices, faces
+
+
+#: The operations by name, each on any number of solids.
+OPERATIONS: dict[str, Callable[..., Solid]] = {
+    "union": union,
+    "intersection": intersection,
+    "difference": difference,
+    "xor": xor,
+}
 
 
 def _tree(vertices: Any, faces: Any) -> Tree:

@@ -8,14 +8,13 @@ transform acts on its result as a whole. There is no recursion: expressions may 
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple, TypeAlias
+from typing import NamedTuple
 
 from .._types import ProgramLine
 from ..errors import internal
 from ..geometry.transform import Factors
 from .leaf import Leaf, Record, TreeLeaf, run
-
-Operator: TypeAlias = Literal["or", "and", "xor", "not"]
+from .program import Operator
 
 
 class Placed(NamedTuple):

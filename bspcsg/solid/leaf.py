@@ -19,8 +19,7 @@ from ..errors import LimitError, UnboundedError, core_errors
 from ..geometry import transform
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
 from ..geometry.transform import Factors
-
-_COMPLEMENT: list[ProgramLine] = [("leaf", [0]), ("not", [0])]
+from .program import COMPLEMENT, Algebra
 
 
 def at_pitch(tree: Tree, pitch: int) -> Tree:
@@ -159,10 +158,10 @@ class TreeLeaf:
         """
         if self._is_bounded():
             return _moved_output(self.result, factors)
-        outside = run(Record(_COMPLEMENT, (self,)))
+        outside = run(Record(COMPLEMENT, (self,)))
         if not outside._is_bounded():
             return self._moved_operands(factors)
-        moved = run(Record(_COMPLEMENT, (_moved_output(outside.result, factors),)))
+        moved = run(Record(COMPLEMENT, (_moved_output(outside.result, factors),)))
         return TreeLeaf(moved.result, extent=False)
 
     def forgetful(self) -> "TreeLeaf":
@@ -280,29 +279,30 @@ def run(record: Record) -> TreeLeaf:
     pitch = _common_pitch(record.leaves)
     trees = [leaf.tree(pitch) for leaf in record.leaves]
     with core_errors():
-        return TreeLeaf(Tree.evaluate(record.program, trees), record, _extent(record))
+        result = Tree.evaluate(record.program, trees)
+    extents = [leaf.extent for leaf in record.leaves]
+    return TreeLeaf(result, record, _EXTENTS.evaluate(record.program, extents))
 
 
-def _extent(record: Record) -> Extent:
-    """Follow the program to what its result's extent must be."""
-    known: list[Extent] = []
-    for operator, arguments in record.program:
-        if operator == "leaf":
-            known.append(record.leaves[arguments[0]].extent)
-        else:
-            known.append(_extent_of(operator, [known[line] for line in arguments]))
-    return known[-1]
+def _either(operands: Sequence[Extent]) -> Extent:
+    # One operand of bounded complement is enough; bounded ones must be all.
+    return False if False in operands else all(operands) or None
 
 
-def _extent_of(operator: str, operands: list[Extent]) -> Extent:
-    if operator == "or":
-        # One operand of bounded complement is enough; bounded ones must be all.
-        return False if False in operands else all(operands) or None
-    if operator == "and":
-        return True if True in operands else None if None in operands else False
-    if None in operands:
-        return None
-    return operands.count(False) % 2 == 0 if operator == "xor" else not operands[0]
+def _both(operands: Sequence[Extent]) -> Extent:
+    return True if True in operands else None if None in operands else False
+
+
+def _odd(operands: Sequence[Extent]) -> Extent:
+    return None if None in operands else operands.count(False) % 2 == 0
+
+
+def _other(operand: Extent) -> Extent:
+    return None if operand is None else not operand
+
+
+#: What a result's extent must be.
+_EXTENTS: Algebra[Extent] = Algebra(_either, _both, _odd, _other)
 
 
 def transformed_arrays(

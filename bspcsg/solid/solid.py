@@ -26,10 +26,11 @@ from ..mesh.mesh import Mesh
 from ..parameters import optional_pitch, winding_rule
 from .counting import count, counted, uncounted
 from .describe import describe
-from .expression import Node, Operator, Placed, complement, evaluate, operation
+from .expression import Node, Placed, complement, evaluate, operation
 from .leaf import ConstantLeaf, Leaf, MeshLeaf, Record, TreeLeaf, tree_of
 from .measure import Measured, residues_of_volume
 from .point_set import PointSet
+from .program import Operator
 
 if TYPE_CHECKING:
     import manifold3d

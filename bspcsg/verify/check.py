@@ -16,7 +16,7 @@ Volumes and areas in floating point, Euler numbers and closedness are compared b
 symmetric difference comes from the engine that is being judged.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -25,9 +25,10 @@ from .._types import ProgramLine, SetOp
 from ..errors import BspcsgError, InternalError, invalid_parameter
 from ..mesh.mesh import Mesh
 from ..mesh.pieces import Pieces
-from ..operations.setops import difference, intersection, union, xor
+from ..operations.setops import OPERATIONS
 from ..shapes.primitives import box as box_of
 from ..solid.counting import uncounted
+from ..solid.program import name_of, program_of
 from ..solid.solid import Solid
 from . import oracle
 from .discrepancy import SetDifference, difference_of
@@ -36,7 +37,6 @@ from .referee import Ruling, settle
 from .verdict import CheckReport, Facts, Verdict
 
 __all__ = [
-    "COMBINE",
     "CheckReport",
     "Examination",
     "Facts",
@@ -73,8 +73,8 @@ def validate(op: SetOp, *operands: Solid) -> CheckReport:
     >>> report.ok, report.ours.triangles
     (True, 12)
     """
-    _program(op, len(operands))
-    return check_result(COMBINE[op](*operands), op, operands)
+    program_of(op, len(operands))
+    return check_result(OPERATIONS[op](*operands), op, operands)
 
 
 @uncounted
@@ -131,57 +131,20 @@ def examine(
 ) -> Examination:
     """Compare as `check_result` does, and keep the meshes."""
     if op is not None and operands is not None:
-        return _Check(op, _program(op, len(operands)), list(operands), result).run()
+        return _Check(op, program_of(op, len(operands)), list(operands), result).run()
     last = result.last_operation
     if last is None or op is not None or operands is not None:
         raise invalid_parameter(
             "There is nothing to compare: this solid is no result of an operation. Name the"
             " operation and give its operands."
         )
-    return _Check(_name_of(last.program), last.program, list(last.operands), last.result).run()
+    return _Check(name_of(last.program), last.program, list(last.operands), last.result).run()
 
 
 def same_set_bound(pitch: int, *meshes: Mesh) -> float:
     """Return the thickness up to which a difference of meshes on a lattice is rounding."""
     reach = max((float(np.abs(mesh.vertices).max(initial=0)) for mesh in meshes), default=0.0)
     return STEPS * 10.0**pitch + ULPS * float(np.spacing(reach))
-
-
-#: The operations by name, each on any number of solids.
-COMBINE: dict[str, Callable[..., Solid]] = {
-    "union": union,
-    "intersection": intersection,
-    "difference": difference,
-    "xor": xor,
-}
-
-
-def _program(op: str, count: int) -> list[ProgramLine]:
-    """Return the program of a named operation on so many operands."""
-    if op not in COMBINE:
-        raise invalid_parameter(f"Unknown operation {op!r}; one of {', '.join(COMBINE)}.")
-    if count == 0:
-        raise invalid_parameter(f"The {op} of no operands cannot be compared.")
-    lines: list[ProgramLine] = [("leaf", [number]) for number in range(count)]
-    if op == "difference" and count > 1:
-        lines += [("or", list(range(1, count))), ("not", [count]), ("and", [0, count + 1])]
-    elif op == "xor":
-        for number in range(1, count):
-            lines.append(("xor", [len(lines) - 1 if number > 1 else 0, number]))
-    else:
-        lines.append(("or" if op == "union" else "and", list(range(count))))
-    return lines
-
-
-def _name_of(program: Sequence[ProgramLine]) -> str:
-    """Return what to call a program."""
-    operators = [operator for operator, _ in program if operator != "leaf"]
-    names = {"or": "union", "and": "intersection", "xor": "xor", "not": "complement"}
-    if len(operators) == 1:
-        return names[operators[0]]
-    if operators[-1:] == ["and"] and set(operators[:-1]) == {"not"}:
-        return "difference"
-    return "expression"
 
 
 @dataclass

@@ -7,13 +7,14 @@ whether its complement is meant; the laws of De Morgan do the rest.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from .._types import ProgramLine
 from ..mesh import interop
 from ..mesh.mesh import Mesh
+from ..solid.program import Algebra
 
 if TYPE_CHECKING:
     import manifold3d
@@ -92,7 +93,7 @@ def ask(
     return Answer(_mesh_of(result), max(tolerance, result.get_tolerance()))
 
 
-_Value = tuple["manifold3d.Manifold", bool]
+_Value: TypeAlias = "tuple[manifold3d.Manifold, bool]"
 
 
 def _taken(number: int, operand: Mesh) -> "manifold3d.Manifold":
@@ -115,22 +116,15 @@ def _empty() -> "manifold3d.Manifold":
 
 
 def _carried_out(program: Sequence[ProgramLine], solids: list["manifold3d.Manifold"]) -> _Value:
-    values: list[_Value] = []
-    for operator, arguments in program:
-        if operator == "leaf":
-            values.append((solids[arguments[0]], False))
-            continue
-        found = [values[argument] for argument in arguments]
-        values.append(_OPERATIONS[operator](found))
-    return values[-1]
+    return _MANIFOLDS.evaluate(program, [(solid, False) for solid in solids])
 
 
-def _not(values: list[_Value]) -> _Value:
-    solid, outside = values[0]
+def _not(value: _Value) -> _Value:
+    solid, outside = value
     return solid, not outside
 
 
-def _and(values: list[_Value]) -> _Value:
+def _and(values: Sequence[_Value]) -> _Value:
     bounded = [solid for solid, outside in values if not outside]
     holes = [solid for solid, outside in values if outside]
     if not bounded:
@@ -139,16 +133,16 @@ def _and(values: list[_Value]) -> _Value:
     return (common - _batch(holes, "Add") if holes else common), False
 
 
-def _or(values: list[_Value]) -> _Value:
-    return _not([_and([_not([value]) for value in values])])
+def _or(values: Sequence[_Value]) -> _Value:
+    return _not(_and([_not(value) for value in values]))
 
 
-def _xor(values: list[_Value]) -> _Value:
+def _xor(values: Sequence[_Value]) -> _Value:
     (a, a_outside), (b, b_outside) = values
     return (a - b) + (b - a), a_outside != b_outside
 
 
-_OPERATIONS = {"not": _not, "and": _and, "or": _or, "xor": _xor}
+_MANIFOLDS: Algebra[_Value] = Algebra(_or, _and, _xor, _not)
 
 
 def _batch(solids: list["manifold3d.Manifold"], operation: str) -> "manifold3d.Manifold":

@@ -13,6 +13,7 @@ import numpy as np
 from .._types import FloatArray, ProgramLine
 from ..mesh.mesh import Mesh
 from ..mesh.pieces import Point
+from ..solid.program import TRUTH
 
 
 class Ruling(Enum):
@@ -59,7 +60,7 @@ def count_agreeing(
         known = [each for each in found if each is not None]
         if inside is not None and len(known) == len(found):
             settled += 1
-            agreeing += _value(program, known) == inside
+            agreeing += TRUTH.evaluate(program, known) == inside
     return agreeing, settled
 
 
@@ -77,26 +78,8 @@ def _settled_piece(
         found = [is_inside(operand, point) for operand in operands]
         known = [inside for inside in found if inside is not None]
         if len(known) == len(found):
-            return Ruling.OURS if _value(program, known) == in_ours else Ruling.THEIRS
+            return Ruling.OURS if TRUTH.evaluate(program, known) == in_ours else Ruling.THEIRS
     return Ruling.UNCLEAR
-
-
-def _value(program: Sequence[ProgramLine], inside: Sequence[bool]) -> bool:
-    """Return whether a point is in the result, from whether it is in each operand."""
-    values: list[bool] = []
-    for operator, arguments in program:
-        if operator == "leaf":
-            values.append(inside[arguments[0]])
-            continue
-        found = [values[argument] for argument in arguments]
-        outcome = {
-            "or": any(found),
-            "and": all(found),
-            "xor": sum(found) % 2 == 1,
-            "not": not found[0],
-        }
-        values.append(outcome[operator])
-    return values[-1]
 
 
 def is_inside(mesh: Mesh, point: Point) -> bool | None:

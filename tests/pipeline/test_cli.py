@@ -15,7 +15,7 @@ import pytest
 import bspcsg as b
 from bspcsg.cli.main import _VERBS, run
 from bspcsg.io import RawMesh, read, write
-from bspcsg.verify import check as checking
+from bspcsg.operations.setops import OPERATIONS
 from support.cli import Capture, process, put, ran
 from support.shapes import Arrays, cube, cuboid, flipped, icosphere, joined, moved
 
@@ -114,7 +114,7 @@ def test_empty_results_must_be_meant(folder: Path, capsys: Capture) -> None:
 def test_disagreement_is_exit_code_1(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setitem(checking.COMBINE, "union", lambda *solids: solids[0])
+    monkeypatch.setitem(OPERATIONS, "union", lambda *solids: solids[0])
     code, out, _ = ran(capsys, "union", "a.off", "c.stl", "-o", "x.off")
     assert code == 1 and "check: DISAGREE" in out and Path("x.off").exists()
 
@@ -309,7 +309,7 @@ def test_defects_say_so_without_a_traceback(
     def fail(*_: object) -> None:
         raise ZeroDivisionError("by zero")
 
-    monkeypatch.setitem(checking.COMBINE, "union", fail)
+    monkeypatch.setitem(OPERATIONS, "union", fail)
     code, _, err = ran(capsys, "union", "a.off", "c.stl", "-o", "x.off")
     assert code == 70 and "defect of bspcsg" in err
     with pytest.raises(ZeroDivisionError):

@@ -18,7 +18,7 @@ import pytest
 import bspcsg as b
 from bspcsg.cli.main import _VERBS, run
 from bspcsg.errors import missing_part
-from bspcsg.verify import check as checking
+from bspcsg.operations.setops import OPERATIONS
 from support.cli import Capture, finished, process, put, ran
 from support.results import disagreeing, header, write_results
 from support.shapes import cube, cuboid, icosphere, joined, moved
@@ -250,7 +250,7 @@ def test_code_70_asks_for_a_report(
     def fail(*_: object) -> None:
         raise AssertionError("never")
 
-    monkeypatch.setitem(checking.COMBINE, "union", fail)
+    monkeypatch.setitem(OPERATIONS, "union", fail)
     code, out, err = ran(capsys, "union", "a.off", "c.stl", "-o", "x.ply")
     assert (code, out) == (70, "") and len(err.splitlines()) == 1
     assert "AssertionError: never" in err and "--debug" in err
@@ -264,7 +264,7 @@ def test_code_70_of_an_exhausted_memory(
     def fail(*_: object) -> None:
         raise MemoryError
 
-    monkeypatch.setitem(checking.COMBINE, "xor", fail)
+    monkeypatch.setitem(OPERATIONS, "xor", fail)
     code, _, err = ran(capsys, "xor", "a.off", "c.stl", "-o", "x.ply")
     assert code == 70 and "out of memory" in err
 

@@ -10,7 +10,7 @@ from bspcsg.campaign.cases.case import Case, Operand
 from bspcsg.campaign.cases.meshes import unpacked
 from bspcsg.campaign.judging.evaluation import Settings, evaluate
 from bspcsg.campaign.record import CaseRecord
-from bspcsg.verify.check import COMBINE
+from bspcsg.operations.setops import OPERATIONS
 
 Settle = pytest.MonkeyPatch
 
@@ -38,7 +38,7 @@ def a_bump_too_many(*solids: "b.Solid") -> "b.Solid":
 
 
 def test_wrong_result_is_a_disagreement(tmp_path: Path, monkeypatch: Settle) -> None:
-    monkeypatch.setitem(COMBINE, "intersection", a_bump_too_many)
+    monkeypatch.setitem(OPERATIONS, "intersection", a_bump_too_many)
     settings = Settings(meshes=str(tmp_path / "kept"), relative="kept")
     found = asked("intersection", settings)
     assert found["verdict"] == "DISAGREE"
@@ -60,7 +60,7 @@ def test_wrong_result_is_a_disagreement(tmp_path: Path, monkeypatch: Settle) -> 
 
 
 def test_volumes_that_do_not_add_up_fail_us(monkeypatch: Settle) -> None:
-    monkeypatch.setitem(COMBINE, "union", lambda *solids: solids[0])
+    monkeypatch.setitem(OPERATIONS, "union", lambda *solids: solids[0])
     found = asked("union")
     assert found["verdict"] == "subject failed"
     assert found["identity"] == {"equation": "|A ∪ B| = |A| + |B| − |A ∩ B|", "holds": False}
@@ -70,7 +70,7 @@ def test_internal_error_fails_us(monkeypatch: Settle) -> None:
     def broken(*solids: "b.Solid") -> "b.Solid":
         raise b.InternalError("An invariant failed.")
 
-    monkeypatch.setitem(COMBINE, "xor", broken)
+    monkeypatch.setitem(OPERATIONS, "xor", broken)
     found = asked("xor")
     assert (found["verdict"], found["reason"]) == ("subject failed", "An invariant failed.")
 

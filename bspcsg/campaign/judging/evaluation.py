@@ -12,9 +12,10 @@ from ..._types import FloatArray, SetOp
 from ...errors import BspcsgError, InternalError, MissingPartError
 from ...formats.atomic import write_file
 from ...mesh.mesh import Mesh
+from ...operations.setops import OPERATIONS
 from ...solid.solid import Solid
 from ...verify import oracle
-from ...verify.check import COMBINE, Examination, examine
+from ...verify.check import Examination, examine
 from ...verify.comparison import hausdorff
 from ...verify.verdict import CheckReport, Facts, Verdict
 from ..cases.case import SCRIPT, Case
@@ -158,7 +159,7 @@ class _Evaluation:
     def run(self, keep: bool) -> CaseRecord:
         solids, rows = self._loaded()
         self._clock.lap("load")
-        result = solids[0] if self._is_script else COMBINE[self._case.operation](*solids)
+        result = solids[0] if self._is_script else OPERATIONS[self._case.operation](*solids)
         result.normalized().to_mesh()
         self._clock.lap("ours")
         began = time.perf_counter()

@@ -55,11 +55,11 @@ class _Named(Job):
         return self._files
 
     def combined(self) -> "Solid":
-        from ...verify.check import COMBINE
+        from ...operations.setops import OPERATIONS
 
         self._solids = [self.inputs.solid(path) for path in self._files]
         self.lap("read")
-        return COMBINE[self.op](*self._solids)
+        return OPERATIONS[self.op](*self._solids)
 
     def compared(self, result: "Solid") -> "CheckReport | None":
         from ...verify.check import check_result

@@ -70,9 +70,9 @@ class _Evaluation(Job):
 
 
 def _combined(name: str, solids: list["Solid"]) -> "Solid":
-    from ...verify.check import COMBINE
+    from ...operations.setops import OPERATIONS
 
-    return ~solids[0] if name == "complement" else COMBINE[name](*solids)
+    return ~solids[0] if name == "complement" else OPERATIONS[name](*solids)
 
 
 def _pointed(formula: str, message: str, column: int) -> str:
