@@ -1,13 +1,14 @@
 """What the measuring scripts share: where they ran, and how a result is kept."""
 
 import json
-import os
 import platform
 import subprocess
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
+
+from bspcsg.machine import machine as this_machine
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 RECORDS = REPOSITORY / "scripts" / "records"
@@ -18,9 +19,7 @@ def machine() -> dict[str, Any]:
     return {
         "date": datetime.now(UTC).strftime("%Y-%m-%d"),
         "commit": _commit(),
-        "processor": _processor(),
-        "cores": os.cpu_count(),
-        "system": f"{platform.system()} {platform.machine()}",
+        **this_machine(),
         "python": platform.python_version(),
         "manifold3d": version("manifold3d"),
         "numpy": version("numpy"),
@@ -33,15 +32,6 @@ def keep(name: str, result: dict[str, Any]) -> Path:
     path = RECORDS / f"{name}.json"
     path.write_text(json.dumps({"machine": machine(), **result}, indent=1) + "\n")
     return path
-
-
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return platform.processor()
-    names = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
-    return next(names, platform.processor())
 
 
 def _commit() -> str:

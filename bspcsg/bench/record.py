@@ -9,6 +9,7 @@ from typing import Any
 
 from ..errors import FormatError
 from ..formats.atomic import write_file
+from ..machine import machine
 from .engines import installed
 
 #: Raised whenever a field changes its meaning.
@@ -22,22 +23,11 @@ def record_of(rows: list[dict[str, Any]], runs: int, command: str) -> dict[str, 
         "type": "bench",
         "command": command,
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
-        "machine": machine(),
+        # The load is that of all users of the machine over the last five minutes.
+        "machine": {**machine(), "load": round(os.getloadavg()[1], 2)},
         "versions": {**installed(), "python": platform.python_version()},
         "runs": runs,
         "cases": rows,
-    }
-
-
-def machine() -> dict[str, Any]:
-    """Describe the machine; the load is that of all its users over the last five minutes."""
-    pages = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    return {
-        "processor": _processor(),
-        "cores": os.cpu_count(),
-        "memory_gb": round(pages / 1e9, 1),
-        "system": f"{platform.system()} {platform.release()} {platform.machine()}",
-        "load": round(os.getloadavg()[1], 2),
     }
 
 
@@ -77,15 +67,6 @@ def read(path: Path) -> dict[str, Any]:
         said = f"schema {record.get('schema')}, and this version reads {SCHEMA}"
         raise FormatError(f"{path}: {said}; measure it again.", "unreadable")
     return record
-
-
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return platform.processor()
-    names = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
-    return next(names, platform.processor())
 
 
 def seconds_text(seconds: float) -> str:

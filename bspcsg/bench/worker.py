@@ -15,10 +15,10 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from ..machine import forget_peak, held_mb, peak_mb
 from .cases import CASES, dome
 from .engines import ENGINES, Engine
 from .facts import facts_of
-from .memory import forget_peak, held_mb, peak_mb
 from .work import Carving, Chain, Outcome, Tell, Work
 
 #: Steps are told at most so often, in seconds.

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, Literal, NotRequired, Self, TypedDict, cast
 
 from ..errors import FormatError
+from ..machine import Machine
 
 #: The name that stands for standard input.
 STREAM = "-"
@@ -40,15 +41,6 @@ VERDICTS = (
 )
 
 Kind = Literal["pair", "csg", "pose"]
-
-
-class Machine(TypedDict):
-    """Where a run took place."""
-
-    processor: str
-    cores: int
-    memory_gb: float
-    system: str
 
 
 class RunRecord(TypedDict):

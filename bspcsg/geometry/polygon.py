@@ -241,3 +241,19 @@ def _fans(contours: Sequence[FloatArray]) -> IndexArray:
         fans.append(np.column_stack([np.full_like(rest, start), rest, rest + 1]))
         start += len(contour)
     return np.concatenate(fans)
+
+
+def convex_corners(edges: Sequence[FloatArray]) -> FloatArray:
+    """Return the corners of a convex polygon, counterclockwise, from its edges in any order.
+
+    Parameters
+    ----------
+    edges : sequence of (2, 2) float64
+        Each from one corner to the next; none make a polygon without corners.
+    """
+    if not len(edges):
+        return np.zeros((0, 2))
+    ends = np.stack(edges)
+    along = ends[:, 1] - ends[:, 0]
+    order = np.argsort(np.arctan2(along[:, 1], along[:, 0]), kind="stable")
+    return np.asarray(ends[order, 0])

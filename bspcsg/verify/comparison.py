@@ -15,10 +15,9 @@ from ..errors import missing_part
 from ..mesh import interop
 from ..mesh.distance import distances_to_triangles
 from ..mesh.mesh import Mesh
-from ..mesh.pieces import Pieces
 from ..solid.counting import uncounted
 from ..solid.solid import Solid
-from .discrepancy import SetDifference
+from .discrepancy import SetDifference, measured
 from .verdict import Facts
 
 #: How many points are measured at once; more need more memory.
@@ -87,7 +86,7 @@ def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> Compari
     if difference.is_empty:
         return Comparison(*facts, True, SetDifference(0.0), 0.0)
     mesh = difference.to_mesh()
-    found = _measured(difference, mesh)
+    found, _ = measured(difference.volume, mesh)
     if samples == 0 or any(len(one.faces) == 0 for one in (*meshes, mesh)):
         return Comparison(*facts, False, found)
     *ways, count = hausdorff(*meshes, mesh, samples, seed)
@@ -118,16 +117,6 @@ def hausdorff(
         return 0.0, 0.0, 0
     points = _sampled(difference, samples, np.random.default_rng(seed))
     return _farthest(b, points), _farthest(a, points), len(points)
-
-
-def _measured(difference: Solid, mesh: Mesh) -> SetDifference:
-    volume = difference.volume
-    if len(mesh.faces) == 0 or mesh.area == 0:
-        return SetDifference(volume)
-    pieces = Pieces.of(mesh)
-    worst = pieces.thickest
-    thickness = max(float(pieces.thickness[worst]), 2 * volume / mesh.area)
-    return SetDifference(volume, mesh.area, thickness, pieces.corner_of(worst))
 
 
 def _sampled(mesh: Mesh, count: int, rng: np.random.Generator) -> FloatArray:

@@ -66,8 +66,11 @@ def difference_of(
     difference = _where_windings_differ(a, b, pitch)
     if difference.is_empty:
         return SetDifference(0.0), None
-    volume = difference.volume
-    mesh = difference.normalized().to_mesh()
+    return measured(difference.volume, difference.normalized().to_mesh(), film)
+
+
+def measured(volume: float, mesh: Mesh, film: float = 0.0) -> tuple[SetDifference, Pieces | None]:
+    """Return how much a difference with this volume and boundary is, and its pieces, if any."""
     if len(mesh.faces) == 0 or mesh.area == 0:
         return SetDifference(volume), None
     pieces = Pieces.of(mesh, film)

@@ -23,7 +23,7 @@ import numpy as np
 
 import bspcsg as b
 from bspcsg import bsp
-from bspcsg.bench.memory import held_mb
+from bspcsg.machine import held_mb
 
 Corner: TypeAlias = tuple[float, ...]
 

@@ -9,6 +9,7 @@ import numpy as np
 from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Vector
 from ...errors import core_errors, invalid_parameter
+from ...geometry.polygon import convex_corners
 from ...parameters import number
 from .loops import Outline
 from .objects import ObjectTree
@@ -161,7 +162,7 @@ class PlaneQueries(ObjectTree):
             if owner == len(parts):
                 parts.append([])
             parts[owner].append(cells[face])
-        return [_polygon_of(faces) for faces in parts]
+        return [convex_corners(faces) for faces in parts]
 
 
 def vector2(value: Any, name: str) -> tuple[float, float]:
@@ -171,11 +172,3 @@ def vector2(value: Any, name: str) -> tuple[float, float]:
     except (TypeError, ValueError) as error:
         raise invalid_parameter(f"{name} must have two numbers.") from error
     return number(x, name), number(y, name)
-
-
-def _polygon_of(faces: list[FloatArray]) -> FloatArray:
-    """Return the corners of a convex polygon from its edges, in any order."""
-    edges = np.array(faces)
-    along = edges[:, 1] - edges[:, 0]
-    order = np.argsort(np.arctan2(along[:, 1], along[:, 0]), kind="stable")
-    return np.asarray(edges[order, 0])

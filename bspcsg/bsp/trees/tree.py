@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, Literal, Self
 import numpy as np
 
 from ..._core import FragmentTree
-from ..._types import FloatArray, IndexArray
+from ..._types import IndexArray
 from ...errors import core_errors, invalid_parameter
+from ...geometry.polygon import convex_corners
 from ...parameters import not_negative
 from .cost import Query, Stats, cost, stats
 from .dump import parsed, to_dot, to_json, to_svg
@@ -248,7 +249,7 @@ class PartitionTree(Ordered):
             walls = self.core.region(node, side, reach)
         if self.dimension == 1:
             return np.sort(np.concatenate(walls).ravel())
-        return _outline(walls) if self.dimension == 2 else walls
+        return convex_corners(walls) if self.dimension == 2 else walls
 
     # Quality
 
@@ -345,13 +346,3 @@ def _place(of: Node | Leaf | None) -> tuple[int | None, int]:
         return of.index, 0
     sides: dict[Side, int] = {"minus": -1, "plus": 1}
     return (None, 0) if of.parent is None else (of.parent.index, sides[of.side])
-
-
-def _outline(walls: list[FloatArray]) -> FloatArray:
-    """Return the corners of a convex polygon whose edges come in any order."""
-    if not walls:
-        return np.zeros((0, 2))
-    edges = np.stack(walls)
-    along = edges[:, 1] - edges[:, 0]
-    outline: FloatArray = edges[np.argsort(np.arctan2(along[:, 1], along[:, 0])), 0]
-    return outline

@@ -11,6 +11,7 @@ from ... import csg
 from ..._types import FloatArray, SetOp
 from ...errors import BspcsgError, InternalError, MissingPartError
 from ...formats.atomic import write_file
+from ...machine import forget_peak, peak_mb
 from ...mesh.mesh import Mesh
 from ...operations.setops import OPERATIONS
 from ...solid.solid import Solid
@@ -23,7 +24,6 @@ from ..cases.identities import identity_of
 from ..cases.meshes import packed
 from ..cases.operands import operands_of
 from ..engines.questions import Question
-from ..memory import forget_peak, peak_mb
 from ..record import (
     SCHEMA,
     CaseRecord,
@@ -145,7 +145,7 @@ def evaluate(case: Case, settings: Settings, keep: bool = False) -> CaseRecord:
     seconds = {**record["seconds"], **clock.seconds}
     seconds["total"] = round(time.perf_counter() - clock.began, 4)
     record["seconds"] = cast(Any, seconds)
-    record["memory_mb"] = peak_mb()
+    record["memory_mb"] = round(peak_mb(), 1) or None
     return record
 
 

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any, cast
 
 from ..._core import __version__
+from ...machine import machine
 from ..cases.case import Case
 from ..judging.evaluation import Settings, blank_record
-from ..memory import installed_gb
-from ..record import SCHEMA, CaseRecord, Journal, Machine, RunRecord, is_failure
+from ..record import SCHEMA, CaseRecord, Journal, RunRecord, is_failure
 from .pool import Answering
 
 _VERSIONED = ("manifold3d", "pymeshlab", "trimesh", "numpy")
@@ -143,22 +143,3 @@ def run_record(command: str, seed: int) -> RunRecord:
         "versions": found,
         "machine": machine(),
     }
-
-
-def machine() -> Machine:
-    """Describe this machine."""
-    return {
-        "processor": _processor(),
-        "cores": os.cpu_count() or 1,
-        "memory_gb": installed_gb(),
-        "system": f"{platform.system()} {platform.machine()}",
-    }
-
-
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return platform.processor()
-    names = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
-    return next(names, platform.processor())

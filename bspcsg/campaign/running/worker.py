@@ -13,11 +13,11 @@ import threading
 from typing import Any
 
 from ...errors import BspcsgError
+from ...machine import limit_memory
 from ...parameters import set_threads
 from ...solid.solid import Solid
 from ..cases.case import Case
 from ..judging.evaluation import Settings, blank_record, evaluate
-from ..memory import limit_memory
 
 
 def main() -> None:

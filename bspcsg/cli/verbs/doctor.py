@@ -12,6 +12,7 @@ from typing import Any
 import click
 
 from ..._core import __version__
+from ...machine import system
 from .. import output
 from ..options import common
 from ..output import Output
@@ -87,12 +88,11 @@ def doctor(**given: Any) -> int:
 
 
 def _own() -> list[_Part]:
-    system = f"{platform.system()} {platform.release()} {platform.machine()}"
     python = f"{platform.python_version()} ({sys.executable})"
     return [
         _Part("bspcsg", __version__, ""),
         _Part("Python", python, ""),
-        _Part("system", system, ""),
+        _Part("system", system(), ""),
     ]
 
 

@@ -1,0 +1,104 @@
+"""The machine, and the memory of this process, as the system tells them."""
+
+import os
+import platform
+import sys
+from pathlib import Path
+from typing import TypedDict
+
+_STATUS = Path("/proc/self/status")
+_CLEAR = Path("/proc/self/clear_refs")
+
+#: Written there, it sets the peak back to what is held now (proc_pid_clear_refs(5)).
+_FORGET_PEAK = "5"
+
+
+class Machine(TypedDict):
+    """What a figure was measured on."""
+
+    processor: str
+    cores: int
+    memory_gb: float
+    system: str
+
+
+def machine() -> Machine:
+    """Describe this machine."""
+    return {
+        "processor": _processor(),
+        "cores": os.cpu_count() or 1,
+        "memory_gb": _installed_gb(),
+        "system": system(),
+    }
+
+
+def system() -> str:
+    """Return the name and the release of the operating system, and the kind of processor."""
+    return f"{platform.system()} {platform.release()} {platform.machine()}"
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor()
+    names = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+    return next(names, platform.processor())
+
+
+def _installed_gb() -> float:
+    """Return the memory of this machine in 10^9 bytes; 0 where nobody says."""
+    try:
+        return round(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9, 1)
+    except (ValueError, OSError, AttributeError):
+        return 0.0
+
+
+def held_mb() -> float:
+    """Return what this process holds now, in 10^6 bytes; its peak where nobody says."""
+    return _status("VmRSS") or peak_mb()
+
+
+def peak_mb() -> float:
+    """Return the most that it held since it began, or since the peak was forgotten.
+
+    In 10^6 bytes; 0 where nobody says.
+    """
+    return _status("VmHWM") or _used_mb()
+
+
+def _status(name: str) -> float | None:
+    try:
+        lines = _STATUS.read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return None
+    found = [line.split()[1] for line in lines if line.startswith(f"{name}:")]
+    return int(found[0]) * 1024 / 1e6 if found else None
+
+
+def _used_mb() -> float:
+    if sys.platform == "win32":
+        return 0.0
+    import resource
+
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e6
+
+
+def forget_peak() -> bool:
+    """Begin the peak anew; false where the system does not offer that."""
+    try:
+        _CLEAR.write_text(_FORGET_PEAK, encoding="utf-8")
+    except OSError:
+        return False
+    return True
+
+
+def limit_memory(size: int | None) -> None:
+    """Let this process ask for no more than so many bytes of addresses."""
+    if size is None or sys.platform == "win32":
+        return
+    import resource
+
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    least = size if hard == resource.RLIM_INFINITY else min(size, hard)
+    resource.setrlimit(resource.RLIMIT_AS, (least, hard))
