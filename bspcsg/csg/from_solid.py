@@ -17,7 +17,7 @@ from ..solid import expression
 from ..solid.counting import uncounted
 from ..solid.expression import Pending, Placed, Plan, make_plan
 from ..solid.leaf import ConstantLeaf, PlaneLeaf, TreeLeaf
-from ..solid.solid import Solid
+from ..solid.solid import Solid, expression_of, from_node
 from .syntax.tree import Argument, CsgTree, Node, Value
 
 #: Corners and triangles beyond which an expression is not written out but given up for one
@@ -67,7 +67,7 @@ def tree_of(solid: Solid, *, flat: bool = False) -> CsgTree:
     half-spaces have none, and where repeated parts, which are written out each time, would make it
     larger than two million corners and triangles. Symmetric differences repeat both their operands.
     """
-    body = _polyhedron(solid) if flat else _Reading().body(*solid.expression)
+    body = _polyhedron(solid) if flat else _Reading().body(*expression_of(solid))
     if body is None or body.size > _LARGEST or body.negated:
         body = _polyhedron(solid)
     if body is None or body.negated:
@@ -126,7 +126,7 @@ class _Reading:
                 lines.append(_operation(operator, [lines[line] for line in arguments]))
         made = lines[-1]
         if made is None or made.size > _LARGEST:
-            return _polyhedron(Solid.from_node(node))
+            return _polyhedron(from_node(node))
         return made
 
 
@@ -145,7 +145,7 @@ def _leaf(node: expression.Node) -> _Body | None:
     content = node.content
     if isinstance(content, ConstantLeaf):
         return _Body(None, content.full)
-    return None if isinstance(content, PlaneLeaf) else _polyhedron(Solid.from_node(node))
+    return None if isinstance(content, PlaneLeaf) else _polyhedron(from_node(node))
 
 
 def _moved(body: _Body | None, factors: Factors) -> _Body | None:

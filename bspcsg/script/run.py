@@ -23,7 +23,7 @@ from ..errors import BspcsgError, FormatError
 from ..geometry.transform import Factors
 from ..operations.setops import union
 from ..solid.counting import counted, uncounted
-from ..solid.solid import LastOperation, Solid, with_record
+from ..solid.solid import LastOperation, Solid, expression_of, with_record
 from .values import VALUES, compiled
 
 #: Longest time for a script, in seconds, unless the caller says otherwise.
@@ -172,7 +172,7 @@ def _result(name: str, variables: dict[str, Any]) -> Solid | BspcsgError:
 def _with_operation(result: Solid) -> _Made:
     """Return what the caller needs to know a solid and what made it."""
     last = result.last_operation
-    return result if last is None else (last, result.expression.factors)
+    return result if last is None else (last, expression_of(result).factors)
 
 
 def _located(error: Exception, name: str) -> BspcsgError:

@@ -18,7 +18,7 @@ from ..geometry.transform import vector3
 from ..parameters import number, positive, refuse_many_corners, sides_around
 from ..solid.counting import counted
 from ..solid.leaf import MeshLeaf, PlaneLeaf
-from ..solid.solid import Solid
+from ..solid.solid import Solid, from_leaf
 from .profile import extrude, revolve
 from .sweep import surface_of_revolution, unit_circle
 
@@ -246,13 +246,13 @@ def half_space(normal: Vector, offset: Scalar = 0.0) -> Solid:
     except (TypeError, ValueError) as error:
         raise InvalidMeshError("A normal has three numbers.", "bad_normal") from error
     number(offset, "offset")
-    return Solid.from_leaf(PlaneLeaf(Hyperplane.from_numbers((x, y, z), offset)))
+    return from_leaf(PlaneLeaf(Hyperplane.from_numbers((x, y, z), offset)))
 
 
 def from_arrays(vertices: FloatArray, faces: IndexArray) -> Solid:
     """Return the solid of a mesh whose faces do not cross, checked only where snapping could."""
     own = np.ascontiguousarray(vertices, dtype=np.float64), np.ascontiguousarray(faces)
-    return Solid.from_leaf(MeshLeaf(*own, trusted=_survives_snapping(*own)))
+    return from_leaf(MeshLeaf(*own, trusted=_survives_snapping(*own)))
 
 
 def _survives_snapping(vertices: FloatArray, faces: IndexArray) -> bool:

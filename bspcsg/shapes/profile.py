@@ -12,7 +12,7 @@ from ..geometry.transform import cos_sin
 from ..parameters import positive, refuse_many_corners, sides_around
 from ..solid.counting import counted
 from ..solid.leaf import MeshLeaf
-from ..solid.solid import Solid
+from ..solid.solid import Solid, from_leaf
 from .sweep import RingLayout, strip
 
 
@@ -102,4 +102,4 @@ def _swept(rings: RingLayout, start: int, end: int, full: bool) -> IndexArray:
 
 def _solid(vertices: FloatArray, faces: Sequence[IndexArray]) -> Solid:
     triangles = np.ascontiguousarray(np.concatenate(faces))
-    return Solid.from_leaf(MeshLeaf(vertices, triangles))
+    return from_leaf(MeshLeaf(vertices, triangles))

@@ -118,7 +118,7 @@ def counted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _
             return result
         given = _solids_in((*args, *kwargs.values()))
         # Using the operand once more must not use up what this call made of it.
-        made = result.alias() if any(result is solid for solid in given) else result
+        made = result._alias() if any(result is solid for solid in given) else result
         count(made, given)
         return made
 

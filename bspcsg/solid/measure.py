@@ -1,6 +1,7 @@
 """What can be measured of a solid: the queries, apart from the value that answers them."""
 
 import math
+import warnings
 from abc import ABC, abstractmethod
 from fractions import Fraction
 from typing import Any, Self
@@ -11,7 +12,7 @@ from ..errors import Finding, core_errors
 from ..mesh import interop
 from ..mesh.mesh import Mesh
 
-#: What `Measured.volume_residues` are modulo of.
+#: What `volume_residues` are modulo of.
 _PRIMES = (2**61 - 1, 2**61 - 31)
 
 #: Fractions of more digits take more than about a second to bring to lowest terms.
@@ -33,7 +34,7 @@ class Measured(ABC):
         """Return the boundary as a closed mesh."""
 
     @abstractmethod
-    def alias(self) -> Self:
+    def _alias(self) -> Self:
         """Return the same value as another object, with all that is known about it."""
 
     @abstractmethod
@@ -120,29 +121,21 @@ class Measured(ABC):
 
     @property
     def volume_near(self) -> Fraction:
-        """Volume in cubic model units to within 2**-100 cubic lattice steps.
-
-        Far finer than a double and, unlike the exact volume, cheap for any number of cut faces.
-        """
-        with core_errors():
-            return Fraction(*self.normalized().tree.volume_near())
+        """Volume to within 2**-100 cubic lattice steps; deprecated, see `exact_volume`."""
+        _deprecated("volume_near", "volume or exact_volume")
+        return volume_near(self)
 
     @property
     def volume_residues(self) -> tuple[int, int] | None:
-        """Six times the exact volume in cubic lattice steps, modulo 2**61 - 1 and 2**61 - 31.
-
-        Sums of exact volumes of solids of one pitch agree if these do, but for a chance of
-        2**-122; comparing them costs one pass. None in the rare case of a denominator that is a
-        multiple of a prime.
-        """
-        with core_errors():
-            return self.normalized().tree.volume_residues()
+        """Six times the volume modulo two primes; deprecated, compare solids by ``==``."""
+        _deprecated("volume_residues", "== or exact_volume")
+        return volume_residues(self)
 
     @property
     def volume(self) -> float:
         """Volume of the set in cubic model units, rounded once."""
         volume = self.normalized().tree.volume_rounded()
-        return float(self.volume_near) if volume is None else volume
+        return float(volume_near(self)) if volume is None else volume
 
     @property
     def area(self) -> float:
@@ -199,13 +192,38 @@ class Measured(ABC):
             return self.normalized().tree.classify(array)
 
 
+def volume_near(solid: Measured) -> Fraction:
+    """Return the volume in cubic model units to within 2**-100 cubic lattice steps.
+
+    Far finer than a double and, unlike the exact volume, cheap for any number of cut faces.
+    """
+    with core_errors():
+        return Fraction(*solid.normalized().tree.volume_near())
+
+
+def volume_residues(solid: Measured) -> tuple[int, int] | None:
+    """Return six times the exact volume in cubic lattice steps, modulo 2**61 - 1 and 2**61 - 31.
+
+    Sums of exact volumes of solids of one pitch agree if these do, but for a chance of 2**-122;
+    comparing them costs one pass. None in the rare case of a denominator that is a multiple of a
+    prime.
+    """
+    with core_errors():
+        return solid.normalized().tree.volume_residues()
+
+
+def _deprecated(name: str, instead: str) -> None:
+    message = f"Solid.{name} goes with the next version; use {instead}."
+    warnings.warn(message, DeprecationWarning, stacklevel=3)
+
+
 def residues_of_volume(solid: Measured) -> tuple[int | None, ...]:
     """Return six times the exact volume in cubic units, modulo two primes.
 
-    Unlike `Measured.volume_residues` they follow from the set alone, not from its lattice or its
+    Unlike `volume_residues` they follow from the set alone, not from its lattice or its
     triangles; None where the reduced denominator is a multiple of the prime.
     """
-    steps = solid.volume_residues
+    steps = volume_residues(solid)
     if steps is not None:
         pitch = 3 * solid.normalized().tree.pitch
         pairs = zip(steps, _PRIMES, strict=True)

@@ -110,16 +110,10 @@ class Solid(Measured, PointSet):
         self._reduced: Solid | None = None
 
     @classmethod
-    def from_node(cls, node: Node, factors: Factors = ()) -> "Solid":
-        """Return the solid of an expression under a transform (for the modules of this package)."""
+    def _of(cls, node: Node, factors: Factors = ()) -> "Solid":
         solid = cls.__new__(cls)
         solid._set(node, factors)
         return solid
-
-    @classmethod
-    def from_leaf(cls, leaf: Leaf) -> "Solid":
-        """Return the solid of a leaf (for the modules of this package)."""
-        return cls.from_node(Node(leaf))
 
     @classmethod
     @counted
@@ -173,13 +167,13 @@ class Solid(Measured, PointSet):
     @counted
     def empty(cls) -> "Solid":
         """Return the empty set."""
-        return cls.from_leaf(ConstantLeaf(full=False))
+        return cls._of(Node(ConstantLeaf(full=False)))
 
     @classmethod
     @counted
     def full(cls) -> "Solid":
         """Return all of space."""
-        return cls.from_leaf(ConstantLeaf(full=True))
+        return cls._of(Node(ConstantLeaf(full=True)))
 
     # Set operations
 
@@ -212,7 +206,7 @@ class Solid(Measured, PointSet):
     @counted
     def __invert__(self) -> "Solid":
         """Complement: everything outside."""
-        return Solid.from_node(*complement(Placed(self._node, self._factors)))
+        return from_node(*complement(Placed(self._node, self._factors)))
 
     @uncounted
     def equals(self, other: "Solid") -> bool:
@@ -286,7 +280,7 @@ class Solid(Measured, PointSet):
     @counted
     def _moved(self, factors: Factors) -> "Solid":
         kept = tuple(factor for factor in factors if not factor.is_identity)
-        return Solid.from_node(self._node, kept + self._factors) if kept else self
+        return from_node(self._node, kept + self._factors) if kept else self
 
     # Results
 
@@ -327,7 +321,7 @@ class Solid(Measured, PointSet):
                 reduced = tree.normalized()
             # If the check found nothing to change, the tree itself is the reduced one.
             if not _is_reduced(tree):
-                self._reduced = Solid.from_leaf(TreeLeaf(reduced))
+                self._reduced = from_leaf(TreeLeaf(reduced))
         return self if self._reduced is None else self._reduced
 
     @uncounted
@@ -371,8 +365,8 @@ class Solid(Measured, PointSet):
         if not isinstance(content, TreeLeaf) or content.record is None:
             return None
         record = content.record
-        operands = tuple(Solid.from_leaf(leaf) for leaf in record.leaves)
-        return LastOperation(record.program, operands, Solid.from_node(self._node))
+        operands = tuple(from_leaf(leaf) for leaf in record.leaves)
+        return LastOperation(record.program, operands, from_node(self._node))
 
     def slice(
         self, offset: Scalar = 0.0, normal: Vector = (0, 0, 1), *, origin: Vector | None = None
@@ -433,14 +427,8 @@ class Solid(Measured, PointSet):
         picture: str = above("solid_svg")(self)
         return picture
 
-    @property
-    def expression(self) -> Placed:
-        """The expression's node and the transform on it, for the modules of this package."""
-        return Placed(self._node, self._factors)
-
-    def alias(self) -> "Solid":
-        """Return the same value as another object, for the modules of this package."""
-        other = Solid.from_node(self._node, self._factors)
+    def _alias(self) -> "Solid":
+        other = from_node(self._node, self._factors)
         other._placed, other._mesh, other._reduced = self._placed, self._mesh, self._reduced
         return other
 
@@ -482,21 +470,36 @@ class LastOperation:
     result: Solid
 
 
+def from_node(node: Node, factors: Factors = ()) -> Solid:
+    """Return the solid of an expression under a transform."""
+    return Solid._of(node, factors)
+
+
+def from_leaf(leaf: Leaf) -> Solid:
+    """Return the solid of a leaf."""
+    return Solid._of(Node(leaf))
+
+
+def expression_of(solid: Solid) -> Placed:
+    """Return the node of a solid's expression and the transform on it."""
+    return Placed(solid._node, solid._factors)
+
+
 def with_record(last: LastOperation, factors: Factors) -> Solid:
-    """Return the solid of an operation under a transform, for the modules of this package.
+    """Return the solid of an operation under a transform.
 
     It knows the operation, which pickling it leaves out.
     """
     leaves = tuple(evaluate(operand._node) for operand in last.operands)
     leaf = TreeLeaf(last.result.tree, Record(last.program, leaves))
-    return Solid.from_node(Node(leaf), factors)
+    return from_node(Node(leaf), factors)
 
 
 def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:
     """Return the lazy combination of solids; the transform they share goes to the result."""
     prefix = common_prefix([solid._factors for solid in solids])
     operands = [Placed(solid._node, solid._factors[len(prefix) :]) for solid in solids]
-    return Solid.from_node(operation(operator, operands), prefix)
+    return from_node(operation(operator, operands), prefix)
 
 
 def _is_reduced(tree: Tree) -> bool:
@@ -505,4 +508,4 @@ def _is_reduced(tree: Tree) -> bool:
 
 def _restored(data: bytes, factors: Factors) -> Solid:
     with core_errors():
-        return Solid.from_node(Node(TreeLeaf(Tree.load(data))), factors)
+        return from_node(Node(TreeLeaf(Tree.load(data))), factors)

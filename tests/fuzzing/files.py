@@ -27,6 +27,7 @@ from bspcsg._core import Tree
 from bspcsg.errors import core_errors
 from bspcsg.io import RawMesh, encoded
 from bspcsg.solid.leaf import TreeLeaf
+from bspcsg.solid.solid import from_leaf
 from corpus.broken import glb_chunks, glb_of
 from support.shapes import cuboid, joined, octahedron, tetrahedron
 
@@ -345,7 +346,7 @@ def _is_nothing(file: File, error: "b.BspcsgError") -> bool:
 def _held(file: File, path: Path) -> Fraction:
     """Return the exact volume, or area, of what a file holds."""
     if file.format == ".snapshot":
-        return b.Solid.from_leaf(TreeLeaf(_loaded(file.data))).volume_exact
+        return from_leaf(TreeLeaf(_loaded(file.data))).volume_exact
     if file.format in (".svg", ".dxf"):
         read = bsp.load_svg if file.format == ".svg" else bsp.load_dxf
         return Fraction(read(path).area_exact)

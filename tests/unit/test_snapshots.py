@@ -28,9 +28,10 @@ def forged(data: bytes, rng: random.Random) -> bytes:
 
 def loaded(data: bytes) -> b.Solid:
     from bspcsg.solid.leaf import TreeLeaf
+    from bspcsg.solid.solid import from_leaf
 
     with core_errors():
-        return b.Solid.from_leaf(TreeLeaf(_core.Tree.load(data)))
+        return from_leaf(TreeLeaf(_core.Tree.load(data)))
 
 
 def test_any_damaged_byte_shows() -> None:

@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 import bspcsg as b
+from bspcsg.solid import measure
+from bspcsg.solid.measure import volume_near
 
 CUBE = b.cube(1).to_mesh()
 
@@ -413,4 +415,17 @@ def test_exact_volumes_refuse_to_be_too_long() -> None:
     assert caught.value.code == "too_many"
     exact = rest.exact_volume()
     assert exact == rest.volume_exact
-    assert abs(exact - rest.volume_near) < Fraction(1, 10**50)
+    assert abs(exact - volume_near(rest)) < Fraction(1, 10**50)
+
+
+@pytest.mark.parametrize("name", ["volume_near", "volume_residues"])
+def test_what_goes_with_the_next_version_says_so(name: str) -> None:
+    with pytest.warns(DeprecationWarning, match=name) as warned:
+        value = getattr(b.cube(2), name)
+    assert warned[0].filename == __file__
+    assert value == getattr(measure, name)(b.cube(2))
+
+
+def test_solids_show_what_users_need_and_no_more() -> None:
+    inside = {"from_node", "from_leaf", "alias", "expression"}
+    assert not inside & set(dir(b.Solid))

@@ -1,10 +1,11 @@
 """Exact volumes of the results of one pair have to add up."""
 
 from ...errors import BspcsgError
+from ...solid.measure import volume_residues
 from ...solid.solid import Solid
 from ..record import IdentityRecord
 
-#: What volumes are compared modulo; see `Measured.volume_residues`.
+#: What volumes are compared modulo; see `volume_residues`.
 _PRIMES = (2**61 - 1, 2**61 - 31)
 
 #: For each operation the equation, and how often A, B and their intersection count in its volume.
@@ -39,6 +40,6 @@ def identity_of(op: str, operands: list[Solid], result: Solid) -> IdentityRecord
 
 def _residues(solid: Solid) -> tuple[int, int] | None:
     try:
-        return solid.volume_residues
+        return volume_residues(solid)
     except BspcsgError:
         return None
