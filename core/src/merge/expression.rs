@@ -28,6 +28,16 @@ impl Term {
             Self::And(list) | Self::Or(list) | Self::Xor(list) => list,
         }
     }
+
+    /// The same with other arguments.
+    fn with(&self, list: Vec<u32>) -> Self {
+        match self {
+            Self::And(_) => Self::And(list),
+            Self::Or(_) => Self::Or(list),
+            Self::Xor(_) => Self::Xor(list),
+            Self::Operand(_) | Self::Not(_) => self.clone(),
+        }
+    }
 }
 
 /// An expression as topologically ordered lines; the last one is its value.
@@ -52,6 +62,15 @@ pub enum Residual {
 enum Known {
     Value(bool),
     Line(u32, bool),
+}
+
+/// An expression taken apart: the union, intersection or symmetric difference of two others.
+#[derive(Debug)]
+pub struct Parted {
+    /// The two others; they have no operand in common.
+    pub halves: [Expression; 2],
+    /// What they make, each by the first of its operands.
+    pub whole: Expression,
 }
 
 impl Expression {
@@ -83,6 +102,71 @@ impl Expression {
         list.sort_unstable();
         list.dedup();
         list
+    }
+
+    /// The expression as one of two others, each with about half of the operands; `None` if its
+    /// value is made from one line, or operands occur in both.
+    pub fn parted(&self) -> Option<Parted> {
+        let mut top = self.terms.len() - 1;
+        let mut negate = false;
+        while let Term::Not(line) = &self.terms[top] {
+            top = *line as usize;
+            negate = !negate;
+        }
+        let arguments = self.terms[top].arguments();
+        if arguments.len() < 2 {
+            return None;
+        }
+        let sizes = self.sizes();
+        let all = arguments.iter().map(|a| sizes[*a as usize]);
+        let half = all.fold(0, usize::saturating_add) / 2;
+        let mut sum = 0usize;
+        let in_first = |line: &&u32| {
+            sum = sizes[**line as usize].saturating_add(sum);
+            sum <= half
+        };
+        let split = arguments.iter().take_while(in_first).count().max(1);
+        let (first, second) = arguments.split_at(split.min(arguments.len() - 1));
+        let halves = [self.of(first, top), self.of(second, top)];
+        let [ours, theirs] = halves.each_ref().map(Self::operands);
+        if ours.iter().any(|k| theirs.binary_search(k).is_ok()) {
+            return None;
+        }
+        let operands = [ours.first()?, theirs.first()?].map(|k| Term::Operand(*k));
+        let mut terms = operands.to_vec();
+        terms.push(self.terms[top].with(vec![0, 1]));
+        if negate {
+            terms.push(Term::Not(2));
+        }
+        let whole = Self { terms };
+        Some(Parted { halves, whole })
+    }
+
+    /// For each line how often it names operands, itself or by other lines.
+    fn sizes(&self) -> Vec<usize> {
+        let mut sizes: Vec<usize> = Vec::with_capacity(self.terms.len());
+        for term in &self.terms {
+            let below = term.arguments().iter().map(|a| sizes[*a as usize]);
+            let size = below.fold(0, usize::saturating_add);
+            sizes.push(size.max(1));
+        }
+        sizes
+    }
+
+    /// The expression that the line `top` would be with only some of its arguments.
+    fn of(&self, arguments: &[u32], top: usize) -> Self {
+        let mut terms = self.terms[..top].to_vec();
+        let last = match arguments {
+            [line] => *line,
+            _ => {
+                terms.push(self.terms[top].with(arguments.to_vec()));
+                top as u32
+            }
+        };
+        terms.truncate(last as usize + 1);
+        Self {
+            terms: only_needed(terms),
+        }
     }
 
     /// The value for known operands.
@@ -236,6 +320,12 @@ fn close(mut terms: Vec<Term>, line: u32, negate: bool) -> Residual {
     if negate {
         terms.push(Term::Not(line));
     }
+    let terms = only_needed(terms);
+    Residual::Open(Arc::new(Expression { terms }))
+}
+
+/// The lines that the last one depends on.
+fn only_needed(terms: Vec<Term>) -> Vec<Term> {
     let mut needed = vec![false; terms.len()];
     needed[terms.len() - 1] = true;
     for i in (0..terms.len()).rev().filter(|i| *i < terms.len()) {
@@ -252,7 +342,7 @@ fn close(mut terms: Vec<Term>, line: u32, negate: bool) -> Residual {
         image[i] = kept.len() as u32;
         kept.push(renumbered(term, &image));
     }
-    Residual::Open(Arc::new(Expression { terms: kept }))
+    kept
 }
 
 fn renumbered(term: Term, image: &[u32]) -> Term {

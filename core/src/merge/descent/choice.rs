@@ -2,6 +2,7 @@
 
 use super::state::{State, States};
 use crate::geometry::cell::Cell;
+use crate::geometry::plane::Lattice;
 use crate::merge::kernels::general::MOST;
 
 /// Lists that together hold at most this many elements are worked on by a leaf kernel, whatever
@@ -36,6 +37,10 @@ pub const STUCK: usize = 2048;
 /// down to `LEAF` at most three times in vain.
 const RETRY: usize = 8;
 
+/// So many operands in one place are evaluated in groups: what is left of a group's boundaries is
+/// less than all of them, and all of them cross each other.
+pub const GROUPED: usize = 3;
+
 /// Parts of a cell that tell whether several operands have elements there are about this small.
 const SAMPLE: usize = 16;
 
@@ -45,6 +50,9 @@ pub struct Round {
     depth: u32,
     start: usize,
     stuck: bool,
+    /// How many operands mattered when the round began.
+    operands: usize,
+    crowded: bool,
     /// How many elements the kernel for general position refused.
     refused: usize,
 }
@@ -55,12 +63,14 @@ impl Round {
         depth: 0,
         start: usize::MAX / 8,
         stuck: false,
+        operands: usize::MAX / 8,
+        crowded: false,
         refused: usize::MAX,
     };
 
-    /// After a halving of a cell with so many elements.
+    /// After a halving of a cell with so many elements of so many operands.
     #[must_use]
-    pub fn next(self, total: usize) -> Self {
+    pub fn next(self, total: usize, operands: usize) -> Self {
         if self.depth + 1 < ROUND {
             return Self {
                 depth: self.depth + 1,
@@ -71,6 +81,8 @@ impl Round {
             depth: 0,
             start: total,
             stuck: total * 8 > self.start * 7,
+            operands,
+            crowded: operands * 8 > self.operands * 7,
             ..self
         }
     }
@@ -90,6 +102,12 @@ impl Round {
         self.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
     }
 
+    /// Whether many operands are in one place: a round of halvings left nearly all of them in the
+    /// cell, or most of the boxes around their boundaries overlap.
+    pub fn is_crowded(&self, cell: &Cell, states: &States) -> bool {
+        states.len() >= GROUPED && (self.crowded || most_overlap(cell, states))
+    }
+
     /// Whether a cell of so many elements is for the kernel for general position.
     ///
     /// That looks at all elements, halving only at where they are: so at least half of them should
@@ -103,6 +121,17 @@ impl Round {
         }
         total <= GENERAL && states.iter().all(|s| matches!(s.1, State::List(_)))
     }
+}
+
+/// Whether two of three pairs of operands have overlapping boxes, as far as a sample shows.
+fn most_overlap(cell: &Cell, states: &States) -> bool {
+    let some = states.iter().step_by(states.len().div_ceil(MOST));
+    let boxes: Vec<[Lattice; 2]> = some.map(|s| s.1.bounds(cell)).collect();
+    let overlap =
+        |[a, b]: &[Lattice; 2], [c, d]: &[Lattice; 2]| (0..3).all(|i| a[i] <= d[i] && c[i] <= b[i]);
+    let partners = |i: usize| boxes[..i].iter().filter(|b| overlap(b, &boxes[i])).count();
+    let overlaps: usize = (1..boxes.len()).map(partners).sum();
+    overlaps * 3 > boxes.len() * (boxes.len() - 1)
 }
 
 /// About what share of the elements lies in small parts of the cell where several operands have

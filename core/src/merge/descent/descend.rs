@@ -10,17 +10,20 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::choice::{Round, CROWD, LEAF, ORTHOGONAL, STUCK};
+use super::choice::{Round, CROWD, GROUPED, LEAF, ORTHOGONAL, STUCK};
 use super::join;
 use super::state::{find, has_constant, nested, State, States, MANY, TASK};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
 use crate::interrupt::{carried, poll};
-use crate::merge::expression::{Expression, Residual};
+use crate::merge::expression::{Expression, Parted, Residual};
 use crate::merge::kernels::leaf::{self, Rule};
 use crate::merge::lists::list::{List, Sources};
 use crate::mesh::tasks::{both, in_pool};
 use crate::tree::node::Branch;
+
+/// Groups of groups, at most: 2³² operands in halves, and as many levels of alternating operations.
+const DEEPEST: u32 = 64;
 
 /// Counts of what an evaluation did.
 #[derive(Debug, Default)]
@@ -200,6 +203,11 @@ impl<'a> Descent<'a> {
                 return Ok(branch);
             }
         }
+        if self.share && round.is_crowded(&cell, &states) {
+            if let Some(parted) = expression.parted() {
+                return self.grouped(cell, parted, states, 0);
+            }
+        }
         // No level of bins suited these faces, so halving will not separate them either.
         let long = listed && opening >= MANY;
         if long || listed && stuck || round.suits_general_position(&cell, &states, total) {
@@ -208,7 +216,47 @@ impl<'a> Descent<'a> {
             }
             round.refused(total);
         }
-        self.halves(cell, cut, &expression, states, round.next(total), total)
+        let round = round.next(total, states.len());
+        self.halves(cell, cut, &expression, states, round, total)
+    }
+
+    /// The result in a cell from those of two groups of operands.
+    fn grouped(&self, cell: Cell, parted: Parted, states: States, depth: u32) -> Result<Branch> {
+        poll();
+        let Parted { halves, whole } = parted;
+        let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
+        let [ours, theirs] = halves.each_ref().map(Expression::operands);
+        let is_ours = |s: &(u32, State)| ours.binary_search(&s.0).is_ok();
+        let (first, second): (States, States) = states.into_iter().partition(is_ours);
+        let [left, right] = halves;
+        let (left, right) = both(
+            total >= TASK,
+            || self.group(cell, left, first, depth),
+            || self.group(cell, right, second, depth),
+        );
+        let mut states: States = vec![
+            (ours[0], State::Tree(left?)),
+            (theirs[0], State::Tree(right?)),
+        ];
+        states.sort_unstable_by_key(|s| s.0);
+        self.cell(cell, Arc::new(whole), states, Round::START)
+    }
+
+    /// The result of a group of operands in a cell.
+    fn group(
+        &self,
+        cell: Cell,
+        expression: Expression,
+        states: States,
+        depth: u32,
+    ) -> Result<Branch> {
+        if states.len() >= GROUPED && depth < DEEPEST {
+            if let Some(parted) = expression.parted() {
+                return self.grouped(cell, parted, states, depth + 1);
+            }
+        }
+        let residual = expression.residual(|_| None);
+        self.resolve(cell, residual, states, Round::START)
     }
 
     /// The states with the leaves of this cell, of so many elements, opened.

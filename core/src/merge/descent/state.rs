@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::Arc;
 
 use crate::geometry::cell::{Cell, Cut};
+use crate::geometry::plane::Lattice;
 use crate::merge::lists::bins::Bins;
 use crate::merge::lists::list::{List, PartRecord, Record, Sources};
 use crate::tree::node::{Branch, Node, Work};
@@ -79,6 +80,15 @@ impl State {
         match self {
             Self::Tree(branch) if !branch.cell.meets(part) => 0,
             state => state.len_in(part),
+        }
+    }
+
+    /// A box around its boundary in the cell.
+    pub fn bounds(&self, cell: &Cell) -> [Lattice; 2] {
+        match self {
+            Self::List(list) => list.bounds(),
+            Self::Tree(branch) => [*branch.cell.low(), branch.cell.high()],
+            Self::Constant(_) | Self::Bins(_) => [*cell.low(), cell.high()],
         }
     }
 

@@ -121,6 +121,22 @@ impl Sources {
 }
 
 impl List {
+    /// A box around the elements, at most a little larger than needed.
+    pub fn bounds(&self) -> [Lattice; 2] {
+        let records = self.records.iter().map(|r| (&r.low, &r.high));
+        let parts = self.parts.iter().map(|p| (&p.low, &p.high));
+        let nothing = ([i32::MAX; 3], [i32::MIN; 3]);
+        let (low, high) = records.chain(parts).fold(nothing, |(low, high), (l, h)| {
+            let low = [0, 1, 2].map(|i| low[i].min(l[i]));
+            (low, [0, 1, 2].map(|i| high[i].max(h[i])))
+        });
+        let place = |at: [i32; 3], more: i64| {
+            [0, 1, 2]
+                .map(|i| ((i64::from(at[i]) + more) << self.frame.shift) + self.frame.origin[i])
+        };
+        [place(low, 0), place(high, 1)]
+    }
+
     /// Opens a deferred leaf whose branch covers `cell`.
     pub fn open(leaf: &Deferred, branch: &Branch, sources: &Sources) -> Self {
         spend(leaf.len());

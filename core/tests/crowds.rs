@@ -1,0 +1,148 @@
+//! Many operands in one place: evaluated in groups, they make what they make one after the other.
+
+mod support;
+
+use std::sync::Arc;
+
+use bspcsg::arith::Int;
+use bspcsg::merge::expression::{Expression, Term};
+use bspcsg::merge::SetOp;
+use bspcsg::mesh::grid::Pitch;
+use bspcsg::mesh::half_space::half_space;
+use bspcsg::tree::solid::Solid;
+
+use support::{
+    applied, assert_same_set, combined, complement, manifold_mesh, volume, Numbers, Shape,
+};
+
+/// An expression over operands 0 … count − 1 with nested operations, each operand named once.
+fn any_terms(numbers: &mut Numbers, count: u32) -> Vec<Term> {
+    let mut terms: Vec<Term> = (0..count).map(Term::Operand).collect();
+    let mut open: Vec<u32> = (0..count).collect();
+    while open.len() > 1 {
+        let size = 2 + usize::try_from(numbers.below(4)).expect("small");
+        let list = open.drain(..size.min(open.len())).collect();
+        terms.push(match numbers.below(3) {
+            0 => Term::And(list),
+            1 => Term::Or(list),
+            _ => Term::Xor(list),
+        });
+        if numbers.below(3) == 0 {
+            let last = u32::try_from(terms.len()).expect("few") - 1;
+            terms.push(Term::Not(last));
+        }
+        open.push(u32::try_from(terms.len()).expect("few") - 1);
+    }
+    terms
+}
+
+/// The value of an expression for operands that are inside where a bit is set.
+fn value(expression: &Expression, inside: u32) -> bool {
+    expression.value(|k| inside >> k & 1 == 1, &mut Vec::new())
+}
+
+#[test]
+fn an_expression_is_what_its_two_parts_make() {
+    let mut numbers = Numbers::new(31);
+    let mut parted = 0;
+    for count in 2..9 {
+        for _ in 0..60 {
+            let expression = Expression::new(any_terms(&mut numbers, count)).expect("well formed");
+            let Some(parts) = expression.parted() else {
+                continue;
+            };
+            parted += 1;
+            let [ours, theirs] = parts.halves.each_ref().map(Expression::operands);
+            assert!(!ours.is_empty() && !theirs.is_empty());
+            assert!(ours.iter().all(|k| !theirs.contains(k)));
+            for inside in 0..1 << count {
+                let [left, right] = parts.halves.each_ref().map(|half| value(half, inside));
+                let of = |k: u32| if k == ours[0] { left } else { right };
+                let whole = parts.whole.value(of, &mut Vec::new());
+                assert_eq!(whole, value(&expression, inside), "{expression:?}");
+            }
+        }
+    }
+    assert!(parted > 300, "{parted}");
+}
+
+#[test]
+fn an_operand_in_both_parts_is_not_parted() {
+    let terms = vec![
+        Term::Operand(0),
+        Term::Operand(1),
+        Term::And(vec![0, 1]),
+        Term::Not(0),
+        Term::Or(vec![2, 3]),
+    ];
+    assert!(Expression::new(terms)
+        .expect("well formed")
+        .parted()
+        .is_none());
+}
+
+/// The lines of an expression carried out one after the other.
+fn stepwise(solids: &[Solid], terms: &[Term]) -> Solid {
+    let mut made: Vec<Solid> = Vec::new();
+    for term in terms {
+        let fold = |list: &[u32], op: SetOp| {
+            let all = list.iter().map(|line| made[*line as usize].clone());
+            all.reduce(|a, b| applied(op, &a, &b)).expect("not empty")
+        };
+        made.push(match term {
+            Term::Operand(k) => solids[*k as usize].clone(),
+            Term::Not(line) => complement(&made[*line as usize]),
+            Term::And(list) => fold(list, SetOp::Intersection),
+            Term::Or(list) => fold(list, SetOp::Union),
+            Term::Xor(list) => fold(list, SetOp::SymmetricDifference),
+        });
+    }
+    made.pop().expect("not empty")
+}
+
+fn assert_same_as_stepwise(solids: &[Solid], terms: &[Term], context: &str) {
+    let at_once = combined(solids, terms[solids.len()..].to_vec());
+    let steps = stepwise(solids, terms);
+    assert_same_set(&at_once, &steps);
+    if at_once.root().outside == 0 {
+        manifold_mesh(&at_once, context);
+        assert_eq!(volume(&at_once), volume(&steps), "{context}");
+    }
+}
+
+#[test]
+fn solids_in_one_place_make_what_they_make_one_after_the_other() {
+    let mut numbers = Numbers::new(32);
+    for round in 0..24 {
+        let count = 3 + round % 8;
+        let any = |numbers: &mut Numbers| match numbers.below(3) {
+            0 => Shape::any_cuboid(numbers, 40).solid(),
+            1 => Shape::sphere([20; 3], 15.0, 1).solid(),
+            _ => Shape::any_tetrahedron(numbers, 40).solid(),
+        };
+        let solids: Vec<Solid> = (0..count).map(|_| any(&mut numbers)).collect();
+        let terms = any_terms(&mut numbers, count);
+        assert_same_as_stepwise(&solids, &terms, &format!("round {round}: {terms:?}"));
+    }
+}
+
+#[test]
+fn half_spaces_in_one_place_make_what_they_make_one_after_the_other() {
+    let mut numbers = Numbers::new(33);
+    let pitch = Pitch::new(0).expect("a pitch");
+    for round in 0..8 {
+        let spaces = (0..12).map(|_| {
+            let normal = [0; 3].map(|_| i128::from(numbers.below(41) - 20));
+            let normal = if normal == [0; 3] { [1, 0, 0] } else { normal };
+            let offset = Int::from_i64(numbers.below(400));
+            let space = half_space(normal, &offset, pitch, None).expect("a half-space");
+            Solid::of_source(Arc::new(space), true)
+        });
+        let mut solids: Vec<Solid> = spaces.collect();
+        solids.push(Shape::cuboid([-60; 3], [60; 3]).solid());
+        let count = u32::try_from(solids.len()).expect("few");
+        let mut terms: Vec<Term> = (0..count).map(Term::Operand).collect();
+        terms.push(Term::And((0..count).collect()));
+        assert_same_as_stepwise(&solids, &terms, &format!("round {round}"));
+    }
+}
