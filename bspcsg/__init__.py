@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         FormatError,
         InternalError,
         InvalidMeshError,
+        InvalidParameterError,
         LimitError,
         MissingPartError,
         UnboundedError,
@@ -55,6 +56,7 @@ __all__ = [
     "FormatError",
     "InternalError",
     "InvalidMeshError",
+    "InvalidParameterError",
     "LimitError",
     "Mesh",
     "MissingPartError",
@@ -92,8 +94,8 @@ _attach()
 _MODULES = {
     "_core": "__version__",
     "verify.check": "CheckReport Verdict validate",
-    "errors": "BspcsgError Finding FormatError InternalError InvalidMeshError LimitError"
-    " MissingPartError UnboundedError",
+    "errors": "BspcsgError Finding FormatError InternalError InvalidMeshError"
+    " InvalidParameterError LimitError MissingPartError UnboundedError",
     "io": "load save",
     "mesh.mesh": "Mesh",
     "parameters": "set_threads",

@@ -10,7 +10,6 @@ from typing import Any, Literal, TypeAlias
 
 #: What is asked for.
 Convenience: TypeAlias = Literal[
-    "check",
     "dumps",
     "load",
     "load_dxf",
@@ -22,6 +21,7 @@ Convenience: TypeAlias = Literal[
     "slice_solid",
     "solid_html",
     "solid_svg",
+    "validate",
 ]
 
 _answers: dict[Convenience, Callable[..., Any]] = {}

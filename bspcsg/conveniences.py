@@ -19,7 +19,7 @@ def attach() -> None:
     answer("load", _load)
     answer("loads", _loads)
     answer("dumps", _dumps)
-    answer("check", _check)
+    answer("validate", _validate)
     answer("slice_solid", _slice_solid)
     answer("solid_html", _solid_html)
     answer("solid_svg", _solid_svg)
@@ -59,7 +59,7 @@ def _slice_solid(solid: "Solid", offset: Any, normal: Any, origin: Any) -> "Regi
     return slice_solid(solid, offset, normal, origin=origin)
 
 
-def _check(solid: "Solid", **options: Any) -> Any:
+def _validate(solid: "Solid", **options: Any) -> Any:
     from .verify.check import check_result
 
     return check_result(solid, **options)

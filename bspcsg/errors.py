@@ -56,7 +56,11 @@ class BspcsgError(Exception):
 
 
 class InvalidMeshError(BspcsgError, ValueError):
-    """The input is not a closed mesh, or a parameter makes no solid."""
+    """The input is not a closed mesh."""
+
+
+class InvalidParameterError(InvalidMeshError):
+    """A parameter is out of its range; until the next version an `InvalidMeshError`, too."""
 
 
 class LimitError(BspcsgError, OverflowError):
@@ -205,9 +209,9 @@ def words_of(error: BaseException) -> str:
     return printable.rstrip(". ") or type(error).__name__
 
 
-def invalid_parameter(message: str) -> InvalidMeshError:
-    """Return the error for a parameter that makes no solid."""
-    return InvalidMeshError(message, "invalid_parameter")
+def invalid_parameter(message: str, where: Sequence[int] = ()) -> InvalidParameterError:
+    """Return the error for a parameter out of its range."""
+    return InvalidParameterError(message, "invalid_parameter", where)
 
 
 def missing_part(part: str, purpose: str, remedy: str) -> MissingPartError:

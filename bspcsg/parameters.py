@@ -81,7 +81,7 @@ def sides_around(least: int, value: Any, name: str) -> int:
 
     Raises
     ------
-    InvalidMeshError
+    InvalidParameterError
         If it is no whole number, or fewer.
     LimitError
         If it is beyond `MOST_SEGMENTS`.
@@ -108,7 +108,7 @@ def pitch_exponent(value: Any) -> int:
 
     Raises
     ------
-    InvalidMeshError
+    InvalidParameterError
         If it is no whole number.
     LimitError
         If it is out of range.

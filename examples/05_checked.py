@@ -11,7 +11,7 @@ meshes = Path(__file__).parent / "meshes"
 
 plate, half = b.load(meshes / "plate_holes.stl"), b.load(meshes / "half_plate.off")
 rest = plate - half
-report = rest.check()
+report = rest.validate()
 print(report)
 rest.save(out / "rest.stl")
 

@@ -121,7 +121,7 @@ def matrix_factor(matrix: Any) -> Factor:
 
     Raises
     ------
-    InvalidMeshError
+    InvalidParameterError
         If the shape is another, an entry is not finite, the last row is not 0, 0, 0, 1, or the
         map flattens space.
     """

@@ -3,7 +3,7 @@
 Names and defaults follow OpenSCAD: bodies stand on the plane z = 0 and have their corner (boxes) or
 axis (round bodies) at the origin, unless ``center=True`` puts their middle there. Round bodies are
 polyhedra with `segments` sides around, their vertices on the true surface. Lengths are in model
-units; parameters that make no solid raise `InvalidMeshError` with the code "invalid_parameter".
+units; parameters that make no solid raise `InvalidParameterError`.
 """
 
 from typing import Any

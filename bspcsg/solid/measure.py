@@ -122,13 +122,13 @@ class Measured(ABC):
     @property
     def volume_near(self) -> Fraction:
         """Volume to within 2**-100 cubic lattice steps; deprecated, see `exact_volume`."""
-        _deprecated("volume_near", "volume or exact_volume")
+        deprecated("volume_near", "volume or exact_volume")
         return volume_near(self)
 
     @property
     def volume_residues(self) -> tuple[int, int] | None:
         """Six times the volume modulo two primes; deprecated, compare solids by ``==``."""
-        _deprecated("volume_residues", "== or exact_volume")
+        deprecated("volume_residues", "== or exact_volume")
         return volume_residues(self)
 
     @property
@@ -212,7 +212,8 @@ def volume_residues(solid: Measured) -> tuple[int, int] | None:
         return solid.normalized().tree.volume_residues()
 
 
-def _deprecated(name: str, instead: str) -> None:
+def deprecated(name: str, instead: str) -> None:
+    """Say that a property or method of solids goes with the next version."""
     message = f"Solid.{name} goes with the next version; use {instead}."
     warnings.warn(message, DeprecationWarning, stacklevel=3)
 

@@ -60,7 +60,7 @@ def program_of(op: str, count: int) -> list[ProgramLine]:
 
     Raises
     ------
-    InvalidMeshError
+    InvalidParameterError
         If there is no such operation, or no operand.
     """
     if op not in _NAMED:

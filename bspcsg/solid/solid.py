@@ -28,7 +28,7 @@ from .counting import count, counted, uncounted
 from .describe import describe
 from .expression import Node, Placed, complement, evaluate, operation
 from .leaf import ConstantLeaf, Leaf, MeshLeaf, Record, TreeLeaf, tree_of
-from .measure import Measured, residues_of_volume
+from .measure import Measured, deprecated, residues_of_volume
 from .point_set import PointSet
 from .program import Operator
 
@@ -405,9 +405,14 @@ class Solid(Measured, PointSet):
         return region
 
     @uncounted
+    def validate(self, **options: Any) -> Any:
+        """Compare the operation that made this solid with manifold3d (see `bspcsg.validate`)."""
+        return above("validate")(self, **options)
+
     def check(self, **options: Any) -> Any:
-        """Compare the operation that made this solid with manifold3d (see `bspcsg.check`)."""
-        return above("check")(self, **options)
+        """Do as `validate` does; deprecated."""
+        deprecated("check", "validate")
+        return self.validate(**options)
 
     # As a value
 

@@ -93,7 +93,7 @@ def check_result(
 
     Raises
     ------
-    InvalidMeshError
+    InvalidParameterError
         If nothing is known about how the solid was made.
     UnboundedError
         If the result reaches to infinity.

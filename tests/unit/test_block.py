@@ -88,7 +88,7 @@ def test_queries_use_nothing_up() -> None:
     with b.union() as u:
         a, c = b.cube(2), b.cube(1)
         assert c <= a and not a.isdisjoint(c) and not a.equals(c)
-        assert (a - c).check().ok
+        assert (a - c).validate().ok
         assert a.volume == 8 and c.to_trimesh().volume == 1
         assert len(a.slice(1).outlines) == 1
     assert len(u.solids) == 1  # what was checked, made of both

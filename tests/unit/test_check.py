@@ -44,8 +44,8 @@ def test_general_position_agrees(op: Any, seed: int) -> None:
 
 def test_the_remembered_operation_is_checked() -> None:
     a, c = boxes()
-    assert (a - c).check().operation == "difference"
-    assert ((a | c) ^ b.sphere(1)).check().ok
+    assert (a - c).validate().operation == "difference"
+    assert ((a | c) ^ b.sphere(1)).validate().ok
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_the_remembered_operation_is_checked() -> None:
     ],
 )
 def test_operations_are_named(program: Any, name: str) -> None:
-    report = program(*boxes()).check()
+    report = program(*boxes()).validate()
     assert report.operation == name
     assert report.set_difference.volume == 0
 
@@ -122,8 +122,8 @@ def test_half_spaces_are_compared_in_a_box(op: Any) -> None:
 
 def test_complements() -> None:
     a, c = boxes()
-    assert (~(~a | ~c)).check().verdict is Verdict.AGREE
-    assert (c & ~a).check().verdict is Verdict.AGREE
+    assert (~(~a | ~c)).validate().verdict is Verdict.AGREE
+    assert (c & ~a).validate().verdict is Verdict.AGREE
 
 
 def test_a_box_that_needs_a_coarser_lattice() -> None:

@@ -75,6 +75,14 @@ def refusal(call: Callable[[], object]) -> b.BspcsgError:
     return caught.value
 
 
+def test_parameters_have_an_error_of_their_own() -> None:
+    error = refusal(lambda: b.cube(-1))
+    assert type(error) is b.InvalidParameterError
+    assert isinstance(error, (ValueError, b.InvalidMeshError))
+    mesh = refusal(lambda: b.Solid([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
+    assert type(mesh) is b.InvalidMeshError
+
+
 @pytest.mark.parametrize("make", PITCHED.values(), ids=PITCHED)
 class TestPitch:
     @pytest.mark.parametrize("pitch", [-6, np.int8(-6), np.int64(-6), -6.0, np.float32(-6)])

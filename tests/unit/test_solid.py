@@ -426,6 +426,13 @@ def test_what_goes_with_the_next_version_says_so(name: str) -> None:
     assert value == getattr(measure, name)(b.cube(2))
 
 
+def test_check_is_another_name_of_validate_until_the_next_version() -> None:
+    part = b.cube(2) - b.cube(1)
+    with pytest.warns(DeprecationWarning, match=r"use validate"):
+        assert part.check().ok
+    assert part.validate().ok
+
+
 def test_solids_show_what_users_need_and_no_more() -> None:
     inside = {"from_node", "from_leaf", "alias", "expression"}
     assert not inside & set(dir(b.Solid))

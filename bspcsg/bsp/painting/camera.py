@@ -69,7 +69,7 @@ class Camera:
 
         Raises
         ------
-        InvalidMeshError
+        InvalidParameterError
             If a vector is not three finite numbers, target and eye are the same point, `up` is zero
             or along the direction of view, or the angle is out of its range.
         """
@@ -98,7 +98,7 @@ class Camera:
 
         Raises
         ------
-        InvalidMeshError
+        InvalidParameterError
             If a vector is not three finite numbers, the direction or `up` is zero, both are
             parallel, or the scale is not above 0.
         """

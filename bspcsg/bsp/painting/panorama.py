@@ -66,7 +66,7 @@ def panorama(
 
     Raises
     ------
-    InvalidMeshError
+    InvalidParameterError
         If the scene is not in the plane, not exactly one of eye and direction is given, one is not
         two finite numbers, the direction is zero, or a parameter is not one of those above.
     """

@@ -164,11 +164,8 @@ def _pairs(pairs: Any) -> FloatArray:
     wrong = np.flatnonzero(~(array[:, 0] < array[:, 1]))
     if len(wrong):
         low, high = array[wrong[0]]
-        raise InvalidMeshError(
-            f"Interval {wrong[0]} from {low:g} to {high:g} does not begin before it ends.",
-            "invalid_parameter",
-            wrong.tolist(),
-        )
+        message = f"Interval {wrong[0]} from {low:g} to {high:g} does not begin before it ends."
+        raise invalid_parameter(message, wrong.tolist())
     return array
 
 

@@ -130,7 +130,7 @@ class PlaneQueries(ObjectTree):
 
         Raises
         ------
-        InvalidMeshError
+        InvalidParameterError
             If the direction is zero or a number is not finite.
         """
         start, along = vector2(origin, "origin"), vector2(direction, "direction")

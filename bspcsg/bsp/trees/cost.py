@@ -44,7 +44,7 @@ def cost(tree: "PartitionTree", query: Query = "point", margin: float | None = N
 
     Raises
     ------
-    InvalidMeshError
+    InvalidParameterError
         If the query is another, or the margin is not finite.
 
     Notes

@@ -44,7 +44,7 @@ class Ordered(ABC):
 
         Raises
         ------
-        InvalidMeshError
+        InvalidParameterError
             If not exactly one of the two is given, one is not finite, or the direction is zero.
 
         Notes

@@ -49,7 +49,7 @@ def core_options(seed: Any, sample: Any, alpha: Any, top: Any, pitch: Any) -> di
 
     Raises
     ------
-    InvalidMeshError
+    InvalidParameterError
         If one is out of its range.
     """
     weight = number(alpha, "alpha")

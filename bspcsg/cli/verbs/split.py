@@ -111,7 +111,7 @@ class _Splitting:
         meshes = [side.normalized().to_mesh() for side in sides]
         self._refuse_less_than(2, [mesh for mesh in meshes if len(mesh.faces)])
         checked = sides if self._settings["check"] else ()
-        return meshes, [str(side.check().verdict) for side in checked]
+        return meshes, [str(side.validate().verdict) for side in checked]
 
     def _tell_of_plane(self, side: "Solid") -> None:
         """Say whether the plane is another one than was asked for."""
