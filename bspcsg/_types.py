@@ -32,3 +32,6 @@ ProgramLine: TypeAlias = tuple[str, list[int]]
 
 #: Answers for each element: bool.
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
+
+#: Vertices (n, 3) and triangles (m, 3) of a mesh.
+MeshArrays: TypeAlias = tuple[FloatArray, IndexArray]

@@ -5,21 +5,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
+from .._types import MeshArrays
 from . import real, shapes
-from .shapes import Arrays
 from .targets import (
     Faster,
-    Growth,
+    Goal,
+    GrowthTarget,
     MeanFaster,
     MemoryWithin,
     SteadySteps,
-    Target,
     Within,
 )
 from .work import BuiltPair, Carving, Chain, Expression, Pair, Work
 
 #: Makes the work of an item from the folder of shared data.
-Maker: TypeAlias = Callable[[Path], Work]
+WorkMaker: TypeAlias = Callable[[Path], Work]
 
 #: Engines that take part in large pairs and in long chains, beside those that are asked for.
 QUICK_ENGINES = ("bspcsg", "manifold3d", "trueform", "meshlib")
@@ -27,13 +27,13 @@ CHAIN_ENGINES = ("bspcsg", "manifold3d")
 
 
 @dataclass(frozen=True)
-class Case:
+class BenchCase:
     """One row of the table.
 
     Parameters
     ----------
     title : str
-    targets : tuple of Target
+    targets : tuple of Goal
     items : dict
         What is timed, by label; the small forms of the same are in `small`.
     small : dict
@@ -53,9 +53,9 @@ class Case:
     """
 
     title: str
-    targets: tuple[Target, ...]
-    items: Mapping[str, Maker]
-    small: Mapping[str, Maker]
+    targets: tuple[Goal, ...]
+    items: Mapping[str, WorkMaker]
+    small: Mapping[str, WorkMaker]
     engines: tuple[str, ...] = ()
     cores: int = 0
     alone: bool = False
@@ -64,44 +64,44 @@ class Case:
     checked_at_once: bool = False
 
 
-def _spheres(level: int) -> Maker:
+def _spheres(level: int) -> WorkMaker:
     return lambda _: Pair(*shapes.spheres_apart(shapes.icosphere(level)))
 
 
-def _built_spheres(level: int) -> Maker:
+def _built_spheres(level: int) -> WorkMaker:
     return lambda _: BuiltPair(*shapes.spheres_apart(shapes.icosphere(level)))
 
 
-def _even_spheres(n: int) -> Maker:
+def _even_spheres(n: int) -> WorkMaker:
     return lambda _: Pair(*shapes.spheres_apart(shapes.octasphere(n)))
 
 
-def _coincident(level: int) -> Maker:
+def _coincident(level: int) -> WorkMaker:
     return lambda _: Pair(*shapes.spheres_coincident(shapes.icosphere(level)))
 
 
-def _needles(sides: int) -> Maker:
+def _needles(sides: int) -> WorkMaker:
     return lambda _: Pair(*shapes.needles(sides))
 
 
 def _cubes(_: Path) -> Work:
-    cube: Arrays = shapes.box((0, 0, 0), (1, 1, 1))
+    cube: MeshArrays = shapes.box((0, 0, 0), (1, 1, 1))
     return Pair(cube, shapes.moved(cube, (0.5, 0.25, 0.125)))
 
 
-def _drilled_steps(count: int) -> Maker:
+def _drilled_steps(count: int) -> WorkMaker:
     return lambda _: Chain(*shapes.drilled_cube(count))
 
 
-def _drilled_at_once(count: int) -> Maker:
+def _drilled_at_once(count: int) -> WorkMaker:
     return lambda _: Chain(*shapes.drilled_cube(count)).at_once()
 
 
-def _plate(rows: int) -> Maker:
+def _plate(rows: int) -> WorkMaker:
     return lambda _: Chain(*shapes.drilled_plate(rows))
 
 
-def _boxes(count: int) -> Maker:
+def _boxes(count: int) -> WorkMaker:
     def make(_: Path) -> Work:
         first, *rest = shapes.random_boxes(count)
         return Chain(first, rest, "union")
@@ -109,11 +109,11 @@ def _boxes(count: int) -> Maker:
     return make
 
 
-def _menger(depth: int) -> Maker:
+def _menger(depth: int) -> WorkMaker:
     return lambda _: Expression(*shapes.menger(depth))
 
 
-def _capsules(steps: int) -> Maker:
+def _capsules(steps: int) -> WorkMaker:
     def make(shared: Path) -> Work:
         base, tools = real.swept_capsules(shared)
         return Chain(base, tools[:steps])
@@ -121,34 +121,34 @@ def _capsules(steps: int) -> Maker:
     return make
 
 
-def dome(steps: int) -> Maker:
+def dome(steps: int) -> WorkMaker:
     """Return the carving of the first steps of the dome."""
     block, _ = shapes.dome(0)
     return lambda _: Carving(block, lambda: shapes.dome(steps)[1])
 
 
-def _real_pair(number: int) -> Maker:
+def _real_pair(number: int) -> WorkMaker:
     return lambda shared: Pair(*real.posed_pair(shared, number))
 
 
-_SPHERE_TARGETS: tuple[Target, ...] = (Faster(15), Faster(2.5, "trueform"))
+_SPHERE_TARGETS: tuple[Goal, ...] = (Faster(15), Faster(2.5, "trueform"))
 _SIZES = (36, 72, 144, 288, 576, 708)
 
-CASES: dict[str, Case] = {
-    "spheres-328k": Case(
+CASES: dict[str, BenchCase] = {
+    "spheres-328k": BenchCase(
         "sphere pair difference, 328 k triangles each",
         _SPHERE_TARGETS,
         {"2 × 327 680": _spheres(7)},
         {"2 × 5 120": _spheres(4)},
     ),
-    "spheres-1310k": Case(
+    "spheres-1310k": BenchCase(
         "sphere pair difference, 1.31 M triangles each",
         _SPHERE_TARGETS,
         {"2 × 1 310 720": _spheres(8)},
         {"2 × 20 480": _spheres(5)},
         QUICK_ENGINES,
     ),
-    "spheres-328k-one-core": Case(
+    "spheres-328k-one-core": BenchCase(
         "the same, 328 k, all engines on one core",
         (Faster(12),),
         {"2 × 327 680": _spheres(7)},
@@ -156,7 +156,7 @@ CASES: dict[str, Case] = {
         QUICK_ENGINES,
         cores=1,
     ),
-    "spheres-1310k-one-core": Case(
+    "spheres-1310k-one-core": BenchCase(
         "the same, 1.31 M, all engines on one core",
         (Faster(12),),
         {"2 × 1 310 720": _spheres(8)},
@@ -164,21 +164,21 @@ CASES: dict[str, Case] = {
         QUICK_ENGINES,
         cores=1,
     ),
-    "built-328k": Case(
+    "built-328k": BenchCase(
         "the same, 328 k, operands already built",
         (Faster(6),),
         {"2 × 327 680": _built_spheres(7)},
         {"2 × 5 120": _built_spheres(4)},
         QUICK_ENGINES,
     ),
-    "built-1310k": Case(
+    "built-1310k": BenchCase(
         "the same, 1.31 M, operands already built",
         (Faster(6),),
         {"2 × 1 310 720": _built_spheres(8)},
         {"2 × 20 480": _built_spheres(5)},
         QUICK_ENGINES,
     ),
-    "real-pairs": Case(
+    "real-pairs": BenchCase(
         "real pairs in random poses",
         (MeanFaster(5), Faster(1)),
         {f"pair {k}": _real_pair(k) for k in range(16)},
@@ -186,7 +186,7 @@ CASES: dict[str, Case] = {
         QUICK_ENGINES,
         needs="meshes/MANIFEST.tsv",
     ),
-    "drilled-steps": Case(
+    "drilled-steps": BenchCase(
         "cube minus 1 000 spheres, every step evaluated",
         (Within(0.2), Faster(100)),
         {"1 000 steps": _drilled_steps(1000)},
@@ -194,14 +194,14 @@ CASES: dict[str, Case] = {
         CHAIN_ENGINES,
         checked_at_once=True,
     ),
-    "drilled-expression": Case(
+    "drilled-expression": BenchCase(
         "the same as one expression",
         (Faster(4),),
         {"1 000 spheres": _drilled_at_once(1000)},
         {"20 spheres": _drilled_at_once(20)},
         ("bspcsg", "manifold3d", "trueform"),
     ),
-    "plate-steps": Case(
+    "plate-steps": BenchCase(
         "plate minus 400 cylinders, every step evaluated",
         (Faster(50),),
         {"400 steps": _plate(20)},
@@ -209,7 +209,7 @@ CASES: dict[str, Case] = {
         CHAIN_ENGINES,
         checked_at_once=True,
     ),
-    "boxes-steps": Case(
+    "boxes-steps": BenchCase(
         "union of 1 000 random boxes, every step evaluated",
         (Faster(50),),
         {"1 000 boxes": _boxes(1000)},
@@ -217,36 +217,36 @@ CASES: dict[str, Case] = {
         CHAIN_ENGINES,
         checked_at_once=True,
     ),
-    "menger-3": Case(
+    "menger-3": BenchCase(
         "Menger sponge of depth 3, one expression",
         (Faster(5),),
         {"depth 3": _menger(3)},
         {"depth 1": _menger(1)},
         CHAIN_ENGINES,
     ),
-    "menger-4": Case(
+    "menger-4": BenchCase(
         "Menger sponge of depth 4, one expression",
         (Faster(5),),
         {"depth 4": _menger(4)},
         {"depth 2": _menger(2)},
         CHAIN_ENGINES,
     ),
-    "cubes": Case("two cubes", (Faster(1),), {"2 × 12": _cubes}, {"2 × 12": _cubes}),
-    "coincident": Case(
+    "cubes": BenchCase("two cubes", (Faster(1),), {"2 × 12": _cubes}, {"2 × 12": _cubes}),
+    "coincident": BenchCase(
         "nearly coincident spheres, 1.31 M triangles each",
         (Faster(3),),
         {"2 × 1 310 720": _coincident(8)},
         {"2 × 5 120": _coincident(4)},
         QUICK_ENGINES,
     ),
-    "needles": Case(
+    "needles": BenchCase(
         "two rods of needle triangles, 9 450 long, 30 k triangles",
         (Within(0.3),),
         {"2 × 14 996": _needles(3750)},
         {"2 × 236": _needles(60)},
         QUICK_ENGINES,
     ),
-    "capsules": Case(
+    "capsules": BenchCase(
         "swept capsules, 100 steps evaluated",
         (Within(1.0),),
         {"100 steps": _capsules(100)},
@@ -255,7 +255,7 @@ CASES: dict[str, Case] = {
         needs="chains/swept-capsules-100.npz",
         checked_at_once=True,
     ),
-    "dome": Case(
+    "dome": BenchCase(
         "dome carved out of a block, 100 000 steps evaluated",
         (Within(600.0), MemoryWithin(6144), SteadySteps(2)),
         {"100 000 steps": dome(shapes.DOME_STEPS)},
@@ -265,14 +265,14 @@ CASES: dict[str, Case] = {
         limit=900.0,
         checked_at_once=True,
     ),
-    "sizes": Case(
+    "sizes": BenchCase(
         "cost against size, 10 k to 4 M triangles each",
-        (Growth(1.05),),
+        (GrowthTarget(1.05),),
         {f"2 × {8 * n * n}": _even_spheres(n) for n in _SIZES},
         {f"2 × {8 * n * n}": _even_spheres(n) for n in (8, 16)},
         QUICK_ENGINES,
     ),
-    "memory": Case(
+    "memory": BenchCase(
         "memory of a pair of 1.05 M triangles each, operands and imports counted",
         (MemoryWithin(500),),
         {"2 × 1 048 352": _even_spheres(362)},

@@ -10,8 +10,8 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
+from .._types import MeshArrays
 from .facts import mesh_volume
-from .shapes import Arrays
 
 #: What engines are asked for; the first operand is the one that the others are taken from.
 Operation: TypeAlias = Literal["union", "difference", "intersection"]
@@ -34,7 +34,7 @@ class Engine(ABC):
     counts = False
 
     @abstractmethod
-    def solid(self, mesh: Arrays) -> Any:
+    def solid(self, mesh: MeshArrays) -> Any:
         """Return the solid that a mesh bounds, ready for operations."""
 
     @abstractmethod
@@ -46,14 +46,14 @@ class Engine(ABC):
         """Return the volume, which nothing that was put off can survive."""
 
     @abstractmethod
-    def arrays(self, solid: Any) -> Arrays:
+    def arrays(self, solid: Any) -> MeshArrays:
         """Return the boundary as arrays."""
 
     def resolution(self, size: float) -> float:
         """Return how far the engine may move a vertex of a model with coordinates up to `size`."""
         return 4 * _DOUBLE * size
 
-    def boolean(self, first: Arrays, second: Arrays, operation: Operation) -> Arrays:
+    def boolean(self, first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
         """Combine two meshes, arrays in to arrays out, in the way that the engine advises."""
         return self.arrays(self.combine(operation, [self.solid(first), self.solid(second)]))
 
@@ -74,7 +74,7 @@ class _Bspcsg(Engine):
 
         self._setops, self._solid = setops, Solid
 
-    def solid(self, mesh: Arrays) -> Any:
+    def solid(self, mesh: MeshArrays) -> Any:
         return self._solid(*mesh)
 
     def combine(self, operation: Operation, solids: Sequence[Any]) -> Any:
@@ -83,7 +83,7 @@ class _Bspcsg(Engine):
     def volume(self, solid: Any) -> float:
         return float(solid.volume)
 
-    def arrays(self, solid: Any) -> Arrays:
+    def arrays(self, solid: Any) -> MeshArrays:
         vertices, faces = solid.to_mesh()
         return vertices, faces
 
@@ -91,7 +91,7 @@ class _Bspcsg(Engine):
         # The default lattice, of which a vertex is at most half a diagonal away.
         return 3**0.5 / 2 * 1e-9 + super().resolution(size)
 
-    def boolean(self, first: Arrays, second: Arrays, operation: Operation) -> Arrays:
+    def boolean(self, first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
         return self._setops.boolean(*first, *second, operation)
 
     def counters(self, solid: Any) -> dict[str, int]:
@@ -108,7 +108,7 @@ class _Manifold(Engine):
 
         self._package = manifold3d
 
-    def solid(self, mesh: Arrays) -> Any:
+    def solid(self, mesh: MeshArrays) -> Any:
         made = self._package.Manifold(self._package.Mesh64(mesh[0], mesh[1].astype(np.uint64)))
         self._refuse_errors(made)
         return made
@@ -125,7 +125,7 @@ class _Manifold(Engine):
     def volume(self, solid: Any) -> float:
         return float(solid.volume())
 
-    def arrays(self, solid: Any) -> Arrays:
+    def arrays(self, solid: Any) -> MeshArrays:
         solid.num_tri()
         self._refuse_errors(solid)
         mesh = solid.to_mesh64()
@@ -151,7 +151,7 @@ class _Trueform(Engine):
 
         self._package = trueform
 
-    def solid(self, mesh: Arrays) -> Any:
+    def solid(self, mesh: MeshArrays) -> Any:
         return self._package.Mesh(np.ascontiguousarray(mesh[1]), mesh[0])
 
     def combine(self, operation: Operation, solids: Sequence[Any]) -> Any:
@@ -171,7 +171,7 @@ class _Trueform(Engine):
     def volume(self, solid: Any) -> float:
         return float(self._package.signed_volume(solid))
 
-    def arrays(self, solid: Any) -> Arrays:
+    def arrays(self, solid: Any) -> MeshArrays:
         return np.asarray(solid.points), np.asarray(solid.faces)
 
     def resolution(self, size: float) -> float:
@@ -182,7 +182,7 @@ class _Trueform(Engine):
 class _OfArrays(Engine):
     """An engine that only combines two meshes; its solids are arrays."""
 
-    def solid(self, mesh: Arrays) -> Any:
+    def solid(self, mesh: MeshArrays) -> Any:
         return mesh
 
     def combine(self, operation: Operation, solids: Sequence[Any]) -> Any:
@@ -191,7 +191,7 @@ class _OfArrays(Engine):
     def volume(self, solid: Any) -> float:
         return mesh_volume(solid).value
 
-    def arrays(self, solid: Any) -> Arrays:
+    def arrays(self, solid: Any) -> MeshArrays:
         return solid[0], solid[1]
 
     def resolution(self, size: float) -> float:
@@ -199,7 +199,7 @@ class _OfArrays(Engine):
         return 8 * _FLOAT * size
 
     @abstractmethod
-    def boolean(self, first: Arrays, second: Arrays, operation: Operation) -> Arrays:
+    def boolean(self, first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
         """Combine two meshes."""
 
 
@@ -213,7 +213,7 @@ class _Meshlib(_OfArrays):
 
         self._package, self._arrays = mrmeshpy, mrmeshnumpy
 
-    def solid(self, mesh: Arrays) -> Any:
+    def solid(self, mesh: MeshArrays) -> Any:
         return self._arrays.meshFromFacesVerts(mesh[1], mesh[0])
 
     def combine(self, operation: Operation, solids: Sequence[Any]) -> Any:
@@ -234,11 +234,11 @@ class _Meshlib(_OfArrays):
     def volume(self, solid: Any) -> float:
         return float(solid.volume())
 
-    def arrays(self, solid: Any) -> Arrays:
+    def arrays(self, solid: Any) -> MeshArrays:
         vertices = self._arrays.getNumpyVerts(solid)
         return vertices, self._arrays.getNumpyFaces(solid.topology)
 
-    def boolean(self, first: Arrays, second: Arrays, operation: Operation) -> Arrays:
+    def boolean(self, first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
         return Engine.boolean(self, first, second, operation)
 
 
@@ -252,7 +252,7 @@ class _Pymeshlab(_OfArrays):
 
         self._package = pymeshlab
 
-    def boolean(self, first: Arrays, second: Arrays, operation: Operation) -> Arrays:
+    def boolean(self, first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
         meshes = self._package.MeshSet()
         for vertices, faces in (first, second):
             meshes.add_mesh(self._package.Mesh(vertices, faces))
@@ -273,7 +273,7 @@ class _Vtk(_OfArrays):
 
         self._package, self._numpy = vtk, numpy_support
 
-    def boolean(self, first: Arrays, second: Arrays, operation: Operation) -> Arrays:
+    def boolean(self, first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
         combine = self._package.vtkBooleanOperationPolyDataFilter()
         getattr(combine, f"SetOperationTo{operation.capitalize()}")()
         for port, mesh in enumerate((first, second)):
@@ -284,7 +284,7 @@ class _Vtk(_OfArrays):
         corners = self._numpy.vtk_to_numpy(made.GetPolys().GetConnectivityArray())
         return points, corners.reshape(-1, 3)
 
-    def _polygons(self, mesh: Arrays) -> Any:
+    def _polygons(self, mesh: MeshArrays) -> Any:
         points, cells = self._package.vtkPoints(), self._package.vtkCellArray()
         points.SetData(self._numpy.numpy_to_vtk(mesh[0], deep=True))
         corners = self._numpy.numpy_to_vtkIdTypeArray(mesh[1].ravel().astype(np.int64), deep=True)

@@ -5,8 +5,7 @@ from math import log2
 
 import numpy as np
 
-from .._types import FloatArray, IndexArray
-from .shapes import Arrays
+from .._types import FloatArray, IndexArray, MeshArrays
 
 #: Unit roundoff of doubles.
 _ROUNDOFF = 2.0**-53
@@ -27,7 +26,7 @@ class Volume:
 
 
 @dataclass(frozen=True)
-class Facts:
+class AnswerFacts:
     """What two answers are compared by, and what the tables show.
 
     Parameters
@@ -46,11 +45,11 @@ class Facts:
     volume_error: float
 
 
-def facts_of(mesh: Arrays) -> Facts:
+def facts_of(mesh: MeshArrays) -> AnswerFacts:
     """Measure a mesh."""
     faces = np.asarray(mesh[1], dtype=np.int64)
     volume = mesh_volume((mesh[0], faces))
-    return Facts(
+    return AnswerFacts(
         triangles=len(faces),
         euler_number=len(np.unique(faces)) - len(faces) // 2,
         open_edges=_open_edges(faces, len(mesh[0])),
@@ -59,7 +58,7 @@ def facts_of(mesh: Arrays) -> Facts:
     )
 
 
-def mesh_volume(mesh: Arrays) -> Volume:
+def mesh_volume(mesh: MeshArrays) -> Volume:
     """Return the signed volume that a mesh bounds."""
     vertices, faces = np.asarray(mesh[0], dtype=np.float64), np.asarray(mesh[1], dtype=np.int64)
     if len(faces) == 0:
@@ -74,7 +73,7 @@ def mesh_volume(mesh: Arrays) -> Volume:
     return Volume(float(terms.sum()), float(steps * _ROUNDOFF * sizes.sum()))
 
 
-def area(mesh: Arrays) -> float:
+def area(mesh: MeshArrays) -> float:
     """Return the area of a mesh."""
     corners = mesh[0][mesh[1]]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

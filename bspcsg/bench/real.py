@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .shapes import Arrays, generator, moved, random_rotation, scaled, turned, unit_vector
+from .._types import MeshArrays
+from .shapes import generator, moved, random_rotation, scaled, turned, unit_vector
 
 #: Triangles of the meshes that are paired.
 _LEAST, _MOST = 10_000, 500_000
@@ -15,7 +16,7 @@ _LEAST, _MOST = 10_000, 500_000
 _APART = 0.3
 
 
-def swept_capsules(shared: Path) -> tuple[Arrays, list[Arrays]]:
+def swept_capsules(shared: Path) -> tuple[MeshArrays, list[MeshArrays]]:
     """Return the workpiece and the tools of the chain, in their order."""
     with np.load(shared / "chains" / "swept-capsules-100.npz") as data:
         vertices = np.split(data["v"].astype(np.float64), np.cumsum(data["nv"])[:-1])
@@ -25,7 +26,7 @@ def swept_capsules(shared: Path) -> tuple[Arrays, list[Arrays]]:
     return base, [(points, triangles[:, ::-1].copy()) for points, triangles in tools]
 
 
-def posed_pair(shared: Path, number: int) -> tuple[Arrays, Arrays]:
+def posed_pair(shared: Path, number: int) -> tuple[MeshArrays, MeshArrays]:
     """Return two of the meshes, both of half diagonal 1, turned and moved at random."""
     random = generator(number)
     names = solid_names(shared)
@@ -59,7 +60,7 @@ def solid_names(shared: Path) -> list[str]:
     )
 
 
-def _unit(path: Path) -> Arrays:
+def _unit(path: Path) -> MeshArrays:
     from ..io import load
 
     vertices, faces = (array.copy() for array in load(path).to_mesh())

@@ -13,7 +13,7 @@ from statistics import median
 from typing import Any
 
 from ..errors import held
-from .cases import CASES, Case
+from .cases import CASES, BenchCase
 from .engines import ENGINES
 from .targets import OURS
 from .worker import Task
@@ -111,7 +111,7 @@ def _item(key: str, label: str, settings: Settings, progress: Progress) -> dict[
     return judged(row)
 
 
-def _parts(case: Case, task: Task) -> list[Task]:
+def _parts(case: BenchCase, task: Task) -> list[Task]:
     """Return one task for all engines, or one for each if each is to be alone."""
     if not case.alone:
         return [task]

@@ -1,14 +1,13 @@
 """Meshes of the bench, as plain arrays that any engine takes."""
 
 from collections.abc import Iterator
-from typing import TypeAlias
 
 import numpy as np
 
-from .._types import FloatArray, IndexArray
+from .._types import FloatArray, IndexArray, MeshArrays
 
 #: Vertices (n, 3) and faces (m, 3), counter-clockwise seen from outside.
-Arrays: TypeAlias = tuple[FloatArray, IndexArray]
+
 
 #: Seeds are arbitrary and fixed, so that two runs see the same arrays.
 _SEED = 7
@@ -19,17 +18,17 @@ def generator(number: int = 0) -> np.random.Generator:
     return np.random.default_rng([_SEED, number])
 
 
-def moved(mesh: Arrays, by: object) -> Arrays:
+def moved(mesh: MeshArrays, by: object) -> MeshArrays:
     """Return the mesh shifted."""
     return mesh[0] + np.asarray(by, dtype=np.float64), mesh[1]
 
 
-def scaled(mesh: Arrays, factor: float) -> Arrays:
+def scaled(mesh: MeshArrays, factor: float) -> MeshArrays:
     """Return the mesh scaled about the origin."""
     return mesh[0] * factor, mesh[1]
 
 
-def turned(mesh: Arrays, matrix: FloatArray) -> Arrays:
+def turned(mesh: MeshArrays, matrix: FloatArray) -> MeshArrays:
     """Return the mesh with a 3 × 3 matrix applied to its vertices."""
     return mesh[0] @ matrix.T, mesh[1]
 
@@ -54,7 +53,7 @@ def unit_vector(random: np.random.Generator) -> FloatArray:
     return np.asarray(direction / np.linalg.norm(direction))
 
 
-def box(low: object, high: object) -> Arrays:
+def box(low: object, high: object) -> MeshArrays:
     """Return the 12 triangles of an axis-parallel box."""
     import trimesh
 
@@ -65,7 +64,7 @@ def box(low: object, high: object) -> Arrays:
     return np.where(nearest, corners[1], corners[0]), np.asarray(mesh.faces, dtype=np.int64)
 
 
-def icosphere(level: int) -> Arrays:
+def icosphere(level: int) -> MeshArrays:
     """Return a unit sphere of 20 · 4^level triangles."""
     import trimesh
 
@@ -73,7 +72,7 @@ def icosphere(level: int) -> Arrays:
     return np.array(mesh.vertices, dtype=np.float64), np.array(mesh.faces, dtype=np.int64)
 
 
-def octasphere(n: int) -> Arrays:
+def octasphere(n: int) -> MeshArrays:
     """Return a unit sphere of 8 · n² triangles: an octahedron with each face divided evenly."""
     rows = np.arange(-n, n + 1)
     x, y = (a.ravel() for a in np.meshgrid(rows, rows, indexing="ij"))
@@ -124,7 +123,7 @@ def _quadrant(
     return triangles if signs[0] * signs[1] > 0 else triangles[:, ::-1]
 
 
-def cylinder(sides: int, radius: float, low: float, high: float) -> Arrays:
+def cylinder(sides: int, radius: float, low: float, high: float) -> MeshArrays:
     """Return a prism along z over a regular polygon, its caps divided as fans from a corner."""
     angles = 2 * np.pi * np.arange(sides) / sides
     ring = np.column_stack([radius * np.cos(angles), radius * np.sin(angles)])
@@ -140,19 +139,19 @@ def cylinder(sides: int, radius: float, low: float, high: float) -> Arrays:
     return points, np.concatenate([walls, floor, roof])
 
 
-def spheres_apart(ball: Arrays, number: int = 0) -> tuple[Arrays, Arrays]:
+def spheres_apart(ball: MeshArrays, number: int = 0) -> tuple[MeshArrays, MeshArrays]:
     """Return a unit sphere and its copy, turned, with its centre on the first one's surface."""
     random = generator(number)
     return ball, moved(turned(ball, random_rotation(random)), unit_vector(random))
 
 
-def spheres_coincident(ball: Arrays) -> tuple[Arrays, Arrays]:
+def spheres_coincident(ball: MeshArrays) -> tuple[MeshArrays, MeshArrays]:
     """Return a unit sphere and its copy that is 10⁻⁴ larger and turned by 0.01 radians."""
     matrix = rotation(unit_vector(generator()), 0.01)
     return ball, scaled(turned(ball, matrix), 1 + 1e-4)
 
 
-def needles(sides: int, length: float = 9450.0) -> tuple[Arrays, Arrays]:
+def needles(sides: int, length: float = 9450.0) -> tuple[MeshArrays, MeshArrays]:
     """Return two rods askew, whose 4 · `sides` walls are needles, one shifted along its twin.
 
     All boxes of walls overlap, since each wall runs along the whole rod: what finds candidates by
@@ -164,21 +163,21 @@ def needles(sides: int, length: float = 9450.0) -> tuple[Arrays, Arrays]:
     return turned(rod, askew), turned(turned(twin, rotation((1, 0, 0), 0.001)), askew)
 
 
-def drilled_cube(count: int) -> tuple[Arrays, list[Arrays]]:
+def drilled_cube(count: int) -> tuple[MeshArrays, list[MeshArrays]]:
     """Return a unit cube and spheres of 128 triangles at random places in it."""
     ball = scaled(octasphere(4), 0.03)
     places = generator().random((count, 3))
     return box((0, 0, 0), (1, 1, 1)), [moved(ball, at) for at in places]
 
 
-def drilled_plate(rows: int) -> tuple[Arrays, list[Arrays]]:
+def drilled_plate(rows: int) -> tuple[MeshArrays, list[MeshArrays]]:
     """Return a plate and `rows` · `rows` cylinders of 32 sides through it, none touching."""
     drill = cylinder(32, 0.35, -1.0, 2.0)
     places = [(x + 0.5, y + 0.5, 0.0) for x in range(rows) for y in range(rows)]
     return box((0, 0, 0), (rows, rows, 1)), [moved(drill, at) for at in places]
 
 
-def random_boxes(count: int) -> list[Arrays]:
+def random_boxes(count: int) -> list[MeshArrays]:
     """Return axis-parallel boxes in the unit cube that overlap at random."""
     random = generator()
     low = random.random((count, 3))
@@ -186,7 +185,7 @@ def random_boxes(count: int) -> list[Arrays]:
     return [box(a, a + s) for a, s in zip(low, size, strict=True)]
 
 
-def menger(depth: int) -> tuple[Arrays, list[list[Arrays]]]:
+def menger(depth: int) -> tuple[MeshArrays, list[list[MeshArrays]]]:
     """Return the cube of a Menger sponge, and its holes along x, y and z.
 
     The side is 3^depth, so that all coordinates are whole numbers.
@@ -219,7 +218,7 @@ def _squares(u: int, v: int, side: int) -> Iterator[tuple[int, int, int]]:
 DOME_STEPS = 100_000
 
 
-def dome(steps: int) -> tuple[Arrays, Iterator[Arrays]]:
+def dome(steps: int) -> tuple[MeshArrays, Iterator[MeshArrays]]:
     """Return a block, and the balls that carve a flat dome into its top, one after the other.
 
     The balls follow a spiral outwards. Their distance along it is that of its windings, and each
@@ -231,7 +230,7 @@ def dome(steps: int) -> tuple[Arrays, Iterator[Arrays]]:
     return block, _dome_balls(steps, spacing, radius)
 
 
-def _dome_balls(steps: int, spacing: float, radius: float) -> Iterator[Arrays]:
+def _dome_balls(steps: int, spacing: float, radius: float) -> Iterator[MeshArrays]:
     ball = scaled(octasphere(4), radius)
     random = generator()
     for k in range(steps):

@@ -33,7 +33,7 @@ class Reached:
     met: bool | None
 
 
-class Target(Protocol):
+class Goal(Protocol):
     """One figure to reach."""
 
     @property
@@ -149,7 +149,7 @@ class SteadySteps:
 
 
 @dataclass(frozen=True)
-class Growth:
+class GrowthTarget:
     """Time grows at most with this power of the number of triangles."""
 
     exponent: float

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from .._types import MeshArrays
 from .engines import Engine, Operation
 from .facts import area, size_of
-from .shapes import Arrays
 
 #: Called with the number of steps that are done; of chains only.
 Tell = Callable[[int], None]
@@ -31,14 +31,14 @@ class Outcome:
         The engine's, for its counters; None if it made none.
     """
 
-    mesh: Arrays
+    mesh: MeshArrays
     parts: dict[str, float] = field(default_factory=dict)
     step_seconds: list[float] = field(default_factory=list)
     solid: Any = None
 
 
 @dataclass(frozen=True)
-class Extent:
+class SurfaceExtent:
     """How much surface the operands have, and how far out it is; it bounds wrong volumes."""
 
     area: float
@@ -50,7 +50,7 @@ class Work(ABC):
     """One thing to do."""
 
     @abstractmethod
-    def extent(self) -> Extent:
+    def extent(self) -> SurfaceExtent:
         """Measure the operands."""
 
     def prepare(self, engine: Engine) -> Any:
@@ -70,11 +70,11 @@ class Work(ABC):
 class Pair(Work):
     """Two meshes, arrays in to arrays out."""
 
-    first: Arrays
-    second: Arrays
+    first: MeshArrays
+    second: MeshArrays
     operation: Operation = "difference"
 
-    def extent(self) -> Extent:
+    def extent(self) -> SurfaceExtent:
         """Add the operands up."""
         return extent_of([self.first, self.second])
 
@@ -108,11 +108,11 @@ class BuiltPair(Pair):
 class Expression(Work):
     """A mesh and groups of others, in one expression: each group is united, then all combined."""
 
-    base: Arrays
-    groups: Sequence[Sequence[Arrays]]
+    base: MeshArrays
+    groups: Sequence[Sequence[MeshArrays]]
     operation: Operation = "difference"
 
-    def extent(self) -> Extent:
+    def extent(self) -> SurfaceExtent:
         """Add the operands up."""
         return extent_of([self.base, *(mesh for group in self.groups for mesh in group)])
 
@@ -134,11 +134,11 @@ class Expression(Work):
 class Chain(Work):
     """A mesh and others one after the other; the volume is read after each step."""
 
-    base: Arrays
-    tools: Sequence[Arrays]
+    base: MeshArrays
+    tools: Sequence[MeshArrays]
     operation: Operation = "difference"
 
-    def extent(self) -> Extent:
+    def extent(self) -> SurfaceExtent:
         """Add the operands up."""
         return extent_of([self.base, *self.tools])
 
@@ -163,15 +163,15 @@ class Chain(Work):
 class Carving(Work):
     """A chain so long that its tools are made one at a time, outside the clock."""
 
-    base: Arrays
-    tools: Callable[[], Iterable[Arrays]]
+    base: MeshArrays
+    tools: Callable[[], Iterable[MeshArrays]]
 
-    def extent(self) -> Extent:
+    def extent(self) -> SurfaceExtent:
         """Add the operands up."""
         total = extent_of([self.base])
         for tool in self.tools():
             more = extent_of([tool])
-            total = Extent(
+            total = SurfaceExtent(
                 total.area + more.area,
                 max(total.size, more.size),
                 total.triangles + more.triangles,
@@ -226,10 +226,10 @@ def stepwise(
     return solid, steps
 
 
-def extent_of(meshes: Iterable[Arrays]) -> Extent:
+def extent_of(meshes: Iterable[MeshArrays]) -> SurfaceExtent:
     """Add up meshes."""
     listed = list(meshes)
-    return Extent(
+    return SurfaceExtent(
         area=float(np.sum([area(mesh) for mesh in listed])),
         size=max(size_of(vertices) for vertices, _ in listed),
         triangles=sum(len(faces) for _, faces in listed),

@@ -52,14 +52,14 @@ class File:
 
 
 @dataclass(frozen=True)
-class Operation:
+class NamedOperation:
     """An operation by its name: union, difference, intersection, xor or complement."""
 
     name: str
     operands: "tuple[Formula, ...]"
 
 
-Formula: TypeAlias = File | Operation
+Formula: TypeAlias = File | NamedOperation
 
 
 @dataclass(frozen=True)
@@ -158,7 +158,7 @@ class _Parser:
         found = self.level(number + 1, depth)
         while self._peek().kind in _LEVELS[number]:
             name = _LEVELS[number][self._take().kind]
-            found = Operation(name, (found, self.level(number + 1, depth)))
+            found = NamedOperation(name, (found, self.level(number + 1, depth)))
         return found
 
     def expect(self, kind: str, wanted: str) -> _Token:
@@ -174,7 +174,7 @@ class _Parser:
             raise FormulaError("this lies too deep in parentheses.", token.column)
         if token.kind == "~":
             self._take()
-            return Operation("complement", (self._operand(depth + 1),))
+            return NamedOperation("complement", (self._operand(depth + 1),))
         if token.kind == "(":
             self._take()
             inner = self.level(0, depth + 1)

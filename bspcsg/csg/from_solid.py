@@ -96,11 +96,11 @@ class _Reading:
     """The bodies of an expression's nodes, each found once; expressions may be any depth."""
 
     def __init__(self) -> None:
-        self._known: dict[expression.Node, _Body | None] = {}
+        self._known: dict[expression.ExpressionNode, _Body | None] = {}
 
-    def body(self, root: expression.Node, factors: Factors) -> _Body | None:
+    def body(self, root: expression.ExpressionNode, factors: Factors) -> _Body | None:
         """Return the body of a node under a transform; None if it cannot be written."""
-        waiting: list[tuple[expression.Node, Plan | None]] = [(root, None)]
+        waiting: list[tuple[expression.ExpressionNode, Plan | None]] = [(root, None)]
         while waiting:
             node, plan = waiting.pop()
             if node in self._known:
@@ -116,7 +116,7 @@ class _Reading:
             waiting.extend((operand.node, None) for operand in plan.operands)
         return _moved(self._known[root], factors)
 
-    def _combined(self, node: expression.Node, plan: Plan) -> _Body | None:
+    def _combined(self, node: expression.ExpressionNode, plan: Plan) -> _Body | None:
         lines: list[_Body | None] = []
         for operator, arguments in plan.program:
             if operator == "leaf":
@@ -130,7 +130,7 @@ class _Reading:
         return made
 
 
-def _plan_of(node: expression.Node) -> Plan | None:
+def _plan_of(node: expression.ExpressionNode) -> Plan | None:
     """Return how a node was made; None for a leaf."""
     content = node.content
     if isinstance(content, Pending):
@@ -138,10 +138,12 @@ def _plan_of(node: expression.Node) -> Plan | None:
     if not isinstance(content, TreeLeaf) or content.record is None:
         return None
     record = content.record
-    return Plan(record.program, [Placed(expression.Node(leaf), ()) for leaf in record.leaves])
+    return Plan(
+        record.program, [Placed(expression.ExpressionNode(leaf), ()) for leaf in record.leaves]
+    )
 
 
-def _leaf(node: expression.Node) -> _Body | None:
+def _leaf(node: expression.ExpressionNode) -> _Body | None:
     content = node.content
     if isinstance(content, ConstantLeaf):
         return _Body(None, content.full)

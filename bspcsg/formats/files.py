@@ -22,7 +22,7 @@ from .threemf import file as threemf
 from .threemf import write as threemf_write
 
 Encoder: TypeAlias = Callable[[Mesh | RawMesh], Iterator[bytes]]
-Losses: TypeAlias = Callable[[Mesh | RawMesh], tuple[Finding, ...]]
+LossFinder: TypeAlias = Callable[[Mesh | RawMesh], tuple[Finding, ...]]
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Form:
     encode: Encoder
     scan: Scan
     called: Called | None = None
-    losses: Losses | None = None
+    losses: LossFinder | None = None
     repeats: bool = True
     is_single: bool = False
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
-from .raw import EMPTY_SET, Polygons, RawMesh, on_one_line, parts_of, says_empty_set
+from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, says_empty_set
 from .source import Source, quoted, whole
 
 #: Statements about what a mesh of triangles has no room for.
@@ -132,9 +132,9 @@ def _references(source: Source, number: int, words: list[bytes], known: int) -> 
     return [known + reference if reference < 0 else reference - 1 for reference in references]
 
 
-def _faces(source: Source, polygons: list[list[int]], lines: list[int]) -> Polygons:
+def _faces(source: Source, polygons: list[list[int]], lines: list[int]) -> IndexPolygons:
     try:
-        return Polygons.from_lists(polygons)
+        return IndexPolygons.from_lists(polygons)
     except OverflowError:
         bad = next(k for k, polygon in enumerate(polygons) if max(polygon) >= 2**63)
         raise _too_large(source, lines[bad]) from None

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from ..errors import Finding
 from ..mesh.mesh import Mesh
-from .raw import EMPTY_SET, Polygons, RawMesh, says_empty_set
+from .raw import EMPTY_SET, IndexPolygons, RawMesh, says_empty_set
 from .source import Source, quoted, whole
 
 _KEYWORD = re.compile(rb"(ST)?C?N?(4?)(n?)(?:OFF|off)")
@@ -33,7 +33,7 @@ def read(source: Source) -> RawMesh:
     points, polygons = lines[:vertex_count], lines[vertex_count : vertex_count + face_count]
     vertices = source.coordinates([row for _, row in points], [number for number, _ in points])
     corners = [_corners(source, number, words) for number, words in polygons]
-    flat = Polygons.from_lists(corners)
+    flat = IndexPolygons.from_lists(corners)
     faces = flat.triangles(
         vertices, lambda k, message, code: source.error(message, code, line=polygons[k][0])
     )

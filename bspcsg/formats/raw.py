@@ -123,7 +123,7 @@ def joined(meshes: Sequence[RawMesh]) -> RawMesh:
 
 
 @dataclass(frozen=True, eq=False)
-class Polygons:
+class IndexPolygons:
     """Polygons as index lists of different lengths.
 
     Parameters
@@ -138,7 +138,7 @@ class Polygons:
     counts: IndexArray
 
     @classmethod
-    def from_lists(cls, polygons: list[list[int]]) -> "Polygons":
+    def from_lists(cls, polygons: list[list[int]]) -> "IndexPolygons":
         """Return the polygons of a list of index lists.
 
         Raises
@@ -156,7 +156,7 @@ class Polygons:
         return (POLYGONS,) if self.counts.max(initial=0) > 3 else ()
 
     @classmethod
-    def from_rows(cls, rows: IndexArray) -> "Polygons":
+    def from_rows(cls, rows: IndexArray) -> "IndexPolygons":
         """Return polygons that all have as many corners as `rows` has columns."""
         corners = np.ascontiguousarray(rows, dtype=np.int64).ravel()
         return cls(corners, np.full(len(rows), rows.shape[1], dtype=np.int64))

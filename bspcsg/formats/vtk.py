@@ -17,7 +17,7 @@ import numpy as np
 
 from ..errors import Finding, FormatError, missing_part, words_of
 from ..mesh.mesh import Mesh
-from .raw import Polygons, RawMesh, says_empty_set
+from .raw import IndexPolygons, RawMesh, says_empty_set
 from .source import Source
 
 #: Kinds of cells that are faces, and those that are passed by.
@@ -156,7 +156,7 @@ def _surface(source: Source, grid: Any) -> RawMesh:
         if block.type in _FACES
         for face in block.data
     ]
-    flat = Polygons.from_lists(polygons)
+    flat = IndexPolygons.from_lists(polygons)
     faces = flat.triangles(
         vertices, lambda k, message, code: source.error(f"cell {k}: {message}", code)
     )

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import trimesh
 
 #: What a reader returns: vertices and faces, in any form that `mesh_arrays` takes.
-Arrays: TypeAlias = tuple[Any, Any]
+AnyArrays: TypeAlias = tuple[Any, Any]
 
 _Array = TypeVar("_Array", FloatArray, IndexArray)
 
@@ -27,7 +27,7 @@ _Array = TypeVar("_Array", FloatArray, IndexArray)
 TESSELLATION_TOLERANCE = 0.01
 
 
-def arrays_from(mesh: Any, tolerance: float = TESSELLATION_TOLERANCE) -> Arrays:
+def arrays_from(mesh: Any, tolerance: float = TESSELLATION_TOLERANCE) -> AnyArrays:
     """Return vertices and faces of whatever holds a mesh.
 
     Parameters
@@ -66,7 +66,7 @@ def _advice(mesh: Any) -> str:
     return ""
 
 
-def are_empty(arrays: Arrays) -> bool:
+def are_empty(arrays: AnyArrays) -> bool:
     """Whether there are neither vertices nor faces; vertices alone are a cloud of points."""
     try:
         return not any(map(len, arrays))
@@ -156,18 +156,18 @@ def _triangles(faces: Iterable[Any], vertices: FloatArray) -> IndexArray:
 # Readers. Each takes an object that has the attributes named in the table below.
 
 
-def _from_manifold(mesh: Any) -> Arrays:
+def _from_manifold(mesh: Any) -> AnyArrays:
     return _from_manifold_mesh(mesh.to_mesh64())
 
 
-def _from_manifold_mesh(mesh: Any) -> Arrays:
+def _from_manifold_mesh(mesh: Any) -> AnyArrays:
     vertices = np.asarray(mesh.vert_properties)[:, :3]
     same = np.arange(len(vertices))
     same[np.asarray(mesh.merge_from_vert, dtype=np.int64)] = mesh.merge_to_vert
     return vertices, same[np.asarray(mesh.tri_verts, dtype=np.int64)]
 
 
-def _from_polydata(mesh: Any) -> Arrays:
+def _from_polydata(mesh: Any) -> AnyArrays:
     return mesh.points, _unpadded(np.asarray(mesh.faces))
 
 
@@ -184,7 +184,7 @@ def _unpadded(stream: IndexArray) -> Any:
     return faces
 
 
-def _from_vtk(mesh: Any) -> Arrays:
+def _from_vtk(mesh: Any) -> AnyArrays:
     points = [mesh.GetPoint(index) for index in range(mesh.GetNumberOfPoints())]
     faces = []
     for index in range(mesh.GetNumberOfCells()):
@@ -196,7 +196,7 @@ def _from_vtk(mesh: Any) -> Arrays:
     return points, faces
 
 
-def _from_meshio(mesh: Any) -> Arrays:
+def _from_meshio(mesh: Any) -> AnyArrays:
     kinds = {block.type for block in mesh.cells}
     surface = [block for block in mesh.cells if block.type in ("triangle", "quad", "polygon")]
     unknown = kinds - {"triangle", "quad", "polygon", "vertex", "line"}
@@ -207,7 +207,7 @@ def _from_meshio(mesh: Any) -> Arrays:
     return mesh.points, [face for block in surface for face in block.data]
 
 
-def _from_shape(shape: Any, tolerance: float) -> Arrays:
+def _from_shape(shape: Any, tolerance: float) -> AnyArrays:
     vertices, faces = shape.tessellate(tolerance)
     return [_coordinates(vertex) for vertex in vertices], faces
 
@@ -220,7 +220,7 @@ def _shapes_on(workplane: Any) -> list[Any]:
     return list(workplane.vals()) if hasattr(workplane, "vals") else [workplane.val()]
 
 
-def _joined(parts: list[Arrays]) -> Arrays:
+def _joined(parts: list[AnyArrays]) -> AnyArrays:
     """Return several meshes as one; where they overlap, winding numbers unite them."""
     points = [points_array(vertices) for vertices, _ in parts]
     starts = np.cumsum([0, *map(len, points)])
@@ -245,7 +245,7 @@ _HOLDERS: tuple[tuple[tuple[str, ...], Callable[[Any], Any]], ...] = (
     (("to_legacy",), lambda mesh: mesh.to_legacy()),
 )
 
-_READERS: tuple[tuple[tuple[str, ...], Callable[[Any], Arrays]], ...] = (
+_READERS: tuple[tuple[tuple[str, ...], Callable[[Any], AnyArrays]], ...] = (
     (("to_mesh64",), _from_manifold),
     (("vert_properties", "tri_verts"), _from_manifold_mesh),
     (("vertex_matrix", "face_matrix"), lambda mesh: (mesh.vertex_matrix(), mesh.face_matrix())),

@@ -19,7 +19,7 @@ _TRIES, _POINTS = 60, 6
 
 
 @dataclass(frozen=True, eq=False)
-class Pieces:
+class MeshPieces:
     """The pieces of a closed mesh, each with the walls of its cavities.
 
     Parameters
@@ -37,7 +37,7 @@ class Pieces:
     thickness: FloatArray
 
     @classmethod
-    def of(cls, mesh: Mesh, film: float = 0.0) -> "Pieces":
+    def of(cls, mesh: Mesh, film: float = 0.0) -> "MeshPieces":
         """Return the pieces of a mesh with faces; what is thinner than a film may be estimated."""
         surfaces = surfaces_of(mesh.faces, len(mesh.vertices))
         volumes, areas = _measures(mesh, surfaces, film)

@@ -30,7 +30,7 @@ from types import TracebackType
 
 from ..errors import InvalidMeshError, invalid_parameter
 from ..solid import counting
-from ..solid.expression import Node
+from ..solid.expression import ExpressionNode
 from ..solid.leaf import ConstantLeaf
 from ..solid.solid import Solid
 
@@ -107,7 +107,7 @@ class Unfilled(Solid):
     __slots__ = ("_combined", "_open")
 
     def __init__(self, combined: Callable[[Sequence[Solid]], Solid], full: bool = False) -> None:
-        self._set(Node(ConstantLeaf(full)), ())
+        self._set(ExpressionNode(ConstantLeaf(full)), ())
         self._combined = combined
         self._open: list[Block] = []
 

@@ -6,11 +6,11 @@ import numpy as np
 
 from ..geometry.transform import Factors
 from ..mesh.mesh import Mesh
-from .expression import Node, Pending, make_plan
+from .expression import ExpressionNode, Pending, make_plan
 from .leaf import ConstantLeaf, MeshLeaf, PlaneLeaf
 
 
-def describe(node: Node, factors: Factors, mesh: Mesh | None) -> str:
+def describe(node: ExpressionNode, factors: Factors, mesh: Mesh | None) -> str:
     """Return a few words on an expression under a transform, without evaluating it."""
     content = node.content
     moved = ", transformed" if factors else ""

@@ -13,14 +13,14 @@ from typing import NamedTuple
 from .._types import ProgramLine
 from ..errors import internal
 from ..geometry.transform import Factors
-from .leaf import Leaf, Record, TreeLeaf, run
+from .leaf import ExpressionLeaf, Record, TreeLeaf, run
 from .program import Operator
 
 
 class Placed(NamedTuple):
     """A node under a transform."""
 
-    node: "Node"
+    node: "ExpressionNode"
     factors: Factors
 
 
@@ -32,7 +32,7 @@ class Pending:
     operands: tuple[Placed, ...]
 
 
-class Node:
+class ExpressionNode:
     """A vertex of the graph; only its identity counts.
 
     `content` changes once, from `Pending` to the leaf that it evaluates to. It is one attribute,
@@ -41,7 +41,7 @@ class Node:
 
     __slots__ = ("__weakref__", "content")
 
-    def __init__(self, content: Pending | Leaf) -> None:
+    def __init__(self, content: Pending | ExpressionLeaf) -> None:
         self.content = content
 
 
@@ -52,12 +52,12 @@ def complement(placed: Placed) -> Placed:
         inner = content.operands[0]
         return Placed(inner.node, placed.factors + inner.factors)
     # The transform moves outside: M(not X) and not M(X) are the same set.
-    return Placed(Node(Pending("not", (Placed(placed.node, ()),))), placed.factors)
+    return Placed(ExpressionNode(Pending("not", (Placed(placed.node, ()),))), placed.factors)
 
 
-def operation(operator: Operator, operands: Sequence[Placed]) -> Node:
+def operation(operator: Operator, operands: Sequence[Placed]) -> ExpressionNode:
     """Return the node that combines the operands."""
-    return Node(Pending(operator, tuple(_settled(operand) for operand in operands)))
+    return ExpressionNode(Pending(operator, tuple(_settled(operand) for operand in operands)))
 
 
 def _settled(placed: Placed) -> Placed:
@@ -67,10 +67,10 @@ def _settled(placed: Placed) -> Placed:
         return placed
     inner = content.operands[0]
     below = Placed(inner.node, placed.factors + inner.factors)
-    return Placed(Node(Pending("not", (below,))), ())
+    return Placed(ExpressionNode(Pending("not", (below,))), ())
 
 
-def evaluate(root: Node) -> Leaf:
+def evaluate(root: ExpressionNode) -> ExpressionLeaf:
     """Return the leaf that a node stands for, evaluating what is needed.
 
     Raises
@@ -78,7 +78,7 @@ def evaluate(root: Node) -> Leaf:
     BspcsgError
         What the core or the placing of a leaf raises; the expression then stays as it was.
     """
-    waiting: list[tuple[Node, Plan | None]] = [(root, None)]
+    waiting: list[tuple[ExpressionNode, Plan | None]] = [(root, None)]
     while waiting:
         node, plan = waiting.pop()
         content = node.content
@@ -100,13 +100,13 @@ class Plan:
     program: list[ProgramLine] = field(default_factory=list)
     operands: list[Placed] = field(default_factory=list)
 
-    def execute(self) -> Leaf:
+    def execute(self) -> ExpressionLeaf:
         """Carry the program out; the operands must have been evaluated."""
         leaves = [_operand_leaf(operand) for operand in self.operands]
         return run(Record(self.program, tuple(leaves)))
 
 
-def make_plan(root: Node) -> Plan:
+def make_plan(root: ExpressionNode) -> Plan:
     """Flatten the expression below a node into a program, operands in reading order."""
     uses = _count_uses(root)
     plan = Plan()
@@ -131,13 +131,13 @@ def make_plan(root: Node) -> Plan:
     return plan
 
 
-def _evaluated(content: Pending | Leaf) -> Leaf:
+def _evaluated(content: Pending | ExpressionLeaf) -> ExpressionLeaf:
     if isinstance(content, Pending):
         raise internal("an operand has not been evaluated")
     return content
 
 
-def _operand_leaf(placed: Placed) -> Leaf:
+def _operand_leaf(placed: Placed) -> ExpressionLeaf:
     content = _evaluated(placed.node.content)
     leaf = content.placed(placed.factors) if placed.factors else content
     # What remembers its operands must not be remembered in turn, or a chain would keep all of it.
@@ -150,7 +150,7 @@ def _open_operation(placed: Placed) -> Pending | None:
     return content if isinstance(content, Pending) and not placed.factors else None
 
 
-def _arguments(pending: Pending, uses: dict[Node, int]) -> list[Placed]:
+def _arguments(pending: Pending, uses: dict[ExpressionNode, int]) -> list[Placed]:
     """Return the operands, with nested uses of the same associative operator spread out.
 
     Only what nothing else uses is spread: a shared node keeps a line of its own.
@@ -168,9 +168,9 @@ def _arguments(pending: Pending, uses: dict[Node, int]) -> list[Placed]:
     return arguments
 
 
-def _count_uses(root: Node) -> dict[Node, int]:
+def _count_uses(root: ExpressionNode) -> dict[ExpressionNode, int]:
     """Count how often the program below a node refers to each node."""
-    uses: dict[Node, int] = {}
+    uses: dict[ExpressionNode, int] = {}
     open_nodes = {root}
     waiting = [root]
     while waiting:

@@ -91,7 +91,7 @@ class MeshLeaf:
         """Return the tree on the lattice of this pitch."""
         return at_pitch(self.own_tree(), pitch)
 
-    def placed(self, factors: Factors) -> "Leaf":
+    def placed(self, factors: Factors) -> "ExpressionLeaf":
         """Return the leaf moved by the factors, outermost first."""
         return _place(self, factors)
 
@@ -114,7 +114,7 @@ class Record:
     """How a tree was made: a program and the leaves it names, one operation deep."""
 
     program: list[ProgramLine]
-    leaves: tuple["Leaf", ...]
+    leaves: tuple["ExpressionLeaf", ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,13 +142,13 @@ class TreeLeaf:
         """Return the tree on the lattice of this pitch."""
         return at_pitch(self.result, pitch)
 
-    def placed(self, factors: Factors) -> "Leaf":
+    def placed(self, factors: Factors) -> "ExpressionLeaf":
         """Return the leaf moved by the factors, outermost first."""
         if self.result.is_empty or self.result.is_full:
             return self
         return _place(self, factors)
 
-    def transformed(self, factors: Factors) -> "Leaf":
+    def transformed(self, factors: Factors) -> "ExpressionLeaf":
         """Return the leaf of the output mesh, moved as a whole: shared vertices stay shared.
 
         Raises
@@ -175,7 +175,7 @@ class TreeLeaf:
     def _is_bounded(self) -> bool:
         return self.result.is_bounded if self.extent is None else self.extent
 
-    def _moved_operands(self, factors: Factors) -> "Leaf":
+    def _moved_operands(self, factors: Factors) -> "ExpressionLeaf":
         if self.record is None:
             raise UnboundedError(
                 "This solid and its complement both reach to infinity, so there is no mesh that"
@@ -205,7 +205,7 @@ class PlaneLeaf:
         with core_errors():
             return Tree.half_space(plane.row, pitch, plane.note)
 
-    def placed(self, factors: Factors) -> "Leaf":
+    def placed(self, factors: Factors) -> "ExpressionLeaf":
         """Return the half-space moved by the factors, outermost first, in exact numbers."""
         plane = self.plane
         for factor in reversed(factors):
@@ -248,7 +248,7 @@ class ConstantLeaf:
         with core_errors():
             return Tree.full(pitch) if self.full else Tree.empty(pitch)
 
-    def placed(self, factors: Factors) -> "Leaf":
+    def placed(self, factors: Factors) -> "ExpressionLeaf":
         """Return the same set."""
         del factors
         return self
@@ -257,15 +257,15 @@ class ConstantLeaf:
 #: What is known without asking the core: True if the solid is bounded, False if its complement is.
 Extent: TypeAlias = bool | None
 
-Leaf: TypeAlias = MeshLeaf | TreeLeaf | PlaneLeaf | ConstantLeaf
+ExpressionLeaf: TypeAlias = MeshLeaf | TreeLeaf | PlaneLeaf | ConstantLeaf
 
 
-def tree_of(leaf: Leaf) -> Tree:
+def tree_of(leaf: ExpressionLeaf) -> Tree:
     """Return the leaf's tree on its own lattice, or on the default one if any will do."""
     return leaf.tree(_common_pitch([leaf]))
 
 
-def _common_pitch(leaves: Sequence[Leaf]) -> int:
+def _common_pitch(leaves: Sequence[ExpressionLeaf]) -> int:
     """Return the finest of the leaves' pitches; planes choose only where nothing else does."""
     own = [leaf.pitch for leaf in leaves if leaf.pitch is not None]
     if own:
@@ -320,7 +320,7 @@ def _moved_output(tree: Tree, factors: Factors) -> MeshLeaf:
     return MeshLeaf(*transformed_arrays(vertices, faces, factors))
 
 
-def _place(leaf: MeshLeaf | TreeLeaf, factors: Factors) -> Leaf:
+def _place(leaf: MeshLeaf | TreeLeaf, factors: Factors) -> ExpressionLeaf:
     """Move a leaf: exactly by the outer factors that allow it, by coordinates for the rest."""
     outer = transform.permuting_run(factors)
     inner = factors[len(outer) :]

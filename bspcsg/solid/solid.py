@@ -26,8 +26,8 @@ from ..mesh.mesh import Mesh
 from ..parameters import optional_pitch, winding_rule
 from .counting import count, counted, uncounted
 from .describe import describe
-from .expression import Node, Placed, complement, evaluate, operation
-from .leaf import ConstantLeaf, Leaf, MeshLeaf, Record, TreeLeaf, tree_of
+from .expression import ExpressionNode, Placed, complement, evaluate, operation
+from .leaf import ConstantLeaf, ExpressionLeaf, MeshLeaf, Record, TreeLeaf, tree_of
 from .measure import Measured, deprecated, residues_of_volume
 from .point_set import PointSet
 from .program import Operator
@@ -99,18 +99,18 @@ class Solid(Measured, PointSet):
         # Errors in a mesh belong to the line that gave it, not to the first query.
         leaf.own_tree()
         leaf.disown()
-        self._set(Node(leaf), ())
+        self._set(ExpressionNode(leaf), ())
         count(self)
 
-    def _set(self, node: Node, factors: Factors) -> None:
+    def _set(self, node: ExpressionNode, factors: Factors) -> None:
         self._node = node
         self._factors = factors
-        self._placed: Leaf | None = None
+        self._placed: ExpressionLeaf | None = None
         self._mesh: Mesh | None = None
         self._reduced: Solid | None = None
 
     @classmethod
-    def _of(cls, node: Node, factors: Factors = ()) -> "Solid":
+    def _of(cls, node: ExpressionNode, factors: Factors = ()) -> "Solid":
         solid = cls.__new__(cls)
         solid._set(node, factors)
         return solid
@@ -167,13 +167,13 @@ class Solid(Measured, PointSet):
     @counted
     def empty(cls) -> "Solid":
         """Return the empty set."""
-        return cls._of(Node(ConstantLeaf(full=False)))
+        return cls._of(ExpressionNode(ConstantLeaf(full=False)))
 
     @classmethod
     @counted
     def full(cls) -> "Solid":
         """Return all of space."""
-        return cls._of(Node(ConstantLeaf(full=True)))
+        return cls._of(ExpressionNode(ConstantLeaf(full=True)))
 
     # Set operations
 
@@ -420,7 +420,7 @@ class Solid(Measured, PointSet):
         """Say what is known without evaluating anything."""
         if self._placed is None:
             return f"Solid({describe(self._node, self._factors, self._mesh)})"
-        return f"Solid({describe(Node(self._placed), (), self._mesh)})"
+        return f"Solid({describe(ExpressionNode(self._placed), (), self._mesh)})"
 
     def _repr_html_(self) -> str | None:
         """Return what a notebook shows: an interactive view, or why there is none."""
@@ -475,14 +475,14 @@ class LastOperation:
     result: Solid
 
 
-def from_node(node: Node, factors: Factors = ()) -> Solid:
+def from_node(node: ExpressionNode, factors: Factors = ()) -> Solid:
     """Return the solid of an expression under a transform."""
     return Solid._of(node, factors)
 
 
-def from_leaf(leaf: Leaf) -> Solid:
+def from_leaf(leaf: ExpressionLeaf) -> Solid:
     """Return the solid of a leaf."""
-    return Solid._of(Node(leaf))
+    return Solid._of(ExpressionNode(leaf))
 
 
 def expression_of(solid: Solid) -> Placed:
@@ -497,7 +497,7 @@ def with_record(last: LastOperation, factors: Factors) -> Solid:
     """
     leaves = tuple(evaluate(operand._node) for operand in last.operands)
     leaf = TreeLeaf(last.result.tree, Record(last.program, leaves))
-    return from_node(Node(leaf), factors)
+    return from_node(ExpressionNode(leaf), factors)
 
 
 def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:
@@ -513,4 +513,4 @@ def _is_reduced(tree: Tree) -> bool:
 
 def _restored(data: bytes, factors: Factors) -> Solid:
     with core_errors():
-        return from_node(Node(TreeLeaf(Tree.load(data))), factors)
+        return from_node(ExpressionNode(TreeLeaf(Tree.load(data))), factors)

@@ -24,7 +24,7 @@ import numpy as np
 from .._types import ProgramLine, SetOp
 from ..errors import BspcsgError, InternalError, invalid_parameter
 from ..mesh.mesh import Mesh
-from ..mesh.pieces import Pieces
+from ..mesh.pieces import MeshPieces
 from ..operations.setops import OPERATIONS
 from ..shapes.primitives import box as box_of
 from ..solid.counting import uncounted
@@ -247,7 +247,7 @@ class _Check:
             verdict = Verdict.ORACLE_FAILED
         return self._report(verdict, reason, ours, theirs, found, (same, rounding))
 
-    def _ruling(self, ours: Mesh, theirs: Mesh, pieces: Pieces, rounding: float) -> Ruling:
+    def _ruling(self, ours: Mesh, theirs: Mesh, pieces: MeshPieces, rounding: float) -> Ruling:
         """Return whom the operands as they came support in the pieces that rounding leaves."""
         disputed = pieces.thicker_than(rounding)[:_MOST_PIECES]
         points = [pieces.points_in(piece) for piece in disputed]

@@ -25,7 +25,7 @@ _BATCH = 1000
 
 
 @dataclass(frozen=True)
-class Comparison:
+class SetComparison:
     """How two solids differ.
 
     Parameters
@@ -54,7 +54,7 @@ class Comparison:
 
 
 @uncounted
-def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> Comparison:
+def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> SetComparison:
     """Compare two solids as sets.
 
     Parameters
@@ -84,13 +84,13 @@ def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> Compari
     facts = Facts.of(meshes[0]), Facts.of(meshes[1])
     difference = (a ^ b).normalized()
     if difference.is_empty:
-        return Comparison(*facts, True, SetDifference(0.0), 0.0)
+        return SetComparison(*facts, True, SetDifference(0.0), 0.0)
     mesh = difference.to_mesh()
     found, _ = measured(difference.volume, mesh)
     if samples == 0 or any(len(one.faces) == 0 for one in (*meshes, mesh)):
-        return Comparison(*facts, False, found)
+        return SetComparison(*facts, False, found)
     *ways, count = hausdorff(*meshes, mesh, samples, seed)
-    return Comparison(*facts, False, found, max(ways), count)
+    return SetComparison(*facts, False, found, max(ways), count)
 
 
 def hausdorff(

@@ -12,7 +12,7 @@ import numpy as np
 from .._types import IndexArray
 from ..errors import InvalidMeshError, LimitError
 from ..mesh.mesh import Mesh
-from ..mesh.pieces import Pieces
+from ..mesh.pieces import MeshPieces
 from ..mesh.weld import welded
 from ..solid.solid import Solid
 
@@ -41,7 +41,7 @@ class SetDifference:
 
 def difference_of(
     a: Mesh, b: Mesh, pitch: int, film: float = 0.0
-) -> tuple[SetDifference, Pieces | None]:
+) -> tuple[SetDifference, MeshPieces | None]:
     """Return the symmetric difference of the sets that two closed meshes bound.
 
     Parameters
@@ -69,11 +69,13 @@ def difference_of(
     return measured(difference.volume, difference.normalized().to_mesh(), film)
 
 
-def measured(volume: float, mesh: Mesh, film: float = 0.0) -> tuple[SetDifference, Pieces | None]:
+def measured(
+    volume: float, mesh: Mesh, film: float = 0.0
+) -> tuple[SetDifference, MeshPieces | None]:
     """Return how much a difference with this volume and boundary is, and its pieces, if any."""
     if len(mesh.faces) == 0 or mesh.area == 0:
         return SetDifference(volume), None
-    pieces = Pieces.of(mesh, film)
+    pieces = MeshPieces.of(mesh, film)
     worst = pieces.thickest
     # The exact volume also counts what rounding to doubles has pressed flat.
     thickness = max(float(pieces.thickness[worst]), 2 * volume / mesh.area)

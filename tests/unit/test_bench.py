@@ -10,7 +10,7 @@ import pytest
 from bspcsg.bench import real, shapes
 from bspcsg.bench.facts import facts_of, mesh_volume
 from bspcsg.bench.runner import judged
-from bspcsg.bench.targets import Faster, Growth, MeanFaster, SteadySteps, Within
+from bspcsg.bench.targets import Faster, GrowthTarget, MeanFaster, SteadySteps, Within
 from bspcsg.bench.worker import Task, perform
 from support.shapes import exact_volume
 
@@ -103,8 +103,8 @@ def test_an_engine_that_was_stopped_gives_a_bound() -> None:
 
 def test_times_and_their_growth() -> None:
     items = [_item(1e-6 * n**1.1, 1.0, triangles=n) for n in (10_000, 40_000, 160_000)]
-    assert Growth(1.05).reached(items).value == pytest.approx(1.1)
-    assert Growth(1.05).reached(items).met is False
+    assert GrowthTarget(1.05).reached(items).value == pytest.approx(1.1)
+    assert GrowthTarget(1.05).reached(items).met is False
     assert Within(1.0).reached(items).met
     chain = _result(1.0, windows={"thousandth": 0.002, "last": 0.005})
     steady = SteadySteps(2).reached([{"engines": {"bspcsg": chain}}])

@@ -8,7 +8,7 @@ import pytest
 import bspcsg as b
 from bspcsg.campaign.cases.case import Case, Operand
 from bspcsg.campaign.cases.meshes import unpacked
-from bspcsg.campaign.judging.evaluation import Settings, evaluate
+from bspcsg.campaign.judging.evaluation import EvaluationSettings, evaluate
 from bspcsg.campaign.record import CaseRecord
 from bspcsg.operations.setops import OPERATIONS
 
@@ -25,10 +25,12 @@ def case_of(operation: str, *operands: Operand) -> Case:
     return Case("0000", "pair", operation, operands)
 
 
-def asked(operation: str, settings: Settings | None = None, keep: bool = False) -> CaseRecord:
+def asked(
+    operation: str, settings: EvaluationSettings | None = None, keep: bool = False
+) -> CaseRecord:
     """Ask about two cubes of side 3 and 2 with one unit cube in common."""
     case = case_of(operation, cube_operand("a", 3), cube_operand("b", 2, 2))
-    return evaluate(case, settings or Settings(), keep)
+    return evaluate(case, settings or EvaluationSettings(), keep)
 
 
 def a_bump_too_many(*solids: "b.Solid") -> "b.Solid":
@@ -39,7 +41,7 @@ def a_bump_too_many(*solids: "b.Solid") -> "b.Solid":
 
 def test_wrong_result_is_a_disagreement(tmp_path: Path, monkeypatch: Settle) -> None:
     monkeypatch.setitem(OPERATIONS, "intersection", a_bump_too_many)
-    settings = Settings(meshes=str(tmp_path / "kept"), relative="kept")
+    settings = EvaluationSettings(meshes=str(tmp_path / "kept"), relative="kept")
     found = asked("intersection", settings)
     assert found["verdict"] == "DISAGREE"
     assert "crossing counts" in found["reason"] or "bspcsg stands alone" in found["reason"]
@@ -91,16 +93,16 @@ def test_open_mesh_and_useless_file_are_refused(tmp_path: Path) -> None:
     mesh = b.cube(1).to_mesh()
     given = {"vertices": mesh.vertices.tolist(), "faces": mesh.faces[1:].tolist()}
     half = Operand("b", None, "half", None, given)
-    found = evaluate(case_of("union", cube_operand("a", 1), half), Settings())
+    found = evaluate(case_of("union", cube_operand("a", 1), half), EvaluationSettings())
     assert found["verdict"] == "refused" and "operand b" in found["reason"]
     missing = Operand("b", str(tmp_path / "none.stl"), "none")
-    found = evaluate(case_of("union", cube_operand("a", 1), missing), Settings())
+    found = evaluate(case_of("union", cube_operand("a", 1), missing), EvaluationSettings())
     assert found["verdict"] == "refused" and "none.stl" in found["reason"]
 
 
 def test_empty_result_agrees() -> None:
     far = case_of("intersection", cube_operand("a", 1), cube_operand("b", 1, 5))
-    found = evaluate(far, Settings(against=("pymeshlab",)))
+    found = evaluate(far, EvaluationSettings(against=("pymeshlab",)))
     assert found["verdict"] == "agree" and found["ours"] is not None
     assert found["ours"]["triangles"] == 0 and found["ours"]["centroid"] is None
     assert found["oracles"][1]["agrees"] is True

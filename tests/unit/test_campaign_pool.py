@@ -6,14 +6,14 @@ from typing import Any
 
 import pytest
 
-from bspcsg.campaign.judging.evaluation import Settings
+from bspcsg.campaign.judging.evaluation import EvaluationSettings
 from bspcsg.campaign.running.child import Child, CrashedError, TimedOutError
 from bspcsg.campaign.running.pool import LocalPool
 from bspcsg.campaign.running.runner import greeting, survey
 from support.cli import put
 from support.shapes import cube
 
-GREETING = greeting(Settings(), None, 1)
+GREETING = greeting(EvaluationSettings(), None, 1)
 
 
 @pytest.fixture

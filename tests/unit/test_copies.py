@@ -42,7 +42,7 @@ def failure(kind: type[b.BspcsgError]) -> Callable[[], b.BspcsgError]:
 
 #: An example of each public class.
 EXAMPLES: dict[type, Callable[[], Any]] = {
-    b.CheckReport: (b.cube(2) - b.cube(1)).check,
+    b.CheckReport: (b.cube(2) - b.cube(1)).validate,
     b.Finding: lambda: b.Finding("code", "note", "A sentence.", (1, 2), 5),
     b.Mesh: SHAPE.to_mesh,
     b.Solid: lambda: SHAPE.rotate(30),

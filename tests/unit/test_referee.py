@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg.mesh.pieces import Pieces
+from bspcsg.mesh.pieces import MeshPieces
 from bspcsg.verify.referee import Ruling, is_inside, settle
 from support.shapes import Arrays, cube, flipped, icosphere, joined, moved
 
@@ -54,7 +54,7 @@ PROGRAM: list[tuple[str, list[int]]] = [("leaf", [0]), ("leaf", [1]), ("or", [0,
 def test_rulings() -> None:
     first, second = b.cube(1).to_mesh(), b.cube(1).translate(3, 0, 0).to_mesh()
     both = (b.cube(1) | b.cube(1).translate(3, 0, 0)).to_mesh()
-    piece = Pieces.of(second)
+    piece = MeshPieces.of(second)
     points = [piece.points_in(piece.thickest)]
     assert settle(PROGRAM, [first, second], both, first, points) is Ruling.OURS
     assert settle(PROGRAM, [first, second], first, both, points) is Ruling.THEIRS
@@ -64,7 +64,7 @@ def test_rulings() -> None:
 
 def test_points_in_thin_pieces() -> None:
     plate = b.box((5, 7, 1e-7)).rotate((10, 20, 30)).to_mesh()
-    pieces = Pieces.of(plate)
+    pieces = MeshPieces.of(plate)
     assert pieces.thickness[pieces.thickest] == pytest.approx(1e-7, rel=1e-3)
     points = pieces.points_in(pieces.thickest)
     assert points and all(is_inside(plate, point) is not False for point in points)
@@ -73,6 +73,6 @@ def test_points_in_thin_pieces() -> None:
 
 def test_a_shell_is_one_piece() -> None:
     shell = (b.cube(10, center=True) - b.cube(9.998, center=True)).to_mesh()
-    pieces = Pieces.of(shell)
+    pieces = MeshPieces.of(shell)
     assert pieces.thicker_than(0) == [pieces.thickest]
     assert pieces.thickness[pieces.thickest] == pytest.approx(0.001, rel=1e-3)

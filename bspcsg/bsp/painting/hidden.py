@@ -9,7 +9,7 @@ from ..trees.fragments import ranges
 from .clip import Polygons, following, owners
 
 #: A part of a segment, from 0 at its start to 1 at its end.
-Part: TypeAlias = tuple[float, float]
+Stretch: TypeAlias = tuple[float, float]
 
 #: Edges are looked at this many pixels to either side of them: one that borders on what is painted
 #: later is seen, one below the seam of two polygons is not.
@@ -98,11 +98,11 @@ def _squares(low: FloatArray, high: FloatArray) -> tuple[IndexArray, IndexArray]
 
 def _covered(
     polygons: Polygons, ends: FloatArray, segment: IndexArray, polygon: IndexArray
-) -> dict[int, list[Part]]:
+) -> dict[int, list[Stretch]]:
     """Return the parts of segments inside convex polygons, by segment."""
     low, high = _inside(polygons, ends, segment, polygon)
     some = high > low
-    found: dict[int, list[Part]] = {}
+    found: dict[int, list[Stretch]] = {}
     rows = zip(segment[some].tolist(), low[some].tolist(), high[some].tolist(), strict=True)
     for row, start, end in rows:
         found.setdefault(row, []).append((start, end))
@@ -149,8 +149,8 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
     return product
 
 
-def _united(parts: list[Part]) -> list[Part]:
-    united: list[Part] = []
+def _united(parts: list[Stretch]) -> list[Stretch]:
+    united: list[Stretch] = []
     for start, end in sorted(parts):
         # Neighbours share a border up to rounding.
         if united and start <= united[-1][1] + 1e-9:
@@ -160,13 +160,13 @@ def _united(parts: list[Part]) -> list[Part]:
     return united
 
 
-def _common(first: list[Part], second: list[Part]) -> list[Part]:
+def _common(first: list[Stretch], second: list[Stretch]) -> list[Stretch]:
     """Return where both of two sorted lists of disjoint parts are."""
     pairs = ((max(a, c), min(b, d)) for a, b in first for c, d in second)
     return [(start, end) for start, end in pairs if start < end]
 
 
-def _gaps(parts: list[Part], shortest: float) -> list[Part]:
+def _gaps(parts: list[Stretch], shortest: float) -> list[Stretch]:
     """Return what sorted disjoint parts leave of a segment, without gaps up to `shortest`."""
     if not parts:
         return [(0.0, 1.0)]

@@ -10,7 +10,7 @@ from ..._types import IndexArray
 from ...errors import core_errors, invalid_parameter
 from ...parameters import at_least, pitch_exponent, seed_number
 from .caster import Hits, hits_of
-from .targets import Facets, facets_from, ray_arrays
+from .targets import RayTargets, facets_from, ray_arrays
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,7 @@ class StabStats:
 class StabTree:
     """What both kinds of trees have in common; make an `AdaptiveTree` or a `StaticTree`."""
 
-    _facets: Facets
+    _facets: RayTargets
     _tree: RayTree
     _threshold: int | None = None
 
@@ -229,7 +229,7 @@ class StaticTree(StabTree):
 
 
 def _regrown(
-    kind: type[StabTree], facets: Facets, pitch: int, threshold: int | None, grown: bytes
+    kind: type[StabTree], facets: RayTargets, pitch: int, threshold: int | None, grown: bytes
 ) -> StabTree:
     tree = kind.__new__(kind)
     tree._facets, tree._threshold = facets, threshold

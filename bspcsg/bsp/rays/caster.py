@@ -10,7 +10,7 @@ from ..._core import RayScene
 from ..._types import FloatArray, IndexArray, SideArray, WindingRule
 from ...errors import core_errors, invalid_parameter
 from ...parameters import pitch_exponent, thread_count, winding_rule
-from .targets import Facets, facets_from, ray_arrays
+from .targets import RayTargets, facets_from, ray_arrays
 
 #: Values of `Hits.kind`.
 MISS, INTERIOR, EDGE, VERTEX = -1, 0, 1, 2
@@ -187,7 +187,7 @@ class RayCaster:
         found = facets_from(facets)
         self._set(found, found.pitch if pitch is None else pitch_exponent(pitch), deferred)
 
-    def _set(self, facets: Facets, pitch: int | None, deferred: bool) -> None:
+    def _set(self, facets: RayTargets, pitch: int | None, deferred: bool) -> None:
         self._facets = facets
         with core_errors():
             self._scene = RayScene(facets.dimension, facets.corners.ravel(), pitch)
@@ -358,13 +358,13 @@ class RayCaster:
         return hits_of(self._facets, columns, self._normals)
 
 
-def _restored(kind: type[RayCaster], facets: Facets, pitch: int) -> RayCaster:
+def _restored(kind: type[RayCaster], facets: RayTargets, pitch: int) -> RayCaster:
     caster = kind.__new__(kind)
     caster._set(facets, pitch, deferred=True)
     return caster
 
 
-def hits_of(facets: Facets, columns: Any, normals: FloatArray | None = None) -> Hits:
+def hits_of(facets: RayTargets, columns: Any, normals: FloatArray | None = None) -> Hits:
     """Return the core's columns as hits of these facets (for the modules of this package)."""
     facet, t, kind, weights, point = columns
     d, missed = facets.dimension, facet < 0

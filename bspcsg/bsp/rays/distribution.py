@@ -13,7 +13,7 @@ import numpy as np
 from ..._types import FloatArray
 from ...errors import InvalidMeshError, invalid_parameter
 from .adaptive import StaticTree
-from .targets import Facets, facets_from, ray_arrays
+from .targets import RayTargets, facets_from, ray_arrays
 
 #: Rays whose scores are added up at a time.
 _CHUNK = 256
@@ -79,7 +79,7 @@ def optimised_tree(
 
 
 def _scores(
-    facets: Facets, origins: Any, directions: Any, weights: Any, density: Density | None
+    facets: RayTargets, origins: Any, directions: Any, weights: Any, density: Density | None
 ) -> FloatArray:
     starts, heads = ray_arrays(origins, directions, facets.dimension)
     omega = _weights(starts, heads, weights, density)

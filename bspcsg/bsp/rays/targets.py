@@ -13,7 +13,7 @@ from ...solid.solid import Solid
 
 
 @dataclass(frozen=True, eq=False)
-class Facets:
+class RayTargets:
     """Facets of one dimension.
 
     Parameters
@@ -61,7 +61,7 @@ class Facets:
         return np.asarray(np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1) / 2)
 
 
-def facets_from(given: Any) -> Facets:
+def facets_from(given: Any) -> RayTargets:
     """Return the facets of an array, a solid, or whatever holds a mesh.
 
     Parameters
@@ -81,31 +81,31 @@ def facets_from(given: Any) -> Facets:
     if isinstance(given, Solid):
         return _boundary_of(given)
     if isinstance(given, (list, np.ndarray)):
-        return Facets(_corner_array(given))
+        return RayTargets(_corner_array(given))
     vertices, faces = interop.own_arrays(*interop.arrays_from(given))
     if faces.size and not (faces.min() >= 0 and faces.max() < len(vertices)):
         bad = np.flatnonzero(((faces < 0) | (faces >= len(vertices))).any(axis=1))
         message = f"Face {bad[0]} names a vertex that does not exist."
         raise InvalidMeshError(message, "index_out_of_range", bad[:10].tolist())
-    return Facets(vertices[faces])
+    return RayTargets(vertices[faces])
 
 
 @uncounted
-def _boundary_of(solid: Solid) -> Facets:
+def _boundary_of(solid: Solid) -> RayTargets:
     """Return the finite boundary of a solid, or that of its complement turned over."""
     reduced = solid.normalized()
     outside = reduced if reduced.is_bounded else (~solid).normalized()
     unbounded = outside is not reduced and outside.is_bounded
     mesh = (outside if unbounded else reduced).to_mesh()
     faces = mesh.faces[:, ::-1] if unbounded else mesh.faces
-    return Facets(mesh.vertices[faces], mesh.source, reduced.pitch, unbounded)
+    return RayTargets(mesh.vertices[faces], mesh.source, reduced.pitch, unbounded)
 
 
 def _corner_array(given: Any) -> FloatArray:
     try:
         array = np.array(given, dtype=np.float64, order="C")
     except (TypeError, ValueError, OverflowError) as error:
-        raise InvalidMeshError("Facets must be an array of numbers.", "shape") from error
+        raise InvalidMeshError("RayTargets must be an array of numbers.", "shape") from error
     if array.ndim == 1:
         return array.reshape(-1, 1, 1)
     if array.ndim == 3 and array.shape[1:] in ((1, 1), (2, 2), (3, 3)):

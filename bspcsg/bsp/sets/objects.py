@@ -17,7 +17,7 @@ from ...mesh import interop
 from ...parameters import at_least, pitch_exponent, seed_number, winding_rule
 from ...solid.point_set import PointSet
 from .boundary import boundary_arrays, chosen_pitch
-from .pieces import BuildPolicy, Hyperplane, SplitCase
+from .pieces import BuildPolicy, NormalAndOffset, SplitCase
 from .rows import hyperplane, hyperplane_row, hyperplane_rows
 from .tree_queries import TreeQueries
 
@@ -75,7 +75,7 @@ class ObjectTree(TreeQueries, PointSet):
         pitch: int | None = None,
         policy: BuildPolicy = "balanced",
         seed: int = 0,
-        cuts: Sequence[Hyperplane] = (),
+        cuts: Sequence[NormalAndOffset] = (),
     ) -> None:
         dimension, rows, faces = boundary_arrays(facets)
         rule, order = winding_rule(winding), seed_number(seed)
@@ -334,12 +334,12 @@ def merge(a: ObjectTree, b: ObjectTree, op: SetOp) -> ObjectTree:
     return a._merged(b, op)
 
 
-def partition_tree(tree: ObjectTree, hyperplane: Hyperplane) -> ObjectTree:
+def partition_tree(tree: ObjectTree, hyperplane: NormalAndOffset) -> ObjectTree:
     """Return the same set with this hyperplane in the root (see `ObjectTree.partitioned`)."""
     return tree.partitioned(*hyperplane)
 
 
-def split_tree(tree: ObjectTree, hyperplane: Hyperplane) -> tuple[ObjectTree, ObjectTree]:
+def split_tree(tree: ObjectTree, hyperplane: NormalAndOffset) -> tuple[ObjectTree, ObjectTree]:
     """Return a tree's parts on the minus and the plus side (see `ObjectTree.split`).
 
     The paper's third argument, the part of the hyperplane inside the root's region, follows from

@@ -16,7 +16,7 @@ SplitCase: TypeAlias = Literal[
 
 #: A hyperplane: its normal, which points to the plus side, and its offset; points x on it have
 #: ``normal . x == offset``. On the line the normal is a number of either sign.
-Hyperplane: TypeAlias = tuple[Any, Scalar]
+NormalAndOffset: TypeAlias = tuple[Any, Scalar]
 
 
 #: Vertices, offsets and owners, as `Pieces` holds them.

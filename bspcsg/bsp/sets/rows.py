@@ -8,7 +8,7 @@ import numpy as np
 from ..._types import FloatArray, Scalar
 from ...errors import invalid_parameter
 from ...geometry import hyperplane as exact
-from .pieces import Hyperplane
+from .pieces import NormalAndOffset
 
 
 def hyperplane(normal: Any, offset: Scalar, dimension: int | None = None) -> exact.Hyperplane:
@@ -29,7 +29,7 @@ def hyperplane_row(normal: Any, offset: Scalar, dimension: int, pitch: int) -> l
     return hyperplane(normal, offset, dimension).on_lattice(pitch).row
 
 
-def hyperplane_rows(cuts: Sequence[Hyperplane], dimension: int, pitch: int) -> list[list[int]]:
+def hyperplane_rows(cuts: Sequence[NormalAndOffset], dimension: int, pitch: int) -> list[list[int]]:
     """Return a row for each hyperplane."""
     return [hyperplane_row(normal, offset, dimension, pitch) for normal, offset in cuts]
 

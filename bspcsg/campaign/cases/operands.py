@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from ..._types import FloatArray
+from ..._types import FloatArray, MeshArrays
 from ...errors import InvalidMeshError, held
 from ...formats.files import read
 from ...solid.solid import Solid
 from .case import Case, Operand
-from .poses import OF_THE_FIRST, Arrays, placed, pose_matrix, shuffled
+from .poses import OF_THE_FIRST, placed, pose_matrix, shuffled
 
 #: Files that a worker keeps: the cases of a pair follow one another.
 _KEPT = 8
@@ -40,7 +40,7 @@ def operands_of(case: Case) -> tuple[list[Solid], list[FloatArray | None]]:
     return solids, rows
 
 
-def _drawn(case: Case, meshes: Sequence[Arrays]) -> tuple[Arrays, FloatArray]:
+def _drawn(case: Case, meshes: Sequence[MeshArrays]) -> tuple[MeshArrays, FloatArray]:
     """Return the second mesh in its drawn pose."""
     pose = held(case.pose, "the pose")
     seed, number = held(case.seed, "the seed"), held(case.number, "the number")
@@ -51,7 +51,7 @@ def _drawn(case: Case, meshes: Sequence[Arrays]) -> tuple[Arrays, FloatArray]:
     return shuffled(moved, seed, number) if pose == "same" else moved, rows
 
 
-def _used(mesh: Arrays) -> FloatArray:
+def _used(mesh: MeshArrays) -> FloatArray:
     """Return the vertices that a face uses."""
     used: FloatArray = mesh[0][np.unique(mesh[1])]
     if len(used) == 0:
@@ -63,7 +63,7 @@ def _given_pose(operand: Operand) -> FloatArray | None:
     return None if operand.pose is None else np.array(operand.pose, dtype=np.float64)
 
 
-def _mesh_of(operand: Operand) -> Arrays:
+def _mesh_of(operand: Operand) -> MeshArrays:
     if operand.file is None:
         given: dict[str, Any] = operand.mesh or {}
         vertices = np.array(given["vertices"], dtype=np.float64).reshape(-1, 3)
@@ -72,13 +72,13 @@ def _mesh_of(operand: Operand) -> Arrays:
 
 
 @lru_cache(maxsize=_KEPT)
-def _read(file: str, sha256: str) -> Arrays:
+def _read(file: str, sha256: str) -> MeshArrays:
     del sha256  # what tells a file from itself after it was changed
     raw = read(file)
     return raw.vertices, raw.faces
 
 
-def _solid(mesh: Arrays, operand: Operand) -> Solid:
+def _solid(mesh: MeshArrays, operand: Operand) -> Solid:
     try:
         return Solid(*mesh)
     except InvalidMeshError as error:

@@ -9,9 +9,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from ..._types import FloatArray, IndexArray
+from ..._types import FloatArray, MeshArrays
 
-Arrays: TypeAlias = tuple[FloatArray, IndexArray]
 Placing: TypeAlias = Callable[[FloatArray, FloatArray, np.random.Generator], FloatArray]
 
 _QUARTER_TURN = np.array([(0.0, -1, 0), (1, 0, 0), (0, 0, 1)])
@@ -34,14 +33,14 @@ def pose_matrix(
     return POSES[name](first, second, np.random.default_rng([seed, number]))
 
 
-def placed(mesh: Arrays, rows: FloatArray) -> Arrays:
+def placed(mesh: MeshArrays, rows: FloatArray) -> MeshArrays:
     """Return a mesh under an affine map; a map that mirrors turns its faces round."""
     vertices = mesh[0] @ rows[:, :3].T + rows[:, 3]
     mirrors = np.linalg.det(rows[:, :3]) < 0
     return vertices, mesh[1][:, ::-1].copy() if mirrors else mesh[1]
 
 
-def shuffled(mesh: Arrays, seed: int, number: int) -> Arrays:
+def shuffled(mesh: MeshArrays, seed: int, number: int) -> MeshArrays:
     """Return a mesh with its faces in another order."""
     rng = np.random.default_rng([seed, number])
     return mesh[0], mesh[1][rng.permutation(len(mesh[1]))]

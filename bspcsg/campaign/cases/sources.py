@@ -22,7 +22,7 @@ _EXAMPLE = '{"cases": [{"operation": "union", "operands": [{"file": "a.stl"}, {"
 
 
 @dataclass(frozen=True)
-class Inputs:
+class CaseInputs:
     """The files that were named.
 
     Parameters
@@ -56,7 +56,7 @@ class Draw:
     number: int | None = None
 
 
-def inputs_in(paths: Sequence[Path]) -> Inputs:
+def inputs_in(paths: Sequence[Path]) -> CaseInputs:
     """Sort what was named by kind; folders are searched.
 
     Raises
@@ -76,7 +76,7 @@ def inputs_in(paths: Sequence[Path]) -> Inputs:
         if not path.is_file():
             raise FormatError(f"{path}: cannot read this file: no such file.", "unreadable")
         _kind_of(path, meshes, scripts, cases).append(path)
-    return Inputs(tuple(meshes), tuple(scripts), tuple(cases))
+    return CaseInputs(tuple(meshes), tuple(scripts), tuple(cases))
 
 
 def _kind_of(path: Path, meshes: list[Path], scripts: list[Path], cases: list[Path]) -> list[Path]:
@@ -89,12 +89,12 @@ def _kind_of(path: Path, meshes: list[Path], scripts: list[Path], cases: list[Pa
     raise FormatError(f"{path}: the name must end in one of {known}.", "unknown_format")
 
 
-def cases_of(inputs: Inputs, operations: Sequence[str], draw: Draw) -> list[Case]:
+def cases_of(inputs: CaseInputs, operations: Sequence[str], draw: Draw) -> list[Case]:
     """Return the cases, in the order in which they are to be asked.
 
     Parameters
     ----------
-    inputs : Inputs
+    inputs : CaseInputs
     operations : sequence of str
         For pairs; files of cases name their own.
     draw : Draw

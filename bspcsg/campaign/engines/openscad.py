@@ -11,7 +11,7 @@ import numpy as np
 from ...errors import BspcsgError
 from ...formats.files import read
 from ...mesh.mesh import Mesh
-from .questions import Answer, NoOpinionError, Question, mesh_of
+from .questions import EngineAnswer, NoOpinionError, Question, mesh_of
 
 #: Significant digits in what openscad writes.
 _DIGITS = 6
@@ -26,7 +26,7 @@ _MOST = 3000
 _PATIENCE = 30
 
 
-def ask_openscad(question: Question) -> Answer:
+def ask_openscad(question: Question) -> EngineAnswer:
     """Return what openscad makes of the operands, as polyhedra with all digits.
 
     Raises
@@ -69,7 +69,7 @@ def _scad_version() -> str:
     return (done.stderr or done.stdout).strip().rpartition(" ")[2]
 
 
-def run_script(path: Path, timeout: float) -> Answer:
+def run_script(path: Path, timeout: float) -> EngineAnswer:
     """Return what openscad makes of a script.
 
     Raises
@@ -84,7 +84,7 @@ def run_script(path: Path, timeout: float) -> Answer:
         # It leaves out what it cannot convert, says so, and ends as if all were well.
         errors = [line.strip() for line in done.stderr.splitlines() if "ERROR" in line]
         mesh = _written(target, done)
-    return Answer(version, mesh, _shift(mesh), errors[0] if errors else "")
+    return EngineAnswer(version, mesh, _shift(mesh), errors[0] if errors else "")
 
 
 def _written(target: Path, done: "subprocess.CompletedProcess[str]") -> Mesh:

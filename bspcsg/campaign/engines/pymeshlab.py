@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from .questions import Answer, NoOpinionError, Question, mesh_of
+from .questions import EngineAnswer, NoOpinionError, Question, mesh_of
 
 _CHILD = Path(__file__).with_name("pymeshlab_child.py")
 _MISSING = 6
 
 
-def ask_pymeshlab(question: Question) -> Answer:
+def ask_pymeshlab(question: Question) -> EngineAnswer:
     """Return what pymeshlab makes of the operands.
 
     Raises
@@ -32,7 +32,7 @@ def ask_pymeshlab(question: Question) -> Answer:
         if "failed" in said:
             raise NoOpinionError(f"it failed: {said['failed']}")
         with np.load(folder / "result.npz", allow_pickle=False) as found:
-            return Answer(said["version"], mesh_of(found["vertices"], found["faces"]))
+            return EngineAnswer(said["version"], mesh_of(found["vertices"], found["faces"]))
 
 
 def _put_operands(folder: Path, question: Question) -> None:

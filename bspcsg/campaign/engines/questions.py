@@ -40,7 +40,7 @@ class Question:
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class EngineAnswer:
     """What an engine found.
 
     Parameters

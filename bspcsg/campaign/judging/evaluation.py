@@ -47,7 +47,7 @@ _SHARE = 0.4
 
 
 @dataclass(frozen=True)
-class Settings:
+class EvaluationSettings:
     """How cases are evaluated.
 
     Parameters
@@ -122,13 +122,13 @@ def blank_record(case: Case, verdict: str, reason: str) -> CaseRecord:
     }
 
 
-def evaluate(case: Case, settings: Settings, keep: bool = False) -> CaseRecord:
+def evaluate(case: Case, settings: EvaluationSettings, keep: bool = False) -> CaseRecord:
     """Return what comes of a case; what the package refuses is an answer too.
 
     Parameters
     ----------
     case : Case
-    settings : Settings
+    settings : EvaluationSettings
     keep : bool
         Keep the meshes even if nothing is interesting about them.
     """
@@ -152,7 +152,7 @@ def evaluate(case: Case, settings: Settings, keep: bool = False) -> CaseRecord:
 class _Evaluation:
     """One case on its way to a record."""
 
-    def __init__(self, case: Case, settings: Settings, clock: _Clock) -> None:
+    def __init__(self, case: Case, settings: EvaluationSettings, clock: _Clock) -> None:
         self._case, self._settings, self._clock = case, settings, clock
         self._is_script = case.operation == SCRIPT
 

@@ -21,7 +21,7 @@ from ...verify.discrepancy import SetDifference, difference_of
 from ...verify.referee import count_agreeing
 from ..engines.openscad import ask_openscad, run_script
 from ..engines.pymeshlab import ask_pymeshlab
-from ..engines.questions import Answer, NoOpinionError, Question
+from ..engines.questions import EngineAnswer, NoOpinionError, Question
 from ..record import OracleRecord
 from .facts import facts_of
 
@@ -69,7 +69,7 @@ def script_opinion(path: Path, ours: Mesh, pitch: int, timeout: float) -> Oracle
     return _recorded("openscad", question, lambda: run_script(path, timeout))
 
 
-def _recorded(engine: str, question: Question, asked: Callable[[], Answer]) -> OracleRecord:
+def _recorded(engine: str, question: Question, asked: Callable[[], EngineAnswer]) -> OracleRecord:
     began = time.perf_counter()
     version = ""
     try:
@@ -99,7 +99,7 @@ def _silent(says: str) -> OracleRecord:
     return {"name": "", "version": "", "agrees": None, "says": says, "facts": None, "seconds": 0.0}
 
 
-def _compared(question: Question, answer: Answer) -> OracleRecord:
+def _compared(question: Question, answer: EngineAnswer) -> OracleRecord:
     mesh = answer.mesh
     bound = same_set_bound(question.pitch, question.ours, mesh) + TOLERANCES * answer.shift
     try:
@@ -122,7 +122,7 @@ def _words(found: SetDifference, bound: float) -> str:
     return f"{words}; rounding explains {bound:.2g}"
 
 
-_ASKED: dict[str, Callable[[Question], Answer]] = {
+_ASKED: dict[str, Callable[[Question], EngineAnswer]] = {
     "pymeshlab": ask_pymeshlab,
     "openscad": ask_openscad,
 }

@@ -13,7 +13,7 @@ from typing import Any, cast
 from ..._core import __version__
 from ...machine import machine
 from ..cases.case import Case
-from ..judging.evaluation import Settings, blank_record
+from ..judging.evaluation import EvaluationSettings, blank_record
 from ..record import SCHEMA, CaseRecord, Journal, RunRecord, is_failure
 from .pool import Answering
 
@@ -21,7 +21,7 @@ _VERSIONED = ("manifold3d", "pymeshlab", "trimesh", "numpy")
 
 
 @dataclass(frozen=True)
-class Plan:
+class CampaignPlan:
     """What is to be run, and how.
 
     Parameters
@@ -49,14 +49,14 @@ class Plan:
         return [case for case in self.cases if case.key not in self.known]
 
 
-def greeting(settings: Settings, memory: int | None, threads: int) -> dict[str, Any]:
+def greeting(settings: EvaluationSettings, memory: int | None, threads: int) -> dict[str, Any]:
     """Return what a worker is told first."""
     told = {"settings": asdict(settings), "memory": memory, "threads": threads}
     return {**told, "folder": os.getcwd()}
 
 
 def run_cases(
-    plan: Plan,
+    plan: CampaignPlan,
     answering: Answering,
     journal: Journal | None,
     notice: Callable[[CaseRecord], None],
@@ -65,7 +65,7 @@ def run_cases(
 
     Parameters
     ----------
-    plan : Plan
+    plan : CampaignPlan
     answering : Answering
     journal : Journal or None
         Where each record goes as it comes.
@@ -84,7 +84,7 @@ def run_cases(
     return [found[case.key] for case in plan.cases if case.key in found]
 
 
-def _records(plan: Plan, answering: Answering) -> Generator[CaseRecord, None, None]:
+def _records(plan: CampaignPlan, answering: Answering) -> Generator[CaseRecord, None, None]:
     cases = plan.open_cases
     chosen = _chosen(len(cases), plan.keep)
     requests = [{"case": case.to_dict(), "keep": n in chosen} for n, case in enumerate(cases)]

@@ -17,7 +17,7 @@ from ...machine import limit_memory
 from ...parameters import set_threads
 from ...solid.solid import Solid
 from ..cases.case import Case
-from ..judging.evaluation import Settings, blank_record, evaluate
+from ..judging.evaluation import EvaluationSettings, blank_record, evaluate
 
 
 def main() -> None:
@@ -30,7 +30,9 @@ def main() -> None:
     os.chdir(started["folder"])
     limit_memory(started["memory"])
     set_threads(started["threads"])
-    settings = Settings(**{**started["settings"], "against": tuple(started["settings"]["against"])})
+    settings = EvaluationSettings(
+        **{**started["settings"], "against": tuple(started["settings"]["against"])}
+    )
     answers.write("ready\n")
     answers.flush()
     threading.Thread(target=_listen, args=(lines,), daemon=True).start()
@@ -48,7 +50,7 @@ def _listen(lines: "queue.SimpleQueue[str]") -> None:
     os._exit(0)
 
 
-def _answered(request: dict[str, Any], settings: Settings) -> Any:
+def _answered(request: dict[str, Any], settings: EvaluationSettings) -> Any:
     if "survey" in request:
         return _surveyed(request["survey"])
     case = Case.from_dict(request["case"])

@@ -12,7 +12,7 @@ from ..output import Output, grouped
 from ..tables import table_text
 
 if TYPE_CHECKING:
-    from ...verify.comparison import Comparison
+    from ...verify.comparison import SetComparison
 
 _EPILOG = """\b
 Example:
@@ -68,14 +68,14 @@ def compare(a: Path, b: Path, tol: float, samples: int, seed: int, **given: Any)
     return output.DONE if same else output.FOUND
 
 
-def _within(found: "Comparison", tolerance: float) -> bool:
+def _within(found: "SetComparison", tolerance: float) -> bool:
     """Whether the surfaces are no farther apart than that, as far as samples tell."""
     return found.hausdorff is not None and max(found.hausdorff, found.difference.thickness) <= (
         tolerance
     )
 
 
-def _text(found: "Comparison", a: str, b: str, same: bool) -> str:
+def _text(found: "SetComparison", a: str, b: str, same: bool) -> str:
     rows = [
         ("triangles", grouped(found.a.triangles), grouped(found.b.triangles)),
         ("volume", f"{found.a.volume:.12g}", f"{found.b.volume:.12g}"),
@@ -87,7 +87,7 @@ def _text(found: "Comparison", a: str, b: str, same: bool) -> str:
     return "\n".join([table, *_differences(found, same)])
 
 
-def _differences(found: "Comparison", same: bool) -> list[str]:
+def _differences(found: "SetComparison", same: bool) -> list[str]:
     if found.equal:
         return ["The sets are equal, exactly."]
     part = found.difference

@@ -28,7 +28,7 @@ from ..tables import table_text
 
 if TYPE_CHECKING:
     from ...campaign.cases.case import Case
-    from ...campaign.cases.sources import Inputs
+    from ...campaign.cases.sources import CaseInputs
     from ...campaign.record import CaseRecord, RunRecord
     from ...campaign.running.pool import Answering
 
@@ -208,11 +208,11 @@ class _Validation:
         return LocalPool(jobs, told)
 
     def _case_settings(self) -> Any:
-        from ...campaign.judging.evaluation import Settings
+        from ...campaign.judging.evaluation import EvaluationSettings
 
         results, keep = self._settings["results"], self._settings["keep"]
         folder = None if results is None or keep == "none" else results.with_suffix(".meshes")
-        return Settings(
+        return EvaluationSettings(
             against=self._settings["against"],
             samples=self._settings["samples"],
             timeout=self._settings["timeout"],
@@ -242,7 +242,7 @@ class _Validation:
             cases = cases[number - 1 :: count]
         return cases
 
-    def _usable(self, inputs: "Inputs", answering: "Answering") -> "Inputs":
+    def _usable(self, inputs: "CaseInputs", answering: "Answering") -> "CaseInputs":
         """Leave out meshes that are too large, and for random pairs those that are no solids."""
         from dataclasses import replace
 
@@ -278,11 +278,11 @@ class _Validation:
         self, cases: "Sequence[Case]", answering: "Answering", header: "RunRecord"
     ) -> "list[CaseRecord]":
         from ...campaign.record import Journal, read_results
-        from ...campaign.running.runner import Plan, run_cases
+        from ...campaign.running.runner import CampaignPlan, run_cases
 
         results, resume = self._settings["results"], self._settings["resume"]
         known = read_results([results]).cases if resume and results.exists() else {}
-        plan = Plan(
+        plan = CampaignPlan(
             cases,
             known,
             self._settings["timeout"],

@@ -101,7 +101,7 @@ class Evaluation:
         return ([], regions) if flat else (solids, [])
 
 
-Maker: TypeAlias = Callable[[Node, list[Geometry], Evaluation], Geometry]
+NodeMaker: TypeAlias = Callable[[Node, list[Geometry], Evaluation], Geometry]
 
 
 @dataclass(frozen=True)
@@ -116,17 +116,17 @@ class Recipe:
         Whether its result has corners that its children do not have.
     """
 
-    maker: Maker
+    maker: NodeMaker
     makes_corners: bool
 
 
 RECIPES: dict[str, Recipe] = {}
 
 
-def node(*names: str, makes_corners: bool = True) -> Callable[[Maker], Maker]:
+def node(*names: str, makes_corners: bool = True) -> Callable[[NodeMaker], NodeMaker]:
     """Register a function as the maker of the nodes with these names."""
 
-    def register(maker: Maker) -> Maker:
+    def register(maker: NodeMaker) -> NodeMaker:
         for name in names:
             RECIPES[name] = Recipe(maker, makes_corners)
         return maker

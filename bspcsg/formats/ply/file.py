@@ -8,7 +8,7 @@ import numpy as np
 from ..._types import FloatArray
 from ...errors import Finding, FormatError
 from ...mesh.mesh import Mesh
-from ..raw import Polygons, RawMesh, says_empty_set
+from ..raw import IndexPolygons, RawMesh, says_empty_set
 from ..source import Source, quoted, whole
 from .header import Element, Header, Order, read_header
 from .lists import read_mixed, read_uniform
@@ -22,7 +22,7 @@ class _Found:
     """What the elements read so far hold."""
 
     vertices: FloatArray | None = None
-    polygons: Polygons | None = None
+    polygons: IndexPolygons | None = None
     polygon_error: Callable[[int, str, str], FormatError] | None = None
 
 
@@ -127,7 +127,7 @@ def _text_faces(
     found: _Found,
 ) -> None:
     lists = [_text_list(source, number, words, element, column) for number, words in block]
-    found.polygons = Polygons.from_lists(lists)
+    found.polygons = IndexPolygons.from_lists(lists)
     found.polygon_error = lambda k, message, code: source.error(message, code, line=block[k][0])
 
 

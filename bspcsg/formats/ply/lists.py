@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import FormatError
-from ..raw import Polygons
+from ..raw import IndexPolygons
 from ..source import Source
 from .header import Element, Order, Property
 
@@ -20,14 +20,14 @@ class ListBlock:
     ----------
     end : int
         Where its data end.
-    polygons : Polygons or None
+    polygons : IndexPolygons or None
         The lists of the wanted column, if one was wanted.
     error_at : callable
         Makes the error for record k.
     """
 
     end: int
-    polygons: Polygons | None
+    polygons: IndexPolygons | None
     error_at: Callable[[int, str, str], FormatError]
 
 
@@ -54,7 +54,7 @@ def read_uniform(
 
     polygons = None
     if column is not None:
-        polygons = Polygons.from_rows(records[f"p{column}"])
+        polygons = IndexPolygons.from_rows(records[f"p{column}"])
     return ListBlock(end, polygons, error_at)
 
 
@@ -111,7 +111,7 @@ def read_mixed(
                 raise _cut_off(source, element, number, length)
             if position == column:
                 lists.append(step.values(data, first, length))
-    polygons = None if column is None else Polygons.from_lists(lists)
+    polygons = None if column is None else IndexPolygons.from_lists(lists)
     return ListBlock(at, polygons, lambda k, text, code: source.error(text, code, offset=starts[k]))
 
 

@@ -18,7 +18,7 @@ from ..._types import FloatArray
 from ...errors import Finding, FormatError
 from ..raw import RawMesh, empty_set, joined
 from ..source import Source
-from .part import MILLIMETRES, Part, PartReader, Placed, parse_xml
+from .part import MILLIMETRES, ModelPart, PartReader, PlacedObject, parse_xml
 from .write import NOTHING
 
 #: How many objects a build may place, and how deep components may lie in one another.
@@ -85,7 +85,7 @@ def read(source: Source) -> RawMesh:
 
 
 #: The part that names an object, the object, and the transforms around it, innermost first.
-_Waiting: TypeAlias = tuple[str, Placed, tuple[FloatArray, ...]]
+_Waiting: TypeAlias = tuple[str, PlacedObject, tuple[FloatArray, ...]]
 
 
 class _Package:
@@ -94,7 +94,7 @@ class _Package:
     def __init__(self, source: Source, archive: zipfile.ZipFile) -> None:
         self._source = source
         self._archive = archive
-        self._parts: dict[str, Part] = {}
+        self._parts: dict[str, ModelPart] = {}
         self._entries = {entry.filename.lower(): entry for entry in archive.infolist()}
         self._left = min(max(_MOST_GROWTH * len(source.data), _SMALL), _LARGEST)
 
@@ -149,7 +149,7 @@ class _Package:
         return sum(bool(one.triangles or one.beams) for one in objects)
 
     def _placed(
-        self, root: str, items: list[Placed]
+        self, root: str, items: list[PlacedObject]
     ) -> list[tuple[str, str, tuple[FloatArray, ...]]]:
         """Return part, object and transforms (innermost first) of all meshes, in file order."""
         found: list[tuple[str, str, tuple[FloatArray, ...]]] = []
@@ -171,7 +171,7 @@ class _Package:
             waiting.extend((path, inner, transforms) for inner in reversed(known.components))
         return found
 
-    def _part(self, name: str) -> Part:
+    def _part(self, name: str) -> ModelPart:
         if name not in self._parts:
             reader = PartReader(*self._opened(name), _part_name)
             self._parts[name] = reader.read()
@@ -207,7 +207,7 @@ def _part_name(target: str) -> str:
     return posixpath.normpath(target).lstrip("/")
 
 
-def _moved(part: Part, item: str, transforms: tuple[FloatArray, ...]) -> RawMesh:
+def _moved(part: ModelPart, item: str, transforms: tuple[FloatArray, ...]) -> RawMesh:
     """Return the mesh of an object under transforms; a mirrored one is turned right side out."""
     vertices, faces = part.objects[item].arrays()
     for matrix in transforms:
@@ -223,7 +223,7 @@ def _moved(part: Part, item: str, transforms: tuple[FloatArray, ...]) -> RawMesh
     return RawMesh(vertices, faces, part.objects[item].name)
 
 
-def _unit_finding(part: Part) -> tuple[Finding, ...]:
+def _unit_finding(part: ModelPart) -> tuple[Finding, ...]:
     if part.unit == "millimeter":
         return ()
     message = (

@@ -35,7 +35,7 @@ Start: TypeAlias = Callable[[str, dict[str, str]], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Placed:
+class PlacedObject:
     """An object under a transform, here or in another part.
 
     Parameters
@@ -60,7 +60,7 @@ class Object:
     kind: str
     vertices: list[tuple[float, float, float]] = field(default_factory=list)
     triangles: list[tuple[int, int, int]] = field(default_factory=list)
-    components: list[Placed] = field(default_factory=list)
+    components: list[PlacedObject] = field(default_factory=list)
     beams: int = 0
     name: str = ""
 
@@ -71,12 +71,12 @@ class Object:
 
 
 @dataclass(eq=False)
-class Part:
+class ModelPart:
     """What one model part holds."""
 
     unit: str = "millimeter"
     objects: dict[str, Object] = field(default_factory=dict)
-    items: list[Placed] = field(default_factory=list)
+    items: list[PlacedObject] = field(default_factory=list)
     dropped: set[str] = field(default_factory=set)
 
 
@@ -143,10 +143,10 @@ class PartReader:
         self._source = source
         self._chunks = chunks
         self._part_name = part_name
-        self._part = Part()
+        self._part = ModelPart()
         self._current = Object("none")
 
-    def read(self) -> Part:
+    def read(self) -> ModelPart:
         """Return the part.
 
         Raises
@@ -185,14 +185,14 @@ class PartReader:
             self._part.dropped.add(_DROPPED[tag])
         self._current.beams += tag == "beam"
 
-    def _placed(self, attributes: dict[str, str]) -> Placed:
+    def _placed(self, attributes: dict[str, str]) -> PlacedObject:
         path = attributes.get("path", "")
         words = attributes.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0").split()
         matrix = np.array([float(word) for word in words])
         if len(matrix) != 12 or not np.isfinite(matrix).all():
             raise ValueError("a transform needs 12 finite numbers")
         name = self._part_name(path) if path else ""
-        return Placed(name, attributes["objectid"], matrix.reshape(4, 3))
+        return PlacedObject(name, attributes["objectid"], matrix.reshape(4, 3))
 
     def _bad_index(self, number: str, index: int, count: int) -> FormatError:
         message = f"object {number} names vertex {index}, but has {count} vertices."
