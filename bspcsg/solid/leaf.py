@@ -37,7 +37,7 @@ class MeshLeaf:
     ----------
     vertices : (n, 3) float64, in model units
     faces : (m, 3) int64, indices of `vertices`
-        Both may belong to somebody else until `disown` is called.
+        Both may belong to somebody else until `let_go` is called.
     pitch : int or None
         Exponent of the lattice step; None lets the core choose it from the size.
     trusted : bool
@@ -63,7 +63,7 @@ class MeshLeaf:
     @property
     def pitch(self) -> int | None:
         """Exponent of the lattice step."""
-        return self.own_tree().pitch
+        return self.grown().pitch
 
     @property
     def extent(self) -> "Extent":
@@ -72,16 +72,16 @@ class MeshLeaf:
 
     def arrays(self) -> tuple[FloatArray, IndexArray]:
         """Return vertices and faces as they were given."""
-        return self.own_tree().given_arrays() if self._arrays is None else self._arrays
+        return self.grown().given_arrays() if self._arrays is None else self._arrays
 
-    def disown(self) -> None:
+    def let_go(self) -> None:
         """Let go of the given arrays: the tree holds them, or else they are copied."""
         if self._arrays is not None:
             vertices, faces = self._arrays
-            held = self.own_tree().holds_given
+            held = self.grown().holds_given
             self._arrays = None if held else (vertices.copy(), faces.copy())
 
-    def own_tree(self) -> Tree:
+    def grown(self) -> Tree:
         """Return the tree on the leaf's own lattice, made on first use."""
         if self._tree is None:
             self._tree = self._grow()
@@ -89,7 +89,7 @@ class MeshLeaf:
 
     def tree(self, pitch: int) -> Tree:
         """Return the tree on the lattice of this pitch."""
-        return at_pitch(self.own_tree(), pitch)
+        return at_pitch(self.grown(), pitch)
 
     def placed(self, factors: Factors) -> "ExpressionLeaf":
         """Return the leaf moved by the factors, outermost first."""

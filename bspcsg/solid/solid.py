@@ -97,8 +97,8 @@ class Solid(Measured, PointSet):
         arrays = interop.mesh_arrays(vertices, faces)
         leaf = MeshLeaf(*arrays, pitch=chosen, trusted=trusted, winding=rule)
         # Errors in a mesh belong to the line that gave it, not to the first query.
-        leaf.own_tree()
-        leaf.disown()
+        leaf.grown()
+        leaf.let_go()
         self._set(ExpressionNode(leaf), ())
         count(self)
 

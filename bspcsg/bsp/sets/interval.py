@@ -13,10 +13,9 @@ from ...geometry.transform import whole_steps
 from ...parameters import number
 from .boundary import chosen_pitch, interval_rows
 from .objects import ObjectTree
-from .settle import Settled
 
 
-class Intervals(Settled, ObjectTree):
+class Intervals(ObjectTree):
     """A union of intervals on the line.
 
     Ends belong to the boundary, so that intervals that touch are one and single points are nothing
@@ -48,6 +47,7 @@ class Intervals(Settled, ObjectTree):
     __slots__ = ()
 
     _DIMENSION = 1
+    _CONDENSES = True
 
     def __init__(self, pairs: Any = (), *, pitch: int | None = None) -> None:
         ends = _pairs(pairs)

@@ -21,6 +21,10 @@ from .pieces import BuildPolicy, NormalAndOffset, SplitCase
 from .rows import hyperplane, hyperplane_row, hyperplane_rows
 from .tree_queries import TreeQueries
 
+#: A result is built anew when its tree is this many times larger than its operands' were.
+_GROWTH = 4
+_SMALL = 64
+
 
 class ObjectTree(TreeQueries, PointSet):
     """A set of points as a partition tree; an immutable value.
@@ -62,10 +66,13 @@ class ObjectTree(TreeQueries, PointSet):
     (Fraction(4, 1), Fraction(1, 1), Fraction(2, 1))
     """
 
-    __slots__ = ("_settled_size",)
+    __slots__ = ("_built_size",)
 
     #: The dimension of all sets of a class, if they have one.
     _DIMENSION: ClassVar[int | None] = None
+
+    #: Whether results are built anew from their boundary once merging has let them grow too far.
+    _CONDENSES: ClassVar[bool] = False
 
     def __init__(
         self,
@@ -96,7 +103,7 @@ class ObjectTree(TreeQueries, PointSet):
 
     def _set(self, tree: CoreTree) -> None:
         self._tree = tree
-        self._settled_size = 0
+        self._built_size = 0
 
     @classmethod
     def _of(cls, tree: CoreTree) -> Self:
@@ -189,7 +196,20 @@ class ObjectTree(TreeQueries, PointSet):
             return refused  # type: ignore[no-any-return]
         a, b = self._aligned(other)
         with core_errors():
-            return self._of(a.merge(b, op))
+            merged = self._of(a.merge(b, op))
+        return self._kept_small(merged, other) if self._CONDENSES else merged
+
+    def _kept_small(self, merged: Self, other: "ObjectTree") -> Self:
+        """Return a result, or the same set as a smaller tree.
+
+        Each doubling is paid for once, so that a chain of n operations stays near-linear in what it
+        makes.
+        """
+        base = max(self._built_nodes(), other._built_nodes())
+        if merged.stats()["nodes"] <= _GROWTH * base + _SMALL:
+            merged._built_size = base
+            return merged
+        return merged.condensed()
 
     def _aligned(self, other: "ObjectTree") -> tuple[CoreTree, CoreTree]:
         """Return both trees on the finer lattice."""
@@ -203,9 +223,9 @@ class ObjectTree(TreeQueries, PointSet):
         pitch = min(pitches, default=self.pitch)
         return self._refined(pitch), other._refined(pitch)
 
-    def _settled_nodes(self) -> int:
+    def _built_nodes(self) -> int:
         """Return how many nodes the tree had when it was last built from a boundary."""
-        return self._settled_size or self.stats()["nodes"]
+        return self._built_size or self.stats()["nodes"]
 
     def _refined(self, pitch: int) -> CoreTree:
         if pitch == self.pitch:

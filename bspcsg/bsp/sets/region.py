@@ -21,10 +21,9 @@ from ...solid.solid import Solid
 from .boundary import chosen_pitch, segment_rows
 from .loops import closed_loops, loop_segments, moved_points
 from .plane_queries import PlaneQueries, vector2
-from .settle import Settled
 
 
-class Region(PlaneQueries, Settled):
+class Region(PlaneQueries):
     """A polygonal set of the plane.
 
     Inside is where the winding number of the outlines satisfies the rule; outlines may cross, touch
@@ -62,6 +61,8 @@ class Region(PlaneQueries, Settled):
     """
 
     __slots__ = ()
+
+    _CONDENSES = True
 
     def __init__(
         self, outlines: Any = (), *, winding: WindingRule = "positive", pitch: int | None = None
