@@ -156,12 +156,11 @@ impl Expression {
     /// The expression that the line `top` would be with only some of its arguments.
     fn of(&self, arguments: &[u32], top: usize) -> Self {
         let mut terms = self.terms[..top].to_vec();
-        let last = match arguments {
-            [line] => *line,
-            _ => {
-                terms.push(self.terms[top].with(arguments.to_vec()));
-                top as u32
-            }
+        let last = if let [line] = arguments {
+            *line
+        } else {
+            terms.push(self.terms[top].with(arguments.to_vec()));
+            top as u32
         };
         terms.truncate(last as usize + 1);
         Self {

@@ -37,9 +37,12 @@ pub const STUCK: usize = 2048;
 /// down to `LEAF` at most three times in vain.
 const RETRY: usize = 8;
 
-/// So many operands in one place are evaluated in groups: what is left of a group's boundaries is
-/// less than all of them, and all of them cross each other.
+/// As few operands as this can be evaluated in groups, where no kernel takes all of them.
 pub const GROUPED: usize = 3;
+
+/// So many operands in one place are evaluated in groups even before a kernel is asked: what is left
+/// of a group's boundaries is less than all of them, and all of them cross each other.
+const MANY: usize = 16;
 
 /// Parts of a cell that tell whether several operands have elements there are about this small.
 const SAMPLE: usize = 16;
@@ -102,8 +105,13 @@ impl Round {
         self.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
     }
 
-    /// Whether many operands are in one place: a round of halvings left nearly all of them in the
-    /// cell, or most of the boxes around their boundaries overlap.
+    /// Whether so many operands are in one place that no kernel should be asked.
+    pub fn is_overcrowded(&self, cell: &Cell, states: &States) -> bool {
+        states.len() >= MANY && self.is_crowded(cell, states)
+    }
+
+    /// Whether operands are in one place: a round of halvings left nearly all of them in the cell,
+    /// or most of the boxes around their boundaries overlap.
     pub fn is_crowded(&self, cell: &Cell, states: &States) -> bool {
         states.len() >= GROUPED && (self.crowded || most_overlap(cell, states))
     }
@@ -126,12 +134,13 @@ impl Round {
 /// Whether two of three pairs of operands have overlapping boxes, as far as a sample shows.
 fn most_overlap(cell: &Cell, states: &States) -> bool {
     let some = states.iter().step_by(states.len().div_ceil(MOST));
-    let boxes: Vec<[Lattice; 2]> = some.map(|s| s.1.bounds(cell)).collect();
+    let count = some.len();
+    let boxes: Vec<[Lattice; 2]> = some.filter_map(|s| s.1.bounds(cell)).collect();
     let overlap =
         |[a, b]: &[Lattice; 2], [c, d]: &[Lattice; 2]| (0..3).all(|i| a[i] <= d[i] && c[i] <= b[i]);
     let partners = |i: usize| boxes[..i].iter().filter(|b| overlap(b, &boxes[i])).count();
     let overlaps: usize = (1..boxes.len()).map(partners).sum();
-    overlaps * 3 > boxes.len() * (boxes.len() - 1)
+    overlaps * 3 > count * (count - 1)
 }
 
 /// About what share of the elements lies in small parts of the cell where several operands have

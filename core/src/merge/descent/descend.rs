@@ -203,8 +203,8 @@ impl<'a> Descent<'a> {
                 return Ok(branch);
             }
         }
-        if self.share && round.is_crowded(&cell, &states) {
-            if let Some(parted) = expression.parted() {
+        if round.is_overcrowded(&cell, &states) {
+            if let Some(parted) = self.parted(&expression) {
                 return self.grouped(cell, parted, states, 0);
             }
         }
@@ -215,9 +215,19 @@ impl<'a> Descent<'a> {
                 return Ok(branch);
             }
             round.refused(total);
+            if round.is_crowded(&cell, &states) {
+                if let Some(parted) = self.parted(&expression) {
+                    return self.grouped(cell, parted, states, 0);
+                }
+            }
         }
         let round = round.next(total, states.len());
         self.halves(cell, cut, &expression, states, round, total)
+    }
+
+    /// The expression as one of two others, if results of operations need not be reduced.
+    fn parted(&self, expression: &Expression) -> Option<Parted> {
+        expression.parted().filter(|_| self.share)
     }
 
     /// The result in a cell from those of two groups of operands.
@@ -231,8 +241,8 @@ impl<'a> Descent<'a> {
         let [left, right] = halves;
         let (left, right) = both(
             total >= TASK,
-            || self.group(cell, left, first, depth),
-            || self.group(cell, right, second, depth),
+            || self.group(cell, &left, first, depth),
+            || self.group(cell, &right, second, depth),
         );
         let mut states: States = vec![
             (ours[0], State::Tree(left?)),
@@ -246,7 +256,7 @@ impl<'a> Descent<'a> {
     fn group(
         &self,
         cell: Cell,
-        expression: Expression,
+        expression: &Expression,
         states: States,
         depth: u32,
     ) -> Result<Branch> {

@@ -83,12 +83,13 @@ impl State {
         }
     }
 
-    /// A box around its boundary in the cell.
-    pub fn bounds(&self, cell: &Cell) -> [Lattice; 2] {
+    /// A box around its boundary in the cell; `None` if that is in a smaller cell.
+    pub fn bounds(&self, cell: &Cell) -> Option<[Lattice; 2]> {
         match self {
-            Self::List(list) => list.bounds(),
-            Self::Tree(branch) => [*branch.cell.low(), branch.cell.high()],
-            Self::Constant(_) | Self::Bins(_) => [*cell.low(), cell.high()],
+            Self::List(list) => Some(list.bounds()),
+            Self::Tree(branch) if branch.cell != *cell => None,
+            Self::Tree(_) | Self::Bins(_) => Some([*cell.low(), cell.high()]),
+            Self::Constant(_) => None,
         }
     }
 
