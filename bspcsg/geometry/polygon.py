@@ -9,6 +9,7 @@ import numpy as np
 
 from .._types import FloatArray, IndexArray
 from ..errors import invalid_parameter
+from .arrays import doubles
 
 #: The share of the products of coordinates that rounding cannot reach in their sum: each has three
 #: roundings and the sum one for each doubling of their number, 2**-53 each.
@@ -167,10 +168,7 @@ def _bare_contours(polygon: Any) -> list[FloatArray]:
 
 
 def _cleaned(contour: Any) -> FloatArray:
-    try:
-        points = np.asarray(contour, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise invalid_parameter("A contour must be a list of (x, y) points.") from error
+    points = doubles(contour, invalid_parameter("A contour must be a list of (x, y) points."))
     if points.ndim != 2 or points.shape[1] != 2:
         raise invalid_parameter(f"A contour must have shape (n, 2), not {points.shape}.")
     if not np.isfinite(points).all():

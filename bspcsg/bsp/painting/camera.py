@@ -8,6 +8,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...errors import invalid_parameter
+from ...geometry.arrays import doubles
 from ...parameters import number, positive, shown
 
 #: Views by name; z is up. "front" looks along +y, with x to the right; "iso" looks from the right
@@ -233,10 +234,7 @@ class Camera:
 
 def vector(value: Any, name: str) -> FloatArray:
     """Return three finite numbers, or raise an error that names the parameter."""
-    try:
-        result = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise invalid_parameter(f"The {name} must be three numbers.") from error
+    result = doubles(value, invalid_parameter(f"The {name} must be three numbers."))
     if result.shape != (3,) or not np.isfinite(result).all():
         raise invalid_parameter(f"The {name} must be three finite numbers, not {shown(value)}.")
     return result
@@ -278,10 +276,7 @@ def _tangent(field_of_view: float) -> float:
 
 def _spread(points: Any) -> FloatArray:
     """Return points, the corners of a box, or those of the unit cube if there is nothing."""
-    try:
-        wanted = np.asarray(points, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise invalid_parameter("The points to fit must be an (n, 3) array.") from error
+    wanted = doubles(points, invalid_parameter("The points to fit must be an (n, 3) array."))
     if not wanted.size:
         wanted = np.array([[-0.5] * 3, [0.5] * 3])
     if wanted.ndim != 2 or wanted.shape[1] != 3 or not np.isfinite(wanted).all():

@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from ..._types import FloatArray
 from ...errors import invalid_parameter
+from ...geometry.arrays import doubles
 from ...parameters import shown
 
 #: Red, green, blue (and cover) from 0 to 255.
@@ -47,10 +48,7 @@ def colours(values: Any, count: int, name: str = "colours") -> ColourArray:
         return np.tile(colour(values, name), (count, 1))
     if np.ndim(values) == 1 and len(values) and isinstance(values[0], str):
         return _each(values, count, name)
-    try:
-        given = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise invalid_parameter(f"The {name} must be numbers from 0 to 1.") from error
+    given = doubles(values, invalid_parameter(f"The {name} must be numbers from 0 to 1."))
     if given.shape != (count, 3):
         raise invalid_parameter(f"The {name} must have shape ({count}, 3), not {given.shape}.")
     if not ((given >= 0) & (given <= 1)).all():

@@ -7,6 +7,7 @@ import numpy as np
 from ..._core import suited_pitch
 from ..._types import FloatArray, IndexArray
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
+from ...geometry.arrays import doubles
 from ...parameters import pitch_exponent
 
 
@@ -65,10 +66,7 @@ def _suited_pitch(points: FloatArray) -> int:
 
 
 def _numbers(facets: Any) -> FloatArray:
-    try:
-        array = np.asarray(facets, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InvalidMeshError("A boundary must be an array of numbers.", "shape") from error
+    array = doubles(facets, InvalidMeshError("A boundary must be an array of numbers.", "shape"))
     if array.size == 0:
         raise invalid_parameter("A boundary without facets is no set; use the empty set instead.")
     return array

@@ -8,6 +8,7 @@ import numpy as np
 from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Scalar
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
+from ...geometry.arrays import doubles
 from ...geometry.hyperplane import Hyperplane
 from ...geometry.transform import whole_steps
 from ...parameters import number
@@ -151,10 +152,7 @@ class Intervals(ObjectTree):
 
 
 def _pairs(pairs: Any) -> FloatArray:
-    try:
-        array = np.asarray(pairs, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise invalid_parameter("Intervals are pairs of numbers.") from error
+    array = doubles(pairs, invalid_parameter("Intervals are pairs of numbers."))
     if array.size == 0:
         return np.zeros((0, 2))
     if array.ndim == 1 and len(array) == 2:

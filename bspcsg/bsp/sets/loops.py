@@ -9,6 +9,7 @@ import numpy as np
 from ..._types import FloatArray
 from ...errors import InvalidMeshError, invalid_parameter
 from ...geometry import polygon, transform
+from ...geometry.arrays import doubles
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,12 +84,9 @@ def moved_points(factor: transform.Factor, points: FloatArray) -> FloatArray:
 
 
 def _loop(points: Any, place: int) -> FloatArray:
-    try:
-        array = np.asarray(points, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InvalidMeshError(
-            f"Outline {place} is no list of points.", "shape", [place]
-        ) from error
+    array = doubles(
+        points, InvalidMeshError(f"Outline {place} is no list of points.", "shape", [place])
+    )
     if array.ndim != 2 or array.shape[1] != 2 or len(array) < 3:
         raise InvalidMeshError(
             f"Outline {place} must have shape (n, 2) with n of at least 3, not {array.shape}.",

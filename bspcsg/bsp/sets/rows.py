@@ -8,6 +8,7 @@ import numpy as np
 from ..._types import FloatArray, Scalar
 from ...errors import invalid_parameter
 from ...geometry import hyperplane as exact
+from ...geometry.arrays import doubles
 from .pieces import NormalAndOffset
 
 
@@ -36,10 +37,7 @@ def hyperplane_rows(cuts: Sequence[NormalAndOffset], dimension: int, pitch: int)
 
 def point_rows(points: Any, dimension: int) -> FloatArray:
     """Return points as (k, dimension) float64."""
-    try:
-        array = np.ascontiguousarray(points, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise invalid_parameter("Points must be numbers.") from error
+    array = np.ascontiguousarray(doubles(points, invalid_parameter("Points must be numbers.")))
     if dimension == 1 and array.ndim == 1:
         array = array[:, None]
     if array.size == 0:

@@ -9,6 +9,7 @@ import numpy as np
 from ..._core import FragmentTree
 from ..._types import FloatArray, IndexArray, SideArray
 from ...errors import core_errors, invalid_parameter
+from ...geometry.arrays import doubles
 from .fragments import Fragments, ranges
 from .node import Leaf, Node, Visitor
 
@@ -70,10 +71,8 @@ class Ordered(ABC):
             raise invalid_parameter("Give either an eye or a direction.")
         at_infinity = eye is None
         name = "direction" if at_infinity else "eye"
-        try:
-            given = np.atleast_1d(np.asarray(direction if at_infinity else eye, dtype=np.float64))
-        except (TypeError, ValueError) as error:
-            raise invalid_parameter(f"The {name} must be {self.core.dimension} numbers.") from error
+        refusal = invalid_parameter(f"The {name} must be {self.core.dimension} numbers.")
+        given = np.atleast_1d(doubles(direction if at_infinity else eye, refusal))
         if given.shape != (self.core.dimension,):
             message = f"The {name} must have {self.core.dimension} coordinates, not {given.shape}."
             raise invalid_parameter(message)

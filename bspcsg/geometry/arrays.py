@@ -1,0 +1,23 @@
+"""Arrays of doubles out of whatever callers hand in."""
+
+from typing import Any
+
+import numpy as np
+
+from .._types import FloatArray
+from ..errors import BspcsgError
+
+
+def doubles(values: Any, refusal: BspcsgError) -> FloatArray:
+    """Return values as an array of doubles, of any shape.
+
+    Parameters
+    ----------
+    values : array_like
+    refusal : BspcsgError
+        What is raised if they are no numbers.
+    """
+    try:
+        return np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise refusal from error
