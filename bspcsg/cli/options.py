@@ -130,7 +130,11 @@ ALLOW_EMPTY = click.option(
 )
 
 CHECK = click.option(
-    "--check/--no-check", default=True, help="Compare the result with manifold3d's (default)."
+    "--validate/--no-validate",
+    "--check/--no-check",
+    "check",
+    default=True,
+    help="Compare the result with manifold3d's (default).",
 )
 
 TIMEOUT = click.option(

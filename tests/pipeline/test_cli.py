@@ -59,10 +59,11 @@ def test_json_of_volumes_with_thousands_of_digits(folder: Path, capsys: Capture)
     assert found["volume_exact"] is None and found["volume"] > 4
 
 
-def test_no_check(folder: Path, capsys: Capture) -> None:
-    code, out, _ = ran(capsys, "union", "a.off", "c.stl", "-o", "x.ply", "--no-check")
+@pytest.mark.parametrize("flag", ["--no-validate", "--no-check"])
+def test_results_are_not_validated_on_demand(folder: Path, capsys: Capture, flag: str) -> None:
+    code, out, _ = ran(capsys, "union", "a.off", "c.stl", "-o", "x.ply", flag)
     assert code == 0 and "check" not in out
-    code, out, _ = ran(capsys, "union", "a.off", "c.stl", "-o", "x.ply", "--no-check", "--json")
+    code, out, _ = ran(capsys, "union", "a.off", "c.stl", "-o", "x.ply", flag, "--json")
     assert json.loads(out)["check"] is None
 
 
