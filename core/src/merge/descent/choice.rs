@@ -111,9 +111,9 @@ impl Round {
     }
 
     /// Whether operands are in one place: a round of halvings left nearly all of them in the cell,
-    /// or most of the boxes around their boundaries overlap.
+    /// or many of the boxes around their boundaries overlap.
     pub fn is_crowded(&self, cell: &Cell, states: &States) -> bool {
-        states.len() >= GROUPED && (self.crowded || most_overlap(cell, states))
+        states.len() >= GROUPED && (self.crowded || many_overlap(cell, states))
     }
 
     /// Whether a cell of so many elements is for the kernel for general position.
@@ -131,16 +131,15 @@ impl Round {
     }
 }
 
-/// Whether two of three pairs of operands have overlapping boxes, as far as a sample shows.
-fn most_overlap(cell: &Cell, states: &States) -> bool {
+/// Whether one of three pairs of operands has overlapping boxes, as far as a sample shows.
+fn many_overlap(cell: &Cell, states: &States) -> bool {
     let some = states.iter().step_by(states.len().div_ceil(MOST));
-    let count = some.len();
-    let boxes: Vec<[Lattice; 2]> = some.filter_map(|s| s.1.bounds(cell)).collect();
+    let boxes: Vec<[Lattice; 2]> = some.map(|s| s.1.bounds(cell)).collect();
     let overlap =
         |[a, b]: &[Lattice; 2], [c, d]: &[Lattice; 2]| (0..3).all(|i| a[i] <= d[i] && c[i] <= b[i]);
     let partners = |i: usize| boxes[..i].iter().filter(|b| overlap(b, &boxes[i])).count();
     let overlaps: usize = (1..boxes.len()).map(partners).sum();
-    overlaps * 3 > count * (count - 1)
+    overlaps * 6 > boxes.len() * (boxes.len() - 1)
 }
 
 /// About what share of the elements lies in small parts of the cell where several operands have

@@ -83,13 +83,12 @@ impl State {
         }
     }
 
-    /// A box around its boundary in the cell; `None` if that is in a smaller cell.
-    pub fn bounds(&self, cell: &Cell) -> Option<[Lattice; 2]> {
+    /// A box around its boundary in the cell.
+    pub fn bounds(&self, cell: &Cell) -> [Lattice; 2] {
         match self {
-            Self::List(list) => Some(list.bounds()),
-            Self::Tree(branch) if branch.cell != *cell => None,
-            Self::Tree(_) | Self::Bins(_) => Some([*cell.low(), cell.high()]),
-            Self::Constant(_) => None,
+            Self::List(list) => list.bounds(),
+            Self::Tree(branch) => bounds_below(branch),
+            Self::Bins(_) | Self::Constant(_) => [*cell.low(), cell.high()],
         }
     }
 
@@ -203,6 +202,26 @@ impl State {
             Self::List(list) => Branch::of_node(cell, list.close(negate, sources)),
         }
     }
+}
+
+/// A box around the boundary of a branch: that of a few faces, or its cell.
+fn bounds_below(branch: &Branch) -> [Lattice; 2] {
+    let whole = [*branch.cell.low(), branch.cell.high()];
+    let Node::Deferred(leaf) = &*branch.node else {
+        return whole;
+    };
+    if leaf.len() > FEW || !leaf.parts.is_empty() {
+        return whole;
+    }
+    let boxes = leaf.groups.iter().flat_map(|group| {
+        let face_box = |face: &u32| group.source.face_box(*face);
+        group.faces.iter().map(face_box)
+    });
+    let joined = boxes.reduce(|(low, high), (l, h)| {
+        let low = [0, 1, 2].map(|i| low[i].min(l[i]));
+        (low, [0, 1, 2].map(|i| high[i].max(h[i])))
+    });
+    joined.map_or(whole, <[Lattice; 2]>::from)
 }
 
 /// A branch of the cell at hand; a deferred leaf becomes bins or a list.
