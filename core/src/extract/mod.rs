@@ -9,5 +9,6 @@ mod failure;
 pub mod joining;
 pub mod mesh;
 pub mod rounding;
+pub mod simplify;
 pub mod triangulate;
 pub mod vertices;

@@ -69,6 +69,13 @@ impl Source {
         }
     }
 
+    /// The source with more that was noticed about it.
+    #[must_use]
+    pub fn noting(mut self, findings: Vec<Finding>) -> Self {
+        self.findings.extend(findings);
+        self
+    }
+
     /// A number that tells sources apart.
     pub fn id(&self) -> u64 {
         self.id

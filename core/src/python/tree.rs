@@ -16,6 +16,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::extract::boundary::collect::has_no_boundary;
 use crate::extract::mesh::Mesh;
 use crate::extract::rounding::round;
+use crate::extract::simplify::result::simplified;
 use crate::interrupt::poll;
 use crate::merge::descent::descend::Counters;
 use crate::merge::evaluate::{evaluate, explained, normalize, settled};
@@ -244,6 +245,14 @@ impl Tree {
             normalize(&self.solid, rule)
         })?;
         Ok(Self::of(solid))
+    }
+
+    /// The solid of the mesh without short edges and slivers; None if none can be removed.
+    #[pyo3(signature = (tolerance, threads=0))]
+    fn simplified(&self, py: Python<'_>, tolerance: f64, threads: usize) -> PyResult<Option<Self>> {
+        let work = || simplified(&self.solid, tolerance);
+        let solid = self.run(py, "simplified", threads, self.size(), work)?;
+        Ok(solid.map(Self::of))
     }
 
     /// Whether the elements are the reduced boundary; None if nobody has looked.

@@ -1,0 +1,152 @@
+//! What there is to do in a round, and which of it can be done at the same time.
+
+use super::edit::{Act, Edit, Limits, MOST_AROUND};
+use super::sizes::{height, lengths};
+use super::surface::Surface;
+use crate::interrupt::poll;
+use crate::mesh::tasks::each_chunk;
+
+/// Something to do, after the length or the height it is about.
+type Wanted = (f64, Act);
+
+impl Surface<'_> {
+    /// What there is to do where vertices are awake: collapses before flips, the smallest first.
+    pub fn acts(&self, awake: &[bool], tolerance: f64) -> Vec<Act> {
+        let of = |first: usize, triangles: &[[u32; 3]]| {
+            let some = (first as u32..).zip(triangles);
+            let near = some.filter(|(_, t)| t.iter().any(|v| awake[*v as usize]));
+            let all = near.flat_map(|(t, _)| self.acts_at(t, tolerance));
+            all.collect::<Vec<Wanted>>()
+        };
+        let mut all = each_chunk(self.triangles, of).concat();
+        all.sort_unstable_by(|a, b| {
+            let kinds = is_flip(&a.1).cmp(&is_flip(&b.1));
+            kinds.then(a.0.total_cmp(&b.0)).then(a.1.cmp(&b.1))
+        });
+        all.dedup();
+        all.into_iter().map(|(_, act)| act).collect()
+    }
+
+    /// The short edges of a triangle, and its longest one if it is a sliver.
+    fn acts_at(&self, t: u32, tolerance: f64) -> Vec<Wanted> {
+        let corners = self.corners(t);
+        let lengths = lengths(&corners);
+        let numbers = self.triangles[t as usize];
+        let edge = |i: usize| [numbers[i], numbers[(i + 1) % 3]];
+        let short = (0..3).filter(|i| lengths[*i] <= tolerance);
+        let mut all: Vec<Wanted> = short
+            .map(|i| {
+                let [a, b] = edge(i);
+                (lengths[i], Act::Collapse([a.min(b), a.max(b)]))
+            })
+            .collect();
+        let height = height(&corners);
+        if height <= tolerance && lengths.iter().any(|l| *l > tolerance) {
+            let longest = (1..3).fold(0, |m, i| if lengths[i] > lengths[m] { i } else { m });
+            all.extend(self.flip_of(edge(longest)).map(|act| (height, act)));
+        }
+        all
+    }
+
+    fn flip_of(&self, [a, b]: [u32; 2]) -> Option<Act> {
+        let apex = |from: u32, to: u32| {
+            let corners = &self.triangles[self.left_of(from, to)? as usize];
+            corners.iter().copied().find(|v| *v != from && *v != to)
+        };
+        Some(Act::Flip([a, b, apex(a, b)?, apex(b, a)?]))
+    }
+}
+
+/// What is done in a round.
+pub struct Chosen {
+    /// Changes of which none has to know of another.
+    pub edits: Vec<Edit>,
+    /// What may be possible once these are made.
+    pub waiting: Vec<Act>,
+}
+
+/// Chooses what to do, in order, as much as fits beside each other.
+///
+/// Flips, which come last, wait until no edge can be collapsed: that needs less of the tolerance.
+pub fn chosen(limits: &Limits, wanted: &[Act], is_refused: impl Fn(&Act) -> bool) -> Chosen {
+    let mut locks = vec![Lock::default(); limits.surface.vertices.len()];
+    let mut chosen = Chosen {
+        edits: Vec::new(),
+        waiting: Vec::new(),
+    };
+    let flips = wanted.partition_point(|act| !is_flip(act));
+    for (k, act) in wanted.iter().enumerate() {
+        poll();
+        let is_early = k >= flips && chosen.has_collapse();
+        if is_early || is_locked(limits.surface, &locks, act) {
+            chosen.waiting.push(*act);
+        } else if let Some(edit) = limits.edit(*act, &is_refused) {
+            lock(limits.surface, &mut locks, &edit.act);
+            chosen.edits.push(edit);
+        }
+    }
+    chosen
+}
+
+impl Chosen {
+    fn has_collapse(&self) -> bool {
+        self.edits.first().is_some_and(|edit| !is_flip(&edit.act))
+    }
+}
+
+fn is_flip(act: &Act) -> bool {
+    matches!(act, Act::Flip(_))
+}
+
+/// What changes that were chosen do to a vertex.
+#[derive(Clone, Copy, Default)]
+struct Lock {
+    /// It goes, or something comes to it.
+    ends: bool,
+    /// It is a neighbour of one that goes.
+    beside: bool,
+    /// It is a corner of triangles whose edge is flipped.
+    turns: bool,
+}
+
+/// Whether something has to wait.
+///
+/// A collapse reads the neighbours of both ends and the triangles around the one that goes; a flip
+/// reads its two triangles, whether their apexes are joined, and what came to its corners. Neither
+/// may change for another's sake.
+fn is_locked(surface: &Surface, locks: &[Lock], act: &Act) -> bool {
+    let at = |v: &u32| locks[*v as usize];
+    match act {
+        Act::Collapse(ends) => {
+            let taken = |v: &u32| at(v).ends || at(v).beside || at(v).turns;
+            let may_go = ends
+                .iter()
+                .filter(|v| surface.star(**v).len() <= MOST_AROUND);
+            ends.iter().any(taken)
+                || may_go
+                    .flat_map(|v| surface.neighbours(*v))
+                    .any(|v| at(&v).ends)
+        }
+        Act::Flip(corners) => {
+            corners.iter().any(|v| at(v).ends) || corners[..3].iter().any(|v| at(v).turns)
+        }
+    }
+}
+
+fn lock(surface: &Surface, locks: &mut [Lock], act: &Act) {
+    match act {
+        Act::Collapse(ends) => {
+            for v in ends {
+                locks[*v as usize].ends = true;
+            }
+            for v in surface.neighbours(ends[0]) {
+                locks[v as usize].beside = true;
+            }
+        }
+        Act::Flip(corners) => {
+            for v in corners {
+                locks[*v as usize].turns = true;
+            }
+        }
+    }
+}

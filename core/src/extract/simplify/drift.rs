@@ -1,0 +1,161 @@
+//! How far the old surface lies from the new one, at most.
+//!
+//! There is a map from the old surface onto the new one that is affine on each triangle: a collapse
+//! takes the vertex, and with it the triangles around, to where the other end of the edge is. So each
+//! old vertex goes to a new one, every point goes no farther than the farthest corner of its
+//! triangle, and as the map is onto, the same holds from the new surface to the old one.
+//!
+//! A flip divides the long edge of a sliver first, next to the third corner, and then collapses the
+//! point in the edge onto that corner. The point becomes a vertex of the old surface, too; where it
+//! lies there is known as well as the ends of the edge are, and that is its slack.
+
+use super::sizes::distance_above;
+use crate::geometry::doubles::Point;
+
+/// What has come to each vertex.
+pub struct Drift {
+    witnesses: Vec<Witness>,
+    /// For each vertex how far the old surface that came to it may be.
+    bounds: Vec<f64>,
+}
+
+/// A point of the old surface that goes to a vertex. Those of one vertex form a ring, in which the
+/// vertex itself has its own number.
+struct Witness {
+    place: Point,
+    /// How far from the place it may lie.
+    slack: f64,
+    next: u32,
+}
+
+/// What comes to a vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Coming {
+    /// All that came to another vertex.
+    Vertex(u32),
+    /// A point of an edge, by its place and slack.
+    Point(Point, f64),
+}
+
+impl Drift {
+    /// Nothing has moved.
+    pub fn new(vertices: &[Point]) -> Self {
+        let alone = |(v, place): (u32, &Point)| Witness {
+            place: *place,
+            slack: 0.0,
+            next: v,
+        };
+        Self {
+            witnesses: (0..).zip(vertices).map(alone).collect(),
+            bounds: vec![0.0; vertices.len()],
+        }
+    }
+
+    /// How far what came to a vertex may be from it.
+    pub fn at(&self, v: u32) -> f64 {
+        self.bounds[v as usize]
+    }
+
+    /// How far what has come to this vertex may be from it once more comes; `None` beyond a limit.
+    pub fn with(&self, (to, place): (u32, &Point), coming: Coming, limit: f64) -> Option<f64> {
+        let far = match coming {
+            Coming::Vertex(v) => self.farthest(v, place, limit)?,
+            Coming::Point(p, slack) => above(distance_above(&p, place), slack),
+        };
+        (far <= limit).then(|| far.max(self.at(to)))
+    }
+
+    /// How far what came to a vertex is from a place; `None` beyond a limit.
+    fn farthest(&self, v: u32, place: &Point, limit: f64) -> Option<f64> {
+        let mut farthest = 0.0f64;
+        let mut at = v;
+        loop {
+            let witness = &self.witnesses[at as usize];
+            farthest = farthest.max(above(distance_above(&witness.place, place), witness.slack));
+            at = witness.next;
+            if farthest > limit {
+                return None;
+            }
+            if at == v {
+                return Some(farthest);
+            }
+        }
+    }
+
+    /// Has something come to a vertex, which may then be so far from it.
+    pub fn follow(&mut self, to: u32, coming: Coming, bound: f64) {
+        let to = to as usize;
+        let from = match coming {
+            Coming::Vertex(v) => v as usize,
+            Coming::Point(place, slack) => {
+                let next = self.witnesses.len() as u32;
+                self.witnesses.push(Witness { place, slack, next });
+                next as usize
+            }
+        };
+        let next = self.witnesses[from].next;
+        self.witnesses[from].next = std::mem::replace(&mut self.witnesses[to].next, next);
+        self.bounds[to] = bound;
+    }
+
+    /// How far any point may be from the other surface.
+    pub fn bound(&self) -> f64 {
+        self.bounds.iter().fold(0.0, |m, b| m.max(*b))
+    }
+}
+
+/// A sum, rounded up.
+fn above(x: f64, y: f64) -> f64 {
+    if y == 0.0 {
+        x
+    } else {
+        (x + y).next_up()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ROW: [Point; 4] = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [3.0, 0.0, 0.0],
+        [3.0, 4.0, 0.0],
+    ];
+
+    fn near(found: Option<f64>, expected: f64) -> bool {
+        found.is_some_and(|f| f >= expected && f < expected * (1.0 + 1e-14))
+    }
+
+    #[test]
+    fn the_farthest_that_came_counts() {
+        let mut drift = Drift::new(&ROW);
+        assert!(near(drift.with((1, &ROW[1]), Coming::Vertex(0), 9.0), 1.0));
+        drift.follow(1, Coming::Vertex(0), 1.0);
+        // Not the sum of the ways, 1 + 2, but where the first vertex came from.
+        assert!(near(drift.with((2, &ROW[2]), Coming::Vertex(1), 9.0), 3.0));
+        drift.follow(2, Coming::Vertex(1), 3.0);
+        assert!(near(drift.with((3, &ROW[3]), Coming::Vertex(2), 9.0), 5.0));
+        assert_eq!(drift.with((3, &ROW[3]), Coming::Vertex(2), 4.9), None);
+    }
+
+    #[test]
+    fn what_came_before_stays() {
+        let mut drift = Drift::new(&ROW);
+        drift.follow(2, Coming::Vertex(3), 4.0);
+        assert!(near(drift.with((2, &ROW[2]), Coming::Vertex(1), 9.0), 4.0));
+        drift.follow(2, Coming::Vertex(1), 4.0);
+        assert!(drift.bound().to_bits() == 4.0f64.to_bits());
+        assert!(near(drift.with((0, &ROW[0]), Coming::Vertex(2), 9.0), 5.0));
+    }
+
+    #[test]
+    fn points_of_edges_bring_their_slack() {
+        let mut drift = Drift::new(&ROW);
+        let middle = Coming::Point([2.0, 0.0, 0.0], 0.5);
+        assert!(near(drift.with((1, &ROW[1]), middle, 9.0), 1.5));
+        drift.follow(1, middle, 1.5);
+        assert!(near(drift.with((0, &ROW[0]), Coming::Vertex(1), 9.0), 2.5));
+    }
+}

@@ -1,0 +1,262 @@
+//! What can be done about a short edge or a sliver, and whether it may.
+
+use super::drift::{Coming, Drift};
+use super::sizes::{dot, height, less, normal, rounding_of, swept};
+use super::surface::{place_of, Surface};
+use crate::geometry::doubles::{is_flat, Triangle};
+
+/// A vertex of more triangles stays: looking at each edge of a hub costs as much as the hub has.
+pub const MOST_AROUND: usize = 64;
+
+/// Triangles lower than this part of the tolerance are not made, unless one was as low before: lower
+/// than what corners that gather leave behind, they would not go away by more of that.
+const LEAST_HEIGHT: f64 = 0.25;
+
+/// Something to do, by its vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Act {
+    /// An edge becomes one of its ends.
+    Collapse([u32; 2]),
+    /// An edge a → b with the triangles a b c and b a d becomes the edge c d.
+    Flip([u32; 4]),
+}
+
+/// A change that keeps the surface closed, with one fan at each vertex, and near.
+#[derive(Clone, Debug)]
+pub struct Edit {
+    /// What is done.
+    pub act: Act,
+    /// The triangles, with what becomes of them; those that vanish have one corner three times.
+    pub changes: Vec<(u32, [u32; 3])>,
+    /// The vertex to which a part of the surface comes.
+    pub target: u32,
+    /// What comes to it.
+    pub coming: Coming,
+    /// How far the old surface may then be from it.
+    pub bound: f64,
+    /// Six times the volume between the old and the new surface.
+    swept: f64,
+}
+
+impl Act {
+    /// Its vertices.
+    pub fn corners(&self) -> impl Iterator<Item = u32> + '_ {
+        match self {
+            Self::Collapse(ends) => ends.iter().copied(),
+            Self::Flip(corners) => corners.iter().copied(),
+        }
+    }
+}
+
+impl Edit {
+    /// The corners of the triangles that are left.
+    pub fn corners(&self) -> impl Iterator<Item = u32> + '_ {
+        let left = self.changes.iter().map(|c| c.1).filter(|c| c[0] != c[1]);
+        left.flatten()
+    }
+
+    /// The vertex that goes, if one does.
+    pub fn going(&self) -> Option<u32> {
+        match self.act {
+            Act::Collapse([from, _]) => Some(from),
+            Act::Flip(_) => None,
+        }
+    }
+
+    /// The tetrahedra between the surface as it was and as it will be.
+    pub fn bodies(&self) -> Vec<[u32; 4]> {
+        let left = self.changes.iter().map(|c| c.1).filter(|c| c[0] != c[1]);
+        match self.act {
+            Act::Collapse([from, _]) => left.map(|[p, q, r]| [from, p, q, r]).collect(),
+            Act::Flip(corners) => vec![corners],
+        }
+    }
+}
+
+/// What limits changes.
+pub struct Limits<'a> {
+    /// The surface as it is.
+    pub surface: &'a Surface<'a>,
+    /// How far it has come.
+    pub drift: &'a Drift,
+    /// How far it may.
+    pub tolerance: f64,
+}
+
+impl Limits<'_> {
+    /// The change for something to do; `None` if it may not be done.
+    pub fn edit(&self, act: Act, is_refused: impl Fn(&Act) -> bool) -> Option<Edit> {
+        match act {
+            Act::Collapse([a, b]) => {
+                let ways = [[a, b], [b, a]].map(Act::Collapse);
+                let open = ways.into_iter().filter(|way| !is_refused(way));
+                let edits = open.filter_map(|way| self.collapse(way));
+                let cost = |e: &Edit| (e.swept, e.bound);
+                edits.reduce(|e, f| if cost(&f) < cost(&e) { f } else { e })
+            }
+            Act::Flip(corners) => self.flip(corners),
+        }
+    }
+
+    /// A vertex goes to the other end of an edge.
+    fn collapse(&self, act: Act) -> Option<Edit> {
+        let Act::Collapse([from, to]) = act else {
+            return None;
+        };
+        if self.surface.star(from).len() > MOST_AROUND || !self.may_be_joined(from, to) {
+            return None;
+        }
+        let (place, coming) = (self.surface.place(to), Coming::Vertex(from));
+        let bound = self.drift.with((to, place), coming, self.tolerance)?;
+        let mut edit = Edit {
+            act,
+            changes: Vec::new(),
+            target: to,
+            coming,
+            bound,
+            swept: 0.0,
+        };
+        let mut heights = [f64::INFINITY; 2];
+        for &t in self.surface.star(from) {
+            let old = self.surface.triangles[t as usize];
+            let new = old.map(|v| if v == from { to } else { v });
+            let corners = self.surface.corners(t);
+            heights[0] = heights[0].min(height(&corners));
+            if old.contains(&to) {
+                edit.changes.push((t, [to; 3]));
+                continue;
+            }
+            let moved = self.surface.places(&new);
+            if !self.is_fit(&corners, &moved) {
+                return None;
+            }
+            heights[1] = heights[1].min(height(&moved));
+            let at = place_of(from, &old);
+            let edge = [&corners[(at + 1) % 3], &corners[(at + 2) % 3]];
+            edit.swept += swept(&corners[at], place, edge);
+            edit.changes.push((t, new));
+        }
+        (heights[1] >= heights[0].min(LEAST_HEIGHT * self.tolerance)).then_some(edit)
+    }
+
+    /// The link condition: two vertices that are ends of an edge have no other neighbours in common
+    /// than the third corners of the two triangles there, and more than these.
+    fn may_be_joined(&self, from: u32, to: u32) -> bool {
+        let surface = self.surface;
+        let others = surface.neighbours(from).filter(|v| *v != to);
+        let common = others.filter(|v| surface.are_joined(*v, to)).take(3);
+        let is_tetrahedron = surface.star(from).len() == 3 && surface.star(to).len() == 3;
+        !is_tetrahedron && common.count() == 2
+    }
+
+    /// Whether a triangle may become another: it has area and does not turn over. A sliver may turn,
+    /// for it has no side to speak of.
+    fn is_fit(&self, old: &Triangle, new: &Triangle) -> bool {
+        let turns = || dot(&normal(old), &normal(new)) <= 0.0;
+        !is_flat(new) && (height(old) <= self.tolerance || !turns())
+    }
+
+    /// The other diagonal of two triangles, one of them a sliver.
+    fn flip(&self, [a, b, c, d]: [u32; 4]) -> Option<Edit> {
+        let surface = self.surface;
+        if c == d || surface.are_joined(c, d) {
+            return None;
+        }
+        let (sliver, mate) = (surface.left_of(a, b)?, surface.left_of(b, a)?);
+        let coming = self.beside([a, b, c])?;
+        let bound = self
+            .drift
+            .with((c, surface.place(c)), coming, self.tolerance)?;
+        let (old, made) = (surface.corners(mate), [[a, d, c], [d, b, c]]);
+        let new = made.map(|t| surface.places(&t));
+        let least = |triangles: [&Triangle; 2]| height(triangles[0]).min(height(triangles[1]));
+        let better = least([&new[0], &new[1]]) > least([&surface.corners(sliver), &old]);
+        (better && new.iter().all(|t| self.is_fit(&old, t))).then(|| Edit {
+            act: Act::Flip([a, b, c, d]),
+            changes: vec![(sliver, made[0]), (mate, made[1])],
+            target: c,
+            coming,
+            bound,
+            swept: 0.0,
+        })
+    }
+
+    /// The point of the edge a → b next to c, if it is inside.
+    fn beside(&self, [a, b, c]: [u32; 3]) -> Option<Coming> {
+        let [p, q, r] = [a, b, c].map(|v| self.surface.place(v));
+        let along = less(q, p);
+        let share = dot(&less(r, p), &along) / dot(&along, &along);
+        let place = [0, 1, 2].map(|i| p[i] + share * along[i]);
+        let slack = self.drift.at(a).max(self.drift.at(b)) + rounding_of(p, q);
+        (share > 0.0 && share < 1.0).then_some(Coming::Point(place, slack))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points in general position.
+    const PLACES: [[f64; 3]; 6] = [
+        [0.9, 0.0, 0.5],
+        [0.1, 0.0, -2.0],
+        [1.0, 0.0, 0.1],
+        [0.0, 1.0, 0.0],
+        [-1.0, 0.1, 0.0],
+        [0.0, -1.0, -0.1],
+    ];
+
+    fn collapse(triangles: &[[u32; 3]], ends: [u32; 2]) -> Option<Edit> {
+        let surface = Surface::of(&PLACES, triangles);
+        let limits = Limits {
+            surface: &surface,
+            drift: &Drift::new(&PLACES),
+            tolerance: 9.0,
+        };
+        limits.may_be_joined(ends[0], ends[1]).then_some(())?;
+        limits.edit(Act::Collapse(ends), |_| false)
+    }
+
+    #[test]
+    fn an_octahedron_loses_an_edge() {
+        let around = [[2, 3], [3, 4], [4, 5], [5, 2]];
+        let triangles = around.map(|[a, b]| [[0, a, b], [1, b, a]]).concat();
+        let edit = collapse(&triangles, [0, 2]).expect("the link condition holds");
+        assert_eq!(edit.changes.len(), 4);
+        assert_eq!(edit.corners().count(), 6);
+        assert_eq!(edit.bodies().len(), 2);
+    }
+
+    #[test]
+    fn a_tetrahedron_stays() {
+        let triangles = [[0, 2, 3], [0, 3, 4], [0, 4, 2], [2, 4, 3]];
+        assert!(collapse(&triangles, [0, 2]).is_none());
+    }
+
+    #[test]
+    fn ends_with_a_third_neighbour_in_common_stay_apart() {
+        let triangles = [[2, 3], [3, 4], [4, 2]]
+            .map(|[a, b]| [[0, a, b], [1, b, a]])
+            .concat();
+        assert!(collapse(&triangles, [2, 3]).is_none());
+        assert!(collapse(&triangles, [0, 2]).is_some());
+    }
+
+    #[test]
+    fn only_slivers_may_turn() {
+        let (surface, drift) = (Surface::of(&PLACES, &[]), Drift::new(&PLACES));
+        let is_fit = |tolerance: f64, old: &Triangle, new: &Triangle| {
+            let limits = Limits {
+                surface: &surface,
+                drift: &drift,
+                tolerance,
+            };
+            limits.is_fit(old, new)
+        };
+        let [a, b, c] = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        assert!(is_fit(0.5, &[a, b, c], &[a, b, [0.0, 0.1, 0.0]]));
+        assert!(!is_fit(0.5, &[a, b, c], &[a, b, [0.0, -0.1, 0.0]]));
+        assert!(is_fit(2.0, &[a, b, c], &[a, b, [0.0, -0.1, 0.0]]));
+        assert!(!is_fit(2.0, &[a, b, c], &[a, b, [1.0, 0.0, 0.0]]));
+    }
+}

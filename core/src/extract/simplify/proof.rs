@@ -1,0 +1,123 @@
+//! Whether changes leave the surface free of crossings, exactly; those that do not are taken back.
+
+use rustc_hash::FxHashMap as HashMap;
+
+use super::edit::{Act, Edit};
+use super::shells::Shells;
+use crate::extract::rounding::company::Faces;
+use crate::extract::rounding::crossings::faults;
+use crate::geometry::doubles::Point;
+
+/// Makes changes; returns those that stay, and what had to be taken back.
+///
+/// Only triangles as they have become can cross something; what is as it was is not judged. Each turn
+/// of the loop takes back at least one change.
+pub fn proved(
+    vertices: &[Point],
+    triangles: &mut [[u32; 3]],
+    edits: Vec<Edit>,
+    shells: &Shells,
+) -> (Vec<Edit>, Vec<Act>) {
+    let swept = shells.are_swept(vertices, triangles, &edits);
+    let certain = |(edit, swept): (&Edit, bool)| !swept && shells.is_certain(edit);
+    let stays = edits.iter().zip(swept).map(certain).collect();
+    let mut trial = Trial::of(vertices, triangles, &edits, stays);
+    let mut suspects = trial.apply();
+    while !suspects.is_empty() {
+        let mut guilty = trial.crossing(&suspects);
+        if guilty.is_empty() {
+            guilty = trial.turning(shells);
+        }
+        suspects = trial.take_back(&guilty);
+    }
+    let stays = trial.stays;
+    let (kept, gone): (Vec<_>, Vec<_>) = edits.into_iter().zip(stays).partition(|(_, s)| *s);
+    let acts = gone.into_iter().map(|(edit, _)| edit.act).collect();
+    (kept.into_iter().map(|(edit, _)| edit).collect(), acts)
+}
+
+/// Changes that are being tried.
+struct Trial<'a> {
+    vertices: &'a [Point],
+    triangles: &'a mut [[u32; 3]],
+    edits: &'a [Edit],
+    /// For each change the triangles as they were.
+    before: Vec<Vec<[u32; 3]>>,
+    /// The change that each triangle is part of.
+    owners: HashMap<u32, usize>,
+    stays: Vec<bool>,
+}
+
+impl<'a> Trial<'a> {
+    fn of(
+        vertices: &'a [Point],
+        triangles: &'a mut [[u32; 3]],
+        edits: &'a [Edit],
+        stays: Vec<bool>,
+    ) -> Self {
+        let old = |edit: &Edit| {
+            let numbers = edit.changes.iter().map(|c| c.0);
+            numbers.map(|t| triangles[t as usize]).collect()
+        };
+        let before = edits.iter().map(old).collect();
+        let owned = |(k, edit): (usize, &'a Edit)| edit.changes.iter().map(move |c| (c.0, k));
+        Self {
+            before,
+            owners: edits.iter().enumerate().flat_map(owned).collect(),
+            vertices,
+            triangles,
+            edits,
+            stays,
+        }
+    }
+
+    /// Makes the changes; returns the triangles that are others now, ascending.
+    fn apply(&mut self) -> Vec<u32> {
+        let mut changed = Vec::new();
+        let staying = self.edits.iter().zip(&self.stays).filter(|e| *e.1);
+        for &(t, corners) in staying.flat_map(|(edit, _)| &edit.changes) {
+            self.triangles[t as usize] = corners;
+            if corners[0] != corners[1] {
+                changed.push(t);
+            }
+        }
+        changed.sort_unstable();
+        changed
+    }
+
+    /// The changes that make one of some triangles, ascending, cross something.
+    fn crossing(&self, some: &[u32]) -> Vec<usize> {
+        let faces = Faces {
+            vertices: self.vertices,
+            triangles: self.triangles,
+        };
+        let found = faults(&faces, some, |_| 0);
+        let faulty = found.crossings.iter().flatten().chain(&found.flat);
+        let owners = faulty.filter_map(|t| self.owners.get(t).copied());
+        let mut guilty: Vec<usize> = owners.filter(|k| self.stays[*k]).collect();
+        guilty.sort_unstable();
+        guilty.dedup();
+        guilty
+    }
+
+    /// The changes to shells that they have turned inside out.
+    fn turning(&self, shells: &Shells) -> Vec<usize> {
+        let turned = shells.turned(self.vertices, self.triangles);
+        let is_turning = |k: &usize| self.stays[*k] && turned[shells.of_edit(&self.edits[*k])];
+        (0..self.edits.len()).filter(is_turning).collect()
+    }
+
+    /// Makes triangles what they were before some changes; returns them, ascending.
+    fn take_back(&mut self, some: &[usize]) -> Vec<u32> {
+        let mut restored = Vec::new();
+        for k in some {
+            self.stays[*k] = false;
+            for ((t, _), corners) in self.edits[*k].changes.iter().zip(&self.before[*k]) {
+                self.triangles[*t as usize] = *corners;
+                restored.push(*t);
+            }
+        }
+        restored.sort_unstable();
+        restored
+    }
+}

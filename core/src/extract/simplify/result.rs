@@ -1,0 +1,73 @@
+//! The simplified mesh of a solid as a solid of its own.
+
+use std::sync::Arc;
+
+use super::rounds::{simplify, Simplified};
+use crate::error::Result;
+use crate::extract::rounding::round::mesh;
+use crate::merge::evaluate::normalize;
+use crate::merge::kernels::leaf::Rule;
+use crate::mesh::finding::{Finding, Severity};
+use crate::mesh::grid::Pitch;
+use crate::mesh::import::import;
+use crate::mesh::source::Source;
+use crate::tree::solid::Solid;
+
+/// Lattices that are tried, by how many powers of ten they are finer than the solid's own: rounding
+/// leaves triangles lower than a step, down to some last places of doubles.
+const FINER: [i64; 3] = [0, 3, 6];
+
+/// The solid of a bounded solid's mesh without short edges and slivers.
+///
+/// `None` if it has none to remove, or if no lattice holds what is left as it is: then parts of the
+/// surface would vanish that lie closer together than its step.
+///
+/// # Errors
+/// `Unbounded`; `Internal`.
+pub fn simplified(solid: &Solid, tolerance: f64) -> Result<Option<Solid>> {
+    let rounded = mesh(solid)?;
+    let before = rounded.triangles.len();
+    let simplified = simplify(rounded.vertices, rounded.triangles, tolerance);
+    if !simplified.changed {
+        return Ok(None);
+    }
+    let noticed = findings(&simplified, before);
+    for finer in FINER {
+        let pitch = Pitch::new(solid.pitch().exponent() - finer);
+        let held = pitch.map(|pitch| on_lattice(&simplified, pitch, noticed.clone()));
+        if let Some(made) = held.unwrap_or(Ok(None))? {
+            return Ok(Some(made));
+        }
+    }
+    Ok(None)
+}
+
+/// The mesh on a lattice, if that keeps each of its faces and none overlap there.
+fn on_lattice(mesh: &Simplified, pitch: Pitch, noticed: Vec<Finding>) -> Result<Option<Solid>> {
+    let faces: Vec<[i64; 3]> = mesh.triangles.iter().map(|t| t.map(i64::from)).collect();
+    let imported = import(&mesh.vertices, &faces, Some(pitch)).ok();
+    let Some(source) = imported.filter(Source::is_as_given) else {
+        return Ok(None);
+    };
+    let solid = Solid::of_source(Arc::new(source.noting(noticed)), false);
+    normalize(&solid, Rule::Positive)?;
+    Ok(solid.is_reduced().then_some(solid))
+}
+
+fn findings(mesh: &Simplified, before: usize) -> Vec<Finding> {
+    let (after, bound) = (mesh.triangles.len(), mesh.bound);
+    let text = format!(
+        "short edges and slivers were removed, which made {after} triangles of {before}; no point \
+         of either surface is farther than {bound:?} from the other"
+    );
+    let done = Finding {
+        count: 1,
+        ..Finding::about("simplified", Severity::Note, &[], text)
+    };
+    let left: Vec<u64> = mesh.left.iter().map(|t| u64::from(*t)).collect();
+    let rest = Finding::about("small_left", Severity::Note, &left, LEFT);
+    [done, rest].into_iter().filter(|f| f.count > 0).collect()
+}
+
+const LEFT: &str = "an edge or a height of these triangles is within the tolerance still: without \
+    them the surface would move farther, cross itself, or vanish in part";

@@ -1,0 +1,220 @@
+//! Rounds of changes, and what is left after the last.
+
+use rustc_hash::FxHashSet as HashSet;
+
+use super::choice::{chosen, Chosen};
+use super::drift::Drift;
+use super::edit::{Act, Limits};
+use super::proof::proved;
+use super::shells::Shells;
+use super::sizes::is_small;
+use super::surface::Surface;
+use crate::geometry::doubles::Point;
+use crate::mesh::tasks::each_chunk;
+
+/// Rounds after which what still waits is left. A vertex has six neighbours on average, so that a
+/// change keeps some twenty others waiting: of a million, less than one waits longer than this.
+const ROUNDS: usize = 256;
+
+/// A mesh that was simplified.
+#[derive(Debug)]
+pub struct Simplified {
+    /// The vertices that are left, in their old order and places.
+    pub vertices: Vec<Point>,
+    /// The triangles that are left.
+    pub triangles: Vec<[u32; 3]>,
+    /// No point of either surface is farther than this from the other.
+    pub bound: f64,
+    /// Triangles that are slivers or have a short edge still, ascending.
+    pub left: Vec<u32>,
+    /// Whether anything was changed.
+    pub changed: bool,
+}
+
+/// Takes short edges and slivers out of a mesh that is closed by index with one fan at each vertex.
+pub fn simplify(vertices: Vec<Point>, triangles: Vec<[u32; 3]>, tolerance: f64) -> Simplified {
+    let mut simplifying = Simplifying::new(vertices, triangles, tolerance);
+    for _ in 0..ROUNDS {
+        if !simplifying.round() {
+            break;
+        }
+    }
+    simplifying.finished()
+}
+
+/// The state between two rounds.
+struct Simplifying {
+    vertices: Vec<Point>,
+    triangles: Vec<[u32; 3]>,
+    tolerance: f64,
+    drift: Drift,
+    shells: Shells,
+    /// Vertices around which something may be done: their surroundings changed, or something waits.
+    awake: Vec<bool>,
+    /// What made surfaces cross.
+    refused: HashSet<Act>,
+    changed: bool,
+}
+
+impl Simplifying {
+    fn new(vertices: Vec<Point>, triangles: Vec<[u32; 3]>, tolerance: f64) -> Self {
+        Self {
+            drift: Drift::new(&vertices),
+            shells: Shells::of(&vertices, &triangles),
+            awake: vec![true; vertices.len()],
+            refused: HashSet::default(),
+            changed: false,
+            vertices,
+            triangles,
+            tolerance,
+        }
+    }
+
+    /// Makes as many changes as fit beside each other; says whether there may be more to do.
+    fn round(&mut self) -> bool {
+        let surface = Surface::of(&self.vertices, &self.triangles);
+        let awake = std::mem::replace(&mut self.awake, vec![false; self.vertices.len()]);
+        let limits = Limits {
+            surface: &surface,
+            drift: &self.drift,
+            tolerance: self.tolerance,
+        };
+        let wanted = surface.acts(&awake, self.tolerance);
+        let Chosen { edits, waiting } = chosen(&limits, &wanted, |act| self.refused.contains(act));
+        let tried = !edits.is_empty();
+        let (kept, refused) = proved(&self.vertices, &mut self.triangles, edits, &self.shells);
+        for act in &waiting {
+            act.corners().for_each(|v| self.awake[v as usize] = true);
+        }
+        for edit in &kept {
+            edit.corners().for_each(|v| self.awake[v as usize] = true);
+            self.drift.follow(edit.target, edit.coming, edit.bound);
+        }
+        self.changed |= !kept.is_empty();
+        self.refused.extend(refused);
+        self.triangles.retain(|t| t[0] != t[1]);
+        tried
+    }
+
+    fn finished(self) -> Simplified {
+        let tolerance = self.tolerance;
+        let corners = |t: &[u32; 3]| t.map(|v| self.vertices[v as usize]);
+        let is_left = |t: &[u32; 3]| is_small(&corners(t), tolerance);
+        let numbered = |first: usize, triangles: &[[u32; 3]]| {
+            let small = (first as u32..).zip(triangles).filter(|(_, t)| is_left(t));
+            small.map(|(t, _)| t).collect::<Vec<u32>>()
+        };
+        let left = each_chunk(&self.triangles, numbered).concat();
+        let (vertices, triangles) = without_unused(&self.vertices, &self.triangles);
+        Simplified {
+            bound: self.drift.bound(),
+            vertices,
+            triangles,
+            left,
+            changed: self.changed,
+        }
+    }
+}
+
+/// A mesh without the vertices that no triangle uses.
+fn without_unused(vertices: &[Point], triangles: &[[u32; 3]]) -> (Vec<Point>, Vec<[u32; 3]>) {
+    let mut numbers = vec![0; vertices.len()];
+    for v in triangles.iter().flatten() {
+        numbers[*v as usize] = 1;
+    }
+    let mut kept = Vec::new();
+    for (number, place) in numbers.iter_mut().zip(vertices) {
+        if *number == 1 {
+            *number = kept.len() as u32;
+            kept.push(*place);
+        }
+    }
+    let renumbered = |t: &[u32; 3]| t.map(|v| numbers[v as usize]);
+    (kept, triangles.iter().map(renumbered).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extract::rounding::company::Faces;
+    use crate::extract::rounding::crossings::all_faults;
+
+    /// A cube of edge 1 whose top, z = 1, is divided by more vertices.
+    fn cube(more: &[Point], top: &[[u32; 3]]) -> (Vec<Point>, Vec<[u32; 3]>) {
+        let corner = |k: u32| [k & 1, k >> 1 & 1, k >> 2].map(f64::from);
+        let vertices = (0..8).map(corner).chain(more.iter().copied());
+        let rest = [
+            [0, 2, 1],
+            [1, 2, 3],
+            [0, 1, 4],
+            [1, 5, 4],
+            [2, 6, 3],
+            [3, 6, 7],
+            [0, 4, 2],
+            [2, 4, 6],
+            [1, 3, 5],
+            [3, 7, 5],
+        ];
+        let triangles = rest.into_iter().chain(top.iter().copied());
+        (vertices.collect(), triangles.collect())
+    }
+
+    fn is_sound(mesh: &Simplified) -> bool {
+        let mut edges: Vec<[u32; 2]> = mesh
+            .triangles
+            .iter()
+            .flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]])
+            .collect();
+        edges.sort_unstable();
+        let is_single = edges.windows(2).all(|pair| pair[0] != pair[1]);
+        let has_mate = |e: &[u32; 2]| edges.binary_search(&[e[1], e[0]]).is_ok();
+        let faces = Faces {
+            vertices: &mesh.vertices,
+            triangles: &mesh.triangles,
+        };
+        is_single && edges.iter().all(has_mate) && all_faults(&faces).is_empty()
+    }
+
+    #[test]
+    fn a_short_edge_goes_and_the_corner_stays() {
+        let fan = [[4, 5, 8], [5, 7, 8], [7, 6, 8], [6, 4, 8]];
+        let (vertices, triangles) = cube(&[[0.003, 0.004, 1.0]], &fan);
+        let made = simplify(vertices.clone(), triangles, 0.01);
+        // Of the two ends the one inside the face goes, which changes no volume.
+        assert_eq!(made.vertices, vertices[..8]);
+        assert!(made.bound >= 0.005 && made.bound < 0.005_000_001);
+        assert!(made.triangles.len() == 12 && made.left.is_empty() && is_sound(&made));
+    }
+
+    #[test]
+    fn the_long_edge_of_a_cap_is_flipped() {
+        let fan = [[4, 5, 8], [5, 7, 8], [7, 6, 8], [6, 4, 8]];
+        let (vertices, triangles) = cube(&[[0.5, 0.001, 1.0]], &fan);
+        let made = simplify(vertices.clone(), triangles, 0.01);
+        assert_eq!(made.vertices, vertices);
+        assert!(made.bound >= 0.001 && made.bound < 0.001_000_001);
+        assert!(made.triangles.len() == 14 && made.left.is_empty() && is_sound(&made));
+    }
+
+    #[test]
+    fn large_triangles_of_one_plane_stay() {
+        let fan = [[4, 5, 8], [5, 7, 8], [7, 6, 8], [6, 4, 8]];
+        let (vertices, triangles) = cube(&[[0.5, 0.5, 1.0]], &fan);
+        let made = simplify(vertices, triangles.clone(), 0.01);
+        assert!(!made.changed && made.bound == 0.0);
+        assert_eq!(made.triangles, triangles);
+    }
+
+    #[test]
+    fn nothing_vanishes_or_turns_inside_out() {
+        let (vertices, triangles) = cube(&[], &[[4, 5, 6], [5, 7, 6]]);
+        for turned in [false, true] {
+            let facing = |t: &[u32; 3]| if turned { [t[0], t[2], t[1]] } else { *t };
+            let triangles: Vec<[u32; 3]> = triangles.iter().map(facing).collect();
+            let before = Shells::of(&vertices, &triangles);
+            let made = simplify(vertices.clone(), triangles, 100.0);
+            assert!(made.triangles.len() >= 4 && made.bound <= 100.0 && is_sound(&made));
+            assert_eq!(before.turned(&made.vertices, &made.triangles), [false]);
+        }
+    }
+}

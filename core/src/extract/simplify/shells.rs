@@ -1,0 +1,232 @@
+//! The connected parts of a surface, which neither turn inside out nor pass through each other.
+//!
+//! Parts that cross nothing before a round and nothing after it may still have passed through one
+//! another meanwhile: only whole parts can, by lying in what a change sweeps.
+
+use super::edit::Edit;
+use super::sizes::{dot, less, normal};
+use crate::geometry::doubles::{side, Point};
+use crate::interrupt::{poll, spend};
+
+/// The shell of a vertex without triangles.
+const NONE: u32 = u32::MAX;
+
+/// The connected parts of a surface.
+pub struct Shells {
+    /// The shell of each vertex.
+    numbers: Vec<u32>,
+    /// For each shell whether it encloses volume (+1) or a cavity (−1); 0 if that is not certain.
+    sides: Vec<i32>,
+}
+
+impl Shells {
+    /// The shells of a mesh.
+    pub fn of(vertices: &[Point], triangles: &[[u32; 3]]) -> Self {
+        let numbers = connected(vertices.len(), triangles);
+        let mut shells = Self {
+            sides: Vec::new(),
+            numbers,
+        };
+        shells.sides = shells.sides_of(vertices, triangles);
+        shells
+    }
+
+    /// Whether the shell of a change may be changed at all: it is clear which side is inside.
+    pub fn is_certain(&self, edit: &Edit) -> bool {
+        self.sides[self.of_edit(edit)] != 0
+    }
+
+    /// Which shells are not turned as they were.
+    pub fn turned(&self, vertices: &[Point], triangles: &[[u32; 3]]) -> Vec<bool> {
+        let now = self.sides_of(vertices, triangles);
+        now.iter().zip(&self.sides).map(|(a, b)| a != b).collect()
+    }
+
+    /// The shell of a change.
+    pub fn of_edit(&self, edit: &Edit) -> usize {
+        self.numbers[edit.target as usize] as usize
+    }
+
+    /// For each change whether another shell may lie in what it sweeps.
+    pub fn are_swept(
+        &self,
+        vertices: &[Point],
+        triangles: &[[u32; 3]],
+        edits: &[Edit],
+    ) -> Vec<bool> {
+        if self.sides.len() < 2 {
+            return vec![false; edits.len()];
+        }
+        let resting = self.resting(vertices, triangles, edits);
+        let is_swept = |edit: &Edit| {
+            let own = self.of_edit(edit);
+            edit.bodies().iter().any(|body| {
+                poll();
+                let body = body.map(|v| &vertices[v as usize]);
+                let others = resting.beside(&body).iter().filter(|r| r.0 != own);
+                others.into_iter().any(|(_, p)| may_hold(&body, p))
+            })
+        };
+        edits.iter().map(is_swept).collect()
+    }
+
+    /// A vertex of each shell that does not go in this round.
+    fn resting(&self, vertices: &[Point], triangles: &[[u32; 3]], edits: &[Edit]) -> Resting {
+        let mut goes = vec![false; vertices.len()];
+        for v in edits.iter().filter_map(Edit::going) {
+            goes[v as usize] = true;
+        }
+        let mut found: Vec<Option<Point>> = vec![None; self.sides.len()];
+        for &v in triangles
+            .as_flattened()
+            .iter()
+            .filter(|v| !goes[**v as usize])
+        {
+            found[self.numbers[v as usize] as usize].get_or_insert(vertices[v as usize]);
+        }
+        let numbered = (0..).zip(found);
+        let mut points: Vec<(usize, Point)> = numbered.filter_map(|(k, p)| Some((k, p?))).collect();
+        points.sort_by(|p, q| p.1[0].total_cmp(&q.1[0]));
+        Resting { points }
+    }
+
+    /// The sign of each shell's volume; 0 if it may come from rounding.
+    fn sides_of(&self, vertices: &[Point], triangles: &[[u32; 3]]) -> Vec<i32> {
+        spend(triangles.len());
+        let used = self.numbers.iter().filter(|n| **n != NONE);
+        let count = used.max().map_or(0, |m| *m as usize + 1);
+        let mut sums = vec![Sum::default(); count];
+        for t in triangles.iter().filter(|t| t[0] != t[1]) {
+            let corners = t.map(|v| vertices[v as usize]);
+            sums[self.numbers[t[0] as usize] as usize].add(&corners);
+        }
+        sums.iter().map(Sum::sign).collect()
+    }
+}
+
+/// Six times the volume of a shell.
+#[derive(Clone, Default)]
+struct Sum {
+    origin: Option<Point>,
+    volume: f64,
+    size: f64,
+    count: f64,
+}
+
+/// Roundings of a difference, a minor, a product and a sum, in units of the last place, and room.
+const ROUNDINGS: f64 = 16.0;
+
+impl Sum {
+    fn add(&mut self, corners: &[Point; 3]) {
+        let origin = *self.origin.get_or_insert(corners[0]);
+        let [a, b, c] = corners;
+        let arm = less(a, &origin);
+        self.volume += dot(&arm, &normal(corners));
+        let lengths = [arm, less(b, a), less(c, a)].map(|e| dot(&e, &e).sqrt());
+        self.size += lengths.iter().product::<f64>();
+        self.count += 1.0;
+    }
+
+    fn sign(&self) -> i32 {
+        let error = (ROUNDINGS + self.count) * f64::EPSILON * self.size;
+        if self.volume.abs() > error {
+            if self.volume > 0.0 {
+                1
+            } else {
+                -1
+            }
+        } else {
+            0
+        }
+    }
+}
+
+/// A point of each shell, by its x.
+struct Resting {
+    points: Vec<(usize, Point)>,
+}
+
+impl Resting {
+    /// The points whose x is among those of a body.
+    fn beside(&self, body: &[&Point; 4]) -> &[(usize, Point)] {
+        let of_all = |pick: fn(f64, f64) -> f64| body.iter().map(|p| p[0]).reduce(pick);
+        let (low, high) = (
+            of_all(f64::min).unwrap_or(0.0),
+            of_all(f64::max).unwrap_or(0.0),
+        );
+        let start = self.points.partition_point(|p| p.1[0] < low);
+        let count = self.points[start..].partition_point(|p| p.1[0] <= high);
+        &self.points[start..start + count]
+    }
+}
+
+/// Whether a tetrahedron, which may be flat, may hold a point: no face certainly separates them.
+fn may_hold(body: &[&Point; 4], point: &Point) -> bool {
+    let separates = |apex: usize| {
+        let face = [1, 2, 3].map(|i| *body[(apex + i) % 4]);
+        let of_point = side(&face, point);
+        of_point != 0 && of_point != side(&face, body[apex])
+    };
+    !(0..4).any(separates)
+}
+
+/// For each vertex the number of the connected part that it belongs to.
+fn connected(count: usize, triangles: &[[u32; 3]]) -> Vec<u32> {
+    spend(triangles.len());
+    let mut parents: Vec<u32> = (0..count as u32).collect();
+    for [a, b, c] in triangles {
+        join(&mut parents, *a, *b);
+        join(&mut parents, *b, *c);
+    }
+    let mut numbers = vec![NONE; count];
+    let mut next = 0;
+    for v in triangles.as_flattened() {
+        let root = root(&mut parents, *v) as usize;
+        if numbers[root] == NONE {
+            numbers[root] = next;
+            next += 1;
+        }
+        numbers[*v as usize] = numbers[root];
+    }
+    numbers
+}
+
+/// Links two vertices; the lower root becomes that of both.
+fn join(parents: &mut [u32], v: u32, w: u32) {
+    let (p, q) = (root(parents, v), root(parents, w));
+    parents[p.max(q) as usize] = p.min(q);
+}
+
+/// The vertex that stands for all linked to one; halves the way there.
+fn root(parents: &mut [u32], mut v: u32) -> u32 {
+    while parents[v as usize] != v {
+        parents[v as usize] = parents[parents[v as usize] as usize];
+        v = parents[v as usize];
+    }
+    v
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tetrahedra_hold_what_no_face_separates() {
+        let [o, x, y, z] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        for body in [[&o, &x, &y, &z], [&x, &o, &y, &z]] {
+            assert!(may_hold(&body, &[0.1, 0.1, 0.1]));
+            assert!(may_hold(&body, &[0.0, 0.5, 0.5]));
+            assert!(!may_hold(&body, &[0.4, 0.4, 0.4]));
+            assert!(!may_hold(&body, &[0.1, 0.1, -1e-300]));
+        }
+        let flat = [&o, &x, &y, &[0.5, 0.5, 0.0]];
+        assert!(may_hold(&flat, &[0.1, 0.1, 0.0]));
+        assert!(!may_hold(&flat, &[0.1, 0.1, 1e-300]));
+    }
+
+    #[test]
+    fn parts_are_numbered_in_order() {
+        let triangles = [[5, 1, 2], [0, 3, 4], [2, 1, 6]];
+        assert_eq!(connected(7, &triangles), [1, 0, 0, 1, 1, 0, 0]);
+    }
+}

@@ -1,0 +1,80 @@
+//! How large triangles are, in doubles; whether a change is right is never decided by these.
+
+use crate::geometry::doubles::{Point, Triangle};
+
+/// The roundings of a sum of three squares and its root, in units of the last place, and room.
+const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+
+/// Rounding errors of three coordinates, and of the point itself, in units of the largest one.
+const PLACES: f64 = 16.0 * f64::EPSILON;
+
+/// The difference of two points.
+pub fn less(p: &Point, q: &Point) -> Point {
+    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
+}
+
+/// The scalar product.
+pub fn dot(u: &Point, v: &Point) -> f64 {
+    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+}
+
+fn cross(u: &Point, v: &Point) -> Point {
+    [
+        u[1] * v[2] - u[2] * v[1],
+        u[2] * v[0] - u[0] * v[2],
+        u[0] * v[1] - u[1] * v[0],
+    ]
+}
+
+/// The distance of two points, rounded up.
+///
+/// Dividing by the largest difference keeps squares of the smallest and the largest doubles apart
+/// from zero and infinity.
+pub fn distance_above(p: &Point, q: &Point) -> f64 {
+    let gap = less(p, q);
+    let most = gap.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    if most == 0.0 {
+        return 0.0;
+    }
+    let scaled = gap.map(|x| x / most);
+    (dot(&scaled, &scaled).sqrt() * (1.0 + ROUNDINGS) * most).next_up()
+}
+
+/// A bound on the error of a point computed between two others.
+pub fn rounding_of(p: &Point, q: &Point) -> f64 {
+    let largest = p.iter().chain(q).fold(0.0f64, |m, x| m.max(x.abs()));
+    PLACES * largest
+}
+
+/// The normal of a triangle, as long as twice its area.
+pub fn normal([a, b, c]: &Triangle) -> Point {
+    cross(&less(b, a), &less(c, a))
+}
+
+/// The edge lengths, each from a corner to the next.
+pub fn lengths(corners: &Triangle) -> [f64; 3] {
+    [0, 1, 2].map(|i| {
+        let edge = less(&corners[(i + 1) % 3], &corners[i]);
+        dot(&edge, &edge).sqrt()
+    })
+}
+
+/// The least height: that over the longest edge.
+pub fn height(corners: &Triangle) -> f64 {
+    let longest = lengths(corners).into_iter().fold(0.0, f64::max);
+    if longest == 0.0 {
+        return 0.0;
+    }
+    let normal = normal(corners);
+    dot(&normal, &normal).sqrt() / longest
+}
+
+/// Whether a triangle is a sliver or has a short edge; one with a short edge is no higher than that.
+pub fn is_small(corners: &Triangle, tolerance: f64) -> bool {
+    height(corners) <= tolerance || lengths(corners).iter().any(|l| *l <= tolerance)
+}
+
+/// Six times the volume that a triangle's edge p → q sweeps when its third corner moves.
+pub fn swept(from: &Point, to: &Point, [p, q]: [&Point; 2]) -> f64 {
+    dot(&less(to, from), &cross(&less(p, from), &less(q, from))).abs()
+}
