@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import Finding, FormatError, InvalidMeshError
+from .lengths import MILLIMETRES
 from .output import Output, counted, discard_output
 
 if TYPE_CHECKING:
@@ -20,9 +21,6 @@ if TYPE_CHECKING:
 
 #: The name that stands for standard input or standard output.
 STREAM = "-"
-
-#: Millimetres in each unit that ``--unit`` takes.
-MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "ft": 304.8, "um": 0.001}
 
 #: What can be done where a mesh is refused because it is not closed.
 ON_INVALID = "  --on-invalid repair fills it; --on-invalid warn goes on without it."

@@ -42,6 +42,7 @@ class Job(ABC):
         self.inputs = Inputs.of(self.out, settings)
         self.seconds: dict[str, float] = {}
         self._lost: tuple[Finding, ...] = ()
+        self._noticed: tuple[Finding, ...] = ()
         self._last = time.perf_counter()
 
     @abstractmethod
@@ -78,12 +79,30 @@ class Job(ABC):
         if report is not None and report.verdict == "subject failed":
             self._tell(result, mesh, report, written=False)
             return output.FOUND
+        if self.settings["tolerance"]:
+            result, mesh = self._simplified(result, mesh)
         self._lost = self.target.write(mesh)
         for finding in self._lost:
             self.out.finding(shown(self.target.path), finding)
         self.lap("write")
         self._tell(result, mesh, report, written=True)
         return output.DONE if report is None or report.ok else output.FOUND
+
+    def _simplified(self, result: "Solid", mesh: "Mesh") -> "tuple[Solid, Mesh]":
+        """Return what is left of a result without short edges and slivers."""
+        self._noticed = result.normalized().findings
+        simple = result.simplify(self.settings["tolerance"])
+        if simple is result:
+            self.out.note(f"{shown(self.target.path)}: --simplify changed nothing")
+            self._noticed = ()
+        else:
+            mesh = self._mesh_of(simple)
+        self.lap("simplify")
+        return simple, mesh
+
+    def _findings(self, result: "Solid") -> "tuple[Finding, ...]":
+        """Return what was noteworthy about a result, before it was simplified, too."""
+        return self._noticed + result.normalized().findings
 
     def _mesh_of(self, result: "Solid") -> "Mesh":
         mesh = result.normalized().to_mesh()
@@ -99,7 +118,7 @@ class Job(ABC):
         self, result: "Solid", mesh: "Mesh", report: "CheckReport | None", written: bool
     ) -> None:
         name = shown(self.target.path)
-        for finding in result.normalized().findings:
+        for finding in self._findings(result):
             if finding not in self.inputs.noticed:
                 self.out.finding(name, finding)
         for note in () if report is None else report.notes:
@@ -126,7 +145,7 @@ class Job(ABC):
             **mesh_values(mesh),
             "volume": result.volume,
             "volume_exact": _exact_volume(result, mesh),
-            "findings": output.finding_values((*result.normalized().findings, *self._lost)),
+            "findings": output.finding_values(self._findings(result) + self._lost),
             "check": None if report is None else report.to_dict(),
             "seconds": self.seconds,
         }

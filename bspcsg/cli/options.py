@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 import click
 
 from ..parameters import MOST_PITCH, MOST_THREADS
+from .lengths import MILLIMETRES, as_length
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
@@ -58,7 +59,7 @@ _READING = [
     ),
     click.option(
         "--unit",
-        type=click.Choice(["mm", "cm", "m", "in", "ft", "um"]),
+        type=click.Choice(list(MILLIMETRES)),
         help="What inputs that do not say are in; they become millimetres.",
     ),
 ]
@@ -137,6 +138,14 @@ CHECK = click.option(
     help="Compare the result with manifold3d's (default).",
 )
 
+SIMPLIFY = click.option(
+    "--simplify",
+    "tolerance",
+    metavar="LENGTH",
+    callback=as_length,
+    help="Remove edges and slivers up to this, as 0.01mm, moving no surface farther.",
+)
+
 TIMEOUT = click.option(
     "--timeout",
     metavar="SECONDS",
@@ -209,7 +218,7 @@ def drawing(command: _Command) -> _Command:
 
 def making(command: _Command) -> _Command:
     """Add the options of verbs that make one solid and write it."""
-    return _with([OUTPUT, writing, ALLOW_EMPTY, CHECK], command)
+    return _with([OUTPUT, writing, SIMPLIFY, ALLOW_EMPTY, CHECK], command)
 
 
 def from_files(command: _Command) -> _Command:

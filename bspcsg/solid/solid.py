@@ -23,7 +23,7 @@ from ..geometry import transform
 from ..geometry.transform import Factors, common_prefix
 from ..mesh import interop
 from ..mesh.mesh import Mesh
-from ..parameters import optional_pitch, winding_rule
+from ..parameters import not_negative, optional_pitch, winding_rule
 from .counting import count, counted, uncounted
 from .describe import describe
 from .expression import ExpressionNode, Placed, complement, evaluate, operation
@@ -323,6 +323,60 @@ class Solid(Measured, PointSet):
             if not _is_reduced(tree):
                 self._reduced = from_leaf(TreeLeaf(reduced))
         return self if self._reduced is None else self._reduced
+
+    @counted
+    def simplify(self, tolerance: float) -> "Solid":
+        """Return the solid without short edges and slivers, on which printers and meshers stumble.
+
+        An edge is short if it is no longer than `tolerance`, a triangle is a sliver if its height
+        over its longest edge is no more. Short edges shrink to one of their ends and long edges of
+        slivers are flipped; corners that are left stay where they are, and so do large triangles,
+        also those of one plane.
+
+        Every point of the old surface lies within `tolerance` of the new one, and the other way
+        round. Nothing that changed crosses anything, which is tested exactly; the new surface has
+        as many parts, handles and cavities as the old one.
+
+        Parameters
+        ----------
+        tolerance : float
+            How far the surface may move, in model units. With 0 the solid itself is returned.
+
+        Returns
+        -------
+        Solid
+            The solid of a mesh, no longer of an expression. Its finding ``simplified`` has the
+            triangles before and after and the bound that was reached; ``small_left`` counts the
+            triangles that are small still. The solid itself if nothing can be removed, or if the
+            lattice has no room for what is left.
+
+        Raises
+        ------
+        InvalidParameterError
+            If `tolerance` is negative or not finite.
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Notes
+        -----
+        Corners gather at one of them, and none goes farther than `tolerance`. So where a surface
+        is divided much finer than that, edges from some third of it on are left. Walls and bars
+        that are thinner than it stay, and a part that would vanish keeps four triangles at least.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> bump = b.cube(1) | b.cube(0.5).translate(0.5001, 0.25, 0.25)
+        >>> simple = bump.simplify(0.001)
+        >>> len(bump.faces), len(simple.faces), simple.volume
+        (28, 20, 1.0)
+        """
+        limit = not_negative(tolerance, "tolerance")
+        if limit == 0:
+            return self
+        with core_errors():
+            tree = self.normalized().tree.simplified(limit)
+        return self if tree is None else from_leaf(TreeLeaf(tree))
 
     @uncounted
     def _outside(self) -> "Solid":

@@ -4,6 +4,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,7 @@ import click
 from ...errors import BspcsgError, Finding
 from .. import output
 from ..files import STREAM, Inputs, Target, expanded, put, shown
-from ..options import PATH, common, reading, writing
+from ..options import PATH, SIMPLIFY, common, reading, writing
 from ..output import Output, counted
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ _MANY = 4
 )
 @click.option("--outdir", metavar="FOLDER", type=PATH, help="Folder for the files, with --to.")
 @writing
+@SIMPLIFY
 @click.option(
     "--up",
     type=click.Choice(["y", "z"]),
@@ -57,10 +59,10 @@ _MANY = 4
 def convert(files: tuple[Path, ...], **given: Any) -> int:
     """Write meshes in other formats, and say what was lost.
 
-    Every file is read back and compared. Meshes need not be closed; nothing is repaired. 3MF and
-    GLB state their unit: what comes from other formats is taken as millimetres unless --unit says
-    otherwise, and GLB is written in metres with y upwards. Where --up and --from-up differ, the
-    model is turned by a quarter about x.
+    Every file is read back and compared. Meshes need not be closed, unless they are to be
+    simplified; nothing is repaired. 3MF and GLB state their unit: what comes from other formats is
+    taken as millimetres unless --unit says otherwise, and GLB is written in metres with y upwards.
+    Where --up and --from-up differ, the model is turned by a quarter about x.
     """
     return _Conversion(files, **given).run()
 
@@ -116,6 +118,8 @@ class _Conversion:
         began = time.perf_counter()
         raw = self._turned(path, target)
         self._inputs.tell(path, raw.findings)
+        if self._settings["tolerance"]:
+            raw = self._simplified(raw, path)
         shortened, _ = target.rounded(raw)
         made = encoded(shortened, shown(target.path), target.suffix, target.text)
         found: list[Losses] = []
@@ -140,6 +144,17 @@ class _Conversion:
             "seconds": round(seconds, 4),
         }
         return document, lost.any
+
+    def _simplified(self, raw: "RawMesh", path: Path) -> "RawMesh":
+        """Return a mesh without short edges and slivers; its objects become one."""
+        solid = self._inputs.as_solid(raw, path)
+        simple = solid.simplify(self._settings["tolerance"])
+        if simple is solid:
+            self._out.note(f"{shown(path)}: --simplify changed nothing")
+            return raw
+        mesh = simple.normalized().to_mesh()
+        self._inputs.tell(path, simple.normalized().findings)
+        return replace(raw, vertices=mesh.vertices, faces=mesh.faces, findings=(), objects=())
 
     def _turned(self, path: Path, target: Target) -> "RawMesh":
         """Read a file, turned so that the axis asked for is up in the output."""

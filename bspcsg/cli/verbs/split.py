@@ -10,7 +10,7 @@ from ...errors import Finding
 from .. import output
 from ..files import Inputs, Target, expanded, shown
 from ..job import mesh_values, summary
-from ..options import CHECK, PATH, common, numbers, reading, sets, writing
+from ..options import CHECK, PATH, SIMPLIFY, common, numbers, reading, sets, writing
 from ..output import Output
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ Examples:
     "--by", "cutter", metavar="FILE", type=PATH, help="Cut along the surface of another solid."
 )
 @writing
+@SIMPLIFY
 @CHECK
 @reading
 @sets
@@ -99,7 +100,7 @@ class _Splitting:
 
         plane, cutter = self._settings["plane"], self._settings["cutter"]
         if not plane and not cutter:
-            meshes = connected_parts(solid)
+            meshes = connected_parts(self._simplified(solid))
             self._refuse_less_than(1, meshes)
             return meshes, []
         if plane:
@@ -108,10 +109,18 @@ class _Splitting:
         else:
             other = self._inputs.solid(cutter)
             sides = (solid - other, solid & other)
-        meshes = [side.normalized().to_mesh() for side in sides]
+        meshes = [self._simplified(side).normalized().to_mesh() for side in sides]
         self._refuse_less_than(2, [mesh for mesh in meshes if len(mesh.faces)])
         checked = sides if self._settings["check"] else ()
         return meshes, [str(side.validate().verdict) for side in checked]
+
+    def _simplified(self, solid: "Solid") -> "Solid":
+        """Return a solid without short edges and slivers, if that is asked for."""
+        tolerance = self._settings["tolerance"]
+        simple = solid.simplify(tolerance) if tolerance else solid
+        if simple is not solid:
+            self._inputs.tell(self._file, simple.normalized().findings)
+        return simple
 
     def _tell_of_plane(self, side: "Solid") -> None:
         """Say whether the plane is another one than was asked for."""

@@ -1,0 +1,25 @@
+"""Lengths with units, as the options take them."""
+
+import math
+
+import click
+
+#: Millimetres in each unit.
+MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "ft": 304.8, "um": 0.001}
+
+
+def as_length(context: click.Context, option: click.Parameter, value: str | None) -> float | None:
+    """Return a length in millimetres, in which it is if it names no unit."""
+    if value is None:
+        return None
+    text = value.strip().lower()
+    units = sorted(MILLIMETRES, key=len, reverse=True)
+    unit = next((unit for unit in units if text.endswith(unit)), "")
+    try:
+        length = float(text.removesuffix(unit)) * MILLIMETRES.get(unit, 1.0)
+    except ValueError:
+        length = math.nan
+    if not 0 <= length < math.inf:
+        wanted = f"a number and maybe a unit ({', '.join(MILLIMETRES)}), as in 0.01mm"
+        raise click.BadParameter(f"{value!r} is no length; it takes {wanted}.", context, option)
+    return length
