@@ -103,40 +103,42 @@ impl Limits<'_> {
         let Act::Collapse([from, to]) = act else {
             return None;
         };
-        if self.surface.star(from).len() > MOST_AROUND || !self.may_be_joined(from, to) {
+        let star = self.surface.star(from);
+        if star.len() > MOST_AROUND || !self.may_be_joined(from, to) {
             return None;
         }
         let (place, coming) = (self.surface.place(to), Coming::Vertex(from));
-        let bound = self.drift.with((to, place), coming, self.tolerance)?;
         let mut edit = Edit {
             act,
             changes: Vec::new(),
             target: to,
             coming,
-            bound,
+            bound: self.drift.with((to, place), coming, self.tolerance)?,
             swept: 0.0,
         };
-        let mut heights = [f64::INFINITY; 2];
-        for &t in self.surface.star(from) {
-            let old = self.surface.triangles[t as usize];
-            let new = old.map(|v| if v == from { to } else { v });
-            let corners = self.surface.corners(t);
-            heights[0] = heights[0].min(height(&corners));
-            if old.contains(&to) {
-                edit.changes.push((t, [to; 3]));
-                continue;
-            }
-            let moved = self.surface.places(&new);
-            if !self.is_fit(&corners, &moved) {
-                return None;
-            }
-            heights[1] = heights[1].min(height(&moved));
-            let at = place_of(from, &old);
-            let edge = [&corners[(at + 1) % 3], &corners[(at + 2) % 3]];
-            edit.swept += swept(&corners[at], place, edge);
-            edit.changes.push((t, new));
+        let mut least = f64::INFINITY;
+        for &t in star {
+            least = least.min(self.change(&mut edit, t, [from, to])?);
         }
-        (heights[1] >= heights[0].min(LEAST_HEIGHT * self.tolerance)).then_some(edit)
+        let lowest = |m: f64, t: &u32| m.min(height(&self.surface.corners(*t)));
+        let before = star.iter().fold(LEAST_HEIGHT * self.tolerance, lowest);
+        (least >= before).then_some(edit)
+    }
+
+    /// Adds what becomes of a triangle; returns its height, `None` if it may not become that.
+    fn change(&self, edit: &mut Edit, t: u32, [from, to]: [u32; 2]) -> Option<f64> {
+        let old = self.surface.triangles[t as usize];
+        if old.contains(&to) {
+            edit.changes.push((t, [to; 3]));
+            return Some(f64::INFINITY);
+        }
+        let new = old.map(|v| if v == from { to } else { v });
+        let (corners, moved) = (self.surface.corners(t), self.surface.places(&new));
+        let at = place_of(from, &old);
+        let edge = [&corners[(at + 1) % 3], &corners[(at + 2) % 3]];
+        edit.swept += swept(&corners[at], &moved[at], edge);
+        edit.changes.push((t, new));
+        self.is_fit(&corners, &moved).then(|| height(&moved))
     }
 
     /// The link condition: two vertices that are ends of an edge have no other neighbours in common
