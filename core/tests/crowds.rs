@@ -6,13 +6,15 @@ use std::sync::Arc;
 
 use bspcsg::arith::Int;
 use bspcsg::merge::expression::{Expression, Term};
+use bspcsg::merge::kernels::leaf::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::half_space::half_space;
 use bspcsg::tree::solid::Solid;
 
 use support::{
-    applied, assert_same_set, combined, complement, manifold_mesh, volume, Numbers, Shape,
+    applied, assert_same_set, combined, complement, manifold_mesh, normalized, volume, Numbers,
+    Shape,
 };
 
 /// An expression over operands 0 … count − 1 with nested operations, each operand named once.
@@ -104,6 +106,7 @@ fn assert_same_as_stepwise(solids: &[Solid], terms: &[Term], context: &str) {
     let at_once = combined(solids, terms[solids.len()..].to_vec());
     let steps = stepwise(solids, terms);
     assert_same_set(&at_once, &steps);
+    let [at_once, steps] = [at_once, steps].map(|solid| normalized(&solid, Rule::Positive));
     if at_once.root().outside == 0 {
         manifold_mesh(&at_once, context);
         assert_eq!(volume(&at_once), volume(&steps), "{context}");
@@ -115,8 +118,12 @@ fn solids_in_one_place_make_what_they_make_one_after_the_other() {
     let mut numbers = Numbers::new(32);
     for round in 0..24 {
         let count = 3 + round % 8;
-        let any = |numbers: &mut Numbers| match numbers.below(3) {
+        let any = |numbers: &mut Numbers| match numbers.below(4) {
             0 => Shape::any_cuboid(numbers, 40).solid(),
+            // One mesh that may overlap itself.
+            3 => Shape::any_cuboid(numbers, 40)
+                .with(Shape::any_tetrahedron(numbers, 40))
+                .unchecked(),
             1 => Shape::sphere([20; 3], 15.0, 1).solid(),
             _ => Shape::any_tetrahedron(numbers, 40).solid(),
         };

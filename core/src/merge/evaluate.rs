@@ -40,13 +40,12 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
             let solid = solid.made_of(&operands);
             return Ok((solid, descent.counters));
         }
-        for k in overlaps {
-            if operands[k].is_claimed() {
-                return Err(false_claim());
-            }
-            if operands[k].is_reduced() {
-                return Err(wrongly_reduced(&operands[k], k));
-            }
+        let is_open = |k: &usize| !operands[*k].is_reduced() && !operands[*k].is_claimed();
+        let open: Vec<usize> = overlaps.iter().copied().filter(is_open).collect();
+        if open.is_empty() {
+            return Err(wrongly_reduced(&operands, &overlaps));
+        }
+        for k in open {
             operands[k] = normalize(&operands[k], Rule::Positive)?;
         }
     }
@@ -70,8 +69,23 @@ fn false_claim() -> Error {
     Error::new(ErrorKind::BadSnapshot, text)
 }
 
-/// The error of a reduced operand that overlaps itself: a mesh that was wrongly trusted, or a defect.
-fn wrongly_reduced(operand: &Solid, number: usize) -> Error {
+/// The error of reduced operands of which one overlaps itself: the word of stored data or about a
+/// mesh was wrong, or there is a defect.
+fn wrongly_reduced(operands: &[Solid], suspects: &[usize]) -> Error {
+    if suspects.iter().any(|k| operands[*k].is_claimed()) {
+        return false_claim();
+    }
+    let errors = suspects.iter().map(|k| wrong_source(&operands[*k], *k));
+    let found = errors.flatten().next();
+    found.unwrap_or_else(|| {
+        Error::internal(format!(
+            "of the reduced operands {suspects:?} one overlaps itself"
+        ))
+    })
+}
+
+/// The error of an operand of which a source overlaps itself, if one does.
+fn wrong_source(operand: &Solid, number: usize) -> Option<Error> {
     for (slot, source) in operand.sources().iter().enumerate() {
         match overlaps_itself(source) {
             Ok(false) => {}
@@ -81,12 +95,12 @@ fn wrongly_reduced(operand: &Solid, number: usize) -> Error {
                      (source {}) was declared trusted, but overlaps itself",
                     source.id()
                 );
-                return Error::new(ErrorKind::NotReduced, text);
+                return Some(Error::new(ErrorKind::NotReduced, text));
             }
-            Err(error) => return error,
+            Err(error) => return Some(error),
         }
     }
-    Error::internal(format!("reduced operand {number} overlaps itself"))
+    None
 }
 
 /// Whether the faces of a source cross or overlap each other, or enclose a region twice.

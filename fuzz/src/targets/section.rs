@@ -69,7 +69,9 @@ fn assert_inside_section(
     context: &str,
 ) {
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-    let below = [0, 1, 2].map(|k| if k == axis { i128::from(-sign) } else { 0 });
+    let along = |axis: usize, step: i128| [0, 1, 2].map(|k| if k == axis { step } else { 0 });
+    // Aside first: below a lowest or highest point the section is empty however near it is.
+    let steps = [along(i, 1), along(j, 1), along(axis, i128::from(-sign))];
     let flat = |p: &Lattice| if sign > 0 { [p[i], p[j]] } else { [p[j], p[i]] };
     for point in &scene.points {
         let mut point = *point;
@@ -77,7 +79,7 @@ fn assert_inside_section(
         let Some(turns) = turns_around(edges, flat, flat(&point)) else {
             continue;
         };
-        let place = Place::beside(&point, [below, [0; 3], [0; 3]]);
+        let place = Place::beside(&point, steps);
         let known: Option<Vec<bool>> = scene
             .operands
             .iter()

@@ -41,6 +41,20 @@ pub struct Counters {
 }
 
 impl Counters {
+    /// Adds what another descent did.
+    fn add(&self, other: &Self) {
+        let pairs = [
+            (&self.cells, &other.cells),
+            (&self.binned, &other.binned),
+            (&self.halved, &other.halved),
+            (&self.leaves, &other.leaves),
+            (&self.leaf_elements, &other.leaf_elements),
+        ];
+        for (count, more) in pairs {
+            count.fetch_add(more.load(Ordering::Relaxed), Ordering::Relaxed);
+        }
+    }
+
     /// The counts with their names.
     pub fn named(&self) -> [(&'static str, u64); 5] {
         [
@@ -65,7 +79,8 @@ pub struct Descent<'a> {
     pub share: bool,
     /// What was done.
     pub counters: Counters,
-    /// For each operand whether a visited cell showed that it overlaps itself.
+    /// For each operand whether a visited cell showed that it overlaps itself, or that what it made
+    /// together with others does.
     pub overlaps: Vec<AtomicBool>,
 }
 
@@ -81,7 +96,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// The operands that a visited cell showed to overlap themselves.
+    /// The operands that a visited cell showed to overlap themselves, and those that others may have
+    /// overlapped for.
     pub fn overlapping(&self) -> Vec<usize> {
         let seen = |k: &usize| self.overlaps[*k].load(Ordering::Relaxed);
         (0..self.overlaps.len()).filter(seen).collect()
@@ -249,7 +265,22 @@ impl<'a> Descent<'a> {
             (theirs[0], State::Tree(right?)),
         ];
         states.sort_unstable_by_key(|s| s.0);
-        self.cell(cell, Arc::new(whole), states, Round::START)
+        let both = Self::new(self.sources, self.rule, self.share, self.overlaps.len());
+        let result = both.cell(cell, Arc::new(whole), states, Round::START);
+        self.counters.add(&both.counters);
+        let overlapping = both.overlapping();
+        for group in [ours, theirs] {
+            if overlapping.contains(&(group[0] as usize)) {
+                for k in group {
+                    self.note_overlap(k);
+                }
+            }
+        }
+        result
+    }
+
+    fn note_overlap(&self, operand: u32) {
+        self.overlaps[operand as usize].store(true, Ordering::Relaxed);
     }
 
     /// The result of a group of operands in a cell.
@@ -370,7 +401,7 @@ impl<'a> Descent<'a> {
             })
             .collect();
         let node = leaf::evaluate(&cell, expression, self.rule, lists, self.sources, |k| {
-            self.overlaps[k as usize].store(true, Ordering::Relaxed);
+            self.note_overlap(k);
         });
         Branch::of_node(cell, node)
     }
