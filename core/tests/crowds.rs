@@ -13,8 +13,8 @@ use bspcsg::mesh::half_space::half_space;
 use bspcsg::tree::solid::Solid;
 
 use support::{
-    applied, assert_same_set, combined, complement, manifold_mesh, normalized, volume, Numbers,
-    Shape,
+    applied, assert_same_set, combined, complement, inside, manifold_mesh, normalized, volume,
+    Numbers, Shape,
 };
 
 /// An expression over operands 0 … count − 1 with nested operations, each operand named once.
@@ -152,4 +152,39 @@ fn half_spaces_in_one_place_make_what_they_make_one_after_the_other() {
         terms.push(Term::And((0..count).collect()));
         assert_same_as_stepwise(&solids, &terms, &format!("round {round}"));
     }
+}
+
+#[test]
+fn shells_of_one_mesh_make_what_they_make_one_after_the_other() {
+    let mut numbers = Numbers::new(34);
+    for round in 0..24 {
+        let any = |numbers: &mut Numbers| match numbers.below(3) {
+            0 => Shape::any_cuboid(numbers, 40),
+            1 => Shape::sphere(numbers.point(30), 9.0, 1),
+            _ => Shape::any_tetrahedron(numbers, 40),
+        };
+        let shapes: Vec<Shape> = (0..2 + round % 9).map(|_| any(&mut numbers)).collect();
+        let all = shapes.iter().cloned().fold(Shape::default(), Shape::with);
+        let solids = shapes.iter().map(Shape::solid);
+        let union = solids.reduce(|a, b| applied(SetOp::Union, &a, &b));
+        let union = union.expect("several");
+        for rule in [Rule::Positive, Rule::Nonzero] {
+            let united = normalized(&all.unchecked(), rule);
+            assert!(united.is_reduced());
+            assert_same_set(&united, &union);
+            manifold_mesh(&united, &format!("round {round}"));
+            assert_eq!(volume(&united), volume(&union), "round {round}");
+        }
+    }
+}
+
+#[test]
+fn a_shell_that_is_turned_around_takes_away() {
+    let inner = Shape::cuboid([10; 3], [30; 3]).inverted();
+    let beside = Shape::cuboid([20, 20, 20], [60; 3]);
+    let shape = Shape::cuboid([0; 3], [40; 3]).with(inner).with(beside);
+    let united = normalized(&shape.unchecked(), Rule::Positive);
+    // Inside the inner one the numbers of the outer and the inner cancel.
+    let points = [[15, 15, 15], [25, 25, 25], [5, 5, 5], [50, 50, 50]];
+    assert_eq!(inside(&united, &points), [false, true, true, true]);
 }

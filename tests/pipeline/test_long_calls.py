@@ -41,14 +41,14 @@ def arrays(solids):
 #: What a call needs, and the call. Each takes far longer than the test waits.
 CALLS = {
     "half-spaces in one expression": (
-        "cuts = [b.half_space(tuple(rng.normal(size=3)), 1.0) for _ in range(100)]",
+        "cuts = [b.half_space(tuple(rng.normal(size=3)), 1.0) for _ in range(60_000)]",
         "b.intersection(*cuts).tree",
     ),
-    "turned cubes at one place": ("cubes = turned(60)", "b.union(*cubes).tree"),
-    "turned cubes in one mesh": ("mesh = arrays(turned(60))", "b.Solid(*mesh).volume"),
-    "boxes in one mesh": ("mesh = arrays(many_boxes(400))", "b.Solid(*mesh).volume"),
-    "a mesh that is there a hundred times": (
-        "mesh = arrays([ball(16)] * 100)",
+    "turned cubes at one place": ("cubes = turned(500)", "b.union(*cubes).tree"),
+    "turned cubes in one mesh": ("mesh = arrays(turned(500))", "b.Solid(*mesh).volume"),
+    "boxes in one mesh": ("mesh = arrays(many_boxes(15_000))", "b.Solid(*mesh).volume"),
+    "a mesh that is there two hundred times": (
+        "mesh = arrays([ball(32)] * 200)",
         "b.Solid(*mesh).volume",
     ),
     "import": (

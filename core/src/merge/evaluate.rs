@@ -6,7 +6,7 @@ use super::descent::descend::{Counters, Descent};
 use super::expression::{Expression, Term};
 use super::kernels::leaf::Rule;
 use super::lists::list::Sources;
-use super::simple::is_simple;
+use super::simple::{is_simple, simple_shells};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::Source;
@@ -40,7 +40,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
             let solid = solid.made_of(&operands);
             return Ok((solid, descent.counters));
         }
-        let is_open = |k: &usize| !operands[*k].is_reduced() && !operands[*k].is_claimed();
+        let is_open = |k: &usize| !operands[*k].is_reduced();
         let open: Vec<usize> = overlaps.iter().copied().filter(is_open).collect();
         if open.is_empty() {
             return Err(wrongly_reduced(&operands, &overlaps));
@@ -158,8 +158,14 @@ pub fn settled(solid: &Solid) -> Result<Option<Solid>> {
 
 fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
     let sources = Sources::new(solid.sources().clone());
-    if is_simple(solid, &sources)? == Some(true) {
+    let simple = is_simple(solid, &sources)?;
+    if simple == Some(true) {
         return Ok(solid.clone().with_reduced(true));
+    }
+    if simple == Some(false) && rule != Rule::EvenOdd {
+        if let Some(united) = union_of_shells(solid, &sources)? {
+            return Ok(united);
+        }
     }
     let descent = Descent::new(&sources, rule, false, 1);
     let expression = Expression::new(vec![Term::Operand(0)])?;
@@ -169,6 +175,22 @@ fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
     }
     let table = sources.table().clone();
     Ok(Solid::new(root, solid.pitch(), table, true))
+}
+
+/// A mesh of several shells as the union of them; `None` if one of them overlaps itself or is turned
+/// inside out.
+fn union_of_shells(solid: &Solid, sources: &Sources) -> Result<Option<Solid>> {
+    let Some(shells) = simple_shells(solid, sources) else {
+        return Ok(None);
+    };
+    let count = shells.len() as u32;
+    let mut terms: Vec<Term> = (0..count).map(Term::Operand).collect();
+    terms.push(Term::Or((0..count).collect()));
+    let descent = Descent::new(sources, Rule::Positive, true, shells.len());
+    let root = descent.run(Expression::new(terms)?, shells)?;
+    let table = sources.table().clone();
+    let alone = descent.overlapping().is_empty();
+    Ok(alone.then(|| Solid::new(root, solid.pitch(), table, true)))
 }
 
 fn common_pitch(expression: &Expression, solids: &[Solid]) -> Result<Pitch> {

@@ -68,7 +68,7 @@ impl Solid {
     pub fn made_of(mut self, operands: &[Self]) -> Self {
         let open: Vec<&Self> = operands.iter().filter(|o| !o.is_reduced()).collect();
         self.reduced = open.is_empty();
-        self.claimed = operands.iter().any(|o| o.claimed);
+        self.claimed = self.reduced && operands.iter().any(|o| o.claimed);
         if !self.reduced && open.iter().all(|o| o.doubts.is_some() || o.is_whole_mesh()) {
             let doubts = open
                 .iter()

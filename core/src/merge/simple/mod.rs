@@ -9,6 +9,7 @@
 pub(super) mod star;
 
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
 
 use super::descent::choice::LEAF;
 use super::kernels::leaf::LeafTree;
@@ -24,7 +25,7 @@ use crate::mesh::source::Source;
 use crate::mesh::tasks::both;
 use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
-use crate::tree::node::Node;
+use crate::tree::node::{Branch, Deferred, Group, Node};
 use crate::tree::solid::Solid;
 
 /// Lists at least this long are worth a task of their own.
@@ -48,14 +49,7 @@ struct Check<'a> {
 /// # Errors
 /// `Cancelled`.
 pub fn is_simple(solid: &Solid, sources: &Sources) -> Result<Option<bool>> {
-    let (Node::Deferred(leaf), 1) = (&*solid.root().node, solid.sources().len()) else {
-        return Ok(None);
-    };
-    let source = solid.sources().get(0);
-    let Some(mesh) = source
-        .mesh()
-        .filter(|_| leaf.parts.is_empty() && leaf.groups.len() == 1)
-    else {
+    let Some((leaf, source, mesh)) = only_mesh(solid) else {
         return Ok(None);
     };
     let all = leaf.groups[0]
@@ -67,29 +61,91 @@ pub fn is_simple(solid: &Solid, sources: &Sources) -> Result<Option<bool>> {
     if all && closed() && is_star_shaped(mesh) {
         return Ok(Some(true));
     }
-    let shells = shells(source, mesh.faces.len());
-    let count = shells.iter().map(|s| *s as usize + 1).max().unwrap_or(0);
-    let check = Check {
-        sources,
-        mesh,
-        shells,
-        irregular: irregular(source, mesh),
+    let mut check = Check::new(source, mesh, sources);
+    if let [alone] = check.seen.as_mut_slice() {
         // A single shell whose faces keep clear of each other has one number on either side of all
         // of them, and which is 0 is plain from the sign of its volume.
-        seen: (0..count)
-            .map(|_| AtomicBool::new(count == 1 && is_outward(mesh)))
-            .collect(),
-        overlap: AtomicBool::new(false),
-    };
+        *alone.get_mut() = is_outward(mesh, 0..mesh.faces.len() as u32);
+    }
     check.cell(solid.root().cell, List::open(leaf, solid.root(), sources));
     Ok(Some(!check.overlap.load(Ordering::Relaxed)))
 }
 
-/// Whether the faces enclose more inside than outside.
-fn is_outward(mesh: &TriangleMesh) -> bool {
+/// The leaf, the source and the mesh of a solid that lists faces of one mesh and nothing else.
+fn only_mesh(solid: &Solid) -> Option<(&Deferred, &Source, &TriangleMesh)> {
+    let (Node::Deferred(leaf), 1) = (&*solid.root().node, solid.sources().len()) else {
+        return None;
+    };
+    let source = solid.sources().get(0);
+    let alone = leaf.parts.is_empty() && leaf.groups.len() == 1;
+    Some((leaf, source, source.mesh().filter(|_| alone)?))
+}
+
+/// The shells of a mesh that closes by index, if there are several, and each alone is simple.
+///
+/// Where two of them cross or hold each other, their union is what the mesh winds around.
+///
+/// # Cost
+/// As [`is_simple`]; shells that overlap are not compared with each other.
+pub fn simple_shells(solid: &Solid, sources: &Sources) -> Option<Vec<Branch>> {
+    let (leaf, source, mesh) = only_mesh(solid)?;
+    let whole = leaf.corner == 0 && !solid.root().complement && !leaf.groups[0].flip;
+    let closed = source.joints().is_some_and(|j| j.open.is_empty());
+    if !whole || !closed || leaf.len() != mesh.faces.len() {
+        return None;
+    }
+    let mut check = Check::new(source, mesh, sources);
+    let mut faces = vec![Vec::new(); check.seen.len()];
+    for (face, shell) in (0u32..).zip(&check.shells) {
+        faces[*shell as usize].push(face);
+    }
+    if faces.len() < 2 {
+        return None;
+    }
+    for (seen, faces) in check.seen.iter_mut().zip(&faces) {
+        *seen.get_mut() = is_outward(mesh, faces.iter().copied());
+    }
+    let shared = &leaf.groups[0].source;
+    let branches: Vec<Branch> = faces
+        .into_iter()
+        .map(|f| shell_of(shared, mesh, f))
+        .collect();
+    for branch in &branches {
+        if let Node::Deferred(leaf) = &*branch.node {
+            check.cell(branch.cell, List::open(leaf, branch, sources));
+        }
+        if check.overlap.load(Ordering::Relaxed) {
+            return None;
+        }
+    }
+    Some(branches)
+}
+
+/// A branch of some faces of a mesh.
+fn shell_of(source: &Arc<Source>, mesh: &TriangleMesh, faces: Vec<u32>) -> Branch {
+    let boxes = faces.iter().map(|face| mesh.face_box(*face));
+    let joined = boxes.reduce(|(low, high), (l, h)| {
+        let low = [0, 1, 2].map(|i| low[i].min(l[i]));
+        (low, [0, 1, 2].map(|i| high[i].max(h[i])))
+    });
+    let cell = joined.map_or(Cell::UNIVERSE, |(low, high)| Cell::around(&low, &high));
+    let group = Group {
+        source: Arc::clone(source),
+        flip: false,
+        faces,
+    };
+    let leaf = Deferred {
+        groups: vec![group],
+        ..Deferred::default()
+    };
+    Branch::of_node(cell, Node::Deferred(leaf))
+}
+
+/// Whether faces enclose more inside than outside.
+fn is_outward(mesh: &TriangleMesh, faces: impl Iterator<Item = u32>) -> bool {
     let mut volume = Int::<4>::ZERO;
-    for face in 0..mesh.faces.len() {
-        volume += sixfold_flux(&mesh.corners(face as u32));
+    for face in faces {
+        volume += sixfold_flux(&mesh.corners(face));
     }
     volume.signum() > 0
 }
@@ -129,7 +185,21 @@ fn irregular(source: &Source, mesh: &TriangleMesh) -> Vec<bool> {
     marks
 }
 
-impl Check<'_> {
+impl<'a> Check<'a> {
+    /// A check in which no shell was labelled yet.
+    fn new(source: &Source, mesh: &'a TriangleMesh, sources: &'a Sources) -> Self {
+        let shells = shells(source, mesh.faces.len());
+        let count = shells.iter().map(|s| *s as usize + 1).max().unwrap_or(0);
+        Self {
+            sources,
+            mesh,
+            shells,
+            irregular: irregular(source, mesh),
+            seen: (0..count).map(|_| AtomicBool::new(false)).collect(),
+            overlap: AtomicBool::new(false),
+        }
+    }
+
     fn cell(&self, cell: Cell, list: List) {
         poll();
         if self.overlap.load(Ordering::Relaxed) {
