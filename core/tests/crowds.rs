@@ -59,7 +59,7 @@ fn an_expression_is_what_its_two_parts_make() {
             assert!(ours.iter().all(|k| !theirs.contains(k)));
             for inside in 0..1 << count {
                 let [left, right] = parts.halves.each_ref().map(|half| value(half, inside));
-                let of = |k: u32| if k == ours[0] { left } else { right };
+                let of = |k: u32| if k == 0 { left } else { right };
                 let whole = parts.whole.value(of, &mut Vec::new());
                 assert_eq!(whole, value(&expression, inside), "{expression:?}");
             }

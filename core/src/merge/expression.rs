@@ -69,7 +69,7 @@ enum Known {
 pub struct Parted {
     /// The two others; they have no operand in common.
     pub halves: [Expression; 2],
-    /// What they make, each by the first of its operands.
+    /// What they make, the first as operand 0 and the second as operand 1.
     pub whole: Expression,
 }
 
@@ -132,8 +132,7 @@ impl Expression {
         if ours.iter().any(|k| theirs.binary_search(k).is_ok()) {
             return None;
         }
-        let operands = [ours.first()?, theirs.first()?].map(|k| Term::Operand(*k));
-        let mut terms = operands.to_vec();
+        let mut terms = vec![Term::Operand(0), Term::Operand(1)];
         terms.push(self.terms[top].with(vec![0, 1]));
         if negate {
             terms.push(Term::Not(2));

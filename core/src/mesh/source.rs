@@ -188,6 +188,15 @@ impl Source {
         }
     }
 
+    /// The lattice box around some faces; `None` without any.
+    pub fn box_around(&self, faces: &[u32]) -> Option<(Lattice, Lattice)> {
+        let boxes = faces.iter().map(|face| self.face_box(*face));
+        boxes.reduce(|(low, high), (l, h)| {
+            let low = [0, 1, 2].map(|i| low[i].min(l[i]));
+            (low, [0, 1, 2].map(|i| high[i].max(h[i])))
+        })
+    }
+
     /// The lattice box around a face.
     pub fn face_box(&self, face: u32) -> (Lattice, Lattice) {
         match &self.shape {

@@ -260,19 +260,14 @@ impl<'a> Descent<'a> {
             || self.group(cell, &left, first, depth),
             || self.group(cell, &right, second, depth),
         );
-        let mut states: States = vec![
-            (ours[0], State::Tree(left?)),
-            (theirs[0], State::Tree(right?)),
-        ];
-        states.sort_unstable_by_key(|s| s.0);
-        let both = Self::new(self.sources, self.rule, self.share, self.overlaps.len());
-        let result = both.cell(cell, Arc::new(whole), states, Round::START);
-        self.counters.add(&both.counters);
-        let overlapping = both.overlapping();
-        for group in [ours, theirs] {
-            if overlapping.contains(&(group[0] as usize)) {
+        let states = vec![(0, State::Tree(left?)), (1, State::Tree(right?))];
+        let pair = Self::new(self.sources, self.rule, self.share, states.len());
+        let result = pair.cell(cell, Arc::new(whole), states, Round::START);
+        self.counters.add(&pair.counters);
+        for (group, overlaps) in [ours, theirs].iter().zip(&pair.overlaps) {
+            if overlaps.load(Ordering::Relaxed) {
                 for k in group {
-                    self.note_overlap(k);
+                    self.note_overlap(*k);
                 }
             }
         }

@@ -210,18 +210,13 @@ fn bounds_below(branch: &Branch) -> [Lattice; 2] {
     let Node::Deferred(leaf) = &*branch.node else {
         return whole;
     };
-    if leaf.len() > FEW || !leaf.parts.is_empty() {
-        return whole;
+    match leaf.groups.as_slice() {
+        [group] if leaf.len() <= FEW && leaf.parts.is_empty() => {
+            let around = group.source.box_around(&group.faces);
+            around.map_or(whole, <[Lattice; 2]>::from)
+        }
+        _ => whole,
     }
-    let boxes = leaf.groups.iter().flat_map(|group| {
-        let face_box = |face: &u32| group.source.face_box(*face);
-        group.faces.iter().map(face_box)
-    });
-    let joined = boxes.reduce(|(low, high), (l, h)| {
-        let low = [0, 1, 2].map(|i| low[i].min(l[i]));
-        (low, [0, 1, 2].map(|i| high[i].max(h[i])))
-    });
-    joined.map_or(whole, <[Lattice; 2]>::from)
 }
 
 /// A branch of the cell at hand; a deferred leaf becomes bins or a list.

@@ -106,10 +106,7 @@ pub fn simple_shells(solid: &Solid, sources: &Sources) -> Option<Vec<Branch>> {
         *seen.get_mut() = is_outward(mesh, faces.iter().copied());
     }
     let shared = &leaf.groups[0].source;
-    let branches: Vec<Branch> = faces
-        .into_iter()
-        .map(|f| shell_of(shared, mesh, f))
-        .collect();
+    let branches: Vec<Branch> = faces.into_iter().map(|f| shell_of(shared, f)).collect();
     for branch in &branches {
         if let Node::Deferred(leaf) = &*branch.node {
             check.cell(branch.cell, List::open(leaf, branch, sources));
@@ -122,13 +119,9 @@ pub fn simple_shells(solid: &Solid, sources: &Sources) -> Option<Vec<Branch>> {
 }
 
 /// A branch of some faces of a mesh.
-fn shell_of(source: &Arc<Source>, mesh: &TriangleMesh, faces: Vec<u32>) -> Branch {
-    let boxes = faces.iter().map(|face| mesh.face_box(*face));
-    let joined = boxes.reduce(|(low, high), (l, h)| {
-        let low = [0, 1, 2].map(|i| low[i].min(l[i]));
-        (low, [0, 1, 2].map(|i| high[i].max(h[i])))
-    });
-    let cell = joined.map_or(Cell::UNIVERSE, |(low, high)| Cell::around(&low, &high));
+fn shell_of(source: &Arc<Source>, faces: Vec<u32>) -> Branch {
+    let around = source.box_around(&faces);
+    let cell = around.map_or(Cell::UNIVERSE, |(low, high)| Cell::around(&low, &high));
     let group = Group {
         source: Arc::clone(source),
         flip: false,
