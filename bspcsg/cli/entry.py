@@ -5,8 +5,16 @@ import os
 #: As `output.INTERRUPTED`, which is not imported yet.
 _INTERRUPTED = 130
 
+#: Where Python's own code for imports says it is from.
+_IMPORTS = "<frozen importlib._bootstrap>"
+
+#: After so many seconds an interrupt that came at a bad moment comes again.
+_AGAIN = 0.01
+
 try:
     import signal
+    import sys
+    from types import FrameType
 except KeyboardInterrupt:
     os._exit(_INTERRUPTED)
 
@@ -14,6 +22,39 @@ except KeyboardInterrupt:
 def _end_quietly(*_: object) -> None:
     """End the process at once; nothing has been begun, or all is done."""
     os._exit(_INTERRUPTED)
+
+
+def _end_in_order(number: int, frame: FrameType | None) -> None:
+    """Raise `KeyboardInterrupt`, which closes files; later, if modules are being imported.
+
+    An exception there is lost in a lock's callback, or ends the process where compiled modules
+    begin.
+    """
+    if _is_importing(frame) and hasattr(signal, "setitimer"):
+        _come_again()
+    else:
+        signal.default_int_handler(number, frame)
+
+
+def _is_importing(frame: FrameType | None) -> bool:
+    while frame is not None:
+        if frame.f_code.co_filename == _IMPORTS:
+            return True
+        frame = frame.f_back
+    return False
+
+
+def _come_again() -> None:
+    signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+    signal.setitimer(signal.ITIMER_REAL, _AGAIN)
+
+
+def _catch_lost(lost: "sys.UnraisableHookArgs") -> None:
+    """Let an interrupt come again that a finaliser had swallowed; tell of all else as ever."""
+    if isinstance(lost.exc_value, KeyboardInterrupt) and hasattr(signal, "setitimer"):
+        _come_again()
+    else:
+        sys.__unraisablehook__(lost)
 
 
 def _replace(old: object, new: object) -> None:
@@ -29,9 +70,10 @@ def main() -> None:
 
     try:
         # From here on files may be open, which an exception closes and takes away.
-        _replace(_end_quietly, signal.default_int_handler)
+        sys.unraisablehook = _catch_lost
+        _replace(_end_quietly, _end_in_order)
         command_line.main()
     except KeyboardInterrupt:
         _end_quietly()
     finally:
-        _replace(signal.default_int_handler, _end_quietly)
+        _replace(_end_in_order, _end_quietly)

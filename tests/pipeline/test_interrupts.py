@@ -21,6 +21,24 @@ entry._replace = lambda *ways: (replace(*ways), os.write(2, b"."))
 entry.main()
 """
 
+#: Interrupts itself while a module is imported, and then where an exception gets lost.
+BADLY_TIMED = """
+import signal, sys, time
+from bspcsg.cli import entry
+signal.signal(signal.SIGINT, entry._end_in_order)
+sys.unraisablehook = entry._catch_lost
+class Lost:
+    def __del__(self):
+        signal.raise_signal(signal.SIGINT)
+for moment in ("import interrupting", "Lost()"):
+    try:
+        exec(moment)
+        print("passed", moment)
+        time.sleep(60)
+    except KeyboardInterrupt:
+        print("interrupted")
+"""
+
 SLOW = "import time\ntime.sleep(60)\n"
 
 
@@ -59,3 +77,27 @@ def test_scripts_are_interrupted_quietly(tmp_path: Path, delay: float) -> None:
     (tmp_path / "slow.py").write_text(SLOW)
     code, _, err = interrupted(delay, "run", str(tmp_path / "slow.py"), "-o", "x.stl")
     assert code == 130 and len(err.splitlines()) <= 1 and b"Traceback" not in err
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_interrupts_that_come_at_a_bad_moment_come_again(tmp_path: Path) -> None:
+    (tmp_path / "interrupting.py").write_text(
+        "import signal\nsignal.raise_signal(signal.SIGINT)\nprint('imported')\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", BADLY_TIMED],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": f"{tmp_path}:{Path(b.__file__).parent.parent}"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    assert done.stderr == ""
+    assert done.stdout.splitlines() == [
+        "imported",
+        "passed import interrupting",
+        "interrupted",
+        "passed Lost()",
+        "interrupted",
+    ]
