@@ -18,6 +18,7 @@ from .conveniences import attach as _attach
 
 if TYPE_CHECKING:
     from ._core import __version__
+    from .bsp.sets.region import Region
     from .errors import (
         BspcsgError,
         Finding,
@@ -60,6 +61,7 @@ __all__ = [
     "LimitError",
     "Mesh",
     "MissingPartError",
+    "Region",
     "Solid",
     "UnboundedError",
     "Verdict",
@@ -93,6 +95,7 @@ _attach()
 #: command line starts without numpy.
 _MODULES = {
     "_core": "__version__",
+    "bsp.sets.region": "Region",
     "verify.check": "CheckReport Verdict validate",
     "errors": "BspcsgError Finding FormatError InternalError InvalidMeshError"
     " InvalidParameterError LimitError MissingPartError UnboundedError",

@@ -10,15 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from .._types import FloatArray, IndexArray, Scalar, Vector
+from .._types import Scalar, Vector
 from ..errors import InvalidMeshError, invalid_parameter
 from ..geometry.hyperplane import Hyperplane
 from ..geometry.polygon import triangulate
 from ..geometry.transform import vector3
 from ..parameters import number, positive, refuse_many_corners, sides_around
 from ..solid.counting import counted
-from ..solid.leaf import MeshLeaf, PlaneLeaf
+from ..solid.leaf import PlaneLeaf
 from ..solid.solid import Solid, from_leaf
+from .arrays import from_arrays
 from .profile import extrude, revolve
 from .sweep import surface_of_revolution, unit_circle
 
@@ -247,28 +248,6 @@ def half_space(normal: Vector, offset: Scalar = 0.0) -> Solid:
         raise InvalidMeshError("A normal has three numbers.", "bad_normal") from error
     number(offset, "offset")
     return from_leaf(PlaneLeaf(Hyperplane.from_numbers((x, y, z), offset)))
-
-
-def from_arrays(vertices: FloatArray, faces: IndexArray) -> Solid:
-    """Return the solid of a mesh whose faces do not cross, checked only where snapping could."""
-    own = np.ascontiguousarray(vertices, dtype=np.float64), np.ascontiguousarray(faces)
-    return from_leaf(MeshLeaf(*own, trusted=_survives_snapping(*own)))
-
-
-def _survives_snapping(vertices: FloatArray, faces: IndexArray) -> bool:
-    """Whether no triangle is so thin that moving its corners to the lattice could turn it over."""
-    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
-    sides = np.array(
-        [
-            np.linalg.norm(b - a, axis=1),
-            np.linalg.norm(c - b, axis=1),
-            np.linalg.norm(a - c, axis=1),
-        ]
-    )
-    with np.errstate(all="ignore"):
-        altitude = np.linalg.norm(np.cross(b - a, c - a), axis=1) / sides.max(axis=0)
-        # A thousand steps of the lattice that a solid of this size gets.
-        return bool(altitude.min() > 1e-6 * max(1.0, np.abs(vertices).max() / 1000))
 
 
 def _radius(given: Scalar | None, default: Any) -> float:

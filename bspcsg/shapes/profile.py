@@ -1,24 +1,38 @@
 """Solids from plane polygons: extruded along z or revolved around it."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from .._types import FloatArray, IndexArray, Scalar
+from .._types import FloatArray, IndexArray, Scalar, Vector
 from ..errors import invalid_parameter
 from ..geometry.polygon import contours_of, directed_edges, triangulate
 from ..geometry.transform import cos_sin
-from ..parameters import positive, refuse_many_corners, sides_around
+from ..parameters import at_least, not_negative, number, positive, refuse_many_corners, sides_around
 from ..solid.counting import counted
 from ..solid.leaf import MeshLeaf
 from ..solid.solid import Solid, from_leaf
 from .sweep import RingLayout, strip
+from .twist import Rise, risen
+
+#: Slices of a full turn of twist, as many as round bodies have sides if nobody says otherwise.
+_SLICES_OF_A_TURN = 32
 
 
 @counted
-def extrude(polygon: Any, h: Scalar, *, center: bool = False) -> Solid:
-    """Return the upright prism over a polygon, which may be concave and have holes.
+def extrude(
+    polygon: Any,
+    h: Scalar,
+    *,
+    center: bool = False,
+    twist: Scalar = 0.0,
+    scale: Scalar | Vector = 1.0,
+    slices: int | None = None,
+    taper: Scalar = 0.0,
+) -> Solid:
+    """Return what a polygon, which may be concave and have holes, sweeps on its way up.
 
     Parameters
     ----------
@@ -31,6 +45,28 @@ def extrude(polygon: Any, h: Scalar, *, center: bool = False) -> Solid:
         Height.
     center : bool
         Whether the middle is at z = 0, instead of the lower end.
+    twist : float
+        Degrees that the upper end is turned about the z axis, clockwise seen from above, as in
+        OpenSCAD.
+    scale : float or (2,) float
+        Size of the upper end, as a part of that of the lower one; 0 makes it a point or a line.
+    slices : int, optional
+        Parts of the height with straight walls, at least 1. By default one for each 32nd of a turn
+        of `twist`. What does not change on the way up needs no more than one.
+    taper : float
+        Degrees that the walls lean inwards, outwards if it is negative; between -90 and 90.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of its range, or a leaning wall loses its lower or upper edge; the
+        message says where.
+    LimitError
+        If the solid would have too many corners.
+
+    Notes
+    -----
+    Walls that meet on the way up, as leaning ones may, are united.
 
     Examples
     --------
@@ -38,17 +74,45 @@ def extrude(polygon: Any, h: Scalar, *, center: bool = False) -> Solid:
     >>> frame = [[(0, 0), (4, 0), (4, 4), (0, 4)], [(1, 1), (3, 1), (3, 3), (1, 3)]]
     >>> b.extrude(frame, 2).volume
     24.0
+    >>> b.extrude([(-1, -1), (1, -1), (1, 1), (-1, 1)], 3, scale=0).volume
+    4.0
     """
-    height = positive(h, "h")
+    rise = _rise(positive(h, "h"), center, twist, scale, slices, taper)
     contours = contours_of(polygon)
     points = np.concatenate(contours)
     count = len(points)
-    base = -height / 2 if center else 0.0
-    levels = [np.column_stack([points, np.full(count, z)]) for z in (base, base + height)]
+    if not rise.is_upright:
+        refuse_many_corners((rise.slices + 1) * count, "This extrusion")
+        return risen(contours, rise)
+    levels = [
+        np.column_stack([points, np.full(count, z)]) for z in (rise.base, rise.base + rise.height)
+    ]
     caps = triangulate(contours)
     start, end = directed_edges(contours).T
     sides = strip(start, end, start + count, end + count)
     return _solid(np.concatenate(levels), [caps[:, ::-1], caps + count, sides])
+
+
+def _rise(
+    height: float,
+    center: bool,
+    twist: Scalar,
+    scale: Scalar | Vector,
+    slices: int | None,
+    taper: Scalar,
+) -> Rise:
+    turn, lean = number(twist, "twist"), number(taper, "taper")
+    if abs(lean) >= 90:
+        raise invalid_parameter(f"taper must be between -90 and 90 degrees, not {lean:g}.")
+    given: Any = scale
+    ends = (given, given) if np.ndim(given) == 0 else given
+    if len(ends) != 2:
+        raise invalid_parameter("scale is one number, or two for x and y.")
+    x, y = (not_negative(end, "scale") for end in ends)
+    wanted = math.ceil(abs(turn) / 360 * _SLICES_OF_A_TURN) if slices is None else slices
+    count = at_least(1, max(wanted, 1) if slices is None else wanted, "slices")
+    base = -height / 2 if center else 0.0
+    return Rise(height, base, turn, (x, y), count, height * math.tan(math.radians(lean)))
 
 
 @counted

@@ -425,7 +425,7 @@ class Solid(Measured, PointSet):
     def slice(
         self, offset: Scalar = 0.0, normal: Vector = (0, 0, 1), *, origin: Vector | None = None
     ) -> "Region":
-        """Return the section by a plane as a region of the plane (`bspcsg.bsp.Region`).
+        """Return the section by a plane as a region of the plane (`bspcsg.Region`).
 
         The boundary is cut exactly, by the plane that `half_space` has for these numbers: the one
         asked for if it holds lattice points, else the nearest of its direction that does. Each

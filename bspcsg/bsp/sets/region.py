@@ -213,10 +213,32 @@ class Region(PlaneQueries):
 
     # To space
 
-    def extrude(self, height: Scalar, *, center: bool = False) -> Solid:
-        """Return the upright prism over the region (see `bspcsg.extrude`), none if it is empty."""
+    def extrude(
+        self,
+        height: Scalar,
+        *,
+        center: bool = False,
+        twist: Scalar = 0.0,
+        scale: Scalar | Vector = 1.0,
+        slices: int | None = None,
+        taper: Scalar = 0.0,
+    ) -> Solid:
+        """Return what the region sweeps on its way up, nothing if it is empty.
+
+        The parameters are those of `bspcsg.extrude`.
+
+        Examples
+        --------
+        >>> from bspcsg import Region
+        >>> Region.rectangle(2, 2, center=True).extrude(3, scale=0).volume
+        4.0
+        """
         positive(height, "height")
-        return extrude(self, height, center=center) if self.outlines else Solid.empty()
+        if not self.outlines:
+            return Solid.empty()
+        return extrude(
+            self, height, center=center, twist=twist, scale=scale, slices=slices, taper=taper
+        )
 
     def revolve(self, *, angle: Scalar = 360.0, segments: int = 32) -> Solid:
         """Return what the region sweeps around the z axis, x being the distance from the axis.

@@ -4,7 +4,8 @@ import numpy as np
 
 from ...geometry.polygon import triangulate_face
 from ...mesh.weld import welded
-from ...shapes.primitives import box, cylinder, from_arrays
+from ...shapes.arrays import from_arrays
+from ...shapes.primitives import box, cylinder
 from ...shapes.sweep import strip, unit_circle
 from ...solid.solid import Solid
 from ..making.tessellation import Fineness

@@ -1,0 +1,29 @@
+"""Solids of arrays that this package has made."""
+
+import numpy as np
+
+from .._types import FloatArray, IndexArray
+from ..solid.leaf import MeshLeaf
+from ..solid.solid import Solid, from_leaf
+
+
+def from_arrays(vertices: FloatArray, faces: IndexArray) -> Solid:
+    """Return the solid of a mesh whose faces do not cross, checked only where snapping could."""
+    own = np.ascontiguousarray(vertices, dtype=np.float64), np.ascontiguousarray(faces)
+    return from_leaf(MeshLeaf(*own, trusted=_survives_snapping(*own)))
+
+
+def _survives_snapping(vertices: FloatArray, faces: IndexArray) -> bool:
+    """Whether no triangle is so thin that moving its corners to the lattice could turn it over."""
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    sides = np.array(
+        [
+            np.linalg.norm(b - a, axis=1),
+            np.linalg.norm(c - b, axis=1),
+            np.linalg.norm(a - c, axis=1),
+        ]
+    )
+    with np.errstate(all="ignore"):
+        altitude = np.linalg.norm(np.cross(b - a, c - a), axis=1) / sides.max(axis=0)
+        # A thousand steps of the lattice that a solid of this size gets.
+        return bool(altitude.min() > 1e-6 * max(1.0, np.abs(vertices).max() / 1000))

@@ -1,0 +1,159 @@
+"""Extrusions that turn, shrink or lean on the way up."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._types import FloatArray, IndexArray
+from ..errors import invalid_parameter
+from ..geometry.polygon import directed_edges, runs_clockwise, triangulate
+from ..geometry.transform import cos_sin
+from ..mesh.weld import welded
+from ..solid.solid import Solid
+from .arrays import from_arrays
+
+#: Diagonals whose lengths differ by less than this part are equal.
+_EQUAL = 1e-5
+
+#: Walls that turn back on themselves by less than this (one plus the cosine between their normals)
+#: move their corner more than a thousand times as far as they move.
+_SHARPEST = 1e-6
+
+
+@dataclass(frozen=True)
+class Rise:
+    """How a figure changes from the lower to the upper end.
+
+    Parameters
+    ----------
+    height, base : float
+        Length along z, and where it begins.
+    twist : float
+        Degrees that the upper end is turned clockwise, seen from above.
+    scale : (float, float)
+        Of the upper end, along x and y.
+    slices : int
+        Levels between the ends and the upper one.
+    inset : float
+        How far the walls of the upper end lie inside those of the lower one.
+    """
+
+    height: float
+    base: float = 0.0
+    twist: float = 0.0
+    scale: tuple[float, float] = (1.0, 1.0)
+    slices: int = 1
+    inset: float = 0.0
+
+    @property
+    def is_upright(self) -> bool:
+        """Whether nothing changes."""
+        return self.twist == 0 and self.scale == (1.0, 1.0) and self.inset == 0
+
+    def section(self, points: FloatArray, lean: FloatArray, level: int) -> FloatArray:
+        """Return the points of a level, 0 being the lower end.
+
+        Parameters
+        ----------
+        points, lean : (n, 2) float64
+            The lower end, and how far its corners have moved inwards at the upper end.
+        """
+        part = level / self.slices
+        cosine, sine = cos_sin(-self.twist * part)
+        x, y = (points + lean * part).T
+        scale = [1 - (1 - end) * part for end in self.scale]
+        turned = np.column_stack([x * cosine - y * sine, x * sine + y * cosine]) * scale
+        return np.column_stack([turned, np.full(len(points), self.base + self.height * part)])
+
+
+def risen(contours: Sequence[FloatArray], rise: Rise) -> Solid:
+    """Return what contours sweep on the way up.
+
+    Parameters
+    ----------
+    contours : sequence of (n, 2) float64
+        The inside on their left.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a wall leans so far inwards that its edge vanishes.
+    """
+    points = np.concatenate(contours)
+    holes = np.concatenate([np.full(len(c), runs_clockwise(c)) for c in contours])
+    lean = _lean(contours, rise.inset)
+    levels = [rise.section(points, lean, k) for k in range(rise.slices + 1)]
+    edges = directed_edges(contours)
+    bands = [
+        _band(levels[k], levels[k + 1], edges, holes, rise) + k * len(points)
+        for k in range(rise.slices)
+    ]
+    cap = triangulate(contours)
+    faces = np.concatenate([cap[:, ::-1], *bands, cap + rise.slices * len(points)])
+    return _closed(np.concatenate(levels), faces, crossing=rise.twist != 0 or rise.inset != 0)
+
+
+def _lean(contours: Sequence[FloatArray], inset: float) -> FloatArray:
+    """Return how far each corner moves when all walls move inwards."""
+    if inset == 0:
+        return np.zeros((sum(map(len, contours)), 2))
+    return np.concatenate([_corner_moves(contour, inset) for contour in contours])
+
+
+def _corner_moves(contour: FloatArray, inset: float) -> FloatArray:
+    along = np.roll(contour, -1, axis=0) - contour
+    inward = np.column_stack([-along[:, 1], along[:, 0]])
+    inward /= np.linalg.norm(inward, axis=1)[:, None]
+    before = np.roll(inward, 1, axis=0)
+    opening = 1 + (inward * before).sum(axis=1)
+    _refuse_where(opening < _SHARPEST, contour, "there the outline turns back on itself")
+    moves = inset * (inward + before) / opening[:, None]
+    shrunk = along + np.roll(moves, -1, axis=0) - moves
+    _refuse_where((shrunk * along).sum(axis=1) <= 0, contour, "the edge that begins there vanishes")
+    return np.asarray(moves)
+
+
+def _refuse_where(wrong: np.ndarray, contour: FloatArray, reason: str) -> None:
+    if wrong.any():
+        place = int(np.flatnonzero(wrong)[0])
+        x, y = contour[place].tolist()
+        message = f"The taper has no room at ({x:g}, {y:g}): {reason}. Choose a smaller one."
+        raise invalid_parameter(message, [place])
+
+
+def _band(
+    low: FloatArray, high: FloatArray, edges: IndexArray, holes: FloatArray, rise: Rise
+) -> IndexArray:
+    """Return the triangles between two levels, each quadrilateral cut along its shorter diagonal.
+
+    Where the diagonals are equal, the direction of the twist and whether the edge belongs to a hole
+    decide; below an end without area the other diagonal is taken.
+    """
+    start, end = edges.T
+    up, down = (
+        np.linalg.norm((a - b)[:, :2], axis=1)
+        for a, b in ((low[start], high[end]), (low[end], high[start]))
+    )
+    equal = 2 * np.abs(up - down) <= _EQUAL * (up + down)
+    flipped = np.asarray(holes[start], dtype=bool) ^ (rise.twist <= 0)
+    rising = np.where(equal, ~flipped, up < down)
+    if _is_flat(high):
+        rising = ~rising
+    above = len(low)
+    first = np.column_stack([start, end, np.where(rising, end, start) + above])
+    second = np.column_stack([np.where(rising, start, end), end + above, start + above])
+    return np.concatenate([first, second])
+
+
+def _is_flat(level: FloatArray) -> bool:
+    return bool((np.ptp(level[:, :2], axis=0) == 0).any())
+
+
+def _closed(vertices: FloatArray, faces: IndexArray, *, crossing: bool) -> Solid:
+    """Return the solid of a mesh in which corners may coincide, and faces may cross or not."""
+    points, same = welded(vertices)
+    triangles = same[faces]
+    proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    kept = np.ascontiguousarray(triangles[proper])
+    return Solid(points, kept) if crossing else from_arrays(points, kept)

@@ -1,0 +1,95 @@
+"""Extrusions that turn, shrink or lean on the way up."""
+
+import math
+from typing import Any
+
+import pytest
+
+import bspcsg as b
+
+SQUARE = b.Region.rectangle(2, 2, center=True)
+FRAME = b.Region.rectangle(10, 10) - b.Region.rectangle(2, 2).translate(4, 4)
+#: A room of six with a mouth of one.
+KEYHOLE = (
+    b.Region.rectangle(10, 10)
+    - b.Region.rectangle(6, 6).translate(2, 2)
+    - b.Region.rectangle(4, 1).translate(7, 4.5)
+)
+#: A slot two wide and eight deep.
+SLOTTED = b.Region.rectangle(10, 10) - b.Region.rectangle(2, 8).translate(4, 2)
+
+
+@pytest.mark.parametrize(
+    ("options", "volume"),
+    [
+        ({}, 12.0),
+        ({"slices": 5}, 12.0),
+        ({"scale": 0}, 4.0),
+        ({"scale": (1, 0)}, 6.0),
+        ({"scale": 0.5}, 7.0),
+        ({"scale": (2, 1), "center": True}, 18.0),
+        # Walls lean by 1/3 of the height on each side: a frustum of sides 2 and 4/3 or 8/3.
+        ({"taper": math.degrees(math.atan(1 / 9))}, 3 * (4 + 16 / 9 + 8 / 3) / 3),
+        ({"taper": -math.degrees(math.atan(1 / 9))}, 3 * (4 + 64 / 9 + 16 / 3) / 3),
+    ],
+)
+def test_volumes_of_a_square(options: dict[str, Any], volume: float) -> None:
+    solid = SQUARE.extrude(3, **options)
+    assert solid.volume == pytest.approx(volume, rel=1e-8)
+    assert b.extrude(SQUARE, 3, **options) == solid
+    assert solid.to_manifold().volume() == pytest.approx(volume, rel=1e-8)
+
+
+def test_a_twist_turns_clockwise_and_keeps_the_ends() -> None:
+    solid = b.Region.rectangle(4, 1).extrude(2, twist=90)
+    levels = {z: solid.vertices[solid.vertices[:, 2] == z, :2] for z in (0, 2)}
+    assert levels[0].min(axis=0).tolist() == [0, 0] and levels[0].max(axis=0).tolist() == [4, 1]
+    assert levels[2].min(axis=0).tolist() == [0, -4] and levels[2].max(axis=0).tolist() == [1, 0]
+    # A slice for each 32nd of a turn: eight levels of four corners, and the first.
+    assert len(solid.vertices) == 4 * 9
+    assert len(b.Region.rectangle(4, 1).extrude(2, twist=90, slices=3).vertices) == 16
+
+
+def test_holes_lean_into_the_material() -> None:
+    solid = FRAME.extrude(1, taper=45)
+    # The frustum between 10 and 8 less that between 2 and 4.
+    assert solid.volume == pytest.approx((100 + 64 + 80 - 4 - 16 - 8) / 3)
+    assert solid.genus == 1
+
+
+def test_walls_that_meet_on_the_way_up_are_united() -> None:
+    solid = KEYHOLE.extrude(1, taper=-45)
+    # The mouth, one wide, is closed from half of the height on.
+    assert [len(solid.slice(z).outlines) for z in (0.25, 0.75)] == [1, 2]
+    assert solid.slice(0.75).area == pytest.approx(11.5**2 - 4.5**2)
+    assert solid.to_manifold().volume() == pytest.approx(solid.volume)
+
+
+@pytest.mark.parametrize(
+    ("figure", "options", "words"),
+    [
+        (SQUARE, {"taper": 45}, "no room at"),
+        (SLOTTED, {"taper": -60}, "no room at"),
+        (SQUARE, {"taper": 90}, "taper must be"),
+        (SQUARE, {"scale": -1}, "scale must not be below 0"),
+        (SQUARE, {"scale": (1, 2, 3)}, "scale is one number"),
+        (SQUARE, {"slices": 0}, "slices must be"),
+        (SQUARE, {"twist": math.inf}, "twist must be finite"),
+        (SQUARE, {"twist": 1, "slices": 10**9}, "corners"),
+    ],
+)
+def test_what_makes_no_solid_is_refused(
+    figure: b.Region, options: dict[str, Any], words: str
+) -> None:
+    with pytest.raises(b.BspcsgError, match=words):
+        figure.extrude(3, **options)
+
+
+@pytest.mark.parametrize("height", [0, -1, math.nan, "a"])
+def test_a_height_is_a_number_above_zero(height: Any) -> None:
+    with pytest.raises(b.InvalidParameterError):
+        SQUARE.extrude(height)
+
+
+def test_the_empty_region_makes_the_empty_solid() -> None:
+    assert b.Region.empty().extrude(3, twist=90, taper=10).is_empty
