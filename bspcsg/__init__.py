@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     )
     from .io import load, save
     from .mesh.mesh import Mesh
+    from .modelling.planar.curves import arc, bezier
     from .operations.setops import boolean, difference, intersection, union, xor
     from .parameters import set_threads
     from .script.run import run_script, show
@@ -66,6 +67,8 @@ __all__ = [
     "UnboundedError",
     "Verdict",
     "__version__",
+    "arc",
+    "bezier",
     "boolean",
     "box",
     "cone",
@@ -101,6 +104,7 @@ _MODULES = {
     " InvalidParameterError LimitError MissingPartError UnboundedError",
     "io": "load save",
     "mesh.mesh": "Mesh",
+    "modelling.planar.curves": "arc bezier",
     "parameters": "set_threads",
     "shapes.primitives": "box cone cube cylinder extrude half_space prism revolve sphere torus",
     "script.run": "run_script show",

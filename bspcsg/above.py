@@ -11,13 +11,16 @@ from typing import Any, Literal, TypeAlias
 #: What is asked for.
 Convenience: TypeAlias = Literal[
     "dumps",
+    "hull_of_region",
     "load",
     "load_dxf",
     "load_svg",
     "loads",
+    "offset_region",
     "save",
     "save_dxf",
     "save_svg",
+    "simplify_region",
     "slice_solid",
     "solid_html",
     "solid_svg",

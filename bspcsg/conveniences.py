@@ -27,6 +27,9 @@ def attach() -> None:
     answer("save_svg", _save_svg)
     answer("load_dxf", _load_dxf)
     answer("save_dxf", _save_dxf)
+    answer("offset_region", _offset_region)
+    answer("hull_of_region", _hull_of_region)
+    answer("simplify_region", _simplify_region)
 
 
 def _save(solid: "Solid", path: str | os.PathLike[str], **options: Any) -> None:
@@ -99,3 +102,21 @@ def _save_dxf(region: "Region", path: str | os.PathLike[str]) -> None:
     from .bsp import save_dxf
 
     save_dxf(region, path)
+
+
+def _offset_region(region: "Region", delta: Any, join: Any, **options: Any) -> "Region":
+    from .modelling.planar.offsetting import offset_region
+
+    return offset_region(region, delta, join, **options)
+
+
+def _hull_of_region(region: "Region") -> "Region":
+    from .modelling.planar.hulls import hull_of_region
+
+    return hull_of_region(region)
+
+
+def _simplify_region(region: "Region", tolerance: Any) -> "Region":
+    from .modelling.planar.simplifying import simplify_region
+
+    return simplify_region(region, tolerance)

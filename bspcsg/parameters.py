@@ -96,10 +96,10 @@ def sides_around(least: int, value: Any, name: str) -> int:
     return count
 
 
-def refuse_many_corners(count: int, what: str) -> None:
+def refuse_many_corners(count: float, what: str) -> None:
     """Raise `LimitError` if a body would have more than `MOST_CORNERS` corners."""
     if count > MOST_CORNERS:
-        message = f"{what} would have {count} corners, and {MOST_CORNERS} are the most."
+        message = f"{what} would have {count:.0f} corners, and {MOST_CORNERS} are the most."
         raise LimitError(f"{message} Choose fewer sides.", "too_many")
 
 

@@ -33,6 +33,7 @@ _PAGES = {
     "bspcsg.bsp.sets.loops": "regions",
     "bspcsg.bsp.sets.slicing": "regions",
     "bspcsg.bsp.drawings": "regions",
+    "bspcsg.modelling.planar": "regions",
     "bspcsg.bsp.rays": "rays",
     "bspcsg.bsp.painting": "pictures",
     "bspcsg.bsp": "trees",

@@ -131,7 +131,6 @@ def openscads_volume(text: str, folder: Path) -> float | None:
 @pytest.mark.skipif(shutil.which("openscad") is None, reason="openscad is not installed")
 @pytest.mark.timeout(3000 if DEEP else 300)
 def test_random_scripts_equal_openscad(tmp_path: Path) -> None:
-    pytest.importorskip("pyclipper")
     compared = 0
     for k in range(ROUNDS):
         text = body(np.random.default_rng([17, k]), 3)

@@ -31,8 +31,6 @@ def test_every_script_of_the_corpus_has_a_golden_volume() -> None:
 
 @pytest.mark.parametrize("row", golden(), ids=lambda row: row["file"])
 def test_small_scripts_equal_openscad(row: dict[str, str]) -> None:
-    if row["file"].startswith("offset"):
-        pytest.importorskip("pyclipper")
     solid = b.load(CORPUS / row["file"])
     assert solid.volume == pytest.approx(float(row["volume"]), rel=2e-5)
     box = np.array([[float(word) for word in row[end].split()] for end in ("low", "high")])
@@ -43,8 +41,6 @@ def test_small_scripts_equal_openscad(row: dict[str, str]) -> None:
 
 @pytest.mark.parametrize("row", golden(), ids=lambda row: row["file"])
 def test_polishing_moves_nothing_far(row: dict[str, str]) -> None:
-    if row["file"].startswith("offset"):
-        pytest.importorskip("pyclipper")
     told: list[csg.Polish] = []
     polished = csg.load(CORPUS / row["file"], polish=True, on_polish=told.append)
     assert polished.volume == pytest.approx(float(row["volume"]), rel=3e-5)

@@ -261,7 +261,6 @@ def test_projections() -> None:
 
 
 def test_offsets() -> None:
-    pytest.importorskip("pyclipper")
     assert region("offset(delta = 1) square(2);").area == 16
     assert region("offset(delta = -0.5) square(2);").area == 1
     assert region("offset(delta = -5) square(2);").is_empty
@@ -273,7 +272,6 @@ def test_offsets() -> None:
 @pytest.mark.parametrize("hair", [1e-5, 1e-4])
 @pytest.mark.parametrize("around", ["union()", "group() union()", "union() { union()"])
 def test_offsets_do_not_widen_what_six_digits_part(hair: float, around: str) -> None:
-    pytest.importorskip("pyclipper")
     parts = f"square(10); {moved(10 + hair, 0, 0)} square(10); {moved(5, 5, 0)} square(10);"
     figure = f"{around} {{ {parts} }}" + " }" * around.count("{")
     inner = region(f"offset(delta = -0.3) {{ {figure} }}")
@@ -282,7 +280,6 @@ def test_offsets_do_not_widen_what_six_digits_part(hair: float, around: str) -> 
 
 
 def test_offsets_do_not_draw_out_what_six_digits_leave_over() -> None:
-    pytest.importorskip("pyclipper")
     sliver = "polygon([[0, 0], [20, 0], [0, 0.0002]]);"
     assert region(f"offset(delta = 0.5) {{ square(10); {sliver} }}").area == pytest.approx(
         121, abs=0.001 * 40
@@ -290,7 +287,6 @@ def test_offsets_do_not_draw_out_what_six_digits_leave_over() -> None:
 
 
 def test_fine_figures_are_grown_as_they_are() -> None:
-    pytest.importorskip("pyclipper")
     ring = region("circle(r = 0.0005, $fn = 100);")
     grown = region("offset(delta = 0.0005) circle(r = 0.0005, $fn = 100);")
     assert grown.area == pytest.approx(4 * ring.area, rel=2e-3)

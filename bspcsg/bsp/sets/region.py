@@ -1,9 +1,9 @@
 """`Region`: a set of points in the plane with polygonal boundary, as an immutable value."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from typing import Any, Self
+from typing import Any, Literal, Self, TypeAlias
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from ..._types import FloatArray, Scalar, Vector, WindingRule
 from ...above import above
 from ...errors import LimitError, UnboundedError, core_errors, invalid_parameter
 from ...geometry import transform
+from ...geometry.arrays import doubles
 from ...geometry.transform import Factor
 from ...mesh import interop
 from ...parameters import number, positive, sides_around, winding_rule
@@ -21,6 +22,9 @@ from ...solid.solid import Solid
 from .boundary import chosen_pitch, segment_rows
 from .loops import closed_loops, loop_segments, moved_points
 from .plane_queries import PlaneQueries, vector2
+
+#: Which winding numbers count as inside, in the plane.
+FillRule: TypeAlias = WindingRule | Literal["negative"]
 
 
 class Region(PlaneQueries):
@@ -40,7 +44,7 @@ class Region(PlaneQueries):
         the rule "positive", inside is on the left of outer outlines (counterclockwise) and holes
         run clockwise. Rings of shapely shapes are turned so, which makes the region what any of
         the polygons holds, also where they overlap; points and lines in collections are left out.
-    winding : {"positive", "nonzero", "even-odd"}
+    winding : {"positive", "nonzero", "even-odd", "negative"}
     pitch : int, optional
         By default -9, or what the size asks for.
 
@@ -65,7 +69,7 @@ class Region(PlaneQueries):
     _CONDENSES = True
 
     def __init__(
-        self, outlines: Any = (), *, winding: WindingRule = "positive", pitch: int | None = None
+        self, outlines: Any = (), *, winding: FillRule = "positive", pitch: int | None = None
     ) -> None:
         loops = closed_loops(outlines)
         points = np.concatenate(loops) if loops else np.zeros((0, 2))
@@ -76,7 +80,7 @@ class Region(PlaneQueries):
 
     @classmethod
     def from_segments(
-        cls, segments: Any, *, winding: WindingRule = "positive", pitch: int | None = None
+        cls, segments: Any, *, winding: FillRule = "positive", pitch: int | None = None
     ) -> Self:
         """Return what oriented segments surround, (n, 2, 2), the inside on their left.
 
@@ -135,6 +139,32 @@ class Region(PlaneQueries):
         """Read the closed outlines of a DXF file (see `bspcsg.bsp.load_dxf`)."""
         region: Region = above("load_dxf")(path, **options)
         return region
+
+    @classmethod
+    def compose(cls, regions: Iterable["Region"]) -> "Region":
+        """Return the union of any number of bounded regions, made at once.
+
+        Examples
+        --------
+        >>> from bspcsg import Region
+        >>> Region.compose(Region.rectangle(2, 1).translate(k, 0) for k in range(9)).area
+        10.0
+        """
+        parts = list(regions)
+        # Outlines wind once around what is inside: all of them together wind at least once.
+        loops = [loop for part in parts for loop in part.to_polygons()]
+        return cls(loops, pitch=min((part.pitch for part in parts), default=None))
+
+    def decompose(self) -> list["Region"]:
+        """Return the connected parts, each with its holes; see `components`.
+
+        Examples
+        --------
+        >>> from bspcsg import Region
+        >>> [part.area for part in (Region.rectangle(9, 1) - Region.rectangle(3, 1)).decompose()]
+        [6.0]
+        """
+        return list(self.components)
 
     @property
     def components(self) -> tuple["Region", ...]:
@@ -211,6 +241,132 @@ class Region(PlaneQueries):
         largest = max((float(np.abs(loop).max()) for loop in loops), default=0.0)
         return self.pitch if largest < (2**53 - 1) * 10.0**self.pitch else None
 
+    # Other figures
+
+    def offset(
+        self,
+        delta: Scalar,
+        join: Literal["round", "miter", "square", "bevel"] = "round",
+        *,
+        segments: int = 32,
+        miter_limit: Scalar = 1e6,
+    ) -> "Region":
+        """Return the region with its outline moved outwards.
+
+        Parameters
+        ----------
+        delta : float
+            How far, in model units; inwards if it is negative.
+        join : {"round", "miter", "square", "bevel"}
+            What corners become from which the outline moves away: arcs; the corners where the moved
+            lines meet; corners cut off across, at the distance `delta` from the old one; or cut off
+            from the end of one moved line to the next.
+        segments : int
+            Sides of a full circle, for arcs, at least 3.
+        miter_limit : float
+            Mitred corners that reach farther than so many times `delta` become square.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a parameter is out of its range.
+        LimitError
+            If arcs would have too many corners.
+        UnboundedError
+            If the region and its complement both reach to infinity.
+
+        Notes
+        -----
+        Corners are rounded to some 2**-40 of the region's size. Arcs and mitred corners are those
+        of OpenSCAD, `segments` being its ``$fn``.
+
+        Examples
+        --------
+        >>> from bspcsg import Region
+        >>> Region.rectangle(4, 2).offset(1, "miter").area
+        24.0
+        >>> Region.rectangle(4, 2).offset(-1).is_empty
+        True
+        """
+        region: Region = above("offset_region")(
+            self, delta, join, segments=segments, miter_limit=miter_limit
+        )
+        return region
+
+    def hull(self) -> "Region":
+        """Return the convex hull, exactly.
+
+        Examples
+        --------
+        >>> from bspcsg import Region
+        >>> (Region.rectangle(4, 4) - Region.rectangle(4, 4).translate(2, 2)).hull().area
+        14.0
+        """
+        region: Region = above("hull_of_region")(self)
+        return region
+
+    def simplify(self, tolerance: Scalar) -> "Region":
+        """Return the region with fewer corners.
+
+        Corners that are left stay where they are. Each point of the new outline lies within
+        `tolerance` of the old one, and the other way round but for parts that are thinner: these
+        may vanish, and where outlines come to cross each other their parts are united.
+
+        Parameters
+        ----------
+        tolerance : float
+            In model units. With 0 the region itself is returned.
+
+        Raises
+        ------
+        InvalidParameterError
+            If `tolerance` is negative or not finite.
+        UnboundedError
+            If the region and its complement both reach to infinity.
+
+        Examples
+        --------
+        >>> from bspcsg import Region
+        >>> len(Region.circle(10, 360).simplify(0.1).outlines[0].points)
+        32
+        """
+        region: Region = above("simplify_region")(self, tolerance)
+        return region
+
+    def warp(self, function: Callable[[FloatArray], Any]) -> "Region":
+        """Return what the region becomes if each of its corners moves.
+
+        Edges stay straight. Inside is what the moved outlines go round, in whichever direction, so
+        that mirror images are right; where a fold covers a part twice, from either side once, it
+        cancels out.
+
+        Parameters
+        ----------
+        function : callable
+            Takes (n, 2) float64 and returns as many points; it may change the array it gets.
+
+        Raises
+        ------
+        InvalidParameterError
+            If what it returns has another shape or is not finite.
+        UnboundedError
+            If the region reaches to infinity.
+
+        Examples
+        --------
+        >>> from bspcsg import Region
+        >>> Region.rectangle(2, 2).warp(lambda p: p * (1, 3)).area
+        12.0
+        """
+        loops = self.to_polygons()
+        if not loops:
+            return self
+        ends = np.cumsum([len(loop) for loop in loops])[:-1]
+        points = np.concatenate(loops)
+        moved = _moved_corners(points, function(points.copy()))
+        warped = np.split(moved, ends)
+        return Region(warped, winding="nonzero", pitch=self._pitch_for(warped))
+
     # To space
 
     def extrude(
@@ -284,7 +440,24 @@ class Region(PlaneQueries):
         )
 
 
-def _built(rows: FloatArray, pitch: int, winding: Any) -> CoreTree:
+def _moved_corners(points: FloatArray, given: Any) -> FloatArray:
+    """Return what a function made of points, if it may be corners."""
+    wrong = invalid_parameter(f"The function must return an array of shape {points.shape}.")
+    moved = doubles(given, wrong)
+    if moved.shape != points.shape:
+        raise wrong
+    bad = np.flatnonzero(~np.isfinite(moved).all(axis=1))
+    if len(bad):
+        x, y = points[bad[0]].tolist()
+        message = f"The function returns no finite point for ({x:g}, {y:g})."
+        raise invalid_parameter(message, bad[:20].tolist())
+    return moved
+
+
+def _built(rows: FloatArray, pitch: int, winding: FillRule) -> CoreTree:
+    if winding == "negative":
+        # Whatever winds once backwards winds once forwards seen from behind.
+        rows, winding = np.ascontiguousarray(rows[:, [2, 3, 0, 1]]), "positive"
     rule = winding_rule(winding)
     with core_errors():
         return CoreTree.build(2, rows, pitch, winding=rule)

@@ -12,7 +12,7 @@ from ..._types import FloatArray
 from ...bsp import Region
 from ...bsp.drawings.svg import outlines_of, shown_shapes
 from ...errors import format_errors
-from .offsetting import stroked
+from ...modelling.planar.offsetting import stroked
 
 _MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6}
 _LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%]*)\s*")

@@ -8,6 +8,7 @@ import numpy as np
 from ..._types import FloatArray
 from ...bsp import ObjectTree, Region
 from ...errors import InternalError
+from ...modelling.planar.hulls import hull_region
 from ...operations import setops
 from ...solid.solid import Solid
 from ..syntax.arguments import Arguments
@@ -43,28 +44,6 @@ def hull_solid(points: FloatArray) -> Solid:
     if body.status() != manifold3d.Error.NoError:
         raise InternalError(f"The convex hull failed: {body.status()}.", "hull_failed")
     return Solid.empty() if body.is_empty() else Solid.from_mesh(body)
-
-
-def hull_region(points: FloatArray) -> Region:
-    """Return the convex hull of points in the plane, empty if they lie on a line."""
-    corners = sorted(map(tuple, np.unique(points, axis=0).tolist()))
-    lower, upper = _chain(corners), _chain(corners[::-1])
-    outline = lower[:-1] + upper[:-1]
-    return Region([outline]) if len(outline) >= 3 else Region.empty()
-
-
-def _chain(points: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
-    """Return the corners of one half of the hull, turning left (Andrew 1979)."""
-    chain: list[tuple[float, ...]] = []
-    for point in points:
-        while len(chain) >= 2 and not _turns_left(chain[-2], chain[-1], point):
-            chain.pop()
-        chain.append(point)
-    return chain
-
-
-def _turns_left(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> bool:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0
 
 
 @node("minkowski")

@@ -3,13 +3,20 @@
 import numpy as np
 
 from ...bsp import Region
+from ...modelling.planar.offsetting import cleaned, grown
 from ...shapes.sweep import unit_circle
-from ..making.offsetting import cleaned, grown, is_combined
 from ..making.tessellation import Fineness
 from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
 from .sets import union_of
+
+#: Nodes that hand down an only child as it is.
+_PASSING = frozenset({"group", "union", "color", "render", "multmatrix", "resize", "difference",
+                      "intersection"})  # fmt: skip
+
+#: Figures that are as the script has them.
+_PRIMITIVE = frozenset({"square", "circle", "polygon"})
 
 
 @node("square")
@@ -65,8 +72,19 @@ def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     if figure.is_empty or delta == 0:
         return figure
     sides = arguments.sides(Fineness.of(arguments).fragments(abs(delta)), "a corner")
-    figure = cleaned(run.parts_of(figure)) if is_combined(owner) else figure
+    figure = cleaned(run.parts_of(figure)) if _is_combined(owner) else figure
     return figure if figure.is_empty else grown(figure, delta, _join(is_round, arguments), sides)
+
+
+def _is_combined(owner: Node) -> bool:
+    """Whether the figure in a node is made of others, so that OpenSCAD has cleaned it."""
+    while True:
+        children = [child for child in owner.children if not child.is_ignored]
+        if len(children) != 1:
+            return True
+        owner = children[0]
+        if owner.name not in _PASSING:
+            return owner.name not in _PRIMITIVE
 
 
 def _join(is_round: bool, arguments: Arguments) -> str:

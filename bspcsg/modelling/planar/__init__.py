@@ -1,0 +1,1 @@
+"""Figures of the plane: offsets, hulls, curves, text, shadows of solids."""

@@ -1,0 +1,122 @@
+"""Points along curves, for outlines and paths."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray, Scalar, Vector
+from ...bsp.sets.plane_queries import vector2
+from ...errors import invalid_parameter
+from ...geometry.arrays import doubles
+from ...parameters import number, positive, refuse_many_corners
+
+#: Control points that a curve may have; its points come of sums that cancel ever more beyond.
+_MOST_CONTROLS = 32
+
+
+def arc(
+    center: Vector, r: Scalar, start: Scalar, stop: Scalar, *, tolerance: Scalar = 0.01
+) -> FloatArray:
+    """Return points along an arc of a circle, both of its ends among them.
+
+    Parameters
+    ----------
+    center : (2,) float
+    r : float
+    start, stop : float
+        Directions in degrees, from the x axis on counterclockwise. The arc runs clockwise if `stop`
+        is below `start`, and may go round more than once.
+    tolerance : float
+        How far chords may be from the arc, in model units.
+
+    Returns
+    -------
+    (n, 2) float64
+        At equal angles.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is not finite, or the radius or the tolerance is not above 0.
+    LimitError
+        If that takes too many points.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> import numpy as np
+    >>> slot = np.concatenate([b.arc((0, 0), 2, 90, 270), b.arc((9, 0), 2, -90, 90)])
+    >>> round(b.Region(slot).area)
+    48
+    """
+    radius, chord = positive(r, "r"), positive(tolerance, "tolerance")
+    first, last = number(start, "start"), number(stop, "stop")
+    widest = 2 * math.acos(max(1 - chord / radius, -0.5))
+    # So small a tolerance is lost in the radius.
+    turn = abs(math.radians(last - first))
+    steps = turn / widest if widest else math.inf
+    refuse_many_corners(steps, "This arc")
+    angles = np.radians(np.linspace(first, last, max(math.ceil(steps), 1) + 1))
+    middle = np.array(vector2(center, "center"))
+    return np.asarray(middle + radius * np.column_stack([np.cos(angles), np.sin(angles)]))
+
+
+def bezier(points: Any, *, tolerance: Scalar = 0.01) -> FloatArray:
+    """Return points along a Bézier curve, both of its ends among them.
+
+    Parameters
+    ----------
+    points : (k, d) array_like of float
+        Control points in the plane or in space: three make a quadratic, four a cubic curve.
+    tolerance : float
+        How far chords may be from the curve, in model units.
+
+    Returns
+    -------
+    (n, d) float64
+        At equal steps of the parameter.
+
+    Raises
+    ------
+    InvalidParameterError
+        If there are fewer than two control points or more than 32, or a number is not finite.
+    LimitError
+        If that takes too many points.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.bezier([(0, 0), (1, 2), (2, 0)], tolerance=0.3).tolist()
+    [[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]
+    """
+    controls = _controls(points)
+    chord = positive(tolerance, "tolerance")
+    degree = len(controls) - 1
+    with np.errstate(over="ignore"):
+        bend = np.linalg.norm(np.diff(controls, n=2, axis=0), axis=1).max(initial=0.0)
+    # The second derivative is degree (degree - 1) bend at most; chords of a step h are off by an
+    # eighth of h² times that.
+    steps = math.sqrt(degree * (degree - 1) / 8) * math.sqrt(bend / chord)
+    refuse_many_corners(steps, "This curve")
+    return bezier_points(controls, max(math.ceil(steps), 1))
+
+
+def bezier_points(controls: FloatArray, steps: int) -> FloatArray:
+    """Return (steps + 1, d) points of a Bézier curve at equal steps of its parameter."""
+    t = np.linspace(0, 1, steps + 1)
+    degree = len(controls) - 1
+    shares = [math.comb(degree, k) * t**k * (1 - t) ** (degree - k) for k in range(degree + 1)]
+    return np.asarray(np.column_stack(shares) @ controls)
+
+
+def _controls(points: Any) -> FloatArray:
+    array = doubles(points, invalid_parameter("A curve is made of control points."))
+    if array.ndim != 2 or array.shape[1] not in (2, 3) or not 2 <= len(array) <= _MOST_CONTROLS:
+        raise invalid_parameter(
+            f"Control points have shape (k, 2) or (k, 3) with k from 2 to {_MOST_CONTROLS}, not"
+            f" {array.shape}."
+        )
+    if not np.isfinite(array).all():
+        raise invalid_parameter("A control point is not finite.")
+    return array

@@ -1,0 +1,55 @@
+"""Outlines with fewer corners."""
+
+import numpy as np
+
+from ..._types import FloatArray, Scalar
+from ...bsp import Region
+from ...parameters import not_negative
+
+
+def simplify_region(figure: Region, tolerance: Scalar) -> Region:
+    """Return a region with fewer corners (see `Region.simplify`)."""
+    limit = not_negative(tolerance, "tolerance")
+    if limit == 0 or figure.is_empty or figure.is_full:
+        return figure
+    if not figure.is_bounded:
+        return ~simplify_region(~figure, limit)
+    thinned = [thinned_loop(loop, limit) for loop in figure.to_polygons()]
+    return Region([loop for loop in thinned if len(loop) >= 3], pitch=figure.pitch)
+
+
+def thinned_loop(loop: FloatArray, tolerance: float) -> FloatArray:
+    """Return the corners of a closed loop that its shape within a tolerance needs.
+
+    Notes
+    -----
+    Between its first corner and the one farthest from that, each half of the loop is divided at the
+    corner farthest from its chord, until none is farther than the tolerance (Ramer 1972, Douglas
+    and Peucker 1973). The distances are those to the chord itself, not to its line, so that every
+    point of one loop is as near to the other.
+    """
+    count = len(loop)
+    far = int(np.linalg.norm(loop - loop[0], axis=1).argmax())
+    ring = np.concatenate([loop, loop[:1]])
+    kept = np.zeros(count + 1, dtype=bool)
+    kept[[0, far]] = True
+    waiting = [(0, far), (far, count)]
+    while waiting:
+        start, end = waiting.pop()
+        if end - start < 2:
+            continue
+        away = _distances(ring[start + 1 : end], ring[start], ring[end])
+        farthest = int(away.argmax())
+        if away[farthest] > tolerance:
+            middle = start + 1 + farthest
+            kept[middle] = True
+            waiting += [(start, middle), (middle, end)]
+    return np.asarray(loop[kept[:-1]])
+
+
+def _distances(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    """Return how far points are from the segment between two."""
+    along = end - start
+    length = float(along @ along)
+    part = np.clip((points - start) @ along / length, 0, 1) if length else np.zeros(len(points))
+    return np.asarray(np.linalg.norm(points - start - part[:, None] * along, axis=1))

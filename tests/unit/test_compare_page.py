@@ -1,0 +1,48 @@
+"""The page of others' names: each of ours exists, none of theirs is missing."""
+
+import re
+from pathlib import Path
+
+import manifold3d
+
+import bspcsg as b
+
+PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
+
+
+def rows(heading: str | None = None) -> list[tuple[str, str]]:
+    """Return the first two cells of each row, below one heading or all."""
+    text = PAGE.read_text()
+    if heading is not None:
+        text = re.split(rf"^## {heading}$", text, flags=re.MULTILINE)[1].split("\n## ")[0]
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    cells = [re.split(r"(?<!\\)\|", line)[1:3] for line in lines]
+    return [(one, two) for one, two in cells if not set(one) <= set(" -")]
+
+
+def names(cell: str) -> list[str]:
+    """Return the names in a cell, without arguments."""
+    return [found[1] for found in re.finditer(r"`([\w.]+)[^`]*`", cell)]
+
+
+def is_ours(name: str) -> bool:
+    """Whether a name is one of the package's, of a class's, or of a submodule's."""
+    owner = b
+    for part in name.removeprefix("b.").split("."):
+        if not hasattr(owner, part):
+            return False
+        owner = getattr(owner, part)
+    return True
+
+
+def test_every_name_of_ours_exists() -> None:
+    cells = [ours for _, ours in rows()]
+    assert len(cells) > 20
+    missing = [name for cell in cells for name in names(cell) if not is_ours(name)]
+    assert missing == []
+
+
+def test_no_method_of_cross_sections_is_missing() -> None:
+    told = {name for theirs, _ in rows("Regions") for name in names(theirs)}
+    methods = {name for name in dir(manifold3d.CrossSection) if not name.startswith("_")}
+    assert methods <= told

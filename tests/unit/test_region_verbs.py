@@ -1,0 +1,259 @@
+"""Offsets, hulls, fewer corners, warps and curves of the plane."""
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg import Region
+
+SQUARE = Region.rectangle(10, 10)
+RING = SQUARE - Region.rectangle(6, 6).translate(2, 2)
+
+
+# Offset
+
+
+@pytest.mark.parametrize(
+    ("join", "area"),
+    [
+        ("miter", 144.0),
+        ("bevel", 144 - 4 * 0.5),
+        # The corner of a square join is cut off at the distance one from the old corner.
+        ("square", 144 - 4 * (math.sqrt(2) - 1) ** 2),
+        ("round", 140 + 32 / 2 * math.sin(math.tau / 32)),
+    ],
+)
+def test_joins_of_a_square(join: Any, area: float) -> None:
+    assert SQUARE.offset(1, join).area == pytest.approx(area, abs=1e-8)
+
+
+def test_an_offset_moves_holes_the_other_way() -> None:
+    assert RING.offset(1, "miter") == Region.rectangle(12, 12).translate(-1, -1) - (
+        Region.rectangle(4, 4).translate(3, 3)
+    )
+    assert RING.offset(-1, "miter").is_empty
+    # Round corners of the hole leave what no circle reaches.
+    assert RING.offset(-1).area == pytest.approx(4 - math.pi, rel=0.03)
+    assert RING.offset(3.5, "miter").area == 17**2
+
+
+def test_what_an_offset_leaves_as_it_is() -> None:
+    for region in (SQUARE, Region.empty(), Region.full()):
+        assert region.offset(0) == region
+    assert Region.full().offset(1).is_full and Region.empty().offset(1).is_empty
+    assert SQUARE.offset(-5, "miter").is_empty
+
+
+def test_the_outside_grows_where_the_inside_shrinks() -> None:
+    assert (~SQUARE).offset(1, "miter") == ~SQUARE.offset(-1, "miter")
+    with pytest.raises(b.UnboundedError):
+        Region.half_plane((1, 0)).offset(1)
+
+
+def test_long_mitres_can_be_cut() -> None:
+    needle = Region([(0, 0), (10, 0), (0, 1)])
+    long, short = needle.offset(1, "miter"), needle.offset(1, "miter", miter_limit=2)
+    assert long.bounds is not None and short.bounds is not None
+    assert long.bounds[1, 0] > 30 and short.bounds[1, 0] < 12
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"delta": math.nan}, "delta must be finite"),
+        ({"delta": "a"}, "delta must be a number"),
+        ({"join": "pointed"}, "Unknown join 'pointed'; there are round, miter"),
+        ({"segments": 2}, "segments"),
+        ({"miter_limit": 0.5}, "miter_limit must be 1"),
+        ({"delta": 1e300}, "too many times"),
+    ],
+)
+def test_bad_offsets_are_refused(given: dict[str, Any], words: str) -> None:
+    with pytest.raises(b.BspcsgError, match=words):
+        SQUARE.offset(**{"delta": 1, **given})
+
+
+def test_arcs_beyond_all_measure_are_refused() -> None:
+    comb = Region.compose(Region.rectangle(1, 1).translate(2 * k, 0) for k in range(100))
+    with pytest.raises(b.LimitError, match="This offset would have"):
+        comb.offset(0.1, segments=60_000)
+
+
+# Hull
+
+
+def test_a_hull_holds_what_it_is_of_and_no_more_corners() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        figure = Region.compose(
+            Region.rectangle(*size).translate(*place)
+            for size, place in zip(rng.random((4, 2)) + 0.1, rng.random((4, 2)) * 9, strict=True)
+        )
+        hull = figure.hull()
+        assert figure <= hull and hull.hull() == hull
+        [outline] = hull.exact_outlines
+        corners = {corner for loop in figure.exact_outlines for corner in loop}
+        assert set(outline) <= corners
+
+
+def test_hulls_are_exact_where_doubles_are_not() -> None:
+    # As doubles, (0.1, 0.1), (0.2, 0.2), (0.3, 0.3) are not on one line.
+    figure = Region([[(0.9, 0.1), (0.3, 0.3), (0.2, 0.2), (0.1, 0.1)]])
+    [outline] = figure.hull().exact_outlines
+    tenth = Fraction(1, 10)
+    assert set(outline) == {(tenth, tenth), (3 * tenth, 3 * tenth), (9 * tenth, tenth)}
+
+
+def test_hulls_of_nothing_and_of_too_much() -> None:
+    assert Region.empty().hull().is_empty
+    with pytest.raises(b.UnboundedError):
+        Region.full().hull()
+
+
+# Simplify
+
+
+def distance(points: np.ndarray, loops: list[np.ndarray]) -> float:
+    """Return how far the farthest of points is from outlines."""
+    start = np.concatenate(loops)
+    along = np.concatenate([np.roll(loop, -1, axis=0) for loop in loops]) - start
+    offset = points[:, None] - start
+    part = np.clip((offset * along).sum(-1) / (along**2).sum(-1), 0, 1)
+    return float(np.linalg.norm(offset - part[..., None] * along, axis=-1).min(axis=1).max())
+
+
+@pytest.mark.parametrize("tolerance", [0.01, 0.1, 0.5])
+def test_simpler_outlines_stay_within_the_tolerance(tolerance: float) -> None:
+    turn = np.linspace(0, math.tau, 400, endpoint=False)
+    radius = 9 + np.sin(7 * turn) + 0.05 * np.sin(90 * turn)
+    wavy = Region(np.column_stack([radius * np.cos(turn), radius * np.sin(turn)]))
+    figure = wavy - Region.circle(3, 200)
+    simple = figure.simplify(tolerance)
+    before, after = figure.to_polygons(), simple.to_polygons()
+    assert len(after) == 2 and sum(map(len, after)) < sum(map(len, before))
+    assert distance(np.concatenate(before), after) <= tolerance * (1 + 1e-6)
+    middles = [(loop + np.roll(loop, -1, axis=0)) / 2 for loop in after]
+    assert distance(np.concatenate(middles), before) <= tolerance * (1 + 1e-6)
+    assert {tuple(p) for loop in after for p in loop} <= {tuple(p) for loop in before for p in loop}
+
+
+def test_what_simplifying_leaves_as_it_is() -> None:
+    assert RING.simplify(0) == RING and RING.simplify(0.1) == RING
+    assert Region.empty().simplify(1).is_empty and Region.full().simplify(1).is_full
+    assert (~RING).simplify(0.1) == ~RING
+    assert Region.rectangle(10, 0.1).simplify(1).is_empty
+    with pytest.raises(b.InvalidParameterError):
+        RING.simplify(-1)
+
+
+# Warp
+
+
+def test_a_warp_moves_corners() -> None:
+    assert RING.warp(lambda p: p) == RING
+    assert RING.warp(lambda p: p * (-1, 1)) == RING.mirror((1, 0))
+    assert RING.warp(lambda p: p + (1, 2)) == RING.translate(1, 2)
+    assert RING.warp(lambda p: p * 0).is_empty
+    assert Region.empty().warp(lambda p: p).is_empty
+    # Folded along x = 5, where either half covers the other.
+    hexagon = Region([(0, 0), (5, -1), (10, 0), (10, 10), (5, 11), (0, 10)])
+    assert hexagon.warp(lambda p: np.abs(p - (5, 0))).is_empty
+
+
+@pytest.mark.parametrize(
+    ("function", "words"),
+    [
+        (lambda p: p[:2], r"shape \(8, 2\)"),
+        (lambda p: None, r"shape \(8, 2\)"),
+        (lambda p: "abc", r"shape \(8, 2\)"),
+        (lambda p: p / 0, "no finite point for"),
+    ],
+)
+def test_bad_warps_are_refused(function: Callable[[Any], Any], words: str) -> None:
+    with np.errstate(all="ignore"), pytest.raises(b.InvalidParameterError, match=words):
+        RING.warp(function)
+
+
+def test_errors_of_a_warp_are_the_callers() -> None:
+    def fails(points: np.ndarray) -> np.ndarray:
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        RING.warp(fails)
+    with pytest.raises(b.UnboundedError):
+        Region.full().warp(lambda p: p)
+
+
+# Parts and fill rules
+
+
+def test_parts_come_with_their_holes() -> None:
+    parts = (RING | Region.rectangle(2, 2).translate(4, 4)).decompose()
+    assert [part.area for part in parts] == [64.0, 4.0]
+    assert Region.compose(parts) == RING | Region.rectangle(2, 2).translate(4, 4)
+    assert Region.compose([]).is_empty and Region.empty().decompose() == []
+
+
+def test_the_negative_rule_takes_what_runs_clockwise() -> None:
+    square = [(0, 0), (4, 0), (4, 4), (0, 4)]
+    assert Region(square, winding="negative").is_empty
+    assert Region(square[::-1], winding="negative").area == 16
+    with pytest.raises(b.InvalidParameterError, match="Unknown winding rule"):
+        Region(square, winding="odd")  # type: ignore[arg-type]
+
+
+# Curves
+
+
+def test_arcs_keep_within_the_tolerance() -> None:
+    for tolerance in (1.0, 0.1, 0.001):
+        points = b.arc((3, 4), 5, 20, 310, tolerance=tolerance)
+        assert np.allclose(np.hypot(*(points - (3, 4)).T), 5)
+        middles = (points[1:] + points[:-1]) / 2
+        assert (5 - np.hypot(*(middles - (3, 4)).T)).max() <= tolerance * (1 + 1e-12)
+        # One chord fewer would be too few.
+        fewer = len(points) - 2
+        assert 5 * (1 - math.cos(math.radians(290) / fewer / 2)) > tolerance
+    np.testing.assert_allclose(b.arc((0, 0), 1, 90, 0)[[0, -1]], [[0, 1], [1, 0]], atol=1e-15)
+    assert len(b.arc((0, 0), 1, 5, 5)) == 2
+
+
+def test_curves_keep_within_the_tolerance() -> None:
+    for controls in ([(0, 0), (1, 5), (6, 0)], [(0, 0, 0), (9, 0, 1), (0, 9, 2), (5, 5, 5)]):
+        fine = b.bezier(controls, tolerance=1e-6)
+        for tolerance in (1.0, 0.1, 0.001):
+            points = b.bezier(controls, tolerance=tolerance)
+            assert points[0].tolist() == list(controls[0])
+            assert points[-1].tolist() == list(controls[-1])
+            start, along = points[:-1], np.diff(points, axis=0)
+            offset = fine[:, None] - start
+            part = np.clip((offset * along).sum(-1) / (along**2).sum(-1), 0, 1)
+            away = np.linalg.norm(offset - part[..., None] * along, axis=-1).min(axis=1)
+            assert away.max() <= tolerance
+    assert b.bezier([(0, 0), (3, 4)]).tolist() == [[0, 0], [3, 4]]
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: b.arc((0, 0), 0, 0, 90),
+        lambda: b.arc((0, 0), 1, 0, math.inf),
+        lambda: b.arc((0, 0), 1, 0, 90, tolerance=0),
+        lambda: b.arc((0, 0), 1, 0, 90, tolerance=1e-30),
+        lambda: b.arc((0,), 1, 0, 90),
+        lambda: b.bezier([(0, 0)]),
+        lambda: b.bezier([(0, 0)] * 33),
+        lambda: b.bezier([(0, math.nan), (1, 1)]),
+        lambda: b.bezier("abc"),
+        lambda: b.bezier([(0, 0), (1e300, 0), (0, 0)]),
+        lambda: b.bezier([(0, 0), (1, 0), (0, 0)], tolerance=-1),
+    ],
+)
+def test_bad_curves_are_refused(call: Callable[[], Any]) -> None:
+    with pytest.raises(b.BspcsgError):
+        call()
