@@ -20,6 +20,7 @@ Convenience: TypeAlias = Literal[
     "save",
     "save_dxf",
     "save_svg",
+    "shadow",
     "simplify_region",
     "slice_solid",
     "solid_html",

@@ -30,6 +30,7 @@ def attach() -> None:
     answer("offset_region", _offset_region)
     answer("hull_of_region", _hull_of_region)
     answer("simplify_region", _simplify_region)
+    answer("shadow", _shadow)
 
 
 def _save(solid: "Solid", path: str | os.PathLike[str], **options: Any) -> None:
@@ -120,3 +121,9 @@ def _simplify_region(region: "Region", tolerance: Any) -> "Region":
     from .modelling.planar.simplifying import simplify_region
 
     return simplify_region(region, tolerance)
+
+
+def _shadow(solid: "Solid") -> "Region":
+    from .modelling.planar.shadows import shadow
+
+    return shadow(solid)

@@ -459,6 +459,26 @@ class Solid(Measured, PointSet):
         return region
 
     @uncounted
+    def project(self) -> "Region":
+        """Return the shadow on the plane z = 0 of light along z: all (x, y) below or above a point.
+
+        Turn the solid first to project it along another direction.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> b.torus(3, 1, segments=4).rotate(90, "x").project().bounds.tolist()
+        [[-4.0, -1.0], [4.0, 1.0]]
+        """
+        region: Region = above("shadow")(self)
+        return region
+
+    @uncounted
     def validate(self, **options: Any) -> Any:
         """Compare the operation that made this solid with manifold3d (see `bspcsg.validate`)."""
         return above("validate")(self, **options)

@@ -257,3 +257,25 @@ def test_curves_keep_within_the_tolerance() -> None:
 def test_bad_curves_are_refused(call: Callable[[], Any]) -> None:
     with pytest.raises(b.BspcsgError):
         call()
+
+
+# Shadows
+
+
+def test_shadows_of_solids() -> None:
+    assert b.cube(2).project() == Region.rectangle(2, 2)
+    ring = b.torus(3, 1, segments=16, tube_segments=8)
+    assert ring.project().area == pytest.approx(16 / 2 * math.sin(math.tau / 16) * (16 - 4))
+    assert len(ring.project().outlines) == 2 and len(ring.rotate(90, "x").project().outlines) == 1
+    stairs = b.box((1, 1, 5)) | b.box((2, 1, 1)).translate(0, 0, 9)
+    assert stairs.project() == Region.rectangle(2, 1)
+    assert b.Solid.empty().project().is_empty
+    with pytest.raises(b.UnboundedError):
+        b.half_space((0, 0, 1)).project()
+
+
+def test_shadows_are_those_of_manifold() -> None:
+    rng = np.random.default_rng(3)
+    for _ in range(10):
+        solid = b.cylinder(3, 1, segments=7).rotate(rng.random(3) * 360) | b.cube(1)
+        assert solid.project().area == pytest.approx(solid.to_manifold().project().area())
