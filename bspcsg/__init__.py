@@ -32,6 +32,12 @@ if TYPE_CHECKING:
     )
     from .io import load, save
     from .mesh.mesh import Mesh
+    from .modelling.making.heights import surface
+    from .modelling.making.lofting import loft
+    from .modelling.making.paths import helix, spline
+    from .modelling.making.patterns import grid, linear_pattern, polar_pattern
+    from .modelling.making.round_boxes import rounded_box
+    from .modelling.making.sweeping import pipe, sweep
     from .modelling.planar.curves import arc, bezier
     from .operations.setops import boolean, difference, intersection, union, xor
     from .parameters import set_threads
@@ -76,16 +82,26 @@ __all__ = [
     "cylinder",
     "difference",
     "extrude",
+    "grid",
     "half_space",
+    "helix",
     "intersection",
+    "linear_pattern",
     "load",
+    "loft",
+    "pipe",
+    "polar_pattern",
     "prism",
     "revolve",
+    "rounded_box",
     "run_script",
     "save",
     "set_threads",
     "show",
     "sphere",
+    "spline",
+    "surface",
+    "sweep",
     "torus",
     "union",
     "validate",
@@ -99,6 +115,12 @@ _attach()
 _MODULES = {
     "_core": "__version__",
     "bsp.sets.region": "Region",
+    "modelling.making.heights": "surface",
+    "modelling.making.lofting": "loft",
+    "modelling.making.paths": "helix spline",
+    "modelling.making.patterns": "grid linear_pattern polar_pattern",
+    "modelling.making.round_boxes": "rounded_box",
+    "modelling.making.sweeping": "pipe sweep",
     "verify.check": "CheckReport Verdict validate",
     "errors": "BspcsgError Finding FormatError InternalError InvalidMeshError"
     " InvalidParameterError LimitError MissingPartError UnboundedError",

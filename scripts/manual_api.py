@@ -34,6 +34,7 @@ _PAGES = {
     "bspcsg.bsp.sets.slicing": "regions",
     "bspcsg.bsp.drawings": "regions",
     "bspcsg.modelling.planar": "regions",
+    "bspcsg.modelling.making": "shapes",
     "bspcsg.bsp.rays": "rays",
     "bspcsg.bsp.painting": "pictures",
     "bspcsg.bsp": "trees",

@@ -6,9 +6,9 @@ import numpy as np
 
 from ...bsp import Region
 from ...formats import files
+from ...modelling.making.heights import height_map, read_heights
 from ...solid.solid import Solid
 from ..making.drawings import dxf_region
-from ..making.heights import height_map, read_heights
 from ..making.paper import svg_region
 from ..making.tessellation import Fineness
 from ..syntax.arguments import Arguments

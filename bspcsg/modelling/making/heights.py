@@ -1,15 +1,19 @@
 """Bodies below tables of heights."""
 
+import os
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..._types import FloatArray
-from ...errors import FormatError
+from ..._types import FloatArray, Scalar, Vector
+from ...errors import FormatError, invalid_parameter
 from ...formats.source import limited_content
+from ...geometry.arrays import doubles
 from ...geometry.polygon import directed_edges
+from ...parameters import number, positive, refuse_many_corners
 from ...shapes.sweep import strip
+from ...solid.counting import counted
 from ...solid.solid import Solid
 
 
@@ -26,6 +30,74 @@ class Heights(NamedTuple):
 
     table: FloatArray
     floor: float
+
+
+@counted
+def surface(
+    heights: Any,
+    *,
+    cell: Scalar | Vector = 1.0,
+    floor: Scalar | None = None,
+    center: bool = False,
+) -> Solid:
+    """Return the body below a table of heights.
+
+    Parameters
+    ----------
+    heights : (m, n) array_like of float, or path
+        Columns along x and rows along y, at least two of each; or a text file of such rows.
+    cell : float or (2,) float
+        From one column, and one row, to the next.
+    floor : float, optional
+        Height of the flat underside, below all heights. By default 0, or one below the least height
+        where that is lower, as in OpenSCAD.
+    center : bool
+        Whether the middle is at x = y = 0, instead of the first corner.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the table has another shape, a number is not finite, or the floor is not below.
+    FormatError
+        If a file is no such table.
+    LimitError
+        If the solid would have too many corners.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.surface([[1, 1, 1], [1, 4, 1], [1, 1, 1]]).volume
+    7.0
+    """
+    if isinstance(heights, (str, os.PathLike)):
+        read = read_heights(Path(heights))
+    else:
+        table = _table(heights)
+        read = Heights(table, min(float(table.min()) - 1, 0.0))
+    refuse_many_corners(2 * read.table.size, "This surface")
+    given: Any = cell
+    both = (given, given) if np.ndim(given) == 0 else given
+    if len(both) != 2:
+        raise invalid_parameter("cell is one number, or two for columns and rows.")
+    width, depth = (positive(entry, "cell") for entry in both)
+    if floor is not None:
+        base, least = number(floor, "floor"), float(read.table.min())
+        if base >= least:
+            raise invalid_parameter(f"floor must be below all heights: {base:g}, {least:g}.")
+        read = Heights(read.table, base)
+    body = height_map(read, centered=center)
+    return body if width == depth == 1 else body.scale((width, depth, 1.0))
+
+
+def _table(heights: Any) -> FloatArray:
+    table = doubles(heights, invalid_parameter("A surface is a table of heights."))
+    if table.ndim != 2 or min(table.shape) < 2:
+        raise invalid_parameter(
+            f"A surface needs two rows and columns of heights, not a table of {table.shape}."
+        )
+    if not np.isfinite(table).all():
+        raise invalid_parameter("The heights of a surface must be finite.")
+    return table
 
 
 def read_heights(path: Path) -> Heights:

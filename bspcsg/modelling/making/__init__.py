@@ -1,0 +1,1 @@
+"""Making solids: sweeps, lofts, boxes with round edges, patterns, chamfers and fillets."""

@@ -1,0 +1,108 @@
+"""Solids through profiles that stand one after another."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...errors import invalid_parameter
+from ...geometry.polygon import directed_edges
+from ...parameters import refuse_many_corners
+from ...solid.counting import counted
+from ...solid.solid import Solid
+from .rings import solid_of, walls
+from .sections import Section, aligned, section_of, shortest_band
+
+
+@counted
+def loft(profiles: Sequence[Any], *, closed: bool = False) -> Solid:
+    """Return the solid through profiles, with straight walls between each one and the next.
+
+    Parameters
+    ----------
+    profiles : sequence
+        At least two (three of a closed loft), of which each is a pair of a profile, a `Region` or
+        what `extrude` takes, and the height z or the (4, 4) matrix that places it; or (n, 3) points
+        of a loop in space, or one such point, a tip, as the first or the last.
+    closed : bool
+        Whether the last profile is joined to the first.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a profile is none, is empty, or has other outlines and holes than the one before (`where`
+        is its number); if there are too few; or if they enclose nothing.
+    LimitError
+        If the solid would have too many corners.
+
+    Notes
+    -----
+    Outlines go to those of their kind whose middles are nearest. Outlines with as many corners are
+    joined corner by corner in their order, which must run the same way round; those of regions
+    begin where they fit the ones before. Outlines with other numbers of corners are joined by the
+    band whose edges are shortest in sum, beginning at their first corners. Inside is where the
+    surface winds around more than zero times.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> square, point = [(-1, -1), (1, -1), (1, 1), (-1, 1)], [(0, 0, 3)]
+    >>> b.loft([(square, 0), point]).volume
+    4.0
+    >>> b.loft([(b.Region.rectangle(4, center=True), 0), (b.Region.circle(1), 5)]).genus
+    0
+    """
+    try:
+        sections = [section_of(given, place) for place, given in enumerate(profiles)]
+    except TypeError as error:
+        raise invalid_parameter("A loft is given by a list of profiles.") from error
+    if len(sections) < 2 + closed:
+        raise invalid_parameter(f"A loft needs {2 + closed} profiles at least.")
+    _refuse_inner_tips(sections, closed)
+    for k in range(1, len(sections)):
+        sections[k] = aligned(sections[k - 1], sections[k], k)
+    rings = [np.concatenate(section.loops) for section in sections]
+    starts = np.cumsum([0, *map(len, rings)])
+    refuse_many_corners(int(starts[-1]), "This loft")
+    faces = [
+        _between(sections[k], sections[k + 1], starts[k], starts[k + 1])
+        for k in range(len(sections) - 1)
+    ]
+    if closed:
+        first = aligned(sections[-1], sections[0], 0)
+        rings.append(np.concatenate(first.loops))
+        faces.append(_between(sections[-1], first, starts[-2], starts[-1]))
+    else:
+        faces += [sections[0].cap()[:, ::-1], sections[-1].cap() + starts[-2]]
+    return _outward(np.concatenate(rings), np.concatenate(faces))
+
+
+def _refuse_inner_tips(sections: Sequence[Section], closed: bool) -> None:
+    for place, section in enumerate(sections):
+        if section.is_tip and (closed or 0 < place < len(sections) - 1):
+            message = f"Profile {place} of the loft is one point; only an end may be."
+            raise invalid_parameter(message, [place])
+
+
+def _between(low: Section, high: Section, below: int, above: int) -> IndexArray:
+    """Return the walls between two sections, whose corners are counted from two numbers on."""
+    faces = []
+    for a, c in zip(low.loops, high.loops, strict=True):
+        if len(a) == len(c):
+            band = walls(np.array([a, c]), directed_edges([a]))
+        else:
+            band = shortest_band(a, c)
+        names = np.concatenate([below + np.arange(len(a)), above + np.arange(len(c))])
+        faces.append(names[band])
+        below, above = below + len(a), above + len(c)
+    return np.concatenate(faces)
+
+
+def _outward(vertices: FloatArray, faces: IndexArray) -> Solid:
+    """Return the solid, whichever way the profiles ran round."""
+    a, b, c = (vertices[faces[:, corner]] - vertices.mean(axis=0) for corner in range(3))
+    volume = float(np.einsum("ij,ij->", np.cross(a, b), c))
+    if volume == 0:
+        raise invalid_parameter("The profiles of the loft enclose nothing.")
+    return solid_of(vertices, faces if volume > 0 else faces[:, ::-1])

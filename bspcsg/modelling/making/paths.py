@@ -1,0 +1,136 @@
+"""Paths as arrays of points: helices and splines."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray, Scalar
+from ...errors import invalid_parameter
+from ...geometry.arrays import doubles
+from ...geometry.transform import cos_sin
+from ...parameters import number, positive, refuse_many_corners, sides_around
+
+
+def helix(
+    r: Scalar, pitch: Scalar, turns: Scalar, *, r2: Scalar | None = None, segments: int = 32
+) -> FloatArray:
+    """Return points of a helix about the z axis, from (r, 0, 0) on upwards.
+
+    Parameters
+    ----------
+    r : float
+        Radius.
+    pitch : float
+        Height of one turn; 0 makes a circle or a flat spiral.
+    turns : float
+        Above 0 counter-clockwise seen from above, a right-handed thread; below 0 clockwise.
+    r2 : float, optional
+        Radius at the end, for a helix on a cone.
+    segments : int
+        Points in each turn, at least 3.
+
+    Returns
+    -------
+    (n, 3) float64
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of its range.
+    LimitError
+        If there would be too many points.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.helix(10, 2, turns=3, segments=24).shape
+    (73, 3)
+    """
+    start, rise, rounds = positive(r, "r"), number(pitch, "pitch"), number(turns, "turns")
+    end = start if r2 is None else positive(r2, "r2")
+    around = sides_around(3, segments, "segments")
+    if rounds == 0:
+        raise invalid_parameter("turns must not be 0.")
+    refuse_many_corners(math.ceil(min(abs(rounds) * around, 1e18)), "This helix")
+    steps = max(math.ceil(abs(rounds) * around - 1e-9), 1)
+    shares = np.arange(steps + 1) / steps
+    directions = np.array([cos_sin(360 * rounds * share) for share in shares])
+    radii = start + (end - start) * shares
+    return np.column_stack([directions * radii[:, None], rise * abs(rounds) * shares])
+
+
+def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArray:
+    """Return points of a smooth curve through given ones.
+
+    Parameters
+    ----------
+    points : (n, 2) or (n, 3) array_like of float
+        Different from their neighbours; at least 2, or 3 of a closed curve.
+    segments : int
+        Chords between one given point and the next.
+    closed : bool
+        Whether the curve returns to its first point, smoothly; the result ends with it then.
+
+    Returns
+    -------
+    (m, 2) or (m, 3) float64
+
+    Raises
+    ------
+    InvalidParameterError
+        If there are too few points, or two in one place one after another (`where` names them).
+    LimitError
+        If there would be too many points.
+
+    Notes
+    -----
+    Catmull and Rom's curve with centripetal parameters: it makes no loops between points, and each
+    given point changes it nearby only. Yuksel, Schaefer, Keyser 2011, "Parameterization and
+    applications of Catmull-Rom curves".
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.spline([(0, 0, 0), (10, 0, 5), (20, 0, 0)], segments=8).shape
+    (17, 3)
+    """
+    chords = sides_around(1, segments, "segments")
+    given = doubles(points, invalid_parameter("A spline is given by points."))
+    if given.ndim != 2 or given.shape[1] not in (2, 3) or len(given) < 2 + closed:
+        raise invalid_parameter(f"A spline needs {2 + closed} points of two or three numbers.")
+    if not np.isfinite(given).all():
+        raise invalid_parameter("The points of a spline must be finite.")
+    refuse_many_corners(len(given) * chords, "This spline")
+    return _catmull_rom(_with_neighbours(given, closed), chords)
+
+
+def _with_neighbours(given: FloatArray, closed: bool) -> FloatArray:
+    """Return the points with one more before and one more after them."""
+    ring = np.concatenate([given, given[:1]]) if closed else given
+    same = np.flatnonzero((ring[1:] == ring[:-1]).all(axis=1))
+    if len(same):
+        message = f"Points {same[0]} and {same[0] + 1} of the spline lie in one place."
+        raise invalid_parameter(message, [int(same[0])])
+    if closed:
+        return np.concatenate([given[-1:], ring, given[1:2]])
+    return np.concatenate([2 * ring[:1] - ring[1:2], ring, 2 * ring[-1:] - ring[-2:-1]])
+
+
+def _catmull_rom(knots: FloatArray, chords: int) -> FloatArray:
+    """Return the curve between the second point and the last but one."""
+    gaps = np.sqrt(np.linalg.norm(np.diff(knots, axis=0), axis=1))[:, None]
+    before, own, after = gaps[:-2], gaps[1:-1], gaps[2:]
+    a, b, c, d = knots[:-3], knots[1:-2], knots[2:-1], knots[3:]
+    leaving = (b - a) / before - (c - a) / (before + own) + (c - b) / own
+    arriving = (c - b) / own - (d - b) / (own + after) + (d - c) / after
+    share = (np.arange(chords) / chords)[None, :, None]
+    m, n = (part[:, None] for part in (leaving * own, arriving * own))
+    b, c = b[:, None], c[:, None]
+    curve = (
+        (2 * share**3 - 3 * share**2 + 1) * b
+        + (share**3 - 2 * share**2 + share) * m
+        + (3 * share**2 - 2 * share**3) * c
+        + (share**3 - share**2) * n
+    )
+    return np.concatenate([curve.reshape(-1, knots.shape[1]), knots[-2:-1]])

@@ -1,0 +1,190 @@
+"""Copies of solids and regions in rows, circles and grids."""
+
+import math
+from collections.abc import Sequence
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ..._types import Scalar, Vector
+from ...bsp import Region
+from ...errors import LimitError, invalid_parameter
+from ...geometry.transform import vector3
+from ...operations.setops import union
+from ...parameters import at_least, number
+from ...solid.counting import counted
+from ...solid.solid import Solid
+
+#: Copies in one pattern: each is a node of the expression, some 2 kB with its transform.
+_MOST_COPIES = 100_000
+
+_Shape = TypeVar("_Shape", Solid, Region)
+
+
+@counted
+def linear_pattern(shape: _Shape, count: int, step: Vector) -> _Shape:
+    """Return the union of a shape and its copies in a row.
+
+    Parameters
+    ----------
+    shape : Solid or Region
+    count : int
+        Copies with the shape itself, at least 1.
+    step : (3,) or (2,) float
+        From each one to the next, in model units; for a region two numbers.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a parameter is out of its range.
+    LimitError
+        If there are more than 100 000 copies.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.linear_pattern(b.cube(1), 4, (2, 0, 0)).volume
+    4.0
+    """
+    return _row(shape, _copies(count), step)
+
+
+@counted
+def polar_pattern(
+    shape: _Shape,
+    count: int,
+    *,
+    angle: Scalar = 360.0,
+    axis: str | Vector = "z",
+    center: Vector = (0, 0, 0),
+) -> _Shape:
+    """Return the union of a shape and its copies around an axis.
+
+    Parameters
+    ----------
+    shape : Solid or Region
+        A region is turned about a point of the plane.
+    count : int
+        Copies with the shape itself, at least 1.
+    angle : float
+        Degrees between the first copy and the last; 360 divides the full turn evenly.
+    axis : {"x", "y", "z"} or (3,) float
+        Counter-clockwise where it points at the viewer.
+    center : (3,) or (2,) float
+        A point of the axis.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a parameter is out of its range.
+    LimitError
+        If there are more than 100 000 copies.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.polar_pattern(b.cube(1).translate(2, 0, 0), 4).volume
+    4.0
+    """
+    copies, turn = _copies(count), number(angle, "angle")
+    parts = copies if turn % 360 == 0 else max(copies - 1, 1)
+    middle = _vector(shape, center, "center")
+    moved = shape.translate([-x for x in middle])
+    turned: list[Any] = [_turned(moved, turn * k / parts, axis) for k in range(copies)]
+    result: _Shape = _united(turned).translate(middle)
+    return result
+
+
+@counted
+def grid(shape: _Shape, counts: Sequence[int], steps: Vector, *, center: bool = False) -> _Shape:
+    """Return the union of a shape and its copies in a grid along the axes.
+
+    Parameters
+    ----------
+    shape : Solid or Region
+    counts : (2,) or (3,) int
+        Copies along x, y and z, at least 1 each.
+    steps : (2,) or (3,) float
+        From each one to the next along x, y and z, as many as `counts`.
+    center : bool
+        Whether the shape is in the middle of the grid, instead of at its lowest corner.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a parameter is out of its range.
+    LimitError
+        If there are more than 100 000 copies.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.grid(b.cube(1), (3, 2), (2, 2)).volume
+    6.0
+    """
+    axes = 2 if isinstance(shape, Region) else 3
+    numbers, lengths = _entries(counts), _entries(steps)
+    if len(numbers) != len(lengths) or not 2 <= len(numbers) <= axes:
+        raise invalid_parameter(f"counts and steps are two numbers each, or {axes} of them.")
+    copies = [at_least(1, entry, "counts") for entry in numbers]
+    _refuse_many(math.prod(copies))
+    result = shape
+    for axis, (amount, length) in enumerate(zip(copies, lengths, strict=True)):
+        step = [0.0] * axes
+        step[axis] = number(length, "steps")
+        shift = [-entry * (amount - 1) / 2 * center for entry in step]
+        result = _row(result.translate(shift), amount, step)
+    return result
+
+
+def _entries(given: Any) -> list[Any]:
+    try:
+        return list(given)
+    except TypeError as error:
+        raise invalid_parameter("counts and steps of a grid are given axis by axis.") from error
+
+
+def _row(shape: _Shape, copies: int, step: Vector) -> _Shape:
+    stride = np.array(_vector(shape, step, "step"))
+    united: _Shape = _united([shape.translate((stride * k).tolist()) for k in range(copies)])
+    return united
+
+
+def _turned(shape: Any, angle: float, axis: str | Vector) -> Any:
+    return shape.rotate(angle) if isinstance(shape, Region) else shape.rotate(angle, axis)
+
+
+def _united(shapes: Sequence[Any]) -> Any:
+    return union(*shapes) if isinstance(shapes[0], Solid) else _halves(shapes)
+
+
+def _halves(regions: Sequence[Any]) -> Any:
+    """Return the union of regions, neighbours first."""
+    while len(regions) > 1:
+        pairs = zip(regions[::2], regions[1::2], strict=False)
+        rest = [regions[-1]] if len(regions) % 2 else []
+        regions = [one | other for one, other in pairs] + rest
+    return regions[0]
+
+
+def _vector(shape: Solid | Region, given: Any, name: str) -> list[float]:
+    if isinstance(shape, Solid):
+        return [float(entry) for entry in vector3(given, name)]
+    both = np.asarray(given, dtype=np.float64).ravel()
+    if len(both) == 3 and both[2] == 0:
+        both = both[:2]
+    if len(both) != 2:
+        raise invalid_parameter(f"The {name} of a region's pattern is two numbers.")
+    return [number(entry, name) for entry in both]
+
+
+def _copies(count: int) -> int:
+    copies = at_least(1, count, "count")
+    _refuse_many(copies)
+    return copies
+
+
+def _refuse_many(copies: int) -> None:
+    if copies > _MOST_COPIES:
+        message = f"A pattern has {_MOST_COPIES} copies at most, not {copies}."
+        raise LimitError(message, "too_many")

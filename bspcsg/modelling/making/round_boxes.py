@@ -1,0 +1,111 @@
+"""Boxes with round edges and corners."""
+
+import itertools
+import math
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray, Scalar, Vector
+from ...errors import invalid_parameter
+from ...geometry.transform import vector3
+from ...mesh.weld import welded
+from ...parameters import not_negative, positive, refuse_many_corners, sides_around
+from ...shapes.arrays import from_arrays
+from ...shapes.primitives import box
+from ...solid.counting import counted
+from ...solid.solid import Solid
+from .patches import patch_directions, patch_faces
+
+
+@counted
+def rounded_box(
+    size: Scalar | Vector, r: Scalar, *, segments: int = 32, center: bool = False
+) -> Solid:
+    """Return a box with round edges and corners.
+
+    Parameters
+    ----------
+    size : float or (3,) float
+        Edge lengths; one number makes a cube.
+    r : float
+        Radius, at most half of the shortest edge; 0 makes a box.
+    segments : int
+        Sides of a full circle, at least 4; each edge has a quarter of them, rounded up.
+    center : bool
+        Whether the middle is at the origin, instead of the lowest corner of the box around it.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of its range, or the radius leaves the edges no room.
+    LimitError
+        If the solid would have too many corners.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> round(b.rounded_box((4, 3, 2), 0.5, segments=4).volume, 4)
+    20.1667
+    """
+    lengths = vector3(size, "size", spread=True)
+    for length in lengths:
+        positive(length, "size")
+    radius, around = not_negative(r, "r"), sides_around(4, segments, "segments")
+    if radius == 0:
+        return box(lengths, center)
+    if radius > lengths.min() / 2:
+        raise invalid_parameter(
+            f"r must be at most half of the shortest edge, {lengths.min() / 2:g}, not {radius:g}."
+        )
+    steps = math.ceil(around / 4)
+    refuse_many_corners(4 * (steps + 1) * (steps + 2), "This box")
+    vertices, faces = _rounded(lengths, radius, steps)
+    return from_arrays(*_proper(vertices if center else vertices + lengths / 2, faces))
+
+
+def _rounded(lengths: FloatArray, radius: float, steps: int) -> tuple[FloatArray, IndexArray]:
+    """Return a mesh about the origin, its triangles turned any way."""
+    unit = patch_directions(np.eye(3), steps)
+    signs = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+    vertices = np.concatenate([sign * (lengths / 2 - radius + radius * unit) for sign in signs])
+    octant = np.arange(8).reshape(2, 2, 2) * len(unit)
+    faces = [patch_faces(steps) + start for start in octant.ravel()]
+    sides = _sides(steps)
+    for axis in range(3):
+        below, above = np.moveaxis(octant, axis, 0).reshape(2, 4)
+        for low, high in zip(below, above, strict=True):
+            faces.append(_quads(low + sides[axis], high + sides[axis]))
+        corner = sides[(axis + 1) % 3][-1]
+        faces += [
+            _quads(face[0] + corner, face[1] + corner) for face in np.moveaxis(octant, axis, 0)
+        ]
+    return vertices, np.concatenate(faces)
+
+
+def _sides(steps: int) -> list[IndexArray]:
+    """Return for each axis the points of a patch that an edge along it begins with.
+
+    The side of axis k runs from axis k + 1 to axis k + 2.
+    """
+    rows = np.arange(steps + 1)
+    first = rows * (rows + 1) // 2
+    return [first[-1] + rows, (first + rows)[::-1], first]
+
+
+def _quads(start: IndexArray, end: IndexArray) -> IndexArray:
+    a, b, c, d = start[:-1], start[1:], end[:-1], end[1:]
+    return np.concatenate([np.column_stack([a, b, d]), np.column_stack([a, d, c])])
+
+
+def _proper(vertices: FloatArray, faces: IndexArray) -> tuple[FloatArray, IndexArray]:
+    """Return the mesh without what a radius of half an edge flattens, seen from outside.
+
+    The body is convex about its middle, so that each triangle says by itself how it must run.
+    """
+    points, same = welded(vertices)
+    faces = same[faces]
+    faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
+    a, b, c = (points[faces[:, k]] - points.mean(axis=0) for k in range(3))
+    inward = np.einsum("ij,ij->i", np.cross(a, b), c) < 0
+    faces[inward] = faces[inward][:, ::-1]
+    return points, faces

@@ -1,0 +1,181 @@
+"""Sections of a loft: closed loops in space, and which corner of one goes to which of the next."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...errors import invalid_parameter
+from ...geometry.arrays import doubles
+from ...geometry.polygon import contours_of, runs_clockwise, triangulate, triangulate_face
+from ...geometry.transform import apply, matrix_factor, translation
+from ...parameters import number, refuse_many_corners
+
+#: Rolls of an outline that are worse than the best by less than this share are as good.
+_EQUAL = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """One profile of a loft in its place.
+
+    Parameters
+    ----------
+    loops : list of (n, 3) float64
+    flat : list of (n, 2) float64, or None
+        The same in the profile's plane; None of loops that were given in space.
+    is_region : bool
+        Whether nobody has chosen where its outlines begin.
+    """
+
+    loops: list[FloatArray]
+    flat: list[FloatArray] | None
+    is_region: bool
+
+    @property
+    def is_tip(self) -> bool:
+        """Whether this is one point."""
+        return len(self.loops[0]) == 1
+
+    def cap(self) -> IndexArray:
+        """Return the triangles inside the loops, seen against the loft's direction."""
+        if self.is_tip:
+            return np.zeros((0, 3), np.int64)
+        return triangulate_face(self.loops[0]) if self.flat is None else triangulate(self.flat)
+
+
+def section_of(given: Any, place: int) -> Section:
+    """Return a section from a profile and where it stands, or from points in space.
+
+    Raises
+    ------
+    InvalidParameterError
+        If it is neither; `where` is its number.
+    """
+    if not isinstance(given, (tuple, list)) or len(given) != 2:
+        return Section([_loop(given, place)], None, False)
+    profile, where = given
+    flat = contours_of(profile)
+    if not flat:
+        raise invalid_parameter(f"Profile {place} of the loft is empty.", [place])
+    matrix = _matrix(where)
+    loops = [apply(matrix, np.pad(contour, ((0, 0), (0, 1)))) for contour in flat]
+    return Section(loops, flat, hasattr(profile, "outlines"))
+
+
+def _matrix(where: Any) -> FloatArray:
+    if np.ndim(where) == 0:
+        return translation((0.0, 0.0, number(where, "z"))).matrix
+    return matrix_factor(where).matrix
+
+
+def _loop(given: Any, place: int) -> FloatArray:
+    message = (
+        f"Profile {place} of the loft must be a pair (profile, z), a pair (profile, 4x4 matrix), or"
+        " (n, 3) points."
+    )
+    loop = doubles(given, invalid_parameter(message, [place]))
+    if loop.ndim != 2 or loop.shape[1] != 3 or len(loop) in (0, 2):
+        raise invalid_parameter(message, [place])
+    if not np.isfinite(loop).all():
+        raise invalid_parameter(f"Profile {place} of the loft must be finite.", [place])
+    return loop
+
+
+def aligned(low: Section, high: Section, place: int) -> Section:
+    """Return the upper section with its outlines in the order of the lower one's.
+
+    Outlines of regions begin anywhere, so that they are rolled to where they fit best, too.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the sections have not as many outlines, and as many holes; `where` is the upper one's
+        number.
+    """
+    if low.flat is None or high.flat is None:
+        if len(low.loops) != 1 or len(high.loops) != 1:
+            raise _other_outlines(place)
+        return high
+    order = _order(low.flat, high.flat, place)
+    flat = [high.flat[k] for k in order]
+    loops = [high.loops[k] for k in order]
+    if low.is_region and high.is_region:
+        rolls = [_best_roll(a, c) for a, c in zip(low.flat, flat, strict=True)]
+        flat = [np.roll(c, -k, axis=0) for c, k in zip(flat, rolls, strict=True)]
+        loops = [np.roll(c, -k, axis=0) for c, k in zip(loops, rolls, strict=True)]
+    return Section(loops, flat, high.is_region)
+
+
+def _order(low: Sequence[FloatArray], high: Sequence[FloatArray], place: int) -> list[int]:
+    """Return for each lower outline the upper one of its kind whose middle is nearest to it."""
+    holes = [[runs_clockwise(c) for c in contours] for contours in (low, high)]
+    if sorted(holes[0]) != sorted(holes[1]):
+        raise _other_outlines(place)
+    middles = [np.array([c.mean(axis=0) for c in contours]) for contours in (low, high)]
+    refuse_many_corners(len(low) * len(high), "This loft")
+    gaps = np.linalg.norm(middles[0][:, None] - middles[1][None], axis=2)
+    gaps[np.not_equal.outer(*holes)] = np.inf
+    order = [0] * len(low)
+    for _ in low:
+        one, other = np.unravel_index(int(gaps.argmin()), gaps.shape)
+        order[int(one)] = int(other)
+        gaps[one], gaps[:, other] = np.inf, np.inf
+    return order
+
+
+def _other_outlines(place: int) -> Exception:
+    message = f"Profile {place} of the loft has not as many outlines and holes as the one before."
+    return invalid_parameter(message, [place])
+
+
+def _best_roll(low: FloatArray, high: FloatArray) -> int:
+    """Return the corner of the upper outline that goes to the first of the lower one."""
+    low, high = low - low.mean(axis=0), high - high.mean(axis=0)
+    if len(low) == len(high):
+        # The sum of squared distances of all pairs, for all rolls at once.
+        products = np.conj(np.fft.rfft(low, axis=0)) * np.fft.rfft(high, axis=0)
+        likeness = np.fft.irfft(products.sum(axis=1), len(low))
+    else:
+        first, sizes = low[0], np.linalg.norm(high, axis=1)
+        likeness = high @ first / np.where(sizes > 0, sizes, 1)
+    return int(np.flatnonzero(likeness >= likeness.max() - _EQUAL * np.abs(likeness).max())[0])
+
+
+def shortest_band(low: FloatArray, high: FloatArray) -> IndexArray:
+    """Return the triangles between two loops whose edges across are shortest in sum.
+
+    The first corners of both are joined. Fuchs, Kedem, Uselton 1977, "Optimal surface
+    reconstruction from planar contours".
+
+    Returns
+    -------
+    (m, 3) int64
+        Corners of the upper loop are counted after those of the lower one.
+    """
+    n, m = (len(loop) if len(loop) > 1 else 0 for loop in (low, high))
+    refuse_many_corners((n + 1) * (m + 1), "This loft")
+    a, b = np.arange(n + 1) % len(low), np.arange(m + 1) % len(high)
+    cost = np.linalg.norm(low[a][:, None] - high[b][None], axis=2)
+    _add_up(cost)
+    faces, i, j = [], n, m
+    while i or j:
+        if j == 0 or (i and cost[i - 1, j] <= cost[i, j - 1]):
+            i -= 1
+            faces.append((a[i], a[i + 1], len(low) + b[j]))
+        else:
+            j -= 1
+            faces.append((a[i], len(low) + b[j + 1], len(low) + b[j]))
+    return np.array(faces, dtype=np.int64).reshape(-1, 3)
+
+
+def _add_up(cost: FloatArray) -> None:
+    """Add to each pair of corners the least sum on the way to it, one diagonal after another."""
+    n, m = cost.shape
+    cost[0], cost[:, 0] = np.cumsum(cost[0]), np.cumsum(cost[:, 0])
+    for total in range(2, n + m - 1):
+        i = np.arange(max(1, total - m + 1), min(n, total))
+        j = total - i
+        cost[i, j] += np.minimum(cost[i - 1, j], cost[i, j - 1])

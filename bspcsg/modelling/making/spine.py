@@ -1,0 +1,192 @@
+"""Frames along a path: where the axes of a swept profile point."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...errors import invalid_parameter
+from ...geometry.arrays import doubles
+from ...parameters import shown
+
+#: How the profile turns on its way.
+Frame: TypeAlias = Literal["parallel", "fixed"]
+
+#: Ends that are nearer than this share of the path's size are one point.
+_SAME = 1e-9
+
+#: The cosine of 175 degrees: where a path turns back further, its mitre is 23 times as long as the
+#: profile is wide.
+_SHARPEST = -0.9962
+
+#: A direction is upright if its sine to the z axis is below this.
+_UPRIGHT = 1e-9
+
+
+@dataclass(frozen=True)
+class Spine:
+    """Where the corners of a profile go along a path.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Of a closed path each point once.
+    shares : (n,) float64
+        Of the length up to each point, from 0 to 1.
+    right, up : (n, 3) float64
+        Unit vectors to which the profile's axes go, across the path.
+    bend : (n, 3) float64
+        Unit vector towards which the path turns, or zero.
+    stretch : (n,) float64
+        How much longer a mitre is along `bend` than the profile.
+    closed : bool
+    """
+
+    points: FloatArray
+    shares: FloatArray
+    right: FloatArray
+    up: FloatArray
+    bend: FloatArray
+    stretch: FloatArray
+    closed: bool
+
+    def ring(self, place: int, profile: FloatArray) -> FloatArray:
+        """Return (k, 3) the corners of a profile, (k, 2), at one point of the path."""
+        across = profile[:, :1] * self.right[place] + profile[:, 1:] * self.up[place]
+        along = (across @ self.bend[place])[:, None] * self.bend[place]
+        ring: FloatArray = self.points[place] + across + along * (self.stretch[place] - 1)
+        return ring
+
+
+def path_points(path: Any) -> tuple[FloatArray, bool]:
+    """Return the points of a path, none twice in a row, and whether it is closed.
+
+    Raises
+    ------
+    InvalidParameterError
+        If it has fewer than two points, another shape, or a coordinate that is not finite.
+    """
+    points = doubles(path, invalid_parameter("A path is an array of points."))
+    if points.ndim != 2 or points.shape[1] not in (2, 3):
+        raise invalid_parameter(f"A path must have shape (n, 3) or (n, 2), not {points.shape}.")
+    if not np.isfinite(points).all():
+        raise invalid_parameter("A path must have finite coordinates.")
+    points = np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
+    if len(points):
+        fresh = (points[1:] != points[:-1]).any(axis=1)
+        points = points[np.concatenate([[True], fresh])]
+    if len(points) < 2:
+        raise invalid_parameter("A path needs two different points.")
+    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    closed = len(points) > 3 and math.dist(points[0], points[-1]) <= _SAME * size
+    return (points[:-1] if closed else points), closed
+
+
+def divided(points: FloatArray, closed: bool, slices: int) -> FloatArray:
+    """Return the path with so many points more that it has about so many equal parts."""
+    ends = np.roll(points, -1, axis=0) if closed else points[1:]
+    starts = points[: len(ends)]
+    lengths = np.linalg.norm(ends - starts, axis=1)
+    counts = np.maximum(np.ceil(lengths / lengths.sum() * slices - 1e-9), 1).astype(np.int64)
+    owner = np.repeat(np.arange(len(starts)), counts)
+    place = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
+    share = (place / counts[owner])[:, None]
+    inner = starts[owner] + (ends - starts)[owner] * share
+    return inner if closed else np.concatenate([inner, points[-1:]])
+
+
+def spine_of(points: FloatArray, closed: bool, frame: Any) -> Spine:
+    """Return the frames along a path.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the path turns back on itself, or runs upright in a fixed frame; `where` names the point.
+    """
+    directions, lengths = _directions(points, closed)
+    before = np.roll(directions, 1, axis=0) if closed else np.vstack([directions[:1], directions])
+    after = directions if closed else np.vstack([directions, directions[-1:]])
+    _refuse_turning_back(points, before, after)
+    half = np.linalg.norm(before + after, axis=1, keepdims=True) / 2
+    middle = (before + after) / (2 * half)
+    bend = after - before
+    width = np.linalg.norm(bend, axis=1, keepdims=True)
+    bend = bend / np.where(width > 0, width, 1)
+    if frame == "fixed":
+        right = _level(points, middle)
+    elif frame == "parallel":
+        right = _carried(middle, directions, closed)
+    else:
+        raise invalid_parameter(f"frame must be 'parallel' or 'fixed', not {shown(frame)}.")
+    shares = np.concatenate([[0.0], np.cumsum(lengths)])[: len(points)] / lengths.sum()
+    up = np.cross(middle, right)
+    return Spine(points, shares, right, up, bend, 1 / half[:, 0], closed)
+
+
+def slipped(spine: Spine) -> float:
+    """Return by how many radians the frame of a closed path has turned when it comes round."""
+    if not spine.closed:
+        return 0.0
+    first = np.cross(spine.right[0], spine.up[0])
+    last = np.cross(spine.right[-1], spine.up[-1])
+    step, _ = _directions(spine.points[[-1, 0]], closed=False)
+    arrived = _turned(_turned(spine.right[-1], last, step[0]), step[0], first)
+    return math.atan2(arrived @ spine.up[0], arrived @ spine.right[0])
+
+
+def _directions(points: FloatArray, closed: bool) -> tuple[FloatArray, FloatArray]:
+    steps = (np.roll(points, -1, axis=0) - points) if closed else np.diff(points, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    return steps / lengths[:, None], lengths
+
+
+def _refuse_turning_back(points: FloatArray, before: FloatArray, after: FloatArray) -> None:
+    sharp = np.flatnonzero(np.einsum("ij,ij->i", before, after) < _SHARPEST)
+    if len(sharp):
+        place = ", ".join(f"{value:g}" for value in points[sharp[0]])
+        message = f"The path turns back on itself at ({place}). Round that corner."
+        raise invalid_parameter(message, sharp.tolist())
+
+
+def _level(points: FloatArray, middle: FloatArray) -> FloatArray:
+    """Return horizontal unit vectors across the path, the z axis on their left."""
+    x, y = -middle[:, 1], middle[:, 0]
+    size = np.hypot(x, y)
+    upright = np.flatnonzero(size < _UPRIGHT)
+    if len(upright):
+        place = ", ".join(f"{value:g}" for value in points[upright[0]])
+        message = f"The path runs upright at ({place}), where a fixed frame has no direction."
+        raise invalid_parameter(message + " Sweep with frame='parallel'.", upright.tolist())
+    return np.column_stack([x / size, y / size, np.zeros(len(x))])
+
+
+def _carried(middle: FloatArray, directions: FloatArray, closed: bool) -> FloatArray:
+    """Return unit vectors across the path that turn no more than it does."""
+    right = np.empty_like(middle)
+    right[0] = _first(middle[0])
+    for k in range(1, len(middle)):
+        step = directions[k - 1]
+        right[k] = _turned(_turned(right[k - 1], middle[k - 1], step), step, middle[k])
+    if closed:
+        # Rounding adds up along the way.
+        right /= np.linalg.norm(right, axis=1, keepdims=True)
+    return right
+
+
+def _first(direction: FloatArray) -> FloatArray:
+    level = np.array([-direction[1], direction[0], 0.0])
+    size = float(np.linalg.norm(level))
+    return level / size if size >= _UPRIGHT else np.array([1.0, 0.0, 0.0])
+
+
+def _turned(vector: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    """Return a vector across a direction after the shortest turn of that direction to another."""
+    turned: FloatArray = vector - (vector @ end) / (1 + start @ end) * (start + end)
+    return turned
+
+
+#: A number at the end of the path, or what it is at each share of its length.
+Along: TypeAlias = float | Callable[[FloatArray], Any]

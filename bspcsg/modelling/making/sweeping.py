@@ -1,0 +1,194 @@
+"""Solids that plane profiles sweep along paths."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray, Scalar
+from ...errors import invalid_parameter
+from ...geometry.polygon import contours_of, directed_edges, triangulate
+from ...geometry.transform import cos_sin
+from ...parameters import (
+    MOST_CORNERS,
+    not_negative,
+    number,
+    positive,
+    refuse_many_corners,
+    sides_around,
+)
+from ...shapes.sweep import unit_circle
+from ...solid.counting import counted
+from ...solid.solid import Solid
+from .rings import solid_of, walls
+from .spine import Along, Frame, Spine, divided, path_points, slipped, spine_of
+
+#: Corners of a turned profile that are nearer to those of the profile than this share of its size
+#: are the same.
+_SAME = 1e-9
+
+#: Corners that are compared with each other: so many squared, as three doubles, make 100 MB.
+_MOST_COMPARED = 2000
+
+
+@counted
+def sweep(
+    profile: Any,
+    path: Any,
+    *,
+    twist: Along = 0.0,
+    scale: Along = 1.0,
+    frame: Frame = "parallel",
+    segments: int = 32,
+) -> Solid:
+    """Return what a profile sweeps that is carried along a path, standing across it.
+
+    Parameters
+    ----------
+    profile : object
+        A `Region`, or what `extrude` takes. Its origin moves along the path.
+    path : (n, 3) or (n, 2) array_like of float
+        Corners of a polyline. It is closed if the last one is the first one; it may cross itself.
+    twist : float or function
+        Degrees by which the profile is turned at the end, clockwise seen from there, as by
+        `extrude`; or a function of the share of the length, (k,) from 0 to 1, that returns degrees.
+    scale : float or function
+        Size at the end as a part of that at the start, 0 or more; or a function as for `twist` that
+        returns (k,) sizes.
+    frame : {"parallel", "fixed"}
+        "parallel": the profile turns no more than the path does. "fixed": its x axis stays
+        horizontal, its y axis as upright as it can be. In both it starts so; on a path that starts
+        upwards, with x along x.
+    segments : int
+        Slices of a full turn of `twist`, and of the length under a function, at least 3.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the path has fewer than two different points, turns back on itself by more than 175
+        degrees, or runs upright in a fixed frame (`where` names its points); if a closed one ends
+        with another size or, but for symmetry, another turn of the profile than it began with.
+    LimitError
+        If the solid would have too many corners.
+
+    Notes
+    -----
+    Corners of the path are mitred, so that straight parts have the profile's section. Inside is
+    where the swept surface winds around more than zero times: what overlaps is united, and in the
+    inside of a bend that is tighter than the profile is wide, parts that run backwards count less.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> square = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+    >>> b.sweep(square, [(0, 0, 0), (10, 0, 0), (10, 10, 0)]).volume
+    80.0
+    """
+    contours = contours_of(profile)
+    corners = np.concatenate(contours) if contours else np.zeros((0, 2))
+    around = sides_around(3, segments, "segments")
+    points, closed = path_points(path)
+    refuse_many_corners(len(points) * len(corners), "This sweep")
+    points = divided(points, closed, _slices(twist, scale, around))
+    refuse_many_corners(len(points) * len(corners), "This sweep")
+    spine = spine_of(points, closed, frame)
+    if not contours:
+        return Solid.empty()
+    turns, sizes = -_along(twist, 0.0, spine, "twist"), _along(scale, 1.0, spine, "scale")
+    if sizes.min() < 0:
+        raise invalid_parameter(f"scale must not be below 0, but is {sizes.min():g}.")
+    slip = math.degrees(slipped(spine))
+    rings = [
+        spine.ring(k, _placed(corners, turns[k] - slip * share, sizes[k]))
+        for k, share in enumerate(spine.shares)
+    ]
+    edges = directed_edges(contours)
+    if closed:
+        rings.append(spine.ring(0, _placed(corners, turns[-1], sizes[-1])))
+        same = _same_corners(rings[-1], rings[0], edges)
+        names = np.concatenate([np.arange((len(rings) - 1) * len(corners)), same])
+        return solid_of(np.concatenate(rings[:-1]), names[walls(np.array(rings), edges)])
+    cap = triangulate(contours)
+    last = (len(rings) - 1) * len(corners)
+    faces = [cap[:, ::-1], walls(np.array(rings), edges), cap + last]
+    return solid_of(np.concatenate(rings), np.concatenate(faces))
+
+
+@counted
+def pipe(path: Any, r: Scalar, *, inner: Scalar = 0.0, segments: int = 32) -> Solid:
+    """Return a round bar along a path, or a pipe.
+
+    Parameters
+    ----------
+    path : (n, 3) or (n, 2) array_like of float
+        As for `sweep`; corners are mitred.
+    r : float
+        Radius.
+    inner : float
+        Radius of the bore, below `r`; 0 for a bar.
+    segments : int
+        Sides around, at least 3.
+
+    Raises
+    ------
+    InvalidParameterError
+        As for `sweep`, or if the bore is not below the radius.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.pipe([(0, 0, 0), (0, 0, 5)], 2, inner=1, segments=4).volume
+    30.0
+    """
+    outer, bore = positive(r, "r"), not_negative(inner, "inner")
+    if bore >= outer:
+        raise invalid_parameter(f"inner must be below r: {bore:g} is not below {outer:g}.")
+    circle = unit_circle(sides_around(3, segments, "segments"))
+    contours = [circle * outer, circle[::-1] * bore] if bore else [circle * outer]
+    return sweep(contours, path)
+
+
+def _slices(twist: Along, scale: Along, around: int) -> int:
+    """Return how many parts the path must have at least."""
+    if callable(twist) or callable(scale):
+        return around
+    return math.ceil(min(abs(number(twist, "twist")) / 360 * around, MOST_CORNERS)) or 1
+
+
+def _along(given: Along, start: float, spine: Spine, name: str) -> FloatArray:
+    """Return what a parameter is at each point of a path, and at its closing one."""
+    shares = np.append(spine.shares, 1.0) if spine.closed else spine.shares
+    if not callable(given):
+        return start + (number(given, name) - start) * shares
+    try:
+        values = np.broadcast_to(np.asarray(given(shares.copy()), dtype=np.float64), shares.shape)
+    except (TypeError, ValueError) as error:
+        message = f"The function {name} must return as many numbers as it is given."
+        raise invalid_parameter(message) from error
+    if not np.isfinite(values).all():
+        raise invalid_parameter(f"The function {name} must return finite numbers.")
+    return np.array(values)
+
+
+def _placed(corners: FloatArray, turn: float, size: float) -> FloatArray:
+    cosine, sine = cos_sin(float(turn))
+    x, y = corners.T
+    return np.column_stack([x * cosine - y * sine, x * sine + y * cosine]) * size
+
+
+def _same_corners(last: FloatArray, first: FloatArray, edges: IndexArray) -> IndexArray:
+    """Return which corner of the first ring each one of the closing ring is."""
+    tolerance = _SAME * float(np.abs(first - first.mean(axis=0)).max())
+    same = np.arange(len(first))
+    if np.abs(last - first).max() <= tolerance:
+        return same
+    if len(first) <= _MOST_COMPARED:
+        gaps = np.abs(last[:, None] - first[None]).max(axis=2)
+        same = np.asarray(gaps.argmin(axis=1), dtype=np.int64)
+        fits = gaps.min(axis=1).max() <= tolerance and len(np.unique(same)) == len(same)
+        if fits and set(map(tuple, same[edges].tolist())) == set(map(tuple, edges.tolist())):
+            return same
+    raise invalid_parameter(
+        "A closed path must end with the profile as it began: choose a twist that turns it onto"
+        " itself, such as 360, and a scale of 1."
+    )
