@@ -48,23 +48,37 @@ _BOX_FACES = np.array(
 
 
 @counted
-def box(size: Scalar | Vector, center: bool = False) -> Solid:
+def box(
+    size: Scalar | Vector,
+    y: Scalar | bool | None = None,
+    z: Scalar | None = None,
+    *,
+    center: bool = False,
+) -> Solid:
     """Return a box.
 
     Parameters
     ----------
     size : float or (3,) float
-        Edge lengths; one number makes a cube.
+        Edge lengths; one number alone makes a cube.
+    y, z : float, optional
+        The other two edge lengths, if `size` is the first one. A truth value as the second argument
+        is `center`.
     center : bool
         Whether the middle is at the origin, instead of the lowest corner.
 
     Examples
     --------
     >>> import bspcsg as b
-    >>> b.box((1, 2, 3)).volume
-    6.0
+    >>> b.box(1, 2, 3).volume, b.box((1, 2, 3)) == b.box(1, 2, 3)
+    (6.0, True)
     """
-    lengths = vector3(size, "size", spread=True)
+    if isinstance(y, (bool, np.bool_)):
+        y, center = None, bool(y)
+    if (y is None) != (z is None):
+        raise invalid_parameter("A box has one edge length, or three: box(1, 2, 3).")
+    given: Any = size if y is None else (size, y, z)
+    lengths = vector3(given, "size", spread=y is None)
     for length in lengths:
         positive(length, "size")
     corners = np.indices((2, 2, 2)).reshape(3, 8).T
@@ -75,16 +89,17 @@ def box(size: Scalar | Vector, center: bool = False) -> Solid:
 @counted
 def cube(size: Scalar | Vector, center: bool = False) -> Solid:
     """Return a cube of this edge length, or a box: another name for `box`."""
-    return box(size, center)
+    return box(size, center=center)
 
 
 @counted
-def sphere(r: Scalar, segments: int = 32) -> Solid:
+def sphere(r: Scalar | None = None, segments: int = 32, *, d: Scalar | None = None) -> Solid:
     """Return a sphere about the origin, made of meridians and parallels.
 
     Parameters
     ----------
-    r : float
+    r, d : float
+        Radius, or diameter instead.
     segments : int
         Sides of the equator, at least 3; there are half as many bands from pole to pole.
 
@@ -94,7 +109,7 @@ def sphere(r: Scalar, segments: int = 32) -> Solid:
     >>> b.sphere(1, segments=4).to_mesh()
     Mesh(6 vertices, 8 faces)
     """
-    radius, around = positive(r, "r"), sides_around(3, segments, "segments")
+    radius, around = positive(_radius(r, d, "A sphere"), "r"), sides_around(3, segments, "segments")
     bands = max(around // 2, 2)
     refuse_many_corners(around * bands, "This sphere")
     angles = unit_circle(2 * bands)[: bands + 1]
@@ -110,6 +125,9 @@ def cylinder(
     *,
     r1: Scalar | None = None,
     r2: Scalar | None = None,
+    d: Scalar | None = None,
+    d1: Scalar | None = None,
+    d2: Scalar | None = None,
     segments: int = 32,
     center: bool = False,
 ) -> Solid:
@@ -123,6 +141,8 @@ def cylinder(
         Radius of both ends, unless `r1` or `r2` says otherwise.
     r1, r2 : float
         Radius of the lower and the upper end; one of them may be 0.
+    d, d1, d2 : float
+        Diameters, instead.
     segments : int
         Sides around, at least 3.
     center : bool
@@ -134,7 +154,8 @@ def cylinder(
     >>> b.cylinder(h=3, r=1, segments=4).volume
     6.0
     """
-    low, high = (_radius(given, r) for given in (r1, r2))
+    both = _radius(r, d)
+    low, high = (_end_radius(*end, both) for end in ((r1, d1), (r2, d2)))
     if low == high == 0:
         raise invalid_parameter("A cylinder needs a radius above 0.")
     height, around = positive(h, "h"), sides_around(3, segments, "segments")
@@ -149,9 +170,17 @@ def cylinder(
 
 
 @counted
-def cone(h: Scalar, r: Scalar, *, segments: int = 32, center: bool = False) -> Solid:
+def cone(
+    h: Scalar,
+    r: Scalar | None = None,
+    *,
+    d: Scalar | None = None,
+    segments: int = 32,
+    center: bool = False,
+) -> Solid:
     """Return a cone along z with its apex up: a `cylinder` whose upper radius is 0."""
-    return cylinder(h, r1=r, r2=0, segments=segments, center=center)
+    radius = _radius(r, d, "A cone")
+    return cylinder(h, r1=radius, r2=0, segments=segments, center=center)
 
 
 @counted
@@ -250,10 +279,20 @@ def half_space(normal: Vector, offset: Scalar = 0.0) -> Solid:
     return from_leaf(PlaneLeaf(Hyperplane.from_numbers((x, y, z), offset)))
 
 
-def _radius(given: Scalar | None, default: Any) -> float:
+def _radius(r: Scalar | None, d: Scalar | None, needed_by: str = "") -> Any:
+    """Return a radius, or half of a diameter; None if nobody needs one and none is given."""
+    if r is not None and d is not None:
+        raise invalid_parameter("Give a radius or a diameter, not both.")
+    if r is None and d is None and needed_by:
+        raise invalid_parameter(f"{needed_by} needs r, or d.")
+    return r if d is None else number(d, "d") / 2
+
+
+def _end_radius(r: Scalar | None, d: Scalar | None, default: Any) -> float:
+    given = _radius(r, d)
     value = default if given is None else given
     if value is None:
-        raise invalid_parameter("A cylinder needs r, or both r1 and r2.")
+        raise invalid_parameter("A cylinder needs r, or both r1 and r2, or diameters.")
     radius = number(value, "radius")
     if radius < 0:
         raise invalid_parameter(f"A radius must not be negative: {radius}.")

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -247,3 +247,36 @@ def test_half_spaces_take_any_length_of_normal() -> None:
     box = b.cube(2, center=True)
     assert (box & b.half_space((0, 0, 1e300), 0)).volume == 4
     assert (box & b.half_space((0, 0, 1e-300), 0)).volume == 4
+
+
+def test_sizes_as_people_type_them() -> None:
+    assert b.box(1, 2, 3) == b.box((1, 2, 3)) == b.box(size=[1, 2, 3])
+    assert b.box(1, 2, 3, center=True) == b.box((1, 2, 3), True) == b.cube((1, 2, 3), center=True)
+    assert b.sphere(d=2) == b.sphere(1) == b.sphere(r=1)
+    assert b.cylinder(5, d=4) == b.cylinder(5, 2) == b.cylinder(h=5, r=2)
+    assert b.cylinder(5, d1=4, d2=2) == b.cylinder(5, r1=2, r2=1) == b.cylinder(5, 2, d2=2)
+    assert b.cone(5, d=4) == b.cone(5, 2) == b.cylinder(5, d=4, r2=0)
+
+
+@pytest.mark.parametrize(
+    ("call", "word"),
+    [
+        (lambda: b.box(1, 2), "one edge length, or three"),
+        (lambda: b.box(1, z=2), "one edge length, or three"),
+        (lambda: b.box((1, 2, 3), 4, 5), "three"),
+        (lambda: b.box(1, 2, 0), "above 0"),
+        (lambda: b.box(1, True, 3), "one edge length"),
+        (b.sphere, "needs r"),
+        (lambda: b.sphere(1, d=2), "not both"),
+        (lambda: b.sphere(d=-2), "above 0"),
+        (lambda: b.cylinder(5), "needs r"),
+        (lambda: b.cylinder(5, 1, d=2), "not both"),
+        (lambda: b.cylinder(5, d1=2), "needs r"),
+        (lambda: b.cylinder(5, r1=1, d1=2, r2=1), "not both"),
+        (lambda: b.cylinder(5, d=cast("Any", "2")), "number"),
+        (lambda: b.cone(5), "needs r"),
+    ],
+)
+def test_sizes_that_do_not_fit_are_refused(call: Callable[[], Any], word: str) -> None:
+    with pytest.raises(b.InvalidParameterError, match=word):
+        call()

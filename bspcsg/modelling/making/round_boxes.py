@@ -52,7 +52,7 @@ def rounded_box(
         positive(length, "size")
     radius, around = not_negative(r, "r"), sides_around(4, segments, "segments")
     if radius == 0:
-        return box(lengths, center)
+        return box(lengths, center=center)
     if radius > lengths.min() / 2:
         raise invalid_parameter(
             f"r must be at most half of the shortest edge, {lengths.min() / 2:g}, not {radius:g}."
