@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from .modelling.making.round_boxes import rounded_box
     from .modelling.making.sweeping import pipe, sweep
     from .modelling.planar.curves import arc, bezier
+    from .modelling.planar.lettering.text import text
     from .operations.setops import boolean, difference, intersection, union, xor
     from .parameters import set_threads
     from .script.run import run_script, show
@@ -102,6 +103,7 @@ __all__ = [
     "spline",
     "surface",
     "sweep",
+    "text",
     "torus",
     "union",
     "validate",
@@ -127,6 +129,7 @@ _MODULES = {
     "io": "load save",
     "mesh.mesh": "Mesh",
     "modelling.planar.curves": "arc bezier",
+    "modelling.planar.lettering.text": "text",
     "parameters": "set_threads",
     "shapes.primitives": "box cone cube cylinder extrude half_space prism revolve sphere torus",
     "script.run": "run_script show",

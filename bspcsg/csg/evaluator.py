@@ -12,6 +12,7 @@ from ..solid.solid import Solid
 from .making.polish import Polish, corners_and_levels, pitch_of, polished_pitch, snapped
 from .nodes import files as nodes_file
 from .nodes import hulls as nodes_hull
+from .nodes import letters as nodes_letters
 from .nodes import moves as nodes_move
 from .nodes import plane as nodes_plane
 from .nodes import projection as nodes_project
@@ -25,7 +26,7 @@ from .syntax.tree import CsgTree, Node
 
 #: The modules that register nodes when they are imported.
 MAKERS = (
-    nodes_file, nodes_hull, nodes_move, nodes_plane,
+    nodes_file, nodes_hull, nodes_letters, nodes_move, nodes_plane,
     nodes_project, nodes_set, nodes_solid, nodes_sweep,
 )  # fmt: skip
 
@@ -196,13 +197,7 @@ class _Cache:
 
 def unsupported(node: Node, script: str) -> FormatError:
     """Return the error for a node that cannot be evaluated."""
-    if node.name == "text":
-        message = (
-            "text() needs fonts, which bspcsg does not read. Export it from OpenSCAD as SVG and"
-            " import() that file, or leave it out."
-        )
-    else:
-        message = f"{node.name}() is not supported. Supported: {' '.join(node_names())}."
+    message = f"{node.name}() is not supported. Supported: {' '.join(node_names())}."
     return error_at(script, node.place, message, "unsupported")
 
 

@@ -66,12 +66,13 @@ def test_real_scripts_equal_openscad(shared_scripts: Path) -> None:
     for row in rows:
         by_status.setdefault(row[1], []).append(row)
     assert {status: len(found) for status, found in by_status.items()} == {
-        "same": 32,
+        "same": 39,
         "explained": 1,
-        "unsupported": 7,
     }
-    # The nodes that are not supported are named with line and column.
-    assert all(f"{row[0]}:" in row[2] and row[3] == "text()" for row in by_status["unsupported"])
+    # Text depends on the fonts of the machine that made the reference.
+    plain = [
+        row for row in by_status["same"] if "text(" not in (shared_scripts / row[0]).read_text()
+    ]
     # What the bound allows is far more than what is found.
-    assert max(float(row[2]) for row in by_status["same"]) < 1e-5
-    assert max(float(row[3]) for row in by_status["same"]) < 2e-6
+    assert max(float(row[2]) for row in plain) < 1e-5
+    assert max(float(row[3]) for row in plain) < 2e-6

@@ -106,9 +106,8 @@ def test_an_open_file_gets_a_line_to_type(capsys: Capture) -> None:
             "m.csg:2:3: minkowsky() is not supported. Supported: circle color cube ",
         ),
         (
-            'linear_extrude(height = 2)\n  text("a");',
-            "m.csg:2:3: text() needs fonts, which bspcsg does not read. Export it from OpenSCAD as"
-            " SVG and import() that file, or leave it out.\n",
+            "linear_extrude(height = 2)\n  text(a);",
+            "m.csg:2:9: expected “=” after a, found “)”.\n",
         ),
         ("cube(1", "m.csg:1:7: expected “,” or “)”, found the end of the file."),
         ("cube(size = [1, 2]);", "m.csg:1:1: cube(): size must be 3 numbers"),

@@ -445,7 +445,8 @@ def test_files_that_are_not_what_they_should(
         ("linear_extrude(height = 1, v = [1, 0, 1]) square(1);", "only v = [0, 0, 1]"),
         ("sphere(r = 1, $fn = 1e9);", "more than 4,000,000 corners"),
         ("linear_extrude(height = 1, twist = 1, slices = 1e12) square(1);", "corners"),
-        ('text(text = "x");', "text() needs fonts, which bspcsg does not read. Export"),
+        ("text(text = 3);", "text must be a text"),
+        ('text("a", size = "b");', "size must be a number"),
         ("roof() square(1);", "roof() is not supported. Supported: circle color"),
     ],
 )

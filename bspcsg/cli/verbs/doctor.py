@@ -23,7 +23,7 @@ Example:
   bspcsg doctor
 """
 
-_REQUIRED = ("numpy", "click", "rich", "jinja2", "manifold3d", "pyclipper", "trimesh")
+_REQUIRED = ("numpy", "click", "rich", "jinja2", "manifold3d", "pyclipper", "trimesh", "uharfbuzz")
 
 #: Optional packages, what each is for, and the extra that brings it.
 _OPTIONAL = (

@@ -1,0 +1,1 @@
+"""Text as figures of the plane: which font, which glyphs, where they go."""

@@ -1,0 +1,154 @@
+"""Which file holds a font: ours, one that is named by its path, or one of the system's."""
+
+import os
+import shutil
+import subprocess
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+import uharfbuzz
+
+from ....errors import FormatError, InvalidParameterError
+from ....formats.source import limited_content
+from ....parameters import shown
+
+#: The font that comes with the package, and its styles.
+FAMILY = "Liberation Sans"
+_FACES = {"regular": "LiberationSans-Regular.ttf", "bold": "LiberationSans-Bold.ttf"}
+
+#: Names of fonts are no longer, in letters.
+_LONGEST_NAME = 200
+
+#: Suffixes of font files.
+_SUFFIXES = (".ttf", ".otf", ".ttc", ".otc")
+
+#: Where the flags stand in the table "head" of a font.
+_HEAD_FLAGS = slice(16, 18)
+
+#: The longest time that fontconfig may take, in seconds; its first run looks at all fonts.
+_TIMEOUT = 120.0
+
+
+class FontFile(NamedTuple):
+    """A font of a file.
+
+    Parameters
+    ----------
+    path : Path
+    face : int
+        Its number among those of the file.
+    """
+
+    path: Path
+    face: int = 0
+
+
+def font_file(name: str | os.PathLike[str], *, paths: bool = True) -> FontFile:
+    """Return the file of a font.
+
+    Parameters
+    ----------
+    name : str or path
+        ``"Family"`` or ``"Family:style=Style"``, as fontconfig has it; empty for the font that
+        comes with the package; or the path of a font file.
+    paths : bool
+        Whether a name may be a path.
+
+    Raises
+    ------
+    InvalidParameterError
+        If no such font is there (code "unknown_font").
+    FormatError
+        If the path is that of no file.
+    """
+    text = os.fspath(name).strip()
+    if paths and (isinstance(name, os.PathLike) or text.lower().endswith(_SUFFIXES)):
+        return FontFile(Path(text))
+    own = _own_face(text)
+    if own is not None:
+        return own
+    known = _fontconfig(text)
+    if known is None:
+        raise unknown_font(text)
+    return known
+
+
+def unknown_font(name: str) -> InvalidParameterError:
+    """Return the error for a font that is not there."""
+    message = (
+        f"There is no font {shown(name)} on this machine. Give the path of a .ttf or .otf file, or"
+        f' one of "{FAMILY}" and "{FAMILY}:style=Bold", which come with the package.'
+    )
+    return InvalidParameterError(message, "unknown_font")
+
+
+def stand_in(name: str) -> FontFile:
+    """Return the own font that is used where one is not there: bold if that was to be."""
+    _, style = _family_and_style(name)
+    return _own_file("bold" if "bold" in style else "regular")
+
+
+@lru_cache(maxsize=16)
+def opened(file: FontFile) -> uharfbuzz.Font:
+    """Return a font, measured in units of its design.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be read or holds no such font.
+    """
+    face = uharfbuzz.Face(limited_content(file.path), file.face)
+    if face.glyph_count == 0:
+        raise FormatError(f"{file.path}: this is no font file.", "malformed")
+    font = uharfbuzz.Font(face)
+    font.scale = (face.upem, face.upem)
+    return font
+
+
+def wants_whole_pixels(file: FontFile) -> bool:
+    """Whether a font says that its em is to be a whole number of pixels."""
+    head = opened(file).face.reference_table("head").data or b""
+    # The flags of the table "head", of which the fourth one says so.
+    return len(head) >= _HEAD_FLAGS.stop and bool(head[_HEAD_FLAGS][1] & 8)
+
+
+def _own_face(name: str) -> FontFile | None:
+    family, style = _family_and_style(name)
+    if family not in ("", FAMILY.lower()):
+        return None
+    return _own_file(style or "regular") if (style or "regular") in _FACES else None
+
+
+def _own_file(style: str) -> FontFile:
+    return FontFile(Path(__file__).parent / "faces" / _FACES[style])
+
+
+def _family_and_style(name: str) -> tuple[str, str]:
+    """Return family and style of a name as fontconfig writes it, in small letters."""
+    family, *properties = (part.strip().lower() for part in name.split(":"))
+    pairs = [part.rpartition("=") for part in properties]
+    # A word alone is a style, too.
+    styles = [value.strip() for key, _, value in pairs if key.strip() in ("", "style")]
+    return family, " ".join(styles)
+
+
+@lru_cache(maxsize=64)
+def _fontconfig(name: str) -> FontFile | None:
+    """Return what fontconfig has of this very family; None without fontconfig, too."""
+    program = shutil.which("fc-match")
+    if program is None or not name.isprintable() or len(name) > _LONGEST_NAME:
+        return None
+    command = [program, "-f", "%{index}\n%{file}\n%{family}", "--", name]
+    try:
+        done = subprocess.run(
+            command, capture_output=True, text=True, timeout=_TIMEOUT, check=False
+        )
+    except (OSError, UnicodeError, subprocess.TimeoutExpired):
+        return None
+    index, path, families = [*done.stdout.split("\n", 2), "", "", ""][:3]
+    wanted = _family_and_style(name)[0]
+    if wanted not in [family.strip().lower() for family in families.split(",")]:
+        return None
+    # Beyond 16 bits is the number of a variable font's instance.
+    return FontFile(Path(path), int(index or 0) & 0xFFFF)

@@ -1,0 +1,136 @@
+"""Glyphs in their places, by HarfBuzz."""
+
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import uharfbuzz
+
+from ...._types import FloatArray
+from ..curves import bezier_points
+
+#: The control points of a line (2) or a Bézier curve (3 or 4) that a glyph's outline is made of.
+_Stroke: TypeAlias = list[tuple[float, float]]
+
+
+class Writing(NamedTuple):
+    """How text runs, as HarfBuzz wants to know it; what is empty follows from the text.
+
+    Parameters
+    ----------
+    direction : str
+        ``"ltr"``, ``"rtl"``, ``"ttb"`` or ``"btt"``.
+    language : str
+        Such as ``"en"``, never empty.
+    script : str
+        Such as ``"Latn"``.
+    """
+
+    direction: str = ""
+    language: str = "en"
+    script: str = ""
+
+
+class Placed(NamedTuple):
+    """A glyph of a line of text, in units of its font's design.
+
+    Parameters
+    ----------
+    glyph : int
+        0 if the font does not have the letter.
+    cluster : int
+        The number of its first letter in the text.
+    offset, advance : (2,) float64
+        From where the pen is to where the glyph is, and to where the pen is next.
+    """
+
+    glyph: int
+    cluster: int
+    offset: FloatArray
+    advance: FloatArray
+
+
+def shaped(font: uharfbuzz.Font, text: str, writing: Writing) -> tuple[list[Placed], bool]:
+    """Return the glyphs of a line of text, and whether it runs along x."""
+    buffer = uharfbuzz.Buffer()
+    buffer.add_str(text)
+    buffer.guess_segment_properties()
+    if writing.direction:
+        buffer.direction = writing.direction
+    # What it guesses is that of the machine.
+    buffer.language = writing.language
+    if writing.script:
+        buffer.script = writing.script
+    uharfbuzz.shape(font, buffer)
+    pairs = zip(buffer.glyph_infos, buffer.glyph_positions or (), strict=True)
+    placed = [
+        Placed(
+            info.codepoint,
+            info.cluster,
+            np.array([at.x_offset, at.y_offset], dtype=np.float64),
+            np.array([at.x_advance, at.y_advance], dtype=np.float64),
+        )
+        for info, at in pairs
+    ]
+    return placed, buffer.direction in ("ltr", "rtl")
+
+
+class Glyph:
+    """The outlines of a glyph, in units of its font's design.
+
+    Parameters
+    ----------
+    font : uharfbuzz.Font
+    number : int
+    """
+
+    def __init__(self, font: uharfbuzz.Font, number: int) -> None:
+        self._contours: list[list[_Stroke]] = []
+        pen = uharfbuzz.DrawFuncs()
+        pen.set_move_to_func(self._move)
+        pen.set_line_to_func(self._line)
+        pen.set_quadratic_to_func(self._quadratic)
+        pen.set_cubic_to_func(self._cubic)
+        font.draw_glyph(number, pen, None)
+
+    @property
+    def bounds(self) -> FloatArray:
+        """Lowest and highest coordinates of control points, (2, 2) float64; zeros if it is bare."""
+        points = [p for contour in self._contours for stroke in contour for p in stroke]
+        if not points:
+            return np.zeros((2, 2))
+        return np.array([np.min(points, axis=0), np.max(points, axis=0)])
+
+    def loops(self, steps: int) -> list[FloatArray]:
+        """Return the corners of each outline, curves taken in so many steps."""
+        loops = []
+        for contour in self._contours:
+            parts = [
+                bezier_points(np.array(stroke, dtype=np.float64), steps)[1:]
+                if len(stroke) > 2
+                else np.array(stroke[1:], dtype=np.float64)
+                for stroke in contour
+            ]
+            loop = np.concatenate(parts) if parts else np.zeros((0, 2))
+            proper = loop[(loop != np.roll(loop, 1, axis=0)).any(axis=1)]
+            if len(proper) >= 3:
+                loops.append(proper)
+        return loops
+
+    def _move(self, x: float, y: float, _: object) -> None:
+        self._contours.append([])
+        self._first = self._last = (x, y)
+
+    def _line(self, x: float, y: float, _: object) -> None:
+        self._add((x, y))
+
+    def _quadratic(self, cx: float, cy: float, x: float, y: float, _: object) -> None:
+        self._add((cx, cy), (x, y))
+
+    def _cubic(
+        self, ax: float, ay: float, bx: float, by: float, x: float, y: float, _: object
+    ) -> None:
+        self._add((ax, ay), (bx, by), (x, y))
+
+    def _add(self, *points: tuple[float, float]) -> None:
+        self._contours[-1].append([self._last, *points])
+        self._last = points[-1]

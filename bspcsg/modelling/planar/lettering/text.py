@@ -1,0 +1,228 @@
+"""Text as a figure of the plane."""
+
+import math
+import os
+import unicodedata
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+
+from ...._types import FloatArray, Scalar
+from ....bsp import Region
+from ....errors import InvalidParameterError, invalid_parameter
+from ....parameters import positive, refuse_many_corners, shown, sides_around
+from .fonts import FAMILY, FontFile, font_file, opened
+from .shaping import Glyph, Placed, Writing, shaped
+
+HorizontalAlignment: TypeAlias = Literal["left", "center", "right"]
+VerticalAlignment: TypeAlias = Literal["baseline", "bottom", "center", "top"]
+Direction: TypeAlias = Literal["ltr", "rtl", "ttb", "btt"]
+
+#: The em of a font of size one, in model units: points of 1/72 inch at 100 dots per inch.
+EM = 100 / 72
+
+
+@dataclass(frozen=True)
+class Lettering:
+    """How a line of text looks, but for its font.
+
+    Parameters
+    ----------
+    em : float
+        Of the font, in model units.
+    halign, valign : str
+    spacing : float
+        What distances from one letter to the next are multiplied by.
+    writing : Writing
+    steps : int
+        Straight pieces of each curve of a glyph.
+    ink : float
+        How much larger than they should be glyphs are drawn.
+    tightness : float
+        What distances and the measures of the line are multiplied by.
+    grid : float
+        How far the line reaches is rounded up to multiples of this, unless it is 0.
+    """
+
+    em: float
+    halign: HorizontalAlignment
+    valign: VerticalAlignment
+    spacing: float
+    writing: Writing
+    steps: int
+    ink: float = 1.0
+    tightness: float = 1.0
+    grid: float = 0.0
+
+    def reach(self, distance: float) -> float:
+        """Return how far a line counts as reaching, never below 0."""
+        steps = math.ceil(distance / self.grid) * self.grid if self.grid else distance
+        return max(steps, 0.0) * self.tightness
+
+
+def steps_of(segments: float) -> int:
+    """Return how many pieces a glyph's curves have where circles of its size have `segments`.
+
+    This is OpenSCAD's rule: curves of glyphs are short, so an eighth of a circle's sides does.
+    """
+    return max(int(segments // 8) + 1, 2)
+
+
+def text(
+    string: str,
+    size: Scalar = 10.0,
+    font: str | os.PathLike[str] = FAMILY,
+    *,
+    halign: HorizontalAlignment = "left",
+    valign: VerticalAlignment = "baseline",
+    spacing: Scalar = 1.0,
+    direction: Direction | None = None,
+    language: str = "en",
+    script: str | None = None,
+    segments: int = 32,
+) -> Region:
+    """Return a line of text, laid out by HarfBuzz.
+
+    Parameters
+    ----------
+    string : str
+        One line.
+    size : float
+        About the height of capitals, in model units; as OpenSCAD has it, the em is 100/72 of it.
+    font : str or path
+        ``"Family"`` or ``"Family:style=Bold"`` of a font that fontconfig finds on this machine, or
+        the path of a font file. "Liberation Sans", regular and bold, comes with the package.
+    halign : {"left", "center", "right"}
+        Which part of the line is at x = 0.
+    valign : {"baseline", "bottom", "center", "top"}
+        Which part of it is at y = 0.
+    spacing : float
+        What distances from one letter to the next are multiplied by, above 0.
+    direction : {"ltr", "rtl", "ttb", "btt"}, optional
+        By default that of the text's own script.
+    language : str
+        Of the text, such as ``"en"``; some fonts draw letters differently in some languages.
+    script : str, optional
+        The four letters of ISO 15924, such as ``"Latn"``; by default that of the text.
+    segments : int
+        Sides that a circle of this size would have. Curves of glyphs get an eighth of them and one
+        more, at least two.
+
+    Returns
+    -------
+    Region
+        What the glyphs cover, also where they overlap.
+
+    Raises
+    ------
+    InvalidParameterError
+        If there is no such font (code "unknown_font"), it has no glyph for a letter
+        ("missing_glyph"), the text has several lines, or a parameter is out of its range.
+    FormatError
+        If the file of the font cannot be read.
+    LimitError
+        If the glyphs would have too many corners.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> plate = b.text("Ok", 8).extrude(2)
+    >>> len(b.text("Ok").decompose())
+    2
+    """
+    line = _line(string)
+    look = Lettering(
+        positive(size, "size") * EM,
+        _one_of(HorizontalAlignment, halign, "halign"),
+        _one_of(VerticalAlignment, valign, "valign"),
+        positive(spacing, "spacing"),
+        _writing(direction, language, script),
+        steps_of(sides_around(3, segments, "segments")),
+    )
+    region, missing = lettered(line, font_file(font), look)
+    if missing:
+        letters = " ".join(f"{letter} (U+{ord(letter):04X})" for letter in missing[:8])
+        message = f"The font {shown(os.fspath(font))} has no glyph for {letters}."
+        raise InvalidParameterError(message, "missing_glyph")
+    return region
+
+
+def lettered(string: str, file: FontFile, look: Lettering) -> tuple[Region, list[str]]:
+    """Return a line of text in the font of a file, and the letters that this does not have.
+
+    Glyphs that are not there look as the font says, which mostly is a box.
+    """
+    font = opened(file)
+    placed, is_horizontal = shaped(font, string, look.writing)
+    glyphs = {one.glyph: Glyph(font, one.glyph) for one in placed}
+    unit = look.em / font.face.upem
+    loops = {
+        key: [loop * (unit * look.ink) for loop in glyph.loops(look.steps)]
+        for key, glyph in glyphs.items()
+    }
+    refuse_many_corners(sum(len(p) for one in placed for p in loops[one.glyph]), "This text")
+    places = _places(placed, unit * look.tightness, look.spacing)
+    boxes = np.array([glyphs[one.glyph].bounds for one in placed]).reshape(-1, 2, 2)
+    anchor = _anchor(places[-1], boxes * (unit * look.ink), look, is_horizontal)
+    parts = [
+        Region([loop + (place + anchor) for loop in loops[one.glyph]], winding="nonzero")
+        for one, place in zip(placed, places, strict=False)
+    ]
+    missing = [string[one.cluster] for one in placed if one.glyph == 0]
+    return Region.compose(parts), list(dict.fromkeys(missing))
+
+
+def _places(placed: Sequence[Placed], unit: float, spacing: float) -> list[FloatArray]:
+    """Return where each glyph is if the pen begins at the origin, and where it ends."""
+    pen, places = np.zeros(2), []
+    for one in placed:
+        places.append(pen + one.offset * unit)
+        pen = pen + one.advance * (unit * spacing)
+    return [*places, pen]
+
+
+def _anchor(end: FloatArray, boxes: FloatArray, look: Lettering, is_horizontal: bool) -> FloatArray:
+    """Return where the first glyph's pen is: OpenSCAD's rules.
+
+    A line along x is as wide as its glyphs advance and as high as their control points reach; one
+    along y is as high as its glyphs advance, downwards, and as wide as the widest of them.
+    """
+    low, high = boxes[:, 0], boxes[:, 1]
+    if is_horizontal:
+        width, ascent = float(end[0]), look.reach(float(high[:, 1].max(initial=0.0)))
+        descent = look.reach(float((-low[:, 1]).max(initial=0.0)))
+    else:
+        width, ascent = look.reach(float((high - low)[:, 0].max(initial=0.0))), float(end[1])
+        descent = 0.0
+    x = {"left": 0.0, "center": -width / 2, "right": -width}[look.halign]
+    y = {"baseline": 0.0, "bottom": descent, "center": (descent - ascent) / 2, "top": -ascent}
+    return np.array([x, y[look.valign]])
+
+
+def _line(string: Any) -> str:
+    if not isinstance(string, str):
+        raise invalid_parameter(f"string must be a text, not {shown(string)}.")
+    if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in string):
+        raise invalid_parameter("string must be one line without control characters.")
+    return string
+
+
+def _writing(direction: Any, language: Any, script: Any) -> Writing:
+    if direction is not None:
+        _one_of(Direction, direction, "direction")
+    if not isinstance(language, str) or not language.isascii():
+        raise invalid_parameter(f"language must be a code such as 'en', not {shown(language)}.")
+    is_script = isinstance(script, str) and len(script) == 4 and script.isascii()
+    if script is not None and not (is_script and script.isalpha()):
+        raise invalid_parameter(f"script must be four letters such as 'Latn', not {shown(script)}.")
+    return Writing(direction or "", language, script or "")
+
+
+def _one_of(choices: Any, value: Any, name: str) -> Any:
+    known = get_args(choices)
+    if not isinstance(value, str) or value not in known:
+        words = ", ".join(f'"{one}"' for one in known)
+        raise invalid_parameter(f"{name} must be one of {words}, not {shown(value)}.")
+    return value
