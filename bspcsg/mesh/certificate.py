@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from .._core import mesh_faults
+from .._core import mesh_counts, mesh_faults
 from .._types import FloatArray, IndexArray
 from ..errors import core_errors
 
@@ -73,19 +73,13 @@ def certify(vertices: FloatArray, faces: IndexArray) -> Certificate:
     """
     with core_errors():
         found = mesh_faults(vertices, faces)
+        _, _, open_edges, _ = mesh_counts(faces, len(vertices))
     with np.errstate(over="ignore"):
         is_single = bool((vertices.astype(np.float32) == vertices).all())
     return Certificate(
         "single" if is_single else "double",
         len(faces),
-        _open_edges(faces, len(vertices)),
+        open_edges,
         tuple((int(t), int(u)) for t, u in found["crossings"]),
         tuple(int(t) for t in found["flat"]),
     )
-
-
-def _open_edges(faces: IndexArray, count: int) -> int:
-    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    forth, uses = np.unique(start * np.int64(count) + end, return_counts=True)
-    back = np.unique(end * np.int64(count) + start)
-    return int(np.count_nonzero((uses != 1) | ~np.isin(forth, back)))

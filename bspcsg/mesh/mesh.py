@@ -11,7 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from .._core import mesh_counts, mesh_measures
+from .._core import surfaces_of as triangle_surfaces
 from .._types import FloatArray, IndexArray
+from ..errors import core_errors
 from .certificate import Certificate, certify
 
 
@@ -69,13 +72,12 @@ class Mesh:
     @property
     def volume(self) -> float:
         """Volume in cubic model units: signed tetrahedra, summed without further rounding."""
-        return math.fsum(self._signed_volumes(self._middle()).tolist())
+        return self._measures[0]
 
     @property
     def area(self) -> float:
         """Surface area in square model units."""
-        a, b, c = self._corners()
-        return math.fsum((np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2).tolist())
+        return self._measures[1]
 
     @property
     def centroid(self) -> FloatArray:
@@ -118,14 +120,18 @@ class Mesh:
     @property
     def euler_number(self) -> int:
         """Vertices - edges + faces, counting only vertices that a face uses."""
-        if len(self.faces) == 0:
-            return 0
-        return len(np.unique(self.faces)) - len(self._edges()) + len(self.faces)
+        vertices, edges, _, _ = self._counts
+        return vertices - edges + len(self.faces)
+
+    @property
+    def open_edges(self) -> int:
+        """Directed edges without exactly one opposite, by index."""
+        return self._counts[2]
 
     @property
     def components(self) -> int:
         """Number of connected surfaces; the wall of a closed cavity is one of its own."""
-        return len(np.unique(surfaces_of(self.faces, len(self.vertices))))
+        return self._counts[3]
 
     @property
     def genus(self) -> int:
@@ -149,30 +155,31 @@ class Mesh:
         volumes: FloatArray = np.einsum("ij,ij->i", np.cross(a, b), c) / 6
         return volumes
 
-    def _edges(self) -> IndexArray:
-        ends = np.sort(self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-        return np.unique(ends[:, 0] * np.int64(len(self.vertices)) + ends[:, 1])
+    @cached_property
+    def _measures(self) -> tuple[float, float]:
+        x, y, z = self._middle().tolist()
+        with core_errors():
+            return mesh_measures(self.vertices, self.faces, (x, y, z))
+
+    @cached_property
+    def _counts(self) -> tuple[int, int, int, int]:
+        """Vertices that are used, edges, open edges and connected surfaces."""
+        with core_errors():
+            return mesh_counts(self.faces, len(self.vertices))
 
 
 def surfaces_of(faces: IndexArray, vertex_count: int) -> IndexArray:
-    """Return for each face the number of its connected surface, from 0.
+    """Return for each face the number of its connected surface, by their lowest vertices.
 
     Parameters
     ----------
-    faces : (m, k) int64
-        Corners of each face; those that share one are connected. With k = 2, edges and chains.
+    faces : (m, 3) int64
+        Corners of each face; those that share one are connected.
     vertex_count : int
 
     Returns
     -------
     (m,) int64
     """
-    # Hooking and pointer jumping: every vertex points to a lower one it is connected to.
-    root = np.arange(vertex_count)
-    while True:
-        low = root[faces].min(axis=1)
-        np.minimum.at(root, root[faces].ravel(), np.repeat(low, faces.shape[1]))
-        while not np.array_equal(root, jumped := root[root]):
-            root = jumped
-        if (root[faces] == root[faces[:, :1]]).all():
-            return np.unique(root[faces[:, 0]], return_inverse=True)[1]
+    with core_errors():
+        return triangle_surfaces(faces, vertex_count)

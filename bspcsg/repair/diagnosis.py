@@ -188,7 +188,8 @@ def _edge_findings(mesh: Mesh, edges: _Edges) -> list[Finding]:
 def _chains(ends: IndexArray) -> int:
     """Count the connected chains of edges."""
     used, edges = np.unique(ends, return_inverse=True)
-    return int(surfaces_of(edges.reshape(-1, 2), len(used)).max()) + 1
+    # An edge is a triangle with a corner twice.
+    return int(surfaces_of(edges.reshape(-1, 2)[:, [0, 1, 1]], len(used)).max()) + 1
 
 
 def _face_findings(mesh: Mesh, edges: _Edges) -> list[Finding]:

@@ -4,8 +4,6 @@ from dataclasses import asdict, dataclass
 from enum import StrEnum
 from typing import Any
 
-import numpy as np
-
 from ..mesh.mesh import Mesh
 from .discrepancy import SetDifference
 
@@ -54,7 +52,7 @@ class Facts:
             mesh.area,
             mesh.euler_number,
             mesh.components,
-            count_open_edges(mesh),
+            mesh.open_edges,
         )
 
     def __str__(self) -> str:
@@ -140,12 +138,3 @@ class CheckReport:
             f"the sets differ by a film {found.thickness:.2g} thick"
             f" (up to {self.same_set_bound:.2g} is rounding), of volume {found.volume:.3g}"
         )
-
-
-def count_open_edges(mesh: Mesh) -> int:
-    """Return how many directed edges lack exactly one opposite, by index."""
-    start, end = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
-    size = np.int64(len(mesh.vertices))
-    edges, counts = np.unique(start * size + end, return_counts=True)
-    has_mate = np.isin(edges % size * size + edges // size, edges, assume_unique=True)
-    return int(((counts != 1) | ~has_mate | (edges % size == edges // size)).sum())

@@ -1,16 +1,19 @@
 """Verdicts: right results agree, and every kind of wrong one is found."""
 
 import json
+import math
+from collections import Counter
+from itertools import pairwise
 from typing import Any, cast
 
 import manifold3d
+import networkx as nx
 import numpy as np
 import pytest
 
 import bspcsg as b
 from bspcsg.verify import oracle
 from bspcsg.verify.check import Verdict, check_result, validate
-from bspcsg.verify.verdict import count_open_edges
 from support.shapes import cube, cuboid, flipped, joined, moved, random_rotation, turned
 
 OPS: list[Any] = ["union", "intersection", "difference", "xor"]
@@ -242,7 +245,33 @@ def manifold3d_version() -> str:
 )
 def test_open_edges(faces: "np.ndarray[Any, Any]", count: int) -> None:
     mesh = b.Mesh(cube()[0], faces, np.zeros((len(faces), 2), np.int64))
-    assert count_open_edges(mesh) == count
+    assert mesh.open_edges == mesh.certificate.open_edges == count
+
+
+def test_counts_of_random_triangles() -> None:
+    rng = np.random.default_rng(1)
+    for most in (4, 12, 40):
+        faces = rng.integers(0, most, (most * 2, 3))
+        directed = Counter((a, b) for row in faces.tolist() for a, b in pairwise([*row, row[0]]))
+        is_open = [a == b or n != 1 or (b, a) not in directed for (a, b), n in directed.items()]
+        edges = {tuple(sorted(edge)) for edge in directed}
+        linked = nx.Graph(edges)
+        mesh = b.Mesh(rng.normal(size=(most, 3)), faces, np.zeros((len(faces), 2), np.int64))
+        assert mesh.open_edges == sum(is_open)
+        assert mesh.components == nx.number_connected_components(linked)
+        assert mesh.euler_number == len(linked) - len(edges) + len(faces)
+
+
+def test_sums_are_rounded_once() -> None:
+    rng = np.random.default_rng(2)
+    vertices = rng.normal(size=(20, 3)) * 10.0 ** rng.integers(-9, 9, (20, 1))
+    faces = rng.integers(0, 20, (500, 3))
+    mesh = b.Mesh(vertices, faces, np.zeros((500, 2), np.int64))
+    low, high = np.asarray(mesh.bounds)
+    p, q, r = (vertices[faces[:, k]] - (low + (high - low) / 2) for k in range(3))
+    n = np.stack([p[:, k - 2] * q[:, k - 1] - p[:, k - 1] * q[:, k - 2] for k in range(3)])
+    parts = (n[0] * r[:, 0] + n[1] * r[:, 1] + n[2] * r[:, 2]) / 6
+    assert mesh.volume == math.fsum(parts.tolist())
 
 
 def test_inverted_operands_are_empty_to_both() -> None:

@@ -455,7 +455,7 @@ def _moved_corners(points: FloatArray, given: Any) -> FloatArray:
 
 
 def _built(rows: FloatArray, pitch: int, winding: FillRule) -> CoreTree:
-    if winding == "negative":
+    if isinstance(winding, str) and winding == "negative":
         # Whatever winds once backwards winds once forwards seen from behind.
         rows, winding = np.ascontiguousarray(rows[:, [2, 3, 0, 1]]), "positive"
     rule = winding_rule(winding)

@@ -1,4 +1,4 @@
-//! Exact integers of fixed width, residues, and correctly rounded ratios.
+//! Exact integers of fixed width, residues, and correctly rounded ratios and sums.
 //!
 //! Nothing here knows geometry except [`bounds`], which derives how wide the
 //! integers of the exact predicates have to be. Nothing allocates.
@@ -17,8 +17,10 @@ mod limbs;
 mod modular;
 mod ops;
 mod round;
+mod sum;
 
 pub use gcd::gcd_u128;
 pub use int::Int;
 pub use modular::{inv_mod, mul_mod, P1, P2};
 pub use round::{mantissa_and_exponent, ratio_to_f64};
+pub use sum::Sum;

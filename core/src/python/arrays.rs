@@ -25,6 +25,30 @@ pub fn rows<'a, T: Element + Copy>(
     Ok(Cow::Owned(view.rows().into_iter().map(row).collect()))
 }
 
+/// Triangles that name only vertices that exist.
+///
+/// # Errors
+/// `Shape` if they have not three corners each, `IndexOutOfRange`.
+pub fn triangles_of(
+    triangles: &PyReadonlyArray2<'_, i64>,
+    vertex_count: usize,
+) -> Result<Vec<[u32; 3]>> {
+    let index = |v: i64| {
+        u32::try_from(v)
+            .ok()
+            .filter(|v| (*v as usize) < vertex_count)
+    };
+    let row = |(t, corners): (usize, &[i64; 3])| {
+        if let [Some(a), Some(b), Some(c)] = corners.map(index) {
+            return Ok([a, b, c]);
+        }
+        let text = format!("triangle {t} names a vertex that does not exist");
+        Err(Error::new(ErrorKind::IndexOutOfRange, text))
+    };
+    let triangles = rows(triangles, "triangles")?;
+    triangles.iter().enumerate().map(row).collect()
+}
+
 /// Indices as Python has them.
 pub fn wide<const K: usize>(rows: &[[u32; K]]) -> Vec<[i64; K]> {
     let mut wide = vec![[0; K]; rows.len()];

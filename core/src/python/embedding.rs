@@ -4,7 +4,7 @@ use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::arrays::{array, rows, wide};
+use super::arrays::{array, rows, triangles_of, wide};
 use super::errors::to_python;
 use super::run::run;
 use crate::error::{Error, ErrorKind, Result};
@@ -70,24 +70,7 @@ fn given(
         let text = "a coordinate is not a finite number";
         return Err(Error::new(ErrorKind::NonFinite, text));
     }
-    let index = |v: i64| {
-        u32::try_from(v)
-            .ok()
-            .filter(|v| (*v as usize) < vertices.len())
-    };
-    let row = |(t, corners): (usize, &[i64; 3])| {
-        if let [Some(a), Some(b), Some(c)] = corners.map(index) {
-            return Ok([a, b, c]);
-        }
-        let text = format!("triangle {t} names a vertex that does not exist");
-        Err(Error::new(ErrorKind::IndexOutOfRange, text))
-    };
-    let triangles = rows(triangles, "triangles")?;
-    let triangles = triangles
-        .iter()
-        .enumerate()
-        .map(row)
-        .collect::<Result<_>>()?;
+    let triangles = triangles_of(triangles, vertices.len())?;
     Ok(Rounded {
         vertices,
         triangles,

@@ -27,6 +27,7 @@ mod set_input;
 mod set_queries;
 mod set_store;
 mod sets;
+mod surfaces;
 mod tree;
 
 use pyo3::panic::PanicException;
@@ -85,5 +86,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(fail_on_purpose, module)?)?;
     module.add_function(wrap_pyfunction!(suited_pitch, module)?)?;
     module.add_function(wrap_pyfunction!(numbers::numbers_in, module)?)?;
+    module.add_function(wrap_pyfunction!(surfaces::welded_points, module)?)?;
+    module.add_function(wrap_pyfunction!(surfaces::surfaces_of, module)?)?;
+    module.add_function(wrap_pyfunction!(surfaces::mesh_counts, module)?)?;
+    module.add_function(wrap_pyfunction!(surfaces::mesh_measures, module)?)?;
     Ok(())
 }

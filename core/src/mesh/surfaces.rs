@@ -1,0 +1,153 @@
+//! The connected surfaces of a mesh, and what it has of each kind.
+
+use crate::interrupt::poll;
+
+/// How many different things of each kind make up a mesh.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// Vertices that a face uses.
+    pub vertices: usize,
+    /// Pairs of vertices that a face connects, whichever way.
+    pub edges: usize,
+    /// Directed edges that are not there once, or have no opposite.
+    pub open_edges: usize,
+    /// Connected surfaces.
+    pub surfaces: usize,
+}
+
+/// Counts what a mesh is made of, by index.
+pub fn counts(faces: &[[u32; 3]], vertex_count: usize) -> Counts {
+    let fans = Fans::new(faces, vertex_count);
+    let mut edges = 0;
+    let mut open_edges = 0;
+    let mut around: Vec<(u32, bool)> = Vec::new();
+    for vertex in 0..vertex_count {
+        poll();
+        around.clear();
+        around.extend_from_slice(fans.of(vertex));
+        around.sort_unstable();
+        for uses in around.chunk_by(|a, b| a.0 == b.0) {
+            edges += 1;
+            open_edges += open(uses, uses[0].0 as usize == vertex);
+        }
+    }
+    let owner = surfaces(faces, vertex_count);
+    Counts {
+        vertices: used(faces, vertex_count),
+        edges,
+        open_edges,
+        surfaces: owner.iter().max().map_or(0, |&last| last as usize + 1),
+    }
+}
+
+/// How many of the two directions of an edge are open; one that begins where it ends is.
+fn open(uses: &[(u32, bool)], is_loop: bool) -> usize {
+    let forth = uses.iter().filter(|(_, forth)| *forth).count();
+    match (forth, uses.len() - forth) {
+        _ if is_loop => 1,
+        (1, 1) => 0,
+        (0, _) | (_, 0) => 1,
+        (forth, back) => usize::from(forth > 1) + usize::from(back > 1),
+    }
+}
+
+fn used(faces: &[[u32; 3]], vertex_count: usize) -> usize {
+    let mut is_used = vec![false; vertex_count];
+    for &vertex in faces.iter().flatten() {
+        is_used[vertex as usize] = true;
+    }
+    is_used.into_iter().filter(|&used| used).count()
+}
+
+/// The number of each face's surface: faces that share a vertex are connected.
+///
+/// Surfaces are numbered in the order of their lowest vertices.
+pub fn surfaces(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
+    let mut lower: Vec<u32> = (0..vertex_count as u32).collect();
+    for face in faces {
+        poll();
+        let roots = face.map(|vertex| root(&mut lower, vertex));
+        let lowest = roots.into_iter().fold(roots[0], u32::min);
+        for root in roots {
+            lower[root as usize] = lowest;
+        }
+    }
+    let mut number = vec![None; vertex_count];
+    for &[vertex, ..] in faces {
+        number[root(&mut lower, vertex) as usize] = Some(0);
+    }
+    for (next, number) in (0..).zip(number.iter_mut().flatten()) {
+        *number = next;
+    }
+    let number_of = |&[vertex, ..]: &[u32; 3]| number[root(&mut lower, vertex) as usize];
+    faces.iter().filter_map(number_of).collect()
+}
+
+/// The lowest vertex that a vertex is known to be connected to; the way there is halved.
+fn root(lower: &mut [u32], vertex: u32) -> u32 {
+    let mut at = vertex as usize;
+    while lower[at] as usize != at {
+        lower[at] = lower[lower[at] as usize];
+        at = lower[at] as usize;
+    }
+    at as u32
+}
+
+/// The edges at the lower of their vertices, in compressed rows.
+struct Fans {
+    starts: Vec<u32>,
+    /// The higher vertex, and whether the edge runs towards it.
+    edges: Vec<(u32, bool)>,
+}
+
+impl Fans {
+    fn new(faces: &[[u32; 3]], vertex_count: usize) -> Self {
+        let directed = || faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
+        let mut starts = vec![0u32; vertex_count + 1];
+        for (a, b) in directed() {
+            starts[a.min(b) as usize + 1] += 1;
+        }
+        for i in 0..vertex_count {
+            starts[i + 1] += starts[i];
+        }
+        let mut next = starts.clone();
+        let mut edges = vec![(0, false); 3 * faces.len()];
+        for (a, b) in directed() {
+            poll();
+            let slot = &mut next[a.min(b) as usize];
+            edges[*slot as usize] = (a.max(b), a < b);
+            *slot += 1;
+        }
+        Self { starts, edges }
+    }
+
+    fn of(&self, vertex: usize) -> &[(u32, bool)] {
+        &self.edges[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{counts, surfaces, Counts};
+
+    const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+
+    #[test]
+    fn a_closed_surface_has_no_open_edges() {
+        let expected = Counts {
+            vertices: 4,
+            edges: 6,
+            open_edges: 0,
+            surfaces: 1,
+        };
+        assert_eq!(counts(&TETRAHEDRON, 9), expected);
+        assert_eq!(counts(&TETRAHEDRON[1..], 4).open_edges, 3);
+    }
+
+    #[test]
+    fn surfaces_are_numbered_by_their_lowest_vertices() {
+        let faces = [[7, 8, 9], [1, 5, 2], [9, 10, 11], [3, 6, 5]];
+        assert_eq!(surfaces(&faces, 12), [1, 0, 1, 0]);
+        assert!(surfaces(&[], 3).is_empty());
+    }
+}

@@ -1,0 +1,77 @@
+//! What the arrays of a mesh tell: equal points, connected surfaces, counts and sums.
+
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use super::arrays::{array, rows, triangles_of};
+use super::errors::to_python;
+use super::run::run;
+use crate::error::{Error, ErrorKind};
+use crate::mesh::measures::measures;
+use crate::mesh::surfaces::{counts, surfaces};
+use crate::mesh::weld::welded;
+
+/// Points, and a number for each of those that were given.
+type Welding<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<i64>>);
+
+/// The different points in the order in which they first occur, and which each point is.
+#[pyfunction]
+pub fn welded_points<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Welding<'py>> {
+    let points = rows(&points, "points").map_err(|e| to_python(py, &e))?;
+    if u32::try_from(points.len()).is_err() {
+        let text = format!("{} points are too many to be joined", points.len());
+        return Err(to_python(py, &Error::new(ErrorKind::TooLarge, text)));
+    }
+    let found = run(py, 0, points.len(), || Ok(welded(&points)))?;
+    let same = found.same.into_iter().map(i64::from).collect();
+    Ok((array(py, found.points)?, PyArray1::from_vec(py, same)))
+}
+
+/// For each triangle the number of its connected surface.
+#[pyfunction]
+pub fn surfaces_of<'py>(
+    py: Python<'py>,
+    triangles: PyReadonlyArray2<'py, i64>,
+    vertex_count: usize,
+) -> PyResult<Bound<'py, PyArray1<i64>>> {
+    let triangles = triangles_of(&triangles, vertex_count).map_err(|e| to_python(py, &e))?;
+    let owner = run(py, 0, triangles.len(), || {
+        Ok(surfaces(&triangles, vertex_count))
+    })?;
+    let owner = owner.into_iter().map(i64::from).collect();
+    Ok(PyArray1::from_vec(py, owner))
+}
+
+/// Used vertices, edges, open edges and connected surfaces.
+#[pyfunction]
+pub fn mesh_counts(
+    py: Python<'_>,
+    triangles: PyReadonlyArray2<'_, i64>,
+    vertex_count: usize,
+) -> PyResult<(usize, usize, usize, usize)> {
+    let triangles = triangles_of(&triangles, vertex_count).map_err(|e| to_python(py, &e))?;
+    let found = run(py, 0, triangles.len(), || {
+        Ok(counts(&triangles, vertex_count))
+    })?;
+    let surfaces = found.surfaces;
+    Ok((found.vertices, found.edges, found.open_edges, surfaces))
+}
+
+/// Volume, measured from a point, and area.
+#[pyfunction]
+pub fn mesh_measures(
+    py: Python<'_>,
+    vertices: PyReadonlyArray2<'_, f64>,
+    triangles: PyReadonlyArray2<'_, i64>,
+    middle: [f64; 3],
+) -> PyResult<(f64, f64)> {
+    let vertices = rows(&vertices, "vertices").map_err(|e| to_python(py, &e))?;
+    let triangles = triangles_of(&triangles, vertices.len()).map_err(|e| to_python(py, &e))?;
+    let found = run(py, 0, triangles.len(), || {
+        Ok(measures(&vertices, &triangles, middle))
+    })?;
+    Ok((found.volume, found.area))
+}
