@@ -18,6 +18,7 @@ from .conveniences import attach as _attach
 
 if TYPE_CHECKING:
     from ._core import __version__
+    from .attributes.material import Material
     from .bsp.sets.region import Region
     from .errors import (
         BspcsgError,
@@ -67,6 +68,7 @@ __all__ = [
     "InvalidMeshError",
     "InvalidParameterError",
     "LimitError",
+    "Material",
     "Mesh",
     "MissingPartError",
     "Region",
@@ -123,6 +125,7 @@ _MODULES = {
     "modelling.making.patterns": "grid linear_pattern polar_pattern",
     "modelling.making.round_boxes": "rounded_box",
     "modelling.making.sweeping": "pipe sweep",
+    "attributes.material": "Material",
     "verify.check": "CheckReport Verdict validate",
     "errors": "BspcsgError Finding FormatError InternalError InvalidMeshError"
     " InvalidParameterError LimitError MissingPartError UnboundedError",

@@ -22,6 +22,7 @@ _PACKAGES = (
 _PAGES = {
     "bspcsg.solid": "solid",
     "bspcsg.mesh": "solid",
+    "bspcsg.attributes": "solid",
     "bspcsg.shapes": "shapes",
     "bspcsg.operations": "operations",
     "bspcsg.trimesh_engine": "trimesh",

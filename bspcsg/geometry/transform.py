@@ -247,6 +247,12 @@ class LatticeMotion:
         """Whether the motion moves nothing."""
         return self == LatticeMotion()
 
+    @property
+    def linear(self) -> FloatArray:
+        """The matrix without the shift, (3, 3) float64."""
+        rows = [np.sign(axis) * np.eye(3)[abs(axis) - 1] for axis in self.axes]
+        return np.array(rows)
+
     def after(self, inner: "LatticeMotion") -> "LatticeMotion":
         """Return the motion that does `inner` first and this one second."""
         signs = [1 if axis > 0 else -1 for axis in self.axes]

@@ -4,8 +4,8 @@ This layer knows arrays only; it does not know how a mesh was made.
 """
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -14,6 +14,8 @@ import numpy as np
 from .._core import mesh_counts, mesh_measures
 from .._core import surfaces_of as triangle_surfaces
 from .._types import FloatArray, IndexArray
+from ..attributes.attributes import Attributes, Later, Values
+from ..attributes.material import Material
 from ..errors import core_errors
 from .certificate import Certificate, certify
 
@@ -34,6 +36,8 @@ class Mesh:
     source : (m, 2) int64
         Where each face came from: the number of the input mesh, counted from 0 in the order of
         the expression, and the index of the face in that mesh.
+    carried : Later, optional
+        Its attributes, which are looked up when they are asked for.
 
     Examples
     --------
@@ -48,6 +52,7 @@ class Mesh:
     vertices: FloatArray
     faces: IndexArray
     source: IndexArray
+    carried: Later | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
         """Say how large the mesh is."""
@@ -63,6 +68,39 @@ class Mesh:
         for array in (self.vertices, self.faces, self.source):
             array.flags.writeable = False
         return self
+
+    @property
+    def attributes(self) -> Attributes:
+        """Everything that is said of its vertices, corners and faces."""
+        return Attributes(self.faces) if self.carried is None else self.carried.now()
+
+    @property
+    def vertex_attributes(self) -> Mapping[str, Values]:
+        """Values of vertices, (n, …) arrays by their names.
+
+        What was given of vertices is here as long as all faces at each vertex agree, else in
+        `corner_attributes`: along cuts both sides keep their own values.
+        """
+        return self.attributes.vertex
+
+    @property
+    def corner_attributes(self) -> Mapping[str, Values]:
+        """Values of the corners of each face, (m, 3, …) arrays by their names."""
+        return self.attributes.corner
+
+    @property
+    def face_attributes(self) -> Mapping[str, Values]:
+        """Values of faces, (m, …) arrays by their names."""
+        return self.attributes.face
+
+    @property
+    def materials(self) -> Mapping[str, Material]:
+        """What the names in the face attribute ``"material"`` stand for."""
+        return self.attributes.materials
+
+    def carrying(self, carried: Later) -> "Mesh":
+        """Return this mesh with attributes."""
+        return replace(self, carried=carried)
 
     @cached_property
     def certificate(self) -> Certificate:

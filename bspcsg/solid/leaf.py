@@ -9,12 +9,15 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
 
 from .._core import Tree
 from .._types import FloatArray, IndexArray, ProgramLine, WindingRule
+from ..attributes.attributes import Attributes, Later
+from ..attributes.carrying import Surface, carried, patches_of
 from ..errors import LimitError, UnboundedError, core_errors
 from ..geometry import transform
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
@@ -44,6 +47,8 @@ class MeshLeaf:
         The caller's word that the mesh is closed and its faces meet in edges and vertices only.
     winding : str
         Which winding numbers are inside.
+    attributes : Attributes, optional
+        What else is said of the mesh.
     """
 
     def __init__(
@@ -53,11 +58,13 @@ class MeshLeaf:
         pitch: int | None = None,
         trusted: bool = False,
         winding: WindingRule = "positive",
+        attributes: Attributes | None = None,
     ) -> None:
         self._arrays: tuple[FloatArray, IndexArray] | None = (vertices, faces)
         self._chosen_pitch = pitch
         self._trusted = trusted
         self._winding = winding
+        self._attributes = attributes
         self._tree: Tree | None = None
 
     @property
@@ -69,6 +76,11 @@ class MeshLeaf:
     def extent(self) -> "Extent":
         """A closed mesh is bounded."""
         return True
+
+    @property
+    def sayings(self) -> "Sayings":
+        """What else is said of the mesh."""
+        return () if self._attributes is None else (self._attributes,)
 
     def arrays(self) -> tuple[FloatArray, IndexArray]:
         """Return vertices and faces as they were given."""
@@ -99,7 +111,16 @@ class MeshLeaf:
         """Return the leaf of the mesh whose vertices the factors have moved."""
         vertices, faces = transformed_arrays(*self.arrays(), factors)
         # Rounding may make faces cross, so the word given for the original no longer counts.
-        return MeshLeaf(vertices, faces, self._chosen_pitch, winding=self._winding)
+        said = self._attributes
+        moved = None if said is None else moved_attributes(said, factors)
+        return MeshLeaf(
+            vertices, faces, self._chosen_pitch, winding=self._winding, attributes=moved
+        )
+
+    @cached_property
+    def shown(self) -> Tree:
+        """The tree as it is made into a mesh."""
+        return patched(self.grown(), self.sayings)
 
     def _grow(self) -> Tree:
         with core_errors():
@@ -127,11 +148,14 @@ class TreeLeaf:
     record : Record or None
         What it was evaluated from, as long as that is remembered.
     extent : Extent
+    sayings : tuple of Attributes or None
+        What else is said of each source of the tree; empty if nothing is.
     """
 
     result: Tree
     record: Record | None = None
     extent: "Extent" = None
+    sayings: "Sayings" = ()
 
     @property
     def pitch(self) -> int | None:
@@ -157,12 +181,12 @@ class TreeLeaf:
             If neither the solid nor its complement has an output mesh.
         """
         if self._is_bounded():
-            return _moved_output(self.result, factors)
+            return _moved_output(self, factors)
         outside = run(Record(COMPLEMENT, (self,)))
         if not outside._is_bounded():
             return self._moved_operands(factors)
-        moved = run(Record(COMPLEMENT, (_moved_output(outside.result, factors),)))
-        return TreeLeaf(moved.result, extent=False)
+        moved = run(Record(COMPLEMENT, (_moved_output(outside, factors),)))
+        return TreeLeaf(moved.result, extent=False, sayings=moved.sayings)
 
     def forgetful(self) -> "TreeLeaf":
         """Return the leaf without its history, unless a later transform would need that.
@@ -170,7 +194,14 @@ class TreeLeaf:
         Only a solid that is unbounded and has an unbounded complement has no mesh to transform.
         Expressions with half-spaces may be of that kind.
         """
-        return self if self.extent is None else TreeLeaf(self.result, extent=self.extent)
+        if self.extent is None:
+            return self
+        return TreeLeaf(self.result, extent=self.extent, sayings=self.sayings)
+
+    @cached_property
+    def shown(self) -> Tree:
+        """The tree as it is made into a mesh."""
+        return patched(self.result, self.sayings)
 
     def _is_bounded(self) -> bool:
         return self.result.is_bounded if self.extent is None else self.extent
@@ -198,6 +229,7 @@ class PlaneLeaf:
     plane: Hyperplane
     pitch: int | None = field(default=None, init=False)
     extent: "Extent" = field(default=None, init=False)
+    sayings: "Sayings" = field(default=(), init=False)
 
     def tree(self, pitch: int) -> Tree:
         """Return the tree on the lattice of this pitch."""
@@ -237,6 +269,7 @@ class ConstantLeaf:
 
     full: bool
     pitch: int | None = field(default=None, init=False)
+    sayings: "Sayings" = field(default=(), init=False)
 
     @property
     def extent(self) -> "Extent":
@@ -257,12 +290,59 @@ class ConstantLeaf:
 #: What is known without asking the core: True if the solid is bounded, False if its complement is.
 Extent: TypeAlias = bool | None
 
+#: What is said of each source of a tree besides its shape; empty if nothing is said of any.
+Sayings: TypeAlias = tuple[Attributes | None, ...]
+
 ExpressionLeaf: TypeAlias = MeshLeaf | TreeLeaf | PlaneLeaf | ConstantLeaf
 
 
 def tree_of(leaf: ExpressionLeaf) -> Tree:
     """Return the leaf's tree on its own lattice, or on the default one if any will do."""
     return leaf.tree(_common_pitch([leaf]))
+
+
+def shown_tree(leaf: ExpressionLeaf) -> Tree:
+    """Return the tree that the leaf's mesh is made of: faces that differ in it stay apart."""
+    if leaf.sayings and isinstance(leaf, (MeshLeaf, TreeLeaf)):
+        return leaf.shown
+    return tree_of(leaf)
+
+
+def patched(tree: Tree, sayings: Sayings) -> Tree:
+    """Return a tree whose mesh joins only faces of which the same is said."""
+    return tree.patched(patches_of(sayings)) if sayings else tree
+
+
+def attributes_of(tree: Tree, sayings: Sayings) -> Attributes:
+    """Return the attributes of a tree's mesh."""
+    with core_errors():
+        surface = Surface(*tree.to_mesh(), tree.origins(), tree.flips())
+    return carried(surface, sayings, tree.source_arrays)
+
+
+def later_attributes(tree: Tree, sayings: Sayings) -> Later | None:
+    """Return the attributes of a tree's mesh for when they are asked for, if there are any."""
+    return Later(lambda: attributes_of(tree, sayings)) if sayings else None
+
+
+def said_of(result: Tree, operands: Sequence[tuple[Tree, Sayings]]) -> Sayings:
+    """Return what is said of the sources of a tree that was made of others."""
+    if not any(sayings for _, sayings in operands):
+        return ()
+    known = {
+        identity: said
+        for tree, sayings in operands
+        if sayings
+        for identity, said in zip(tree.sources, sayings, strict=True)
+    }
+    found = tuple(known.get(identity) for identity in result.sources)
+    return found if any(said is not None for said in found) else ()
+
+
+def moved_attributes(attributes: Attributes, factors: Factors) -> Attributes:
+    """Return attributes over a mesh that was moved as by `transformed_arrays`."""
+    turned = attributes.turned(transform.product(factors)[:3, :3])
+    return turned.reordered([2, 1, 0]) if _mirror(factors) else turned
 
 
 def _common_pitch(leaves: Sequence[ExpressionLeaf]) -> int:
@@ -281,7 +361,9 @@ def run(record: Record) -> TreeLeaf:
     with core_errors():
         result = Tree.evaluate(record.program, trees)
     extents = [leaf.extent for leaf in record.leaves]
-    return TreeLeaf(result, record, _EXTENTS.evaluate(record.program, extents))
+    extent = _EXTENTS.evaluate(record.program, extents)
+    operands = [(tree, leaf.sayings) for tree, leaf in zip(trees, record.leaves, strict=True)]
+    return TreeLeaf(result, record, extent, said_of(result, operands))
 
 
 def _either(operands: Sequence[Extent]) -> Extent:
@@ -310,14 +392,23 @@ def transformed_arrays(
 ) -> tuple[FloatArray, IndexArray]:
     """Return the mesh moved by the product of the factors, its outside still outside."""
     moved = transform.apply(transform.product(factors), vertices)
-    mirrored = math.prod(transform.determinant_sign(factor.matrix) for factor in factors) < 0
-    return moved, np.ascontiguousarray(faces[:, ::-1]) if mirrored else faces
+    return moved, np.ascontiguousarray(faces[:, ::-1]) if _mirror(factors) else faces
 
 
-def _moved_output(tree: Tree, factors: Factors) -> MeshLeaf:
+def _mirror(factors: Factors) -> bool:
+    """Whether a transform turns right hands into left ones."""
+    return math.prod(transform.determinant_sign(factor.matrix) for factor in factors) < 0
+
+
+def _moved_output(leaf: TreeLeaf, factors: Factors) -> MeshLeaf:
+    tree = leaf.shown
     with core_errors():
         vertices, faces = tree.to_mesh()
-    return MeshLeaf(*transformed_arrays(vertices, faces, factors))
+    arrays = transformed_arrays(vertices, faces, factors)
+    if not leaf.sayings:
+        return MeshLeaf(*arrays)
+    moved = moved_attributes(attributes_of(tree, leaf.sayings), factors)
+    return MeshLeaf(*arrays, attributes=moved)
 
 
 def _place(leaf: MeshLeaf | TreeLeaf, factors: Factors) -> ExpressionLeaf:
@@ -334,8 +425,21 @@ def _place(leaf: MeshLeaf | TreeLeaf, factors: Factors) -> ExpressionLeaf:
     try:
         with core_errors():
             moved = tree.moved(list(motion.axes), list(motion.shift))
-        return TreeLeaf(moved, extent=base.extent)
+        return TreeLeaf(moved, extent=base.extent, sayings=_after(motion, base.sayings))
     except (LimitError, UnboundedError):
         # Too far out for this lattice, where coordinates let the core choose a coarser one; or cut
         # off by the border of the universe, which does not move with it.
         return leaf.transformed(factors)
+
+
+def _after(motion: transform.LatticeMotion, sayings: Sayings) -> Sayings:
+    """Return what is said of sources after a motion, by which the core moved them."""
+    if not sayings:
+        return ()
+    linear = motion.linear
+    mirrored = np.linalg.det(linear) < 0
+    turned = [None if said is None else said.turned(linear) for said in sayings]
+    if not mirrored:
+        return tuple(turned)
+    # The core exchanges the last two corners of every face that is mirrored.
+    return tuple(None if said is None else said.reordered([0, 2, 1]) for said in turned)

@@ -9,7 +9,7 @@ kept and the expression let go. Two things are promised, and two kinds of query 
 """
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,16 +18,29 @@ import numpy as np
 from .._core import Tree
 from .._types import ProgramLine, Scalar, Vector, WindingRule
 from ..above import above
+from ..attributes.attributes import Given
+from ..attributes.material import Material
 from ..errors import core_errors
 from ..geometry import transform
 from ..geometry.transform import Factors, common_prefix
-from ..mesh import interop
+from ..mesh import interop, visuals
 from ..mesh.mesh import Mesh
 from ..parameters import not_negative, optional_pitch, winding_rule
 from .counting import count, counted, uncounted
 from .describe import describe
 from .expression import ExpressionNode, Placed, complement, evaluate, operation
-from .leaf import ConstantLeaf, ExpressionLeaf, MeshLeaf, Record, TreeLeaf, tree_of
+from .leaf import (
+    ConstantLeaf,
+    ExpressionLeaf,
+    MeshLeaf,
+    Record,
+    Sayings,
+    TreeLeaf,
+    later_attributes,
+    said_of,
+    shown_tree,
+    tree_of,
+)
 from .measure import Measured, deprecated, residues_of_volume
 from .point_set import PointSet
 from .program import Operator
@@ -61,6 +74,15 @@ class Solid(Measured, PointSet):
         Your word that faces meet in common edges and vertices only, which saves a check.
     winding : {"positive", "nonzero", "even-odd"}
         Which winding numbers are inside.
+    vertex_attributes : dict of str to (n, …) array_like, optional
+        Colours, texture coordinates, weights: one value for each of `vertices`, by names.
+    corner_attributes : dict of str to (m, 3, …) array_like, optional
+        One value for each corner of each triangle, for values that differ between the faces at a
+        vertex.
+    face_attributes : dict of str to (m, …) array_like, optional
+        One value for each triangle.
+    materials : dict of str to Material, optional
+        What the names in the face attribute ``"material"`` stand for.
 
     Raises
     ------
@@ -69,6 +91,17 @@ class Solid(Measured, PointSet):
         finite, indices out of range, or arrays of another shape.
     LimitError
         If the coordinates do not fit on the lattice of the given pitch.
+
+    Notes
+    -----
+    Attributes follow the faces through all operations and transforms; the result's mesh has them
+    (`Mesh.vertex_attributes`, `corner_attributes`, `face_attributes`). Values of faces are copied;
+    values of vertices and corners are copied where the corner is one of the source, and
+    interpolated in the source's triangle everywhere else: whole numbers are rounded, truth values
+    and text are those of the nearest corner. Faces of one plane with different values are not
+    joined. An operand that lacks a name has NaN there, or 0, False or no text. Attributes called
+    ``"normal"`` or ``"normals"``, three floats, turn with the solid, keep their length, and point
+    the other way where the solid was subtracted. `simplify` lets attributes go.
 
     Examples
     --------
@@ -92,10 +125,16 @@ class Solid(Measured, PointSet):
         pitch: int | None = None,
         trusted: bool = False,
         winding: WindingRule = "positive",
+        vertex_attributes: Mapping[str, Any] | None = None,
+        corner_attributes: Mapping[str, Any] | None = None,
+        face_attributes: Mapping[str, Any] | None = None,
+        materials: Mapping[str, Material] | None = None,
     ) -> None:
         rule, chosen = winding_rule(winding), optional_pitch(pitch)
         arrays = interop.mesh_arrays(vertices, faces)
-        leaf = MeshLeaf(*arrays, pitch=chosen, trusted=trusted, winding=rule)
+        given = Given(vertex_attributes, corner_attributes, face_attributes, materials)
+        said = given.over(len(arrays[0]), arrays[1])
+        leaf = MeshLeaf(*arrays, pitch=chosen, trusted=trusted, winding=rule, attributes=said)
         # Errors in a mesh belong to the line that gave it, not to the first query.
         leaf.grown()
         leaf.let_go()
@@ -152,6 +191,10 @@ class Solid(Measured, PointSet):
         -----
         Coordinates are taken as they are: those of pyvista and of files in binary STL have single
         precision, unless a pyvista mesh was made of float64 points.
+
+        Attributes come along: those of a `Mesh` of this package, of a trimesh (its colours as
+        ``"color"``, its texture coordinates as ``"uv"``, its materials), manifold3d's as
+        ``"properties"``, data of points and cells of pyvista and meshio.
         """
         if isinstance(mesh, Solid):
             return mesh
@@ -161,7 +204,9 @@ class Solid(Measured, PointSet):
             solid: Solid = above("loads")(mesh, format, **options)
             return solid
         arrays = interop.arrays_from(mesh, tolerance)
-        return cls.empty() if interop.are_empty(arrays) else cls(*arrays, **options)
+        if interop.are_empty(arrays):
+            return cls.empty()
+        return cls(*arrays, **{**visuals.attributes_from(mesh, *arrays), **options})
 
     @classmethod
     @counted
@@ -287,10 +332,19 @@ class Solid(Measured, PointSet):
     @property
     def tree(self) -> Tree:
         """The partition tree (of the compiled core), after evaluating the solid."""
+        return shown_tree(self._leaf())
+
+    def _leaf(self) -> ExpressionLeaf:
+        """Return what the solid is evaluated to, in its place."""
         if self._placed is None:
             leaf = evaluate(self._node)
             self._placed = leaf.placed(self._factors) if self._factors else leaf
-        return tree_of(self._placed)
+        return self._placed
+
+    @property
+    def _sayings(self) -> Sayings:
+        """What is said of each source of the tree besides its shape."""
+        return self._leaf().sayings
 
     def to_mesh(self) -> Mesh:
         """Return the boundary as a closed mesh; its arrays are read-only and kept.
@@ -306,7 +360,8 @@ class Solid(Measured, PointSet):
         if self._mesh is None:
             with core_errors():
                 tree = self.tree
-                self._mesh = Mesh(*tree.to_mesh(), tree.origins()).frozen()
+                carried = later_attributes(tree, self._sayings)
+                self._mesh = Mesh(*tree.to_mesh(), tree.origins(), carried).frozen()
         return self._mesh
 
     def normalized(self) -> "Solid":
@@ -321,7 +376,8 @@ class Solid(Measured, PointSet):
                 reduced = tree.normalized()
             # If the check found nothing to change, the tree itself is the reduced one.
             if not _is_reduced(tree):
-                self._reduced = from_leaf(TreeLeaf(reduced))
+                sayings = said_of(reduced, [(tree, self._sayings)])
+                self._reduced = from_leaf(TreeLeaf(reduced, sayings=sayings))
         return self if self._reduced is None else self._reduced
 
     @counted
@@ -519,15 +575,15 @@ class Solid(Measured, PointSet):
         """Return the solid itself, which never changes."""
         return self
 
-    def __reduce__(self) -> tuple[Any, tuple[bytes, Factors]]:
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         """Pickle the evaluated tree, exactly, with the transform still apart.
 
         What may have no mesh can be moved as long as its operands are known, which are not kept.
         """
         content = evaluate(self._node)
         if content.extent is None:
-            return _restored, (self.tree.dump(), ())
-        return _restored, (tree_of(content).dump(), self._factors)
+            return _restored, (self.tree.dump(), (), *_if_any(self._sayings))
+        return _restored, (tree_of(content).dump(), self._factors, *_if_any(content.sayings))
 
 
 @dataclass(frozen=True, eq=False)
@@ -570,7 +626,8 @@ def with_record(last: LastOperation, factors: Factors) -> Solid:
     It knows the operation, which pickling it leaves out.
     """
     leaves = tuple(evaluate(operand._node) for operand in last.operands)
-    leaf = TreeLeaf(last.result.tree, Record(last.program, leaves))
+    record = Record(last.program, leaves)
+    leaf = TreeLeaf(last.result.tree, record, sayings=last.result._sayings)
     return from_node(ExpressionNode(leaf), factors)
 
 
@@ -585,6 +642,11 @@ def _is_reduced(tree: Tree) -> bool:
     return tree.simple is True
 
 
-def _restored(data: bytes, factors: Factors) -> Solid:
+def _if_any(sayings: Sayings) -> tuple[Sayings, ...]:
+    return (sayings,) if sayings else ()
+
+
+def _restored(data: bytes, factors: Factors, sayings: Sayings = ()) -> Solid:
     with core_errors():
-        return from_node(ExpressionNode(TreeLeaf(Tree.load(data))), factors)
+        leaf = TreeLeaf(Tree.load(data), sayings=sayings)
+        return from_node(ExpressionNode(leaf), factors)

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use bspcsg::extract::boundary::collect::has_no_boundary;
+use bspcsg::extract::joining::patches::Patches;
 use bspcsg::extract::rounding::round;
 use bspcsg::merge::evaluate::evaluate;
 use bspcsg::merge::expression::{Expression, Term};
@@ -81,6 +82,34 @@ fn face_contact_makes_one_box() {
     let b = cuboid([1.0, 0.0, 0.0], [2.0, 1.0, 1.0]);
     let mesh = round::mesh(&union(&a, &b)).expect("mesh");
     assert_eq!((mesh.vertices.len(), mesh.triangles.len()), (8, 12));
+}
+
+#[test]
+fn faces_of_different_patches_are_not_joined() {
+    let a = cuboid([0.0; 3], [1.0; 3]);
+    let b = cuboid([1.0, 0.0, 0.0], [2.0, 1.0, 1.0]);
+    let both = union(&a, &b);
+    let patches = |of_b: u32| Patches::new(vec![Some(vec![7; 12]), Some(vec![of_b; 12])]);
+    let mesh = |of_b| round::mesh_of_patches(&both, &patches(of_b)).expect("mesh");
+    assert_eq!((mesh(7).vertices.len(), mesh(7).triangles.len()), (8, 12));
+    assert_eq!((mesh(8).vertices.len(), mesh(8).triangles.len()), (12, 20));
+    let one_each = Patches::new(vec![Some((0..12).collect()), None]);
+    let cut = difference(&a, &cuboid([-1.0, 0.25, 0.25], [2.0, 0.75, 0.75]));
+    let mesh = round::mesh_of_patches(&cut, &one_each).expect("mesh");
+    for (triangle, [slot, face]) in mesh.triangles.iter().zip(&mesh.origins) {
+        let source = cut.sources().get(*slot as usize).mesh().expect("a mesh");
+        let corners = source.faces[*face as usize].map(|v| source.doubles[v as usize]);
+        for v in triangle {
+            let p = mesh.vertices[*v as usize];
+            let inside = |i: usize| {
+                let bounds = corners.map(|c| c[i]);
+                let low = bounds.iter().copied().fold(f64::INFINITY, f64::min);
+                let high = bounds.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                (low..=high).contains(&p[i])
+            };
+            assert!((0..3).all(inside));
+        }
+    }
 }
 
 #[test]

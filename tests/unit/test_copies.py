@@ -44,6 +44,7 @@ def failure(kind: type[b.BspcsgError]) -> Callable[[], b.BspcsgError]:
 EXAMPLES: dict[type, Callable[[], Any]] = {
     b.CheckReport: (b.cube(2) - b.cube(1)).validate,
     b.Finding: lambda: b.Finding("code", "note", "A sentence.", (1, 2), 5),
+    b.Material: lambda: b.Material((1, 0.5, 0)),
     b.Mesh: SHAPE.to_mesh,
     b.Solid: lambda: SHAPE.rotate(30),
     b.Verdict: lambda: next(iter(b.Verdict)),

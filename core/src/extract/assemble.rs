@@ -11,6 +11,7 @@ use super::contacts;
 use super::emission::assembly::{Assembly, NONE};
 use super::emission::untouched::{Untouched, WholeFaces};
 use super::failure::Failure;
+use super::joining::patches::Patches;
 use super::joining::planes::{group, PlaneGroup};
 use super::joining::seams::{find_touching, subdivisions, Edge, InnerPoints, LinePoints};
 use super::mesh::{Corner, ExactMesh};
@@ -32,12 +33,20 @@ const SMALL: usize = 16;
 /// # Errors
 /// `Unbounded` if the solid reaches infinity; `NotReduced` if a mesh that was trusted overlaps itself.
 pub fn assemble(solid: &Solid) -> Result<ExactMesh> {
+    assemble_patches(solid, &Patches::default())
+}
+
+/// The mesh of a bounded solid in which no triangle lies in faces of several patches.
+///
+/// # Errors
+/// As for [`assemble`].
+pub fn assemble_patches(solid: &Solid, patches: &Patches) -> Result<ExactMesh> {
     let sources = Sources::new(solid.sources().clone());
     if solid.root().outside > 0 {
         return Err(unbounded());
     }
-    let made = match attempt(solid, &sources, true) {
-        Err(Failure::Overlap(_)) if !solid.is_reduced() => attempt(solid, &sources, false),
+    let made = match attempt(solid, &sources, patches, true) {
+        Err(Failure::Overlap(_)) if !solid.is_reduced() => attempt(solid, &sources, patches, false),
         result => result,
     };
     made.map_err(|failure| failure.error(solid))
@@ -47,10 +56,15 @@ pub fn assemble(solid: &Solid) -> Result<ExactMesh> {
 ///
 /// Joining supposes that faces of one plane do not overlap. A solid that is not known to be
 /// reduced may break that; then its polygons fail to triangulate, or to the right area.
-fn attempt(solid: &Solid, sources: &Sources, join: bool) -> Result<ExactMesh, Failure> {
+fn attempt(
+    solid: &Solid,
+    sources: &Sources,
+    patches: &Patches,
+    join: bool,
+) -> Result<ExactMesh, Failure> {
     let mut boundary = collect(solid, sources);
     let near = std::mem::take(&mut boundary.near);
-    let (fates, groups, rims) = group(boundary, sources, join);
+    let (fates, groups, rims) = group(boundary, sources, patches, join);
     if groups.iter().any(|g| reaches_infinity(g, sources)) {
         return Err(unbounded().into());
     }

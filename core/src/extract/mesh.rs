@@ -70,6 +70,8 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// For each triangle the source's slot and the number of the face in its input.
     pub origins: Vec<[u32; 2]>,
+    /// For each triangle whether it faces the other way than that face.
+    pub flips: Vec<bool>,
     /// What was noticed on the way.
     pub findings: Vec<Finding>,
     /// How many triangles were compared exactly with all near them, because they are not faces of

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use num_bigint::BigInt;
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 
@@ -14,9 +14,11 @@ use super::run::{here, run, SMALL};
 use crate::error::panics::caught;
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::boundary::collect::has_no_boundary;
+use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::Mesh;
 use crate::extract::rounding::round;
 use crate::extract::simplify::result::simplified;
+use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 use crate::merge::descent::descend::Counters;
 use crate::merge::evaluate::{evaluate, explained, normalize, settled};
@@ -37,12 +39,20 @@ use crate::tree::work::{work, work_to_settle};
 
 type Corners = ((f64, f64, f64), (f64, f64, f64));
 
+type SourceArrays<'py> = (
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray2<i64>>,
+    Bound<'py, PyArray1<i64>>,
+);
+
 type MeshArrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>);
 
 /// An immutable exact solid: a partition tree. See `_core.pyi`.
 #[pyclass(frozen, module = "bspcsg._core")]
 pub struct Tree {
     solid: Solid,
+    patches: Patches,
     counters: Option<Counters>,
     rounded: OnceLock<Rounded>,
 }
@@ -52,6 +62,7 @@ struct Rounded {
     vertices: Py<PyArray2<f64>>,
     triangles: Py<PyArray2<i64>>,
     origins: Vec<[u32; 2]>,
+    flips: Vec<bool>,
     findings: Vec<Finding>,
 }
 
@@ -59,6 +70,7 @@ impl Tree {
     fn of(solid: Solid) -> Self {
         Self {
             solid,
+            patches: Patches::default(),
             counters: None,
             rounded: OnceLock::new(),
         }
@@ -106,13 +118,14 @@ impl Tree {
             return Ok(rounded);
         }
         let (mesh, triangles) = self.run(py, "to_mesh", threads, self.size(), || {
-            let mesh = round::mesh(&self.solid)?;
+            let mesh = round::mesh_of_patches(&self.solid, &self.patches)?;
             let triangles = wide(&mesh.triangles);
             Ok((mesh, triangles))
         })?;
         let Mesh {
             vertices,
             origins,
+            flips,
             findings,
             ..
         } = mesh;
@@ -120,6 +133,7 @@ impl Tree {
             vertices: array(py, vertices)?.unbind(),
             triangles: array(py, triangles)?.unbind(),
             origins,
+            flips,
             findings,
         };
         Ok(self.rounded.get_or_init(|| rounded))
@@ -274,6 +288,52 @@ impl Tree {
     /// For each triangle of the mesh its source and face.
     fn origins<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
         array(py, wide(&self.rounded(py, 0)?.origins))
+    }
+
+    /// For each triangle of the mesh whether it faces the other way than its source's face.
+    fn flips<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let flips = self.rounded(py, 0)?.flips.clone();
+        Ok(PyArray1::from_vec(py, flips))
+    }
+
+    /// The same solid, whose mesh does not join faces of different patches: for each slot what each
+    /// face of its input belongs to, or None.
+    fn patched(&self, patches: Vec<Option<PyReadonlyArray1<'_, u32>>>) -> PyResult<Self> {
+        let copied = |one: PyReadonlyArray1<'_, u32>| one.as_slice().map(<[u32]>::to_vec);
+        let patches = patches
+            .into_iter()
+            .map(|one| one.map(copied).transpose())
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            patches: Patches::new(patches),
+            ..Self::of(self.solid.clone())
+        })
+    }
+
+    /// A source on the lattice: the doubles it was made of, its vertices on the lattice, its faces,
+    /// and the numbers these had in the input; None for a half-space.
+    fn source_arrays<'py>(
+        &self,
+        py: Python<'py>,
+        slot: usize,
+    ) -> PyResult<Option<SourceArrays<'py>>> {
+        let Some(source) = self.solid.sources().iter().nth(slot) else {
+            return Ok(None);
+        };
+        let Some(mesh) = source.mesh() else {
+            return Ok(None);
+        };
+        let pitch = source.pitch();
+        let place = |p: &Lattice| p.map(|k| pitch.coordinate(k));
+        let numbers: Vec<i64> = (0..source.face_count() as u32)
+            .map(|face| i64::from(source.number(face)))
+            .collect();
+        Ok(Some((
+            array(py, mesh.doubles.clone())?,
+            array(py, mesh.vertices.iter().map(place).collect())?,
+            array(py, wide(&mesh.faces))?,
+            PyArray1::from_vec(py, numbers),
+        )))
     }
 
     /// Whether the tree holds the arrays it was made from, each face as it was.

@@ -1,4 +1,5 @@
 //! Cut faces joined by plane, and edges subdivided until they pair.
 
+pub mod patches;
 pub mod planes;
 pub mod seams;

@@ -8,6 +8,7 @@ use smallvec::SmallVec;
 use crate::extract::boundary::collect::{Boundary, CutFace};
 use crate::extract::boundary::leaves::Fate;
 use crate::extract::boundary::rim::{FrontierEdge, Rims};
+use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::TriangleFace;
 use crate::geometry::line::{LineKey, PlaneResidues};
 use crate::geometry::outline::{BareEdge, Outline, OutlineEdge};
@@ -42,6 +43,7 @@ impl PlaneGroup {
 /// A group in the making.
 struct Gathered {
     plane: Arc<Plane>,
+    patch: u32,
     faces: Vec<TriangleFace>,
     /// The outlines of cut faces.
     cut: SmallVec<[Outline; 1]>,
@@ -70,24 +72,28 @@ impl Gathered {
 /// Groups in the making.
 struct Grouping<'a> {
     sources: &'a Sources,
+    patches: &'a Patches,
     join: bool,
     fates: Vec<Vec<Fate>>,
     groups: Vec<Gathered>,
-    by_plane: HashMap<Arc<Plane>, usize>,
+    by_plane: HashMap<(Arc<Plane>, u32), usize>,
     open: Vec<(u32, u32, bool, usize)>,
     rims: Rims,
 }
 
 /// Joins cut faces by plane; returns the fates that remain, the groups, and where whole faces end.
 ///
-/// Without `join` each cut face stays on its own, as it must where faces of one plane may overlap.
+/// Faces of different patches are not joined. Without `join` each cut face stays on its own, as it
+/// must where faces of one plane may overlap.
 pub fn group(
     boundary: Boundary,
     sources: &Sources,
+    patches: &Patches,
     join: bool,
 ) -> (Vec<Vec<Fate>>, Vec<PlaneGroup>, Rims) {
     let mut grouping = Grouping {
         sources,
+        patches,
         join,
         rims: Rims::of(&boundary.fates, sources),
         fates: boundary.fates,
@@ -111,16 +117,21 @@ pub fn group(
 }
 
 impl Grouping<'_> {
-    fn group_of(&mut self, plane: Arc<Plane>) -> usize {
+    /// The group of a face's plane and patch.
+    fn group_of(&mut self, slot: u32, face: u32, flip: bool) -> usize {
+        let plane = self.oriented_plane(slot, face, flip);
+        let patch = self.patch(slot, face);
         let next = self.groups.len();
         let at = if self.join {
-            *self.by_plane.entry(Arc::clone(&plane)).or_insert(next)
+            let key = (Arc::clone(&plane), patch);
+            *self.by_plane.entry(key).or_insert(next)
         } else {
             next
         };
         if at == next {
             self.groups.push(Gathered {
                 plane,
+                patch,
                 faces: Vec::new(),
                 cut: SmallVec::new(),
                 whole: Vec::new(),
@@ -130,9 +141,8 @@ impl Grouping<'_> {
     }
 
     fn add_cut(&mut self, cut: CutFace) {
-        let plane = self.oriented_plane(cut.slot, cut.face, cut.flip);
-        let at = self.group_of(plane);
         let (slot, face, flip) = (cut.slot, cut.face, cut.flip);
+        let at = self.group_of(slot, face, flip);
         let outline = if flip {
             cut.outline.flipped()
         } else {
@@ -153,11 +163,19 @@ impl Grouping<'_> {
         }
     }
 
-    /// Whether a face lies in the plane of a group and is turned as the group is.
+    fn patch(&self, slot: u32, face: u32) -> u32 {
+        let source = self.sources.get(slot as usize);
+        self.patches.of(slot, source, face)
+    }
+
+    /// Whether a face lies in the plane of a group, is turned as the group is, and of its patch.
     fn lies_in(&self, slot: u32, face: u32, flip: bool, group: usize) -> bool {
         let Some(mesh) = self.sources.get(slot as usize).mesh() else {
             return false;
         };
+        if self.patch(slot, face) != self.groups[group].patch {
+            return false;
+        }
         let (plane, [a, b, c]) = (&self.groups[group].plane, mesh.corners(face));
         if [a, b, c].iter().any(|p| plane.side_of_lattice(p) != 0) {
             return false;
@@ -262,7 +280,7 @@ impl Grouping<'_> {
             let known = last.filter(|c| (c.edge.slot, c.edge.half / 3) == (slot, face));
             let group = match known {
                 Some(c) => c.group,
-                None => self.group_of(self.oriented_plane(slot, face, flip)),
+                None => self.group_of(slot, face, flip),
             };
             candidates.push(Candidate {
                 group,

@@ -4,7 +4,8 @@ use super::mend::Precision;
 use super::settle::{settle, Rounded, Settled};
 use super::unfold::{turned, unfold};
 use crate::error::Result;
-use crate::extract::assemble::assemble;
+use crate::extract::assemble::assemble_patches;
+use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::{Corner, ExactMesh, Mesh, TriangleFace};
 use crate::geometry::vertex::Vertex;
 use crate::merge::lists::list::Sources;
@@ -19,7 +20,15 @@ use crate::tree::solid::Solid;
 /// # Errors
 /// `Unbounded`.
 pub fn mesh(solid: &Solid) -> Result<Mesh> {
-    let mut exact = assemble(solid)?;
+    mesh_of_patches(solid, &Patches::default())
+}
+
+/// The mesh of a bounded solid, as [`mesh`], in which faces of different patches are not joined.
+///
+/// # Errors
+/// `Unbounded`.
+pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
+    let mut exact = assemble_patches(solid, patches)?;
     let mut vertices = vec![[0.0; 3]; exact.vertices.len()];
     fill_chunks(&exact.vertices, &mut vertices, |_, corners, out| {
         for (corner, place) in corners.iter().zip(out) {
@@ -30,6 +39,7 @@ pub fn mesh(solid: &Solid) -> Result<Mesh> {
         vertices,
         triangles: std::mem::take(&mut exact.triangles),
         origins: Vec::new(),
+        flips: Vec::new(),
         findings: std::mem::take(&mut exact.findings),
         compared: 0,
     };
@@ -43,6 +53,7 @@ pub fn mesh(solid: &Solid) -> Result<Mesh> {
     };
     let origin = |f: TriangleFace| [f.slot, sources.get(f.slot as usize).number(f.face)];
     mesh.origins = exact.faces.iter().copied().map(origin).collect();
+    mesh.flips = exact.faces.iter().map(|f| f.flip).collect();
     let renumbered = drop_removed(&mut mesh);
     report(&mut mesh, &unfolded.repaired, &left, &settled, &renumbered);
     mesh.compared = settled.compared as u64;
@@ -91,6 +102,8 @@ fn drop_removed(mesh: &mut Mesh) -> Vec<u64> {
     let numbers = mesh.triangles.iter().scan(0, next).collect();
     let mut kept = mesh.triangles.iter().map(is_left);
     mesh.origins.retain(|_| kept.next().unwrap_or(true));
+    let mut kept = mesh.triangles.iter().map(is_left);
+    mesh.flips.retain(|_| kept.next().unwrap_or(true));
     mesh.triangles.retain(is_left);
     drop_unused(mesh);
     numbers

@@ -1,0 +1,276 @@
+"""`Attributes`: named arrays of the vertices, corners and faces of a mesh."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._types import BoolArray, FloatArray, IndexArray
+from ..errors import InvalidMeshError
+from .material import Material
+
+#: Values of any type, one or an array of them for each element.
+Values: TypeAlias = npt.NDArray[Any]
+
+#: What an array has a value for.
+Kind: TypeAlias = Literal["vertex", "corner", "face"]
+
+KINDS: tuple[Kind, ...] = ("vertex", "corner", "face")
+
+#: Types of values: truth values, whole numbers, floats, text.
+_TYPES = "biufU"
+
+#: Names of attributes that turn with the solid, and turn around where it is subtracted.
+NORMALS = frozenset({"normal", "normals"})
+
+_NONE: Mapping[str, Any] = {}
+
+
+@dataclass(frozen=True, eq=False)
+class Attributes:
+    """Named arrays over a mesh; each name is that of one array.
+
+    Parameters
+    ----------
+    faces : (m, 3) int64
+        The triangles, by which values of vertices become values of corners.
+    vertex : dict of str to (n, …) array
+    corner : dict of str to (m, 3, …) array
+    face : dict of str to (m, …) array
+    materials : dict of str to Material
+        What the names in the face attribute ``"material"`` stand for.
+    """
+
+    faces: IndexArray
+    vertex: Mapping[str, Values] = field(default_factory=dict)
+    corner: Mapping[str, Values] = field(default_factory=dict)
+    face: Mapping[str, Values] = field(default_factory=dict)
+    materials: Mapping[str, Material] = field(default_factory=dict)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is no array."""
+        return not (self.vertex or self.corner or self.face)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All names, those of vertices first and those of faces last."""
+        return (*self.vertex, *self.corner, *self.face)
+
+    def of(self, kind: Kind) -> Mapping[str, Values]:
+        """Return the arrays of one kind."""
+        return {"vertex": self.vertex, "corner": self.corner, "face": self.face}[kind]
+
+    def kind_of(self, name: str) -> Kind | None:
+        """Return what a name has values for, or None if there is no such array."""
+        return next((kind for kind in KINDS if name in self.of(kind)), None)
+
+    def at_corners(self, name: str, faces: IndexArray | None = None) -> Values:
+        """Return the values of a name at the corners of some or all faces, (k, 3, …)."""
+        chosen: Any = slice(None) if faces is None else faces
+        values: Values
+        if name in self.vertex:
+            values = self.vertex[name][self.faces[chosen]]
+        elif name in self.corner:
+            values = self.corner[name][chosen]
+        else:
+            values = np.repeat(self.face[name][chosen][:, None], 3, axis=1)
+        return values
+
+    def taken(self, faces: IndexArray) -> "Attributes":
+        """Return the attributes of some of the faces, in the order of their numbers."""
+        return replace(
+            self,
+            faces=self.faces[faces],
+            corner={name: values[faces] for name, values in self.corner.items()},
+            face={name: values[faces] for name, values in self.face.items()},
+        )
+
+    def turned(self, linear: FloatArray) -> "Attributes":
+        """Return the attributes after a linear map of the mesh: normals turn, and keep length."""
+        if not NORMALS.intersection(self.names):
+            return self
+        vertex, corner, face = (
+            {
+                name: _turned(values, linear) if is_normal(name, values) else values
+                for name, values in self.of(kind).items()
+            }
+            for kind in KINDS
+        )
+        return replace(self, vertex=vertex, corner=corner, face=face)
+
+    def reordered(self, order: list[int]) -> "Attributes":
+        """Return the attributes with the three corners of every face in another order."""
+        corner = {name: values[:, order] for name, values in self.corner.items()}
+        return replace(self, faces=self.faces[:, order], corner=corner)
+
+    @cached_property
+    def patches(self) -> tuple[IndexArray, list[bytes]]:
+        """Which faces have the same values everywhere: (m,) numbers, and the values behind them.
+
+        Faces whose corners differ have numbers of their own, above those that stand for values.
+        """
+        rows, is_even = self._rows()
+        count = len(self.faces)
+        as_bytes = np.ascontiguousarray(rows).view(f"V{rows.shape[1]}").ravel() if count else rows
+        kept, numbers = np.unique(as_bytes[is_even], return_inverse=True)
+        patches = np.zeros(count, dtype=np.int64)
+        patches[is_even] = numbers
+        patches[~is_even] = len(kept) + np.arange(count - len(numbers))
+        signature = repr(self._signature()).encode()
+        return patches, [signature + value.tobytes() for value in kept]
+
+    def _rows(self) -> tuple[npt.NDArray[np.uint8], BoolArray]:
+        """Return the bytes of all values of each face, and whether its corners agree."""
+        count = len(self.faces)
+        is_even = np.ones(count, dtype=bool)
+        rows = [np.zeros((count, 1), dtype=np.uint8)]
+        for name in self.names:
+            corners = _bytes_of(self.at_corners(name), 3 * count).reshape(count, 3, -1)
+            is_even &= (corners == corners[:, :1]).all(axis=(1, 2))
+            rows.append(corners[:, 0])
+        return np.concatenate(rows, axis=1), is_even
+
+    def _signature(self) -> list[tuple[str, str, tuple[int, ...]]]:
+        arrays = [(name, self.at_corners(name, np.zeros(0, np.int64))) for name in self.names]
+        return [(name, array.dtype.str, array.shape[2:]) for name, array in arrays]
+
+
+def _bytes_of(values: Values, count: int) -> npt.NDArray[np.uint8]:
+    flat = np.ascontiguousarray(values)
+    width = flat.nbytes // count if count else 0
+    return np.frombuffer(flat.tobytes(), np.uint8).reshape(count, width)
+
+
+def is_normal(name: str, values: Values) -> bool:
+    """Whether an array turns with the mesh: by its name, three floats for each element."""
+    return name in NORMALS and values.dtype.kind == "f" and values.shape[-1:] == (3,)
+
+
+def _turned(values: Values, linear: FloatArray) -> Values:
+    """Return normals under a linear map, by its cofactors, each as long as before."""
+    a, b, c = np.asarray(linear, dtype=np.float64)
+    cofactors = np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)])
+    if np.dot(a, cofactors[0]) < 0:
+        cofactors = -cofactors
+    if np.abs(linear).sum() == 3 and (np.abs(linear).sum(axis=0) == 1).all():
+        # Axes that are exchanged and mirrored leave every bit of a coordinate.
+        axes = np.abs(linear).argmax(axis=1)
+        signs = linear[np.arange(3), axes].astype(values.dtype)
+        return np.ascontiguousarray(values[..., axes] * signs)
+    image = values @ cofactors.T
+    with np.errstate(invalid="ignore", divide="ignore"):
+        lengths = np.linalg.norm(values, axis=-1, keepdims=True)
+        scaled = image * (lengths / np.linalg.norm(image, axis=-1, keepdims=True))
+    turned: Values = np.where(lengths > 0, scaled, image).astype(values.dtype)
+    return turned
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """Attributes as a caller gives them, in any form that numpy understands."""
+
+    vertex: Mapping[str, Any] | None = None
+    corner: Mapping[str, Any] | None = None
+    face: Mapping[str, Any] | None = None
+    materials: Mapping[str, Material] | None = None
+
+    def over(self, vertex_count: int, faces: IndexArray) -> Attributes | None:
+        """Return the arrays over a mesh, or None if there are none.
+
+        Raises
+        ------
+        InvalidMeshError
+            If an array is of another length or type, or a name stands for two; code
+            ``"attributes"``.
+        """
+        if not (self.vertex or self.corner or self.face):
+            return None
+        shapes: dict[Kind, tuple[int, ...]]
+        shapes = {"vertex": (vertex_count,), "corner": (len(faces), 3), "face": (len(faces),)}
+        found: dict[Kind, dict[str, Values]] = {}
+        for kind, given in zip(KINDS, (self.vertex, self.corner, self.face), strict=True):
+            arrays = _named(given, kind)
+            found[kind] = {name: _array(v, name, kind, shapes[kind]) for name, v in arrays}
+        names = [name for kind in KINDS for name in found[kind]]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise _refused(f"“{twice[0]}” is given for two of vertices, corners and faces.")
+        own = faces.copy()
+        own.flags.writeable = False
+        return Attributes(own, **found, materials=_materials(self.materials))
+
+
+def _named(given: Mapping[str, Any] | None, kind: Kind) -> list[tuple[str, Any]]:
+    if given is None:
+        return []
+    if not isinstance(given, Mapping):
+        raise _refused(f"{kind}_attributes must be a dictionary of arrays by their names.")
+    for name in given:
+        if not isinstance(name, str) or not name:
+            raise _refused(f"an attribute's name is text, not {name!r}.")
+    return list(given.items())
+
+
+def _array(values: Any, name: str, kind: Kind, shape: tuple[int, ...]) -> Values:
+    try:
+        array: Values = np.array(values, order="C")
+    except ValueError as error:
+        raise _refused(f"the values of “{name}” are no array: {error}.") from error
+    if array.dtype.kind not in _TYPES:
+        allowed = "truth values, whole numbers, floats and text"
+        raise _refused(f"“{name}” holds values of type {array.dtype}; there may be {allowed}.")
+    if array.shape[: len(shape)] != shape:
+        wanted = ", ".join(map(str, shape))
+        raise _refused(
+            f"{kind}_attributes[{name!r}] must have shape ({wanted}, …), not {array.shape}."
+        )
+    array.flags.writeable = False
+    return array
+
+
+def _materials(given: Mapping[str, Material] | None) -> Mapping[str, Material]:
+    for name, material in (given or {}).items():
+        if not isinstance(material, Material):
+            raise _refused(f"the material “{name}” is no bspcsg.Material.")
+    return dict(given or {})
+
+
+def _refused(message: str) -> InvalidMeshError:
+    return InvalidMeshError(f"Attributes: {message}", "attributes")
+
+
+class Later:
+    """Attributes that are made when somebody asks, once.
+
+    Parameters
+    ----------
+    make : callable
+    """
+
+    def __init__(self, make: Callable[[], Attributes]) -> None:
+        self._make: Callable[[], Attributes] | None = make
+        self._made: Attributes | None = None
+
+    def now(self) -> Attributes:
+        """Return them."""
+        make = self._make
+        if make is not None:
+            self._made, self._make = make(), None
+        if self._made is None:  # made by another thread, between the two lines above
+            return self.now()
+        return self._made
+
+    def __reduce__(self) -> tuple[Any, tuple[Attributes]]:
+        """Pickle what was made."""
+        return made, (self.now(),)
+
+
+def made(attributes: Attributes) -> Later:
+    """Return attributes that are made already."""
+    later = Later(lambda: attributes)
+    later.now()
+    return later

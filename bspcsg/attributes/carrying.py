@@ -1,0 +1,375 @@
+"""Attributes of a result: those of the faces that its triangles lie in, by exact places.
+
+Each triangle of a result lies in one face of one source. Values of faces are copied. At a corner
+that is a corner of the source's face, bit by bit, the value there is copied, too; at any other
+place it is interpolated between the three corners of the face, on the lattice, where the solid is.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._types import BoolArray, FloatArray, IndexArray
+from ..errors import InvalidMeshError
+from .attributes import Attributes, Kind, Values, is_normal
+from .barycentric import weights
+from .material import Material
+
+#: Doubles of a source, its vertices on the lattice, its faces, and their numbers in the input.
+SourceArrays: TypeAlias = tuple[FloatArray, FloatArray, IndexArray, IndexArray]
+
+#: A weight below minus this is that of a place outside the face: mending moved it there.
+_OUTSIDE = 0.125
+
+#: Values at one vertex that differ by less, in units of the largest, are those of one field: each
+#: is interpolated within 2**-49 of it, and the place was rounded within a spacing.
+_ONE_FIELD = 2.0**-40
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """The triangles of a result.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64
+    faces : (m, 3) int64
+    source : (m, 2) int64
+        Slot and number of the face that each triangle lies in.
+    flips : (m,) bool
+        Whether it faces the other way.
+    """
+
+    vertices: FloatArray
+    faces: IndexArray
+    source: IndexArray
+    flips: BoolArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Inner:
+    """Corners of triangles that are no corners of the faces these lie in.
+
+    Parameters
+    ----------
+    triangles, corners : (j,) int64
+        Which triangles of a lot, and which corner of each.
+    faces : (j,) int64
+        The number of the face that each lies in.
+    places : (j, 3) float64
+        Weights of the corners of that face.
+    """
+
+    triangles: IndexArray
+    corners: IndexArray
+    faces: IndexArray
+    places: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Lot:
+    """The triangles of a result that lie in one source, and where their corners are in it.
+
+    Parameters
+    ----------
+    attributes : Attributes
+        Of the source.
+    rows : (k,) int64
+        The numbers of the triangles.
+    origins : (k,) int64
+        The number of the face of each.
+    corners : (k, 3) int64
+        Which corner of that face each corner is, or -1.
+    inner : _Inner
+        The corners that are none.
+    flips : (k,) bool
+        Whether it faces the other way.
+    """
+
+    attributes: Attributes
+    rows: IndexArray
+    origins: IndexArray
+    corners: IndexArray
+    inner: _Inner
+    flips: BoolArray
+
+    def values(self, name: str) -> Values:
+        """Return the values of a name at the corners, (k, 3, …)."""
+        given = self.attributes.at_corners(name, self.origins)
+        width = math.prod(given.shape[2:])
+        flat = given.reshape(len(self.rows), 3, width)
+        found = np.take_along_axis(flat, np.maximum(self.corners, 0)[:, :, None], axis=1)
+        if len(inner := self.inner.faces):
+            ends = self.attributes.at_corners(name, inner).reshape(len(inner), 3, width)
+            between = _between(ends, self.inner.places)
+            found[self.inner.triangles, self.inner.corners] = between
+        return self._faced(name, found.reshape(given.shape))
+
+    def of_faces(self, name: str) -> Values:
+        """Return the values of a name of faces, (k, …)."""
+        return self._faced(name, self.attributes.face[name][self.origins])
+
+    def _faced(self, name: str, values: Values) -> Values:
+        if not is_normal(name, values) or not self.flips.any():
+            return values
+        turned = values.copy()
+        turned[self.flips] *= -1
+        return turned
+
+
+def patches_of(sources: Sequence[Attributes | None]) -> list[npt.NDArray[np.uint32] | None]:
+    """Return what each face of each source belongs to: faces of equal values to one patch."""
+    known: dict[bytes, int] = {}
+    found: list[npt.NDArray[np.uint32] | None] = []
+    patches = [None if one is None else one.patches for one in sources]
+    next_number = sum(len(values) for one in patches if one is not None for values in one[1:])
+    for one in patches:
+        if one is None:
+            found.append(None)
+            continue
+        numbers, values = one
+        lone = len(numbers) and max(int(numbers.max()) + 1 - len(values), 0)
+        shared = [known.setdefault(value, len(known)) for value in values]
+        table = np.array([*shared, *range(next_number, next_number + lone)], dtype=np.uint32)
+        found.append(table[numbers])
+        next_number += lone
+    return found
+
+
+def carried(
+    surface: Surface,
+    sources: Sequence[Attributes | None],
+    arrays_of: Callable[[int], SourceArrays | None],
+) -> Attributes:
+    """Return the attributes of a result.
+
+    Parameters
+    ----------
+    surface : Surface
+    sources : sequence of Attributes or None
+        By slot.
+    arrays_of : callable
+        Returns what the core knows of the source in a slot.
+
+    Raises
+    ------
+    InvalidMeshError
+        If a name stands for values of different shapes in two sources; code ``"attributes"``.
+    """
+    rows_of = dict(_by_slot(surface.source))
+    lots = []
+    for slot, attributes in enumerate(sources):
+        if attributes is not None:
+            rows = rows_of.get(slot, _NO_ROWS)
+            known = arrays_of(slot) if len(rows) else None
+            lots.append(_lot(surface, rows, attributes, known or _NO_ARRAYS))
+    lots, materials = _with_common_materials(lots)
+    found: dict[Kind, dict[str, Values]] = {"vertex": {}, "corner": {}, "face": {}}
+    for name in dict.fromkeys(name for lot in lots for name in lot.attributes.names):
+        kind, values = _joined(name, [lot for lot in lots if name in lot.attributes.names], surface)
+        values.flags.writeable = False
+        found[kind][name] = values
+    return Attributes(surface.faces, **found, materials=materials)
+
+
+#: What there is of a source of which nothing is left.
+_NO_ROWS: IndexArray = np.zeros(0, dtype=np.int64)
+_NO_ARRAYS: SourceArrays = (
+    np.zeros((0, 3)),
+    np.zeros((0, 3)),
+    np.zeros((0, 3), dtype=np.int64),
+    _NO_ROWS,
+)
+
+
+def _by_slot(source: IndexArray) -> Iterator[tuple[int, IndexArray]]:
+    """Yield each slot and the numbers of its triangles, ascending."""
+    order = np.argsort(source[:, 0], kind="stable")
+    slots, starts = np.unique(source[order, 0], return_index=True)
+    yield from zip(slots.tolist(), np.split(order, starts[1:]), strict=False)
+
+
+def _lot(surface: Surface, rows: IndexArray, attributes: Attributes, known: SourceArrays) -> _Lot:
+    doubles, lattice, faces, numbers = known
+    origins = surface.source[rows, 1]
+    triangles = faces[np.searchsorted(numbers, origins)]
+    points = surface.vertices[surface.faces[rows]]
+    corners = _matches(points, doubles[triangles])
+    corners = np.where(corners < 0, _matches(points, lattice[triangles]), corners)
+    at, corner = np.nonzero(corners < 0)
+    places = weights(points[at, corner], lattice[triangles[at]])
+    inner = _Inner(at, corner, origins[at], places)
+    inner = _brought_inside(inner, surface.faces[rows], corners, origins)
+    return _Lot(attributes, rows, origins, corners, inner, surface.flips[rows])
+
+
+def _matches(points: FloatArray, corners: FloatArray) -> IndexArray:
+    """Return which corner of a face each corner of a triangle is, or -1."""
+    same = (points[:, :, None] == corners[:, None]).all(axis=3)
+    return np.where(same.any(axis=2), same.argmax(axis=2), -1)
+
+
+def _brought_inside(
+    inner: _Inner, vertices: IndexArray, corners: IndexArray, origins: IndexArray
+) -> _Inner:
+    """Give places outside of their faces those of other triangles there, or the nearest inside.
+
+    Where rounding would turn a triangle over, an edge is swapped with a neighbour, and a corner
+    comes to lie outside of the face that the triangle is named after.
+    """
+    with np.errstate(invalid="ignore"):
+        outside = np.flatnonzero(~(inner.places.min(axis=1, initial=1) >= -_OUTSIDE))
+    if len(outside) == 0:
+        return inner
+    faces, places = inner.faces.copy(), inner.places.copy()
+    number = np.full(vertices.shape, -1)
+    number[inner.triangles, inner.corners] = np.arange(len(faces))
+    lost = set(outside.tolist())
+    for k in outside.tolist():
+        here = np.argwhere(vertices == vertices[inner.triangles[k], inner.corners[k]]).tolist()
+        found = [(t, c) for t, c in here if number[t, c] not in lost]
+        if found:
+            triangle, corner = found[0]
+            at = number[triangle, corner]
+            faces[k] = origins[triangle]
+            places[k] = np.eye(3)[corners[triangle, corner]] if at < 0 else inner.places[at]
+        else:
+            place = np.clip(np.nan_to_num(inner.places[k], nan=1 / 3), 0, 1)
+            places[k] = place / place.sum()
+    return _Inner(inner.triangles, inner.corners, faces, places)
+
+
+def _between(values: Values, places: FloatArray) -> Values:
+    """Return values (k, w) at places (k, 3) between those at three corners (k, 3, w).
+
+    What is the same at all three stays as it is, bit by bit. Whole numbers are rounded; truth
+    values and text are those of the nearest corner.
+    """
+    rows = np.arange(len(values))
+    nearest: Values = values[rows, places.argmax(axis=1)]
+    if values.dtype.kind not in "iuf":
+        return nearest
+    wide = values.astype(np.float64)
+    second, third = places[:, 1, None], places[:, 2, None]
+    with np.errstate(invalid="ignore", over="ignore"):
+        made = wide[:, 0] + second * (wide[:, 1] - wide[:, 0]) + third * (wide[:, 2] - wide[:, 0])
+    if values.dtype.kind in "iu":
+        made = np.clip(np.rint(made), wide.min(axis=1), wide.max(axis=1))
+    is_same = (values == values[:, :1]).all(axis=1)
+    found: Values = np.where(is_same, values[:, 0], made.astype(values.dtype))
+    return found
+
+
+def _joined(name: str, lots: list[_Lot], surface: Surface) -> tuple[Kind, Values]:
+    """Return what a name has values for in the result, and the values."""
+    kinds = {lot.attributes.kind_of(name) for lot in lots}
+    if kinds == {"face"}:
+        parts = [lot.of_faces(name) for lot in lots]
+        return "face", _filled(name, lots, parts, (len(surface.faces),), 1)
+    parts = [lot.values(name) for lot in lots]
+    values = _filled(name, lots, parts, (len(surface.faces), 3), 2)
+    if kinds == {"vertex"}:
+        common = _of_vertices(values, lots, surface)
+        if common is not None:
+            return "vertex", common
+    return "corner", values
+
+
+def _filled(
+    name: str, lots: list[_Lot], parts: list[Values], shape: tuple[int, ...], depth: int
+) -> Values:
+    """Return the values of all triangles; those of sources that lack the name get the default."""
+    shapes = {part.shape[depth:] for part in parts}
+    if len(shapes) > 1:
+        told = " and ".join(map(str, sorted(shapes)))
+        message = (
+            f"Attributes: “{name}” has values of shapes {told} in different operands; rename one,"
+            " or give both the same."
+        )
+        raise InvalidMeshError(message, "attributes")
+    kind = _common_type(name, [part.dtype for part in parts])
+    filled = np.full(shape + shapes.pop(), default_of(kind), dtype=kind)
+    for lot, part in zip(lots, parts, strict=True):
+        filled[lot.rows] = part
+    return filled
+
+
+def _common_type(name: str, kinds: list[np.dtype[Any]]) -> np.dtype[Any]:
+    if len({kind.kind == "U" for kind in kinds}) > 1:
+        raise InvalidMeshError(
+            f"Attributes: “{name}” is text in one operand and numbers in another.", "attributes"
+        )
+    return np.result_type(*kinds)
+
+
+def default_of(kind: np.dtype[Any]) -> Any:
+    """Return what stands where a source has no values: NaN, 0, False, or no text."""
+    return np.nan if kind.kind == "f" else np.zeros((), kind)[()]
+
+
+def _of_vertices(values: Values, lots: list[_Lot], surface: Surface) -> Values | None:
+    """Return the values of vertices if all corners at each agree, else None."""
+    count = len(surface.vertices)
+    flat = values.reshape(3 * len(surface.faces), math.prod(values.shape[2:]))
+    vertices = surface.faces.ravel()
+    # Corners of sources are written last, so that what was copied is what stays.
+    is_given = np.zeros(len(surface.faces) * 3, dtype=bool).reshape(-1, 3)
+    for lot in lots:
+        is_given[lot.rows] = lot.corners >= 0
+    order = np.argsort(is_given.ravel(), kind="stable")
+    common = np.full((count, flat.shape[1]), default_of(values.dtype), dtype=values.dtype)
+    common[vertices[order]] = flat[order]
+    if not _agree(common[vertices], flat):
+        return None
+    whole: Values = common.reshape(count, *values.shape[2:])
+    return whole
+
+
+def _agree(one: Values, other: Values) -> bool:
+    same = one == other
+    if one.dtype.kind == "f":
+        largest = np.nanmax(np.abs(one), initial=0, where=np.isfinite(one))
+        with np.errstate(invalid="ignore"):
+            same |= np.abs(one - other) <= _ONE_FIELD * largest
+        same |= np.isnan(one) & np.isnan(other)
+    return bool(same.all())
+
+
+def _with_common_materials(lots: list[_Lot]) -> tuple[list[_Lot], Mapping[str, Material]]:
+    """Return the materials of all sources; a name that means two gets a number behind it."""
+    materials: dict[str, Material] = {}
+    found = []
+    for lot in lots:
+        renamed = {
+            name: _free_name(name, material, materials)
+            for name, material in lot.attributes.materials.items()
+        }
+        for name, material in lot.attributes.materials.items():
+            materials[renamed[name]] = material
+        found.append(_renamed(lot, {old: new for old, new in renamed.items() if old != new}))
+    return found, materials
+
+
+def _free_name(name: str, material: Material, taken: Mapping[str, Material]) -> str:
+    number, free = 1, name
+    while taken.get(free, material) != material:
+        number += 1
+        free = f"{name} ({number})"
+    return free
+
+
+def _renamed(lot: _Lot, names: dict[str, str]) -> _Lot:
+    values = lot.attributes.face.get("material")
+    if not names or values is None or values.dtype.kind != "U":
+        return lot
+    kinds, numbers = np.unique(values, return_inverse=True)
+    image = np.array([names.get(kind, kind) for kind in kinds.tolist()])[numbers]
+    face = {**lot.attributes.face, "material": image}
+    attributes = Attributes(
+        lot.attributes.faces, lot.attributes.vertex, lot.attributes.corner, face
+    )
+    return replace(lot, attributes=attributes)

@@ -1,0 +1,27 @@
+//! Which faces of one plane may become one polygon.
+
+use crate::mesh::source::Source;
+
+/// What each face belongs to, by its source's slot and the number it had in its input.
+///
+/// Faces of different patches are never joined, so that each triangle lies in one face of those
+/// whose data differ. Whoever has no patches says nothing, and joins everything in a plane.
+#[derive(Clone, Debug, Default)]
+pub struct Patches(Vec<Option<Vec<u32>>>);
+
+/// What the faces of sources belong to that nothing is said about.
+const COMMON: u32 = u32::MAX;
+
+impl Patches {
+    /// The patches of the faces of each source; `None` where nothing is said.
+    pub fn new(patches: Vec<Option<Vec<u32>>>) -> Self {
+        Self(patches)
+    }
+
+    /// What a face belongs to.
+    pub fn of(&self, slot: u32, source: &Source, face: u32) -> u32 {
+        let own = self.0.get(slot as usize).and_then(Option::as_ref);
+        let found = own.and_then(|own| own.get(source.number(face) as usize));
+        found.copied().unwrap_or(COMMON)
+    }
+}

@@ -1,0 +1,313 @@
+"""What a mesh says besides its shape, through operations, transforms and copies."""
+
+import pickle
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import bspcsg as b
+from bspcsg._types import FloatArray, WindingRule
+from bspcsg.attributes.barycentric import weights
+from bspcsg.mesh.visuals import attributes_from
+
+PIXEL = (
+    b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x02\x00\x00\x00"
+    b"\x90wS\xde\x00\x00\x00\x0cIDATx\x9cc\xf8\xcf\xc0\x00\x00\x03\x01\x01\x00\xc9\xfe\x92\xef"
+    b"\x00\x00\x00\x00IEND\xaeB`\x82"
+)
+
+
+def cube(size: float = 2.0, at: float = 0.0, **options: Any) -> b.Solid:
+    mesh = b.cube(size).to_mesh()
+    return b.Solid(mesh.vertices + at, mesh.faces, **options)
+
+
+def normals() -> FloatArray:
+    mesh = b.cube(2).to_mesh()
+    a, c, d = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    outward: FloatArray = np.cross(c - a, d - a) / 4
+    return outward
+
+
+def test_an_untouched_mesh_keeps_every_bit() -> None:
+    rng = np.random.default_rng(1)
+    given: dict[str, npt.NDArray[Any]] = {
+        "float": rng.normal(size=(8, 2)),
+        "single": rng.normal(size=8).astype(np.float32),
+        "byte": rng.integers(0, 256, (8, 4)).astype(np.uint8),
+        "large": np.arange(8) + 2**62,
+        "flag": rng.integers(0, 2, 8).astype(bool),
+        "text": np.array(list("abcdefgh")),
+    }
+    mesh = (cube(vertex_attributes=given) | b.cube(1).translate(5, 0, 0)).to_mesh()
+    corners = mesh.attributes.at_corners
+    for name, values in given.items():
+        own = mesh.source[:, 0] == 0
+        assert corners(name).dtype == values.dtype
+        meant = values[b.cube(2).to_mesh().faces[mesh.source[own, 1]]]
+        assert np.array_equal(corners(name)[own], meant)
+
+
+def test_what_an_operand_lacks_has_the_default() -> None:
+    given = {"float": np.ones(12), "int": np.ones(12, int), "flag": np.ones(12, bool)}
+    one = cube(face_attributes={**given, "text": np.full(12, "x")})
+    mesh = (one | b.cube(1).translate(5, 0, 0)).to_mesh()
+    assert np.isnan(mesh.face_attributes["float"][12:]).all()
+    assert (mesh.face_attributes["int"][12:] == 0).all()
+    assert not mesh.face_attributes["flag"][12:].any()
+    assert (mesh.face_attributes["text"][12:] == "").all()
+
+
+def test_faces_of_one_plane_are_joined_only_if_they_say_the_same() -> None:
+    plain = len((cube() - b.cube(1)).faces)
+    same = cube(face_attributes={"color": np.full((12, 3), 7, np.uint8)}) - b.cube(1)
+    assert len(same.faces) == plain
+    mesh = (cube(face_attributes={"id": np.arange(12)}) - b.cube(1)).to_mesh()
+    own = mesh.source[:, 0] == 0
+    assert np.array_equal(mesh.face_attributes["id"][own], mesh.source[own, 1])
+
+
+def test_whole_numbers_are_rounded_and_text_is_that_of_the_nearest_corner() -> None:
+    half = b.cube(4).translate(-1, -1, -3)  # leaves z from 1 to 2
+    high = cube().to_mesh().vertices[:, 2] > 1
+    given = {"int": np.where(high, 5, 0), "text": np.where(high, "up", "down")}
+    mesh = (cube(vertex_attributes=given) - half).to_mesh()
+    cut = mesh.vertices[:, 2] == 1
+    told = mesh.attributes.at_corners("int")[mesh.source[:, 0] == 0]
+    assert set(np.unique(told)) == {2, 5}  # 2.5 is rounded to even
+    assert cut.any()
+    assert set(np.unique(mesh.attributes.at_corners("text"))) <= {"up", "down", ""}
+
+
+def test_seams_stay_seams_and_cuts_keep_both_sides() -> None:
+    noise = np.random.default_rng(2).normal(size=(12, 3))
+    mesh = (cube(corner_attributes={"u": noise}) | b.cube(1).translate(9, 0, 0)).to_mesh()
+    assert np.array_equal(mesh.corner_attributes["u"][:12], noise)
+    one = cube(vertex_attributes={"w": np.zeros(8)})
+    other = cube(at=1.0, vertex_attributes={"w": np.ones(8)})
+    mesh = (one | other).to_mesh()
+    assert "w" not in mesh.vertex_attributes
+    assert np.array_equal(
+        mesh.corner_attributes["w"], np.repeat(mesh.source[:, :1] == 1, 3, axis=1)
+    )
+
+
+def test_vertices_stay_vertices_where_all_agree() -> None:
+    mesh = b.cube(2).to_mesh()
+    one = cube(vertex_attributes={"w": mesh.vertices @ [1, 2, 4]})
+    other = cube(at=0.5, vertex_attributes={"w": (mesh.vertices + 0.5) @ [1, 2, 4]})
+    mesh = (one - other).to_mesh()
+    assert np.allclose(mesh.vertex_attributes["w"], mesh.vertices @ [1, 2, 4], rtol=1e-14)
+    assert not mesh.corner_attributes
+
+
+@pytest.mark.parametrize(
+    "move",
+    [
+        lambda s: s,
+        lambda s: s.rotate(90, "x"),
+        lambda s: s.mirror((1, 0, 0)).translate(1, 2, 3),
+        lambda s: s.rotate(33, (1, 2, 3)),
+        lambda s: s.mirror((1, 2, 3)).scale((1, 2, 3)),
+    ],
+)
+@pytest.mark.parametrize("evaluated", [False, True])
+def test_normals_turn_with_the_solid_and_flip_where_it_is_subtracted(
+    move: Callable[[b.Solid], b.Solid], evaluated: bool
+) -> None:
+    block = b.cube(9).translate(-4, -4, -4)
+    made = block - cube(corner_attributes={"normal": np.repeat(normals()[:, None], 3, axis=1)})
+    if evaluated:
+        assert made.volume > 0
+    mesh = move(made).to_mesh()
+    told = mesh.corner_attributes["normal"]
+    inner = ~np.isnan(told).any(axis=(1, 2))
+    assert inner.sum() == 12
+    a, c, d = (mesh.vertices[mesh.faces[inner, k]] for k in range(3))
+    outward = np.cross(c - a, d - a)
+    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+    assert np.allclose(told[inner], outward[:, None], atol=1e-8)
+
+
+def test_a_chain_of_general_transforms_keeps_values_with_their_places() -> None:
+    mesh = b.cube(2).to_mesh()
+    part = cube(vertex_attributes={"where": mesh.vertices}) - b.cube(1)
+    turned = part.rotate(20, (1, 1, 0)).translate(0.1, 0, 0)
+    cut = (turned - b.cube(1).translate(0.5, 0.5, 0.5)).rotate(-7, "y").mirror((0, 1, 1))
+    mesh = (cut | b.cube(1).translate(20, 0, 0)).to_mesh()
+    told = mesh.attributes.at_corners("where")
+    known = ~np.isnan(told).any(axis=2)
+    assert known.any()
+    factors = [np.eye(4)]
+    one = b.cube(1)
+    for moved in (one.rotate(20, (1, 1, 0)), one.translate(0.1, 0, 0), one.rotate(-7, "y")):
+        factors.insert(0, moved._factors[0].matrix)
+    factors.insert(0, one.mirror((0, 1, 1))._factors[0].matrix)
+    matrix = np.linalg.multi_dot(factors)
+    image = told[known] @ matrix[:3, :3].T + matrix[:3, 3]
+    assert np.allclose(image, mesh.vertices[mesh.faces[known]], atol=1e-8)
+
+
+def test_attributes_travel_through_a_mesh_and_through_pickling() -> None:
+    part = cube(face_attributes={"id": np.arange(12)}, materials={"m": b.Material((1, 0, 0))})
+    made = (part - b.cube(1)).to_mesh()
+    again = b.Solid.from_mesh(made) - b.cube(0.5).translate(1.5, 1.5, 1.5)
+    assert set(again.to_mesh().face_attributes["id"].tolist()) == set(range(12))
+    moved = (part - b.cube(1)).translate(1, 2, 3)
+    copy = pickle.loads(pickle.dumps(moved)).to_mesh()
+    assert np.array_equal(copy.face_attributes["id"], moved.to_mesh().face_attributes["id"])
+    assert copy.materials == {"m": b.Material((1, 0, 0))}
+    sent = pickle.loads(pickle.dumps(made))
+    assert np.array_equal(sent.face_attributes["id"], made.face_attributes["id"])
+
+
+def test_solids_without_attributes_pickle_as_ever() -> None:
+    assert len(b.cube(1).__reduce__()[1]) == 2
+    assert len((b.cube(1) - b.cube(0.5)).__reduce__()[1]) == 2
+    assert b.cube(1).to_mesh().carried is None
+
+
+def test_the_reduced_mesh_and_other_winding_rules_keep_attributes() -> None:
+    mesh = b.cube(2).to_mesh()
+    vertices = np.concatenate([mesh.vertices, mesh.vertices + 1])
+    faces = np.concatenate([mesh.faces, mesh.faces + 8])
+    given = {"body": np.repeat([1, 2], 12)}
+    rules: list[tuple[WindingRule, float]] = [("positive", 15.0), ("even-odd", 14.0)]
+    for rule, volume in rules:
+        solid = b.Solid(vertices, faces, winding=rule, face_attributes=given)
+        assert solid.volume == volume
+        told = solid.normalized().to_mesh().face_attributes["body"]
+        assert set(told.tolist()) == {1, 2}
+        assert (told == np.where(solid.normalized().to_mesh().source[:, 1] < 12, 1, 2)).all()
+
+
+def test_faces_left_out_at_import_keep_the_numbers_of_the_others() -> None:
+    mesh = b.cube(2).to_mesh()
+    faces = np.insert(mesh.faces, 3, [0, 0, 1], axis=0)
+    solid = b.Solid(mesh.vertices, faces, face_attributes={"id": np.arange(13)})
+    told = (solid - b.cube(1)).to_mesh()
+    own = told.source[:, 0] == 0
+    assert np.array_equal(told.face_attributes["id"][own], told.source[own, 1])
+
+
+def test_equal_names_of_different_materials_stay_two() -> None:
+    def painted(color: Any, at: float) -> b.Solid:
+        given = {"material": np.full(12, "paint")}
+        return cube(at=at, face_attributes=given, materials={"paint": b.Material(color)})
+
+    mesh = (painted((1, 0, 0), 0.0) | painted((0, 1, 0), 1.0)).to_mesh()
+    named = {name: mesh.materials[name].color[:3] for name in mesh.materials}
+    assert named == {"paint": (1, 0, 0), "paint (2)": (0, 1, 0)}
+    second = mesh.face_attributes["material"] == "paint (2)"
+    assert np.array_equal(second, mesh.source[:, 0] == 1)
+
+
+def test_attributes_are_made_for_whoever_asks() -> None:
+    mesh = (cube(face_attributes={"id": np.arange(12)}) - b.cube(1)).to_mesh()
+    assert mesh.carried is not None and mesh.carried._made is None
+    assert mesh.face_attributes["id"] is mesh.face_attributes["id"]
+
+
+def test_different_shapes_under_one_name_are_refused_when_asked_for() -> None:
+    one = cube(face_attributes={"c": np.zeros((12, 3))})
+    other = cube(at=1.0, face_attributes={"c": np.zeros((12, 4))})
+    mesh = (one | other).to_mesh()
+    with pytest.raises(b.InvalidMeshError, match="shapes") as caught:
+        _ = mesh.face_attributes
+    assert caught.value.code == "attributes"
+    text = cube(at=1.0, face_attributes={"c": np.full((12, 3), "x")})
+    with pytest.raises(b.InvalidMeshError, match="text"):
+        _ = (one | text).to_mesh().face_attributes
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"vertex_attributes": {"a": np.zeros(7)}},
+        {"corner_attributes": {"a": np.zeros((12, 2))}},
+        {"face_attributes": {"a": np.zeros(11)}},
+        {"face_attributes": {"a": [object()] * 12}},
+        {"face_attributes": {"a": np.zeros(12)}, "vertex_attributes": {"a": np.zeros(8)}},
+        {"face_attributes": {"": np.zeros(12)}},
+        {"face_attributes": {3: np.zeros(12)}},
+        {"face_attributes": [1, 2]},
+        {"face_attributes": {"a": [[1], [2, 3]]}},
+        {"face_attributes": {"a": np.zeros(12)}, "materials": {"m": "red"}},
+    ],
+)
+def test_what_is_no_array_over_the_mesh_is_refused(options: dict[str, Any]) -> None:
+    with pytest.raises(b.InvalidMeshError) as caught:
+        cube(**options)
+    assert caught.value.code == "attributes"
+
+
+def test_materials_check_what_they_are_given() -> None:
+    assert b.Material((1, 0, 0)).color == (1, 0, 0, 1)
+    assert b.Material(texture=PIXEL).media == "image/png"
+    for wrong in ({"color": (2, 0, 0)}, {"color": (1, 0)}, {"texture": b"GIF89a"}):
+        with pytest.raises(b.InvalidMeshError):
+            b.Material(**wrong)
+
+
+def test_given_arrays_can_be_changed_afterwards() -> None:
+    values = np.arange(12)
+    part = cube(face_attributes={"id": values})
+    values[:] = 0
+    assert part.to_mesh().face_attributes["id"].tolist() == list(range(12))
+    with pytest.raises(ValueError, match="read-only"):
+        part.to_mesh().face_attributes["id"][0] = 3
+
+
+def test_trimesh_colours_textures_and_arrays_come_along() -> None:
+    import trimesh
+    from PIL import Image
+
+    box = trimesh.creation.box((2, 2, 2))
+    box.visual.vertex_colors = np.arange(32, dtype=np.uint8).reshape(8, 4)
+    mesh = b.Solid.from_mesh(box).to_mesh()
+    assert np.array_equal(mesh.vertex_attributes["color"], box.visual.vertex_colors)
+    box.visual.face_colors = np.arange(48, dtype=np.uint8).reshape(12, 4)
+    box.face_attributes["id"] = np.arange(12)
+    mesh = b.Solid.from_mesh(box).to_mesh()
+    assert np.array_equal(mesh.face_attributes["color"], box.visual.face_colors)
+    assert mesh.face_attributes["id"].tolist() == list(range(12))
+    visuals: Any = trimesh.visual
+    material = visuals.material.SimpleMaterial(image=Image.new("RGB", (2, 2)))
+    box.visual = visuals.TextureVisuals(uv=np.zeros((8, 2)), material=material)
+    mesh = b.Solid.from_mesh(box).to_mesh()
+    assert mesh.vertex_attributes["uv"].shape == (8, 2)
+    (name,) = mesh.materials
+    assert mesh.materials[name].media == "image/png"
+    assert (mesh.face_attributes["material"] == name).all()
+    assert b.Solid.from_mesh(trimesh.creation.box((1, 1, 1))).to_mesh().carried is None
+
+
+def test_properties_of_manifold_come_along() -> None:
+    import manifold3d
+
+    body = manifold3d.Manifold.cube((2, 2, 2)).calculate_normals(0, 30)
+    mesh = b.Solid.from_mesh(body).to_mesh()
+    told = mesh.corner_attributes["properties"]
+    a, c, d = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    outward = np.cross(c - a, d - a)
+    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+    assert np.allclose(told, outward[:, None])
+
+
+def test_arrays_of_quads_and_of_other_lengths_are_left() -> None:
+    vertices, quads = b.cube(1).to_mesh().vertices, [[0, 1, 3, 2]]
+    held = SimpleNamespace(face_attributes={"id": [1]}, vertex_attributes={"short": [1, 2]})
+    assert attributes_from(held, vertices, quads) == {}
+
+
+def test_weights_in_slivers_are_as_exact_as_in_others() -> None:
+    height = 2.0**-60
+    thin = np.array([[[0, 0, 0], [1, 0, 0], [0.5, height, 0]]])
+    found = weights(np.array([[0.5, height / 2, 0]]), thin)
+    assert np.array_equal(found, [[0.25, 0.25, 0.5]])
+    far = np.array([[[1e8, 0, 0], [1e8 + 1, 0, 0], [1e8, 0, 1]]])
+    assert np.array_equal(weights(np.array([[1e8 + 0.25, 0, 0.5]]), far), [[0.25, 0.25, 0.5]])
