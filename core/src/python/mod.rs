@@ -12,6 +12,7 @@ mod arrays;
 mod each;
 mod embedding;
 mod errors;
+mod forking;
 mod fragments;
 mod hyperplanes;
 mod in_use;
@@ -71,6 +72,7 @@ fn normal_bits(dimension: usize) -> u32 {
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     panics::listen();
+    forking::watch(module)?;
     module.add("CoreError", module.py().get_type::<errors::CoreError>())?;
     let panic = module.py().get_type::<PanicException>();
     module.add("PanicException", panic)?;
