@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     )
     from .io import load, save
     from .mesh.mesh import Mesh
+    from .modelling.bodies.hulls import hull
+    from .modelling.bodies.sums import minkowski
     from .modelling.making.heights import surface
     from .modelling.making.lofting import loft
     from .modelling.making.paths import helix, spline
@@ -88,10 +90,12 @@ __all__ = [
     "grid",
     "half_space",
     "helix",
+    "hull",
     "intersection",
     "linear_pattern",
     "load",
     "loft",
+    "minkowski",
     "pipe",
     "polar_pattern",
     "prism",
@@ -131,6 +135,8 @@ _MODULES = {
     " InvalidParameterError LimitError MissingPartError UnboundedError",
     "io": "load save",
     "mesh.mesh": "Mesh",
+    "modelling.bodies.hulls": "hull",
+    "modelling.bodies.sums": "minkowski",
     "modelling.planar.curves": "arc bezier",
     "modelling.planar.lettering.text": "text",
     "parameters": "set_threads",

@@ -21,6 +21,7 @@ __all__ = [
     "Tree",
     "__version__",
     "fail_on_purpose",
+    "hull_faces",
     "mesh_faults",
     "mesh_in_single",
     "normal_bits",
@@ -70,6 +71,7 @@ _SplitCase: TypeAlias = Literal[
 ]
 
 def fail_on_purpose(panic: bool, size: int) -> None: ...
+def hull_faces(points: npt.NDArray[np.float64], pitch: int) -> npt.NDArray[np.int64]: ...
 def mesh_faults(vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]) -> Faults: ...
 def mesh_in_single(
     vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]

@@ -10,6 +10,7 @@ from typing import Any, Literal, TypeAlias
 
 #: What is asked for.
 Convenience: TypeAlias = Literal[
+    "decompose",
     "dumps",
     "hull_of_region",
     "load",
@@ -25,6 +26,8 @@ Convenience: TypeAlias = Literal[
     "slice_solid",
     "solid_html",
     "solid_svg",
+    "split",
+    "trim",
     "validate",
 ]
 

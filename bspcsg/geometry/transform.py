@@ -116,6 +116,12 @@ def euler_rotation(angles: Vector) -> Factors:
     return tuple(turn for turn in reversed(turns) if not turn.is_identity)
 
 
+def about(point: Vector, factors: Factors) -> Factors:
+    """Return factors that do about a point what the given ones do about the origin."""
+    there = vector3(point, "point")
+    return (translation(there), *factors, translation(-there)) if there.any() else factors
+
+
 def matrix_factor(matrix: Any) -> Factor:
     """Return the affine map of a (4, 4) or (3, 4) matrix.
 

@@ -1,10 +1,8 @@
 """A solid in parts: its connected components, and the two sides of a plane."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from .._types import FloatArray, IndexArray
+from .._types import FloatArray, IndexArray, Scalar, Vector
 from ..mesh.mesh import Mesh, surfaces_of
 from ..shapes.primitives import half_space
 from ..solid.counting import uncounted
@@ -43,7 +41,7 @@ def connected_parts(solid: Solid) -> list[Mesh]:
 
 
 @uncounted
-def sides_of_plane(solid: Solid, normal: Sequence[float], offset: float) -> tuple[Solid, Solid]:
+def sides_of_plane(solid: Solid, normal: Vector, offset: Scalar) -> tuple[Solid, Solid]:
     """Return what of a solid lies below and above the plane ``normal . x = offset``.
 
     Both sides have the cut as a face; together they are the solid again, exactly. The plane is that

@@ -20,7 +20,7 @@ from .._types import ProgramLine, Scalar, Vector, WindingRule
 from ..above import above
 from ..attributes.attributes import Given
 from ..attributes.material import Material
-from ..errors import core_errors
+from ..errors import core_errors, invalid_parameter
 from ..geometry import transform
 from ..geometry.transform import Factors, common_prefix
 from ..mesh import interop, visuals
@@ -42,6 +42,7 @@ from .leaf import (
     tree_of,
 )
 from .measure import Measured, deprecated, residues_of_volume
+from .modelled import Modelled
 from .point_set import PointSet
 from .program import Operator
 
@@ -52,7 +53,7 @@ if TYPE_CHECKING:
     from ..bsp import Region
 
 
-class Solid(Measured, PointSet):
+class Solid(Measured, Modelled, PointSet):
     """A closed triangle mesh as a set of points.
 
     Inside is where the winding number of the faces satisfies the rule; faces may cross, overlap,
@@ -285,30 +286,51 @@ class Solid(Measured, PointSet):
         vector: Any = offset[0] if len(offset) == 1 else offset
         return self._moved((transform.translation(vector),))
 
-    def rotate(self, angle: Scalar | Vector, axis: str | Vector = "z") -> "Solid":
-        """Return the solid rotated about an axis through the origin.
+    def rotate(
+        self,
+        angle: Scalar | Vector | None = None,
+        axis: str | Vector = "z",
+        *,
+        x: Scalar = 0,
+        y: Scalar = 0,
+        z: Scalar = 0,
+        about: Vector = (0, 0, 0),
+    ) -> "Solid":
+        """Return the solid rotated about an axis.
 
         Quarter turns about a coordinate axis are exact.
 
         Parameters
         ----------
-        angle : float or (3,) float
+        angle : float or (3,) float, optional
             In degrees, counter-clockwise when the axis points at the viewer. Three angles turn
             about x, then y, then z, and `axis` is ignored.
         axis : {"x", "y", "z"} or (3,) float
+        x, y, z : float
+            In degrees, instead of `angle`: about x, then y, then z.
+        about : (3,) float
+            A point of the axes.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> b.box((1, 2, 3)).rotate(z=90).bounds[0].tolist()
+        [-2.0, 0.0, 0.0]
         """
-        about: Any = angle
-        if np.ndim(about) == 0:
-            return self._moved((transform.rotation(about, axis),))
-        return self._moved(transform.euler_rotation(about))
+        if angle is not None and (x, y, z) != (0, 0, 0):
+            raise invalid_parameter("A rotation is by an angle and an axis, or by x, y and z.")
+        turn: Any = (x, y, z) if angle is None else angle
+        is_one = np.ndim(turn) == 0
+        factors = (transform.rotation(turn, axis),) if is_one else transform.euler_rotation(turn)
+        return self._moved(transform.about(about, factors))
 
-    def scale(self, factor: Scalar | Vector) -> "Solid":
-        """Return the solid scaled about the origin, by one factor or one per axis."""
-        return self._moved((transform.scaling(factor),))
+    def scale(self, factor: Scalar | Vector, *, about: Vector = (0, 0, 0)) -> "Solid":
+        """Return the solid scaled by one factor, or by one per axis; the point `about` stays."""
+        return self._moved(transform.about(about, (transform.scaling(factor),)))
 
-    def mirror(self, normal: Vector) -> "Solid":
-        """Return the mirror image in the plane through the origin with this normal."""
-        return self._moved((transform.mirroring(normal),))
+    def mirror(self, normal: Vector, *, about: Vector = (0, 0, 0)) -> "Solid":
+        """Return the mirror image in the plane with this normal through the point `about`."""
+        return self._moved(transform.about(about, (transform.mirroring(normal),)))
 
     def transform(self, matrix: Any) -> "Solid":
         """Return the image under an affine map, a (4, 4) or (3, 4) matrix for column vectors.
@@ -511,7 +533,7 @@ class Solid(Measured, PointSet):
         A face in the plane lies above it: the section is the limit from the minus side, that of a
         box standing on z = 0 is empty at 0 and full at its top.
         """
-        region: Region = above("slice_solid")(self, offset, normal, origin)
+        region: Region = above("slice_solid")(self, offset, normal, origin=origin)
         return region
 
     @uncounted

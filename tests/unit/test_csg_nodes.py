@@ -238,7 +238,7 @@ def test_intersections_of_both_dimensions_are_empty() -> None:
 def test_minkowski_of_what_is_far_from_convex() -> None:
     ball = "difference() { sphere(r = 20, $fn = 80); cube(3); }"
     with pytest.raises(
-        b.FormatError, match=r":1:1: minkowski\(\): a child is not convex"
+        b.FormatError, match=r":1:1: minkowski\(\): a solid is not convex"
     ) as caught:
         csg.loads(f"minkowski() {{ {ball} cube(1); }}")
     assert caught.value.code == "too_large"

@@ -21,7 +21,6 @@ from rooms import PICTURE, picture
 #: Modules with imports inside functions, and why; those of the command line start only what their
 #: verb needs.
 DEFERRED = {
-    "bspcsg/conveniences.py": "the package starts without what methods of solids need",
     "bspcsg/io.py": "mesh files are read without the scripts' evaluator",
     "bspcsg/bench/engines.py": "an engine is imported by the process that measures it",
     "bspcsg/bench/real.py": "cases are listed without the package",

@@ -14,6 +14,7 @@ pub mod doubles;
 pub mod edge;
 pub mod extent;
 pub mod fixed;
+pub mod hull;
 pub mod line;
 pub mod meeting;
 pub mod outline;

@@ -17,7 +17,7 @@ pub mod import;
 pub mod joints;
 mod links;
 pub mod measures;
-mod snap;
+pub mod snap;
 pub mod source;
 pub mod surfaces;
 pub mod tasks;

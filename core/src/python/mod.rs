@@ -14,6 +14,7 @@ mod embedding;
 mod errors;
 mod forking;
 mod fragments;
+mod hulls;
 mod hyperplanes;
 mod in_use;
 mod numbers;
@@ -83,6 +84,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<rays::RayScene>()?;
     module.add_function(wrap_pyfunction!(embedding::mesh_faults, module)?)?;
     module.add_function(wrap_pyfunction!(embedding::mesh_in_single, module)?)?;
+    module.add_function(wrap_pyfunction!(hulls::hull_faces, module)?)?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
     module.add_function(wrap_pyfunction!(normal_bits, module)?)?;
     module.add_function(wrap_pyfunction!(fail_on_purpose, module)?)?;

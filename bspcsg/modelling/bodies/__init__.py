@@ -1,0 +1,1 @@
+"""Solids from solids: hulls, sums, cuts, gaps, refinement, functions of points."""

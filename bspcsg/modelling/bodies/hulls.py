@@ -1,0 +1,114 @@
+"""Convex hulls in space."""
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import numpy as np
+
+from ..._core import hull_faces, suited_pitch
+from ..._types import FloatArray
+from ...errors import InvalidMeshError, core_errors, invalid_parameter
+from ...mesh import interop
+from ...parameters import shown
+from ...solid.counting import counted
+from ...solid.leaf import MeshLeaf
+from ...solid.solid import Solid, from_leaf
+
+#: Lattice coordinates are below this many steps.
+_REACH = 2**53
+
+
+@counted
+def hull(*solids_or_points: Any) -> Solid:
+    """Return the convex hull: the least convex solid that holds all that is given.
+
+    It is exact. Each corner of the result is a corner of a solid or one of the points, none of
+    these lies outside, and no corner could be left out.
+
+    Parameters
+    ----------
+    *solids_or_points : Solid, (n, 3) or (3,) array_like of float, or iterable of such
+        In model units. Points are snapped to the finest lattice of the solids.
+
+    Returns
+    -------
+    Solid
+        Empty if all that is given lies in one plane.
+
+    Raises
+    ------
+    InvalidMeshError
+        If points have another shape or are not finite (`where` lists them).
+    UnboundedError
+        If a solid reaches to infinity.
+    LimitError
+        If the points do not fit on one lattice.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.hull(b.cube(1), b.cube(1).translate(0, 0, 4)).volume
+    5.0
+    >>> b.hull([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 6)]).volume
+    1.0
+    """
+    given = list(_entries(solids_or_points))
+    clouds = [_points_of(one) for one in given]
+    pitches = [one.pitch for one in given if isinstance(one, Solid) and not one.is_empty]
+    points = np.concatenate(clouds) if clouds else np.zeros((0, 3))
+    return hull_of(points, min(pitches, default=None))
+
+
+def hull_of(points: FloatArray, pitch: int | None = None) -> Solid:
+    """Return the convex hull of points, empty if they lie in a plane.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Finite, in model units.
+    pitch : int or None
+        Exponent of the lattice step, if the points fit on that lattice; else what suits them.
+    """
+    if len(points) < 4:
+        return Solid.empty()
+    chosen = _lattice_for(points, pitch)
+    with core_errors():
+        faces = hull_faces(np.ascontiguousarray(points), chosen)
+    if len(faces) == 0:
+        return Solid.empty()
+    used, corners = np.unique(faces, return_inverse=True)
+    own = np.ascontiguousarray(points[used]), corners.reshape(-1, 3)
+    return from_leaf(MeshLeaf(*own, pitch=chosen, trusted=True))
+
+
+def _lattice_for(points: FloatArray, pitch: int | None) -> int:
+    largest = float(np.abs(points).max())
+    if pitch is not None and largest < (_REACH - 1) * 10.0**pitch:
+        return pitch
+    with core_errors():
+        return suited_pitch(largest, float(np.ptp(points, axis=0).max()))
+
+
+def _entries(given: Iterable[Any]) -> Iterator[Any]:
+    """Yield solids and arrays of points; those in a list with solids one by one."""
+    for one in given:
+        if isinstance(one, Solid):
+            yield one
+            continue
+        if not isinstance(one, Iterable) or isinstance(one, (str, bytes)):
+            raise invalid_parameter(f"A hull is that of solids and points, not of {shown(one)}.")
+        held: Any = one if isinstance(one, np.ndarray) else list(one)
+        mixed = any(isinstance(entry, Solid) for entry in held)
+        yield from held if mixed else [held]
+
+
+def _points_of(given: Any) -> FloatArray:
+    if isinstance(given, Solid):
+        return given.normalized().to_mesh().vertices
+    is_one = len(given) == 3 and all(np.ndim(number) == 0 for number in given)
+    points = interop.points_array([given] if is_one else given)
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        message = f"{len(bad)} of the points are not finite, the first is number {bad[0]}."
+        raise InvalidMeshError(message, "non_finite", bad[:20].tolist())
+    return points

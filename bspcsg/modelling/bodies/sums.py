@@ -1,0 +1,193 @@
+"""Minkowski sums of solids."""
+
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...bsp import ObjectTree
+from ...errors import LimitError, UnboundedError
+from ...geometry.hyperplane import Hyperplane
+from ...operations import setops
+from ...solid.counting import counted
+from ...solid.leaf import PlaneLeaf
+from ...solid.solid import Solid, from_leaf
+from .hulls import hull_of
+
+#: Corners of convex sets, each an array of shape (n, 3).
+ConvexParts: TypeAlias = list[FloatArray]
+
+#: Whole numbers of any size.
+LongArray: TypeAlias = np.ndarray[Any, np.dtype[np.object_]]
+
+#: A solid with more faces is not divided into convex parts, which grows with their square.
+_MOST_FACES = 2000
+
+#: More pairs of convex parts than this would take hours.
+_MOST_PAIRS = 20_000
+
+#: Sums of corners of which one hull is made at once: 24 bytes each and as many in steps, 1 GB.
+_MOST_SUMS = 20_000_000
+
+
+@counted
+def minkowski(a: Solid, b: Solid) -> Solid:
+    """Return the Minkowski sum: all points that are a point of one solid plus one of the other.
+
+    It is the first solid thickened by the second. The sum of convex solids is the hull of the sums
+    of their corners, exactly; others are divided into convex parts first, and the sums of parts are
+    united.
+
+    Parameters
+    ----------
+    a, b : Solid
+        The complement of a bounded solid may stand for `a`. So ``~minkowski(~a, b)`` is `a` made
+        thinner: all points at which the mirror image of `b` in the origin fits into `a`.
+
+    Returns
+    -------
+    Solid
+        Empty if one of them is.
+
+    Raises
+    ------
+    UnboundedError
+        If `b` reaches to infinity, or `a` and its complement do.
+    LimitError
+        If a solid that is not convex has more than 2000 faces, or there are more than 20 000 pairs
+        of parts ("too_large").
+
+    Notes
+    -----
+    Corners of parts that are no lattice points are rounded to it before they are added.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> b.minkowski(b.cube(2), b.cube(1)).volume
+    27.0
+    >>> thin = ~b.minkowski(~b.cube(4), b.cube(2, center=True))
+    >>> thin == b.cube(2).translate(1, 1, 1)
+    True
+    """
+    if a.is_empty or b.is_empty:
+        return Solid.empty()
+    if not a.is_bounded:
+        return ~_eroded(~a, b)
+    return _sum_of_parts(convex_parts(a), convex_parts(b), min(a.pitch, b.pitch))
+
+
+def convex_parts(solid: Solid) -> ConvexParts:
+    """Return the corners of convex parts that make up a solid.
+
+    Raises
+    ------
+    LimitError
+        If it is not convex and has too many faces.
+    UnboundedError
+        If it reaches to infinity.
+    """
+    mesh = solid.normalized().to_mesh()
+    if is_convex(solid):
+        return [mesh.vertices]
+    if len(mesh.faces) > _MOST_FACES:
+        message = (
+            f"a solid is not convex and has {len(mesh.faces):,} faces; more than {_MOST_FACES:,}"
+            " are not divided into convex parts."
+        )
+        raise LimitError(message, "too_large")
+    cells = ObjectTree.from_mesh(mesh, pitch=solid.tree.pitch).cells()
+    corners: dict[int, list[FloatArray]] = {}
+    for face, cell in enumerate(cells.owner.tolist()):
+        corners.setdefault(cell, []).append(cells[face])
+    return [np.unique(np.concatenate(faces), axis=0) for faces in corners.values()]
+
+
+def is_convex(solid: Solid) -> bool:
+    """Whether the hull is no larger, but for the rounding of its corners."""
+    mesh = solid.normalized().to_mesh()
+    return hull_of(mesh.vertices, solid.pitch).volume <= mesh.volume * (1 + 1e-9)
+
+
+def _sum_of_parts(first: ConvexParts, second: ConvexParts, pitch: int) -> Solid:
+    _refuse_many(len(first) * len(second))
+    return setops.union(_sum(p, q, pitch) for p in first for q in second)
+
+
+def _refuse_many(pairs: int) -> None:
+    if pairs > _MOST_PAIRS:
+        message = (
+            f"the solids fall into convex parts of which {pairs:,} pairs would have to be added;"
+            f" the most are {_MOST_PAIRS:,}."
+        )
+        raise LimitError(message, "too_large")
+
+
+def _sum(first: FloatArray, second: FloatArray, pitch: int) -> Solid:
+    """Return the hull of the sums of corners."""
+    if len(first) * len(second) > _MOST_SUMS:
+        message = (
+            f"the solids have {len(first):,} and {len(second):,} corners; the most sums of two are"
+            f" {_MOST_SUMS:,}."
+        )
+        raise LimitError(message, "too_large")
+    sums = first[:, None, :] + second[None, :, :]
+    return hull_of(sums.reshape(-1, 3), pitch)
+
+
+def _eroded(solid: Solid, tool: Solid) -> Solid:
+    """Return the points at which the mirror image of a tool in the origin fits into a solid."""
+    if not solid.is_bounded:
+        raise UnboundedError(
+            "This solid and its complement both reach to infinity, so it has no sum.", "unbounded"
+        )
+    if solid.is_empty:
+        return solid
+    if is_convex(solid) and is_convex(tool):
+        return _between_planes(solid, tool)
+    parts = convex_parts(tool)
+    triangles = solid.normalized().to_mesh()
+    _refuse_many(len(parts) * len(triangles.faces))
+    pitch = min(solid.pitch, tool.pitch)
+    corners = triangles.vertices[triangles.faces]
+    return setops.intersection(_eroded_by(solid, corners, part, pitch) for part in parts)
+
+
+def _eroded_by(solid: Solid, corners: FloatArray, part: FloatArray, pitch: int) -> Solid:
+    """Return a solid less what a convex tool touches while it moves along the boundary.
+
+    Where the tool touches no boundary, it is inside if one of its points is.
+    """
+    rim = setops.union(_sum(triangle, part, pitch) for triangle in corners)
+    return solid.translate(part[0]) - rim
+
+
+def _between_planes(solid: Solid, tool: Solid) -> Solid:
+    """Return a convex solid with each face moved in as far as the tool reaches, exactly."""
+    pitch = min(solid.pitch, tool.pitch)
+    faces = solid.normalized().to_mesh().faces
+    a, b, c = (_steps(solid, pitch)[faces[:, k]] for k in range(3))
+    reach = _steps(tool, pitch)
+    planes = {_plane_inside(p, q, r, reach, pitch) for p, q, r in zip(a, b, c, strict=True)}
+    halves = [from_leaf(PlaneLeaf(plane)) for plane in sorted(planes, key=_plane_key)]
+    return setops.intersection(halves)
+
+
+def _steps(solid: Solid, pitch: int) -> LongArray:
+    """Return the corners in whole lattice steps, as numbers without limits."""
+    vertices = solid.normalized().to_mesh().vertices
+    steps = np.rint(vertices * 10.0**-pitch if pitch < 0 else vertices / 10.0**pitch)
+    whole: LongArray = steps.astype(np.int64).astype(object)
+    return whole
+
+
+def _plane_inside(p: Any, q: Any, r: Any, reach: LongArray, pitch: int) -> Hyperplane:
+    u, v = q - p, r - p
+    normal = [u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)]
+    offset = np.dot(normal, p) + np.dot(reach, normal).min()
+    return Hyperplane.of(list(map(Fraction, normal)), offset * Fraction(10) ** pitch)
+
+
+def _plane_key(plane: Hyperplane) -> Any:
+    return plane.normal, plane.offset

@@ -1,0 +1,178 @@
+"""Verbs of solids against those of manifold3d: volume, area and Euler number on ten inputs each.
+
+The last five inputs of each verb are degenerate: empty, flat, touching, on a plane, in a corner.
+"""
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import manifold3d
+import numpy as np
+import pytest
+
+import bspcsg as b
+
+Manifold = manifold3d.Manifold
+Verb: TypeAlias = Callable[..., Any]
+
+RNG = np.random.default_rng(15)
+
+
+def frame() -> b.Solid:
+    return b.box((4, 4, 1)) - b.box((2, 2, 1)).translate(1, 1, 0)
+
+
+def pair() -> b.Solid:
+    return b.cube(1) | b.cube(2).translate(3, 0, 0)
+
+
+def bodies() -> list[b.Solid]:
+    """Return five solids as they come, and five special ones."""
+    return [
+        b.cube(2),
+        b.sphere(1.5, segments=12),
+        frame().rotate((10, 20, 30)),
+        b.torus(3, 1, segments=12, tube_segments=8),
+        b.cylinder(3, 1, segments=7) - b.cylinder(3, 0.5, segments=5),
+        b.Solid.empty(),
+        pair(),
+        b.cube(3) - b.cube(1).translate(1, 1, 1),
+        b.cube(1) | b.cube(1).translate(1, 0, 0),
+        b.box((1, 1, 1e-3)),
+    ]
+
+
+def summands() -> list[b.Solid]:
+    """Return the same but for the empty set, whose sum with another one is that for Manifold."""
+    return [b.cube(1e-3) if body.is_empty else body for body in bodies()]
+
+
+def clouds() -> list[Any]:
+    grid = np.stack(np.meshgrid(*[np.arange(4.0)] * 3), axis=-1).reshape(-1, 3)
+    return [
+        RNG.normal(size=(10, 3)),
+        RNG.normal(size=(300, 3)),
+        RNG.uniform(size=(50, 3)) * (1, 1, 9),
+        RNG.normal(size=(100, 3)) ** 3,
+        np.eye(3).tolist() + [[0, 0, 0]],
+        grid,
+        np.repeat(grid[:8], 3, axis=0),
+        np.zeros((5, 3)),
+        grid[:, :] * (1, 1, 0),
+        grid * (1, 1, 1e-6),
+    ]
+
+
+PLANES = [((0, 0, 1), 0.5), ((1, 2, 3), 1), ((0, 0, 1), 0), ((0, 0, -1), 0), ((1, 0, 0), 99)]
+
+TOOLS = [b.cube(1, center=True), b.sphere(0.5, segments=8)]
+
+
+def unit(normal: Any, offset: float) -> tuple[Any, float]:
+    """Return what Manifold takes for a plane: its offset is a length."""
+    length = float(np.linalg.norm(normal))
+    return tuple(np.asarray(normal) / length), offset / length
+
+
+def measures(found: Any) -> list[float]:
+    """Return volume, area and Euler number of what a verb returned, or of each of several.
+
+    Manifold's genus is that of one surface with this Euler number; ours is summed over surfaces.
+    It has figures without volume, which are no sets here.
+    """
+    if isinstance(found, (list, tuple)):
+        return [number for part in found for number in measures(part)]
+    if isinstance(found, b.Solid):
+        return [found.volume, found.area, found.euler_number]
+    if found.is_empty() or abs(found.volume()) < 1e-12:
+        return [0, 0, 0]
+    euler = 2 - 2 * found.genus()
+    return [found.volume(), found.surface_area(), euler]
+
+
+def by_size(parts: Any) -> list[Any]:
+    return sorted(parts, key=lambda part: -part.volume())
+
+
+#: Verb: what is ours, what is Manifold's, and arguments of ours.
+ROWS: dict[str, tuple[Verb, Verb, list[tuple[Any, ...]]]] = {
+    "hull_points": (
+        b.hull,
+        lambda points: Manifold.hull_points(np.array(points, dtype=np.float64)),
+        [(cloud,) for cloud in clouds()],
+    ),
+    "hull": (b.hull, Manifold.hull, [(s,) for s in bodies()]),
+    "batch_hull": (
+        lambda s: b.hull(s, s.translate(2, 0, 1)),
+        lambda s: Manifold.batch_hull([s, s.translate((2, 0, 1))]),
+        [(s,) for s in bodies()],
+    ),
+    "minkowski_sum": (
+        b.minkowski,
+        lambda s, tool: s.minkowski_sum(tool),
+        [(s, TOOLS[0]) for s in summands()],
+    ),
+    "minkowski_difference": (
+        lambda s, tool: ~b.minkowski(~s, tool),
+        lambda s, tool: s.minkowski_difference(tool),
+        [(s, TOOLS[0].scale(0.5)) for s in summands()],
+    ),
+    "split": (
+        lambda s, tool: list(s.split(tool)),
+        lambda s, tool: list(s.split(tool)),
+        [(s, TOOLS[1]) for s in bodies()],
+    ),
+    "split_by_plane": (
+        lambda s, n, d: list(s.split(n, d))[::-1],
+        lambda s, n, d: list(s.split_by_plane(*unit(n, d))),
+        [(s, *PLANES[k % 5]) for k, s in enumerate(bodies())],
+    ),
+    "trim_by_plane": (
+        lambda s, n, d: s.trim(n, d),
+        lambda s, n, d: s.trim_by_plane(*unit(n, d)),
+        [(s, *PLANES[(k + 1) % 5]) for k, s in enumerate(bodies())],
+    ),
+    "decompose": (
+        b.Solid.decompose,
+        lambda s: by_size(s.decompose()),
+        [(s,) for s in bodies() if not s.equals(bodies()[7])] + [(bodies()[6].rotate(x=45),)],
+    ),
+    "rotate": (
+        lambda s: s.rotate(x=10, y=20, z=30) & b.cube(2),
+        lambda s: s.rotate((10, 20, 30)) ^ Manifold.cube((2, 2, 2)),
+        [(s,) for s in bodies()],
+    ),
+    "scale": (
+        lambda s: s.scale((1, 2, 3)),
+        lambda s: s.scale((1, 2, 3)),
+        [(s,) for s in bodies()],
+    ),
+    "mirror": (
+        lambda s: s.mirror((1, 1, 0)) & b.cube(2),
+        lambda s: s.mirror((1, 1, 0)) ^ Manifold.cube((2, 2, 2)),
+        [(s,) for s in bodies()],
+    ),
+}
+
+CASES = [
+    pytest.param(verb, number, id=f"{verb}-{number}")
+    for verb, row in ROWS.items()
+    for number in range(len(row[2]))
+]
+
+
+def theirs(argument: Any) -> Any:
+    return argument.to_manifold() if isinstance(argument, b.Solid) else argument
+
+
+@pytest.mark.parametrize(("verb", "number"), CASES)
+def test_measures_are_those_of_manifold(verb: str, number: int) -> None:
+    ours, other, inputs = ROWS[verb]
+    given = inputs[number]
+    found, wanted = ours(*given), other(*map(theirs, given))
+    # Coordinates differ by a step of the lattice, 1e-9.
+    assert measures(found) == pytest.approx(measures(wanted), rel=1e-7, abs=1e-7)
+
+
+def test_each_verb_has_ten_inputs() -> None:
+    assert all(len(inputs) == 10 for _, _, inputs in ROWS.values())

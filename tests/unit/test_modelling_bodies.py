@@ -1,0 +1,196 @@
+"""Solids from solids: hulls, sums, cuts."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from importlib import import_module
+from typing import Any, get_args
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg.above import Convenience
+from bspcsg.conveniences import _HOMES
+from support.checks import assert_sound
+
+
+def corners(solid: b.Solid) -> set[tuple[float, ...]]:
+    return set(map(tuple, solid.vertices.tolist()))
+
+
+def frame() -> b.Solid:
+    return b.box((4, 4, 1)) - b.box((2, 2, 1)).translate(1, 1, 0)
+
+
+# Hulls
+
+
+def test_a_hull_has_the_corners_of_its_input_and_encloses_it() -> None:
+    rng = np.random.default_rng(1)
+    for count in (4, 5, 30, 300):
+        points = rng.normal(size=(count, 3)).round(rng.integers(1, 9))
+        whole = b.hull(points)
+        assert_sound(whole)
+        assert corners(whole) <= set(map(tuple, points.tolist()))
+        assert (whole.classify(points) >= 0).all() and whole.genus == 0
+
+
+def test_a_hull_is_exact_where_points_lie_in_common_planes() -> None:
+    grid = np.stack(np.meshgrid(*[np.arange(6) * 0.1] * 3), axis=-1).reshape(-1, 3)
+    whole = b.hull(grid)
+    assert whole == b.cube(0.5) and len(whole.vertices) == 8
+    # A plane that no double coordinates hold exactly.
+    slanted = [(x / 10, y / 10, (3 - x - y) / 10) for x in range(4) for y in range(4)]
+    assert b.hull([*slanted, (0, 0, -1)]).volume_exact == b.hull(slanted, (0, 0, -1)).volume_exact
+    assert b.hull(slanted).is_empty
+
+
+def test_hulls_of_solids_points_and_lists_of_them() -> None:
+    pair = [b.cube(1), b.cube(1).translate(0, 0, 4)]
+    assert b.hull(pair) == b.hull(*pair) == b.hull(one for one in pair) == b.box((1, 1, 5))
+    assert b.hull(frame()) == b.box((4, 4, 1))
+    assert (
+        b.hull([b.cube(1), (1, 1, 2)], (0, 0, 1)).volume_exact
+        == b.hull(b.cube(1), [(1, 1, 2)]).volume_exact
+    )
+
+
+@pytest.mark.parametrize(
+    "flat",
+    [
+        [],
+        [(0, 0, 0)],
+        [(0, 0, 0)] * 9,
+        [(0, 0, 0), (1, 1, 1), (3, 3, 3), (2, 2, 2)],
+        [(0, 0, 1), (1, 0, 1), (0, 1, 1), (1, 1, 1), (5, 5, 1)],
+    ],
+)
+def test_what_is_flat_has_an_empty_hull(flat: Any) -> None:
+    assert b.hull(flat).is_empty and b.hull().is_empty and b.hull(b.Solid.empty()).is_empty
+
+
+@pytest.mark.parametrize(
+    ("given", "kind", "code"),
+    [
+        (7, b.InvalidParameterError, "invalid_parameter"),
+        ("abc", b.InvalidParameterError, "invalid_parameter"),
+        ([(0, 0)] * 4, b.InvalidMeshError, "shape"),
+        ([(0, 0, float("nan"))] * 4, b.InvalidMeshError, "non_finite"),
+        ([(0, 0, 1e300), (0, 0, 0), (1, 0, 0), (0, 1, 0)], b.LimitError, "too_large"),
+        (~b.cube(1), b.UnboundedError, "unbounded"),
+    ],
+)
+def test_hulls_refuse(given: Any, kind: type[b.BspcsgError], code: str) -> None:
+    with pytest.raises(kind) as caught:
+        b.hull(given)
+    assert caught.value.code == code
+
+
+# Sums
+
+
+def test_sums_of_boxes_are_boxes() -> None:
+    assert b.minkowski(b.box((1, 2, 3)), b.box((0.1, 0.2, 0.3))) == b.box((1.1, 2.2, 3.3))
+    assert b.minkowski(b.cube(1), b.cube(1).translate(5, 0, 0)) == b.cube(2).translate(5, 0, 0)
+    assert b.minkowski(b.cube(1), b.Solid.empty()).is_empty
+    assert b.minkowski(b.Solid.empty(), b.cube(1)).is_empty
+
+
+def test_sums_of_what_is_not_convex() -> None:
+    thick = b.minkowski(frame(), b.cube(0.5))
+    assert thick == b.box((4.5, 4.5, 1.5)) - b.box((1.5, 1.5, 1.5)).translate(1.5, 1.5, 0)
+    assert b.minkowski(b.cube(0.5), frame()) == thick
+
+
+def test_complements_are_made_thinner() -> None:
+    tool = b.box((1, 2, 1)).translate(-0.5, 0, 0)
+    # All x at which the mirror image of the tool fits: from -2 to 0 in y.
+    thin = ~b.minkowski(~b.cube(4), tool)
+    assert thin == b.box((3, 2, 3)).translate(0.5, 2, 1)
+    ring = ~b.minkowski(~frame(), b.cube(0.25, center=True))
+    grown = b.box((2.25, 2.25, 1)).translate(0.875, 0.875, 0)
+    assert ring == (b.box((3.75, 3.75, 0.75)).translate(0.125, 0.125, 0.125) - grown)
+    assert (~b.minkowski(~b.cube(1), b.cube(2))).is_empty
+    assert b.minkowski(b.Solid.full(), b.cube(1)) == b.Solid.full()
+
+
+def test_sums_refuse_what_is_unbounded_or_too_large() -> None:
+    with pytest.raises(b.UnboundedError):
+        b.minkowski(b.half_space((0, 0, 1)), b.cube(1))
+    with pytest.raises(b.UnboundedError):
+        b.minkowski(b.cube(1), ~b.cube(1))
+    far = b.sphere(10, segments=80) - b.cube(1)
+    with pytest.raises(b.LimitError) as caught:
+        b.minkowski(far, b.cube(1))
+    assert caught.value.code == "too_large"
+
+
+# Cuts
+
+
+def test_both_sides_of_a_plane_and_of_a_solid() -> None:
+    whole = b.cube(2) - b.sphere(1, segments=8)
+    below, over = whole.split((1, 1, 1), 2.5)
+    assert (below | over) == whole and below.isdisjoint(over)
+    assert over == whole.trim((1, 1, 1), 2.5) and below == whole.trim((-1, -1, -1), -2.5)
+    inside, outside = whole.split(b.cube(1))
+    assert inside == whole & b.cube(1) and outside == whole - b.cube(1)
+    assert b.cube(1).split((0, 0, 1), 7)[1].is_empty
+
+
+def test_parts_of_a_solid_the_largest_first() -> None:
+    parts = [b.cube(side).translate(5 * side, 0, 0) for side in (1, 3, 2)]
+    found = b.union(parts).decompose()
+    assert [part.volume_exact for part in found] == [27, 8, 1]
+    assert b.union(found) == b.union(parts)
+    assert b.Solid.empty().decompose() == []
+    one = b.cube(1)
+    assert one.decompose() == [one]
+
+
+@pytest.mark.parametrize(
+    "verb",
+    [
+        lambda s: s.split((0, 0, 0), 1),
+        lambda s: s.split((0, 0, 1), float("inf")),
+        lambda s: s.split("z"),
+        lambda s: s.trim((0, 0), 1),
+        lambda s: s.trim((0, 0, float("nan"))),
+        lambda s: s.rotate(30, z=30),
+        lambda s: s.rotate(x="a"),
+        lambda s: s.rotate(z=30, about=(0, 0)),
+        lambda s: s.scale(0, about=(1, 1, 1)),
+        lambda s: s.mirror((0, 0, 0), about=(1, 1, 1)),
+    ],
+)
+def test_bad_parameters_are_refused(verb: Callable[[b.Solid], Any]) -> None:
+    with pytest.raises(b.InvalidMeshError):
+        verb(b.cube(1))
+
+
+# Placing
+
+
+def test_rotations_by_name() -> None:
+    body = b.box((1, 2, 3))
+    assert body.rotate(z=30) == body.rotate(30)
+    assert body.rotate(x=10, y=20, z=30) == body.rotate((10, 20, 30))
+    assert body.rotate() == body
+    assert body.rotate(z=90, about=(1, 0, 0)) == body.translate(-1, 0, 0).rotate(90).translate(
+        1, 0, 0
+    )
+
+
+def test_a_point_that_stays() -> None:
+    body = b.cube(1)
+    assert body.scale(3, about=(1, 1, 1)) == b.cube(3).translate(-2, -2, -2)
+    assert body.mirror((1, 0, 0), about=(1, 0, 0)) == body.translate(1, 0, 0)
+    assert body.scale(2, about=(0, 0, 0)) == b.cube(2)
+    assert body.rotate(z=180, about=(0.5, 0.5, 0)).volume_exact == Fraction(1)
+
+
+def test_all_that_methods_ask_for_is_there() -> None:
+    for home in _HOMES.values():
+        module, name = home.split(":")
+        assert callable(getattr(import_module(f"bspcsg.{module}"), name))
+    assert set(_HOMES) == set(get_args(Convenience))
