@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from .io import load, save
     from .mesh.mesh import Mesh
     from .modelling.bodies.hulls import hull
+    from .modelling.bodies.level_sets import level_set
     from .modelling.bodies.sums import minkowski
     from .modelling.making.heights import surface
     from .modelling.making.lofting import loft
@@ -92,6 +93,7 @@ __all__ = [
     "helix",
     "hull",
     "intersection",
+    "level_set",
     "linear_pattern",
     "load",
     "loft",
@@ -136,6 +138,7 @@ _MODULES = {
     "io": "load save",
     "mesh.mesh": "Mesh",
     "modelling.bodies.hulls": "hull",
+    "modelling.bodies.level_sets": "level_set",
     "modelling.bodies.sums": "minkowski",
     "modelling.planar.curves": "arc bezier",
     "modelling.planar.lettering.text": "text",

@@ -10,14 +10,18 @@ from typing import Any, Literal, TypeAlias
 
 #: What is asked for.
 Convenience: TypeAlias = Literal[
+    "closest_points",
     "decompose",
     "dumps",
     "hull_of_region",
+    "intersects",
     "load",
     "load_dxf",
     "load_svg",
     "loads",
+    "min_gap",
     "offset_region",
+    "refine",
     "save",
     "save_dxf",
     "save_svg",
@@ -29,6 +33,7 @@ Convenience: TypeAlias = Literal[
     "split",
     "trim",
     "validate",
+    "warp",
 ]
 
 _answers: dict[Convenience, Callable[..., Any]] = {}

@@ -11,14 +11,18 @@ from .above import Convenience, answer
 
 #: Which function answers, after its module.
 _HOMES: dict[Convenience, str] = {
+    "closest_points": "modelling.bodies.gaps:closest_points",
     "decompose": "modelling.bodies.parts:decompose",
     "dumps": "csg:dumps",
     "hull_of_region": "modelling.planar.hulls:hull_of_region",
+    "intersects": "modelling.bodies.gaps:intersects",
     "load": "io:load",
     "load_dxf": "bsp:load_dxf",
     "load_svg": "bsp:load_svg",
     "loads": "io:loads",
+    "min_gap": "modelling.bodies.gaps:min_gap",
     "offset_region": "modelling.planar.offsetting:offset_region",
+    "refine": "modelling.bodies.refining:refine",
     "save": "io:save",
     "save_dxf": "bsp:save_dxf",
     "save_svg": "bsp:save_svg",
@@ -30,6 +34,7 @@ _HOMES: dict[Convenience, str] = {
     "split": "modelling.bodies.parts:split",
     "trim": "modelling.bodies.parts:trim",
     "validate": "verify.check:check_result",
+    "warp": "modelling.bodies.warping:warp",
 }
 
 

@@ -1,0 +1,138 @@
+"""A tree of boxes over triangles, and the pairs of two trees in the order of their distance."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+
+#: Triangles in a leaf.
+_LEAF = 8
+
+#: Bits of each coordinate in the order along which triangles are sorted.
+_BITS = 21
+
+#: Pairs of boxes that are divided together, which bounds the memory to some 100 MB.
+_CHUNK = 1 << 16
+
+#: Pairs of boxes on one level of two trees: their numbers in both, (k, 2).
+BoxPairs: TypeAlias = IndexArray
+
+
+@dataclass(frozen=True, eq=False)
+class BoxTree:
+    """Boxes around triangles that lie close together, around pairs of these, and so on.
+
+    Parameters
+    ----------
+    order : (m,) int64
+        The triangles; leaf k has those from 8 k on.
+    levels : list of (low, high), each (n, 3) float64
+        Boxes from the leaves to the root; box k holds boxes 2 k and 2 k + 1 of the level before.
+    """
+
+    order: IndexArray
+    levels: list[tuple[FloatArray, FloatArray]]
+
+    @classmethod
+    def over(cls, corners: FloatArray) -> "BoxTree":
+        """Return the tree over triangles, (m, 3, 3)."""
+        low, high = corners.min(axis=1), corners.max(axis=1)
+        order = np.argsort(_along_a_curve((low + high) / 2), kind="stable")
+        starts = np.arange(0, len(order), _LEAF)
+        boxes = np.minimum.reduceat(low[order], starts), np.maximum.reduceat(high[order], starts)
+        levels = [boxes]
+        while len(levels[-1][0]) > 1:
+            low, high = levels[-1]
+            starts = np.arange(0, len(low), 2)
+            levels.append((np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)))
+        return cls(order, levels)
+
+    def members(self, leaves: IndexArray) -> tuple[IndexArray, IndexArray]:
+        """Return the triangles of leaves, and for each the row of its leaf."""
+        places = leaves[:, None] * _LEAF + np.arange(_LEAF)
+        rows = np.broadcast_to(np.arange(len(leaves))[:, None], places.shape)
+        there = places < len(self.order)
+        return self.order[places[there]], rows[there]
+
+
+class Nearness:
+    """The search for near triangles of two trees.
+
+    Parameters
+    ----------
+    first, second : BoxTree
+    limit : float
+        Pairs farther apart than the root of this do not count; the searcher lowers it.
+    """
+
+    def __init__(self, first: BoxTree, second: BoxTree, limit: float) -> None:
+        self._trees = first, second
+        self.limit = limit
+
+    def leaves(self) -> Iterator[BoxPairs]:
+        """Yield pairs of leaves within the limit, near ones first as far as that is known."""
+        top = len(self._trees[0].levels) - 1, len(self._trees[1].levels) - 1
+        waiting: list[tuple[tuple[int, int], BoxPairs]] = [(top, np.zeros((1, 2), np.int64))]
+        while waiting:
+            level, pairs = waiting.pop()
+            gaps = self._gaps(level, pairs)
+            near = np.argsort(gaps, kind="stable")[: np.count_nonzero(gaps <= self.limit)]
+            if len(near) == 0:
+                continue
+            if level == (0, 0):
+                yield pairs[near]
+                continue
+            below, halves = self._divided(level, pairs[near])
+            chunks = [halves[k : k + _CHUNK] for k in range(0, len(halves), _CHUNK)]
+            waiting.extend((below, chunk) for chunk in reversed(chunks))
+
+    def _gaps(self, level: tuple[int, int], pairs: BoxPairs) -> FloatArray:
+        low, high = self._trees[0].levels[level[0]]
+        low_b, high_b = self._trees[1].levels[level[1]]
+        i, j = pairs.T
+        return squared_gaps(low[i], high[i], low_b[j], high_b[j])
+
+    def _divided(self, level: tuple[int, int], pairs: BoxPairs) -> tuple[tuple[int, int], BoxPairs]:
+        """Return the pairs of halves: of the tree that has more levels left, or of both."""
+        deepest = max(level)
+        cut = [own == deepest for own in level]
+        below = level[0] - cut[0], level[1] - cut[1]
+        for side in (0, 1):
+            if cut[side]:
+                lower = np.repeat(pairs, 2, axis=0)
+                lower[:, side] = 2 * lower[:, side] + np.tile([0, 1], len(pairs))
+                count = len(self._trees[side].levels[below[side]][0])
+                pairs = lower[lower[:, side] < count]
+        return below, pairs
+
+
+def squared_gaps(
+    low: FloatArray, high: FloatArray, low_b: FloatArray, high_b: FloatArray
+) -> FloatArray:
+    """Return the squared distances of boxes, each of shape (k, 3)."""
+    apart = np.maximum(np.maximum(low - high_b, low_b - high), 0.0)
+    gaps: FloatArray = np.einsum("ij,ij->i", apart, apart)
+    return gaps
+
+
+def _along_a_curve(points: FloatArray) -> IndexArray:
+    """Return the places of points along Morton's curve, which keeps near ones near."""
+    low = points.min(axis=0)
+    extent = float((points.max(axis=0) - low).max()) or 1.0
+    cells = ((points - low) / extent * ((1 << _BITS) - 1)).astype(np.int64)
+    place = np.zeros(len(points), np.int64)
+    for axis in range(3):
+        place |= _spread(cells[:, axis]) << axis
+    return place
+
+
+def _spread(numbers: IndexArray) -> IndexArray:
+    """Return numbers of 21 bits with two zeros after each bit."""
+    masks = (0x1F00000000FFFF, 0x1F0000FF0000FF, 0x100F00F00F00F00F, 0x10C30C30C30C30C3)
+    spread = numbers
+    for shift, mask in zip((32, 16, 8, 4), masks, strict=True):
+        spread = (spread | (spread << shift)) & mask
+    return (spread | (spread << 2)) & 0x1249249249249249

@@ -1,0 +1,146 @@
+"""How far apart solids are, and where they are nearest."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...errors import invalid_parameter
+from ...geometry.hyperplane import exact_number
+from ...solid.counting import uncounted
+from ...solid.solid import Solid
+from .boxes import BoxTree, Nearness, squared_gaps
+from .triangles import nearest_points
+
+#: Relative error of distances in doubles, of the size of the coordinates: some dozens of roundings.
+_NOISE = 1e-14
+
+#: How many pairs of triangles that doubles cannot tell apart are compared in fractions; each takes
+#: about a millisecond.
+_MOST_EXACT = 64
+
+#: Pairs of triangles that are compared together, which bounds the memory to some 100 MB.
+_CHUNK = 1 << 16
+
+
+@uncounted
+def min_gap(solid: Solid, other: Solid) -> float:
+    """Return the least distance of two points, one of each (see `Solid.min_gap`)."""
+    if solid.is_empty or other.is_empty:
+        return math.inf
+    found = _nearest(solid, other)
+    return 0.0 if found is None else math.sqrt(found[0])
+
+
+@uncounted
+def closest_points(solid: Solid, other: Solid) -> tuple[FloatArray, FloatArray]:
+    """Return a point of each at their least distance (see `Solid.closest_points`)."""
+    if solid.is_empty or other.is_empty:
+        raise invalid_parameter("The empty set has no points, and no closest one.")
+    found = _nearest(solid, other)
+    if found is None:
+        common = (solid & other).vertices[0].copy()
+        return common, common.copy()
+    return _rounded(found[1]), _rounded(found[2])
+
+
+@uncounted
+def intersects(solid: Solid, other: Solid) -> bool:
+    """Whether two solids have a point in common (see `Solid.intersects`)."""
+    if solid.is_empty or other.is_empty:
+        return False
+    if _apart(solid, other):
+        return False
+    found = _nearest(solid, other)
+    return found is None or found[0] == 0
+
+
+def _apart(solid: Solid, other: Solid) -> bool:
+    """Whether the boxes around two bounded solids have no point in common."""
+    (low, high), (low_b, high_b) = (_box(one) for one in (solid, other))
+    return bool((low > high_b).any() or (low_b > high).any())
+
+
+def _box(solid: Solid) -> FloatArray:
+    bounds = solid.bounds
+    return np.zeros((2, 3)) if bounds is None else bounds
+
+
+def _nearest(solid: Solid, other: Solid) -> tuple[Fraction, FloatArray, FloatArray] | None:
+    """Return the squared distance and two points in fractions; None if solids overlap."""
+    if not solid.isdisjoint(other):
+        return None
+    triangles = [_corners(one) for one in (solid, other)]
+    first, second = _candidates(*triangles)
+    corners = (_exact(triangles[0][first]), _exact(triangles[1][second]))
+    gaps, p, q = nearest_points(*corners)
+    best = min(range(len(gaps)), key=lambda k: (gaps[k], k))
+    return gaps[best], p[best], q[best]
+
+
+def _corners(solid: Solid) -> FloatArray:
+    mesh = solid.normalized().to_mesh()
+    corners: FloatArray = mesh.vertices[mesh.faces]
+    return corners
+
+
+def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, IndexArray]:
+    """Return the pairs of triangles that may be nearest, as far as doubles tell."""
+    scale = max(float(np.abs(first).max()), float(np.abs(second).max()))
+    trees = BoxTree.over(first), BoxTree.over(second)
+    search = Nearness(*trees, _bounded(_some_gap(first, second), scale))
+    best, found = np.inf, []
+    for leaves in search.leaves():
+        i, j = _pairs(trees, leaves)
+        for k in range(0, len(i), _CHUNK):
+            a, b = first[i[k : k + _CHUNK]], second[j[k : k + _CHUNK]]
+            near = squared_gaps(a.min(1), a.max(1), b.min(1), b.max(1)) <= search.limit
+            if near.any():
+                gaps, _, _ = nearest_points(a[near], b[near])
+                best = min(best, float(gaps.min()))
+                search.limit = min(search.limit, _bounded(best, scale))
+                kept = gaps <= search.limit
+                rows = np.flatnonzero(near)[kept] + k
+                found.append((gaps[kept], i[rows], j[rows]))
+    gaps, i, j = (np.concatenate(column) for column in zip(*found, strict=True))
+    order = np.lexsort((j, i, gaps))
+    order = order[gaps[order] <= _bounded(best, scale)][:_MOST_EXACT]
+    return i[order], j[order]
+
+
+def _bounded(gap: float, scale: float) -> float:
+    """Return the square that distances which doubles cannot tell from a squared one may have."""
+    return (math.sqrt(gap) + _NOISE * scale) ** 2
+
+
+def _some_gap(first: FloatArray, second: FloatArray) -> float:
+    """Return the squared distance of two corners that are near each other."""
+    points, others = first.reshape(-1, 3), second.reshape(-1, 3)
+    point = others.mean(axis=0)
+    gap = np.inf
+    for cloud in (points, others, points, others):
+        gaps = np.einsum("ij,ij->i", cloud - point, cloud - point)
+        point, gap = cloud[int(gaps.argmin())], float(gaps.min())
+    return gap
+
+
+def _pairs(trees: tuple[BoxTree, BoxTree], leaves: IndexArray) -> tuple[IndexArray, IndexArray]:
+    """Return the triangles of pairs of leaves, all with all."""
+    members, rows = trees[0].members(leaves[:, 0])
+    others, other_rows = trees[1].members(leaves[:, 1])
+    counts = np.bincount(other_rows, minlength=len(leaves))
+    starts = np.cumsum(counts) - counts
+    i = np.repeat(members, counts[rows])
+    within = np.arange(len(i)) - np.repeat(np.cumsum(counts[rows]) - counts[rows], counts[rows])
+    return i, others[np.repeat(starts[rows], counts[rows]) + within]
+
+
+def _exact(corners: FloatArray) -> FloatArray:
+    """Return coordinates as the decimals that they stand for."""
+    numbers = [exact_number(x) for x in corners.ravel().tolist()]
+    return np.array(numbers, dtype=object).reshape(corners.shape)
+
+
+def _rounded(point: FloatArray) -> FloatArray:
+    return np.array([float(x) for x in point])

@@ -1,0 +1,65 @@
+"""Solids whose corners a function moves."""
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from ..._types import FloatArray, WindingRule
+from ...errors import InvalidMeshError, invalid_parameter
+from ...mesh.certificate import certify
+from ...mesh.interop import points_array
+from ...parameters import shown, winding_rule
+from ...solid.counting import counted
+from ...solid.solid import Solid
+
+#: A function of all corners at once: (n, 3) float64 to the same shape.
+PointMap: TypeAlias = Callable[[FloatArray], Any]
+
+#: Faces that an error names.
+_FEW = 20
+
+
+@counted
+def warp(solid: Solid, f: PointMap, winding: WindingRule | None = None) -> Solid:
+    """Return the solid with its corners moved by a function (see `Solid.warp`)."""
+    rule = None if winding is None else winding_rule(winding)
+    if not callable(f):
+        raise invalid_parameter(f"f must be a function, not {shown(f)}.")
+    mesh = solid.normalized().to_mesh()
+    if len(mesh.faces) == 0:
+        return solid
+    vertices = _moved(f, mesh.vertices)
+    if rule is None:
+        _refuse_crossings(vertices, mesh.faces)
+    return Solid(vertices, mesh.faces, winding=rule or "nonzero")
+
+
+def _moved(f: PointMap, points: FloatArray) -> FloatArray:
+    """Return what a function makes of points: finite and of the same shape."""
+    moved = points_array(f(points.copy()))
+    if moved.shape != points.shape:
+        raise invalid_parameter(
+            f"f must return an array of the shape that it gets, {points.shape}, not {moved.shape}."
+        )
+    bad = np.flatnonzero(~np.isfinite(moved).all(axis=1))
+    if len(bad):
+        place = points[bad[0]].tolist()
+        message = (
+            f"f returned numbers that are not finite for {len(bad)} points, first for {place}."
+        )
+        raise InvalidMeshError(message, "non_finite", bad[:_FEW].tolist())
+    return moved + 0.0
+
+
+def _refuse_crossings(vertices: FloatArray, faces: Any) -> None:
+    crossings = certify(vertices, faces).crossings
+    if crossings:
+        first = vertices[faces[crossings[0][0]]].mean(axis=0).round(6).tolist()
+        message = (
+            f"Where f moves them, {len(crossings)} pairs of faces cross or overlap, the first near"
+            f" {first}. Refine the solid first, or let winding='positive' or 'nonzero' decide what"
+            " is inside."
+        )
+        where = sorted({face for pair in crossings[:_FEW] for face in pair})
+        raise InvalidMeshError(message, "self_crossing", where)

@@ -1,0 +1,211 @@
+"""Surfaces made finer, moved by functions, and found where functions are positive."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from support.checks import assert_closed, assert_sound
+
+BOX = [(-1.5, -1.5, -1.5), (1.5, 1.5, 1.5)]
+
+
+def holed() -> b.Solid:
+    return b.cube(2) - b.cylinder(h=2, r=0.5, segments=8).translate(1, 1, 0)
+
+
+def longest(solid: b.Solid) -> float:
+    corners = solid.vertices[solid.faces]
+    return float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max())
+
+
+# Refining
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 8])
+def test_refined_triangles_are_n_squared_times_as_many(n: int) -> None:
+    fine = b.cube(12).refine(n)
+    assert fine == b.cube(12) and len(fine.faces) == 12 * n * n
+    assert longest(fine) == pytest.approx(longest(b.cube(12)) / n)
+    assert_sound(fine)
+
+
+def test_refined_solids_keep_their_shape() -> None:
+    for n in (2, 3, 7):
+        fine = holed().refine(n)
+        assert_sound(fine)
+        assert fine.volume == pytest.approx(holed().volume, abs=1e-7) and fine.genus == 1
+
+
+@pytest.mark.parametrize("length", [0.1, 0.3, 1.0, 5.0])
+def test_no_edge_is_longer_than_asked(length: float) -> None:
+    fine = holed().refine(edge_length=length)
+    assert longest(fine) <= length or len(fine.faces) == len(holed().faces)
+    assert_sound(fine)
+    assert fine.volume == pytest.approx(holed().volume, abs=1e-7) and fine.genus == 1
+    # Halves of lattice lengths are exact.
+    assert b.cube(2).refine(edge_length=length) == b.cube(2)
+
+
+@pytest.mark.parametrize(
+    ("given", "kind"),
+    [
+        ({}, b.InvalidParameterError),
+        ({"n": 2, "edge_length": 1}, b.InvalidParameterError),
+        ({"n": 0}, b.InvalidParameterError),
+        ({"n": 1.5}, b.InvalidParameterError),
+        ({"n": 10_000}, b.LimitError),
+        ({"edge_length": 0}, b.InvalidParameterError),
+        ({"edge_length": float("nan")}, b.InvalidParameterError),
+        ({"edge_length": 1e-6}, b.LimitError),
+    ],
+)
+def test_refining_refuses(given: dict[str, Any], kind: type[Exception]) -> None:
+    with pytest.raises(kind):
+        b.cube(1).refine(**given)
+
+
+def test_nothing_stays_nothing() -> None:
+    assert b.Solid.empty().refine(3).is_empty
+    assert b.Solid.empty().warp(lambda p: p + 1).is_empty
+
+
+# Warping
+
+
+def test_affine_warps_are_transforms() -> None:
+    body = holed()
+    assert body.warp(lambda p: p * 2 + 1) == body.scale(2).translate(1, 1, 1)
+    # Turned inside out, and right again.
+    assert body.warp(lambda p: -p) == body.scale(-1)
+
+
+def test_a_bent_bar() -> None:
+    def bent(p: Any) -> Any:
+        angle, radius = p[:, 0], 3 + p[:, 1]
+        return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), p[:, 2]])
+
+    bar = b.box((np.pi, 1, 1)).refine(edge_length=0.1).warp(bent)
+    assert_sound(bar)
+    assert bar.volume == pytest.approx(np.pi / 2 * (16 - 9), rel=1e-2) and bar.genus == 0
+    # Bent once round and further it meets itself.
+    long = b.box((7, 1, 1)).refine(edge_length=0.2)
+    with pytest.raises(b.InvalidMeshError) as caught:
+        long.warp(bent)
+    assert caught.value.code == "self_crossing" and caught.value.where
+    ring = long.warp(bent, winding="nonzero")
+    assert_sound(ring)
+    assert ring.genus == 1
+
+
+@pytest.mark.parametrize(
+    ("f", "kind"),
+    [
+        (7, b.InvalidParameterError),
+        (lambda p: p[:-1], b.InvalidParameterError),
+        (lambda p: p[:, :2], b.InvalidMeshError),
+        (lambda p: "no", b.InvalidMeshError),
+        (lambda p: p / 0 if len(p) else p, b.InvalidMeshError),
+        (lambda p: p * [1, 1, 0], b.InvalidMeshError),
+        (lambda p: p * 0, b.InvalidMeshError),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_warps_refuse(f: Any, kind: type[Exception]) -> None:
+    with pytest.raises(kind):
+        b.cube(1).warp(f)
+    with pytest.raises(b.InvalidParameterError):
+        b.cube(1).warp(lambda p: p, winding="no")  # type: ignore[arg-type]
+
+
+def test_warped_arrays_are_the_functions_own() -> None:
+    body = b.cube(1)
+
+    def spoil(p: Any) -> Any:
+        p += 5
+        return p
+
+    assert body.warp(spoil) == b.cube(1).translate(5, 5, 5)
+    assert body.bounds is not None and body.bounds.max() == 1
+
+
+# Level sets
+
+
+def ball(p: Any) -> Any:
+    return 1 - np.linalg.norm(p, axis=1)
+
+
+@pytest.mark.parametrize("edge", [0.5, 0.2, 0.1])
+def test_a_ball_is_as_near_as_its_grid(edge: float) -> None:
+    found = b.level_set(ball, BOX, edge)
+    assert_sound(found)
+    assert found.genus == 0 and found.components == 1
+    assert found.volume == pytest.approx(4 / 3 * np.pi, rel=2 * edge**2)
+    radii = np.linalg.norm(found.vertices, axis=1)
+    assert abs(radii - 1).max() < edge**2
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_any_field_gives_a_closed_surface(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    waves, phases = rng.normal(size=(5, 3)) * 3, rng.uniform(0, 6, 5)
+
+    def field(p: Any) -> Any:
+        # Rounded, so that it is 0 at many points of the grid.
+        return np.round(np.sin(p @ waves.T + phases).sum(axis=1), seed % 3)
+
+    found = b.level_set(field, BOX, 0.3)
+    assert_sound(found)
+    assert found <= b.cube(3, center=True)
+
+
+def test_planes_of_the_grid_and_bounds_are_exact() -> None:
+    assert b.level_set(lambda p: 1 - abs(p).max(axis=1), BOX, 0.5) == b.cube(2, center=True)
+    assert b.level_set(lambda p: p[:, 0] * 0 + 1, BOX, 0.7) == b.cube(3, center=True)
+    assert b.level_set(lambda p: p[:, 2], BOX, 0.5) == b.box((3, 3, 1.5)).translate(-1.5, -1.5, 0)
+    half = b.level_set(ball, [(-1.5, -1.5, -1.5), (1.5, 1.5, 0)], 0.25)
+    whole = b.level_set(ball, BOX, 0.25)
+    # Only tetrahedra across the bounds differ.
+    lower = whole & b.half_space((0, 0, 1), -0.125)
+    assert half.bounds is not None and half.bounds[1, 2] < 1e-12 and lower <= half
+    assert b.level_set(ball, BOX, 0.25, level=-0.2).volume > whole.volume
+
+
+def test_fields_that_are_nowhere_positive_are_empty() -> None:
+    assert b.level_set(lambda p: p[:, 0] * 0, BOX, 0.5).is_empty
+    assert b.level_set(ball, [(5, 5, 5), (6, 6, 6)], 0.5).is_empty
+
+
+def test_infinities_are_inside_and_outside() -> None:
+    def field(p: Any) -> Any:
+        return np.where(abs(p).max(axis=1) < 1, np.inf, -np.inf)
+
+    assert_closed(b.level_set(field, BOX, 0.5).faces)
+
+
+@pytest.mark.parametrize(
+    ("f", "bounds", "edge", "kind"),
+    [
+        (3, BOX, 0.5, b.InvalidParameterError),
+        (ball, [(0, 0, 0)], 0.5, b.InvalidParameterError),
+        (ball, [(0, 0, 0), (1, 1, 0)], 0.5, b.InvalidParameterError),
+        (ball, [(0, 0, 0), (1, 1, float("inf"))], 0.5, b.InvalidParameterError),
+        (ball, "box", 0.5, b.InvalidParameterError),
+        (ball, BOX, 0, b.InvalidParameterError),
+        (ball, BOX, -1, b.InvalidParameterError),
+        (ball, BOX, 1e-5, b.LimitError),
+        (ball, BOX, 1e-300, b.LimitError),
+        (lambda p: p, BOX, 0.5, b.InvalidParameterError),
+        (lambda p: 1.0, BOX, 0.5, b.InvalidParameterError),
+        (lambda p: ["a"] * len(p), BOX, 0.5, b.InvalidParameterError),
+        (lambda p: p[:, 0] * np.nan, BOX, 0.5, b.InvalidMeshError),
+    ],
+)
+def test_level_sets_refuse(
+    f: Callable[..., Any], bounds: Any, edge: float, kind: type[Exception]
+) -> None:
+    with pytest.raises(kind):
+        b.level_set(f, bounds, edge)
