@@ -19,6 +19,7 @@ from .nodes import projection as nodes_project
 from .nodes import sets as nodes_set
 from .nodes import solids as nodes_solid
 from .nodes import sweeps as nodes_sweep
+from .nodes.left_out import is_left_out, nothing_of
 from .nodes.registry import RECIPES, Evaluation, Geometry, OnInvalid
 from .scope import Scope, inherited, with_scope
 from .syntax.source import error_at
@@ -48,6 +49,7 @@ def evaluate(
     on_polish: Callable[[Polish], object] | None = None,
     on_invalid: OnInvalid = "error",
     allow_paths: Iterable[str | os.PathLike[str]] = (),
+    lenient: bool = False,
 ) -> Geometry:
     """Return what a tree stands for: a solid, a region of the plane, or None if it is nothing.
 
@@ -70,24 +72,29 @@ def evaluate(
     allow_paths : iterable of path
         Folders that ``import`` and ``surface`` may read beside the script's own. Links are
         followed before it is decided where a file lies.
+    lenient : bool
+        Leave out nodes that cannot be made, and meshes that are not closed unless `on_invalid` says
+        to repair them, with a warning that names the place.
 
     Raises
     ------
     FormatError
         For a node that is not supported (code "unsupported"), an argument of a wrong kind
-        ("bad_argument"), a file that is not there ("missing_file") or lies elsewhere
-        ("forbidden_path"); the message names the script, line and column, which `where` holds.
+        ("bad_argument"), or a file that lies elsewhere ("forbidden_path"); the message names the
+        script, line and column, which `where` holds.
     InvalidMeshError, LimitError
         If a node makes no solid; the message names the place as well.
 
     Warns
     -----
     CsgWarning
-        For what is left out as OpenSCAD leaves it out.
+        For what is left out as OpenSCAD leaves it out: files that are not there, numbers that are
+        not finite, points that are missing, children of the other dimension.
     """
     allowed = tuple(Path(path).resolve() for path in allow_paths)
     name = tree.name if tree.intermediate is None else tree.intermediate.name
-    run = Evaluation(name, tree.folder, allowed, polish, on_invalid=on_invalid)
+    invalid = "warn" if lenient and on_invalid == "error" else on_invalid
+    run = Evaluation(name, tree.folder, allowed, polish, on_invalid=invalid, lenient=lenient)
     try:
         result, done = _polished(tree, run)
     except BspcsgError as error:
@@ -173,16 +180,20 @@ class _Cache:
         return self.numbers[key]
 
     def _make(self, node: Node, children: list[Geometry], is_part: bool) -> Geometry:
-        recipe = RECIPES.get(node.name)
-        if recipe is None:
-            raise unsupported(node, self.run.script)
         try:
+            recipe = RECIPES.get(node.name)
+            if recipe is None:
+                raise unsupported(node, self.run.script)
             made = recipe.maker(node, children, self.run)
             if isinstance(made, Solid) and (recipe.makes_corners or (is_part and self.run.polish)):
                 made.tree  # noqa: B018  builds it, so that what is wrong is this node's error
             return self._part(made) if is_part and self.run.polish else made
         except BspcsgError as error:
-            raise _placed(error, node, self.run.script) from error
+            placed = _placed(error, node, self.run.script)
+            if not is_left_out(error, lenient=self.run.lenient):
+                raise placed from error
+            self.run.tell(f"{placed.message} It is left out.")
+            return nothing_of(node)
 
     def _part(self, body: Geometry) -> Geometry:
         """Return a part with its corners on the lattice asked for."""

@@ -30,6 +30,7 @@ def load(
     on_polish: Callable[[Polish], object] | None = None,
     on_invalid: OnInvalid = "error",
     allow_paths: Iterable[str | os.PathLike[str]] = (),
+    lenient: bool = False,
     **options: Any,
 ) -> Solid:
     """Read a script as a solid.
@@ -47,6 +48,8 @@ def load(
         What to do about meshes that are not closed (see `bspcsg.csg.evaluate`).
     allow_paths : iterable of path
         Folders beside the script's own whose files it may read.
+    lenient : bool
+        Leave out what cannot be made, with a warning that names its place.
     **options
         For `.scad`: ``defines``, a dict of variables.
 
@@ -70,6 +73,7 @@ def load(
         on_polish=on_polish,
         on_invalid=on_invalid,
         allow_paths=allow_paths,
+        lenient=lenient,
     )
     return _solid(body, tree.name)
 
@@ -82,6 +86,7 @@ def loads(
     on_polish: Callable[[Polish], object] | None = None,
     on_invalid: OnInvalid = "error",
     allow_paths: Iterable[str | os.PathLike[str]] = (),
+    lenient: bool = False,
     folder: str | Path | None = None,
     name: str = "<csg>",
 ) -> Solid:
@@ -100,6 +105,7 @@ def loads(
         on_polish=on_polish,
         on_invalid=on_invalid,
         allow_paths=allow_paths,
+        lenient=lenient,
     )
     return _solid(body, name)
 

@@ -111,7 +111,7 @@ def test_an_open_file_gets_a_line_to_type(capsys: Capture) -> None:
         ),
         ("cube(1", "m.csg:1:7: expected “,” or “)”, found the end of the file."),
         ("cube(size = [1, 2]);", "m.csg:1:1: cube(): size must be 3 numbers"),
-        ('import(file = "no.stl");', "m.csg:1:1: import(): there is no file “no.stl”; names are"),
+        ("import(file = 3);", "m.csg:1:1: import(): file must be a text, not 3."),
     ],
 )
 def test_scripts_name_line_and_column(capsys: Capture, script: str, said: str) -> None:

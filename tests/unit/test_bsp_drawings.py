@@ -72,7 +72,12 @@ def test_svg_fill_rules(tmp_path: Path) -> None:
 
 
 BOMB = '<!DOCTYPE svg [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]><svg>&b;</svg>'
-OUTSIDE = '<!DOCTYPE svg SYSTEM "file:///etc/passwd"><svg/>'
+OUTSIDE = '<!DOCTYPE svg [<!ENTITY a SYSTEM "file:///etc/passwd">]><svg>&a;</svg>'
+#: What most programs write.
+DOCTYPE = (
+    '<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN"'
+    ' "http://www.w3.org/Graphics/SVG/1.1/DTD/svg11.dtd">'
+)
 
 
 @pytest.mark.parametrize("text", [BOMB, OUTSIDE, "", "<svg>", "<html/>", "plain", "<svg>&x;</svg>"])
@@ -82,6 +87,24 @@ def test_bad_svg(text: str, tmp_path: Path) -> None:
     with pytest.raises(b.FormatError) as caught:
         R.from_svg(path)
     assert "bad.svg" in caught.value.message
+
+
+@pytest.mark.parametrize("head", [DOCTYPE, '<!DOCTYPE svg SYSTEM "file:///etc/passwd">'])
+def test_document_types_are_passed_over(head: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.svg"
+    path.write_text(
+        f'{head}<svg xmlns="http://www.w3.org/2000/svg"><rect width="2" height="3"/></svg>'
+    )
+    assert R.from_svg(path).area == 6
+
+
+@pytest.mark.parametrize(
+    "transform", ["skewX(20)", "matrix(1 0 0.5 2 0 0)", "rotate(33) scale(1, 2)"]
+)
+def test_svg_arcs_keep_their_area_where_they_are_skewed(transform: str, tmp_path: Path) -> None:
+    circle = f'<circle cx="20" cy="20" r="5" transform="{transform}"/>'
+    factor = 1 if "skew" in transform else 2
+    assert drawn(tmp_path, circle).area == pytest.approx(25 * math.pi * factor, rel=2e-3)
 
 
 def test_missing_files_and_packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -46,3 +46,11 @@ def test_no_method_of_cross_sections_is_missing() -> None:
     told = {name for theirs, _ in rows("Regions") for name in names(theirs)}
     methods = {name for name in dir(manifold3d.CrossSection) if not name.startswith("_")}
     assert methods <= told
+
+
+def test_no_node_of_openscad_is_missing() -> None:
+    told = {name for theirs, _ in rows("OpenSCAD") for name in names(theirs)}
+    assert set(b.csg.node_names()) <= told
+    # What is no node of evaluated trees.
+    language = "translate rotate scale mirror for intersection_for children echo roof fill"
+    assert set(language.split()) <= told

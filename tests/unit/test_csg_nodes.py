@@ -265,8 +265,8 @@ def test_offsets() -> None:
     assert region("offset(delta = -0.5) square(2);").area == 1
     assert region("offset(delta = -5) square(2);").is_empty
     assert region("offset(r = 1, $fn = 4) square(2);").area == pytest.approx(4 + 8 + 2)
-    with pytest.raises(b.FormatError, match="must be plane figures"):
-        csg.loads("offset(r = 1) cube(1);")
+    with pytest.warns(csg.CsgWarning, match="solids; they are ignored"):
+        assert csg.evaluate(csg.parse("offset(r = 1) cube(1);")) is None
 
 
 @pytest.mark.parametrize("hair", [1e-5, 1e-4])
@@ -395,17 +395,14 @@ def test_errors_do_not_repeat_what_stands_in_files(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "code", "says"),
     [
-        ('import(file = "none.stl");', "missing_file", "no file “none.stl”"),
-        ('import(file = ".");', "missing_file", "no file"),
-        ('import(file = "a\\x01b.stl");', "missing_file", "no file"),
         ('import(file = "x.amf");', "unsupported", "“.amf” files are not supported"),
         ('import(file = "x.stl");', "empty_file", "empty"),
         ('surface(file = "x.amf");', "syntax", "two rows and columns"),
         ('surface(file = "words.dat");', "syntax", "words.dat:1"),
-        ('surface(file = "x.png");', "unsupported", "pictures"),
+        ('surface(file = "x.png");', "malformed", "x.png"),
+        ('surface(file = "words.png");', "malformed", "cannot be read as PNG"),
         ('import(file = "words.dxf");', "syntax", "no valid DXF"),
         ('import(file = "words.svg");', "syntax", "words.svg"),
-        ("import();", "bad_argument", "file is missing"),
     ],
 )
 def test_files_that_are_not_what_they_should(
@@ -413,7 +410,7 @@ def test_files_that_are_not_what_they_should(
 ) -> None:
     for name in ("x.amf", "x.stl", "x.png"):
         (tmp_path / name).touch()
-    for name in ("words.dat", "words.dxf", "words.svg"):
+    for name in ("words.dat", "words.dxf", "words.svg", "words.png"):
         (tmp_path / name).write_text("not at all\n")
     with pytest.raises(b.FormatError) as caught:
         csg.loads(text, folder=tmp_path)
@@ -430,7 +427,6 @@ def test_files_that_are_not_what_they_should(
     [
         ('cube(size = "a");', 'size must be 3 numbers within ±1e100, not "a"'),
         ("cube(size = [1, 2]);", "size must be 3 numbers"),
-        ("cube(size = [nan, 1, 1]);", "size must be 3 numbers"),
         ("cube(1e300);", "size must be 3 numbers"),
         ('cube(1, center = "yes");', "center must be true or false"),
         ("sphere(r = true);", "r must be a number"),
@@ -567,3 +563,143 @@ def test_polish_keeps_what_is_no_rotation() -> None:
     assert bounds is not None
     assert bounds[1, 0] == pytest.approx(10.1)
     assert csg.loads("", polish=True).is_empty
+
+
+# What is left out
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('import(file = "none.stl");', "there is no file “none.stl”"),
+        ('import(file = ".");', "there is no file"),
+        ('import(file = "a\\x01b.stl");', "there is no file"),
+        ('linear_extrude(1) import(file = "none.svg");', "there is no file"),
+        ('surface(file = "none.dat");', "there is no file"),
+        ("import();", "file is missing"),
+        ("cube(size = [nan, 1, 1]);", "size must be 3 numbers"),
+        ("cube(inf);", "size must be 3 numbers"),
+        ("sphere(r = -inf);", "r must be a number"),
+        ("cylinder(h = nan, r = 1);", "h must be a number"),
+        ("polyhedron(points = [[0, 0, inf]], faces = []);", "points"),
+        ("polyhedron(points = undef, faces = undef);", "points is missing"),
+        ("linear_extrude(1) circle(inf);", "r must be a number"),
+        ("linear_extrude(1) square([1, nan]);", "size must be 2 numbers"),
+        ("linear_extrude(1) polygon(points = undef, paths = undef);", "points is missing"),
+        ("linear_extrude(1) offset(r = inf) square(1);", "r must be a number"),
+        ('linear_extrude(1) text("a", size = inf);', "size must be a number"),
+    ],
+)
+def test_what_openscad_leaves_out_is_left_out_and_told(text: str, says: str) -> None:
+    with pytest.warns(csg.CsgWarning) as told:
+        solid = csg.loads("cube(2);\n" + text, name="part.csg")
+    assert solid.volume == 8
+    [message] = [str(one.message) for one in told]
+    assert message.startswith("part.csg:2:") and says in message
+    assert message.endswith("It is left out.")
+
+
+@pytest.mark.parametrize(
+    ("text", "volume"),
+    [
+        ('intersection() { cube(3); import("none.stl"); }', 0),
+        ('difference() { cube(3); import("none.stl"); }', 27),
+        ('difference() { import("none.stl"); cube(3); }', 0),
+        ('minkowski() { cube(3); import("none.stl"); }', 27),
+        ('linear_extrude(1) minkowski() { square(3); import("none.svg"); }', 0),
+        ("hull() { cube(3); sphere(inf); }", 27),
+    ],
+)
+def test_what_is_left_out_counts_as_openscads_empty_set(text: str, volume: float) -> None:
+    with pytest.warns(csg.CsgWarning):
+        assert csg.loads(text).volume == volume
+
+
+@pytest.mark.parametrize(
+    ("argument", "faces"), [("$fa = nan", 5), ("$fa = inf", 5), ("$fs = nan", 30)]
+)
+def test_sides_that_are_no_numbers(argument: str, faces: int) -> None:
+    assert len(region(f"circle(r = 1, {argument});").to_polygons()[0]) == faces
+
+
+BAD_CHILDREN = [
+    "roof() square(1);",
+    "polyhedron(points = [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], faces = [[0,1,2],[0,3,1],[1,3,2]]);",
+    "polyhedron(points = [[0,0,0]], faces = [[0,1,2]]);",
+    "rotate_extrude() square(2, center = true);",
+    'cube("a");',
+    "linear_extrude(1) polygon(points = 3);",
+    "sphere(r = 1, $fn = 1e9);",
+    'import("words.stl");',
+    "multmatrix(3) cube(1);",
+]
+
+
+@pytest.mark.parametrize("text", BAD_CHILDREN)
+def test_a_lenient_evaluation_drops_bad_children_with_their_place(
+    text: str, tmp_path: Path
+) -> None:
+    (tmp_path / "words.stl").write_text("not at all\n")
+    script = f"difference() {{ cube(4);\n  {text}\n  cube(2); }}"
+    with pytest.raises(b.BspcsgError):
+        csg.loads(script, folder=tmp_path)
+    with pytest.warns(csg.CsgWarning) as told:
+        assert csg.loads(script, name="part.csg", folder=tmp_path, lenient=True).volume == 56
+    [message] = [str(one.message) for one in told]
+    assert message.startswith("part.csg:2:") and message.endswith("It is left out.")
+
+
+def test_a_lenient_evaluation_repairs_what_it_is_told_to(tmp_path: Path) -> None:
+    with pytest.warns(csg.CsgWarning, match="It is repaired"):
+        solid = csg.loads(BAD_CHILDREN[1], lenient=True, on_invalid="repair")
+    assert solid.volume == pytest.approx(1 / 6)
+
+
+def test_what_is_not_the_scripts_fault_is_never_dropped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a.svg").write_text("<svg/>")
+    monkeypatch.setitem(__import__("sys").modules, "svgelements", None)
+    with pytest.raises(b.BspcsgError, match=r"bspcsg\[2d\]"):
+        csg.loads('linear_extrude(1) import("a.svg");', folder=tmp_path, lenient=True)
+    with pytest.raises(b.FormatError, match=r"part\.csg:1"):
+        csg.loads("cube(", name="part.csg", lenient=True)
+
+
+# Surfaces of pictures
+
+
+def picture(path: Path, pixels: Any, dtype: Any = np.uint8) -> Path:
+    image = pytest.importorskip("PIL.Image")
+    image.fromarray(np.array(pixels, dtype=dtype)).save(path)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("pixels", "dtype", "heights"),
+    [
+        ([[0, 51], [102, 255]], np.uint8, [[40, 100], [0, 20]]),
+        # Of 16 bits the upper half counts.
+        ([[0, 51 * 256 + 255], [102 * 256, 65535]], np.uint16, [[40, 100], [0, 20]]),
+        ([[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [255, 255, 255]]], np.uint8,
+         [[7.22, 100], [21.26, 71.52]]),
+        # However opaque.
+        ([[[0, 0, 0, 9], [51, 51, 51, 0]], [[102, 102, 102, 1], [255] * 4]], np.uint8,
+         [[40, 100], [0, 20]]),
+    ],
+)  # fmt: skip
+def test_pictures_are_tables_of_heights(
+    tmp_path: Path, pixels: Any, dtype: Any, heights: list[list[float]]
+) -> None:
+    path = picture(tmp_path / "a.png", pixels, dtype)
+    assert b.surface(path) == b.surface(np.round(heights, 9))
+    assert csg.loads('surface("a.png");', folder=tmp_path) == b.surface(path)
+    turned = csg.loads('surface("a.png", invert = true);', folder=tmp_path)
+    assert turned == b.surface(100 / 255 - np.array(heights))
+
+
+def test_pictures_that_are_none_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(b.FormatError, match="two rows and columns of pixels"):
+        b.surface(picture(tmp_path / "a.png", [[1, 2, 3]]))
+    with pytest.raises(b.LimitError, match="This surface"):
+        b.surface(picture(tmp_path / "b.png", np.zeros((1500, 1500))))

@@ -2,7 +2,7 @@
 
 import io
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 from xml.etree import ElementTree
 from xml.parsers import expat
@@ -46,20 +46,23 @@ def load_svg(
     Raises
     ------
     FormatError
-        If the file cannot be read, is no well-formed SVG, or declares a document type or an entity.
+        If the file cannot be read, is no well-formed SVG, or declares an entity.
     """
     chord = positive(tolerance, "tolerance")
     region = Region(pitch=pitch)
     for shape in shown_shapes(path):
         if _is_filled(shape):
             with format_errors(os.fspath(path), "SVG"):
-                loops = [corners for corners, _ in outlines_of(shape, chord) if len(corners) >= 3]
+                outlines = outlines_of(shape, _within(shape, chord))
+                loops = [corners for corners, _ in outlines if len(corners) >= 3]
             region = region | Region(loops, winding=winding or _rule(shape), pitch=pitch)
     return region
 
 
 def shown_shapes(path: str | os.PathLike[str]) -> list[Any]:
-    """Return svgelements' shapes of a file, in user units, but for those that are not shown.
+    """Return svgelements' shapes of a file, but for those that are not shown.
+
+    Each has a transform to user units of its own: svgelements skews arcs in a wrong way.
 
     Raises
     ------
@@ -69,7 +72,7 @@ def shown_shapes(path: str | os.PathLike[str]) -> list[Any]:
     data = _checked(path)
     elements = optional("svgelements", "2d")
     try:
-        drawing = elements.SVG.parse(io.BytesIO(_in_user_units(data)), reify=True, ppi=96.0)
+        drawing = elements.SVG.parse(io.BytesIO(_in_user_units(data)), reify=False, ppi=96.0)
         shapes = [shape for shape in drawing.elements() if isinstance(shape, elements.Shape)]
     except Exception as error:  # what svgelements raises is of any kind
         message = f"{os.fspath(path)}: this is no valid SVG: {words_of(error)}."
@@ -126,15 +129,14 @@ def _path_of(points: FloatArray) -> str:
 
 
 def _checked(path: str | os.PathLike[str]) -> bytes:
-    """Return the file's bytes if they are XML without a document type."""
+    """Return the file's bytes if they are XML without entities; a document type is not read."""
     name = os.fspath(path)
     data = limited_content(name)
     parser = expat.ParserCreate()
 
     def refuse(*_: object) -> None:
-        raise FormatError(f"{name}: document types and entities are not allowed here.", "syntax")
+        raise FormatError(f"{name}: entities are not allowed here.", "syntax")
 
-    parser.StartDoctypeDeclHandler = refuse
     parser.EntityDeclHandler = refuse
     try:
         parser.Parse(data, True)
@@ -175,39 +177,50 @@ def _rule(shape: Any) -> WindingRule:
     return "even-odd" if shape.values.get("fill-rule") == "evenodd" else "nonzero"
 
 
-def outlines_of(shape: Any, chord: float) -> Iterator[tuple[FloatArray, bool]]:
+def outlines_of(shape: Any, steps: Callable[[Any], int]) -> Iterator[tuple[FloatArray, bool]]:
     """Yield the corners of each subpath of a shape, y upwards, and whether it is closed.
 
     Parameters
     ----------
     shape : object
         One of `shown_shapes`.
-    chord : float
-        Largest distance between a curve and the chords that replace it.
+    steps : callable
+        Says of an arc or a curve of svgelements how many chords replace it.
     """
     elements = optional("svgelements", "2d")
-    # A rotated rectangle keeps its transform until its path is asked for absolute coordinates.
-    for subpath in abs(elements.Path(shape)).as_subpaths():
-        segments = list(elements.Path(subpath))
-        points = [point for segment in segments for point in _points_of(elements, segment, chord)]
-        corners = np.array([(p.real, 0.0 - p.imag) for p in points]).reshape(-1, 2)
+    matrix = shape.transform
+    linear = np.array([(matrix.a, matrix.c), (matrix.b, matrix.d)], dtype=np.float64)
+    for subpath in elements.Path(shape).as_subpaths():
+        segments = list(subpath)
+        points = [point for segment in segments for point in _points_of(elements, segment, steps)]
+        local = np.array([(p.real, p.imag) for p in points]).reshape(-1, 2)
+        with np.errstate(invalid="ignore"):  # what is not finite is refused with the outline
+            corners = (local @ linear.T + (matrix.e, matrix.f)) * (1, -1) + 0.0
         different = np.any(corners != np.roll(corners, 1, axis=0), axis=1)
         yield corners[different], any(isinstance(one, elements.Close) for one in segments)
 
 
-def _points_of(elements: Any, segment: Any, chord: float) -> list[complex]:
+def _points_of(elements: Any, segment: Any, steps: Callable[[Any], int]) -> list[complex]:
     """Return the end of a segment, after points between for a curve."""
     if segment.end is None:
         return []
     if isinstance(segment, (elements.Move, elements.Line, elements.Close)):
         return [_complex(segment.end)]
-    steps = _steps(segment, chord)
-    inner = [_complex(segment.point(k / steps)) for k in range(1, steps)]
+    count = steps(segment)
+    inner = [_complex(segment.point(k / count)) for k in range(1, count)]
     return [*inner, _complex(segment.end)]
 
 
 def _complex(point: Any) -> complex:
     return complex(float(point.x), float(point.y))
+
+
+def _within(shape: Any, chord: float) -> Callable[[Any], int]:
+    """Return how many chords stay within a tolerance, which is given in user units."""
+    matrix = shape.transform
+    linear = np.array([(matrix.a, matrix.c), (matrix.b, matrix.d)], dtype=np.float64)
+    stretch = float(np.linalg.norm(linear, 2))
+    return lambda segment: _steps(segment, chord / stretch if stretch else chord)
 
 
 def _steps(segment: Any, chord: float) -> int:

@@ -81,6 +81,7 @@ _SUFFIXES = (".csg", ".json", ".scad", ".py")
 _NOT_FOR = {
     "polish": (".py",),
     "on_invalid": (".py",),
+    "lenient": (".py",),
     "allow_paths": (".py",),
     "timeout": (".csg", ".json"),
     "defines": (".csg", ".json"),
@@ -122,6 +123,12 @@ _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
     default="error",
     show_default=True,
     help="Refuse meshes that are not closed, leave them out, or close them; not for Python.",
+)
+@click.option(
+    "--lenient",
+    is_flag=True,
+    help="Leave out what cannot be made or is not closed, with a warning that names its place; not"
+    " for Python.",
 )
 @click.option(
     "--allow-path",
@@ -191,7 +198,7 @@ class _Run(Job):
 
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", csg.CsgWarning)
-            names = ("polish", "on_invalid", "allow_paths")
+            names = ("polish", "on_invalid", "allow_paths", "lenient")
             options |= {name: self.settings[name] for name in names}
             options["on_polish"] = self._tell_polish
             with self._advised():

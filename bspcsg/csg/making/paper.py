@@ -1,6 +1,8 @@
 """SVG drawings as OpenSCAD imports them: in millimetres on their page, y upwards."""
 
+import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,13 +14,17 @@ from ..._types import FloatArray
 from ...bsp import Region
 from ...bsp.drawings.svg import outlines_of, shown_shapes
 from ...errors import format_errors
+from ...mesh.interop import optional
 from ...modelling.planar.offsetting import stroked
 
 _MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6}
 _LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%]*)\s*")
 
-#: Largest distance between a curve and its chords, in user units.
-_CHORD = 0.01
+#: Chords of a Bézier curve, and of a quarter of a circle or an ellipse.
+_CURVE_STEPS, _QUARTER_STEPS = 20, 10
+
+#: What is left of a whole number of steps by rounding.
+_ROUNDING = 1e-6
 
 #: Lines that say less of their width, in user units, are one wide.
 _THINNEST = 0.01
@@ -40,8 +46,9 @@ def svg_region(path: Path, dpi: float, centered: bool) -> Region:
     """Return the shapes of an SVG file as OpenSCAD has them.
 
     What is closed is filled, whatever its fill says, and what is open becomes as wide as its
-    stroke. The view box is fitted into its width and height, as browsers do; without a view box,
-    user units count as they are.
+    stroke; curves have OpenSCAD's corners, whose number does not depend on their size. The view box
+    is fitted into its width and height, as browsers do; without a view box, user units count as
+    they are. What is hidden is left out; OpenSCAD 2021.01 draws it.
 
     Parameters
     ----------
@@ -64,7 +71,7 @@ def _drawn(path: Path) -> Region:
     region = Region()
     for shape in shown_shapes(path):
         with format_errors(str(path), "SVG"):
-            outlines = list(outlines_of(shape, _CHORD))
+            outlines = list(outlines_of(shape, _steps_of(shape)))
         closed = [corners for corners, is_closed in outlines if is_closed or _meets(corners)]
         loops = [corners for corners in closed if len(corners) >= 3]
         region = region | Region(loops, winding="even-odd")
@@ -74,20 +81,34 @@ def _drawn(path: Path) -> Region:
     return region
 
 
+def _steps_of(shape: Any) -> Callable[[Any], int]:
+    """Return how many chords OpenSCAD gives the arcs and curves of a shape."""
+    elements = optional("svgelements", "2d")
+    if isinstance(shape, (elements.Circle, elements.Ellipse)):
+        return lambda _: _QUARTER_STEPS
+
+    def steps(segment: Any) -> int:
+        if isinstance(segment, elements.Arc):
+            return math.floor(abs(float(segment.sweep)) * 10 / math.pi + _ROUNDING) + 4
+        return _CURVE_STEPS
+
+    return steps
+
+
 def _meets(corners: FloatArray) -> bool:
     """Whether a subpath that nothing closes ends where it begins."""
     return len(corners) > 2 and bool(np.hypot(*(corners[0] - corners[-1])) <= _CLOSED)
 
 
 def _stroke(shape: Any, corners: FloatArray) -> Region:
-    width = float(shape.stroke_width or 0.0)
+    width = float(shape.implicit_stroke_width or 0.0)
     width = width if width >= _THINNEST else 1.0
     cap = shape.values.get("stroke-linecap")
     return stroked(corners, width, cap if cap in ("butt", "round") else "square")
 
 
 def _page(path: Path, dpi: float) -> _Page:
-    # `load_svg` has refused files that declare a document type or an entity.
+    # `shown_shapes` has refused files that declare an entity.
     _, root = next(iter(ElementTree.iterparse(path, events=("start",))))
     width, height = (_length(root.get(name, ""), dpi) for name in ("width", "height"))
     with format_errors(str(path), "SVG"):

@@ -8,7 +8,10 @@ variables"; the slices of twisted extrusions follow OpenSCAD 2021.01.
 import math
 from dataclasses import dataclass
 
-from ..syntax.arguments import Arguments
+from ..syntax.arguments import LARGEST, Arguments
+
+#: No angle in degrees, and no length, of a side is smaller.
+_FINEST = 0.01
 
 #: Lengths below are zero: a 2**20th of a unit.
 _NOTHING = 2.0**-20
@@ -35,8 +38,11 @@ class Fineness:
         if isinstance(fn, float) and not math.isfinite(fn):
             # OpenSCAD makes triangles of it.
             return cls(3.0)
-        fa, fs = arguments.number("$fa", 12.0), arguments.number("$fs", 2.0)
-        return cls(arguments.number("$fn", 0.0), max(fa, 0.01), max(fs, 0.01))
+        return cls(
+            arguments.number("$fn", 0.0),
+            _step(arguments, "$fa", 12.0),
+            _step(arguments, "$fs", 2.0),
+        )
 
     def fragments(self, radius: float) -> float:
         """Return the sides of a full circle, a whole number."""
@@ -79,6 +85,14 @@ class Fineness:
         if self.fn > 0:
             return max(math.floor(self.fn), 1)
         return max(math.ceil(math.hypot(shift, height) / self.fs), 1)
+
+
+def _step(arguments: Arguments, name: str, default: float) -> float:
+    """Return the smallest angle or length of a side; what is no number counts as very small."""
+    value = arguments.value(name)
+    if isinstance(value, float) and not math.isfinite(value):
+        return LARGEST if value == math.inf else _FINEST
+    return max(arguments.number(name, default), _FINEST)
 
 
 def _helix_length(reach: float, height: float, turn: float, scale: float) -> float:

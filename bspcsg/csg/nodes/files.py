@@ -6,7 +6,13 @@ import numpy as np
 
 from ...bsp import Region
 from ...formats import files
-from ...modelling.making.heights import height_map, read_heights
+from ...modelling.making.heights import (
+    BRIGHTEST,
+    height_map,
+    heights_of,
+    read_heights,
+    read_picture,
+)
 from ...solid.solid import Solid
 from ..making.drawings import dxf_region
 from ..making.paper import svg_region
@@ -46,13 +52,15 @@ def _dxf(path: Path, arguments: Arguments) -> Region:
 
 @node("surface")
 def surface(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Make the body below a table of heights (a text file of numbers)."""
+    """Make the body below a table of heights: a text file of numbers, or a picture's brightness."""
     del children
-    arguments = run.arguments(owner, ("file", "center"))
+    arguments = run.arguments(owner, ("file", "center", "convexity", "invert"))
     path = _path(arguments, run)
-    if path.suffix.lower() == ".png":
-        raise arguments.error("pictures are not supported; give a table of heights.", "unsupported")
-    heights = read_heights(path)
+    is_picture = path.suffix.lower() == ".png"
+    heights = read_picture(path) if is_picture else read_heights(path)
+    if is_picture and arguments.flag("invert"):
+        # One less the brightness that OpenSCAD counts from 0 to 255.
+        heights = heights_of(BRIGHTEST / 255 - heights.table)
     arguments.limited(heights.table.size * 2, "this surface")
     return height_map(heights, centered=arguments.flag("center"))
 

@@ -66,7 +66,8 @@ def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     if figure is None:
         return None
     if not isinstance(figure, Region):
-        raise arguments.error("its children must be plane figures.")
+        run.warn(owner, "its children are solids; they are ignored")
+        return None
     is_round = "delta" not in arguments
     delta = arguments.number("r", 1.0) if is_round else arguments.number("delta")
     if figure.is_empty or delta == 0:

@@ -41,6 +41,8 @@ class Evaluation:
         Whether matrices are made exact rotations where they nearly are.
     on_invalid : {"error", "warn", "repair"}
         Whether polyhedra and imported meshes that are not closed are errors, left out, or closed.
+    lenient : bool
+        Whether nodes that cannot be made are left out.
     united : dict
         Unions of plane figures by their `id`, each with the figures that it is made of.
     """
@@ -50,6 +52,7 @@ class Evaluation:
     allowed: tuple[Path, ...] = ()
     polish: bool = False
     on_invalid: OnInvalid = "error"
+    lenient: bool = False
     united: dict[int, tuple[Region, list[Region]]] = field(default_factory=dict)
 
     def arguments(self, node: Node, order: tuple[str, ...] = ()) -> Arguments:
@@ -63,8 +66,11 @@ class Evaluation:
     def warn(self, node: Node, message: str) -> None:
         """Tell the caller what was left out."""
         place = node.place
-        text = f"{self.script}:{place.line}:{place.column}: {node.name}(): {message}"
-        warnings.warn(text, CsgWarning, stacklevel=2)
+        self.tell(f"{self.script}:{place.line}:{place.column}: {node.name}(): {message}")
+
+    def tell(self, message: str) -> None:
+        """Tell the caller what was left out, by a message that names its place."""
+        warnings.warn(message, CsgWarning, stacklevel=2)
 
     def closed_solid(self, node: Node, vertices: Any, faces: Any) -> Solid | None:
         """Return the solid of a mesh from outside, whichever way round it is oriented.

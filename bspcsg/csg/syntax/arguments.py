@@ -1,5 +1,6 @@
 """A node's arguments, checked as they are asked for; errors name line and column."""
 
+import math
 from typing import Any
 
 from ...errors import FormatError
@@ -128,17 +129,30 @@ class Arguments:
     def _given(self, name: str, default: Any) -> Any:
         value = self._values.get(name)
         if value is None and default is None:
-            raise self.error(f"{name} is missing.")
+            raise self.error(f"{name} is missing.", "missing_argument")
         return default if value is None else value
 
     def _wrong(self, name: str, expected: str, value: Any) -> FormatError:
         shown = value_text(value)
         shown = shown if len(shown) <= _QUOTED else shown[:_QUOTED] + "…"
-        return self.error(f"{name} must be {expected}, not {shown}.")
+        code = "bad_argument" if _is_finite(value) else "not_finite"
+        return self.error(f"{name} must be {expected}, not {shown}.", code)
 
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _is_finite(value: Any) -> bool:
+    """Whether no number of a value, however deep in it, is infinite or none at all."""
+    waiting = [value]
+    while waiting:
+        one = waiting.pop()
+        if isinstance(one, tuple):
+            waiting.extend(one)
+        elif isinstance(one, float) and not math.isfinite(one):
+            return False
+    return True
 
 
 def _is_usable(value: float) -> bool:

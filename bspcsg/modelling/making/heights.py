@@ -1,20 +1,29 @@
 """Bodies below tables of heights."""
 
+import io
 import os
+import warnings
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..._types import FloatArray, Scalar, Vector
-from ...errors import FormatError, invalid_parameter
+from ...errors import FormatError, format_errors, invalid_parameter
 from ...formats.source import limited_content
 from ...geometry.arrays import doubles
 from ...geometry.polygon import directed_edges
+from ...mesh.interop import optional
 from ...parameters import number, positive, refuse_many_corners
 from ...shapes.sweep import strip
 from ...solid.counting import counted
 from ...solid.solid import Solid
+
+#: Height of what is white.
+BRIGHTEST = 100.0
+
+#: What red, green and blue add to brightness.
+_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 class Heights(NamedTuple):
@@ -45,7 +54,8 @@ def surface(
     Parameters
     ----------
     heights : (m, n) array_like of float, or path
-        Columns along x and rows along y, at least two of each; or a text file of such rows.
+        Columns along x and rows along y, at least two of each; a text file of such rows; or a PNG
+        picture, from 0 where it is black to 100 where it is white, its last row at y = 0.
     cell : float or (2,) float
         From one column, and one row, to the next.
     floor : float, optional
@@ -70,10 +80,10 @@ def surface(
     7.0
     """
     if isinstance(heights, (str, os.PathLike)):
-        read = read_heights(Path(heights))
+        path = Path(heights)
+        read = read_picture(path) if path.suffix.lower() == ".png" else read_heights(path)
     else:
-        table = _table(heights)
-        read = Heights(table, min(float(table.min()) - 1, 0.0))
+        read = heights_of(_table(heights))
     refuse_many_corners(2 * read.table.size, "This surface")
     given: Any = cell
     both = (given, given) if np.ndim(given) == 0 else given
@@ -87,6 +97,11 @@ def surface(
         read = Heights(read.table, base)
     body = height_map(read, centered=center)
     return body if width == depth == 1 else body.scale((width, depth, 1.0))
+
+
+def heights_of(table: FloatArray) -> Heights:
+    """Return a table with the floor that OpenSCAD gives it."""
+    return Heights(table, min(float(table.min()) - 1, 0.0))
 
 
 def _table(heights: Any) -> FloatArray:
@@ -116,6 +131,41 @@ def read_heights(path: Path) -> Heights:
         raise FormatError(f"{path}: a surface needs two rows and columns of numbers.", "syntax")
     table = np.array([row + [0.0] * (columns - len(row)) for row in rows])
     return Heights(table, min(min(map(min, rows)) - 1, 0.0))
+
+
+def read_picture(path: Path) -> Heights:
+    """Return the brightness of a PNG picture, rows from below, black 0 and white 100.
+
+    Colours count as their luminance (ITU-R BT.709), as in OpenSCAD; how opaque they are does not.
+
+    Raises
+    ------
+    FormatError
+        If the file is no PNG picture, or has fewer than two rows or columns.
+    LimitError
+        If it has too many pixels.
+    MissingPartError
+        If Pillow is not installed.
+    """
+    pillow = optional("PIL.Image", "pictures")
+    with format_errors(str(path), "PNG"), warnings.catch_warnings():
+        # Pictures too large are refused below.
+        warnings.simplefilter("ignore", pillow.DecompressionBombWarning)
+        picture = pillow.open(io.BytesIO(limited_content(path)), formats=["PNG"])
+        refuse_many_corners(2 * picture.width * picture.height, "This surface")
+        colours = _colours(picture)
+    if min(colours.shape[:2]) < 2:
+        raise FormatError(f"{path}: a surface needs two rows and columns of pixels.", "syntax")
+    return heights_of((colours[::-1] @ _LUMINANCE) * (BRIGHTEST / 255))
+
+
+def _colours(picture: Any) -> FloatArray:
+    """Return red, green and blue of each pixel, from 0 to 255."""
+    if not picture.mode.startswith("I"):
+        return np.asarray(picture.convert("RGB"), dtype=np.float64)
+    # Of 16 bits the upper ones count.
+    upper = np.asarray(picture).astype(np.int64) >> 8
+    return np.repeat(upper[:, :, None].astype(np.float64), 3, axis=2)
 
 
 def _holds_numbers(line: str) -> bool:

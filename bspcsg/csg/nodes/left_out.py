@@ -1,0 +1,45 @@
+"""What stands for a node that is left out, and which errors leave one out."""
+
+from pathlib import PurePath
+
+from ...bsp import Region
+from ...errors import BspcsgError, FormatError, InvalidMeshError, LimitError, UnboundedError
+from ...solid.solid import Solid
+from ..syntax.arguments import Arguments
+from ..syntax.tree import Node
+from .registry import Geometry
+
+#: Nodes that make solids, and such as make plane figures.
+_SOLIDS = frozenset(
+    {"cube", "sphere", "cylinder", "polyhedron", "surface", "linear_extrude", "rotate_extrude"}
+)
+_FIGURES = frozenset({"square", "circle", "polygon", "text", "offset", "projection"})
+_DRAWINGS = (".dxf", ".svg")
+
+#: Codes of errors after which OpenSCAD goes on without the node.
+_OPENSCADS = frozenset({"missing_file", "missing_argument", "not_finite"})
+
+
+def is_left_out(error: BspcsgError, *, lenient: bool) -> bool:
+    """Whether a node that fails so is left out with a warning.
+
+    In a lenient evaluation each is whose own fault it is; defects of this package and missing parts
+    of the installation never are.
+    """
+    if error.code in _OPENSCADS:
+        return True
+    own_faults = (FormatError, InvalidMeshError, LimitError, UnboundedError)
+    return lenient and isinstance(error, own_faults) and error.code != "missing_package"
+
+
+def nothing_of(node: Node) -> Geometry:
+    """Return the empty set of the dimension that a node makes; None if that is not known."""
+    if node.name in _SOLIDS:
+        return Solid.empty()
+    if node.name in _FIGURES:
+        return Region.empty()
+    if node.name != "import":
+        return None
+    name = Arguments(node, "", ("file",)).value("file")
+    is_drawing = isinstance(name, str) and PurePath(name).suffix.lower() in _DRAWINGS
+    return Region.empty() if is_drawing else Solid.empty()
