@@ -26,8 +26,6 @@ _TYPES = "biufU"
 #: Names of attributes that turn with the solid, and turn around where it is subtracted.
 NORMALS = frozenset({"normal", "normals"})
 
-_NONE: Mapping[str, Any] = {}
-
 
 @dataclass(frozen=True, eq=False)
 class Attributes:
@@ -107,6 +105,25 @@ class Attributes:
         corner = {name: values[:, order] for name, values in self.corner.items()}
         return replace(self, faces=self.faces[:, order], corner=corner)
 
+    def onto(self, faces: IndexArray, kept: IndexArray) -> "Attributes":
+        """Return the attributes of other triangles, each of which stands for one of these."""
+        corner = {name: self.at_corners(name, kept) for name in (*self.vertex, *self.corner)}
+        face = {name: values[kept] for name, values in self.face.items()}
+        return Attributes(faces, {}, corner, face, self.materials)
+
+    def among(self, taken: dict[str, Material]) -> "Attributes":
+        """Put the materials among others; one whose name is taken gets a number behind it."""
+        names = {}
+        for name, material in self.materials.items():
+            names[name] = _free_name(name, material, taken)
+            taken[names[name]] = material
+        values = self.face.get("material")
+        if values is None or all(old == new for old, new in names.items()):
+            return self
+        kinds, numbers = np.unique(values, return_inverse=True)
+        image = np.array([names.get(kind, kind) for kind in kinds.tolist()])[numbers]
+        return replace(self, face={**self.face, "material": image})
+
     @cached_property
     def patches(self) -> tuple[IndexArray, list[bytes]]:
         """Which faces have the same values everywhere: (m,) numbers, and the values behind them.
@@ -137,6 +154,14 @@ class Attributes:
     def _signature(self) -> list[tuple[str, str, tuple[int, ...]]]:
         arrays = [(name, self.at_corners(name, np.zeros(0, np.int64))) for name in self.names]
         return [(name, array.dtype.str, array.shape[2:]) for name, array in arrays]
+
+
+def _free_name(name: str, material: Material, taken: Mapping[str, Material]) -> str:
+    number, free = 1, name
+    while taken.get(free, material) != material:
+        number += 1
+        free = f"{name} ({number})"
+    return free
 
 
 def _bytes_of(values: Values, count: int) -> npt.NDArray[np.uint8]:

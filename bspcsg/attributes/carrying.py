@@ -6,7 +6,7 @@ place it is interpolated between the three corners of the face, on the lattice, 
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
@@ -167,7 +167,8 @@ def carried(
             rows = rows_of.get(slot, _NO_ROWS)
             known = arrays_of(slot) if len(rows) else None
             lots.append(_lot(surface, rows, attributes, known or _NO_ARRAYS))
-    lots, materials = _with_common_materials(lots)
+    materials: dict[str, Material] = {}
+    lots = [replace(lot, attributes=lot.attributes.among(materials)) for lot in lots]
     found: dict[Kind, dict[str, Values]] = {"vertex": {}, "corner": {}, "face": {}}
     for name in dict.fromkeys(name for lot in lots for name in lot.attributes.names):
         kind, values = _joined(name, [lot for lot in lots if name in lot.attributes.names], surface)
@@ -283,27 +284,41 @@ def _filled(
     name: str, lots: list[_Lot], parts: list[Values], shape: tuple[int, ...], depth: int
 ) -> Values:
     """Return the values of all triangles; those of sources that lack the name get the default."""
-    shapes = {part.shape[depth:] for part in parts}
-    if len(shapes) > 1:
-        told = " and ".join(map(str, sorted(shapes)))
-        message = (
-            f"Attributes: “{name}” has values of shapes {told} in different operands; rename one,"
-            " or give both the same."
-        )
-        raise InvalidMeshError(message, "attributes")
-    kind = _common_type(name, [part.dtype for part in parts])
-    filled = np.full(shape + shapes.pop(), default_of(kind), dtype=kind)
+    kind = common_type(name, parts, depth)
+    filled = np.full(shape + parts[0].shape[depth:], default_of(kind), dtype=kind)
     for lot, part in zip(lots, parts, strict=True):
         filled[lot.rows] = part
     return filled
 
 
-def _common_type(name: str, kinds: list[np.dtype[Any]]) -> np.dtype[Any]:
-    if len({kind.kind == "U" for kind in kinds}) > 1:
+def common_type(name: str, parts: Sequence[Values], depth: int) -> np.dtype[Any]:
+    """Return the type of a name's values in several meshes.
+
+    Parameters
+    ----------
+    name : str
+    parts : sequence of arrays
+    depth : int
+        How many axes say which element it is.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the values have different shapes, or are text in one and numbers in another.
+    """
+    shapes = sorted({part.shape[depth:] for part in parts})
+    if len(shapes) > 1:
+        told = " and ".join(map(str, shapes))
+        message = (
+            f"Attributes: “{name}” has values of shapes {told} in different operands; rename one,"
+            " or give both the same."
+        )
+        raise InvalidMeshError(message, "attributes")
+    if len({part.dtype.kind == "U" for part in parts}) > 1:
         raise InvalidMeshError(
             f"Attributes: “{name}” is text in one operand and numbers in another.", "attributes"
         )
-    return np.result_type(*kinds)
+    return np.result_type(*(part.dtype for part in parts))
 
 
 def default_of(kind: np.dtype[Any]) -> Any:
@@ -337,39 +352,3 @@ def _agree(one: Values, other: Values) -> bool:
             same |= np.abs(one - other) <= _ONE_FIELD * largest
         same |= np.isnan(one) & np.isnan(other)
     return bool(same.all())
-
-
-def _with_common_materials(lots: list[_Lot]) -> tuple[list[_Lot], Mapping[str, Material]]:
-    """Return the materials of all sources; a name that means two gets a number behind it."""
-    materials: dict[str, Material] = {}
-    found = []
-    for lot in lots:
-        renamed = {
-            name: _free_name(name, material, materials)
-            for name, material in lot.attributes.materials.items()
-        }
-        for name, material in lot.attributes.materials.items():
-            materials[renamed[name]] = material
-        found.append(_renamed(lot, {old: new for old, new in renamed.items() if old != new}))
-    return found, materials
-
-
-def _free_name(name: str, material: Material, taken: Mapping[str, Material]) -> str:
-    number, free = 1, name
-    while taken.get(free, material) != material:
-        number += 1
-        free = f"{name} ({number})"
-    return free
-
-
-def _renamed(lot: _Lot, names: dict[str, str]) -> _Lot:
-    values = lot.attributes.face.get("material")
-    if not names or values is None or values.dtype.kind != "U":
-        return lot
-    kinds, numbers = np.unique(values, return_inverse=True)
-    image = np.array([names.get(kind, kind) for kind in kinds.tolist()])[numbers]
-    face = {**lot.attributes.face, "material": image}
-    attributes = Attributes(
-        lot.attributes.faces, lot.attributes.vertex, lot.attributes.corner, face
-    )
-    return replace(lot, attributes=attributes)

@@ -3,7 +3,7 @@
 import os
 import shlex
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -243,7 +243,15 @@ class Target:
         shortened, moved = self.rounded(mesh)
         made = encoded(shortened, shown(self.path), self.suffix, self.text)
         put(self.path, made.chunks, self.overwrite, made.prove)
+        self.put_beside(made.files)
         return moved + made.findings
+
+    def put_beside(self, files: Mapping[str, bytes]) -> None:
+        """Write the files that go beside the one that was written; a stream has none."""
+        from ..formats.files import write_beside
+
+        if not self.is_stream:
+            write_beside(self.path, files)
 
 
 def put(

@@ -1,27 +1,36 @@
 """Which suffix stands for which format, and reading and writing by it."""
 
+import itertools
 import os
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
 
+from .._types import FloatArray
+from ..attributes.attributes import Attributes
 from ..errors import Finding, FormatError, format_errors
 from ..mesh.mesh import Mesh
 from . import held, obj, off, single, stl, vtk
 from .atomic import write_file
 from .glb import file as glb
+from .glb import said as glb_said
+from .ply import columns
 from .ply import file as ply
-from .proof import Called, Scan, prove
+from .proof import Called, Scan, prove, prove_with_attributes
 from .raw import RawMesh, empty_set
+from .said import left_out, said_of, saying
 from .source import Source, content_of
 from .threemf import file as threemf
+from .threemf import properties as threemf_properties
 from .threemf import write as threemf_write
 
 Encoder: TypeAlias = Callable[[Mesh | RawMesh], Iterator[bytes]]
+Keeper: TypeAlias = Callable[[Attributes, FloatArray], Attributes]
+Companions: TypeAlias = Callable[[RawMesh, str], tuple[bytes, dict[str, bytes]]]
 LossFinder: TypeAlias = Callable[[Mesh | RawMesh], tuple[Finding, ...]]
 
 
@@ -42,6 +51,11 @@ class Form:
         Whether it holds triangles that name a vertex twice.
     is_single : bool
         Whether it holds single precision only.
+    keeps : callable, optional
+        Returns what it holds of attributes over vertices, as they read back; None if it holds none.
+    beside : callable, optional
+        Returns what a file begins with to name files beside it, and those, from the mesh and the
+        stem of the file.
     """
 
     encode: Encoder
@@ -50,6 +64,8 @@ class Form:
     losses: LossFinder | None = None
     repeats: bool = True
     is_single: bool = False
+    keeps: Keeper | None = None
+    beside: Companions | None = None
 
 
 @dataclass(frozen=True)
@@ -79,9 +95,18 @@ FORMATS = {
         Form(stl.text, held.text_stl, stl.called),
         Form(stl.binary, held.binary_stl, losses=stl.losses, is_single=True),
     ),
-    ".obj": Format(obj.read, Form(obj.text, held.obj, obj.called)),
-    ".ply": Format(ply.read, Form(ply.text, held.text_ply), Form(ply.binary, held.binary_ply)),
-    ".off": Format(off.read, Form(off.text, held.off)),
+    ".obj": Format(
+        obj.read,
+        Form(
+            obj.text, held.obj, obj.called, keeps=lambda said, _: obj.kept(said), beside=obj.beside
+        ),
+    ),
+    ".ply": Format(
+        ply.read,
+        Form(ply.text, held.text_ply, keeps=lambda said, _: columns.kept(said)),
+        Form(ply.binary, held.binary_ply, keeps=lambda said, _: columns.kept(said)),
+    ),
+    ".off": Format(off.read, Form(off.text, held.off, keeps=lambda said, _: off.kept(said))),
     ".3mf": Format(
         threemf.read,
         None,
@@ -91,13 +116,14 @@ FORMATS = {
             threemf_write.called,
             threemf_write.losses,
             repeats=False,
+            keeps=lambda said, _: threemf_properties.kept(said),
         ),
         "mm",
     ),
     ".glb": Format(
         glb.read,
         None,
-        Form(glb.binary, held.glb, glb.called, glb.losses, is_single=True),
+        Form(glb.binary, held.glb, glb.called, glb.losses, is_single=True, keeps=glb_said.kept),
         "mm",
         "y",
     ),
@@ -200,15 +226,32 @@ def read_as(path: str | os.PathLike[str], suffix: str) -> RawMesh:
     return decoded(name, data, suffix)
 
 
-def decoded(name: str, data: bytes, suffix: str) -> RawMesh:
-    """Return the mesh in the bytes of a file; `name` is for errors, the rest as for `read`."""
+def decoded(
+    name: str, data: bytes, suffix: str, files: Mapping[str, bytes] | None = None
+) -> RawMesh:
+    """Return the mesh in the bytes of a file.
+
+    Parameters
+    ----------
+    name : str
+        For errors, and to find what lies beside the file.
+    data : bytes
+    suffix : str
+    files : dict of str to bytes, optional
+        What lies beside it, instead.
+
+    Raises
+    ------
+    FormatError
+        As for `read`.
+    """
     if not data:
         raise FormatError(f"{name}: the file is empty.", "empty_file")
     chosen = FORMATS[suffix.lower()]
     if any(form is not None and data == _nothing(form) for form in (chosen.text, chosen.binary)):
         return replace(empty_set(), name=Path(name).stem, unit=chosen.unit)
     with format_errors(name, suffix.removeprefix(".").upper()):
-        raw = chosen.read(Source(name, data))
+        raw = chosen.read(Source(name, data, files))
     return replace(raw, name=raw.name or Path(name).stem)
 
 
@@ -246,6 +289,7 @@ def write(
     """
     made = encoded(mesh, path, Path(path).suffix, text)
     write_file(path, made.chunks, made.prove)
+    write_beside(path, made.files)
     return made.findings
 
 
@@ -260,11 +304,20 @@ class Encoded:
         What the format cannot keep.
     prove : callable
         Takes the bytes that were written, and raises FormatError if they are not the mesh.
+    files : dict of str to bytes
+        What goes beside the file: its materials and pictures.
     """
 
     chunks: Iterator[bytes]
     findings: tuple[Finding, ...]
     prove: Callable[[bytes], None]
+    files: Mapping[str, bytes] = field(default_factory=dict)
+
+
+def write_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> None:
+    """Write the files that go beside one."""
+    for name, data in files.items():
+        write_file(Path(path).parent / name, [data])
 
 
 def encoded(
@@ -282,8 +335,23 @@ def encoded(
     except OverflowError:
         message = f"{name}: coordinates are beyond single precision; write PLY, OBJ, OFF or 3MF."
         raise FormatError(message, "too_large") from None
-    proof = partial(prove, name, mesh, form.scan, form.called, form.repeats)
-    return Encoded(form.encode(mesh), findings, proof)
+    said = said_of(mesh)
+    kept = form.keeps(said, mesh.vertices) if said is not None and form.keeps is not None else None
+    if said is not None:
+        findings = (*findings, *left_out(said, kept, suffix))
+    if kept is None or kept.is_empty:
+        bare = mesh if said is None else saying(mesh, None)
+        proof = partial(prove, name, bare, form.scan, form.called, form.repeats)
+        return Encoded(form.encode(bare), findings, proof)
+    full = saying(mesh, kept)
+    head, files = form.beside(full, Path(name).stem) if form.beside is not None else (b"", {})
+    reader = partial(_read_back, suffix, files)
+    proof = partial(prove_with_attributes, name, full, reader, form.called, form.repeats)
+    return Encoded(itertools.chain([head], form.encode(full)), findings, proof, files)
+
+
+def _read_back(suffix: str, files: Mapping[str, bytes], name: str, data: bytes) -> RawMesh:
+    return FORMATS[suffix.lower()].read(Source(name, data, files))
 
 
 def _refuse_unwritable(name: str, mesh: Mesh | RawMesh, form: Form) -> None:

@@ -1,20 +1,25 @@
-"""Wavefront OBJ: its vertices and polygons. Materials, normals, groups and curves are passed by."""
+"""Wavefront OBJ: vertices and polygons, texture coordinates, normals, colours and materials.
 
-from collections.abc import Iterator
+Groups, lines and curves are passed by.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from .._types import FloatArray, IndexArray
+from ..attributes.attributes import Attributes, Kind, Values
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
+from . import mtl
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, says_empty_set
+from .said import chosen, is_color, said_of
 from .source import Source, quoted, whole
 
 #: Statements about what a mesh of triangles has no room for.
 _DROPPED = {
-    b"vt": "texture coordinates",
-    b"vn": "normals",
-    b"usemtl": "materials",
     b"l": "lines",
     b"p": "points",
 }
@@ -34,6 +39,11 @@ class _Found:
     objects: list[tuple[bytes, int]] = field(default_factory=list)
     dropped: set[str] = field(default_factory=set)
     surfaces: int = 0
+    textures: list[list[bytes]] = field(default_factory=list)
+    normals: list[list[bytes]] = field(default_factory=list)
+    corners: dict[int, list[bytes]] = field(default_factory=dict)
+    materials: list[tuple[str, int]] = field(default_factory=list)
+    libraries: list[str] = field(default_factory=list)
 
 
 def read(source: Source) -> RawMesh:
@@ -49,19 +59,100 @@ def read(source: Source) -> RawMesh:
         raise source.error("this is no OBJ mesh: it has no vertex.")
     vertices = source.coordinates(found.rows, found.row_lines)
     polygons = _faces(source, found.polygons, found.face_lines)
-    faces = polygons.triangles(
+    positions = polygons.positions(
         vertices,
         lambda k, message, code: source.error(message, code, line=found.face_lines[k]),
     )
+    faces = polygons.corners[positions]
+    said, missing = _said(source, found, polygons, positions)
     named = _objects(found.objects, [len(corners) - 2 for corners in found.polygons], len(faces))
     return RawMesh(
         vertices,
         faces,
         next((name for name, _ in named if name), ""),
-        _curved(found.surfaces),
+        (*_curved(found.surfaces), *_missing(missing)),
         objects=named if len(named) > 1 else (),
         dropped=(*sorted(found.dropped), *polygons.dropped),
+        attributes=None if said.is_empty else said,
     )
+
+
+def _said(
+    source: Source, found: _Found, polygons: IndexPolygons, positions: IndexArray
+) -> tuple[Attributes, list[str]]:
+    """Return what is said besides the shape, and the files that are not there."""
+    faces = polygons.corners[positions]
+    vertex: dict[str, Values] = {}
+    if found.rows and all(len(row) == 6 for row in found.rows):
+        vertex["color"] = _numbers([row[3:] for row in found.rows], 3)
+    elif any(len(row) > 4 for row in found.rows):  # a fourth number is a weight
+        found.dropped.add("colours")
+    corner: dict[str, Values] = {}
+    for name, rows, place, width in (
+        ("uv", found.textures, 1, 2),
+        ("normal", found.normals, 2, 3),
+    ):
+        if rows and found.corners:
+            numbers = _references_at(found, place, len(rows))[positions]
+            # The last row stands for corners that name none.
+            table = np.concatenate([_numbers(rows, width), np.full((1, width), np.nan)])
+            corner[name] = table[numbers]
+    if not found.materials:
+        return Attributes(faces, vertex, corner), []
+    names = _material_names(found)[polygons.owners(positions)]
+    materials, missing = mtl.materials_in(source, found.libraries)
+    used = {name: material for name, material in materials.items() if name in names}
+    return Attributes(faces, vertex, corner, {"material": names}, used), missing
+
+
+def _numbers(rows: list[list[bytes]], width: int) -> FloatArray:
+    """Return the first numbers of some rows; what is none is NaN."""
+    return np.array([[_number(row, k) for k in range(width)] for row in rows])
+
+
+def _number(row: list[bytes], place: int) -> float:
+    try:
+        return float(row[place])
+    except (ValueError, IndexError):
+        return math.nan
+
+
+def _references_at(found: _Found, place: int, count: int) -> IndexArray:
+    """Return what each corner of each polygon names, from 0; -1 if it names nothing."""
+    numbers = []
+    for polygon, corners in enumerate(found.polygons):
+        words = found.corners.get(polygon)
+        numbers += (
+            [-1] * len(corners) if words is None else [_named(w, place, count) for w in words]
+        )
+    return np.array(numbers, dtype=np.int64)
+
+
+def _named(word: bytes, place: int, count: int) -> int:
+    """Return which row a corner names; negative numbers count back from the last of all."""
+    parts = word.split(b"/")
+    try:
+        number = whole(parts[place])
+    except (ValueError, IndexError):
+        return -1
+    index = number - 1 if number > 0 else count + number
+    return index if 0 <= index < count and number != 0 else -1
+
+
+def _material_names(found: _Found) -> Values:
+    """Return the name of each polygon's material."""
+    starts = [start for _, start in found.materials]
+    ends = [*starts[1:], len(found.polygons)]
+    counts = [starts[0], *(end - start for start, end in zip(starts, ends, strict=True))]
+    return np.repeat(np.array(["", *(name for name, _ in found.materials)]), counts)
+
+
+def _missing(names: list[str]) -> tuple[Finding, ...]:
+    if not names:
+        return ()
+    told = ", ".join(f"“{name}”" for name in dict.fromkeys(names))
+    message = f"the files {told} are not beside this one; colours and pictures in them are gone."
+    return (Finding("ignored", "warning", message, (), len(names)),)
 
 
 def _collected(source: Source) -> _Found:
@@ -74,14 +165,26 @@ def _collected(source: Source) -> _Found:
         elif key == b"f":
             found.polygons.append(_references(source, number, words, len(found.rows)))
             found.face_lines.append(number)
+            if len(words) > 1 and b"/" in words[1]:
+                found.corners[len(found.polygons) - 1] = words[1:]
+        elif key == b"vt":
+            found.textures.append(words[1:])
+        elif key == b"vn":
+            found.normals.append(words[1:])
+        elif key == b"usemtl":
+            found.materials.append((_text(words[1:]), len(found.polygons)))
+        elif key == b"mtllib":
+            found.libraries.append(_text(words[1:]))
         elif key == b"o":
             found.objects.append((b" ".join(words[1:]), len(found.polygons)))
         elif key in _DROPPED:
             found.dropped.add(_DROPPED[key])
         found.surfaces += key in _SURFACES
-    if any(len(row) > 4 for row in found.rows):  # a fourth number is a weight
-        found.dropped.add("colours")
     return found
+
+
+def _text(words: list[bytes]) -> str:
+    return b" ".join(words).decode("utf-8", "replace")
 
 
 def _objects(
@@ -156,15 +259,101 @@ def called(name: str) -> str:
     return on_one_line(name).replace("#", "_").replace("\\", "_")
 
 
+def kept(said: Attributes) -> Attributes:
+    """Return what OBJ holds of attributes.
+
+    Colours of vertices and materials of faces; texture coordinates and normals of corners.
+    """
+    names = {name: called(name) for name in said.materials}
+
+    def keep(kind: Kind, name: str, values: Values) -> Values | None:
+        depth = 2 if kind == "corner" else 1
+        if name == "material" and kind == "face" and values.dtype.kind == "U" and values.ndim == 1:
+            kinds, numbers = np.unique(values, return_inverse=True)
+            return np.array([called(one) for one in kinds.tolist()])[numbers]
+        if kind == "vertex" and is_color(name, values, depth) and values.shape[1:] == (3,):
+            scale = 1.0 if values.dtype.kind == "f" else 1 / np.iinfo(values.dtype).max
+            return values.astype(np.float64) * scale
+        width = _CORNERS.get(name)
+        if kind != "face" and values.dtype.kind == "f" and values.shape[depth:] == (width,):
+            return values.astype(np.float64)
+        return None
+
+    held = chosen(said, keep)
+    used = set(held.face["material"].tolist()) if "material" in held.face else set()
+    named = {names[name]: material for name, material in said.materials.items()}
+    materials = {name: material for name, material in named.items() if name in used}
+    return Attributes(held.faces, held.vertex, held.corner, held.face, materials)
+
+
+#: Attributes of corners that OBJ has statements for, and how many numbers each has.
+_CORNERS = {"uv": 2, "normal": 3}
+
+
+def beside(mesh: RawMesh, stem: str) -> tuple[bytes, dict[str, bytes]]:
+    """Return the statement that names the library of materials, and the files beside an OBJ."""
+    said = said_of(mesh)
+    if said is None or not said.materials:
+        return b"", {}
+    library, files = mtl.written(said.materials, called(stem).replace(" ", "_"))
+    return f"mtllib {library}\n".encode(), files
+
+
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; every coordinate reads back as the same double."""
+    said = said_of(mesh)
     if says_empty_set(mesh):
         yield EMPTY_SET
-    for point in mesh.vertices.tolist():
-        yield "v {!r} {!r} {!r}\n".format(*point).encode()
+    if said is not None and "color" in said.vertex:
+        for point in np.concatenate([mesh.vertices, said.vertex["color"]], axis=1).tolist():
+            yield "v {!r} {!r} {!r} {!r} {!r} {!r}\n".format(*point).encode()
+    else:
+        for point in mesh.vertices.tolist():
+            yield "v {!r} {!r} {!r}\n".format(*point).encode()
+    if said is not None:
+        yield from _text_with_attributes(mesh, said)
+        return
     parts = parts_of(mesh)
     for name, faces in parts:
         if name or len(parts) > 1:
             yield f"o {called(name)}\n".encode()
         for face in (faces + np.int64(1)).tolist():
             yield "f {} {} {}\n".format(*face).encode()
+
+
+def _text_with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[bytes]:
+    numbers: dict[str, IndexArray] = {}
+    for name, key in (("uv", "vt"), ("normal", "vn")):
+        if said.kind_of(name) in ("vertex", "corner"):
+            corners = said.at_corners(name).reshape(-1, _CORNERS[name])
+            rows, inverse = np.unique(corners, axis=0, return_inverse=True)
+            is_known = ~np.isnan(rows).any(axis=1)
+            numbers[name] = np.where(is_known, np.cumsum(is_known), 0)[inverse].reshape(-1, 3)
+            for row in rows[is_known].tolist():
+                yield f"{key} {' '.join(map(repr, row))}\n".encode()
+    names = said.face.get("material")
+    current, start = "", 0
+    parts = parts_of(mesh)
+    for name, faces in parts:
+        if name or len(parts) > 1:
+            yield f"o {called(name)}\n".encode()
+        for row, face in enumerate(faces.tolist(), start):
+            if names is not None and names[row] != current:
+                current = str(names[row])
+                yield f"usemtl {current}\n".encode()
+            yield ("f " + " ".join(_corner(numbers, row, k, face[k]) for k in range(3))).encode()
+            yield b"\n"
+        start += len(faces)
+
+
+def _corner(numbers: Mapping[str, IndexArray], row: int, corner: int, vertex: int) -> str:
+    """Return what a face says of a corner: numbers of vertex, texture coordinates and normal."""
+    uv, normal = (_at(numbers.get(name), row, corner) for name in ("uv", "normal"))
+    if normal:
+        return f"{vertex + 1}/{uv}/{normal}"
+    return f"{vertex + 1}/{uv}" if uv else f"{vertex + 1}"
+
+
+def _at(numbers: IndexArray | None, row: int, corner: int) -> str:
+    number = 0 if numbers is None else int(numbers[row, corner])
+    return str(number) if number else ""

@@ -1,11 +1,16 @@
 """OFF and its kin with colours, normals or texture coordinates, in text."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import repeat
 
+import numpy as np
+
+from ..attributes.attributes import Attributes, Kind, Values
 from ..errors import Finding
 from ..mesh.mesh import Mesh
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, says_empty_set
+from .said import as_bytes, chosen, is_color, said_of
 from .source import Source, quoted, whole
 
 _KEYWORD = re.compile(rb"(ST)?C?N?(4?)(n?)(?:OFF|off)")
@@ -22,7 +27,7 @@ def read(source: Source) -> RawMesh:
         If it is cut off, names a vertex that does not exist, or is not of this family; names the
         line.
     """
-    lines = list(_body(source))
+    keyword, lines = _body(source)
     vertex_count, face_count, lines = _counts(source, lines)
     if vertex_count + face_count > len(lines):
         message = (
@@ -34,26 +39,68 @@ def read(source: Source) -> RawMesh:
     vertices = source.coordinates([row for _, row in points], [number for number, _ in points])
     corners = [_corners(source, number, words) for number, words in polygons]
     flat = IndexPolygons.from_lists(corners)
-    faces = flat.triangles(
+    positions = flat.positions(
         vertices, lambda k, message, code: source.error(message, code, line=polygons[k][0])
     )
+    faces = flat.corners[positions]
     extra = _extra_lines(lines[vertex_count + face_count :])
-    dropped = (*_more_than_a_shape(points, polygons), *flat.dropped)
-    return RawMesh(vertices, faces, "", extra, dropped=dropped)
+    of_points = _colors([words[3:] for _, words in points]) if keyword == b"COFF" else None
+    of_faces = _colors([words[whole(words[0]) + 1 :] for _, words in polygons])
+    vertex = {} if of_points is None else {"color": of_points}
+    face = {} if of_faces is None or vertex else {"color": of_faces[flat.owners(positions)]}
+    said = Attributes(faces, vertex, {}, face) if vertex or face else None
+    dropped = (*_more_than_a_shape(points, polygons, vertex, face), *flat.dropped)
+    return RawMesh(vertices, faces, "", extra, dropped=dropped, attributes=said)
 
 
-def _more_than_a_shape(points: list[_Line], polygons: list[_Line]) -> tuple[str, ...]:
-    """Return what is said of vertices and faces besides the shape."""
+def _more_than_a_shape(
+    points: list[_Line],
+    polygons: list[_Line],
+    vertex: dict[str, Values],
+    face: dict[str, Values],
+) -> tuple[str, ...]:
+    """Return what is said of vertices and faces besides the shape, and is not kept."""
     found = []
-    if any(len(words) > 3 for _, words in points):
+    if not vertex and any(len(words) > 3 for _, words in points):
         found.append("data of vertices")
-    if any(len(words) > whole(words[0]) + 1 for _, words in polygons):
+    if not face and any(len(words) > whole(words[0]) + 1 for _, words in polygons):
         found.append("colours of faces")
     return tuple(found)
 
 
-def _body(source: Source) -> Iterator[_Line]:
-    """Yield the lines after the keyword, which may be absent, and may have the counts beside it."""
+def _colors(rows: Sequence[Sequence[bytes]]) -> Values | None:
+    """Return colours (k, 3 or 4) if every row is one: bytes, or floats from 0 to 1."""
+    widths = {len(row) for row in rows}
+    if len(widths) != 1 or not widths <= {3, 4}:
+        return None
+    try:
+        if all(word.isdigit() for row in rows for word in row):
+            numbers = np.array([[whole(word) for word in row] for row in rows])
+            return numbers.astype(np.uint8) if numbers.max() <= 255 else None
+        return np.array([[float(word) for word in row] for row in rows])
+    except ValueError:
+        return None
+
+
+def kept(said: Attributes) -> Attributes:
+    """Return what OFF holds of attributes: colours of vertices, else of faces, in bytes."""
+
+    def keep(kind: Kind, name: str, values: Values) -> Values | None:
+        is_held = kind != "corner" and is_color(name, values, 1)
+        return as_bytes(values) if is_held else None
+
+    return chosen(said, keep)
+
+
+def _body(source: Source) -> tuple[bytes, list[_Line]]:
+    """Return the keyword, which may be absent, and the lines after it."""
+    lines = list(_lines(source))
+    first = next(source.text_lines(b"#"), (1, [b""]))[1][0]
+    return first.upper(), lines
+
+
+def _lines(source: Source) -> Iterator[_Line]:
+    """Yield the lines after the keyword; the counts may stand beside it."""
     lines = source.text_lines(b"#")
     number, words = next(lines, (1, [b""]))
     keyword = _KEYWORD.fullmatch(words[0])
@@ -109,9 +156,20 @@ def _extra_lines(lines: list[_Line]) -> tuple[Finding, ...]:
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; every coordinate reads back as the same double."""
-    yield b"OFF\n" + (EMPTY_SET if says_empty_set(mesh) else b"")
+    said = said_of(mesh)
+    points = _words(said.vertex if said else {}, len(mesh.vertices))
+    faces = _words(said.face if said else {}, len(mesh.faces))
+    keyword = b"COFF\n" if said and said.vertex else b"OFF\n"
+    yield keyword + (EMPTY_SET if says_empty_set(mesh) else b"")
     yield f"{len(mesh.vertices)} {len(mesh.faces)} 0\n".encode()
-    for point in mesh.vertices.tolist():
-        yield "{!r} {!r} {!r}\n".format(*point).encode()
-    for face in mesh.faces.tolist():
-        yield "3 {} {} {}\n".format(*face).encode()
+    for point, words in zip(mesh.vertices.tolist(), points, strict=True):
+        yield "{!r} {!r} {!r}{}\n".format(*point, words).encode()
+    for face, words in zip(mesh.faces.tolist(), faces, strict=True):
+        yield "3 {} {} {}{}\n".format(*face, words).encode()
+
+
+def _words(attributes: Mapping[str, Values], count: int) -> Iterable[str]:
+    """Return the colour at the end of each line, with a space before each number."""
+    if "color" not in attributes:
+        return repeat("", count)
+    return ("".join(f" {value}" for value in row) for row in attributes["color"].tolist())

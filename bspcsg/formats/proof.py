@@ -68,6 +68,70 @@ def prove(
         _compare_corners(path, mesh, meant, held)
 
 
+def prove_with_attributes(
+    path: str,
+    mesh: RawMesh,
+    read: Callable[[str, bytes], RawMesh],
+    called: Called | None,
+    repeats: bool,
+    data: bytes,
+) -> None:
+    """Raise an error unless a file holds a mesh and all that is said of it.
+
+    Files with attributes have many layouts, and are read as anybody's are: the readers share no
+    code with the writers.
+
+    Parameters
+    ----------
+    path : str
+    mesh : RawMesh
+        What was written.
+    read : callable
+        Returns what the bytes of a file hold.
+    called, repeats, data
+        As for `prove`.
+
+    Raises
+    ------
+    FormatError
+        As for `prove`.
+    """
+    try:
+        found = read(path, data)
+    except Exception as error:
+        raise _mismatch(path, f"it cannot be read back ({words_of(error)})") from error
+    vertices = found.vertices
+    if np.array_equal(vertices, vertices.astype(np.float32)):
+        vertices = vertices.astype(np.float32)
+    named = [("", found.faces)] if called is None else parts_of(found)
+    held = [Held(vertices, faces, name) for name, faces in named if len(faces)]
+    meant = _meant(mesh, called, repeats)
+    _compare_counts(path, meant, held)
+    _compare_corners(path, mesh, meant, held)
+    rows = np.arange(len(mesh.faces)) if repeats else np.flatnonzero(_three_corners(mesh.faces))
+    _compare_attributes(path, mesh, found, rows)
+
+
+def _compare_attributes(path: str, mesh: RawMesh, found: RawMesh, rows: IndexArray) -> None:
+    for name in () if mesh.attributes is None else mesh.attributes.names:
+        if found.attributes is None or found.attributes.kind_of(name) is None:
+            raise _mismatch(path, f"it lacks the attribute “{name}”")
+        meant = mesh.attributes.at_corners(name, rows) if mesh.attributes else None
+        told = found.attributes.at_corners(name)
+        if meant is None or not _are_same(meant, told):
+            raise _mismatch(path, f"the values of the attribute “{name}” are others")
+    meant_materials = {} if mesh.attributes is None else mesh.attributes.materials
+    told_materials = {} if found.attributes is None else found.attributes.materials
+    if any(told_materials.get(name) != one for name, one in meant_materials.items()):
+        raise _mismatch(path, "the materials are others")
+
+
+def _are_same(one: npt.NDArray[Any], other: npt.NDArray[Any]) -> bool:
+    if one.dtype.kind == "U" and other.dtype.kind == "U":
+        return np.array_equal(one, other)
+    return one.dtype == other.dtype and np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
+
+
 def _mismatch(path: str, reason: str, where: tuple[int, ...] = ()) -> FormatError:
     message = (
         f"{path}: the file that was written is not the mesh, and was not put in place: {reason}."

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._types import FloatArray, IndexArray
+from ..attributes.attributes import Attributes
+from ..attributes.joining import Part, concatenated
 from ..errors import Finding, FormatError
 from ..geometry.polygon import triangulate_face
 from ..mesh.mesh import Mesh
@@ -42,6 +44,8 @@ class RawMesh:
     is_empty_set : bool
         Whether the file is one that this package writes for the empty set. Any other file without
         faces is no set: what should be in it may have got lost.
+    attributes : Attributes, optional
+        What else is said of vertices, corners and faces.
     """
 
     vertices: FloatArray
@@ -52,6 +56,7 @@ class RawMesh:
     unit: str = ""
     dropped: tuple[str, ...] = ()
     is_empty_set: bool = False
+    attributes: Attributes | None = None
 
     @property
     def passed_by(self) -> tuple[str, ...]:
@@ -119,7 +124,10 @@ def joined(meshes: Sequence[RawMesh]) -> RawMesh:
     faces = [np.zeros((0, 3), dtype=np.int64)]
     faces += [mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]
     objects = tuple((mesh.name, len(mesh.faces)) for mesh in meshes)
-    return RawMesh(np.concatenate(vertices), np.concatenate(faces), objects=objects)
+    whole = np.concatenate(faces)
+    parts = [Part(len(mesh.vertices), mesh.faces, mesh.attributes) for mesh in meshes]
+    said = concatenated(parts, whole)
+    return RawMesh(np.concatenate(vertices), whole, objects=objects, attributes=said)
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,6 +199,18 @@ class IndexPolygons:
             owners.append(which[row])
         order = np.argsort(np.concatenate(owners), kind="stable")
         return np.concatenate(parts)[order]
+
+    def positions(
+        self, vertices: FloatArray, error_at: Callable[[int, str, str], FormatError]
+    ) -> IndexArray:
+        """Return the triangles of `triangles` as (m, 3) places in `corners`."""
+        self._check(len(vertices), error_at)
+        places = IndexPolygons(np.arange(len(self.corners)), self.counts)
+        return places.triangles(vertices[self.corners], error_at)
+
+    def owners(self, positions: IndexArray) -> IndexArray:
+        """Return which polygon each triangle is of, given as places in `corners`."""
+        return np.searchsorted(np.cumsum(self.counts), positions[:, 0], side="right")
 
     def _check(self, vertex_count: int, error_at: Callable[[int, str, str], FormatError]) -> None:
         if (self.counts < 3).any():

@@ -6,10 +6,11 @@ import numpy as np
 
 from .._core import mesh_in_single
 from .._types import FloatArray, IndexArray
+from ..attributes.attributes import made
 from ..errors import Finding, core_errors
 from ..mesh.mesh import Mesh
 from ..mesh.weld import distinct
-from ..solid.solid import Solid
+from ..solid.solid import solid_with
 from .raw import RawMesh
 from .triangles import are_flat, are_turned
 
@@ -114,7 +115,9 @@ def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
     """Return a mesh in single precision, how many triangles were mended, and which still cross."""
     with core_errors():
         found = mesh_in_single(mesh.vertices, mesh.faces)
-    result = Mesh(found["vertices"], found["triangles"], mesh.source[found["kept"]])
+    kept = found["kept"]
+    carried = mesh.carried and made(mesh.attributes.onto(found["triangles"], kept))
+    result = Mesh(found["vertices"], found["triangles"], mesh.source[kept], carried)
     return result, found["mended"], np.unique(np.append(found["crossings"], found["flat"]))
 
 
@@ -124,8 +127,10 @@ def _united(mesh: Mesh) -> Mesh:
     Iterated snap rounding: where triangles cross they are cut, exactly, and what is cut is rounded
     again.
     """
-    united = Solid(mesh.vertices, mesh.faces, winding="positive").normalized().to_mesh()
-    return Mesh(united.vertices, united.faces, mesh.source[united.source[:, 1]])
+    united = solid_with(mesh.vertices, mesh.faces, mesh.attributes if mesh.carried else None)
+    result = united.normalized().to_mesh()
+    origins = mesh.source[result.source[:, 1]]
+    return Mesh(result.vertices, result.faces, origins, result.carried)
 
 
 _MENDED = (

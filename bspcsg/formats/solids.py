@@ -4,7 +4,7 @@ import os
 from typing import Any
 
 from ..errors import BspcsgError
-from ..solid.solid import Solid
+from ..solid.solid import Solid, solid_with
 from .raw import RawMesh
 
 
@@ -17,7 +17,7 @@ def solid_of(raw: RawMesh, path: str | os.PathLike[str], **options: Any) -> Soli
     if raw.is_empty_set:
         return Solid.empty()
     try:
-        return Solid(raw.vertices, raw.faces, **options)
+        return solid_with(raw.vertices, raw.faces, raw.attributes, **options)
     except BspcsgError as error:
         message = f"{os.fspath(path)}: {error.message}"
         raise type(error)(message, error.code, error.where) from error

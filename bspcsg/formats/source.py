@@ -3,8 +3,8 @@
 import errno
 import os
 import stat
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -36,14 +36,30 @@ class Source:
         The path as the caller gave it.
     data : bytes
         The whole file.
+    files : dict of str to bytes, optional
+        Files beside it that are not written yet.
     """
 
     name: str
     data: bytes
+    files: Mapping[str, bytes] | None = None
 
     def without_mark(self) -> "Source":
         """Return the file without a byte order mark before it."""
-        return Source(self.name, self.data.removeprefix(BYTE_ORDER_MARK))
+        return replace(self, data=self.data.removeprefix(BYTE_ORDER_MARK))
+
+    def beside(self, name: str) -> bytes | None:
+        """Return a file in the same folder, or None if it is not there or too large."""
+        if self.files is not None:
+            return self.files.get(name)
+        # What a mesh names may be anything: a folder, a device, a file of somebody else.
+        if Path(name).name != name:
+            return None
+        try:
+            path = Path(self.name).parent / name
+            return content_of(path) if path.stat().st_size <= _LARGEST_TEXT else None
+        except (OSError, ValueError):
+            return None
 
     def error(
         self,

@@ -22,4 +22,9 @@ def turned(raw: RawMesh, quarters: int) -> RawMesh:
     x, y, z = raw.vertices.T
     moved = {1: (x, -z, y), 2: (x, -y, -z), 3: (x, z, -y)}[count]
     # Adding zero turns -0.0 into 0.0.
-    return replace(raw, vertices=np.ascontiguousarray(np.array(moved).T) + 0.0)
+    vertices = np.ascontiguousarray(np.array(moved).T) + 0.0
+    if raw.attributes is None:
+        return replace(raw, vertices=vertices)
+    quarter = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
+    said = raw.attributes.turned(np.linalg.matrix_power(quarter, count))
+    return replace(raw, vertices=vertices, attributes=said)

@@ -18,7 +18,7 @@ import numpy as np
 from .._core import Tree
 from .._types import ProgramLine, Scalar, Vector, WindingRule
 from ..above import above
-from ..attributes.attributes import Given
+from ..attributes.attributes import Attributes, Given
 from ..attributes.material import Material
 from ..errors import core_errors, invalid_parameter
 from ..geometry import transform
@@ -630,6 +630,21 @@ class LastOperation:
 def from_node(node: ExpressionNode, factors: Factors = ()) -> Solid:
     """Return the solid of an expression under a transform."""
     return Solid._of(node, factors)
+
+
+def solid_with(vertices: Any, faces: Any, attributes: Attributes | None, **options: Any) -> Solid:
+    """Return the solid of a mesh with attributes; options as for `Solid`."""
+    if attributes is None or attributes.is_empty:
+        return Solid(vertices, faces, **options)
+    return Solid(
+        vertices,
+        faces,
+        vertex_attributes=attributes.vertex,
+        corner_attributes=attributes.corner,
+        face_attributes=attributes.face,
+        materials=attributes.materials,
+        **options,
+    )
 
 
 def from_leaf(leaf: ExpressionLeaf) -> Solid:

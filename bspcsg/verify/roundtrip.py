@@ -39,6 +39,8 @@ class Losses:
         What the reader of the input said it left out.
     dropped : tuple of str
         Kinds of data in the input that a mesh of triangles has no room for.
+    attributes : tuple of str
+        Names of attributes that are gone or have other values.
     """
 
     triangles: tuple[int, int]
@@ -50,6 +52,7 @@ class Losses:
     names: tuple[str, ...] = ()
     passed_by: tuple[str, ...] = ()
     dropped: tuple[str, ...] = ()
+    attributes: tuple[str, ...] = ()
 
     @property
     def any(self) -> bool:
@@ -77,6 +80,10 @@ class Losses:
             told = ", ".join(f"“{name}”" for name in self.names[:_TOLD])
             more = len(self.names) - _TOLD
             found.append(f"names gone: {told}" + (f" and {more} more" if more > 0 else ""))
+        if self.attributes:
+            told = ", ".join(f"“{name}”" for name in self.attributes[:_TOLD])
+            more = len(self.attributes) - _TOLD
+            found.append(f"attributes: {told}" + (f" and {more} more" if more > 0 else ""))
         return found
 
     def to_dict(self) -> dict[str, Any]:
@@ -105,7 +112,25 @@ def losses_between(before: RawMesh, after: RawMesh) -> Losses:
         tuple(dict.fromkeys(names)),
         before.passed_by,
         before.dropped,
+        _changed_attributes(before, after),
     )
+
+
+def _changed_attributes(before: RawMesh, after: RawMesh) -> tuple[str, ...]:
+    """Return the attributes that are not there any more, or not everywhere as they were."""
+    if before.attributes is None:
+        return ()
+    found = []
+    for name in before.attributes.names:
+        said = after.attributes
+        if said is None or said.kind_of(name) is None or len(after.faces) != len(before.faces):
+            found.append(name)
+            continue
+        meant, told = before.attributes.at_corners(name), said.at_corners(name)
+        is_float = meant.dtype.kind == "f" and told.dtype.kind == "f"
+        if not np.array_equal(meant, told, equal_nan=is_float):
+            found.append(name)
+    return tuple(found)
 
 
 def _corners(raw: RawMesh) -> FloatArray:

@@ -13,12 +13,7 @@ import bspcsg as b
 from bspcsg._types import FloatArray, WindingRule
 from bspcsg.attributes.barycentric import weights
 from bspcsg.mesh.visuals import attributes_from
-
-PIXEL = (
-    b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x02\x00\x00\x00"
-    b"\x90wS\xde\x00\x00\x00\x0cIDATx\x9cc\xf8\xcf\xc0\x00\x00\x03\x01\x01\x00\xc9\xfe\x92\xef"
-    b"\x00\x00\x00\x00IEND\xaeB`\x82"
-)
+from support.pictures import PIXEL
 
 
 def cube(size: float = 2.0, at: float = 0.0, **options: Any) -> b.Solid:

@@ -101,13 +101,13 @@ OBJ = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
     [
         (
             "x.obj",
-            OBJ + "vt 0 0\nvn 0 0 1\nusemtl red\nf 1 2 3\nl 1 2\n",
-            "lines materials normals",
+            OBJ + "f 1 2 3\nl 1 2\np 1\n",
+            "lines points",
         ),
         ("x.obj", OBJ + "f 1 2 3 4\n", "faces of more than three corners"),
         ("x.obj", OBJ.replace("0 0 0\n", "0 0 0 1 0 0\n") + "f 1 2 3\n", "colours"),
-        ("x.off", "COFF\n3 1 0\n0 0 0 255 0 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n3 0 1 2\n", "vertices"),
-        ("x.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n", "colours of faces"),
+        ("x.off", "NOFF\n3 1 0\n0 0 0 1 0 0\n1 0 0 1 0 0\n0 1 0 1 0 0\n3 0 1 2\n", "vertices"),
+        ("x.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0\n", "colours of faces"),
     ],
 )
 def test_what_triangles_do_not_keep(tmp_path: Path, name: str, text: str, dropped: str) -> None:

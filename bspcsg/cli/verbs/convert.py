@@ -126,9 +126,11 @@ class _Conversion:
 
         def compare(data: bytes) -> None:
             made.prove(data)
-            found.append(losses_between(raw, decoded(shown(target.path), data, target.suffix)))
+            again = decoded(shown(target.path), data, target.suffix, made.files)
+            found.append(losses_between(raw, again))
 
         put(target.path, made.chunks, target.overwrite, compare)
+        target.put_beside(made.files)
         lost = found[0]
         for finding in made.findings:
             self._tell(target, finding)

@@ -21,8 +21,8 @@ _DEEPEST = 64
 #: Extensions that change what the triangles are, and which are not decoded here.
 _GEOMETRIC = ("draco", "meshopt", "quantization", "instancing")
 
-#: Attributes of vertices by the first word of their names.
-_ATTRIBUTES = {"NORMAL": "normals", "TEXCOORD": "texture coordinates", "COLOR": "colours"}
+#: Attributes of vertices that are not read, by the first word of their names.
+_ATTRIBUTES = {"TANGENT": "tangents", "JOINTS": "joints", "WEIGHTS": "weights"}
 
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
@@ -200,7 +200,7 @@ class _Claims:
 
 def _dropped(tree: dict[str, Any]) -> tuple[str, ...]:
     """Return what is said besides the shape."""
-    found = {key for key in ("materials", "textures", "animations", "skins") if tree.get(key)}
+    found = {key for key in ("animations", "skins") if tree.get(key)}
     for mesh in tree.get("meshes", []):
         for primitive in mesh["primitives"]:
             found |= {_ATTRIBUTES.get(name.split("_")[0], "") for name in primitive["attributes"]}

@@ -7,18 +7,22 @@ differ, so every object is a node and a mesh of its own.
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from ..._types import FloatArray
+from ..._types import FloatArray, IndexArray
+from ...attributes.attributes import Attributes, Values
 from ...errors import Finding
 from ...mesh.mesh import Mesh
 from .. import single
 from ..raw import RawMesh, compacted, joined, parts_of, says_empty_set
+from ..said import said_of
 from ..source import Source
 from .container import container_of
 from .nodes import Shown, shown
+from .said import Pictures, columns_of
 
 #: Millimetres with z upwards to metres with y upwards, for column vectors, and back.
 TO_METRES = np.array(
@@ -30,6 +34,7 @@ _TO_MILLIMETRES = np.array(
 
 #: Numbers of glTF: types of components, and what a view of the data is for.
 _FLOAT, _UNSIGNED, _VERTICES, _INDICES = 5126, 5125, 34962, 34963
+_BYTE = 5121
 
 
 def read(source: Source) -> RawMesh:
@@ -51,7 +56,7 @@ def read(source: Source) -> RawMesh:
     if not np.isfinite(mesh.vertices).all():
         raise source.error("a coordinate is not a finite number.", "non_finite")
     findings = (*container.findings, *_hidden(hidden), _unit())
-    return RawMesh(mesh.vertices, mesh.faces, "", findings, mesh.objects, "mm", container.dropped)
+    return replace(mesh, findings=findings, unit="mm", dropped=container.dropped)
 
 
 def _placed(one: Shown) -> RawMesh:
@@ -60,7 +65,11 @@ def _placed(one: Shown) -> RawMesh:
     with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused later
         vertices = _moved(one.vertices.astype(np.float64), placing)
         is_mirrored = np.linalg.det(placing[:3, :3]) < 0
-    return RawMesh(vertices, one.faces[:, ::-1] if is_mirrored else one.faces, one.name)
+        said = None if one.attributes is None else one.attributes.turned(placing[:3, :3])
+    if is_mirrored:
+        said = None if said is None else said.reordered([2, 1, 0])
+        return RawMesh(vertices, one.faces[:, ::-1], one.name, attributes=said)
+    return RawMesh(vertices, one.faces, one.name, attributes=said)
 
 
 def _moved(vertices: FloatArray, matrix: FloatArray) -> FloatArray:
@@ -95,6 +104,10 @@ def most_bytes(mesh: Mesh | RawMesh) -> int:
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; coordinates are rounded to single precision."""
+    said = said_of(mesh)
+    if said is not None:
+        yield from _with_attributes(mesh, said)
+        return
     described = _Description(says_empty_set(mesh))
     blocks = []
     for name, faces in parts_of(mesh):
@@ -107,6 +120,57 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     yield from _container(described.text(), blocks)
 
 
+def _with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[bytes]:
+    """Yield the file with what is said: vertices are divided where corners differ."""
+    described = _Description(False)
+    pictures = Pictures(said.materials, described.append)
+    names = said.face.get("material")
+    start = 0
+    for name, faces in parts_of(mesh):
+        rows = np.arange(start, start + len(faces))
+        start += len(faces)
+        if len(faces) == 0:
+            continue
+        columns = columns_of(said, rows)
+        first, corners = _divided(faces, columns)
+        vertices = mesh.vertices[faces.ravel()[first]].astype("<f4")
+        accessors = {"POSITION": described.append_column(vertices, with_bounds=True)}
+        for key, values in columns.items():
+            flat = values.reshape(3 * len(faces), *values.shape[2:])
+            accessors[key] = described.append_column(flat[first])
+        runs = _runs(None if names is None else names[rows], len(faces))
+        primitives = []
+        for begin, end, material in runs:
+            indices = described.append_indices(corners[begin:end])
+            painted = {"material": pictures.numbers[material]} if material else {}
+            primitives.append({"attributes": accessors, "indices": indices, "mode": 4, **painted})
+        described.add_object(name, primitives)
+    further = pictures.described()
+    text = described.text(further)
+    yield from _container(text, described.blocks)
+
+
+def _divided(faces: IndexArray, columns: dict[str, Values]) -> tuple[IndexArray, IndexArray]:
+    """Return the corner that stands for each vertex, and the triangles that number those."""
+    blocks = [faces.reshape(-1, 1).astype("<i8").view(np.uint8)]
+    for values in columns.values():
+        flat = np.ascontiguousarray(values).reshape(len(blocks[0]), -1)
+        blocks.append(flat.view(np.uint8).reshape(len(flat), -1))
+    rows = np.ascontiguousarray(np.concatenate(blocks, axis=1))
+    keys = rows.view(f"V{rows.shape[1]}").ravel()
+    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
+    return first, inverse.reshape(-1, 3)
+
+
+def _runs(names: Values | None, count: int) -> list[tuple[int, int, str]]:
+    """Return where triangles of one material begin and end, one run after another."""
+    if names is None:
+        return [(0, count, "")]
+    starts = [0, *(np.flatnonzero(names[1:] != names[:-1]) + 1).tolist()]
+    ends = [*starts[1:], count]
+    return [(begin, end, str(names[begin])) for begin, end in zip(starts, ends, strict=True)]
+
+
 class _Description:
     """The JSON of a file, object by object."""
 
@@ -116,10 +180,13 @@ class _Description:
         self._views: list[dict[str, Any]] = []
         self._accessors: list[dict[str, Any]] = []
         self._names: list[dict[str, str]] = []
+        self._primitives: list[list[dict[str, Any]]] = []
+        self.blocks: list[bytes] = []
 
     def add(self, name: str, vertices: "np.ndarray[Any, Any]", triangles: int) -> None:
         """Add an object whose vertices and indices follow in the data."""
         self._names.append({"name": called(name)} if name else {})
+        self._primitives.append([_primitive(len(self._names) - 1)])
         low, high = vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()
         self._append(12 * len(vertices), _VERTICES, len(vertices), _FLOAT, "VEC3")
         self._accessors[-1] |= {"min": low, "max": high}
@@ -132,7 +199,43 @@ class _Description:
         accessor = {"bufferView": len(self._views) - 1, "componentType": component}
         self._accessors.append({**accessor, "count": count, "type": kind})
 
-    def text(self) -> bytes:
+    def add_object(self, name: str, primitives: list[dict[str, Any]]) -> None:
+        """Add an object of which the data were appended."""
+        self._names.append({"name": called(name)} if name else {})
+        self._primitives.append(primitives)
+
+    def append(self, data: bytes) -> int:
+        """Add bytes to the data, and return the number of their view."""
+        view = {"buffer": 0, "byteOffset": self._size, "byteLength": len(data)}
+        self._views.append(view)
+        self.blocks.append(data + bytes(-len(data) % 4))
+        self._size += len(self.blocks[-1])
+        return len(self._views) - 1
+
+    def append_column(self, values: Values, with_bounds: bool = False) -> int:
+        """Add values of vertices, and return the number of their accessor."""
+        little = np.ascontiguousarray(values, values.dtype.newbyteorder("<"))
+        width = 1 if values.ndim == 1 else values.shape[1]
+        whole = {"componentType": _BYTE, "normalized": True}
+        kind = whole if values.dtype == np.uint8 else {"componentType": _FLOAT}
+        accessor: dict[str, Any] = {"bufferView": self.append(little.tobytes()), **kind}
+        self._views[-1]["target"] = _VERTICES
+        accessor["count"] = len(values)
+        accessor["type"] = "SCALAR" if width == 1 else f"VEC{width}"
+        if with_bounds:
+            accessor |= {"min": values.min(axis=0).tolist(), "max": values.max(axis=0).tolist()}
+        self._accessors.append(accessor)
+        return len(self._accessors) - 1
+
+    def append_indices(self, corners: IndexArray) -> int:
+        """Add triangles, and return the number of their accessor."""
+        view = self.append(corners.astype("<u4").tobytes())
+        self._views[view]["target"] = _INDICES
+        accessor = {"bufferView": view, "componentType": _UNSIGNED, "count": corners.size}
+        self._accessors.append({**accessor, "type": "SCALAR"})
+        return len(self._accessors) - 1
+
+    def text(self, further: dict[str, Any] | None = None) -> bytes:
         """Return the JSON."""
         asset = {"version": "2.0", "generator": "bspcsg", **self._extras}
         tree: dict[str, Any] = {"asset": asset, "scene": 0}
@@ -144,12 +247,13 @@ class _Description:
                 for number, named in enumerate(self._names)
             ]
             tree["meshes"] = [
-                {**named, "primitives": [_primitive(number)]}
+                {**named, "primitives": self._primitives[number]}
                 for number, named in enumerate(self._names)
             ]
             tree["accessors"] = self._accessors
             tree["bufferViews"] = self._views
             tree["buffers"] = [{"byteLength": self._size}]
+            tree |= further or {}
         return json.dumps(tree, separators=(",", ":"), ensure_ascii=False).encode()
 
 

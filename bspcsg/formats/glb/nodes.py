@@ -7,7 +7,13 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ..._types import FloatArray, IndexArray
+from ...attributes.attributes import Attributes
+from ...attributes.joining import Part, concatenated
+from ..raw import compacted
 from .container import Container
+from .said import materials_of, read_columns
+
+_Triangles: TypeAlias = "tuple[SingleArray, IndexArray, Attributes | None]"
 
 SingleArray: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
 
@@ -34,12 +40,14 @@ class Shown:
     faces : (m, 3) int64
     matrix : (4, 4) float64
         For column vectors: from the mesh to the scene.
+    attributes : Attributes or None
     """
 
     name: str
     vertices: SingleArray
     faces: IndexArray
     matrix: FloatArray
+    attributes: Attributes | None = None
 
 
 def shown(container: Container) -> tuple[list[Shown], int]:
@@ -55,7 +63,7 @@ def shown(container: Container) -> tuple[list[Shown], int]:
     """
     tree = container.tree
     nodes = tree.get("nodes", [])
-    meshes: dict[int, tuple[SingleArray, IndexArray]] = {}
+    meshes: dict[int, _Triangles] = {}
     found = []
     for number, matrix in _visited(tree, nodes):
         node = nodes[number]
@@ -65,7 +73,8 @@ def shown(container: Container) -> tuple[list[Shown], int]:
         if node["mesh"] not in meshes:
             meshes[node["mesh"]] = _mesh(container, mesh)
         name = mesh.get("name") or node.get("name") or ""
-        found.append(Shown(str(name), *meshes[node["mesh"]], matrix))
+        vertices, faces, said = meshes[node["mesh"]]
+        found.append(Shown(str(name), vertices, faces, matrix, said))
     placed = sum("mesh" in node for node in nodes)
     return found, placed - len(found)
 
@@ -113,20 +122,43 @@ def _rotation(quaternion: list[float]) -> FloatArray:
     )
 
 
-def _mesh(container: Container, mesh: dict[str, Any]) -> tuple[SingleArray, IndexArray]:
-    """Return the triangles of all primitives of a mesh."""
+def _mesh(container: Container, mesh: dict[str, Any]) -> _Triangles:
+    """Return the triangles of all primitives of a mesh, and what is said of them."""
     vertices: list[SingleArray] = [np.zeros((0, 3), np.float32)]
     faces = [np.zeros((0, 3), np.int64)]
+    parts = []
     start = 0
+    materials = materials_of(container.tree, container.data)
+    shared = _shared(mesh["primitives"])
     for primitive in mesh["primitives"]:
         mode = primitive.get("mode", _TRIANGLES)
         if mode not in (_TRIANGLES, _STRIP) or "POSITION" not in primitive["attributes"]:
             continue
         points = _positions(container, primitive["attributes"]["POSITION"])
+        corners = _faces(container, primitive, len(points), mode == _STRIP)
+        used = None
+        if primitive["attributes"]["POSITION"] in shared:
+            # Of vertices that several primitives have, each takes what it uses.
+            used, corners = compacted(corners)
+        columns = read_columns(container, primitive, len(points), used)
+        points = points if used is None else points[used]
+        face = {}
+        if "material" in primitive:
+            face = {"material": np.full(len(corners), materials[primitive["material"]][0])}
+        named = {name: one for name, one in materials if face and name == face["material"][:1]}
+        said = Attributes(corners, columns, {}, face, named) if columns or face else None
+        parts.append(Part(len(points), corners, said))
         vertices.append(points)
-        faces.append(_faces(container, primitive, len(points), mode == _STRIP) + start)
+        faces.append(corners + start)
         start += len(points)
-    return np.concatenate(vertices), np.concatenate(faces)
+    whole = np.concatenate(faces)
+    return np.concatenate(vertices), whole, concatenated(parts, whole)
+
+
+def _shared(primitives: list[dict[str, Any]]) -> set[Any]:
+    """Return the accessors of positions that more than one primitive names."""
+    named = [primitive["attributes"].get("POSITION") for primitive in primitives]
+    return {accessor for accessor in named if named.count(accessor) > 1}
 
 
 def _positions(container: Container, accessor: int) -> SingleArray:

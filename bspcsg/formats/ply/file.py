@@ -1,15 +1,20 @@
 """PLY: text, binary little-endian and binary big-endian, with polygons and any further data."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+import itertools
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 
-from ..._types import FloatArray
+from ..._types import FloatArray, IndexArray
+from ...attributes.attributes import Attributes, Values
 from ...errors import Finding, FormatError
 from ...mesh.mesh import Mesh
 from ..raw import IndexPolygons, RawMesh, says_empty_set
+from ..said import said_of
 from ..source import Source, quoted, whole
+from .columns import TYPES, attributes_of, columns_of, corners_of, lists_of
 from .header import Element, Header, Order, read_header
 from .lists import read_mixed, read_uniform
 
@@ -24,6 +29,8 @@ class _Found:
     vertices: FloatArray | None = None
     polygons: IndexPolygons | None = None
     polygon_error: Callable[[int, str, str], FormatError] | None = None
+    vertex_columns: dict[str, Values] = field(default_factory=dict)
+    face_columns: dict[str, Values] = field(default_factory=dict)
 
 
 def read(source: Source) -> RawMesh:
@@ -48,22 +55,52 @@ def read(source: Source) -> RawMesh:
         strips = any(element.name == "tristrips" for element in header.elements)
         hint = " Its triangle strips cannot be read; save it with faces." if strips else ""
         raise source.error(f"this PLY has no face lists.{hint}", line=header.lines)
-    faces = found.polygons.triangles(found.vertices, found.polygon_error)
-    dropped = (*_more_than_a_shape(header), *found.polygons.dropped)
-    return RawMesh(found.vertices, faces, "", rest, dropped=dropped)
+    faces, said = _said(found, found.polygons, found.vertices, found.polygon_error)
+    dropped = (*_more_than_a_shape(header, found), *found.polygons.dropped)
+    return RawMesh(found.vertices, faces, "", rest, dropped=dropped, attributes=said)
 
 
-def _more_than_a_shape(header: Header) -> tuple[str, ...]:
-    """Return which elements and properties say something besides the shape."""
-    found = []
+def _said(
+    found: _Found,
+    polygons: IndexPolygons,
+    vertices: FloatArray,
+    error_at: Callable[[int, str, str], FormatError],
+) -> tuple[IndexArray, Attributes | None]:
+    """Return the triangles and what is said of them and of vertices."""
+    if not found.vertex_columns and not found.face_columns:
+        return polygons.triangles(vertices, error_at), None
+    positions = polygons.positions(vertices, error_at)
+    faces, owners = polygons.corners[positions], polygons.owners(positions)
+    lists = {name: values for name, values in found.face_columns.items() if values.ndim == 2}
+    single = {name: values for name, values in found.face_columns.items() if values.ndim == 1}
+    corner = corners_of(lists) if (polygons.counts == 3).all() else {}
+    face = {name: values[owners] for name, values in attributes_of(single).items()}
+    vertex = attributes_of(found.vertex_columns)
+    vertex, corner, face = _apart(vertex, corner, face)
+    return faces, Attributes(faces, vertex, corner, face)
+
+
+def _apart(*kinds: dict[str, Values]) -> Iterator[dict[str, Values]]:
+    """Yield the arrays of vertices, corners and faces, of which no two have one name."""
+    taken: set[str] = set()
+    for kind in kinds:
+        yield {name: values for name, values in kind.items() if name not in taken}
+        taken.update(kind)
+
+
+def _more_than_a_shape(header: Header, found: _Found) -> tuple[str, ...]:
+    """Return which elements and properties say something besides the shape, and are not kept."""
+    columns = {"vertex": found.vertex_columns, "face": found.face_columns}
+    told = []
     for element in header.elements:
         shape = {"vertex": ("x", "y", "z"), "face": _FACE_LISTS}.get(element.name)
-        names = [prop.name for prop in element.properties if shape and prop.name not in shape]
+        kept = (*(shape or ()), *columns.get(element.name, ()))
+        names = [prop.name for prop in element.properties if shape and prop.name not in kept]
         if shape is None and element.number:
-            found.append(f"“{element.name}” elements")
+            told.append(f"“{element.name}” elements")
         elif names and element.number:
-            found.append(f"{element.name} properties {', '.join(names)}")
-    return tuple(found)
+            told.append(f"{element.name} properties {', '.join(names)}")
+    return tuple(told)
 
 
 def _axes(element: Element) -> tuple[int, int, int] | None:
@@ -95,6 +132,7 @@ def _read_text(source: Source, header: Header, found: _Found) -> tuple[Finding, 
             raise source.error(message, "truncated", line=last)
         if element.name == "vertex" and (axes := _axes(element)):
             found.vertices = _text_vertices(source, block, element, axes)
+            found.vertex_columns = _text_columns(source, block, element, axes)
         elif (column := _face_column(source, header, element)) is not None:
             _text_faces(source, block, element, column, found)
     rest = lines[start:]
@@ -128,7 +166,63 @@ def _text_faces(
 ) -> None:
     lists = [_text_list(source, number, words, element, column) for number, words in block]
     found.polygons = IndexPolygons.from_lists(lists)
+    found.face_columns = _text_face_columns(source, block, element, column)
     found.polygon_error = lambda k, message, code: source.error(message, code, line=block[k][0])
+
+
+def _text_columns(
+    source: Source,
+    block: list[tuple[int, list[bytes]]],
+    element: Element,
+    known: tuple[int, ...],
+) -> dict[str, Values]:
+    """Return the columns of an element without lists that are not known by themselves."""
+    return {
+        prop.name: _text_numbers(source, block, [words[k] for _, words in block], prop.item)
+        for k, prop in enumerate(element.properties)
+        if k not in known
+    }
+
+
+def _text_face_columns(
+    source: Source, block: list[tuple[int, list[bytes]]], element: Element, column: int
+) -> dict[str, Values]:
+    """Return the other columns of faces, if every list is as long as in the first line."""
+    rows = [_split(words, element) for _, words in block]
+    found: dict[str, Values] = {}
+    for k, prop in enumerate(element.properties):
+        length = len(rows[0][k]) if rows else 0
+        if k == column or any(len(row[k]) != length for row in rows):
+            continue
+        flat = [word for row in rows for word in row[k]]
+        values = _text_numbers(source, block, flat, prop.item)
+        found[prop.name] = values if prop.count is None else values.reshape(len(rows), length)
+    return found
+
+
+def _split(words: list[bytes], element: Element) -> list[list[bytes]]:
+    """Return the words of each property of a line that was checked."""
+    at, found = 0, []
+    for prop in element.properties:
+        length = 1 if prop.count is None else whole(words[at])
+        at += prop.count is not None
+        found.append(words[at : at + length])
+        at += length
+    return found
+
+
+def _text_numbers(
+    source: Source,
+    block: list[tuple[int, list[bytes]]],
+    words: list[bytes],
+    kind: "np.dtype[np.generic]",
+) -> Values:
+    try:
+        numbers = [float(word) if kind.kind == "f" else whole(word) for word in words]
+        return np.array(numbers, dtype=kind)
+    except (ValueError, OverflowError):
+        message = f"the properties of these lines are no numbers of type {kind}."
+        raise source.error(message, line=block[0][0]) from None
 
 
 def _text_list(
@@ -176,6 +270,7 @@ def _read_binary(
         offset = block.end
         if block.polygons is not None:
             found.polygons, found.polygon_error = block.polygons, block.error_at
+            found.face_columns = block.columns
     extra = len(source.data) - offset
     # A final line break is the habit of a text editor, not data.
     return () if source.data[offset:].isspace() or not extra else _extra(extra, "bytes", (offset,))
@@ -195,6 +290,11 @@ def _read_records(source: Source, order: Order, element: Element, start: int, fo
         records = np.frombuffer(source.data, record, element.number, start)
         columns = [records[f"p{axis}"].astype(np.float64) for axis in axes]
         found.vertices = np.stack(columns, axis=1)
+        found.vertex_columns = {
+            prop.name: records[f"p{k}"].astype(prop.item)
+            for k, prop in enumerate(element.properties)
+            if k not in axes
+        }
         finite = np.isfinite(found.vertices).all(axis=1)
         if not finite.all():
             vertex = int(np.flatnonzero(~finite)[0])
@@ -211,27 +311,88 @@ def _extra(count: int, unit: str, where: tuple[int, ...]) -> tuple[Finding, ...]
 
 def _header(mesh: Mesh | RawMesh, form: str) -> bytes:
     comment = "comment bspcsg: the empty set\n" if says_empty_set(mesh) else ""
+    vertex, face, lists = _columns(mesh)
     return (
         f"ply\nformat {form} 1.0\n{comment}element vertex {len(mesh.vertices)}\n"
         "property double x\nproperty double y\nproperty double z\n"
-        f"element face {len(mesh.faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+        f"{_properties(vertex)}"
+        f"element face {len(mesh.faces)}\nproperty list uchar int vertex_indices\n"
+        f"{_properties(face)}{_properties(lists, 'list uchar ')}end_header\n"
     ).encode()
+
+
+_Columns: TypeAlias = list[tuple[str, Values]]
+
+
+def _columns(mesh: Mesh | RawMesh) -> tuple[_Columns, _Columns, _Columns]:
+    """Return the further columns of vertices, those of faces, and the lists of faces."""
+    said = said_of(mesh)
+    if said is None:
+        return [], [], []
+    return list(columns_of(said.vertex)), list(columns_of(said.face)), list(lists_of(said.corner))
+
+
+def _properties(columns: _Columns, kind: str = "") -> str:
+    words = (f"property {kind}{_type_of(values)} {name}\n" for name, values in columns)
+    return "".join(words)
+
+
+def _type_of(values: Values) -> str:
+    return TYPES[f"{values.dtype.kind}{values.dtype.itemsize}"]
 
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the little-endian form, in double precision."""
     yield _header(mesh, "binary_little_endian")
-    yield mesh.vertices.astype("<f8").tobytes()
-    records = np.zeros(len(mesh.faces), [("count", "u1"), ("corners", "<i4", 3)])
+    vertex, face, lists = _columns(mesh)
+    if vertex:
+        kinds = [("xyz", "<f8", (3,)), *((f"p{k}", _little(v)) for k, (_, v) in enumerate(vertex))]
+        points = np.zeros(len(mesh.vertices), np.dtype(cast(Any, kinds)))
+        points["xyz"] = mesh.vertices
+        for k, (_, values) in enumerate(vertex):
+            points[f"p{k}"] = values
+        yield points.tobytes()
+    else:
+        yield mesh.vertices.astype("<f8").tobytes()
+    fields: list[Any] = [("count", "u1"), ("corners", "<i4", 3)]
+    fields += [(f"p{k}", _little(values)) for k, (_, values) in enumerate(face)]
+    for k, (_, values) in enumerate(lists):
+        fields += [(f"n{k}", "u1"), (f"l{k}", _little(values), values.shape[1:])]
+    records = np.zeros(len(mesh.faces), np.dtype(fields))
     records["count"] = 3
     records["corners"] = mesh.faces
+    for k, (_, values) in enumerate(face):
+        records[f"p{k}"] = values
+    for k, (_, values) in enumerate(lists):
+        records[f"n{k}"], records[f"l{k}"] = values.shape[1], values
     yield records.tobytes()
+
+
+def _little(values: Values) -> "np.dtype[Any]":
+    return values.dtype.newbyteorder("<")
 
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the ASCII form; every coordinate reads back as the same double."""
     yield _header(mesh, "ascii")
-    for point in mesh.vertices.tolist():
-        yield "{!r} {!r} {!r}\n".format(*point).encode()
-    for face in mesh.faces.tolist():
-        yield "3 {} {} {}\n".format(*face).encode()
+    vertex, face, lists = _columns(mesh)
+    further = _words(vertex, len(mesh.vertices))
+    for point, words in zip(mesh.vertices.tolist(), further, strict=True):
+        yield "{!r} {!r} {!r}{}\n".format(*point, words).encode()
+    further = _words([*face, *lists], len(mesh.faces))
+    for corners, words in zip(mesh.faces.tolist(), further, strict=True):
+        yield "3 {} {} {}{}\n".format(*corners, words).encode()
+
+
+def _words(columns: _Columns, count: int) -> Iterable[str]:
+    """Return what follows in each line, with a space before each word; lists begin by length."""
+    if not columns:
+        return itertools.repeat("", count)
+    lists = [values.tolist() for _, values in columns]
+    return ("".join(map(_word, row)) for row in zip(*lists, strict=True))
+
+
+def _word(value: Any) -> str:
+    if isinstance(value, list):
+        return f" {len(value)}" + "".join(map(_word, value))
+    return f" {value!r}"

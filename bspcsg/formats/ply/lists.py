@@ -2,10 +2,11 @@
 
 import struct
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...attributes.attributes import Values
 from ...errors import FormatError
 from ..raw import IndexPolygons
 from ..source import Source
@@ -24,11 +25,14 @@ class ListBlock:
         The lists of the wanted column, if one was wanted.
     error_at : callable
         Makes the error for record k.
+    columns : dict of str to array
+        The other properties, (k,) or (k, n), if every list is as long as in the first record.
     """
 
     end: int
     polygons: IndexPolygons | None
     error_at: Callable[[int, str, str], FormatError]
+    columns: dict[str, Values] = field(default_factory=dict)
 
 
 def read_uniform(
@@ -55,7 +59,12 @@ def read_uniform(
     polygons = None
     if column is not None:
         polygons = IndexPolygons.from_rows(records[f"p{column}"])
-    return ListBlock(end, polygons, error_at)
+    columns = {
+        prop.name: records[f"p{position}"].astype(prop.item)
+        for position, prop in enumerate(element.properties)
+        if position != column
+    }
+    return ListBlock(end, polygons, error_at, columns)
 
 
 def _first_lengths(source: Source, order: Order, element: Element, start: int) -> list[int] | None:

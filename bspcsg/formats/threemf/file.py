@@ -19,6 +19,7 @@ from ...errors import Finding, FormatError
 from ..raw import RawMesh, empty_set, joined
 from ..source import Source
 from .part import MILLIMETRES, ModelPart, PartReader, PlacedObject, parse_xml
+from .properties import properties_of
 from .write import NOTHING
 
 #: How many objects a build may place, and how deep components may lie in one another.
@@ -210,6 +211,7 @@ def _part_name(target: str) -> str:
 def _moved(part: ModelPart, item: str, transforms: tuple[FloatArray, ...]) -> RawMesh:
     """Return the mesh of an object under transforms; a mirrored one is turned right side out."""
     vertices, faces = part.objects[item].arrays()
+    mirrored = False
     for matrix in transforms:
         if (matrix == np.eye(4, 3)).all():
             continue
@@ -220,7 +222,11 @@ def _moved(part: ModelPart, item: str, transforms: tuple[FloatArray, ...]) -> Ra
         vertices = np.stack(columns, axis=1)
         if np.linalg.det(matrix[:3]) < 0:
             faces = faces[:, ::-1]
-    return RawMesh(vertices, faces, part.objects[item].name)
+            mirrored = not mirrored
+    said = properties_of(part, part.objects[item], faces)
+    if said is not None and mirrored:
+        said = said.reordered([2, 1, 0])
+    return RawMesh(vertices, faces, part.objects[item].name, attributes=said)
 
 
 def _unit_finding(part: ModelPart) -> tuple[Finding, ...]:

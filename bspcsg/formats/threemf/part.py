@@ -23,13 +23,14 @@ MILLIMETRES = {
 
 #: Elements about what a mesh of triangles has no room for.
 _DROPPED = {
-    "base": "materials",
-    "color": "colours",
     "composite": "materials",
     "tex2coord": "texture coordinates",
     "texture2d": "textures",
     "metadata": "metadata",
 }
+
+#: Attributes of a triangle that has no properties.
+_BARE = 3
 
 Start: TypeAlias = Callable[[str, dict[str, str]], None]
 
@@ -63,6 +64,8 @@ class Object:
     components: list[PlacedObject] = field(default_factory=list)
     beams: int = 0
     name: str = ""
+    usual: tuple[str, int] | None = None
+    properties: dict[int, tuple[str, tuple[int, ...]]] = field(default_factory=dict)
 
     def arrays(self) -> tuple[FloatArray, IndexArray]:
         """Return vertices (n, 3) and triangles (m, 3)."""
@@ -78,6 +81,8 @@ class ModelPart:
     objects: dict[str, Object] = field(default_factory=dict)
     items: list[PlacedObject] = field(default_factory=list)
     dropped: set[str] = field(default_factory=set)
+    colors: dict[str, list[tuple[int, ...]]] = field(default_factory=dict)
+    bases: dict[str, list[tuple[str, tuple[int, ...]]]] = field(default_factory=dict)
 
 
 def parse_xml(source: Source, chunks: Iterable[bytes], start: Start) -> None:
@@ -145,6 +150,7 @@ class PartReader:
         self._part_name = part_name
         self._part = ModelPart()
         self._current = Object("none")
+        self._group = ""
 
     def read(self) -> ModelPart:
         """Return the part.
@@ -166,6 +172,8 @@ class PartReader:
         if tag == "vertex":
             self._current.vertices.append(_point(attributes))
         elif tag == "triangle":
+            if len(attributes) > _BARE:
+                self._current.properties[len(self._current.triangles)] = self._named(attributes)
             self._current.triangles.append(_triangle(attributes))
         elif tag == "component":
             self._current.components.append(self._placed(attributes))
@@ -174,6 +182,8 @@ class PartReader:
         elif tag == "object":
             kind, name = attributes.get("type", "model"), attributes.get("name", "")
             self._current = Object(kind, name=name)
+            if "pid" in attributes:
+                self._current.usual = attributes["pid"], int(attributes.get("pindex", "0"))
             if attributes["id"] in self._part.objects:
                 raise ValueError(f"two objects have the number {attributes['id']}")
             self._part.objects[attributes["id"]] = self._current
@@ -181,9 +191,26 @@ class PartReader:
             self._part.unit = attributes.get("unit", "millimeter")
             if self._part.unit not in MILLIMETRES:
                 raise ValueError(f"unknown unit {self._part.unit}")
+        elif tag in ("colorgroup", "basematerials"):
+            self._group = attributes["id"]
+        elif tag == "color":
+            self._part.colors.setdefault(self._group, []).append(_color(attributes["color"]))
+        elif tag == "base":
+            base = attributes.get("name", ""), _color(attributes["displaycolor"])
+            self._part.bases.setdefault(self._group, []).append(base)
         elif tag in _DROPPED:
             self._part.dropped.add(_DROPPED[tag])
         self._current.beams += tag == "beam"
+
+    def _named(self, attributes: dict[str, str]) -> tuple[str, tuple[int, ...]]:
+        """Return the group and the numbers of the properties at the corners of a triangle."""
+        usual = self._current.usual or ("", 0)
+        group = attributes.get("pid", usual[0])
+        first = attributes.get("p1")
+        if first is None:
+            return group, (usual[1],) * 3
+        named = (first, attributes.get("p2", first), attributes.get("p3", first))
+        return group, tuple(map(int, named))
 
     def _placed(self, attributes: dict[str, str]) -> PlacedObject:
         path = attributes.get("path", "")
@@ -197,6 +224,14 @@ class PartReader:
     def _bad_index(self, number: str, index: int, count: int) -> FormatError:
         message = f"object {number} names vertex {index}, but has {count} vertices."
         return self._source.error(message, "index_out_of_range")
+
+
+def _color(text: str) -> tuple[int, ...]:
+    """Return red, green, blue and opacity of ``#RRGGBB`` or ``#RRGGBBAA``."""
+    data = bytes.fromhex(text.removeprefix("#"))
+    if len(data) not in (3, 4) or not text.startswith("#"):
+        raise ValueError(f"{text} is no colour")
+    return tuple(data) if len(data) == 4 else (*data, 255)
 
 
 def _point(attributes: dict[str, str]) -> tuple[float, float, float]:

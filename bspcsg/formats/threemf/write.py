@@ -5,6 +5,7 @@ never written: slicers disagree on whether a unit applies to them.
 """
 
 import io
+import itertools
 import re
 import zipfile
 from collections.abc import Iterator
@@ -13,11 +14,15 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from ..._types import FloatArray, IndexArray
+from ...attributes.attributes import Attributes, Values
+from ...attributes.material import Material
 from ...errors import Finding
 from ...mesh.mesh import Mesh
 from ..raw import RawMesh, compacted, empty_set, parts_of, says_empty_set
+from ..said import said_of
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+_MATERIALS = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02"
 _MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 _HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
 
@@ -69,30 +74,74 @@ def _repeats_corner(faces: IndexArray) -> "np.ndarray[tuple[int], np.dtype[np.bo
 
 
 def _model(mesh: Mesh | RawMesh) -> Iterator[str]:
-    yield f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}">\n'
+    said = said_of(mesh)
+    colored = said is not None and "color" in said.names
+    more = f' xmlns:m="{_MATERIALS}"' if colored else ""
+    yield f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}"{more}>\n'
     if says_empty_set(mesh):
         yield "<!-- bspcsg: the empty set -->\n"
     yield "<resources>\n"
-    count = 0
+    count = start = 0
+    groups, words = ([], None) if said is None else _properties(said)
+    yield from groups
     for name, faces in parts_of(mesh):
-        proper = faces[~_repeats_corner(faces)]
+        is_proper = ~_repeats_corner(faces)
+        proper = faces[is_proper]
+        own = None if words is None else words[start : start + len(faces)][is_proper]
+        start += len(faces)
         if len(proper):
             count += 1
-            yield from _object(count, name, mesh.vertices, proper)
+            yield from _object(count, name, mesh.vertices, proper, own)
     yield "</resources>\n<build>\n"
     yield from (f'<item objectid="{number}"/>\n' for number in range(1, count + 1))
     yield "</build>\n</model>\n"
 
 
-def _object(number: int, name: str, vertices: FloatArray, faces: IndexArray) -> Iterator[str]:
+#: The number of the only group of properties; objects have those from 1 on.
+_GROUP = 1 << 30
+
+
+def _properties(said: Attributes) -> tuple[list[str], Values]:
+    """Return the group of properties, and what each triangle says of them."""
+    if "material" in said.face:
+        names = said.face["material"]
+        order = list(said.materials)
+        lines = [
+            f'<base name={quoteattr(called(name))} displaycolor="{_hex(material)}"/>\n'
+            for name, material in said.materials.items()
+        ]
+        told = {name: f' pid="{_GROUP}" p1="{k}"' for k, name in enumerate(order)}
+        words = np.array([told.get(name, "") for name in names.tolist()], dtype=object)
+        return [f'<basematerials id="{_GROUP}">\n', *lines, "</basematerials>\n"], words
+    corners = said.at_corners("color").reshape(-1, 4)
+    colors, numbers = np.unique(corners, axis=0, return_inverse=True)
+    lines = [f'<m:color color="#{bytes(color).hex().upper()}"/>\n' for color in colors.tolist()]
+    told_rows = numbers.reshape(-1, 3).tolist()
+    words = np.array([_corner_words(*row) for row in told_rows], dtype=object)
+    return [f'<m:colorgroup id="{_GROUP}">\n', *lines, "</m:colorgroup>\n"], words
+
+
+def _corner_words(first: int, second: int, third: int) -> str:
+    same = first == second == third
+    return f' pid="{_GROUP}" p1="{first}"' + ("" if same else f' p2="{second}" p3="{third}"')
+
+
+def _hex(material: Material) -> str:
+    return "#" + bytes(round(value * 255) for value in material.color).hex().upper()
+
+
+def _object(
+    number: int, name: str, vertices: FloatArray, faces: IndexArray, words: Values | None = None
+) -> Iterator[str]:
     used, corners = compacted(faces)
     named = f" name={quoteattr(called(name))}" if name else ""
     yield f'<object id="{number}" type="model"{named}><mesh><vertices>\n'
     for point in vertices[used].tolist():
         yield '<vertex x="{!r}" y="{!r}" z="{!r}"/>\n'.format(*point)
     yield "</vertices><triangles>\n"
-    for face in corners.tolist():
-        yield '<triangle v1="{}" v2="{}" v3="{}"/>\n'.format(*face)
+    told = itertools.repeat("") if words is None else words.tolist()
+    for face, properties in zip(corners.tolist(), told, strict=False):
+        yield '<triangle v1="{}" v2="{}" v3="{}"{}/>\n'.format(*face, properties)
     yield "</triangles></mesh></object>\n"
 
 

@@ -1,0 +1,81 @@
+"""Attributes of several meshes put one after the other."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .._types import IndexArray
+from .attributes import Attributes, Kind, Values
+from .carrying import common_type, default_of
+from .material import Material
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A mesh among others: how many vertices it has, its faces, and what is said of it."""
+
+    vertex_count: int
+    faces: IndexArray
+    attributes: Attributes | None
+
+
+def concatenated(parts: Sequence[Part], faces: IndexArray) -> Attributes | None:
+    """Return the attributes of the whole, or None if none of the parts has any.
+
+    Parameters
+    ----------
+    parts : sequence of Part
+    faces : (m, 3) int64
+        The triangles of the whole.
+    """
+    said = [part for part in parts if part.attributes is not None]
+    if not said:
+        return None
+    parts, materials = _with_common_materials(parts)
+    names = [name for part in said if part.attributes for name in part.attributes.names]
+    found: dict[Kind, dict[str, Values]] = {"vertex": {}, "corner": {}, "face": {}}
+    for name in dict.fromkeys(names):
+        kinds = {part.attributes.kind_of(name) for part in said if part.attributes} - {None}
+        kind: Kind = kinds.pop() or "corner" if len(kinds) == 1 else "corner"
+        values = _values(name, kind, parts)
+        values.flags.writeable = False
+        found[kind][name] = values
+    return Attributes(faces, **found, materials=materials)
+
+
+def _values(name: str, kind: Kind, parts: Sequence[Part]) -> Values:
+    rows: Callable[[Part], tuple[int, ...]] = {
+        "vertex": lambda part: (part.vertex_count,),
+        "corner": lambda part: (len(part.faces), 3),
+        "face": lambda part: (len(part.faces),),
+    }[kind]
+    held = [_held(name, kind, part.attributes) for part in parts]
+    known = [values for values in held if values is not None]
+    depth = 2 if kind == "corner" else 1
+    dtype = common_type(name, known, depth)
+    shape = known[0].shape[depth:]
+    blocks = [
+        np.full(rows(part) + shape, default_of(dtype), dtype) if values is None else values
+        for part, values in zip(parts, held, strict=True)
+    ]
+    whole: Values = np.concatenate(blocks).astype(dtype, copy=False)
+    return whole
+
+
+def _held(name: str, kind: Kind, attributes: Attributes | None) -> Values | None:
+    if attributes is None or attributes.kind_of(name) is None:
+        return None
+    return attributes.at_corners(name) if kind == "corner" else attributes.of(kind)[name]
+
+
+def _with_common_materials(parts: Sequence[Part]) -> tuple[list[Part], dict[str, Material]]:
+    """Return the materials of all parts; a name that means two gets a number behind it."""
+    materials: dict[str, Material] = {}
+    found = []
+    for part in parts:
+        if part.attributes is None:
+            found.append(part)
+            continue
+        found.append(replace(part, attributes=part.attributes.among(materials)))
+    return found, materials

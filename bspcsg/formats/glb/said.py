@@ -1,0 +1,217 @@
+"""Attributes and materials of GLB.
+
+Colours and other numbers go into the file as they are. glTF counts texture coordinates from the
+upper left corner of a picture, attributes count from the lower left, so they are turned over.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..._types import BoolArray, FloatArray, IndexArray
+from ...attributes.attributes import Attributes, Kind, Values, is_normal
+from ...attributes.material import Material
+from ...errors import InvalidMeshError
+from ..said import as_bytes, chosen, is_color
+from .container import Container
+
+#: glTF's names of attributes that everybody knows.
+_KNOWN = {"NORMAL": "normal", "TEXCOORD_0": "uv", "COLOR_0": "color"}
+
+#: What other attributes are called in files: their names behind this.
+_OWN = "_"
+
+#: Kinds of components by glTF's numbers, and what whole ones are divided by if they are fractions.
+_COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+
+
+def kept(said: Attributes, vertices: FloatArray) -> Attributes:
+    """Return what GLB holds of attributes, in single precision.
+
+    Normals and texture coordinates of corners, colours, materials of faces, and other floats of
+    vertices and corners, up to four for each. Where normals are missing, those of the faces are.
+    """
+    held = chosen(_with_all_normals(said, vertices), _kept)
+    names = held.face.get("material")
+    if names is None:
+        return Attributes(held.faces, held.vertex, held.corner, held.face)
+    used = [name for name in np.unique(names).tolist() if name]
+    materials = {name: said.materials.get(name, Material()) for name in used}
+    return Attributes(held.faces, held.vertex, held.corner, held.face, materials)
+
+
+def _with_all_normals(said: Attributes, vertices: FloatArray) -> Attributes:
+    if said.kind_of("normal") not in ("vertex", "corner"):
+        return said
+    normals = said.at_corners("normal")
+    if not is_normal("normal", normals):
+        return said
+    missing: BoolArray = np.asarray(np.isnan(normals).any(axis=-1))
+    if not missing.any():
+        return said
+    a, b, c = (vertices[said.faces[:, k]] for k in range(3))
+    outward = np.cross(b - a, c - a)
+    lengths = np.linalg.norm(outward, axis=1, keepdims=True)
+    unit = np.divide(outward, lengths, out=np.zeros_like(outward), where=lengths > 0)
+    filled = np.where(missing[..., None], unit[:, None], normals).astype(normals.dtype)
+    vertex = {name: values for name, values in said.vertex.items() if name != "normal"}
+    return replace(said, vertex=vertex, corner={**said.corner, "normal": filled})
+
+
+def _kept(kind: Kind, name: str, values: Values) -> Values | None:
+    shape = values.shape[2 if kind == "corner" else 1 :]
+    if name == "material":
+        return values if kind == "face" and values.dtype.kind == "U" and not shape else None
+    if is_color(name, values, values.ndim - 1):
+        return _color(values)
+    if kind == "face" or values.dtype.kind != "f" or shape not in ((), (2,), (3,), (4,)):
+        return None
+    single = values.astype(np.float32)
+    if name == "uv":
+        return _upright(_upright(np.nan_to_num(single))) if shape == (2,) else None
+    if name == "normal":
+        is_whole = shape == (3,) and not np.isnan(single).any()
+        return single if is_whole else None
+    # A file must hold no NaN.
+    return None if name in _KNOWN or np.isnan(single).any() else single
+
+
+def _color(values: Values) -> Values:
+    """Return colours as files hold them: four bytes, for a row of bytes is a multiple of four."""
+    colors = as_bytes(values)
+    if colors.shape[-1] == 4:
+        return colors
+    return np.concatenate([colors, np.full_like(colors[..., :1], 255)], axis=-1)
+
+
+def _upright(uv: Values) -> Values:
+    """Turn texture coordinates over, in single precision."""
+    turned: Values = np.stack([uv[..., 0], np.float32(1) - uv[..., 1]], axis=-1)
+    return turned
+
+
+def columns_of(said: Attributes, rows: IndexArray) -> dict[str, Values]:
+    """Return what some triangles have at their corners, (k, 3, …), by glTF's names."""
+    called = {name: semantic for semantic, name in _KNOWN.items()}
+    found = {}
+    for name in said.names:
+        if name != "material":
+            values = said.at_corners(name, rows)
+            found[called.get(name, _OWN + name)] = _upright(values) if name == "uv" else values
+    return found
+
+
+def read_columns(
+    container: Container, primitive: Mapping[str, Any], count: int, used: IndexArray | None
+) -> dict[str, Values]:
+    """Return the attributes of some of a primitive's vertices.
+
+    Parameters
+    ----------
+    container : Container
+    primitive : dict
+    count : int
+        Number of its vertices.
+    used : (k,) int64 or None
+        Those that are wanted; None for all.
+    """
+    found: dict[str, Values] = {}
+    for semantic, number in primitive["attributes"].items():
+        name = _KNOWN.get(semantic, semantic[1:] if semantic.startswith(_OWN) else "")
+        values = _elements(container, number) if name else None
+        if values is None or len(values) != count or not _fits(name, values):
+            continue
+        chosen_rows = values if used is None else values[used]
+        found[name] = _upright(chosen_rows) if name == "uv" else chosen_rows
+    return found
+
+
+def _fits(name: str, values: Values) -> bool:
+    widths = {"normal": ((3,),), "uv": ((2,),), "color": ((3,), (4,))}
+    return name not in widths or values.shape[1:] in widths[name]
+
+
+def _elements(container: Container, number: int) -> Values | None:
+    """Return the elements of an accessor; fractions in whole numbers become floats."""
+    accessor = container.tree["accessors"][number]
+    view = container.tree["bufferViews"][accessor["bufferView"]]
+    item, width = np.dtype(_COMPONENTS[accessor["componentType"]]), _WIDTHS.get(accessor["type"])
+    if width is None:
+        return None
+    stride = view.get("byteStride") or item.itemsize * width
+    start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+    shape = (accessor["count"], width)
+    values = np.ndarray(shape, item, container.data, start, (stride, item.itemsize))
+    native: Values = values.astype(item.newbyteorder("="))
+    if accessor.get("normalized") and item != np.dtype("<u1") and item.kind in "iu":
+        native = (native / np.iinfo(item).max).astype(np.float32)
+    return native[:, 0] if width == 1 else native
+
+
+def materials_of(tree: Mapping[str, Any], data: bytes) -> list[tuple[str, Material]]:
+    """Return names and materials of a file; those without a name are called by their numbers."""
+    found: list[tuple[str, Material]] = []
+    taken: set[str] = set()
+    for number, told in enumerate(tree.get("materials", [])):
+        name = str(told.get("name") or f"material {number}")
+        while name in taken:
+            name = f"{name} ({number})"
+        taken.add(name)
+        surface = told.get("pbrMetallicRoughness", {})
+        texture = _texture(tree, data, surface.get("baseColorTexture"))
+        color = tuple(surface.get("baseColorFactor", (1.0, 1.0, 1.0, 1.0)))
+        try:
+            found.append((name, Material(color, texture)))
+        except (InvalidMeshError, TypeError, ValueError):
+            found.append((name, Material()))
+    return found
+
+
+def _texture(tree: Mapping[str, Any], data: bytes, told: Any) -> bytes | None:
+    """Return the picture of a texture, if it lies in the file and is one that is known."""
+    try:
+        image = tree["images"][tree["textures"][told["index"]]["source"]]
+        view = tree["bufferViews"][image["bufferView"]]
+        start = view.get("byteOffset", 0)
+        picture = bytes(data[start : start + view["byteLength"]])
+        return Material(texture=picture).texture
+    except (KeyError, IndexError, TypeError, InvalidMeshError):
+        return None
+
+
+class Pictures:
+    """The materials of a file that is written, and the pictures they need.
+
+    Parameters
+    ----------
+    materials : dict of str to Material
+    append : callable
+        Adds bytes to the data, and returns the number of their view.
+    """
+
+    def __init__(self, materials: Mapping[str, Material], append: Callable[[bytes], int]) -> None:
+        self.numbers = {name: number for number, name in enumerate(materials)}
+        self._materials = materials
+        self._append = append
+
+    def described(self) -> dict[str, Any]:
+        """Return what the description says of them."""
+        if not self._materials:
+            return {}
+        images: list[dict[str, Any]] = []
+        found = []
+        for name, material in self._materials.items():
+            surface: dict[str, Any] = {"metallicFactor": 0.0, "baseColorFactor": [*material.color]}
+            if material.texture is not None:
+                images.append(
+                    {"bufferView": self._append(material.texture), "mimeType": material.media}
+                )
+                surface["baseColorTexture"] = {"index": len(images) - 1}
+            one: dict[str, Any] = {"name": name, "pbrMetallicRoughness": surface}
+            found.append(one | ({"alphaMode": "BLEND"} if material.color[3] < 1 else {}))
+        textures = [{"source": number} for number in range(len(images))]
+        pictures = {"textures": textures, "images": images} if images else {}
+        return {"materials": found, **pictures}

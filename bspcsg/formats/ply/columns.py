@@ -1,0 +1,142 @@
+"""Attributes as columns of PLY, and columns as attributes.
+
+Programs know colours as red, green, blue and alpha, normals as nx, ny and nz, and texture
+coordinates as s and t, or as a list called texcoord on faces. Other arrays have a column, or one
+for each of their numbers, with that behind the name; values of corners are lists on faces.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from ...attributes.attributes import Attributes, Kind, Values
+from ..said import chosen
+
+#: Names of columns that everybody knows, and the attributes that they are.
+_KNOWN = {
+    "color": ("red", "green", "blue", "alpha"),
+    "normal": ("nx", "ny", "nz"),
+    "uv": ("s", "t"),
+}
+
+#: Other names of columns, by those above: what programs write instead.
+_ALIASES = {"u": "s", "v": "t", "texture_u": "s", "texture_v": "t"}
+
+#: The list of texture coordinates on faces.
+_TEXCOORD = "texcoord"
+
+_RESERVED = frozenset(
+    {"x", "y", "z", "vertex_index", "vertex_indices", _TEXCOORD}.union(*_KNOWN.values(), _ALIASES)
+)
+
+#: Types that PLY has, by numpy's letters and sizes.
+TYPES = {
+    "i1": "char",
+    "u1": "uchar",
+    "i2": "short",
+    "u2": "ushort",
+    "i4": "int",
+    "u4": "uint",
+    "f4": "float",
+    "f8": "double",
+}
+
+#: A word that a header can hold, and that does not look like one of several columns.
+_NAME = re.compile(r"[!-~]+")
+_NUMBERED = re.compile(r"(.+)_(\d+)")
+
+#: The length of a list is a byte.
+_LONGEST = 255
+
+
+def kept(said: Attributes) -> Attributes:
+    """Return what PLY holds of attributes: numbers, under names of one word."""
+    return chosen(said, _kept)
+
+
+def _kept(kind: Kind, name: str, values: Values) -> Values | None:
+    depth = 2 if kind == "corner" else 1
+    shape = values.shape[depth:]
+    if len(shape) > 1 or shape == (0,) or not _NAME.fullmatch(name):
+        return None
+    if name in _RESERVED or _NUMBERED.fullmatch(name):
+        return None
+    known = _KNOWN.get(name)
+    if known and shape not in ((len(known),), (3,) if name == "color" else (len(known),)):
+        return None
+    if kind == "corner" and (shape == (1,) or 3 * (shape or (1,))[0] > _LONGEST):
+        return None
+    return _of_known_type(values)
+
+
+def _of_known_type(values: Values) -> Values | None:
+    """Return numbers in a type that PLY has, or None if it has none for them."""
+    if values.dtype.kind == "b":
+        return values.astype(np.uint8)
+    if values.dtype.kind == "f":
+        return values.astype(np.float32) if values.dtype.itemsize < 4 else values
+    if values.dtype.kind not in "iu":
+        return None
+    if values.dtype.itemsize < 8:
+        return values
+    narrow = np.dtype(np.int32 if values.dtype.kind == "i" else np.uint32)
+    limits = np.iinfo(narrow)
+    fits = not values.size or limits.min <= values.min() <= values.max() <= limits.max
+    return values.astype(narrow) if fits else None
+
+
+def columns_of(attributes: Mapping[str, Values]) -> Iterator[tuple[str, Values]]:
+    """Yield name and values of each column of vertices or faces."""
+    for name, values in attributes.items():
+        if values.ndim == 1:
+            yield name, values
+            continue
+        width = values.shape[1]
+        names = _KNOWN.get(name) or [f"{name}_{k}" for k in range(width)]
+        for k in range(width):
+            yield names[k], values[:, k]
+
+
+def lists_of(attributes: Mapping[str, Values]) -> Iterator[tuple[str, Values]]:
+    """Yield name and values (m, 3 k) of each list that holds values of corners."""
+    for name, values in attributes.items():
+        yield _TEXCOORD if name == "uv" else name, values.reshape(len(values), -1)
+
+
+def attributes_of(columns: Mapping[str, Values]) -> dict[str, Values]:
+    """Return the attributes that columns of vertices or faces are."""
+    left = {_ALIASES.get(name, name): values for name, values in columns.items()}
+    found: dict[str, Values] = {}
+    for name, known in _KNOWN.items():
+        wanted = [one for one in known if one in left or one != "alpha"]
+        if all(one in left for one in wanted):
+            found[name] = np.stack([left.pop(one) for one in wanted], axis=1)
+    for base, names in _numbered(left).items():
+        found[base] = np.stack([left.pop(name) for name in names], axis=1)
+    return found | left
+
+
+def _numbered(columns: Mapping[str, Values]) -> dict[str, list[str]]:
+    """Return the names of columns that are the numbers of one array, from 0 on."""
+    counts: dict[str, int] = {}
+    for name in columns:
+        match = _NUMBERED.fullmatch(name)
+        if match and counts.get(match[1], 0) == int(match[2]):
+            counts[match[1]] = int(match[2]) + 1
+    return {
+        base: [f"{base}_{k}" for k in range(count)]
+        for base, count in counts.items()
+        if base not in columns
+    }
+
+
+def corners_of(lists: Mapping[str, Values]) -> dict[str, Values]:
+    """Return the attributes of corners that lists on triangles are."""
+    found = {}
+    for name, values in lists.items():
+        if values.ndim == 2 and values.shape[1] % 3 == 0:
+            width = values.shape[1] // 3
+            shape = (len(values), 3) if width == 1 else (len(values), 3, width)
+            found["uv" if name == _TEXCOORD else name] = values.reshape(shape)
+    return found

@@ -1,0 +1,251 @@
+"""Attributes in files: every format with every kind that it can hold, and what it cannot."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import bspcsg as b
+from bspcsg.io import RawMesh, encoded, read, write
+from support.pictures import PIXEL
+
+RNG = np.random.default_rng(3)
+
+VERTEX: dict[str, npt.NDArray[Any]] = {
+    "color": RNG.integers(0, 256, (8, 4)).astype(np.uint8),
+    "weight": RNG.normal(size=8),
+    "pair": RNG.normal(size=(8, 2)).astype(np.float32),
+    "rank": np.arange(8, dtype=np.int32) - 3,
+    "flag": RNG.integers(0, 2, 8).astype(bool),
+    "text": np.array(list("abcdefgh")),
+}
+CORNER: dict[str, npt.NDArray[Any]] = {
+    "uv": RNG.uniform(size=(12, 3, 2)),
+    "normal": RNG.normal(size=(12, 3, 3)),
+    "heat": RNG.normal(size=(12, 3)),
+    "tint": RNG.integers(0, 256, (12, 3, 3)).astype(np.uint8),
+}
+FACE: dict[str, npt.NDArray[Any]] = {
+    "material": np.array(["red"] * 5 + [""] * 2 + ["my glass"] * 5),
+    "id": np.arange(12) * 7,
+    "large": np.arange(12) + 2**40,
+    "area": RNG.normal(size=(12, 3)),
+}
+MATERIALS = {
+    "red": b.Material((1, 0, 0)),
+    "my glass": b.Material((0.2, 0.4, 0.6, 0.8), PIXEL),
+}
+
+#: What each form of each format holds of these.
+HELD: dict[str, set[str]] = {
+    ".ply": {
+        *["color", "weight", "pair", "rank", "flag", "uv", "normal", "heat", "tint", "id", "area"]
+    },
+    ".off": {"color"},
+    ".obj": {"uv", "normal", "material"},
+    ".3mf": {"material"},
+    ".glb": {"color", "weight", "pair", "uv", "normal", "heat", "material"},
+    ".stl": set(),
+    ".vtu": set(),
+}
+
+FORMS = [(suffix, False) for suffix in sorted(HELD)] + [
+    (suffix, True) for suffix in (".ply", ".stl", ".obj", ".off")
+]
+
+
+def part() -> b.Solid:
+    mesh = b.cube(2).to_mesh()
+    return b.Solid(
+        mesh.vertices,
+        mesh.faces,
+        vertex_attributes=VERTEX,
+        corner_attributes=CORNER,
+        face_attributes=FACE,
+        materials=MATERIALS,
+    )
+
+
+def of(mesh: b.Mesh | RawMesh, name: str) -> npt.NDArray[Any]:
+    assert mesh.attributes is not None
+    return mesh.attributes.at_corners(name)
+
+
+@pytest.mark.parametrize(("suffix", "text"), FORMS)
+def test_what_a_format_holds_reads_back(tmp_path: Path, suffix: str, text: bool) -> None:
+    mesh = part().to_mesh()
+    findings = write(mesh, tmp_path / f"x{suffix}", text=text)
+    raw = read(tmp_path / f"x{suffix}")
+    names: set[str] = set() if raw.attributes is None else set(raw.attributes.names)
+    assert names == HELD[suffix]
+    left = {one.code: one for one in findings}["attributes_left_out"]
+    assert left.count == len({*VERTEX, *CORNER, *FACE} - names)
+    for name in names:
+        meant, told = of(mesh, name), of(raw, name)
+        if meant.dtype.kind == "f" and suffix == ".glb":
+            assert np.allclose(told, meant, atol=1e-6)
+        elif meant.dtype.kind == "b":
+            assert np.array_equal(told, meant.astype(np.uint8))
+        else:
+            assert np.array_equal(told, meant)
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".glb", ".3mf"])
+def test_materials_read_back_with_their_pictures(tmp_path: Path, suffix: str) -> None:
+    write(part().to_mesh(), tmp_path / f"my part{suffix}")
+    raw = read(tmp_path / f"my part{suffix}")
+    assert raw.attributes is not None
+    told = raw.attributes.materials
+    assert set(told) == {"red", "my glass"}
+    assert list(told["red"].color) == [1, 0, 0, 1]
+    assert np.allclose(told["my glass"].color, (0.2, 0.4, 0.6, 0.8))
+    assert told["my glass"].texture == (None if suffix == ".3mf" else PIXEL)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "kind"),
+    [(".3mf", "vertex"), (".3mf", "corner"), (".3mf", "face"), (".glb", "face"), (".off", "face")],
+)
+def test_colours_of_any_kind_read_back(tmp_path: Path, suffix: str, kind: str) -> None:
+    shape = {"vertex": (8,), "corner": (12, 3), "face": (12,)}[kind]
+    colors = RNG.integers(0, 256, (*shape, 4)).astype(np.uint8)
+    mesh = b.cube(2).to_mesh()
+    given: dict[str, Any] = {f"{kind}_attributes": {"color": colors}}
+    solid = b.Solid(mesh.vertices, mesh.faces, **given)
+    solid.save(tmp_path / f"x{suffix}")
+    again = b.load(tmp_path / f"x{suffix}").to_mesh()
+    assert np.array_equal(of(again, "color"), of(solid.to_mesh(), "color"))
+
+
+def test_float_colours_of_vertices_are_those_of_obj(tmp_path: Path) -> None:
+    mesh = b.cube(2).to_mesh()
+    colors = RNG.uniform(size=(8, 3))
+    b.Solid(mesh.vertices, mesh.faces, vertex_attributes={"color": colors}).save(tmp_path / "x.obj")
+    assert np.array_equal(b.load(tmp_path / "x.obj").to_mesh().vertex_attributes["color"], colors)
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".obj", ".glb", ".3mf", ".off"])
+def test_a_result_of_files_keeps_what_they_said(tmp_path: Path, suffix: str) -> None:
+    part().save(tmp_path / f"x{suffix}")
+    made = b.load(tmp_path / f"x{suffix}") - b.cube(1).translate(1.5, 1.5, 1.5)
+    made.save(tmp_path / f"y{suffix}")
+    again = read(tmp_path / f"y{suffix}")
+    told: set[str] = set() if again.attributes is None else set(again.attributes.names)
+    # Both sides of the cut have colours of their own, and GLB cannot say that there is no number.
+    lost = {".off": {"color"}, ".glb": {"weight", "pair", "heat"}}.get(suffix, set())
+    assert told == HELD[suffix] - lost
+
+
+def test_objects_in_one_file_keep_their_own(tmp_path: Path) -> None:
+    mesh = part().to_mesh()
+    both = RawMesh(
+        np.concatenate([mesh.vertices, mesh.vertices + 5]),
+        np.concatenate([mesh.faces, mesh.faces + 8]),
+        objects=(("lid", 12), ("body", 12)),
+        attributes=None,
+    )
+    said = b.Solid(
+        both.vertices, both.faces, face_attributes={"material": np.repeat(["a", "b"], 12)}
+    ).to_mesh()
+    both = replace(both, attributes=said.attributes)
+    for suffix in (".glb", ".3mf", ".obj"):
+        write(both, tmp_path / f"x{suffix}")
+        raw = read(tmp_path / f"x{suffix}")
+        assert raw.objects == both.objects
+        assert raw.attributes is not None
+        assert raw.attributes.face["material"].tolist() == ["a"] * 12 + ["b"] * 12
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".obj", ".glb", ".3mf", ".off"])
+def test_meshes_without_attributes_have_the_bytes_they_had(suffix: str) -> None:
+    mesh = b.cube(2).to_mesh()
+    bare = b"".join(encoded(mesh, "x", suffix).chunks)
+    again = b"".join(encoded(RawMesh(mesh.vertices, mesh.faces), "x", suffix).chunks)
+    assert bare == again
+    assert b"color" not in bare
+    assert b"material" not in bare
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".obj", ".glb", ".3mf", ".off"])
+def test_the_proof_sees_a_value_that_is_another(suffix: str) -> None:
+    mesh = part().to_mesh()
+    made = encoded(mesh, "x", suffix)
+    data = b"".join(made.chunks)
+    made.prove(data)
+    given: dict[str, Any] = {".off": VERTEX["color"]}
+    other = {**VERTEX, "color": np.roll(given.get(suffix, VERTEX["color"]), 1, axis=0)}
+    faces = {**FACE, "material": FACE["material"][::-1]}
+    changed = b.Solid(
+        mesh.vertices,
+        mesh.faces,
+        vertex_attributes=other,
+        corner_attributes=CORNER,
+        face_attributes=faces,
+        materials=MATERIALS,
+    ).to_mesh()
+    with pytest.raises(b.FormatError) as caught:
+        made.prove(b"".join(encoded(changed, "x", suffix).chunks))
+    assert caught.value.code == "write_mismatch"
+    with pytest.raises(b.FormatError):
+        made.prove(b"".join(encoded(b.cube(2).to_mesh(), "x", suffix).chunks))
+
+
+def test_columns_of_other_programs_are_known(tmp_path: Path) -> None:
+    header = (
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+        "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+        "property float texture_u\nproperty float texture_v\nproperty uchar red\n"
+        "property uchar green\nproperty uchar blue\nproperty float quality\n"
+        "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\n"
+        "property list uchar float texcoord\nend_header\n"
+    )
+    corners = ["0 0 0", "1 0 0", "1 1 0", "0 1 0"]
+    rows = "".join(f"{place} 0 0 1 0.5 0.25 1 2 3 9.5\n" for place in corners)
+    (tmp_path / "x.ply").write_text(header + rows + "4 0 1 2 3 7 8 0 0 1 0 1 1 0 1\n")
+    raw = read(tmp_path / "x.ply")
+    assert raw.attributes is not None
+    assert set(raw.attributes.vertex) == {"normal", "uv", "color", "quality"}
+    assert raw.attributes.vertex["color"].tolist() == [[1, 2, 3]] * 4
+    assert raw.attributes.face["red"].tolist() == [7, 7]
+
+
+def test_an_obj_without_its_library_keeps_the_names(tmp_path: Path) -> None:
+    (tmp_path / "x.obj").write_text(
+        "mtllib no.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl red\nf 1 3 2\n"
+    )
+    raw = read(tmp_path / "x.obj")
+    assert raw.attributes is not None
+    assert raw.attributes.face["material"].tolist() == ["", "red"]
+    assert not raw.attributes.materials
+    assert any("no.mtl" in one.message for one in raw.findings)
+
+
+@pytest.mark.parametrize("name", ["../x.mtl", "/etc/passwd", "sub/x.mtl", ".."])
+def test_a_library_lies_beside_its_obj(tmp_path: Path, name: str) -> None:
+    (tmp_path / "in").mkdir()
+    (tmp_path / "x.mtl").write_text("newmtl red\nKd 1 0 0\n")
+    (tmp_path / "in" / "x.obj").write_text(
+        f"mtllib {name}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n"
+    )
+    raw = read(tmp_path / "in" / "x.obj")
+    assert raw.attributes is not None and not raw.attributes.materials
+
+
+def test_a_wrong_property_of_3mf_is_refused(tmp_path: Path) -> None:
+    import zipfile
+
+    mesh = b.cube(1).to_mesh()
+    solid = b.Solid(
+        mesh.vertices, mesh.faces, face_attributes={"color": np.zeros((12, 3), np.uint8)}
+    )
+    solid.save(tmp_path / "x.3mf")
+    with zipfile.ZipFile(tmp_path / "x.3mf") as archive:
+        model = archive.read("3D/3dmodel.model")
+    for wrong in (b'p1="9"', b'p1="-1"', b'p1="x"'):
+        with zipfile.ZipFile(tmp_path / "y.3mf", "w") as archive:
+            archive.writestr("3D/3dmodel.model", model.replace(b'p1="0"', wrong, 1))
+        with pytest.raises(b.FormatError):
+            read(tmp_path / "y.3mf")
