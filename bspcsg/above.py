@@ -10,7 +10,9 @@ from typing import Any, Literal, TypeAlias
 
 #: What is asked for.
 Convenience: TypeAlias = Literal[
+    "align",
     "closest_points",
+    "curvature",
     "decompose",
     "dumps",
     "hull_of_region",
@@ -20,8 +22,12 @@ Convenience: TypeAlias = Literal[
     "load_svg",
     "loads",
     "min_gap",
+    "normals",
+    "offset",
     "offset_region",
+    "ray_cast",
     "refine",
+    "rounded",
     "save",
     "save_dxf",
     "save_svg",

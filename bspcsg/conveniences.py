@@ -11,7 +11,9 @@ from .above import Convenience, answer
 
 #: Which function answers, after its module.
 _HOMES: dict[Convenience, str] = {
+    "align": "modelling.bodies.placing:align",
     "closest_points": "modelling.bodies.gaps:closest_points",
+    "curvature": "modelling.bodies.shading:curvature",
     "decompose": "modelling.bodies.parts:decompose",
     "dumps": "csg:dumps",
     "hull_of_region": "modelling.planar.hulls:hull_of_region",
@@ -21,8 +23,12 @@ _HOMES: dict[Convenience, str] = {
     "load_svg": "bsp:load_svg",
     "loads": "io:loads",
     "min_gap": "modelling.bodies.gaps:min_gap",
+    "normals": "modelling.bodies.shading:normals",
+    "offset": "modelling.bodies.offsetting:offset",
     "offset_region": "modelling.planar.offsetting:offset_region",
+    "ray_cast": "modelling.bodies.casting:ray_cast",
     "refine": "modelling.bodies.refining:refine",
+    "rounded": "modelling.bodies.offsetting:rounded",
     "save": "io:save",
     "save_dxf": "bsp:save_dxf",
     "save_svg": "bsp:save_svg",

@@ -155,6 +155,14 @@ class Measured(ABC):
         return self.normalized().to_mesh().centroid
 
     @property
+    def inertia(self) -> FloatArray:
+        """Moments of inertia about the centroid at density 1, (3, 3) float64; NaN if empty.
+
+        In model units to the fifth power.
+        """
+        return self.normalized().to_mesh().inertia
+
+    @property
     def bounds(self) -> FloatArray | None:
         """Lowest and highest coordinates, (2, 3) float64, or None for the empty set."""
         return self.normalized().to_mesh().bounds

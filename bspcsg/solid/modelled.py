@@ -1,12 +1,14 @@
 """What is made of a solid by the verbs of the floors above: the methods, apart from the value."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 from .._types import FloatArray, Scalar, Vector, WindingRule
 from ..above import above
 
 if TYPE_CHECKING:
+    from ..bsp import HitLists, Hits
+    from ..modelling.bodies.placing import Place
     from .solid import Solid
 
 
@@ -236,3 +238,182 @@ class Modelled:
         """
         moved: Solid = above("warp")(self, f, winding)
         return moved
+
+    def offset(self, r: Scalar, *, segments: int = 16) -> "Solid":
+        """Return the solid thickened by a ball, or made thinner if `r` is negative.
+
+        All points of the ball about any point of the solid are in the result; for a negative `r`
+        those points are whose ball lies in the solid. The ball is a polyhedron (see
+        `bspcsg.sphere`) with its corners at the distance `r`, some of them on the axes: faces
+        across these move by `r`, others up to 1 - cos² of 180° by `segments` less.
+
+        Parameters
+        ----------
+        r : float
+            In model units.
+        segments : int
+            Sides of the ball's equator, at least 4, rounded up to a multiple of 4.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a parameter is out of its range.
+        LimitError
+            If the solid is not convex and falls into too many parts (see `bspcsg.minkowski`).
+        UnboundedError
+            If the solid and its complement both reach to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> b.cube(4).offset(-1) == b.cube(2).translate(1, 1, 1)
+        True
+        >>> b.cube(2).offset(1).bounds.tolist()
+        [[-1.0, -1.0, -1.0], [3.0, 3.0, 3.0]]
+        """
+        moved: Solid = above("offset")(self, r, segments)
+        return moved
+
+    def rounded(self, r: Scalar, *, segments: int = 16, inside: bool = False) -> "Solid":
+        """Return the solid with its edges rounded: what a ball that stays inside can reach.
+
+        Parameters
+        ----------
+        r : float
+            Of the ball, in model units; what is thinner than it vanishes.
+        segments : int
+            As for `offset`, as are the errors.
+        inside : bool
+            Whether to fill the edges that go inwards instead, where a ball outside cannot reach.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> die = b.cube(10).rounded(1)
+        >>> die.bounds.tolist(), die < b.cube(10)
+        ([[0.0, 0.0, 0.0], [10.0, 10.0, 10.0]], True)
+        """
+        smooth: Solid = above("rounded")(self, r, segments, inside)
+        return smooth
+
+    def align(
+        self,
+        *,
+        x: "Place | None" = None,
+        y: "Place | None" = None,
+        z: "Place | None" = None,
+        to: "Vector | Solid" = (0, 0, 0),
+    ) -> "Solid":
+        """Return the solid moved so that its box meets a point or the box of another solid.
+
+        Parameters
+        ----------
+        x, y, z : {"min", "center", "max"} or a pair of these, optional
+            Which place of this solid's box goes to which of the other's, along each axis; one name
+            stands for both. Without it the solid does not move along the axis.
+        to : (3,) float or Solid
+
+        Raises
+        ------
+        InvalidParameterError
+            If a place has another name, or a solid is empty.
+        UnboundedError
+            If a solid reaches to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> b.cube(2).align(x="center", y="center", z="min").bounds[0].tolist()
+        [-1.0, -1.0, 0.0]
+        >>> table, lamp = b.box((8, 8, 1)), b.cube(2)
+        >>> lamp.align(x="center", z=("min", "max"), to=table).bounds[0].tolist()
+        [3.0, 0.0, 1.0]
+        """
+        moved: Solid = above("align")(self, {"x": x, "y": y, "z": z}, to)
+        return moved
+
+    def normals(self, sharp_angle: Scalar = 30.0) -> FloatArray:
+        """Return unit normals for shading, one for each corner of each triangle.
+
+        Parameters
+        ----------
+        sharp_angle : float
+            Corners of faces that meet in edges bent by no more than this share the mean of their
+            normals, weighted by the angles at the corner; in degrees from 0 to 180. With 0 these
+            are the normals of the faces.
+
+        Returns
+        -------
+        (m, 3, 3) float64
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> b.cube(1).normals().shape
+        (12, 3, 3)
+        """
+        found: FloatArray = above("normals")(self, sharp_angle)
+        return found
+
+    def curvature(self) -> tuple[FloatArray, FloatArray]:
+        """Return the Gaussian and the mean curvature at each vertex, (n,) float64 each.
+
+        Of the polyhedron, spread over a third of the triangles around the vertex: the angle that
+        lacks to a full turn, and half of the bend of the edges there; in units of one by model
+        units squared, and one by model units. Positive where the solid is convex.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> gaussian, mean = b.sphere(2, segments=64).curvature()
+        >>> round(float(mean.mean()), 1)
+        0.5
+        """
+        pair: tuple[FloatArray, FloatArray] = above("curvature")(self)
+        return pair
+
+    @overload
+    def ray_cast(self, origin: Vector, direction: Vector) -> "Hits": ...
+    @overload
+    def ray_cast(self, origin: FloatArray, direction: Any) -> "Hits | HitLists": ...
+    def ray_cast(self, origin: Any, direction: Any) -> Any:
+        """Return where rays meet the surface, nearest first, each point once.
+
+        Parameters
+        ----------
+        origin, direction : (3,) or (n, 3) array_like of float
+            The ray holds the points ``origin + t * direction`` with t ≥ 0.
+
+        Returns
+        -------
+        Hits or HitLists
+            Of one ray its hits (see `bspcsg.bsp.Hits`); of arrays a list of these.
+
+        Raises
+        ------
+        InvalidMeshError
+            For a direction of length zero, or numbers that are not finite.
+        UnboundedError
+            If the surface reaches to infinity.
+
+        Notes
+        -----
+        It is exact (see `bspcsg.bsp.RayCaster`, which for many calls is made only once).
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> b.cube(2).ray_cast((1, 0.5, -1), (0, 0, 1)).t
+        array([1., 3.])
+        """
+        return above("ray_cast")(self, origin, direction)

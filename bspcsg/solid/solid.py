@@ -11,7 +11,7 @@ kept and the expression let go. Two things are promised, and two kinds of query 
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -500,9 +500,15 @@ class Solid(Measured, Modelled, PointSet):
         operands = tuple(from_leaf(leaf) for leaf in record.leaves)
         return LastOperation(record.program, operands, from_node(self._node))
 
+    @overload
     def slice(
         self, offset: Scalar = 0.0, normal: Vector = (0, 0, 1), *, origin: Vector | None = None
-    ) -> "Region":
+    ) -> "Region": ...
+    @overload
+    def slice(self, offset: Vector, normal: Vector = (0, 0, 1)) -> "list[Region]": ...
+    def slice(
+        self, offset: Any = 0.0, normal: Vector = (0, 0, 1), *, origin: Vector | None = None
+    ) -> "Region | list[Region]":
         """Return the section by a plane as a region of the plane (`bspcsg.Region`).
 
         The boundary is cut exactly, by the plane that `half_space` has for these numbers: the one
@@ -512,8 +518,9 @@ class Solid(Measured, Modelled, PointSet):
 
         Parameters
         ----------
-        offset : float
-            The plane holds the points x with ``normal . x == offset``: by default a height z.
+        offset : float or (n,) float
+            The plane holds the points x with ``normal . x == offset``: by default a height z. Of
+            several planes the sections come as a list.
         normal : (3,) float
             Need not have unit length. The region is seen from where it points: z gives coordinates
             (x, y), x gives (y, z), y gives (z, x), negative axes exchange the two; for others see
@@ -533,7 +540,7 @@ class Solid(Measured, Modelled, PointSet):
         A face in the plane lies above it: the section is the limit from the minus side, that of a
         box standing on z = 0 is empty at 0 and full at its top.
         """
-        region: Region = above("slice_solid")(self, offset, normal, origin=origin)
+        region: Region | list[Region] = above("slice_solid")(self, offset, normal, origin=origin)
         return region
 
     @uncounted

@@ -65,6 +65,30 @@ def clouds() -> list[Any]:
 
 PLANES = [((0, 0, 1), 0.5), ((1, 2, 3), 1), ((0, 0, 1), 0), ((0, 0, -1), 0), ((1, 0, 0), 99)]
 
+#: Of points (n, 3).
+WARPS: list[Verb] = [
+    lambda p: p * (1, 2, 3),
+    lambda p: p + 0.1 * np.sin(np.roll(p, 1, axis=1)),
+    lambda p: p,
+    lambda p: p * (1 + 0.1 * p[:, 2:]),
+    lambda p: p[:, [1, 2, 0]] - 7,
+]
+
+FIELDS: list[Verb] = [
+    lambda p: 1.5 - np.linalg.norm(p, axis=1),
+    lambda p: 0.5 - np.hypot(np.hypot(p[:, 0], p[:, 1]) - 1.2, p[:, 2]),
+    lambda p: 1 - np.linalg.norm(p * (1, 2, 0.7), axis=1),
+    lambda p: np.maximum(
+        0.8 - np.linalg.norm(p - 0.7, axis=1), 0.8 - np.linalg.norm(p + 0.7, axis=1)
+    ),
+    lambda p: 1.2 - np.abs(p).sum(axis=1),
+    lambda p: -1 - p[:, 0] ** 2,
+    lambda p: 1.0501 - np.abs(p).max(axis=1),
+    lambda p: 0.3 - np.abs(p[:, 2] - 0.01),
+    lambda p: 2.0 - np.linalg.norm(p[:, :2], axis=1),
+    lambda p: 0.2 + 0 * p[:, 0],
+]
+
 TOOLS = [b.cube(1, center=True), b.sphere(0.5, segments=8)]
 
 
@@ -152,6 +176,33 @@ ROWS: dict[str, tuple[Verb, Verb, list[tuple[Any, ...]]]] = {
         lambda s: s.mirror((1, 1, 0)) ^ Manifold.cube((2, 2, 2)),
         [(s,) for s in bodies()],
     ),
+    "refine": (
+        lambda s: s.refine(3),
+        lambda s: s.refine(3),
+        [(s,) for s in bodies()],
+    ),
+    "refine_to_length": (
+        lambda s: s.refine(edge_length=0.5),
+        lambda s: s.refine_to_length(0.5),
+        [(s,) for s in bodies()],
+    ),
+    "warp_batch": (
+        lambda s, f: s.warp(f),
+        lambda s, f: s.warp_batch(f),
+        [(s, WARPS[k % 5]) for k, s in enumerate(bodies())],
+    ),
+    "level_set": (
+        lambda f, edge: b.level_set(f, [(-2.1, -2.1, -2.1), (2.1, 2.1, 2.1)], edge),
+        lambda f, edge: Manifold.level_set(
+            lambda *p: float(f(np.array([p]))[0]), [-2.1] * 3 + [2.1] * 3, edge
+        ),
+        [(f, 0.3) for f in FIELDS],
+    ),
+    "transform": (
+        lambda s: s.transform(np.eye(4) + np.diag([0, 0, 0.5], 1)),
+        lambda s: s.transform((np.eye(4) + np.diag([0, 0, 0.5], 1))[:3]),
+        [(s,) for s in bodies()],
+    ),
 }
 
 CASES = [
@@ -170,9 +221,32 @@ def test_measures_are_those_of_manifold(verb: str, number: int) -> None:
     ours, other, inputs = ROWS[verb]
     given = inputs[number]
     found, wanted = ours(*given), other(*map(theirs, given))
-    # Coordinates differ by a step of the lattice, 1e-9.
-    assert measures(found) == pytest.approx(measures(wanted), rel=1e-7, abs=1e-7)
+    # Coordinates differ by a step of the lattice, 1e-9; grids of fields by less than a cube.
+    close = 0.05 if verb == "level_set" else 1e-7
+    assert measures(found) == pytest.approx(measures(wanted), rel=close, abs=close)
 
 
 def test_each_verb_has_ten_inputs() -> None:
     assert all(len(inputs) == 10 for _, _, inputs in ROWS.values())
+
+
+def test_gaps_are_those_of_manifold() -> None:
+    moves = [(5, 0, 0), (5, 6, 7), (0, 0, 9), (-8, 3, 0), (6, 6, 0)]
+    found = [
+        (s, t.translate(move))
+        for s, t in zip(bodies()[:5], bodies()[2:5] * 2, strict=False)
+        for move in moves
+    ]
+    for one, other in found:
+        wanted = one.to_manifold().min_gap(other.to_manifold(), 20)
+        assert one.min_gap(other) == pytest.approx(wanted, abs=1e-8)
+
+
+def test_rays_meet_what_manifolds_do() -> None:
+    for body in bodies():
+        start, end = RNG.normal(size=(2, 3)) * 5
+        hits = body.to_manifold().ray_cast(tuple(start), tuple(end))
+        found = body.ray_cast(start, end - start)
+        assert found.t[found.t <= 1] == pytest.approx(
+            sorted(hit.distance for hit in hits), abs=1e-7
+        )

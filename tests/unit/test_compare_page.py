@@ -42,6 +42,12 @@ def test_every_name_of_ours_exists() -> None:
     assert missing == []
 
 
+def test_no_method_of_manifolds_is_missing() -> None:
+    told = {name for theirs, _ in rows("Solids") for name in names(theirs)}
+    methods = {name for name in dir(manifold3d.Manifold) if not name.startswith("_")}
+    assert methods <= told
+
+
 def test_no_method_of_cross_sections_is_missing() -> None:
     told = {name for theirs, _ in rows("Regions") for name in names(theirs)}
     methods = {name for name in dir(manifold3d.CrossSection) if not name.startswith("_")}

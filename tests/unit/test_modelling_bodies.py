@@ -189,6 +189,85 @@ def test_a_point_that_stays() -> None:
     assert body.rotate(z=180, about=(0.5, 0.5, 0)).volume_exact == Fraction(1)
 
 
+def test_places_that_meet() -> None:
+    body = b.box((1, 2, 3)).translate(7, 8, 9)
+    assert body.align(x="min", y="center", z="max") == b.box((1, 2, 3)).translate(0, -1, -3)
+    assert body.align() == body and body.align(x="min", to=(7, 0, 0)) == body
+    table = b.box((8, 8, 1))
+    lamp = b.cube(2).align(x="center", y="max", z=("min", "max"), to=table)
+    assert lamp == b.cube(2).translate(3, 6, 1)
+    for bad in ({"x": "middle"}, {"y": 3}, {"z": ("min",)}, {"x": "min", "to": b.Solid.empty()}):
+        with pytest.raises(b.InvalidParameterError):
+            body.align(**bad)
+
+
+# Offsets
+
+
+def notch() -> b.Solid:
+    return b.cube(10) - b.cube(5)
+
+
+def test_flat_faces_move_by_the_offset() -> None:
+    assert b.cube(4).offset(-1) == b.cube(2).translate(1, 1, 1)
+    grown = b.cube(4).offset(1)
+    assert_sound(grown)
+    assert grown & b.box((2, 2, 99), center=True).translate(2, 2, 0) == b.box((2, 2, 6)).translate(
+        1, 1, -1
+    )
+    assert b.cube(4).offset(0) == b.cube(4) and b.cube(1).offset(-0.5).is_empty
+    assert b.cube(4).offset(1, segments=5) == b.cube(4).offset(1, segments=8)
+
+
+@pytest.mark.parametrize("r", [0.25, 1])
+def test_offsets_are_between_what_balls_allow(r: float) -> None:
+    body = notch()
+    grown, thin = body.offset(r, segments=8), body.offset(-r, segments=8)
+    for made in (grown, thin):
+        assert_sound(made)
+    assert thin < body < grown
+    dot = b.cube(0.001, center=True)
+    far = [body.min_gap(dot.translate(p.round(9))) for p in grown.vertices[::5]]
+    assert 0.9 * r < max(far) <= r
+    # But for corners that were rounded to the lattice on the way.
+    assert (thin.offset(r, segments=8) - body).volume < 1e-6
+    assert (body - grown.offset(-r, segments=8)).volume < 1e-6
+    assert (~body).offset(-r, segments=8) == ~grown
+
+
+def test_round_edges() -> None:
+    die = b.cube(10).rounded(1)
+    assert_sound(die)
+    assert (
+        die < b.cube(10) and die.bounds is not None and die.bounds.tolist() == [[0] * 3, [10] * 3]
+    )
+    # Eight corners and twelve edges of a ball of radius one, but for the polyhedron.
+    quarters = 12 * 8 * (1 - np.pi / 4) + 8 * (1 - np.pi / 6)
+    assert 1000 - die.volume == pytest.approx(quarters, rel=0.1)
+    filled = notch().rounded(1, segments=8, inside=True)
+    assert notch() < filled and filled < b.cube(10)
+    assert b.cube(1).rounded(0.6).is_empty
+
+
+@pytest.mark.parametrize(
+    "verb",
+    [
+        lambda s: s.offset(float("nan")),
+        lambda s: s.offset("1"),
+        lambda s: s.offset(1, segments=3),
+        lambda s: s.rounded(0),
+        lambda s: s.rounded(-1),
+    ],
+)
+def test_offsets_refuse(verb: Callable[[b.Solid], Any]) -> None:
+    with pytest.raises(b.InvalidParameterError):
+        verb(b.cube(1))
+    with pytest.raises(b.LimitError):
+        b.cube(1).offset(1, segments=1 << 20)
+    with pytest.raises(b.UnboundedError):
+        b.half_space((0, 0, 1)).offset(1)
+
+
 def test_all_that_methods_ask_for_is_there() -> None:
     for home in _HOMES.values():
         module, name = home.split(":")

@@ -209,3 +209,64 @@ def test_level_sets_refuse(
 ) -> None:
     with pytest.raises(kind):
         b.level_set(f, bounds, edge)
+
+
+# Shading, rays, sections
+
+
+def test_normals_of_faces_and_of_round_bodies() -> None:
+    cube = b.cube(2, center=True)
+    flat = cube.normals()
+    assert (np.abs(flat).sum(axis=2) == 1).all() and (flat[:, 0] == flat[:, 1]).all()
+    assert np.einsum("ijk,ijk->ij", flat, cube.vertices[cube.faces]) == pytest.approx(1)
+    smooth = cube.normals(180)
+    assert smooth == pytest.approx(cube.vertices[cube.faces] / 3**0.5)
+    ball = b.sphere(1, segments=64)
+    assert ball.normals() == pytest.approx(ball.vertices[ball.faces], abs=0.01)
+    can = b.cylinder(2, 1, segments=64)
+    caps = np.abs(can.normals()[..., 2])
+    assert set(caps.round(9).ravel().tolist()) == {0, 1}
+    assert b.Solid.empty().normals().shape == (0, 3, 3)
+    with pytest.raises(b.InvalidParameterError):
+        cube.normals(181)
+
+
+def test_curvatures_add_up() -> None:
+    ball = b.sphere(2, segments=96)
+    gaussian, mean = ball.curvature()
+    assert np.median(gaussian) == pytest.approx(1 / 4, rel=0.01)
+    assert np.median(mean) == pytest.approx(1 / 2, rel=0.01)
+    for body in (b.cube(3), b.torus(3, 1, segments=12, tube_segments=8), holed()):
+        gaussian, _ = body.curvature()
+        corners = body.vertices[body.faces]
+        sizes = np.linalg.norm(np.cross(*(corners[:, 1:] - corners[:, :1]).swapaxes(0, 1)), axis=1)
+        shares = np.bincount(body.faces.ravel(), np.repeat(sizes / 6, 3))
+        # Gauss and Bonnet: the sum is 2 pi times the Euler number.
+        assert gaussian @ shares == pytest.approx(2 * np.pi * body.euler_number, abs=1e-9)
+    outside = (~b.cube(2)) & b.cube(4, center=True).translate(1, 1, 1)
+    _, mean = outside.curvature()
+    assert (mean[(outside.vertices >= 0).all(1) & (outside.vertices <= 2).all(1)] < 0).all()
+    assert b.cube(1).curvature()[1].min() > 0
+
+
+def test_rays_hit_each_point_of_the_surface_once() -> None:
+    hits = holed().ray_cast((1, 3, 1), (0, -1, 0))
+    assert hits.t.tolist() == [1, 1.5, 2.5, 3]
+    assert b.cube(2).ray_cast((-1, -1, -1), (1, 1, 1)).t.tolist() == [1, 3]
+    both = b.cube(2).ray_cast(np.array([(1, 1, 5), (9, 9, 9)]), (0, 0, -1))
+    assert [len(one) for one in both] == [2, 0]
+    with pytest.raises(b.InvalidMeshError):
+        b.cube(1).ray_cast((0, 0, 0), (0, 0, 0))
+
+
+def test_sections_by_many_planes_are_those_by_each() -> None:
+    body = holed()
+    heights = [0.5, 1, 2, 3]
+    assert body.slice(heights) == [body.slice(z) for z in heights]
+    assert body.slice(np.array([0.5]), (1, 0, 0)) == [body.slice(0.5, (1, 0, 0))]
+    assert body.slice([]) == []
+
+
+def test_inertia_is_that_of_the_mesh() -> None:
+    assert np.diag(b.box((1, 2, 3)).inertia) == pytest.approx([6.5, 5.0, 2.5])
+    assert np.isnan(b.Solid.empty().inertia).all()

@@ -1,6 +1,7 @@
 """Sections of solids by planes, as regions."""
 
 from fractions import Fraction
+from typing import Any, overload
 
 import numpy as np
 
@@ -23,14 +24,30 @@ _AXES = {
 }
 
 
+@overload
 def slice_solid(
     solid: Solid,
     offset: Scalar = 0.0,
     normal: Vector = (0, 0, 1),
     *,
     origin: Vector | None = None,
-) -> Region:
-    """Return the section of a solid by a plane, in coordinates of the plane (see `Solid.slice`)."""
+) -> Region: ...
+@overload
+def slice_solid(solid: Solid, offset: Vector, normal: Vector = (0, 0, 1)) -> list[Region]: ...
+def slice_solid(
+    solid: Solid,
+    offset: Any = 0.0,
+    normal: Vector = (0, 0, 1),
+    *,
+    origin: Vector | None = None,
+) -> Region | list[Region]:
+    """Return sections of a solid by planes, in coordinates of the planes (see `Solid.slice`)."""
+    if np.ndim(offset) == 1:
+        return [_section(solid, one, normal, None) for one in offset]
+    return _section(solid, offset, normal, origin)
+
+
+def _section(solid: Solid, offset: Scalar, normal: Vector, origin: Vector | None) -> Region:
     direction = vector3(normal, "normal")
     plane = Hyperplane.from_numbers(direction.tolist(), _product(direction, offset, origin))
     tree = solid.normalized().tree

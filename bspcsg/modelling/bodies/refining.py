@@ -24,7 +24,7 @@ def refine(solid: Solid, n: Any = None, edge_length: Any = None) -> Solid:
         return solid
     if n is not None:
         parts = at_least(1, n, "n")
-        _refuse_many(len(mesh.faces) * parts**2)
+        refuse_many(len(mesh.faces) * parts**2)
         if parts == 1:
             return solid
         arrays = divided(mesh.vertices, mesh.faces, parts)
@@ -91,7 +91,7 @@ def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> MeshArray
         long &= (middles != ends[:, 0]).any(axis=1) & (middles != ends[:, 1]).any(axis=1)
         if not long.any():
             return vertices, faces
-        _refuse_many(len(faces) + 2 * int(long.sum()))
+        refuse_many(len(faces) + 2 * int(long.sum()))
         number = np.full(len(edges), -1)
         number[long] = len(vertices) + np.arange(int(long.sum()))
         vertices = np.concatenate([vertices, middles[long]])
@@ -138,7 +138,8 @@ def _edges(faces: IndexArray, count: int) -> tuple[IndexArray, IndexArray]:
     return np.stack([keys // count, keys % count], axis=1), sides.reshape(-1, 3)
 
 
-def _refuse_many(count: int) -> None:
+def refuse_many(count: int) -> None:
+    """Raise `LimitError` for more triangles than a result may have."""
     if count > _MOST_TRIANGLES:
         message = f"The result would have {count:,} triangles; {_MOST_TRIANGLES:,} are the most."
         raise LimitError(message, "too_large")

@@ -5,7 +5,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from ..._types import FloatArray, WindingRule
+from ..._types import FloatArray, IndexArray, WindingRule
 from ...errors import InvalidMeshError, invalid_parameter
 from ...mesh.certificate import certify
 from ...mesh.interop import points_array
@@ -52,7 +52,7 @@ def _moved(f: PointMap, points: FloatArray) -> FloatArray:
     return moved + 0.0
 
 
-def _refuse_crossings(vertices: FloatArray, faces: Any) -> None:
+def _refuse_crossings(vertices: FloatArray, faces: IndexArray) -> None:
     crossings = certify(vertices, faces).crossings
     if crossings:
         first = vertices[faces[crossings[0][0]]].mean(axis=0).round(6).tolist()

@@ -1,0 +1,67 @@
+"""Solids placed beside points and other solids."""
+
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from ..._types import FloatArray, Vector
+from ...errors import InvalidParameterError, invalid_parameter
+from ...geometry.transform import vector3
+from ...parameters import shown
+from ...solid.counting import counted
+from ...solid.solid import Solid
+
+#: Which place of a solid goes where along an axis: one name for both, or one each.
+Place: TypeAlias = str | tuple[str, str]
+
+_SHARES = {"min": 0.0, "center": 0.5, "max": 1.0}
+
+
+@counted
+def align(solid: Solid, places: dict[str, Place | None], to: "Solid | Vector") -> Solid:
+    """Return the solid moved so that places of its box meet those of another (see `Solid.align`).
+
+    Parameters
+    ----------
+    solid : Solid
+    places : dict
+        For each of the axes x, y, z what meets what, None for no move.
+    to : Solid or (3,) float
+    """
+    named = [_names(axis, place) for axis, place in places.items()]
+    own, other = _box(solid), _box(to)
+    move = np.zeros(3)
+    for axis, names in enumerate(named):
+        if names is not None:
+            move[axis] = _at(other, axis, names[1]) - _at(own, axis, names[0])
+    return solid.translate(move)
+
+
+def _names(axis: str, place: Any) -> tuple[str, str] | None:
+    if place is None:
+        return None
+    pair = (place, place) if isinstance(place, str) else place
+    if not isinstance(pair, (tuple, list)) or len(pair) != 2 or not set(pair) <= set(_SHARES):
+        raise _wrong(axis, place)
+    return pair[0], pair[1]
+
+
+def _wrong(axis: str, place: Any) -> InvalidParameterError:
+    return invalid_parameter(
+        f"{axis} must be 'min', 'center' or 'max', or a pair of them, not {shown(place)}."
+    )
+
+
+def _box(place: "Solid | Vector") -> FloatArray:
+    """Return lowest and highest coordinates."""
+    if not isinstance(place, Solid):
+        return np.array([vector3(place, "point")] * 2)
+    bounds = place.bounds
+    if bounds is None:
+        raise invalid_parameter("The empty set is nowhere, so nothing can be aligned with it.")
+    return bounds
+
+
+def _at(box: FloatArray, axis: int, name: str) -> float:
+    low, high = box[:, axis].tolist()
+    return float(low + (high - low) * _SHARES[name])

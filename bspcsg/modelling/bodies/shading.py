@@ -1,0 +1,106 @@
+"""Normals and curvatures of surfaces."""
+
+import math
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray, Scalar
+from ...errors import invalid_parameter
+from ...mesh.mesh import Mesh, surfaces_of
+from ...parameters import not_negative
+from ...solid.counting import uncounted
+from ...solid.solid import Solid
+
+
+@uncounted
+def normals(solid: Solid, sharp_angle: Scalar = 30.0) -> FloatArray:
+    """Return a unit normal for each corner of each triangle (see `Solid.normals`)."""
+    limit = not_negative(sharp_angle, "sharp_angle")
+    if limit > 180:
+        raise invalid_parameter(f"sharp_angle must be 180 degrees at most, not {limit:g}.")
+    mesh = solid.normalized().to_mesh()
+    if len(mesh.faces) == 0:
+        return np.zeros((0, 3, 3))
+    own = _unit(_areas(mesh))
+    fans = _fans(mesh, own, limit)
+    weighted = (own[:, None] * _angles(mesh)[..., None]).reshape(-1, 3)
+    sums = np.zeros((int(fans.max()) + 1, 3))
+    np.add.at(sums, fans, weighted)
+    found: FloatArray = _unit(sums)[fans].reshape(-1, 3, 3)
+    return found
+
+
+@uncounted
+def curvature(solid: Solid) -> tuple[FloatArray, FloatArray]:
+    """Return the Gaussian and the mean curvature at each vertex (see `Solid.curvature`)."""
+    mesh = solid.normalized().to_mesh()
+    count = len(mesh.vertices)
+    sizes = np.linalg.norm(_areas(mesh), axis=1) / 2
+    shares = np.bincount(mesh.faces.ravel(), np.repeat(sizes / 3, 3), count)
+    angles = np.bincount(mesh.faces.ravel(), _angles(mesh).ravel(), count)
+    first, second, start, end = _edges(mesh)
+    own = _unit(_areas(mesh))
+    bends = _signed_bends(own[first], own[second], mesh.vertices[end] - mesh.vertices[start])
+    quarters = np.linalg.norm(mesh.vertices[end] - mesh.vertices[start], axis=1) * bends / 4
+    bent = np.bincount(start, quarters, count) + np.bincount(end, quarters, count)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return (2 * math.pi - angles) / shares, bent / shares
+
+
+def _areas(mesh: Mesh) -> FloatArray:
+    """Return the normal of each triangle, twice as long as its area."""
+    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    return np.cross(b - a, c - a)
+
+
+def _unit(vectors: FloatArray) -> FloatArray:
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    units: FloatArray = np.divide(vectors, lengths, np.zeros_like(vectors), where=lengths > 0)
+    return units
+
+
+def _angles(mesh: Mesh) -> FloatArray:
+    """Return the angles of each triangle at its corners, (m, 3), in radians."""
+    corners = mesh.vertices[mesh.faces]
+    found = np.empty(mesh.faces.shape)
+    for k in range(3):
+        u, v = corners[:, k - 2] - corners[:, k], corners[:, k - 1] - corners[:, k]
+        across = np.linalg.norm(np.cross(u, v), axis=1)
+        found[:, k] = np.arctan2(across, np.einsum("ij,ij->i", u, v))
+    return found
+
+
+def _edges(mesh: Mesh) -> tuple[IndexArray, IndexArray, IndexArray, IndexArray]:
+    """Return for each edge the face that runs along it and the one that runs back, and its ends."""
+    start, end = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
+    count = np.int64(len(mesh.vertices))
+    forth, back = np.argsort(start * count + end), np.argsort(end * count + start)
+    once = start[forth] < end[forth]
+    forth, back = forth[once], back[once]
+    return forth // 3, back // 3, start[forth], end[forth]
+
+
+def _signed_bends(one: FloatArray, other: FloatArray, along: FloatArray) -> FloatArray:
+    """Return the angles between faces at edges, positive where the solid is convex."""
+    across = np.cross(one, other)
+    bends = np.arctan2(np.linalg.norm(across, axis=1), np.einsum("ij,ij->i", one, other))
+    signed: FloatArray = np.copysign(bends, np.einsum("ij,ij->i", across, along))
+    return signed
+
+
+def _fans(mesh: Mesh, own: FloatArray, limit: float) -> IndexArray:
+    """Return a number for each corner, the same for those that no sharp edge parts."""
+    first, second, start, _ = _edges(mesh)
+    along = mesh.faces[first]
+    cosines = np.einsum("ij,ij->i", own[first], own[second])
+    flat = cosines >= math.cos(math.radians(limit)) - 1e-12
+    first, second, start, along = first[flat], second[flat], start[flat], along[flat]
+    place = (along == start[:, None]).argmax(axis=1)
+    end = mesh.faces[first, (place + 1) % 3]
+    count = mesh.faces.size
+    linked = [np.arange(count)[:, None].repeat(3, axis=1)]
+    for corner in (start, end):
+        here = first * 3 + (mesh.faces[first] == corner[:, None]).argmax(axis=1)
+        there = second * 3 + (mesh.faces[second] == corner[:, None]).argmax(axis=1)
+        linked.append(np.stack([here, there, there], axis=1))
+    return surfaces_of(np.concatenate(linked), count)[:count]
