@@ -12,6 +12,9 @@ from .above import Convenience, answer
 #: Which function answers, after its module.
 _HOMES: dict[Convenience, str] = {
     "align": "modelling.bodies.placing:align",
+    "chamfer": "modelling.making.blends:chamfer",
+    "edges": "modelling.making.edges:edges_of",
+    "fillet": "modelling.making.blends:fillet",
     "closest_points": "modelling.bodies.gaps:closest_points",
     "curvature": "modelling.bodies.shading:curvature",
     "decompose": "modelling.bodies.parts:decompose",

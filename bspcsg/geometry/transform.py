@@ -102,7 +102,7 @@ def rotation(angle: Scalar, axis: str | Vector) -> Factor:
         Need not have unit length.
     """
     cosine, sine = cos_sin(number(angle, "angle"))
-    u = _unit(_axis(axis), "axis")
+    u = axis_vector(axis)
     spin = np.array([[0, -u[2], u[1]], [u[2], 0, -u[0]], [-u[1], u[0], 0]])
     along = np.outer(u, u)
     # The form (I - uu') c + s [u] + uu' keeps coordinate axes and quarter turns exact.
@@ -352,6 +352,11 @@ def _snapped(linear: FloatArray) -> FloatArray:
     """Return the signed permutation that a rotation or mirror is up to rounding, or itself."""
     nearest = np.round(linear)
     return nearest if np.abs(linear - nearest).max() < 1e-15 else linear
+
+
+def axis_vector(axis: str | Vector) -> FloatArray:
+    """Return the unit vector along "x", "y", "z" or a vector that is not zero."""
+    return _unit(_axis(axis), "axis")
 
 
 def _axis(axis: str | Vector) -> Vector:

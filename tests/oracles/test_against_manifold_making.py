@@ -201,3 +201,26 @@ def test_round_boxes_are_their_own_hull(size: float | tuple[float, ...], share: 
     assert box.volume == pytest.approx(hulled.volume(), rel=1e-6)
     assert box.area == pytest.approx(hulled.surface_area(), rel=1e-6)
     assert box.genus == 0
+
+
+PRISMS = [(3, 2.0, 3.0), (4, 1.0, 1.0), (5, 4.0, 1.0), (8, 1.0, 9.0), (24, 2.0, 1.0)]
+
+
+@pytest.mark.parametrize("sides, r, h", PRISMS)
+@pytest.mark.parametrize("share", [0.3, 1e-4])
+def test_convex_solids_without_edges_are_their_own_hull(
+    sides: int, r: float, h: float, share: float
+) -> None:
+    prism = b.prism(sides, h, r).rotate((0, 0, 15))
+    inner = r * math.cos(math.pi / sides)
+    size = share * min(inner * math.tan(math.pi / sides), h / 2)
+    edges = prism.edges()
+    part = prism.chamfer(edges, size)
+    hulled = Manifold.hull_points(part.vertices)
+    assert part.volume == pytest.approx(hulled.volume(), rel=1e-6)
+    assert part.area == pytest.approx(hulled.surface_area(), rel=1e-6)
+    assert part.genus == 0
+    # Chords of a ball between planes at odd angles need not be convex.
+    soft = prism.fillet(edges, size / 2, 12)
+    assert soft.volume == pytest.approx(Manifold.hull_points(soft.vertices).volume(), rel=1e-5)
+    assert soft.genus == 0

@@ -1,0 +1,312 @@
+"""Chamfers and fillets of edges between planes.
+
+Each edge has a cutter: what lies in the wedge of its two planes beyond the new surface, up to the
+planes at its ends. Concave edges are convex ones of the complement, and their cutters are filled
+in. Round corners of three edges have a cutter of their own, between the three planes and a ball.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray, Scalar
+from ...errors import LimitError, invalid_parameter
+from ...geometry.polygon import triangulate_face
+from ...operations.setops import union
+from ...parameters import positive, refuse_many_corners, sides_around
+from ...solid.solid import Solid
+from .edges import Edges, selection
+from .patches import arc_directions, patch_directions, patch_faces
+from .planes import Planes
+from .rings import walls
+from .rooms import no_room, refuse_no_room
+from .skeleton import Skeleton
+
+#: Edges of one call: each is a mesh and four half-spaces of one expression.
+_MOST_EDGES = 10_000
+
+#: The least sine between an edge and a plane at its end: the cutter must reach a hundred times as
+#: far beyond the end as it is wide.
+_FLATTEST = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class _Profile:
+    """The new surface along an edge, as seen along it.
+
+    Parameters
+    ----------
+    size : float
+        The width of a chamfer, the radius of a fillet.
+    steps : int
+        Chords of the arc; 1 for a chamfer.
+    is_round : bool
+    """
+
+    size: float
+    steps: int
+    is_round: bool
+
+
+class _Blend:
+    """Cutters for some edges of a solid."""
+
+    def __init__(
+        self, skeleton: Skeleton, chosen: IndexArray, profile: _Profile, pitch: int
+    ) -> None:
+        self.skeleton = skeleton
+        self.chosen = frozenset(chosen.tolist())
+        self.profile = profile
+        self.pitch = pitch
+        self.planes = Planes(skeleton, pitch)
+        self._prisms: dict[int, Solid] = {}
+
+    @cached_property
+    def widths(self) -> FloatArray:
+        """How far from each edge the new surface meets its faces, (e,), 0 where it is not asked."""
+        own = sorted(self.chosen)
+        widths = np.zeros(len(self.skeleton.ends))
+        widths[own] = self.profile.size
+        if self.profile.is_round:
+            inward = self.skeleton.inward[own]
+            cosine = np.einsum("ij,ij->i", inward[:, 0], inward[:, 1])
+            widths[own] *= np.sqrt((1 + cosine) / np.maximum(1 - cosine, 1e-300))
+        return widths
+
+    def sign(self, edge: int) -> int:
+        """Return 1 for a convex edge, -1 for one that is convex in the complement."""
+        return 1 if self.skeleton.is_convex[edge] else -1
+
+    def cutter(self, edge: int) -> Solid:
+        """Return what is taken off along a convex edge, or filled in along a concave one."""
+        sign = self.sign(edge)
+        parts = [self.prism(edge)]
+        parts += [self.planes.inside(face, sign) for face in self.skeleton.sides[edge].tolist()]
+        for place in (0, 1):
+            parts += self._ends(edge, place)
+        result = parts[0]
+        for part in parts[1:]:
+            result = result & part
+        return result
+
+    def _ends(self, edge: int, place: int) -> list[Solid]:
+        """Return what the cutter is cut off by at one end of an edge."""
+        vertex, sign = int(self.skeleton.ends[edge, place]), self.sign(edge)
+        others = sorted(self.skeleton.faces_at(vertex) - set(self.skeleton.sides[edge].tolist()))
+        along = self.skeleton.directions[edge] * (1 - 2 * place)
+        leans = [sign * float(self.skeleton.normals[face] @ along) for face in others]
+        if all(lean < 0 for lean in leans):
+            return [self.planes.inside(face, sign) for face in others]
+        # The edge ends on the outside of a plane: there it stops, or turns with its neighbour.
+        (face,) = others
+        outside = ~self.planes.inside(face, sign, beyond=False)
+        partners = [
+            other
+            for other in self.skeleton.edges_at(vertex)
+            if other != edge and other in self.chosen and self.sign(other) == sign
+        ]
+        return [outside | self.prism(partners[0]) if partners else outside]
+
+    def refuse_corners(self) -> None:
+        """Raise an error where chosen edges meet in a way that has no cutter."""
+        vertices = np.unique(self.skeleton.ends[sorted(self.chosen)])
+        for vertex in vertices.tolist():
+            edges = self.skeleton.edges_at(vertex)
+            chosen = [edge for edge in edges if edge in self.chosen]
+            signs = {self.sign(edge) for edge in edges}
+            if len({self.sign(edge) for edge in chosen}) > 1:
+                raise self._refused(vertex, "convex and concave edges meet; take one kind first")
+            faces = self.skeleton.faces_at(vertex)
+            if len(faces) != len(edges) or len(faces) < 3:
+                raise self._refused(vertex, "the faces around a corner are not one fan")
+            if len(edges) > 3 and (len(signs) > 1 or not self._is_cone(vertex)):
+                raise self._refused(vertex, "more than three faces meet that are no convex corner")
+            if len(edges) > 3 and len(chosen) > 2 and self.profile.is_round:
+                raise self._refused(vertex, "more than three round edges would meet")
+
+    def _is_cone(self, vertex: int) -> bool:
+        """Whether all edges at a vertex run behind all planes there, or all before them."""
+        normals = self.skeleton.normals[sorted(self.skeleton.faces_at(vertex))]
+        edges = self.skeleton.edges_at(vertex)
+        away = np.where(self.skeleton.ends[edges, 0] == vertex, 1, -1)[:, None]
+        signs = np.array([self.sign(edge) for edge in edges])[:, None]
+        leans = (self.skeleton.directions[edges] * away) @ normals.T * signs
+        return bool((leans < _FLATTEST).all())
+
+    def _refused(self, vertex: int, reason: str) -> Exception:
+        point = ", ".join(f"{value:.6g}" for value in self.skeleton.vertices[vertex])
+        return invalid_parameter(f"At ({point}) {reason}.", [vertex])
+
+    def is_round_corner(self, vertex: int) -> bool:
+        """Whether three edges meet whose fillets leave a ball between them."""
+        edges = self.skeleton.edges_at(vertex)
+        is_full = len(edges) == 3 and all(edge in self.chosen for edge in edges)
+        return self.profile.is_round and is_full
+
+    def corners(self) -> list[int]:
+        """Return the vertices that become parts of a ball."""
+        vertices = np.unique(self.skeleton.ends[sorted(self.chosen)]).tolist()
+        return [vertex for vertex in vertices if self.is_round_corner(vertex)]
+
+    def corner_cutter(self, vertex: int) -> Solid:
+        """Return what lies between three planes and the ball that touches them."""
+        faces = self.corner_faces(vertex)
+        sign = self.sign(self.skeleton.edges_at(vertex)[0])
+        middle = self._ball(vertex)
+        directions = patch_directions(sign * self.skeleton.normals[faces], self.profile.steps)
+        inner = self._snapped(middle + self.profile.size * directions)
+        reach = math.dist(middle, self.skeleton.vertices[vertex]) / self.profile.size
+        # Multiples of lattice vectors, so that the sides are planes.
+        outer = inner + math.ceil(3 * reach) * (inner - self._snapped(middle))
+        patch, rim = patch_faces(self.profile.steps), _rim(self.profile.steps)
+        after = np.roll(rim, -1)
+        count = len(inner)
+        sides = [
+            np.column_stack([rim, after, after + count]),
+            np.column_stack([rim, after + count, rim + count]),
+        ]
+        triangles = np.concatenate([patch[:, ::-1], patch + count, *sides])
+        shell = Solid(np.concatenate([inner, outer]), triangles, pitch=self.pitch)
+        for face in faces:
+            shell = shell & self.planes.inside(face, sign)
+        return shell
+
+    def corner_faces(self, vertex: int) -> list[int]:
+        """Return the three faces at a vertex, counter-clockwise as the ball is seen."""
+        faces = sorted(self.skeleton.faces_at(vertex))
+        sign = self.sign(self.skeleton.edges_at(vertex)[0])
+        turned = np.linalg.det(sign * self.skeleton.normals[faces]) < 0
+        return faces[::-1] if turned else faces
+
+    def _ball(self, vertex: int) -> FloatArray:
+        """Return the middle of the ball that touches three planes."""
+        sign = self.sign(self.skeleton.edges_at(vertex)[0])
+        normals = sign * self.skeleton.normals[sorted(self.skeleton.faces_at(vertex))]
+        away = np.linalg.solve(normals, np.full(3, -self.profile.size))
+        return np.asarray(self.skeleton.vertices[vertex] + away)
+
+    def _snapped(self, points: FloatArray) -> FloatArray:
+        return np.round(points, -self.pitch) if self.pitch < 0 else points
+
+    def prism(self, edge: int) -> Solid:
+        """Return what lies beyond the new surface of an edge, far past both ends."""
+        if edge not in self._prisms:
+            self._prisms[edge] = self._prism(edge)
+        return self._prisms[edge]
+
+    def _prism(self, edge: int) -> Solid:
+        arcs = [self._snapped(self._station(edge, place)) for place in (0, 1)]
+        rings = np.array([self._ring(edge, arc) for arc in arcs])
+        step = rings[1] - rings[0]
+        times = max(self._reach(edge, rings, place) for place in (0, 1))
+        rings = np.array([rings[0] - times * step, *rings, rings[1] + times * step])
+        count = rings.shape[1]
+        around = np.column_stack([np.arange(count), np.roll(np.arange(count), -1)])
+        cap = triangulate_face(rings[0])
+        triangles = np.concatenate([cap[:, ::-1], walls(rings, around), cap + 3 * count])
+        points = rings.reshape(-1, 3)
+        a, b, c = (points[triangles[:, k]] - points[0] for k in range(3))
+        if np.einsum("ij,ij->", np.cross(a, b), c) < 0:
+            triangles = triangles[:, ::-1]
+        return Solid(points, triangles, pitch=self.pitch)
+
+    def _station(self, edge: int, place: int) -> FloatArray:
+        """Return the new surface across one end of an edge, from the left face to the right one."""
+        vertex = int(self.skeleton.ends[edge, place])
+        point, sign = self.skeleton.vertices[vertex], self.sign(edge)
+        inward = self.skeleton.inward[edge]
+        if not self.profile.is_round:
+            return np.asarray(point + self.profile.size * inward)
+        normals = sign * self.skeleton.normals[self.skeleton.sides[edge]]
+        if self.is_round_corner(vertex):
+            middle = self._ball(vertex)
+        else:
+            middle = point + self.widths[edge] * inward[0] - self.profile.size * normals[0]
+        directions = arc_directions(normals[0], normals[1], self.profile.steps)
+        return np.asarray(middle + self.profile.size * directions)
+
+    def _ring(self, edge: int, arc: FloatArray) -> FloatArray:
+        """Return the prism's section, whose first and last chord run on past the faces."""
+        first, last = 2 * arc[0] - arc[1], 2 * arc[-1] - arc[-2]
+        foot = (arc[0] + arc[-1]) / 2
+        along = self.skeleton.directions[edge]
+        start = self.skeleton.vertices[self.skeleton.ends[edge, 0]]
+        on_edge = start + along * float((foot - start) @ along)
+        tip = 2 * on_edge - (first + last) / 2
+        return np.array([first, *arc[1:-1], last, self._snapped(tip)])
+
+    def _reach(self, edge: int, rings: FloatArray, place: int) -> int:
+        """Return how many times its length the prism must go on to be past the end's planes."""
+        vertex, along = int(self.skeleton.ends[edge, place]), self.skeleton.directions[edge]
+        others = self.skeleton.faces_at(vertex) - set(self.skeleton.sides[edge].tolist())
+        sines = np.abs(self.skeleton.normals[sorted(others)] @ along)
+        if len(sines) and sines.min() < _FLATTEST:
+            raise no_room(self.skeleton, self.skeleton.vertices[vertex], others)
+        wide = float(
+            np.linalg.norm(rings - self.skeleton.vertices[vertex], axis=2).min(axis=0).max()
+        )
+        length = float(np.linalg.norm(rings[1] - rings[0], axis=1).min())
+        return math.ceil(2 * wide / (sines.min() if len(sines) else 1) / length) + 1
+
+
+def _rim(steps: int) -> IndexArray:
+    """Return the points around a patch, in the order of its corners."""
+    rows = np.arange(steps + 1)
+    first = rows * (rows + 1) // 2
+    return np.concatenate([first[:-1], (first[-1] + rows)[:-1], (first + rows)[:0:-1]])
+
+
+def chamfer(solid: Solid, edges: Edges, size: Scalar) -> Solid:
+    """Return the solid with flat surfaces instead of edges; see `Solid.chamfer`."""
+    return _blended(solid, edges, _Profile(positive(size, "size"), 1, False))
+
+
+def fillet(solid: Solid, edges: Edges, radius: Scalar, segments: int) -> Solid:
+    """Return the solid with round surfaces instead of edges; see `Solid.fillet`."""
+    around = sides_around(4, segments, "segments")
+    size = positive(radius, "radius")
+    skeleton, chosen = _selected(edges)
+    widest = float(np.abs(180 - skeleton.angles[chosen]).max(initial=0))
+    steps = max(math.ceil(around * widest / 360 - 1e-9), 1)
+    refuse_many_corners(len(chosen) * steps * (steps + 8), "This fillet")
+    return _blended(solid, edges, _Profile(size, steps, True))
+
+
+def _selected(edges: Edges) -> tuple[Skeleton, IndexArray]:
+    if not isinstance(edges, Edges):
+        raise invalid_parameter("Edges are those of a selection: solid.edges().")
+    skeleton, chosen = selection(edges)
+    if len(chosen) > _MOST_EDGES:
+        message = f"{len(chosen)} edges are chosen, and {_MOST_EDGES} are the most."
+        raise LimitError(f"{message} Choose fewer by where().", "too_many")
+    return skeleton, chosen
+
+
+def _blended(solid: Solid, edges: Edges, profile: _Profile) -> Solid:
+    skeleton, chosen = _selected(edges)
+    mesh = solid.normalized().to_mesh()
+    if skeleton.vertices is not mesh.vertices and not np.array_equal(
+        skeleton.vertices, mesh.vertices
+    ):
+        raise invalid_parameter("These are edges of another solid; ask this one for its edges().")
+    if not len(chosen):
+        return solid
+    blend = _Blend(skeleton, chosen, profile, solid.pitch)
+    blend.refuse_corners()
+    refuse_no_room(skeleton, blend.widths)
+    cutters, fillers = _parts(blend)
+    return (solid | union(fillers)) - union(cutters) if fillers else solid - union(cutters)
+
+
+def _parts(blend: _Blend) -> tuple[Sequence[Solid], Sequence[Solid]]:
+    """Return what is taken off, and what is filled in."""
+    cutters: tuple[list[Solid], list[Solid]] = ([], [])
+    for edge in sorted(blend.chosen):
+        cutters[blend.sign(edge) < 0].append(blend.cutter(edge))
+    for vertex in blend.corners():
+        sign = blend.sign(blend.skeleton.edges_at(vertex)[0])
+        cutters[sign < 0].append(blend.corner_cutter(vertex))
+    return cutters

@@ -1,0 +1,108 @@
+"""Half-spaces of plane faces, exact where the lattice allows it."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...geometry.hyperplane import Hyperplane, exact_number
+from ...geometry.transform import whole_steps
+from ...solid.leaf import PlaneLeaf
+from ...solid.solid import Solid, from_leaf
+from .skeleton import Skeleton
+
+#: How far beyond a face that is no plane of the lattice its half-space reaches, in lattice steps:
+#: rounding moved its corners by less than one, and its normal by little more.
+_BEYOND = 20
+
+
+class Planes:
+    """The half-spaces of a solid's faces, made when they are asked for.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    pitch : int
+        The solid's.
+    """
+
+    def __init__(self, skeleton: Skeleton, pitch: int) -> None:
+        self._skeleton = skeleton
+        self._pitch = pitch
+        self._made: dict[tuple[int, int, bool], Solid] = {}
+        self._exact: dict[int, Hyperplane | None] = {}
+
+    def inside(self, face: int, sign: int, *, beyond: bool = True) -> Solid:
+        """Return the half-space behind a face, or before it if the sign is -1.
+
+        Parameters
+        ----------
+        face, sign : int
+        beyond : bool
+            Whether it reaches a little beyond a face that is no plane of the lattice.
+        """
+        key = face, sign, beyond
+        if key not in self._made:
+            self._made[key] = from_leaf(PlaneLeaf(self._plane(*key)))
+        return self._made[key]
+
+    def _plane(self, face: int, sign: int, beyond: bool) -> Hyperplane:
+        if face not in self._exact:
+            self._exact[face] = self._lattice_plane(face)
+        exact = self._exact[face]
+        if exact is not None:
+            normal = [Fraction(sign * entry) for entry in exact.normal]
+            return Hyperplane.of(normal, sign * exact.offset)
+        unit = sign * self._skeleton.normals[face]
+        products = self._corners(face) @ unit
+        offset = products.max() + _BEYOND * 10.0**self._pitch if beyond else products.mean()
+        return Hyperplane.from_numbers(unit.tolist(), float(offset))
+
+    def _corners(self, face: int) -> FloatArray:
+        own = np.unique(self._skeleton.triangles[self._skeleton.face == face])
+        corners: FloatArray = self._skeleton.vertices[own]
+        return corners
+
+    def _lattice_plane(self, face: int) -> Hyperplane | None:
+        """Return the plane through all corners of a face that lie on the lattice, if it is one."""
+        corners = self._corners(face)
+        for axis in range(3):
+            if np.ptp(corners[:, axis]) == 0:
+                side = int(np.sign(self._skeleton.normals[face, axis]))
+                unit = [Fraction(side * (k == axis)) for k in range(3)]
+                return Hyperplane.of(unit, side * exact_number(corners[0, axis]))
+        steps = [self._steps(corner) for corner in corners]
+        known = [corner for corner in steps if corner is not None]
+        normal = self._lattice_normal(face)
+        if normal is None:
+            return None
+        offsets = {sum(n * x for n, x in zip(normal, corner, strict=True)) for corner in known}
+        if len(offsets) != 1:
+            return None
+        step = Fraction(10) ** self._pitch
+        return Hyperplane.of([Fraction(entry) for entry in normal], offsets.pop() * step)
+
+    def _lattice_normal(self, face: int) -> tuple[int, int, int] | None:
+        """Return the normal of the largest triangle of a face whose corners are on the lattice."""
+        triangles = self._skeleton.triangles[self._skeleton.face == face]
+        a, b, c = (self._skeleton.vertices[triangles[:, k]] for k in range(3))
+        order = np.argsort(-np.linalg.norm(np.cross(b - a, c - a), axis=1), kind="stable")
+        for triangle in triangles[order].tolist():
+            corners = [self._steps(self._skeleton.vertices[vertex]) for vertex in triangle]
+            if corners[0] is None or corners[1] is None or corners[2] is None:
+                continue
+            one, other = (
+                [x - y for x, y in zip(corner, corners[0], strict=True)]
+                for corner in (corners[1], corners[2])
+            )
+            x = one[1] * other[2] - one[2] * other[1]
+            y = one[2] * other[0] - one[0] * other[2]
+            z = one[0] * other[1] - one[1] * other[0]
+            divisor = math.gcd(x, y, z)
+            return None if divisor == 0 else (x // divisor, y // divisor, z // divisor)
+        return None
+
+    def _steps(self, corner: FloatArray) -> tuple[int, int, int] | None:
+        x, y, z = (whole_steps(float(entry), self._pitch) for entry in corner)
+        return None if x is None or y is None or z is None else (x, y, z)

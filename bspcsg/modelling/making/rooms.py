@@ -1,0 +1,128 @@
+"""Whether faces have room for what is taken off along their edges."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...bsp import Region
+from ...errors import InvalidParameterError, invalid_parameter
+from .skeleton import Skeleton
+
+#: Edges are parallel if the sine between them is below this.
+_PARALLEL = 1e-7
+
+#: The share of a face's area that rounding may change.
+_SAME = 1e-6
+
+
+def refuse_no_room(skeleton: Skeleton, widths: FloatArray) -> None:
+    """Raise an error where strips along edges do not fit on their faces side by side.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    widths : (e,) float64
+        Of the strips on both faces of each edge, 0 where there is none.
+
+    Raises
+    ------
+    InvalidParameterError
+        The message names a place, `where` the triangles of the face.
+    """
+    for face in np.unique(skeleton.sides[widths > 0]).tolist():
+        loops = _loops(skeleton, face)
+        inner = [_inset(skeleton, face, loop, widths) for loop in loops]
+        for loop, corners in zip(loops, inner, strict=True):
+            _refuse_reversed(skeleton, face, loop, corners)
+        _refuse_overlapping(skeleton, face, inner, widths)
+
+
+def no_room(skeleton: Skeleton, place: FloatArray, faces: Iterable[int]) -> InvalidParameterError:
+    """Return the error for a place where something does not fit."""
+    point = ", ".join(f"{value:.6g}" for value in place)
+    triangles = np.flatnonzero(np.isin(skeleton.face, list(faces)))
+    message = f"The faces leave no room at ({point}). Choose a smaller size, or fewer edges."
+    return invalid_parameter(message, triangles[:8].tolist())
+
+
+def _loops(skeleton: Skeleton, face: int) -> list[IndexArray]:
+    """Return the loops of edges around a face, the face on their left."""
+    own = np.flatnonzero((skeleton.sides == face).any(axis=1)).tolist()
+    begins = {edge: skeleton.ends[edge, int(skeleton.sides[edge, 0] != face)] for edge in own}
+    stops = {edge: skeleton.ends[edge, int(skeleton.sides[edge, 0] == face)] for edge in own}
+    leaving: dict[int, list[int]] = {}
+    for edge in own:
+        leaving.setdefault(int(begins[edge]), []).append(edge)
+    loops = []
+    while leaving:
+        vertex = next(iter(leaving))
+        loop = []
+        while vertex in leaving:
+            edge = leaving[vertex].pop()
+            if not leaving[vertex]:
+                del leaving[vertex]
+            loop.append(edge)
+            vertex = int(stops[edge])
+        loops.append(np.array(loop))
+    return loops
+
+
+def _inset(skeleton: Skeleton, face: int, loop: IndexArray, widths: FloatArray) -> FloatArray:
+    """Return where each edge of a loop begins and ends once the strips are gone, (n, 2, 3)."""
+    inward = _inward(skeleton, face, loop)
+    begins = skeleton.vertices[_ends(skeleton, face, loop)[:, 0]]
+    corners = np.empty((len(loop), 2, 3))
+    for k in range(len(loop)):
+        one, other = inward[k - 1], inward[k]
+        wide, wider = widths[loop[k - 1]], widths[loop[k]]
+        cosine = float(one @ other)
+        sine2 = 1 - cosine**2
+        if sine2 < _PARALLEL**2:
+            corners[k - 1, 1], corners[k, 0] = begins[k] + wide * one, begins[k] + wider * other
+        else:
+            across = ((wide - wider * cosine) * one + (wider - wide * cosine) * other) / sine2
+            corners[k - 1, 1] = corners[k, 0] = begins[k] + across
+    return corners
+
+
+def _inward(skeleton: Skeleton, face: int, loop: IndexArray) -> FloatArray:
+    side = (skeleton.sides[loop, 0] != face).astype(np.int64)
+    return np.asarray(skeleton.inward[loop, side])
+
+
+def _ends(skeleton: Skeleton, face: int, loop: IndexArray) -> IndexArray:
+    ends = skeleton.ends[loop]
+    is_left = skeleton.sides[loop, 0] == face
+    return np.where(is_left[:, None], ends, ends[:, ::-1])
+
+
+def _refuse_reversed(skeleton: Skeleton, face: int, loop: IndexArray, corners: FloatArray) -> None:
+    ends = skeleton.vertices[_ends(skeleton, face, loop)]
+    along = ends[:, 1] - ends[:, 0]
+    left = np.einsum("ij,ij->i", corners[:, 1] - corners[:, 0], along)
+    gone = np.flatnonzero(left <= _PARALLEL * np.einsum("ij,ij->i", along, along))
+    if len(gone):
+        raise no_room(skeleton, ends[gone[0]].mean(axis=0), [face])
+
+
+def _refuse_overlapping(
+    skeleton: Skeleton, face: int, loops: Sequence[FloatArray], widths: FloatArray
+) -> None:
+    """Raise an error if what is left of a face crosses itself."""
+    normal = skeleton.normals[face]
+    axis = int(np.abs(normal).argmax())
+    plane = [(1, 2), (2, 0), (0, 1)][axis]
+    flat = [corners.reshape(-1, 3)[:, plane] for corners in loops]
+    if normal[axis] < 0:
+        flat = [points[:, ::-1] for points in flat]
+    signed = sum(_area(points) for points in flat)
+    if abs(Region(flat).area - signed) > _SAME * sum(abs(_area(points)) for points in flat):
+        edges = np.flatnonzero((skeleton.sides == face).any(axis=1) & (widths > 0))
+        widest = edges[widths[edges].argmax()]
+        raise no_room(skeleton, skeleton.vertices[skeleton.ends[widest]].mean(axis=0), [face])
+
+
+def _area(points: FloatArray) -> float:
+    x, y = (points - points[0]).T
+    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2)

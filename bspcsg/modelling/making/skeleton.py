@@ -1,0 +1,189 @@
+"""The plane faces of a mesh and the edges between them."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..._types import BoolArray, FloatArray, IndexArray
+from ...mesh.mesh import Mesh, surfaces_of
+
+#: Triangles lie in one plane if no corner is farther from it than this share of the mesh's size:
+#: ten steps of the lattice of a body of size one.
+_FLAT = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class Skeleton:
+    """Faces, each a group of triangles of one plane, and edges between them.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64
+    triangles : (m, 3) int64
+    face : (m,) int64
+        The face of each triangle.
+    normals : (f, 3) float64
+        Unit vectors outwards.
+    ends : (e, 2) int64
+        The vertices that each edge runs between.
+    sides : (e, 2) int64
+        The faces on its left and on its right, seen from outside.
+    """
+
+    vertices: FloatArray
+    triangles: IndexArray
+    face: IndexArray
+    normals: FloatArray
+    ends: IndexArray
+    sides: IndexArray
+
+    @cached_property
+    def vectors(self) -> FloatArray:
+        """From the start to the end of each edge, (e, 3)."""
+        vectors: FloatArray = self.vertices[self.ends[:, 1]] - self.vertices[self.ends[:, 0]]
+        return vectors
+
+    @cached_property
+    def directions(self) -> FloatArray:
+        """Unit vectors along the edges, (e, 3)."""
+        directions: FloatArray = self.vectors / np.linalg.norm(self.vectors, axis=1)[:, None]
+        return directions
+
+    @cached_property
+    def inward(self) -> FloatArray:
+        """Unit vectors from each edge into its faces, across it, (e, 2, 3)."""
+        left, right = (self.normals[self.sides[:, k]] for k in (0, 1))
+        across = [np.cross(left, self.directions), np.cross(self.directions, right)]
+        stacked = np.stack(across, axis=1)
+        inward: FloatArray = stacked / np.linalg.norm(stacked, axis=2)[:, :, None]
+        return inward
+
+    @cached_property
+    def is_convex(self) -> BoolArray:
+        """Whether the material is on the inside of the bend, (e,)."""
+        bend = np.einsum("ij,ij->i", self.inward[:, 0], self.normals[self.sides[:, 1]])
+        return np.asarray(bend < 0)
+
+    @cached_property
+    def angles(self) -> FloatArray:
+        """Degrees from face to face through the material, (e,)."""
+        one, other = self.inward[:, 0], self.inward[:, 1]
+        across = np.linalg.norm(np.cross(one, other), axis=1)
+        between = np.degrees(np.arctan2(across, np.einsum("ij,ij->i", one, other)))
+        return np.asarray(np.where(self.is_convex, between, 360 - between))
+
+    @cached_property
+    def _at(self) -> tuple[dict[int, list[int]], dict[int, set[int]]]:
+        edges: dict[int, list[int]] = {}
+        for edge, pair in enumerate(self.ends.tolist()):
+            for vertex in pair:
+                edges.setdefault(vertex, []).append(edge)
+        faces: dict[int, set[int]] = {vertex: set() for vertex in edges}
+        for corners, face in zip(self.triangles.tolist(), self.face.tolist(), strict=True):
+            for vertex in corners:
+                if vertex in faces:
+                    faces[vertex].add(face)
+        return edges, faces
+
+    def edges_at(self, vertex: int) -> list[int]:
+        """Return the edges that end at a vertex."""
+        return self._at[0][vertex]
+
+    def faces_at(self, vertex: int) -> set[int]:
+        """Return the faces that meet at the end of an edge."""
+        return self._at[1][vertex]
+
+
+def skeleton_of(mesh: Mesh) -> Skeleton:
+    """Return the faces and edges of a closed mesh."""
+    vertices, triangles = mesh.vertices, mesh.faces
+    if not len(triangles):
+        none = np.zeros((0, 2), np.int64)
+        return Skeleton(vertices, triangles, none[:, 0], np.zeros((0, 3)), none, none)
+    segments, owners = _segments(triangles, len(vertices))
+    areas = _vector_areas(vertices, triangles)
+    face = _groups(owners[_are_flat(vertices, triangles, areas, segments, owners)], len(triangles))
+    normals = np.zeros((face.max() + 1, 3))
+    np.add.at(normals, face, areas)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals /= np.where(lengths > 0, lengths, 1)
+    sides = face[owners]
+    sharp = sides[:, 0] != sides[:, 1]
+    ends, sides = _runs(vertices, *_ascending(segments[sharp], sides[sharp]))
+    return Skeleton(vertices, triangles, face, normals, ends, sides)
+
+
+def _segments(triangles: IndexArray, count: int) -> tuple[IndexArray, IndexArray]:
+    """Return each edge of triangles once, and the triangles on its left and its right."""
+    starts, ends = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    owner = np.repeat(np.arange(len(triangles)), 3)
+    forth = starts < ends
+    there = np.argsort(starts[forth] * np.int64(count) + ends[forth], kind="stable")
+    back = np.argsort(ends[~forth] * np.int64(count) + starts[~forth], kind="stable")
+    segments = np.column_stack([starts[forth], ends[forth]])[there]
+    return segments, np.column_stack([owner[forth][there], owner[~forth][back]])
+
+
+def _vector_areas(vertices: FloatArray, triangles: IndexArray) -> FloatArray:
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    return np.asarray(np.cross(b - a, c - a))
+
+
+def _are_flat(
+    vertices: FloatArray,
+    triangles: IndexArray,
+    areas: FloatArray,
+    segments: IndexArray,
+    owners: IndexArray,
+) -> BoolArray:
+    """Whether the smaller triangle at each segment lies in the plane of the larger one."""
+    size = np.linalg.norm(areas, axis=1)
+    first_is_large = size[owners[:, 0]] >= size[owners[:, 1]]
+    large = np.where(first_is_large, owners[:, 0], owners[:, 1])
+    small = np.where(first_is_large, owners[:, 1], owners[:, 0])
+    tip = triangles[small].sum(axis=1) - segments.sum(axis=1)
+    unit = areas[large] / np.where(size > 0, size, 1)[large][:, None]
+    away = np.einsum("ij,ij->i", vertices[tip] - vertices[segments[:, 0]], unit)
+    extent = float(np.ptp(vertices, axis=0).max())
+    ahead = np.einsum("ij,ij->i", areas[large], areas[small]) >= 0
+    return np.asarray((np.abs(away) <= _FLAT * extent) & ahead)
+
+
+def _groups(pairs: IndexArray, count: int) -> IndexArray:
+    """Return the number of the connected group of each of so many things."""
+    loops = np.repeat(np.arange(count), 2).reshape(-1, 2)
+    return surfaces_of(np.concatenate([loops, pairs]), count)[:count]
+
+
+def _ascending(segments: IndexArray, sides: IndexArray) -> tuple[IndexArray, IndexArray]:
+    """Return segments turned so that the lower face is on their left."""
+    turned = sides[:, 0] > sides[:, 1]
+    segments = np.where(turned[:, None], segments[:, ::-1], segments)
+    return segments, np.sort(sides, axis=1)
+
+
+def _runs(
+    vertices: FloatArray, segments: IndexArray, sides: IndexArray
+) -> tuple[IndexArray, IndexArray]:
+    """Return segments joined where two of the same faces continue each other."""
+    if not len(segments):
+        return segments, sides
+    degree = np.bincount(segments.ravel(), minlength=len(vertices))
+    leaving, arriving = np.full(len(vertices), -1), np.full(len(vertices), -1)
+    leaving[segments[:, 0]] = np.arange(len(segments))
+    arriving[segments[:, 1]] = np.arange(len(segments))
+    middle = np.flatnonzero((degree == 2) & (leaving >= 0) & (arriving >= 0))
+    before, after = arriving[middle], leaving[middle]
+    steps = vertices[segments[:, 1]] - vertices[segments[:, 0]]
+    ahead = np.einsum("ij,ij->i", steps[before], steps[after]) > 0
+    joined = (sides[before] == sides[after]).all(axis=1) & ahead
+    pairs = np.column_stack([before, after])[joined]
+    run = _groups(pairs, len(segments))
+    first = ~np.isin(np.arange(len(segments)), pairs[:, 1])
+    last = ~np.isin(np.arange(len(segments)), pairs[:, 0])
+    ends = np.empty((run.max() + 1, 2), dtype=np.int64)
+    ends[run[first], 0], ends[run[last], 1] = segments[first, 0], segments[last, 1]
+    of_run = np.empty((len(ends), 2), dtype=np.int64)
+    of_run[run] = sides
+    return ends, of_run

@@ -1,0 +1,255 @@
+"""Edges of solids, chamfers and fillets."""
+
+import math
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+
+BOX = b.box(4, 3, 2)
+STEP = b.box(4, 4, 2) - b.box(2, 2, 2).translate(2, 2, 0)
+STAR = b.loft([([(2, 0), (0.5, 0.5), (0, 2), (-0.5, 0.5), (-2, 0), (0, -0.5)], 0), [(0, 0, 3)]])
+POST = b.box(6, 6, 1).translate(-3, -3, -1) | b.box(2, 2, 3).translate(-1, -1, 0)
+TURNS = [(0, 0, 0), (90, 0, 180), (10, 20, 30), (0, 0, 45)]
+
+
+def segment(steps: int) -> float:
+    """Area between a square's corner and the chords of its round one, of radius 1."""
+    return 1 - steps / 2 * math.sin(math.pi / 2 / steps)
+
+
+# Selections
+
+
+def test_edges_of_a_box() -> None:
+    edges = BOX.edges()
+    assert len(edges) == 12 and edges.is_convex.all()
+    assert np.allclose(edges.angle, 90)
+    assert sorted(edges.length.tolist()) == [2] * 4 + [3] * 4 + [4] * 4
+    assert [len(edges.parallel(axis)) for axis in ("x", "y", "z", (1, 1, 0))] == [4, 4, 4, 0]
+    assert len(edges.parallel("x") | edges.where(lambda e: e.length > 2.5)) == 8
+    top = edges.where(lambda e: e.middle[:, 2] == 2)
+    assert len(top) == 4 and (top.ends[:, :, 2] == 2).all()
+    assert np.allclose(np.abs((top.normals * top.direction[:, None]).sum(axis=2)), 0)
+    assert repr(top) == "Edges(4 of 12, lengths 3 to 4)"
+    assert repr(edges.where(np.zeros(12, bool))) == "Edges(0 of 12)"
+
+
+def test_edges_run_on_where_triangles_meet_them() -> None:
+    # The bar's top is flush with the block's, so that one of its edges is cut in two triangles'
+    # sides and another ends at the block.
+    part = b.box(4, 2, 2) | b.box(2, 2, 2).translate(4, 0, 0)
+    assert len(part.edges()) == 12
+    assert sorted(part.edges().length.tolist()) == [2] * 8 + [6] * 4
+    holed = b.box(4, 4, 1) - b.cylinder(3, 1, segments=6).translate(2, 2, -1)
+    edges = holed.edges()
+    assert len(edges) == 12 + 18
+    assert np.allclose(edges.where(lambda e: e.length < 1.1).angle.max(), 240)
+
+
+def test_concave_edges_have_angles_above_180() -> None:
+    edges = STEP.edges()
+    (inner,) = np.flatnonzero(~edges.is_convex)
+    assert edges.angle[inner] == pytest.approx(270) and len(edges) == 18
+    assert (b.cone(3, 2, segments=4).edges().angle < 180).all()
+    assert len(b.Solid.empty().edges()) == 0
+
+
+def test_selections_say_what_is_wrong_with_conditions() -> None:
+    edges = BOX.edges()
+    for condition in (lambda e: e.length, [True], lambda e: True):
+        with pytest.raises(b.InvalidParameterError, match="one truth value"):
+            edges.where(condition)
+    with pytest.raises(b.InvalidParameterError, match="axis"):
+        edges.parallel("w")
+    with pytest.raises(b.InvalidParameterError, match="different solids"):
+        edges | b.cube(1).edges()
+    with pytest.raises(b.UnboundedError):
+        b.half_space((0, 0, 1)).edges()
+
+
+# Chamfers
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_a_box_without_its_edges(turn: Any) -> None:
+    box, d = BOX.rotate(turn), 0.25
+    part = box.chamfer(box.edges(), d)
+    # Pairs of cut off wedges share a third of d³ at a corner, all three of them a quarter.
+    expected = 24 - 4 * 9 * d**2 / 2 + 8 * (3 / 3 - 1 / 4) * d**3
+    assert part.volume == pytest.approx(expected, abs=1e-7)
+    assert part.genus == 0 and part.to_mesh().certificate.ok
+    if turn in TURNS[:2]:
+        assert part.volume_exact == pytest.approx(expected)
+        assert len(part.edges()) == 24 + 24
+
+
+def test_one_edge_and_two() -> None:
+    edges = BOX.edges()
+    upright = BOX.chamfer(edges.parallel("z"), 0.5)
+    assert upright == b.extrude([(0.5, 0), (3.5, 0), (4, 0.5), (4, 2.5), (3.5, 3), (0.5, 3), (0, 2.5), (0, 0.5)], 2)  # fmt: skip  # noqa: E501
+    two = edges.where(lambda e: (e.ends.max(axis=1)[:, 1:] == [3, 2]).all(axis=1))
+    one = two.parallel("x")
+    assert len(one) == 1
+    assert BOX.chamfer(one, 0.5).volume == 24 - 4 / 8
+    assert BOX.chamfer(edges.where(lambda e: e.length < 0), 1) == BOX
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_a_reflex_corner_is_mitred(turn: Any) -> None:
+    part = STEP.rotate(turn)
+    edges, top = part.edges(), STEP.edges().middle[:, 2] == 2
+    bevelled = part.chamfer(edges.where(top) if turn == TURNS[0] else _like(edges, STEP, turn), 0.5)
+    d = 0.5
+    # Five corners count twice, the reflex one is missing twice.
+    expected = 24 - 16 * d**2 / 2 + 5 * d**3 / 3 - d**3 / 3
+    assert bevelled.volume == pytest.approx(expected, abs=1e-7)
+    assert bevelled.genus == 0 and bevelled.to_mesh().certificate.ok
+
+
+def _like(edges: b.Edges, original: b.Solid, turn: Any) -> b.Edges:
+    """Return the edges whose middles were at height 2 before a turn."""
+    top = original.edges().where(lambda e: e.middle[:, 2] == 2)
+    middles = [b.cube(2e-3, center=True).translate(m).rotate(turn) for m in top.middle.tolist()]
+    near = b.union(middles)
+    return edges.where(near.classify(edges.middle) > 0)
+
+
+def test_concave_edges_are_filled() -> None:
+    inner = STEP.edges().where(lambda e: ~e.is_convex)
+    filled = STEP.chamfer(inner, 0.5)
+    assert filled.volume == 24 + 2 / 8
+    foot = POST.edges().where(lambda e: ~e.is_convex)
+    assert len(foot) == 4
+    plinth = POST.chamfer(foot, 0.5)
+    # Four bars, and at the corners what their mitres leave: a third of a cube each.
+    assert plinth.volume == pytest.approx(36 + 12 + 8 * 0.125 + 4 * 0.125 / 3)
+    assert plinth.genus == 0 and plinth.to_mesh().certificate.ok
+
+
+def test_a_pyramid_s_apex() -> None:
+    pyramid = b.cone(3, 2, segments=4)
+    steep = pyramid.edges().where(lambda e: e.ends[:, :, 2].max(axis=1) == 3)
+    part = pyramid.chamfer(steep, 0.2)
+    assert len(steep) == 4 and part.genus == 0 and part.to_mesh().certificate.ok
+    apart = 4 * 0.2**2 / 2 * math.sin(math.radians(steep.angle[0])) * math.hypot(2, 3)
+    assert 0.9 * apart < pyramid.volume - part.volume < apart
+    with pytest.raises(b.InvalidParameterError, match=r"At \(0, 0, 3\) more than three round"):
+        pyramid.fillet(steep, 0.2)
+
+
+# Fillets
+
+
+@pytest.mark.parametrize("segments", [4, 8, 12, 32])
+@pytest.mark.parametrize("r", [0.25, 0.5, 0.9])
+def test_a_box_without_edges_is_the_round_box(segments: int, r: float) -> None:
+    round_ = BOX.fillet(BOX.edges(), r, segments)
+    assert round_ == b.rounded_box((4, 3, 2), r, segments=segments)
+    assert round_.to_mesh().certificate.ok
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_turned_boxes_get_as_round(turn: Any) -> None:
+    box = BOX.rotate(turn)
+    round_ = box.fillet(box.edges(), 0.5, 16)
+    expected = b.rounded_box((4, 3, 2), 0.5, segments=16)
+    assert round_.volume == pytest.approx(expected.volume, abs=1e-6)
+    assert (round_ ^ expected.rotate(turn)).volume < 1e-6
+    assert round_.genus == 0 and round_.to_mesh().certificate.ok
+
+
+def test_cavities_get_round_corners_too() -> None:
+    hollow = b.cube(6, center=True) - b.box(4, 3, 2).translate(-2, -1.5, -1)
+    inner = hollow.edges().where(lambda e: ~e.is_convex)
+    ball = b.rounded_box((4, 3, 2), 0.5, segments=16).translate(-2, -1.5, -1)
+    assert hollow.fillet(inner, 0.5, 16) == b.cube(6, center=True) - ball
+
+
+def test_a_pocket_and_a_step() -> None:
+    inner = STEP.edges().where(lambda e: ~e.is_convex)
+    assert STEP.fillet(inner, 0.5).volume == pytest.approx(24 + 2 * segment(8) / 4, abs=1e-8)
+    upright = POST.edges().parallel("z").where(lambda e: e.middle[:, 2] > 0)
+    part = POST.fillet(upright, 0.5)
+    assert part.volume == pytest.approx(48 - 4 * 3 * segment(8) / 4, abs=1e-7)
+    pocket = b.box(6, 6, 3) - b.box(4, 4, 3).translate(1, 1, 1)
+    corners = pocket.edges().where(lambda e: ~e.is_convex)
+    assert len(corners) == 8
+    soft = pocket.fillet(corners, 1, 8)
+    assert soft.genus == 0 and soft.to_mesh().certificate.ok
+    core = b.rounded_box((4, 4, 9), 1, segments=8).translate(1, 1, 1)
+    assert soft == b.box(6, 6, 3) - core
+
+
+def test_blunt_and_sharp_edges() -> None:
+    for sides in (3, 5, 8):
+        prism = b.prism(sides, 3, 2)
+        part = prism.fillet(prism.edges(), 0.2, 16)
+        assert part.genus == 0 and part.to_mesh().certificate.ok
+        assert part.volume < prism.volume
+        # The round body lies within the prism, and holds the prism that is smaller by the radius.
+        assert part <= prism
+    cylinder = b.cylinder(3, 2, segments=24)
+    rim = cylinder.edges().where(lambda e: e.ends[:, :, 2].min(axis=1) == 3)
+    part = cylinder.chamfer(rim, 0.3)
+    assert len(rim) == 24 and part.genus == 0 and part.to_mesh().certificate.ok
+
+
+def test_first_the_concave_edges_then_the_others() -> None:
+    soft = STEP.fillet(STEP.edges().where(lambda e: ~e.is_convex), 0.5, 8)
+    top = soft.edges().where(lambda e: (e.ends[:, :, 2] == 2).all(axis=1))
+    assert len(top) == 6 + 2
+    part = soft.chamfer(top, 0.25)
+    assert part.genus == 0 and part.to_mesh().certificate.ok
+    assert part.volume < soft.volume
+
+
+def test_blends_count_once_in_a_block() -> None:
+    with b.union() as u:
+        part = b.cube(2)
+        part.chamfer(part.edges(), 0.25)
+    assert u.solid.volume < 8
+
+
+# Refusals
+
+
+@pytest.mark.parametrize(
+    ("call", "word"),
+    [
+        (lambda: BOX.chamfer(BOX.edges(), 1), r"no room at \("),
+        (lambda: BOX.chamfer(BOX.edges(), 5), "no room"),
+        (lambda: BOX.chamfer(BOX.edges().parallel("x"), 1), "no room"),
+        (lambda: BOX.fillet(BOX.edges(), 1), "no room"),
+        (lambda: BOX.fillet(BOX.edges().parallel("x"), 1.01), "no room"),
+        (lambda: STEP.chamfer(STEP.edges(), 0.1), r"At \(2, 2, 0\) convex and concave"),
+        (lambda: BOX.chamfer(STEP.edges(), 0.1), "another solid"),
+        (lambda: BOX.chamfer(cast("Any", [0]), 0.1), "selection"),
+        (lambda: BOX.chamfer(BOX.edges(), 0), "above 0"),
+        (lambda: BOX.chamfer(BOX.edges(), math.nan), "finite"),
+        (lambda: BOX.fillet(BOX.edges(), -1), "above 0"),
+        (lambda: BOX.fillet(BOX.edges(), 0.1, 3), "from 4"),
+        (lambda: STAR.chamfer(STAR.edges().where(lambda e: e.is_convex), 0.1), "more than three"),
+    ],
+)
+def test_where_there_is_no_room(call: Any, word: str) -> None:
+    with pytest.raises(b.InvalidParameterError, match=word):
+        call()
+
+
+def test_a_hole_near_an_edge_leaves_no_room() -> None:
+    plate = b.box(10, 10, 2) - b.cylinder(4, 1, segments=8).translate(2, 5, -1)
+    edge = plate.edges().where(lambda e: (e.middle[:, [0, 2]] == [0, 2]).all(axis=1))
+    assert len(edge) == 1
+    assert plate.chamfer(edge, 0.9).volume == pytest.approx(plate.volume - 0.9**2 / 2 * 10)
+    with pytest.raises(b.InvalidParameterError, match=r"no room at \(0, 5, 2\)") as caught:
+        plate.chamfer(edge, 1.1)
+    assert caught.value.where
+
+
+def test_many_edges_are_refused() -> None:
+    ball = b.sphere(10, segments=160)
+    with pytest.raises(b.LimitError, match="edges are chosen"):
+        ball.chamfer(ball.edges(), 1e-4)
