@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from .modelling.bodies.hulls import hull
     from .modelling.bodies.level_sets import level_set
     from .modelling.bodies.sums import minkowski
-    from .modelling.making.edges import Edges
+    from .modelling.making.edges import EdgeSelection
     from .modelling.making.heights import surface
     from .modelling.making.lofting import loft
     from .modelling.making.paths import helix, spline
@@ -66,7 +66,7 @@ if TYPE_CHECKING:
 __all__ = [
     "BspcsgError",
     "CheckReport",
-    "Edges",
+    "EdgeSelection",
     "Finding",
     "FormatError",
     "InternalError",
@@ -127,7 +127,7 @@ _attach()
 _MODULES = {
     "_core": "__version__",
     "bsp.sets.region": "Region",
-    "modelling.making.edges": "Edges",
+    "modelling.making.edges": "EdgeSelection",
     "modelling.making.heights": "surface",
     "modelling.making.lofting": "loft",
     "modelling.making.paths": "helix spline",

@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     import trimesh
 
     from ..bsp import Region
-    from ..modelling.making.edges import Edges
+    from ..modelling.making.edges import EdgeSelection
 
 
 class Solid(Measured, Modelled, PointSet):
@@ -487,8 +487,8 @@ class Solid(Measured, Modelled, PointSet):
     # Edges
 
     @uncounted
-    def edges(self) -> "Edges":
-        """Return the edges between plane faces, to choose some of them (see `Edges`).
+    def edges(self) -> "EdgeSelection":
+        """Return the edges between plane faces, to choose some of them (see `EdgeSelection`).
 
         Raises
         ------
@@ -501,11 +501,11 @@ class Solid(Measured, Modelled, PointSet):
         >>> len(b.box(1, 2, 3).edges().parallel("z"))
         4
         """
-        edges: Edges = above("edges")(self)
+        edges: EdgeSelection = above("edges")(self)
         return edges
 
     @counted
-    def chamfer(self, edges: "Edges", size: Scalar) -> "Solid":
+    def chamfer(self, edges: "EdgeSelection", size: Scalar) -> "Solid":
         """Return the solid with flat surfaces instead of edges.
 
         Material is taken off along convex edges and filled in along concave ones. At corners the
@@ -513,7 +513,7 @@ class Solid(Measured, Modelled, PointSet):
 
         Parameters
         ----------
-        edges : Edges
+        edges : EdgeSelection
             Some of the solid's own.
         size : float
             From the edge to where the new surface begins, on both faces, in model units.
@@ -537,7 +537,7 @@ class Solid(Measured, Modelled, PointSet):
         return solid
 
     @counted
-    def fillet(self, edges: "Edges", radius: Scalar, segments: int = 32) -> "Solid":
+    def fillet(self, edges: "EdgeSelection", radius: Scalar, segments: int = 32) -> "Solid":
         """Return the solid with round surfaces instead of edges.
 
         Material is taken off along convex edges and filled in along concave ones, to a cylinder
@@ -546,7 +546,7 @@ class Solid(Measured, Modelled, PointSet):
 
         Parameters
         ----------
-        edges : Edges
+        edges : EdgeSelection
             Some of the solid's own.
         radius : float
             In model units.

@@ -33,8 +33,8 @@ def test_edges_of_a_box() -> None:
     top = edges.where(lambda e: e.middle[:, 2] == 2)
     assert len(top) == 4 and (top.ends[:, :, 2] == 2).all()
     assert np.allclose(np.abs((top.normals * top.direction[:, None]).sum(axis=2)), 0)
-    assert repr(top) == "Edges(4 of 12, lengths 3 to 4)"
-    assert repr(edges.where(np.zeros(12, bool))) == "Edges(0 of 12)"
+    assert repr(top) == "EdgeSelection(4 of 12, lengths 3 to 4)"
+    assert repr(edges.where(np.zeros(12, bool))) == "EdgeSelection(0 of 12)"
 
 
 def test_edges_run_on_where_triangles_meet_them() -> None:
@@ -109,7 +109,7 @@ def test_a_reflex_corner_is_mitred(turn: Any) -> None:
     assert bevelled.genus == 0 and bevelled.to_mesh().certificate.ok
 
 
-def _like(edges: b.Edges, original: b.Solid, turn: Any) -> b.Edges:
+def _like(edges: b.EdgeSelection, original: b.Solid, turn: Any) -> b.EdgeSelection:
     """Return the edges whose middles were at height 2 before a turn."""
     top = original.edges().where(lambda e: e.middle[:, 2] == 2)
     middles = [b.cube(2e-3, center=True).translate(m).rotate(turn) for m in top.middle.tolist()]

@@ -18,7 +18,7 @@ from ...geometry.polygon import triangulate_face
 from ...operations.setops import union
 from ...parameters import positive, refuse_many_corners, sides_around
 from ...solid.solid import Solid
-from .edges import Edges, selection
+from .edges import EdgeSelection, selection
 from .patches import arc_directions, patch_directions, patch_faces
 from .planes import Planes
 from .rings import walls
@@ -259,12 +259,12 @@ def _rim(steps: int) -> IndexArray:
     return np.concatenate([first[:-1], (first[-1] + rows)[:-1], (first + rows)[:0:-1]])
 
 
-def chamfer(solid: Solid, edges: Edges, size: Scalar) -> Solid:
+def chamfer(solid: Solid, edges: EdgeSelection, size: Scalar) -> Solid:
     """Return the solid with flat surfaces instead of edges; see `Solid.chamfer`."""
     return _blended(solid, edges, _Profile(positive(size, "size"), 1, False))
 
 
-def fillet(solid: Solid, edges: Edges, radius: Scalar, segments: int) -> Solid:
+def fillet(solid: Solid, edges: EdgeSelection, radius: Scalar, segments: int) -> Solid:
     """Return the solid with round surfaces instead of edges; see `Solid.fillet`."""
     around = sides_around(4, segments, "segments")
     size = positive(radius, "radius")
@@ -275,8 +275,8 @@ def fillet(solid: Solid, edges: Edges, radius: Scalar, segments: int) -> Solid:
     return _blended(solid, edges, _Profile(size, steps, True))
 
 
-def _selected(edges: Edges) -> tuple[Skeleton, IndexArray]:
-    if not isinstance(edges, Edges):
+def _selected(edges: EdgeSelection) -> tuple[Skeleton, IndexArray]:
+    if not isinstance(edges, EdgeSelection):
         raise invalid_parameter("Edges are those of a selection: solid.edges().")
     skeleton, chosen = selection(edges)
     if len(chosen) > _MOST_EDGES:
@@ -285,7 +285,7 @@ def _selected(edges: Edges) -> tuple[Skeleton, IndexArray]:
     return skeleton, chosen
 
 
-def _blended(solid: Solid, edges: Edges, profile: _Profile) -> Solid:
+def _blended(solid: Solid, edges: EdgeSelection, profile: _Profile) -> Solid:
     skeleton, chosen = _selected(edges)
     mesh = solid.normalized().to_mesh()
     if skeleton.vertices is not mesh.vertices and not np.array_equal(

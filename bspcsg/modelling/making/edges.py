@@ -1,4 +1,4 @@
-"""`Edges`: a selection of a solid's edges."""
+"""`EdgeSelection`: a selection of a solid's edges."""
 
 from collections.abc import Callable
 from typing import Any
@@ -16,7 +16,7 @@ from .skeleton import Skeleton, skeleton_of
 _PARALLEL = 1e-3
 
 
-class Edges:
+class EdgeSelection:
     """Edges of a solid, each between two plane faces, from corner to corner.
 
     All properties are arrays over the edges, so that conditions are made of them.
@@ -26,9 +26,9 @@ class Edges:
     >>> import bspcsg as b
     >>> edges = b.box(1, 2, 3).edges()
     >>> len(edges), edges.parallel("z")
-    (12, Edges(4 of 12, lengths 3 to 3))
+    (12, EdgeSelection(4 of 12, lengths 3 to 3))
     >>> edges.where(lambda e: e.length > 1.5)
-    Edges(8 of 12, lengths 2 to 3)
+    EdgeSelection(8 of 12, lengths 2 to 3)
     """
 
     def __init__(self, skeleton: Skeleton, numbers: IndexArray) -> None:
@@ -75,7 +75,7 @@ class Edges:
         convex: BoolArray = self._skeleton.is_convex[self._numbers]
         return convex
 
-    def where(self, condition: "Callable[[Edges], Any] | Any") -> "Edges":
+    def where(self, condition: "Callable[[EdgeSelection], Any] | Any") -> "EdgeSelection":
         """Return the edges for which a condition holds.
 
         Parameters
@@ -94,9 +94,9 @@ class Edges:
                 f"A condition has one truth value for each of the {len(self)} edges, not"
                 f" {given.dtype} of shape {given.shape}."
             )
-        return Edges(self._skeleton, self._numbers[given])
+        return EdgeSelection(self._skeleton, self._numbers[given])
 
-    def parallel(self, axis: str | Vector) -> "Edges":
+    def parallel(self, axis: str | Vector) -> "EdgeSelection":
         """Return the edges along an axis, either way.
 
         Parameters
@@ -106,13 +106,13 @@ class Edges:
         across = np.linalg.norm(np.cross(self.direction, axis_vector(axis)), axis=1)
         return self.where(across <= _PARALLEL)
 
-    def __or__(self, other: "Edges") -> "Edges":
+    def __or__(self, other: "EdgeSelection") -> "EdgeSelection":
         """Return the edges of both selections of one solid."""
-        if not isinstance(other, Edges):
+        if not isinstance(other, EdgeSelection):
             return NotImplemented
         if other._skeleton.vertices is not self._skeleton.vertices:
             raise invalid_parameter("Selections of different solids cannot be united.")
-        return Edges(self._skeleton, np.union1d(self._numbers, other._numbers))
+        return EdgeSelection(self._skeleton, np.union1d(self._numbers, other._numbers))
 
     def __len__(self) -> int:
         """Return the number of edges."""
@@ -121,15 +121,15 @@ class Edges:
     def __repr__(self) -> str:
         """Say how many edges of how many, and how long they are."""
         told = f", lengths {self.length.min():g} to {self.length.max():g}" if len(self) else ""
-        return f"Edges({len(self)} of {len(self._skeleton.ends)}{told})"
+        return f"EdgeSelection({len(self)} of {len(self._skeleton.ends)}{told})"
 
 
-def edges_of(solid: Solid) -> Edges:
+def edges_of(solid: Solid) -> EdgeSelection:
     """Return all edges of a solid."""
     skeleton = skeleton_of(solid.normalized().to_mesh())
-    return Edges(skeleton, np.arange(len(skeleton.ends)))
+    return EdgeSelection(skeleton, np.arange(len(skeleton.ends)))
 
 
-def selection(edges: Edges) -> tuple[Skeleton, IndexArray]:
+def selection(edges: EdgeSelection) -> tuple[Skeleton, IndexArray]:
     """Return what a selection is made of, for the modules of this package."""
     return edges._skeleton, edges._numbers

@@ -153,7 +153,8 @@ def _are_flat(
 def _groups(pairs: IndexArray, count: int) -> IndexArray:
     """Return the number of the connected group of each of so many things."""
     loops = np.repeat(np.arange(count), 2).reshape(-1, 2)
-    return surfaces_of(np.concatenate([loops, pairs]), count)[:count]
+    links = np.concatenate([loops, pairs])
+    return surfaces_of(links[:, [0, 1, 1]], count)[:count]
 
 
 def _ascending(segments: IndexArray, sides: IndexArray) -> tuple[IndexArray, IndexArray]:
