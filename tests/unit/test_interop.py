@@ -13,6 +13,8 @@ import trimesh
 
 import bspcsg as b
 from bspcsg.mesh import interop
+from bspcsg.mesh.certificate import certify
+from bspcsg.mesh.mesh import surfaces_of
 
 V = np.array([(x, y, z) for x in (0.0, 1.0) for y in (0.0, 2.0) for z in (0.0, 3.0)])
 QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
@@ -326,3 +328,11 @@ def test_what_goes_out_comes_back_the_same(through: str) -> None:
 def test_solids_are_no_arrays() -> None:
     # Vertices or triangles: there is no telling which one somebody would mean.
     assert not hasattr(b.Solid, "__array__") and np.asarray(b.cube(1)).shape == ()
+
+
+def test_arrays_by_columns_are_certified_as_what_they_are() -> None:
+    mesh = b.cube(2).to_mesh()
+    by_columns = np.asfortranarray(mesh.vertices), np.asfortranarray(mesh.faces)
+    proof = certify(*by_columns)
+    assert proof.ok and proof.triangles == 12
+    assert surfaces_of(by_columns[1], 8).tolist() == [0] * 12

@@ -18,7 +18,8 @@ pub fn rows<'a, T: Element + Copy>(
         let text = format!("{name} must have shape (n, 3), not {:?}", view.shape());
         return Err(Error::new(ErrorKind::Shape, text));
     }
-    if let Ok(flat) = array.as_slice() {
+    // A slice of an array by columns has its columns one after another.
+    if let (true, Ok(flat)) = (view.is_standard_layout(), array.as_slice()) {
         return Ok(Cow::Borrowed(flat.as_chunks().0));
     }
     let row = |r: numpy::ndarray::ArrayView1<'_, T>| [r[0], r[1], r[2]];
