@@ -74,7 +74,7 @@ def test_what_is_flat_has_an_empty_hull(flat: Any) -> None:
     [
         (7, b.InvalidParameterError, "invalid_parameter"),
         ("abc", b.InvalidParameterError, "invalid_parameter"),
-        ([(0, 0)] * 4, b.InvalidMeshError, "shape"),
+        ([(0, 0, 0, 0)] * 4, b.InvalidMeshError, "shape"),
         ([(0, 0, float("nan"))] * 4, b.InvalidMeshError, "non_finite"),
         ([(0, 0, 1e300), (0, 0, 0), (1, 0, 0), (0, 1, 0)], b.LimitError, "too_large"),
         (~b.cube(1), b.UnboundedError, "unbounded"),

@@ -54,7 +54,8 @@ def slow_gap(one: b.Solid, other: b.Solid) -> float:
 
 
 def random_body(rng: np.random.Generator) -> b.Solid:
-    return b.hull(rng.normal(size=(6, 3)).round(3))
+    solid: b.Solid = b.hull(rng.normal(size=(6, 3)).round(3))
+    return solid
 
 
 @pytest.mark.parametrize("seed", range(12))

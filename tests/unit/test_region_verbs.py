@@ -115,6 +115,33 @@ def test_hulls_of_nothing_and_of_too_much() -> None:
         Region.full().hull()
 
 
+def test_hulls_of_several_figures_and_of_points() -> None:
+    left, right = SQUARE, SQUARE.translate(20, 0)
+    assert b.hull(left, right) == b.hull([left, right]) == Region.rectangle(30, 10)
+    assert b.hull(left, [(30, 0), (30, 10)]) == Region.rectangle(30, 10)
+    assert b.hull([(0, 0), (4, 0), (0, 4), (1, 1)]).area == 8
+    assert b.hull(np.zeros((0, 2))).is_empty and b.hull([(0, 0), (1, 1), (2, 2)]).is_empty
+    with pytest.raises(b.InvalidParameterError, match="of one dimension"):
+        b.hull(SQUARE, b.cube(1))
+    with pytest.raises(b.InvalidMeshError, match="not finite"):
+        b.hull([(0, 0), (4, 0), (0, math.nan)])
+
+
+def test_sums_of_regions() -> None:
+    assert b.minkowski(SQUARE, Region.rectangle(1, 2)) == Region.rectangle(11, 12)
+    # A frame thickened until its hole is gone.
+    assert b.minkowski(RING, Region.rectangle(6, 6)) == Region.rectangle(16, 16)
+    assert b.minkowski(RING, Region.rectangle(2, 2)).area == 144 - 16
+    assert b.minkowski(SQUARE, Region.empty()).is_empty
+    with pytest.raises(b.InvalidParameterError, match="two solids, or of two regions"):
+        b.minkowski(SQUARE, b.cube(1))  # type: ignore[call-overload]
+    with pytest.raises(b.UnboundedError):
+        b.minkowski(SQUARE, Region.full())
+    comb = Region.compose(Region.rectangle(1, 1).translate(2 * k, 0) for k in range(200))
+    with pytest.raises(b.LimitError, match="40,000 pairs"):
+        b.minkowski(comb, comb)
+
+
 # Simplify
 
 

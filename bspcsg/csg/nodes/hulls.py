@@ -1,21 +1,17 @@
 """Convex hulls and sums of shapes: hull, minkowski."""
 
 from functools import reduce
+from typing import TypeVar
 
-import numpy as np
-
-from ..._types import FloatArray
 from ...bsp import Region
 from ...errors import LimitError
 from ...modelling.bodies import hulls, sums
-from ...modelling.planar.hulls import hull_region
 from ...solid.solid import Solid
 from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
 
-#: More pairs of convex parts than this would take hours.
-_MOST_PAIRS = 20_000
+_Shape = TypeVar("_Shape", Solid, Region)
 
 
 @node("hull")
@@ -23,9 +19,8 @@ def hull(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Return the convex hull of all children together."""
     solids, regions = run.same_kind(owner, [child for child in children if child])
     if solids:
-        return hulls.hull(solids)
-    loops = [loop for region in regions for loop in region.to_polygons()]
-    return hull_region(np.concatenate(loops)) if loops else None
+        return hulls.hull(*solids)
+    return hulls.hull(*regions) if regions else None
 
 
 @node("minkowski")
@@ -39,10 +34,10 @@ def minkowski(owner: Node, children: list[Geometry], run: Evaluation) -> Geometr
     solids, regions = run.same_kind(owner, children)
     if solids:
         summands = [solid for solid in solids if not solid.is_empty]
-        summed = reduce(lambda a, b: _solid_sum(a, b, arguments), summands) if summands else None
+        summed = reduce(lambda a, b: _sum(a, b, arguments), summands) if summands else None
         return summed or Solid.empty()
     if regions:
-        return reduce(lambda a, b: _region_sum(a, b, arguments), _summands(children, regions))
+        return reduce(lambda a, b: _sum(a, b, arguments), _summands(children, regions))
     return None
 
 
@@ -58,29 +53,8 @@ def _summands(children: list[Geometry], regions: list[Region]) -> list[Region]:
     return regions if len(children) == 1 else figures
 
 
-def _solid_sum(a: Solid, b: Solid, arguments: Arguments) -> Solid:
+def _sum(a: _Shape, b: _Shape, arguments: Arguments) -> _Shape:
     try:
         return sums.minkowski(a, b)
     except LimitError as error:
         raise arguments.error(error.message, error.code) from error
-
-
-def _region_sum(a: Region, b: Region, arguments: Arguments) -> Region:
-    first, second = a.convex_parts(), b.convex_parts()
-    _check_pairs(len(first) * len(second), arguments)
-    hulls = [hull_region(_sums(p, q)) for p in first for q in second]
-    return Region([loop for part in hulls for loop in part.to_polygons()])
-
-
-def _sums(first: FloatArray, second: FloatArray) -> FloatArray:
-    sums = first[:, None, :] + second[None, :, :]
-    return np.ascontiguousarray(sums.reshape(-1, first.shape[1]))
-
-
-def _check_pairs(count: int, arguments: Arguments) -> None:
-    if count > _MOST_PAIRS:
-        message = (
-            f"its children are not convex and fall into parts of which {count:,} pairs would have"
-            f" to be summed; the most are {_MOST_PAIRS:,}."
-        )
-        raise arguments.error(message, "too_large")

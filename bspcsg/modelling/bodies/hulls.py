@@ -1,26 +1,34 @@
-"""Convex hulls in space."""
+"""Convex hulls, those in space by the core."""
 
 from collections.abc import Iterable, Iterator
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
 from ..._core import hull_faces, suited_pitch
 from ..._types import FloatArray
+from ...bsp import Region
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
 from ...mesh import interop
 from ...parameters import shown
 from ...solid.counting import counted
 from ...solid.leaf import MeshLeaf
 from ...solid.solid import Solid, from_leaf
+from ..planar.hulls import hull_of_figures
 
 #: Lattice coordinates are below this many steps.
 _REACH = 2**53
 
 
+@overload
+def hull(*solids_or_points: Solid) -> Solid: ...
+@overload
+def hull(*solids_or_points: Region) -> Region: ...
+@overload
+def hull(*solids_or_points: Any) -> Any: ...
 @counted
-def hull(*solids_or_points: Any) -> Solid:
-    """Return the convex hull: the least convex solid that holds all that is given.
+def hull(*solids_or_points: Any) -> Solid | Region:
+    """Return the convex hull: the least convex set that holds all that is given.
 
     It is exact. Each corner of the result is a corner of a solid or one of the points, none of
     these lies outside, and no corner could be left out.
@@ -28,12 +36,13 @@ def hull(*solids_or_points: Any) -> Solid:
     Parameters
     ----------
     *solids_or_points : Solid, (n, 3) or (3,) array_like of float, or iterable of such
-        In model units. Points are snapped to the finest lattice of the solids.
+        In model units. Points are snapped to the finest lattice of the solids. Or, in the plane,
+        regions and (n, 2) points.
 
     Returns
     -------
-    Solid
-        Empty if all that is given lies in one plane.
+    Solid or Region
+        Empty if all that is given lies in one plane, or on one line.
 
     Raises
     ------
@@ -53,6 +62,8 @@ def hull(*solids_or_points: Any) -> Solid:
     1.0
     """
     given = list(_entries(solids_or_points))
+    if any(_is_flat(one) for one in given):
+        return hull_of_figures(given)
     clouds = [_points_of(one) for one in given]
     pitches = [one.pitch for one in given if isinstance(one, Solid) and not one.is_empty]
     points = np.concatenate(clouds) if clouds else np.zeros((0, 3))
@@ -89,16 +100,20 @@ def _lattice_for(points: FloatArray, pitch: int | None) -> int:
         return suited_pitch(largest, float(np.ptp(points, axis=0).max()))
 
 
+def _is_flat(given: Any) -> bool:
+    return isinstance(given, Region) or (np.ndim(given) == 2 and np.shape(given)[1] == 2)
+
+
 def _entries(given: Iterable[Any]) -> Iterator[Any]:
     """Yield solids and arrays of points; those in a list with solids one by one."""
     for one in given:
-        if isinstance(one, Solid):
+        if isinstance(one, (Solid, Region)):
             yield one
             continue
         if not isinstance(one, Iterable) or isinstance(one, (str, bytes)):
             raise invalid_parameter(f"A hull is that of solids and points, not of {shown(one)}.")
         held: Any = one if isinstance(one, np.ndarray) else list(one)
-        mixed = any(isinstance(entry, Solid) for entry in held)
+        mixed = any(isinstance(entry, (Solid, Region)) for entry in held)
         yield from held if mixed else [held]
 
 

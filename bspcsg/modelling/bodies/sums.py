@@ -1,18 +1,19 @@
-"""Minkowski sums of solids."""
+"""Minkowski sums, those of solids."""
 
 from fractions import Fraction
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, overload
 
 import numpy as np
 
 from ..._types import FloatArray
-from ...bsp import ObjectTree
-from ...errors import LimitError, UnboundedError
+from ...bsp import ObjectTree, Region
+from ...errors import LimitError, UnboundedError, invalid_parameter
 from ...geometry.hyperplane import Hyperplane
 from ...operations import setops
 from ...solid.counting import counted
 from ...solid.leaf import PlaneLeaf
 from ...solid.solid import Solid, from_leaf
+from ..planar.sums import sum_of_regions
 from .hulls import hull_of
 
 #: Corners of convex sets, each an array of shape (n, 3).
@@ -31,8 +32,12 @@ _MOST_PAIRS = 20_000
 _MOST_SUMS = 20_000_000
 
 
+@overload
+def minkowski(a: Solid, b: Solid) -> Solid: ...
+@overload
+def minkowski(a: Region, b: Region) -> Region: ...
 @counted
-def minkowski(a: Solid, b: Solid) -> Solid:
+def minkowski(a: Any, b: Any) -> Solid | Region:
     """Return the Minkowski sum: all points that are a point of one solid plus one of the other.
 
     It is the first solid thickened by the second. The sum of convex solids is the hull of the sums
@@ -41,17 +46,19 @@ def minkowski(a: Solid, b: Solid) -> Solid:
 
     Parameters
     ----------
-    a, b : Solid
+    a, b : Solid, or Region both
         The complement of a bounded solid may stand for `a`. So ``~minkowski(~a, b)`` is `a` made
         thinner: all points at which the mirror image of `b` in the origin fits into `a`.
 
     Returns
     -------
-    Solid
+    Solid or Region
         Empty if one of them is.
 
     Raises
     ------
+    InvalidParameterError
+        If they are not both solids or both regions.
     UnboundedError
         If `b` reaches to infinity, or `a` and its complement do.
     LimitError
@@ -71,6 +78,10 @@ def minkowski(a: Solid, b: Solid) -> Solid:
     >>> thin == b.cube(2).translate(1, 1, 1)
     True
     """
+    if isinstance(a, Region) and isinstance(b, Region):
+        return sum_of_regions(a, b)
+    if not isinstance(a, Solid) or not isinstance(b, Solid):
+        raise invalid_parameter("A Minkowski sum is that of two solids, or of two regions.")
     if a.is_empty or b.is_empty:
         return Solid.empty()
     if not a.is_bounded:

@@ -1,12 +1,15 @@
 """Convex hulls in the plane."""
 
-from typing import TypeAlias
+from collections.abc import Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from ..._types import FloatArray
 from ...bsp import Region
 from ...bsp.sets.boundary import chosen_pitch
+from ...errors import InvalidMeshError, invalid_parameter
+from ...geometry.arrays import doubles
 
 #: A point in steps of the lattice, and its number.
 _Corner: TypeAlias = tuple[int, int, int]
@@ -14,8 +17,29 @@ _Corner: TypeAlias = tuple[int, int, int]
 
 def hull_of_region(figure: Region) -> Region:
     """Return the convex hull of a region (see `Region.hull`)."""
-    loops = figure.to_polygons()
-    return hull_region(np.concatenate(loops), figure.pitch) if loops else Region.empty()
+    return hull_of_figures([figure])
+
+
+def hull_of_figures(figures: Sequence[Any]) -> Region:
+    """Return the convex hull of regions and of points of the plane, (n, 2) each."""
+    clouds = [_points_of(figure) for figure in figures]
+    points = np.concatenate([np.zeros((0, 2)), *clouds])
+    pitches = [one.pitch for one in figures if isinstance(one, Region) and not one.is_empty]
+    return hull_region(points, min(pitches, default=None))
+
+
+def _points_of(figure: Any) -> FloatArray:
+    if isinstance(figure, Region):
+        return np.concatenate([np.zeros((0, 2)), *figure.to_polygons()])
+    refusal = invalid_parameter("A hull is that of shapes and points of one dimension.")
+    points = doubles(figure, refusal)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise refusal
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        message = f"{len(bad)} of the points are not finite, the first is number {bad[0]}."
+        raise InvalidMeshError(message, "non_finite", bad[:20].tolist())
+    return points
 
 
 def hull_region(points: FloatArray, pitch: int | None = None) -> Region:

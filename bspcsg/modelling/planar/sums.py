@@ -1,0 +1,40 @@
+"""Minkowski sums in the plane."""
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...bsp import Region
+from ...errors import LimitError
+from .hulls import hull_region
+
+#: More pairs of convex parts than this would take hours.
+_MOST_PAIRS = 20_000
+
+
+def sum_of_regions(a: Region, b: Region) -> Region:
+    """Return all points that are a point of one region plus one of the other.
+
+    Regions that are not convex are divided into convex parts. The sums of parts are the hulls of
+    the sums of their corners, and these are united.
+
+    Raises
+    ------
+    UnboundedError
+        If one reaches to infinity.
+    LimitError
+        If there are more than 20 000 pairs of parts ("too_large").
+    """
+    first, second = a.convex_parts(), b.convex_parts()
+    if len(first) * len(second) > _MOST_PAIRS:
+        message = (
+            f"the regions fall into convex parts of which {len(first) * len(second):,} pairs would"
+            f" have to be added; the most are {_MOST_PAIRS:,}."
+        )
+        raise LimitError(message, "too_large")
+    pitch = min(a.pitch, b.pitch)
+    return Region.compose(hull_region(_sums(p, q), pitch) for p in first for q in second)
+
+
+def _sums(first: FloatArray, second: FloatArray) -> FloatArray:
+    sums = first[:, None, :] + second[None, :, :]
+    return np.ascontiguousarray(sums.reshape(-1, 2))
