@@ -4,7 +4,7 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -12,6 +12,9 @@ from ..errors import FormatError
 from . import output
 from .files import STREAM, Inputs, put, refuse_unwritable, shown
 from .output import Output
+
+if TYPE_CHECKING:
+    from ..bsp import Region
 
 
 class Drawing(ABC):
@@ -56,6 +59,13 @@ class Drawing(ABC):
         document = {**names, **values, "seconds": round(seconds, 4)}
         self.out.result(f"{shown(self.target)}  {words}  {seconds:.2f} s", document)
         return output.DONE
+
+    def data(self, region: "Region") -> bytes:
+        """Return a region as a drawing of the format asked for, SVG or DXF."""
+        from ..bsp.drawings.dxf import dxf_data
+        from ..bsp.drawings.svg import svg_data
+
+        return svg_data(region) if self.suffix == ".svg" else dxf_data(region)
 
     @property
     def _is_stream(self) -> bool:

@@ -36,6 +36,11 @@ CODES = {
         "run good.csg -o x.ply",
         "split a.off --plane 0,0,1,1 -o x-%.ply",
         "slice a.off --z 1 -o x.svg",
+        "hull a.off c.stl -o x.ply",
+        "simplify a.off -o x.ply --tolerance 0.01mm",
+        "explode a.off c.stl -o x%.ply",
+        "project a.off -o x.svg",
+        "clash apart.off a.off --clearance 1mm",
         "render a.off -o x.svg",
         "convert a.off -o x.ply",
         "info a.off open.stl",
@@ -55,6 +60,8 @@ CODES = {
         "check a.off open.stl",
         "check --strict double.ply",
         "compare a.off c.stl",
+        "clash a.off c.stl",
+        "clash apart.off a.off --clearance 9mm",
         "compare a.off near.off --tol 1e-6",
         "convert third.off -o x.stl --fail-on-loss",
         "repair open.stl -o x.ply --steps orient",
@@ -70,6 +77,14 @@ CODES = {
         "run good.csg",
         "split a.off -o x.ply --plane 0,0,1",
         "slice a.off -o x.svg",
+        "hull -o x.ply",
+        "simplify a.off -o x.ply",
+        "simplify a.off -o x.ply --tolerance -1",
+        "explode a.off a.off -o x%.ply",
+        "explode a.off -o -",
+        "project a.off -o -",
+        "clash a.off",
+        "clash a.off c.stl --clearance no",
         "render a.off -o x.svg --size 0x9",
         "convert a.off c.stl -o x.ply",
         "convert a.off",
@@ -97,6 +112,11 @@ CODES = {
         "run bad.py -o x.ply",
         "split cut.stl -o x-%.ply",
         "slice cut.stl --z 1 -o x.svg",
+        "hull a.off cut.stl -o x.ply",
+        "simplify cut.stl -o x.ply --tolerance 1",
+        "explode a.off cut.stl -o x%.ply",
+        "project a.off -o x.png",
+        "clash a.off none.stl",
         "render cut.stl -o x.svg",
         "render a.off -o x.jpg",
         "convert cut.stl -o x.ply",
@@ -126,6 +146,11 @@ CODES = {
         "split open.stl -o x-%.ply",
         "slice a.off --z 9 -o x.svg",
         "slice open.stl --z 1 -o x.svg",
+        "hull open.stl -o x.ply",
+        "simplify open.stl -o x.ply --tolerance 1",
+        "explode a.off open.stl -o x%.ply",
+        "project open.stl -o x.svg",
+        "clash a.off open.stl",
         "compare a.off open.stl",
     ],
     5: [
@@ -135,6 +160,10 @@ CODES = {
         "run good.csg -o no/x.ply",
         "split a.off -o no/x-%.ply",
         "slice a.off --z 1 -o no/x.svg",
+        "hull a.off -o no/x.ply",
+        "simplify a.off -o folder.ply --tolerance 1",
+        "explode a.off -o no/%.ply",
+        "project a.off -o no/x.svg",
         "render a.off -o no/x.svg",
         "render a.off -o folder.svg",
         "convert a.off -o folder.ply",
@@ -160,6 +189,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     put("near.off", cuboid((0, 0, 0), (2, 2, 2.001)))
     put("c.stl", cuboid((1, 1, 1), (3, 3, 3)))
     put("third.off", cube(1 / 3))
+    put("apart.off", cuboid((5, 0, 0), (6, 1, 1)))
     put("far.off", moved(cube(), (1e300, 0, 0)))
     put("double.ply", joined(cuboid((0, 0, 0), (2, 2, 2)), cuboid((1, 1, 1), (3, 3, 3))))
     vertices, faces = icosphere(0)

@@ -2,7 +2,7 @@
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -12,9 +12,6 @@ from ..drawing import Drawing
 from ..files import shown
 from ..options import PATH, common, drawing, numbers, reading, sets
 from ..output import counted
-
-if TYPE_CHECKING:
-    from ...bsp import Region
 
 _EPILOG = """\b
 Example:
@@ -91,7 +88,7 @@ class _Section(Drawing):
             "bounds": None if region.bounds is None else region.bounds.tolist(),
         }
         words = f"{counted(count, 'outline')}, {counted(holes, 'hole')} among them"
-        return self._data(region), f"area {region.area:.9g}  {words}", values
+        return self.data(region), f"area {region.area:.9g}  {words}", values
 
     def _tell_of_plane(self, pitch: int) -> None:
         """Say whether the plane is another one than was asked for."""
@@ -101,12 +98,6 @@ class _Section(Drawing):
         if plane.note is not None:
             finding = Finding("half_space_rounded", "note", plane.note, (), 1)
             self.out.finding(shown(self.file), finding)
-
-    def _data(self, region: "Region") -> bytes:
-        from ...bsp.drawings.dxf import dxf_data
-        from ...bsp.drawings.svg import svg_data
-
-        return svg_data(region) if self.suffix == ".svg" else dxf_data(region)
 
     def _missed(self) -> str:
         normal = ",".join(f"{number:g}" for number in self._normal)

@@ -1,0 +1,108 @@
+"""The verbs that make one solid of others by more than a set operation: hull, simplify."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..job import Job
+from ..lengths import as_length
+from ..options import ALLOW_EMPTY, OUTPUT, PATH, SIMPLIFY, common, reading, sets, writing
+
+if TYPE_CHECKING:
+    from ...solid.solid import Solid
+
+_HULL_EPILOG = """\b
+Example:
+  bspcsg hull left.stl right.stl -o around.stl
+"""
+
+_SIMPLIFY_EPILOG = """\b
+Example:
+  bspcsg simplify scan.stl -o small.stl --tolerance 0.05mm
+"""
+
+
+@click.command(
+    "hull", short_help="Write the convex hull of all files together.", epilog=_HULL_EPILOG
+)
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="A [B ...]")
+@OUTPUT
+@writing
+@SIMPLIFY
+@ALLOW_EMPTY
+@reading
+@sets
+@common
+def hull(files: tuple[Path, ...], **given: Any) -> int:
+    """Write the convex hull of all files together, exactly.
+
+    Each of its corners is a corner of a file, and nothing of the files lies outside.
+    """
+    return _Hull(files, **given).run()
+
+
+@click.command(
+    "simplify", short_help="Write a solid without short edges and slivers.", epilog=_SIMPLIFY_EPILOG
+)
+@click.argument("file", type=PATH, metavar="FILE")
+@OUTPUT
+@click.option(
+    "--tolerance",
+    metavar="LENGTH",
+    required=True,
+    callback=as_length,
+    help="Remove edges and slivers up to this, as 0.01mm, moving no surface farther.",
+)
+@writing
+@ALLOW_EMPTY
+@reading
+@sets
+@common
+def simplify(file: Path, **given: Any) -> int:
+    """Write a solid without short edges and slivers.
+
+    Every point of the old surface lies within the tolerance of the new one, and the other way
+    round. Nothing that changed crosses anything, and parts, handles and cavities stay.
+    """
+    return _Simplified((file,), **given).run()
+
+
+class _OfFiles(Job):
+    """A job whose result manifold3d is not asked about."""
+
+    def __init__(self, op: str, files: tuple[Path, ...], **settings: Any) -> None:
+        super().__init__(op, check=False, **settings)
+        self._files = files
+
+    def paths(self) -> Sequence[Path]:
+        return self._files
+
+    def _solids(self) -> "list[Solid]":
+        solids = [self.inputs.solid(path) for path in self._files]
+        self.lap("read")
+        return solids
+
+
+class _Hull(_OfFiles):
+    """The hull of files."""
+
+    def __init__(self, files: tuple[Path, ...], **settings: Any) -> None:
+        super().__init__("hull", files, **settings)
+
+    def combined(self) -> "Solid":
+        from ...modelling.bodies.hulls import hull as hull_of
+
+        solid: Solid = hull_of(self._solids())
+        return solid
+
+
+class _Simplified(_OfFiles):
+    """One file, which the job simplifies as any result."""
+
+    def __init__(self, files: tuple[Path, ...], **settings: Any) -> None:
+        super().__init__("simplify", files, **settings)
+
+    def combined(self) -> "Solid":
+        return self._solids()[0]

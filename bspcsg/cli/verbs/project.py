@@ -1,0 +1,57 @@
+"""The verb that draws the shadow of a solid: project."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from .. import output
+from ..drawing import Drawing
+from ..files import shown
+from ..options import PATH, common, drawing, reading, sets
+from ..output import counted
+
+_EPILOG = """\b
+Example:
+  bspcsg project part.stl -o outline.dxf
+"""
+
+_SUFFIXES = (".svg", ".dxf")
+
+
+@click.command(
+    "project", short_help="Write the outline of a solid seen from above.", epilog=_EPILOG
+)
+@click.argument("file", type=PATH, metavar="FILE")
+@drawing
+@reading
+@sets
+@common
+def project(file: Path, target: Path, **given: Any) -> int:
+    """Write the shadow of a solid on the plane z = 0 as an SVG or DXF drawing.
+
+    It holds every point that lies below or above the solid, in coordinates (x, y). DXF needs ezdxf;
+    bspcsg doctor says whether it is there.
+    """
+    return _Projection(file, target, _SUFFIXES, **given).run()
+
+
+class _Projection(Drawing):
+    """One solid, seen from above."""
+
+    def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
+        region = self.inputs.solid(self.file).project()
+        if region.is_empty:
+            message = f"{shown(self.file)}: it is empty, so nothing was written."
+            raise output.EmptyResultError(message, "empty_result")
+        holes = sum(outline.is_hole for outline in region.outlines)
+        count = len(region.outlines)
+        values = {
+            "area": region.area,
+            "perimeter": region.perimeter,
+            "outlines": count,
+            "holes": holes,
+            "bounds": None if region.bounds is None else region.bounds.tolist(),
+        }
+        words = f"{counted(count, 'outline')}, {counted(holes, 'hole')} among them"
+        return self.data(region), f"area {region.area:.9g}  {words}", values
