@@ -437,7 +437,7 @@ def test_files_that_are_not_what_they_should(
         ("polygon(points = 3);", "points must be a list of points"),
         ("polygon(points = [[0, 0]], paths = [[0.5]]);", "whole numbers"),
         ("rotate_extrude() square(2, center = true);", "must not cross the axis"),
-        ('linear_extrude(file = "a.dxf");', "put an import()"),
+        ('linear_extrude(file = "../a.dxf");', "outside the script's folder"),
         ("linear_extrude(height = 1, v = [1, 0, 1]) square(1);", "only v = [0, 0, 1]"),
         ("sphere(r = 1, $fn = 1e9);", "more than 4,000,000 corners"),
         ("linear_extrude(height = 1, twist = 1, slices = 1e12) square(1);", "corners"),
@@ -563,6 +563,35 @@ def test_polish_keeps_what_is_no_rotation() -> None:
     assert bounds is not None
     assert bounds[1, 0] == pytest.approx(10.1)
     assert csg.loads("", polish=True).is_empty
+
+
+def test_extrusions_that_name_their_drawing(tmp_path: Path) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    document = ezdxf.new()
+    document.modelspace().add_lwpolyline([(1, 0), (3, 0), (3, 2)], close=True)
+    document.saveas(tmp_path / "a.dxf")
+    upright = 'linear_extrude(file = "a.dxf", origin = [1, 0], height = 3, scale = [0, 0]);'
+    assert csg.loads(upright, folder=tmp_path).volume == 2
+    turned = csg.loads('rotate_extrude(file = "a.dxf", $fn = 4);', folder=tmp_path)
+    assert turned == csg.loads('rotate_extrude($fn = 4) import("a.dxf");', folder=tmp_path)
+
+
+def test_round_pens_have_openscads_corners(tmp_path: Path) -> None:
+    line = '<path d="m 10,30 25,-20 25,20" fill="none" stroke="black" stroke-width="12" {}/>'
+    styles = ["", 'stroke-linecap="round"', 'stroke-linejoin="round"', 'stroke-linejoin="bevel"']
+    areas = []
+    for style in styles:
+        (tmp_path / "a.svg").write_text(f"<svg>{line.format(style)}</svg>")
+        found = csg.evaluate(csg.parse('import("a.svg");', folder=tmp_path))
+        assert isinstance(found, Region)
+        areas.append(found.area)
+        assert len(found.outlines[0].points) < 2000
+    plain, cap, joint, bevel = areas
+    # Two half discs in place of two half squares, and a sector in place of a kite.
+    assert plain - cap == pytest.approx(144 - 36 * math.pi, rel=1e-4)
+    turn = 2 * math.atan(20 / 25)
+    assert plain - joint == pytest.approx(36 * (math.tan(turn / 2) - turn / 2), rel=1e-3)
+    assert joint < plain and bevel < plain
 
 
 # What is left out

@@ -104,7 +104,8 @@ def _stroke(shape: Any, corners: FloatArray) -> Region:
     width = float(shape.implicit_stroke_width or 0.0)
     width = width if width >= _THINNEST else 1.0
     cap = shape.values.get("stroke-linecap")
-    return stroked(corners, width, cap if cap in ("butt", "round") else "square")
+    join = str(shape.values.get("stroke-linejoin"))
+    return stroked(corners, width, cap if cap in ("butt", "round") else "square", join)
 
 
 def _page(path: Path, dpi: float) -> _Page:

@@ -30,7 +30,7 @@ def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geome
     path = _path(arguments, run)
     suffix = path.suffix.lower()
     if suffix == ".dxf":
-        return _dxf(path, arguments)
+        return _dxf(path, arguments, arguments.number("scale", 1.0))
     if suffix == ".svg":
         return svg_region(path, arguments.number("dpi", 72.0), arguments.flag("center"))
     if suffix not in files.FORMATS:
@@ -43,10 +43,15 @@ def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geome
     return run.closed_solid(owner, raw.vertices, raw.faces)
 
 
-def _dxf(path: Path, arguments: Arguments) -> Region:
+def drawing_of(arguments: Arguments, run: Evaluation) -> Region:
+    """Return the DXF file that an extrusion names, as scripts of before 2013 have it."""
+    # What an extrusion scales is its upper end.
+    return _dxf(_path(arguments, run), arguments, 1.0)
+
+
+def _dxf(path: Path, arguments: Arguments, scale: float) -> Region:
     origin = arguments.vector("origin", 2, (0.0, 0.0))
     layer = arguments.text("layer", "")
-    scale = arguments.number("scale", 1.0)
     return dxf_region(path, layer, np.array(origin), scale, Fineness.of(arguments))
 
 

@@ -8,6 +8,7 @@ from ...solid.solid import Solid
 from ..making.tessellation import Fineness
 from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
+from .files import drawing_of
 from .registry import Evaluation, Geometry, node
 from .sets import union_of
 
@@ -28,9 +29,8 @@ def linear_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Ge
 def _figure(
     arguments: Arguments, owner: Node, children: list[Geometry], run: Evaluation
 ) -> Region | None:
-    if "file" in arguments:
-        message = "the argument file is not supported; put an import() among the children."
-        raise arguments.error(message, "unsupported")
+    if "file" in arguments and not owner.children:
+        return drawing_of(arguments, run)
     figure = union_of(owner, children, run)
     if isinstance(figure, Solid):
         run.warn(owner, "its children are solids; they are ignored")

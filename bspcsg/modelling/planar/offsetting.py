@@ -31,6 +31,9 @@ _FARTHEST = 2.0**20
 #: OpenSCAD 2021.01 rounds the corners of figures that it combines to this part of a unit.
 _GRID = 2.0**16
 
+#: It counts what pens draw in steps of this part of a unit, a quarter of which arcs are off.
+_PEN = 10_000.0
+
 #: It joins corners of the result closer than this, and drops those as close to a line, in units.
 _CLEANED = 0.001
 
@@ -138,8 +141,8 @@ def cleaned(figures: Sequence[Region]) -> Region:
     return Region(loops, pitch=min(figure.pitch for figure in figures))
 
 
-def stroked(line: FloatArray, width: float, cap: str) -> Region:
-    """Return what a pen draws along a line.
+def stroked(line: FloatArray, width: float, cap: str, join: str = "miter") -> Region:
+    """Return what a pen draws along a line, with the corners that OpenSCAD gives it.
 
     Parameters
     ----------
@@ -147,11 +150,14 @@ def stroked(line: FloatArray, width: float, cap: str) -> Region:
     width : float
     cap : {"butt", "square", "round"}
         How its ends look.
+    join : {"miter", "round", "bevel"}
+        How its corners look; bevelled ones are cut off at half the width from the corner.
     """
-    scale = _scale([line], width)
+    scale = min(_PEN, _scale([line], width))
     pen = pyclipper.PyclipperOffset()
     ends = getattr(pyclipper, f"ET_OPEN{cap.upper()}")
-    pen.AddPaths(_whole_numbers([line], scale), pyclipper.JT_MITER, ends)
+    kinds = {"round": pyclipper.JT_ROUND, "bevel": pyclipper.JT_SQUARE}
+    pen.AddPaths(_whole_numbers([line], scale), kinds.get(join, pyclipper.JT_MITER), ends)
     return Region([np.array(path) / scale for path in pen.Execute(width / 2 * scale)])
 
 
