@@ -53,7 +53,9 @@ class Job(ABC):
         """Return what manifold3d says, or None if there is nothing to compare."""
         from ..verify.check import check_result
 
-        return None if result.last_operation is None else check_result(result)
+        if result.last_operation is None:
+            return None
+        return check_result(result, depth=self.settings["check"])
 
     @abstractmethod
     def paths(self) -> Sequence[Path]:
@@ -74,7 +76,8 @@ class Job(ABC):
         result = self.combined()
         mesh = self._mesh_of(result)
         self.lap("combine")
-        report = self.compared(result) if self.settings["check"] else None
+        is_checked = self.settings["check"] != "off"
+        report = self.compared(result) if is_checked else None
         self.lap("check")
         if report is not None and report.verdict == "subject failed":
             self._tell(result, mesh, report, written=False)
@@ -126,7 +129,7 @@ class Job(ABC):
         line = summary(name, mesh, sum(self.seconds.values()))
         if report is not None:
             line = f"{line}\n  check: {report.summary()}"
-        elif self.settings["check"]:
+        elif self.settings["check"] != "off":
             line = f"{line}\n  check: nothing to compare, for no operation made the result"
         if not written:
             line = f"{name}: not written\n  check: {report.summary() if report else ''}"

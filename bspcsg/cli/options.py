@@ -130,13 +130,29 @@ ALLOW_EMPTY = click.option(
     "--allow-empty", is_flag=True, help="Write a file even if nothing is left."
 )
 
-CHECK = click.option(
-    "--validate/--no-validate",
-    "--check/--no-check",
-    "check",
-    default=True,
-    help="Compare the result with manifold3d's (default).",
-)
+#: How the result is compared with manifold3d's.
+_CHECKS = ("quick", "full", "off")
+
+
+def check_depth(command: _Command) -> _Command:
+    """Add the options that say how a result is compared with manifold3d's."""
+    leave_out = click.option(
+        "--no-validate", "--no-check", "check", flag_value="off", help="The same as --check=off."
+    )
+    compare = click.option(
+        "--validate",
+        "--check",
+        "check",
+        is_flag=False,
+        flag_value="quick",
+        default="quick",
+        metavar="[=quick|full|off]",
+        type=click.Choice(_CHECKS),
+        help="Compare the result with manifold3d's: by measures and points at the seam, and as sets"
+        " where these differ (quick, default); as sets in any case (full); not at all (off).",
+    )
+    return compare(leave_out(command))
+
 
 SIMPLIFY = click.option(
     "--simplify",
@@ -218,7 +234,7 @@ def drawing(command: _Command) -> _Command:
 
 def making(command: _Command) -> _Command:
     """Add the options of verbs that make one solid and write it."""
-    return _with([OUTPUT, writing, SIMPLIFY, ALLOW_EMPTY, CHECK], command)
+    return _with([OUTPUT, writing, SIMPLIFY, ALLOW_EMPTY, check_depth], command)
 
 
 def from_files(command: _Command) -> _Command:

@@ -152,7 +152,9 @@ class Mesh:
         """Lowest and highest coordinates, (2, 3) float64, or None for an empty mesh."""
         if len(self.faces) == 0:
             return None
-        used = self.vertices[np.unique(self.faces)]
+        used = self.vertices
+        if self._counts[0] < len(used):
+            used = used[np.unique(self.faces)]
         return np.array([used.min(axis=0), used.max(axis=0)])
 
     @property

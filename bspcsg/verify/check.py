@@ -7,17 +7,20 @@ manifold3d's mesh: the set of points around which the two wind differently is bu
 Verdicts follow from the thickness t of its thickest piece, with s the lattice step, u the distance
 of neighbouring doubles at the farthest coordinate, and e the tolerance that manifold3d reports:
 
-* t ≤ 2 s + 8 u: the same set (both meshes are snapped by up to √3/2 steps per vertex);
+* t ≤ 2 s + 8 u: the same set (both meshes are snapped by up to √3/2 steps per vertex; s is the
+  step of the coarsest lattice that vertices were snapped to);
 * t ≤ 2 s + 8 u + 4 e: within rounding, as manifold3d itself sees it;
 * beyond: the engines disagree, and points of the pieces beyond are settled by counting crossings
   with the operands in rational arithmetic. If all of that supports us, the oracle has failed.
 
 Volumes and areas in floating point, Euler numbers and closedness are compared besides, because the
-symmetric difference comes from the engine that is being judged.
+symmetric difference comes from the engine that is being judged. A quick check compares these and
+the sides of some points first, and builds the set only where they differ.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -32,6 +35,7 @@ from ..solid.program import name_of, program_of
 from ..solid.solid import Solid
 from . import oracle
 from .discrepancy import SetDifference, difference_of
+from .likeness import SUMMING, areas_differ, measures_differ, sides_differ, volume_of_film
 from .oracle import Answer
 from .referee import Ruling, settle
 from .verdict import CheckReport, Facts, Verdict
@@ -47,14 +51,14 @@ __all__ = [
     "validate",
 ]
 
+#: How much is compared: measures and some points, or the sets in any case.
+Depth: TypeAlias = Literal["quick", "full"]
+
 #: How many lattice steps, neighbouring doubles and tolerances of manifold3d are forgiven.
 STEPS, ULPS, TOLERANCES = 2, 8, 4
 
 #: How many pieces of a dispute are settled, the thickest first.
 _MOST_PIECES = 50
-
-#: Relative error of volumes and areas summed in doubles.
-_SUMMING = 1e-11
 
 
 @uncounted
@@ -79,7 +83,10 @@ def validate(op: SetOp, *operands: Solid) -> CheckReport:
 
 @uncounted
 def check_result(
-    result: Solid, op: SetOp | None = None, operands: Sequence[Solid] | None = None
+    result: Solid,
+    op: SetOp | None = None,
+    operands: Sequence[Solid] | None = None,
+    depth: Depth = "full",
 ) -> CheckReport:
     """Compare a result with what manifold3d makes of the same operands.
 
@@ -90,6 +97,9 @@ def check_result(
         What made the result; by default the evaluation that the solid remembers.
     operands : sequence of Solid, optional
         What it was made from; needed with `op`.
+    depth : {"full", "quick"}
+        Whether to build the symmetric difference with manifold3d's mesh in any case, or only where
+        volume, area, parts, Euler number or sides of points near the seam differ.
 
     Raises
     ------
@@ -98,7 +108,7 @@ def check_result(
     UnboundedError
         If the result reaches to infinity.
     """
-    return examine(result, op, operands).report
+    return examine(result, op, operands, depth).report
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,24 +137,37 @@ class Examination:
 
 
 def examine(
-    result: Solid, op: SetOp | None = None, operands: Sequence[Solid] | None = None
+    result: Solid,
+    op: SetOp | None = None,
+    operands: Sequence[Solid] | None = None,
+    depth: Depth = "full",
 ) -> Examination:
     """Compare as `check_result` does, and keep the meshes."""
     if op is not None and operands is not None:
-        return _Check(op, program_of(op, len(operands)), list(operands), result).run()
+        return _Check(op, program_of(op, len(operands)), list(operands), result, depth).run()
     last = result.last_operation
     if last is None or op is not None or operands is not None:
         raise invalid_parameter(
             "There is nothing to compare: this solid is no result of an operation. Name the"
             " operation and give its operands."
         )
-    return _Check(name_of(last.program), last.program, list(last.operands), last.result).run()
+    name, operands = name_of(last.program), list(last.operands)
+    return _Check(name, last.program, operands, last.result, depth).run()
 
 
-def same_set_bound(pitch: int, *meshes: Mesh) -> float:
-    """Return the thickness up to which a difference of meshes on a lattice is rounding."""
+def same_set_bound(pitch: int, *meshes: Mesh, snapped_by: float = 0.0) -> float:
+    """Return the thickness up to which a difference of meshes on a lattice is rounding.
+
+    Parameters
+    ----------
+    pitch : int
+    *meshes : Mesh
+    snapped_by : float
+        How far coordinates were moved onto the lattice, if that was a coarser one once.
+    """
+    step = max(10.0**pitch, 2 * snapped_by)
     reach = max((float(np.abs(mesh.vertices).max(initial=0)) for mesh in meshes), default=0.0)
-    return STEPS * 10.0**pitch + ULPS * float(np.spacing(reach))
+    return STEPS * step + ULPS * float(np.spacing(reach))
 
 
 @dataclass
@@ -153,6 +176,7 @@ class _Check:
     program: Sequence[ProgramLine]
     operands: list[Solid]
     result: Solid
+    depth: Depth
     notes: list[str] = field(default_factory=list)
     came: list[Mesh] = field(default_factory=list)
     set_volume: float = 0.0
@@ -186,13 +210,18 @@ class _Check:
         """Return what is wrong with our own result, whatever the oracle says."""
         if ours.open_edges:
             return f"the result has {ours.open_edges} open edges"
-        status = oracle.status_of(mesh)
+        status = oracle.status_of(mesh) if self.depth == "full" else "NoError"
         if status != "NoError":
             return f"manifold3d does not take the result: {status}"
         gap = abs(ours.volume - self.set_volume)
-        if gap > same_set_bound(self.result.pitch, mesh) * ours.area + _SUMMING * abs(ours.volume):
+        if gap > self._film(mesh) * ours.area + SUMMING * abs(ours.volume):
             return f"the mesh's volume differs from the set's by {gap:.3g}"
         return ""
+
+    def _film(self, *meshes: Mesh) -> float:
+        """Return how thick a film rounding may leave between our set and meshes of it."""
+        snapped_by = self.result.tree.snapped_by
+        return same_set_bound(self.result.pitch, *meshes, snapped_by=snapped_by)
 
     def _box(self, mesh: Mesh) -> Solid | None:
         """Return a box around everything that is bounded, if an operand is not."""
@@ -226,8 +255,12 @@ class _Check:
         if theirs.open_edges:
             reason = f"manifold3d's mesh has {theirs.open_edges} open edges"
             return self._report(Verdict.ORACLE_FAILED, reason, ours, theirs)
-        same = same_set_bound(self.result.pitch, mesh, answer.mesh)
+        same = self._film(mesh, answer.mesh)
         rounding = same + TOLERANCES * answer.tolerance
+        probes = self._alike(mesh, answer.mesh, same)
+        if probes is not None:
+            bounds = (same, rounding)
+            return self._report(Verdict.AGREE, "", ours, theirs, None, bounds, probes)
         try:
             found, pieces = difference_of(mesh, answer.mesh, self.result.pitch, same)
         except InternalError as error:
@@ -237,7 +270,7 @@ class _Check:
             reason = f"the meshes could not be compared: {error.message}"
             return self._report(Verdict.ORACLE_FAILED, reason, ours, theirs)
         self.difference = None if pieces is None else pieces.mesh
-        verdict, reason = _judged(ours, theirs, found, same, rounding, _edge_length(mesh))
+        verdict, reason = _judged(ours, theirs, found, same, rounding, mesh)
         if (
             verdict is Verdict.DISAGREE
             and pieces is not None
@@ -246,6 +279,13 @@ class _Check:
             reason = f"{reason}; exact counts of crossings show that manifold3d's mesh is wrong"
             verdict = Verdict.ORACLE_FAILED
         return self._report(verdict, reason, ours, theirs, found, (same, rounding))
+
+    def _alike(self, mesh: Mesh, other: Mesh, film: float) -> int | None:
+        """Return at how many points the meshes were compared, or None if the sets have to be."""
+        if self.depth == "full" or measures_differ(mesh, other, film):
+            return None
+        compared, is_other = sides_differ(mesh, other, film)
+        return None if is_other else compared
 
     def _ruling(self, ours: Mesh, theirs: Mesh, pieces: MeshPieces, rounding: float) -> Ruling:
         """Return whom the operands as they came support in the pieces that rounding leaves."""
@@ -261,6 +301,7 @@ class _Check:
         theirs: Facts | None = None,
         found: SetDifference | None = None,
         bounds: tuple[float, float] = (0.0, 0.0),
+        probes: int = 0,
     ) -> CheckReport:
         return CheckReport(
             self.operation,
@@ -273,6 +314,7 @@ class _Check:
             *bounds,
             oracle.name(),
             tuple(self.notes),
+            probes,
         )
 
 
@@ -282,11 +324,11 @@ def _judged(
     found: SetDifference,
     same: float,
     rounding: float,
-    edges: float,
+    mesh: Mesh,
 ) -> tuple[Verdict, str]:
-    """Return the verdict on two meshes and the reason for it; `edges` is the length of ours."""
+    """Return the verdict on two meshes, of which `mesh` is ours, and the reason for it."""
     gap = abs(ours.volume - theirs.volume)
-    forgiven = rounding * (ours.area + theirs.area) + _SUMMING * abs(ours.volume)
+    forgiven = volume_of_film(ours, theirs, rounding)
     if found.thickness > rounding:
         x, y, z = found.place or (0.0, 0.0, 0.0)
         return Verdict.DISAGREE, (
@@ -304,13 +346,8 @@ def _judged(
         return Verdict.OTHER_TOPOLOGY, (
             f"the Euler number is {ours.euler_number}, manifold3d's {theirs.euler_number}"
         )
-    if abs(ours.area - theirs.area) > rounding * edges + _SUMMING * ours.area:
+    if areas_differ(ours, theirs, mesh, rounding):
         return Verdict.OTHER_TOPOLOGY, (
             f"the area is {ours.area:.9g}, manifold3d's {theirs.area:.9g}"
         )
     return Verdict.AGREE, ""
-
-
-def _edge_length(mesh: Mesh) -> float:
-    corners = mesh.vertices[mesh.faces]
-    return float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).sum())

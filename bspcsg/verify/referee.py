@@ -84,28 +84,59 @@ def _settled_piece(
 
 def is_inside(mesh: Mesh, point: Point) -> bool | None:
     """Return whether the winding number is positive, exactly; None if every ray grazes an edge."""
-    for axis in range(3):
-        winding = _winding_along(mesh, point, axis)
-        if winding is not None:
-            return winding > 0
-    return None
+    return Columns(mesh).is_inside(point)
 
 
-def _winding_along(mesh: Mesh, point: Point, axis: int) -> int | None:
-    """Return the winding number, by a ray along an axis that must not touch an edge."""
-    order = [axis, (axis + 1) % 3, (axis + 2) % 3]
-    corners = mesh.vertices[mesh.faces][:, :, order]
-    at = np.array([point[k] for k in order])
-    low, high = corners.min(axis=1), corners.max(axis=1)
-    near = (low[:, 1:] <= at[1:]).all(axis=1) & (high >= at).all(axis=1)
-    start = [Fraction(value) for value in at.tolist()]
-    winding = 0
-    for triangle in corners[near]:
-        crossing = _crossing(triangle, start)
-        if crossing is None:
-            return None
-        winding += crossing
-    return winding
+class Columns:
+    """A mesh whose triangles are looked up along each axis, for many points.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        self._mesh = mesh
+        self._extents: dict[int, tuple[FloatArray, FloatArray]] = {}
+
+    def is_inside(self, point: Point) -> bool | None:
+        """Return whether the winding number is positive; None if every ray grazes an edge."""
+        for axis in range(3):
+            winding = self._winding_along(point, axis)
+            if winding is not None:
+                return winding > 0
+        return None
+
+    def _winding_along(self, point: Point, axis: int) -> int | None:
+        """Return the winding number, by a ray along an axis that must not touch an edge."""
+        order = [axis, (axis + 1) % 3, (axis + 2) % 3]
+        start = [Fraction(point[k]) for k in order]
+        winding = 0
+        for triangle in self._met(point, order):
+            crossing = _crossing(triangle, start)
+            if crossing is None:
+                return None
+            winding += crossing
+        return winding
+
+    def _met(self, point: Point, order: list[int]) -> FloatArray:
+        """Return the (k, 3, 3) corners of triangles whose boxes a ray meets, in another order."""
+        across, other = order[1:]
+        low, high = self._extent(across)
+        near = np.flatnonzero((low <= point[across]) & (high >= point[across]))
+        corners = self._mesh.vertices[self._mesh.faces[near]][:, :, order]
+        at = np.array([point[k] for k in order])
+        low, high = corners[:, :, 2].min(axis=1), corners.max(axis=1)
+        met: FloatArray = corners[(low <= point[other]) & (high >= at).all(axis=1)]
+        return met
+
+    def _extent(self, axis: int) -> tuple[FloatArray, FloatArray]:
+        """Return the lowest and the highest coordinate of each triangle along an axis."""
+        if axis not in self._extents:
+            a, b, c = self._mesh.vertices[:, axis][self._mesh.faces.T]
+            lowest, highest = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+            self._extents[axis] = lowest, highest
+        return self._extents[axis]
 
 
 def _crossing(triangle: FloatArray, start: list[Fraction]) -> int | None:

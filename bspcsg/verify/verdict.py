@@ -2,7 +2,7 @@
 
 from dataclasses import asdict, dataclass
 from enum import StrEnum
-from typing import Any
+from typing import Any, Literal
 
 from ..mesh.mesh import Mesh
 from .discrepancy import SetDifference
@@ -84,6 +84,8 @@ class CheckReport:
     oracle : str
     notes : tuple of str
         What was done to operands before manifold3d got them.
+    probes : int
+        If measures were compared instead of sets, at how many points the sides were, too.
     """
 
     operation: str
@@ -97,16 +99,25 @@ class CheckReport:
     rounding_bound: float
     oracle: str
     notes: tuple[str, ...] = ()
+    probes: int = 0
 
     @property
     def ok(self) -> bool:
         """Whether nothing speaks against the result; a silent oracle does not."""
         return self.verdict not in (Verdict.DISAGREE, Verdict.SUBJECT_FAILED)
 
+    @property
+    def compared(self) -> Literal["nothing", "measures", "sets"]:
+        """What of the engines' answers was compared."""
+        if self.set_difference is not None:
+            return "sets"
+        return "measures" if self.verdict is Verdict.AGREE else "nothing"
+
     def to_dict(self) -> dict[str, Any]:
         """Return everything as JSON values."""
         found = {**asdict(self), "verdict": str(self.verdict), "ok": self.ok}
         found["notes"] = list(self.notes)
+        found["compared"] = self.compared
         if self.set_difference is not None:
             place = self.set_difference.place
             found["set_difference"]["equal"] = self.set_difference.volume == 0
@@ -130,6 +141,9 @@ class CheckReport:
 
     def _difference(self) -> str:
         found = self.set_difference
+        if self.compared == "measures":
+            points = f" and {self.probes} points at the seam" if self.probes else ""
+            return f"volume, area, parts, Euler number{points}"
         if found is None:
             return "not compared"
         if found.volume == 0:

@@ -70,7 +70,10 @@ def test_graphs(plate: Path, capsys: Capture) -> None:
     code, out, err = ran(capsys, "tree", "said.csg", "--to", "dot")
     assert code == 0 and "n0 -> n2;" in out and "n1 -> n2" not in out
     assert 'label="text(\\"a\\\\\\"b\\\\n\\")"' in out
-    assert err == "note: said.csg: bspcsg run cannot evaluate text\n"
+    assert err == ""
+    Path("odd.csg").write_text("import_dxf();")
+    odd = ran(capsys, "tree", "odd.csg", "--to", "dot")[2]
+    assert odd == "note: odd.csg: bspcsg run cannot evaluate import_dxf\n"
 
 
 def test_json_tells_the_kinds(plate: Path, capsys: Capture) -> None:

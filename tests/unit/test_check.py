@@ -4,6 +4,7 @@ import json
 import math
 from collections import Counter
 from itertools import pairwise
+from types import SimpleNamespace
 from typing import Any, cast
 
 import manifold3d
@@ -12,10 +13,12 @@ import numpy as np
 import pytest
 
 import bspcsg as b
+from bspcsg.operations.setops import OPERATIONS
 from bspcsg.verify import oracle
-from bspcsg.verify.check import Verdict, check_result, validate
+from bspcsg.verify.check import Depth, Verdict, check_result, validate
 from support.shapes import cube, cuboid, flipped, joined, moved, random_rotation, turned
 
+DEPTHS: list[Depth] = ["full", "quick"]
 OPS: list[Any] = ["union", "intersection", "difference", "xor"]
 
 
@@ -74,12 +77,38 @@ def test_a_lost_part_is_found() -> None:
     assert "(200," in report.reason.replace("200.001", "200")
 
 
-def test_a_bump_that_moved_is_found_although_the_volume_is_right() -> None:
+@pytest.mark.parametrize("depth", DEPTHS)
+def test_a_bump_that_moved_is_found_although_the_volume_is_right(depth: Depth) -> None:
     body, bump = b.cube(10), b.box((1, 1, 0.001))
     wrong = body | bump.translate(1, 1, 10)
-    report = check_result(wrong, "union", [body, bump.translate(5, 5, 10)])
+    report = check_result(wrong, "union", [body, bump.translate(5, 5, 10)], depth)
     assert report.verdict is Verdict.DISAGREE
     assert report.theirs is not None and report.ours.volume == pytest.approx(report.theirs.volume)
+
+
+@pytest.mark.parametrize("op", OPS[:3])
+def test_measures_and_points_at_the_seam_suffice(op: Any) -> None:
+    solids = [turned_cube(1), b.sphere(0.7)]
+    report = check_result(OPERATIONS[op](*solids), op, solids, "quick")
+    assert report.verdict is Verdict.AGREE and report.set_difference is None
+    assert report.probes > 20 and report.to_dict()["compared"] == "measures"
+    assert f"area, parts, Euler number and {report.probes} points" in report.summary()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda body: body.translate(0, 0, 1e-5),
+        lambda body: body.mirror((1, 0, 0)),
+        lambda body: body | b.cube(1e-3).translate(3, 0, 0),
+        lambda body: body - b.cube(1e-3, center=True),
+        lambda body: body.scale(1 + 1e-7),
+    ],
+)
+def test_small_errors_are_not_missed_by_measures(change: Any) -> None:
+    solids = [turned_cube(1), b.box((1, 0.8, 0.6))]
+    report = check_result(change(b.union(*solids)), "union", solids, "quick")
+    assert report.verdict is Verdict.DISAGREE and report.set_difference is not None
 
 
 def test_a_film_of_rounding_is_no_difference() -> None:
@@ -91,20 +120,33 @@ def test_a_film_of_rounding_is_no_difference() -> None:
     assert report.set_difference.volume == 0.001
 
 
-def test_a_film_that_closes_on_itself() -> None:
+@pytest.mark.parametrize("depth", DEPTHS)
+def test_a_film_that_closes_on_itself(depth: Depth) -> None:
     body = b.cube(1000, center=True)
     larger = b.cube(1000.000000002, center=True)
-    assert check_result(larger, "union", [body, body]).verdict is Verdict.AGREE
+    assert check_result(larger, "union", [body, body], depth).verdict is Verdict.AGREE
     larger = b.cube(1000.001, center=True)
-    report = check_result(larger, "union", [body, body])
+    report = check_result(larger, "union", [body, body], depth)
     assert report.verdict is Verdict.DISAGREE
     assert report.set_difference is not None
     assert report.set_difference.thickness == pytest.approx(0.0005, rel=1e-3)
 
 
-def test_within_the_tolerance_of_the_oracle() -> None:
+@pytest.mark.parametrize("depth", DEPTHS)
+def test_small_parts_refine_the_lattice_of_large_ones(depth: Depth) -> None:
+    """The faces of the large one stay where the coarse lattice had them."""
+    part, tiny = turned_cube(1) | b.box((1, 0.8, 0.6)), b.cube(1e-4).translate(3, 0, 0)
+    both = part | tiny
+    assert part.pitch > both.pitch
+    report = both.validate(depth=depth)
+    assert report.verdict in (Verdict.AGREE, Verdict.OTHER_TOPOLOGY), report
+    assert (both - b.cube(1e-3)).validate(depth=depth).ok
+
+
+@pytest.mark.parametrize("depth", DEPTHS)
+def test_within_the_tolerance_of_the_oracle(depth: Depth) -> None:
     body = b.cube(1).translate(1e6, 0, 0)
-    report = check_result(body.translate(1e-8, 0, 0), "union", [body, body])
+    report = check_result(body.translate(0, 0, 1e-8), "union", [body, body], depth)
     assert report.verdict is Verdict.WITHIN_ROUNDING and report.ok
 
 
@@ -169,6 +211,7 @@ class OpenResult:
     pitch = -9
     is_bounded = True
     volume = 1.0
+    tree = SimpleNamespace(snapped_by=0.0)
 
     def normalized(self) -> "OpenResult":
         return self

@@ -1,12 +1,12 @@
 """The verb that looks for parts in each other's way: clash."""
 
+import math
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-import numpy as np
 
 from .. import output
 from ..files import Inputs, shown
@@ -104,14 +104,15 @@ def _clash_of(a: str, b: str, one: "Solid", other: "Solid", clearance: float) ->
         return _Clash(a, b, common_part.volume, 0.0, bounds.mean(axis=0).tolist())
     if not clearance or (gap := one.min_gap(other)) >= clearance:
         return None
-    middle = np.mean(one.closest_points(other), axis=0)
+    near, far = one.closest_points(other)
+    middle = (near + far) / 2
     return _Clash(a, b, 0.0, gap, middle.tolist())
 
 
 def _box_gap(box: Any, other: Any) -> float:
     """Return the distance of two boxes, each as lowest and highest corner."""
-    apart = np.maximum(np.maximum(box[0] - other[1], other[0] - box[1]), 0.0)
-    return float(np.linalg.norm(apart))
+    sides = zip(*box.tolist(), *other.tolist(), strict=True)
+    return math.hypot(*(max(low - end, begin - high, 0.0) for low, high, begin, end in sides))
 
 
 def _text(found: list[_Clash], count: int) -> str:

@@ -64,7 +64,8 @@ class _Named(Job):
     def compared(self, result: "Solid") -> "CheckReport | None":
         from ...verify.check import check_result
 
-        return check_result(result, self.op, self._solids)  # type: ignore[arg-type]
+        depth = self.settings["check"]
+        return check_result(result, self.op, self._solids, depth)  # type: ignore[arg-type]
 
 
 union = _verb("union")

@@ -73,7 +73,7 @@ class _OfFiles(Job):
     """A job whose result manifold3d is not asked about."""
 
     def __init__(self, op: str, files: tuple[Path, ...], **settings: Any) -> None:
-        super().__init__(op, check=False, **settings)
+        super().__init__(op, check="off", **settings)
         self._files = files
 
     def paths(self) -> Sequence[Path]:

@@ -10,7 +10,7 @@ from ...errors import Finding
 from .. import output
 from ..files import Inputs, Target, expanded, shown
 from ..job import mesh_values, summary
-from ..options import CHECK, PATH, SIMPLIFY, common, numbers, reading, sets, writing
+from ..options import PATH, SIMPLIFY, check_depth, common, numbers, reading, sets, writing
 from ..output import Output
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ Examples:
 )
 @writing
 @SIMPLIFY
-@CHECK
+@check_depth
 @reading
 @sets
 @common
@@ -111,8 +111,9 @@ class _Splitting:
             sides = (solid - other, solid & other)
         meshes = [self._simplified(side).normalized().to_mesh() for side in sides]
         self._refuse_less_than(2, [mesh for mesh in meshes if len(mesh.faces)])
-        checked = sides if self._settings["check"] else ()
-        return meshes, [str(side.validate().verdict) for side in checked]
+        depth = self._settings["check"]
+        checked = sides if depth != "off" else ()
+        return meshes, [str(side.validate(depth=depth).verdict) for side in checked]
 
     def _simplified(self, solid: "Solid") -> "Solid":
         """Return a solid without short edges and slivers, if that is asked for."""

@@ -1,5 +1,6 @@
 //! Triangles on the lattice.
 
+use super::grid::Pitch;
 use crate::geometry::plane::Lattice;
 
 /// Lattice triangles, and the doubles they came from.
@@ -26,6 +27,15 @@ impl TriangleMesh {
         let [a, b, c] = self.corners(face);
         let low = [0, 1, 2].map(|i| a[i].min(b[i]).min(c[i]));
         (low, [0, 1, 2].map(|i| a[i].max(b[i]).max(c[i])))
+    }
+
+    /// The farthest that a coordinate is from the double it came from, rounded.
+    ///
+    /// More than half a step if the lattice was refined since.
+    pub fn snapped_by(&self, pitch: Pitch) -> f64 {
+        let pairs = self.doubles.iter().zip(&self.vertices);
+        let distances = pairs.flat_map(|(p, v)| [0, 1, 2].map(|i| p[i] - pitch.coordinate(v[i])));
+        distances.fold(0.0, |most, d| most.max(d.abs()))
     }
 
     /// The lattice box around all vertices; `None` without any.

@@ -364,6 +364,16 @@ impl Tree {
         self.solid.sources().iter().next().map(|s| s.id())
     }
 
+    /// The farthest that a coordinate of a source is from the double it came from.
+    #[getter]
+    fn snapped_by(&self) -> f64 {
+        let sources = self.solid.sources();
+        let of_each = sources
+            .iter()
+            .filter_map(|s| Some(s.mesh()?.snapped_by(s.pitch())));
+        of_each.fold(0.0, f64::max)
+    }
+
     #[getter]
     fn findings<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let all = self.solid.sources().iter().flat_map(|s| s.findings());

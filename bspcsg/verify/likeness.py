@@ -1,0 +1,100 @@
+"""Whether two meshes are alike in all that is cheap to measure.
+
+Volume, area, bounds, parts and Euler number, and at points near the seam, where faces from several
+operands meet, the side on which they lie. Meshes that bound different sets by more than rounding
+differ in volume, or by pieces that outweigh each other, which the other measures or a side then
+tell; who needs to be sure builds the symmetric difference.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from ..mesh.mesh import Mesh
+from ..mesh.pieces import Point
+from .referee import Columns
+from .verdict import Facts
+
+#: Relative error of volumes and areas summed in doubles.
+SUMMING = 1e-11
+
+#: How many faces at the seam are looked at, from both sides each.
+_PROBED = 16
+
+#: How many times farther than rounding moves surfaces a point is from the face it belongs to.
+_CLEAR = 64.0
+
+#: How far from a face its point is at least, in lengths of the root of the face's area.
+_NEAR = 0.01
+
+
+def measures_differ(mesh: Mesh, other: Mesh, film: float) -> bool:
+    """Return whether a measure of two meshes differs by more than a film explains.
+
+    Parameters
+    ----------
+    mesh, other : Mesh
+    film : float
+        How far apart the surfaces may be, in model units.
+    """
+    ours, theirs = Facts.of(mesh), Facts.of(other)
+    return (
+        ours.euler_number != theirs.euler_number
+        or ours.components != theirs.components
+        or abs(ours.volume - theirs.volume) > volume_of_film(ours, theirs, film)
+        or areas_differ(ours, theirs, mesh, film)
+        or _bounds_differ(mesh, other, film)
+    )
+
+
+def _bounds_differ(mesh: Mesh, other: Mesh, film: float) -> bool:
+    ours, theirs = mesh.bounds, other.bounds
+    if ours is None or theirs is None:
+        return ours is not theirs
+    return bool((np.abs(ours - theirs) > film).any())
+
+
+def volume_of_film(ours: Facts, theirs: Facts, film: float) -> float:
+    """Return by how much volumes may differ for surfaces that are a film apart."""
+    return film * (ours.area + theirs.area) + SUMMING * abs(ours.volume)
+
+
+def areas_differ(ours: Facts, theirs: Facts, mesh: Mesh, film: float) -> bool:
+    """Return whether the areas differ by more than a film along all edges of our mesh has."""
+    gap = abs(ours.area - theirs.area) - SUMMING * ours.area
+    return gap > 0 and gap > film * _edge_length(mesh)
+
+
+def _edge_length(mesh: Mesh) -> float:
+    corners = mesh.vertices[mesh.faces]
+    return float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).sum())
+
+
+def sides_differ(ours: Mesh, theirs: Mesh, film: float) -> tuple[int, bool]:
+    """Return at how many points near the seam the sides were compared, and whether one differs."""
+    points = _points_at_seam(ours, film)
+    first, second = Columns(ours), Columns(theirs)
+    sides = [(first.is_inside(point), second.is_inside(point)) for point in points]
+    known = [(one, other) for one, other in sides if one is not None and other is not None]
+    return len(known), any(one != other for one, other in known)
+
+
+def _points_at_seam(mesh: Mesh, film: float) -> list[Point]:
+    """Return points on both sides of some faces that meet faces from another operand, if any do."""
+    is_at_seam = _is_at_seam(mesh)
+    faces = np.flatnonzero(is_at_seam if is_at_seam.any() else is_at_seam | True)
+    chosen = faces[np.linspace(0, len(faces) - 1, min(_PROBED, len(faces))).astype(np.int64)]
+    corners = mesh.vertices[mesh.faces[chosen]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    doubled = np.linalg.norm(normals, axis=1, keepdims=True)
+    units = np.divide(normals, doubled, np.zeros_like(normals), where=doubled > 0)
+    steps = units * np.maximum(_CLEAR * film, _NEAR * np.sqrt(doubled))
+    middles = corners.mean(axis=1)
+    return [(x, y, z) for x, y, z in np.concatenate([middles - steps, middles + steps]).tolist()]
+
+
+def _is_at_seam(mesh: Mesh) -> npt.NDArray[np.bool_]:
+    operand = mesh.source[:, 0]
+    last = np.zeros(len(mesh.vertices), dtype=operand.dtype)
+    last[mesh.faces.ravel()] = np.repeat(operand, 3)
+    at_seam: npt.NDArray[np.bool_] = (last[mesh.faces] != operand[:, None]).any(axis=1)
+    return at_seam
