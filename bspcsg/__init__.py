@@ -18,6 +18,7 @@ from .conveniences import attach as _attach
 
 if TYPE_CHECKING:
     from ._core import __version__
+    from .assembly.tree import Assembly
     from .attributes.material import Material
     from .bsp.sets.region import Region
     from .errors import (
@@ -64,6 +65,7 @@ if TYPE_CHECKING:
     from .verify.check import CheckReport, Verdict, validate
 
 __all__ = [
+    "Assembly",
     "BspcsgError",
     "CheckReport",
     "EdgeSelection",
@@ -134,6 +136,7 @@ _MODULES = {
     "modelling.making.patterns": "grid linear_pattern polar_pattern",
     "modelling.making.round_boxes": "rounded_box",
     "modelling.making.sweeping": "pipe sweep",
+    "assembly.tree": "Assembly",
     "attributes.material": "Material",
     "verify.check": "CheckReport Verdict validate",
     "errors": "BspcsgError Finding FormatError InternalError InvalidMeshError"

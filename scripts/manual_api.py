@@ -23,6 +23,7 @@ _PAGES = {
     "bspcsg.solid": "solid",
     "bspcsg.mesh": "solid",
     "bspcsg.attributes": "solid",
+    "bspcsg.assembly": "assemblies",
     "bspcsg.shapes": "shapes",
     "bspcsg.operations": "operations",
     "bspcsg.modelling": "modelling",
@@ -54,6 +55,7 @@ _INSIDE = "for the modules of this package"
 
 _TITLES = {
     "solid": "Solids and meshes",
+    "assemblies": "Assemblies",
     "shapes": "Shapes",
     "operations": "Operations",
     "modelling": "Modelling",

@@ -1,6 +1,6 @@
 """`Attributes`: named arrays of the vertices, corners and faces of a mesh."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, TypeAlias
@@ -86,6 +86,20 @@ class Attributes:
             corner={name: values[faces] for name, values in self.corner.items()},
             face={name: values[faces] for name, values in self.face.items()},
         )
+
+    def with_used_materials(self) -> "Attributes":
+        """Return the attributes with only the materials that a face has."""
+        used = set(np.unique(self.face.get("material", np.array([""]))).tolist())
+        kept = {name: one for name, one in self.materials.items() if name in used}
+        return replace(self, materials=kept)
+
+    def without(self, names: Container[str]) -> "Attributes":
+        """Return the attributes of other names."""
+        vertex, corner, face = (
+            {name: values for name, values in self.of(kind).items() if name not in names}
+            for kind in KINDS
+        )
+        return replace(self, vertex=vertex, corner=corner, face=face)
 
     def turned(self, linear: FloatArray) -> "Attributes":
         """Return the attributes after a linear map of the mesh: normals turn, and keep length."""

@@ -12,7 +12,7 @@ from .material import Material
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class MeshPart:
     """A mesh among others: how many vertices it has, its faces, and what is said of it."""
 
     vertex_count: int
@@ -20,12 +20,12 @@ class Part:
     attributes: Attributes | None
 
 
-def concatenated(parts: Sequence[Part], faces: IndexArray) -> Attributes | None:
+def concatenated(parts: Sequence[MeshPart], faces: IndexArray) -> Attributes | None:
     """Return the attributes of the whole, or None if none of the parts has any.
 
     Parameters
     ----------
-    parts : sequence of Part
+    parts : sequence of MeshPart
     faces : (m, 3) int64
         The triangles of the whole.
     """
@@ -44,8 +44,8 @@ def concatenated(parts: Sequence[Part], faces: IndexArray) -> Attributes | None:
     return Attributes(faces, **found, materials=materials)
 
 
-def _values(name: str, kind: Kind, parts: Sequence[Part]) -> Values:
-    rows: Callable[[Part], tuple[int, ...]] = {
+def _values(name: str, kind: Kind, parts: Sequence[MeshPart]) -> Values:
+    rows: Callable[[MeshPart], tuple[int, ...]] = {
         "vertex": lambda part: (part.vertex_count,),
         "corner": lambda part: (len(part.faces), 3),
         "face": lambda part: (len(part.faces),),
@@ -69,7 +69,7 @@ def _held(name: str, kind: Kind, attributes: Attributes | None) -> Values | None
     return attributes.at_corners(name) if kind == "corner" else attributes.of(kind)[name]
 
 
-def _with_common_materials(parts: Sequence[Part]) -> tuple[list[Part], dict[str, Material]]:
+def _with_common_materials(parts: Sequence[MeshPart]) -> tuple[list[MeshPart], dict[str, Material]]:
     """Return the materials of all parts; a name that means two gets a number behind it."""
     materials: dict[str, Material] = {}
     found = []

@@ -11,7 +11,7 @@ import numpy as np
 
 from .._types import FloatArray, IndexArray
 from ..attributes.attributes import Attributes
-from ..attributes.joining import Part, concatenated
+from ..attributes.joining import MeshPart, concatenated
 from ..errors import Finding, FormatError
 from ..geometry.polygon import triangulate_face
 from ..mesh.mesh import Mesh
@@ -125,7 +125,7 @@ def joined(meshes: Sequence[RawMesh]) -> RawMesh:
     faces += [mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]
     objects = tuple((mesh.name, len(mesh.faces)) for mesh in meshes)
     whole = np.concatenate(faces)
-    parts = [Part(len(mesh.vertices), mesh.faces, mesh.attributes) for mesh in meshes]
+    parts = [MeshPart(len(mesh.vertices), mesh.faces, mesh.attributes) for mesh in meshes]
     said = concatenated(parts, whole)
     return RawMesh(np.concatenate(vertices), whole, objects=objects, attributes=said)
 

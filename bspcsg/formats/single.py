@@ -10,7 +10,7 @@ from ..attributes.attributes import made
 from ..errors import Finding, core_errors
 from ..mesh.mesh import Mesh
 from ..mesh.weld import distinct
-from ..solid.solid import solid_with
+from ..solid.solid import solid_of_mesh
 from .raw import RawMesh
 from .triangles import are_flat, are_turned
 
@@ -127,8 +127,7 @@ def _united(mesh: Mesh) -> Mesh:
     Iterated snap rounding: where triangles cross they are cut, exactly, and what is cut is rounded
     again.
     """
-    united = solid_with(mesh.vertices, mesh.faces, mesh.attributes if mesh.carried else None)
-    result = united.normalized().to_mesh()
+    result = solid_of_mesh(mesh).normalized().to_mesh()
     origins = mesh.source[result.source[:, 1]]
     return Mesh(result.vertices, result.faces, origins, result.carried)
 

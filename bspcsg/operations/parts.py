@@ -3,6 +3,7 @@
 import numpy as np
 
 from .._types import FloatArray, IndexArray, Scalar, Vector
+from ..attributes.attributes import made
 from ..mesh.mesh import Mesh, surfaces_of
 from ..shapes.primitives import half_space
 from ..solid.counting import uncounted
@@ -67,7 +68,9 @@ def sides_of_plane(solid: Solid, normal: Vector, offset: Scalar) -> tuple[Solid,
 
 def _selected(mesh: Mesh, which: "np.ndarray[tuple[int], np.dtype[np.bool_]]") -> Mesh:
     used, faces = np.unique(mesh.faces[which], return_inverse=True)
-    return Mesh(mesh.vertices[used], faces.reshape(-1, 3), mesh.source[which])
+    triangles, kept = faces.reshape(-1, 3), np.flatnonzero(which)
+    carried = None if mesh.carried is None else made(mesh.attributes.onto(triangles, kept))
+    return Mesh(mesh.vertices[used], triangles, mesh.source[which], carried)
 
 
 def _around(

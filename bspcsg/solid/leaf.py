@@ -6,8 +6,8 @@ acts on the leaf's coordinates in one rounding, before they are snapped to the l
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import TypeAlias
@@ -16,8 +16,8 @@ import numpy as np
 
 from .._core import Tree
 from .._types import FloatArray, IndexArray, ProgramLine, WindingRule
-from ..attributes.attributes import Attributes, Later
-from ..attributes.carrying import Surface, carried, patches_of
+from ..attributes.attributes import Attributes, Given, Later
+from ..attributes.carrying import SourceArrays, Surface, carried, patches_of
 from ..errors import LimitError, UnboundedError, core_errors
 from ..geometry import transform
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
@@ -337,6 +337,21 @@ def said_of(result: Tree, operands: Sequence[tuple[Tree, Sayings]]) -> Sayings:
     }
     found = tuple(known.get(identity) for identity in result.sources)
     return found if any(said is not None for said in found) else ()
+
+
+def tagged(
+    old: Attributes | None, arrays: SourceArrays, values: Mapping[str, object]
+) -> Attributes:
+    """Return what is said of a source, and one value more of all its faces for each name."""
+    count = int(arrays[3].max(initial=-1)) + 1
+    faces = np.zeros((count, 3), dtype=np.int64) if old is None else old.faces
+    said = Attributes(faces) if old is None else old.without(values)
+    given = {name: np.asarray(value) for name, value in values.items()}
+    face = {
+        name: np.broadcast_to(value, (len(faces), *value.shape)) for name, value in given.items()
+    }
+    more = Given(face=face).over(0, faces)
+    return said if more is None else replace(said, face={**said.face, **more.face})
 
 
 def moved_attributes(attributes: Attributes, factors: Factors) -> Attributes:

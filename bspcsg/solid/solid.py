@@ -39,6 +39,7 @@ from .leaf import (
     later_attributes,
     said_of,
     shown_tree,
+    tagged,
     tree_of,
 )
 from .measure import Measured, deprecated, residues_of_volume
@@ -172,9 +173,9 @@ class Solid(Measured, Modelled, PointSet):
         ----------
         mesh : object
             A trimesh, manifold3d, pymeshlab, open3d, pyvista, vtk or meshio mesh, a CadQuery or
-            build123d shape, a pair (vertices, faces) as libigl has it, a path, the bytes of a file
-            or an open one, or anything that has ``vertices`` and ``faces``. A `Solid` is returned
-            as it is; a mesh without vertices and faces is the empty set.
+            build123d shape, an `Assembly`, a pair (vertices, faces) as libigl has it, a path, the
+            bytes of a file or an open one, or anything that has ``vertices`` and ``faces``. A
+            `Solid` is returned as it is; a mesh without vertices and faces is the empty set.
         format : str, optional
             Of bytes and open files: a suffix, such as ``"stl"``.
         tolerance : float
@@ -202,6 +203,9 @@ class Solid(Measured, Modelled, PointSet):
             return mesh
         if isinstance(mesh, (str, os.PathLike)):
             return cls.load(mesh, **options)
+        if hasattr(mesh, "to_solid"):
+            whole: Solid = mesh.to_solid()
+            return whole
         if isinstance(mesh, (bytes, bytearray, memoryview)) or hasattr(mesh, "readable"):
             solid: Solid = above("loads")(mesh, format, **options)
             return solid
@@ -402,6 +406,32 @@ class Solid(Measured, Modelled, PointSet):
                 sayings = said_of(reduced, [(tree, self._sayings)])
                 self._reduced = from_leaf(TreeLeaf(reduced, sayings=sayings))
         return self if self._reduced is None else self._reduced
+
+    @counted
+    def tagged(self, **values: Any) -> "Solid":
+        """Return the solid whose every face says so: attributes of faces, one value for all.
+
+        Parameters
+        ----------
+        **values : number, text or array
+            By the names of the attributes; what had such a name before is replaced. Half-spaces
+            have no faces that could say anything.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> part = b.cube(2).tagged(layer=1) - b.cube(1).tagged(layer=2)
+        >>> sorted({*part.to_mesh().face_attributes["layer"].tolist()})
+        [1, 2]
+        """
+        tree, leaf = self.tree, self._leaf()
+        sayings = leaf.sayings or (None,) * len(tree.sources)
+        said = tuple(
+            None if (arrays := tree.source_arrays(slot)) is None else tagged(old, arrays, values)
+            for slot, old in enumerate(sayings)
+        )
+        record = leaf.record if isinstance(leaf, TreeLeaf) else None
+        return from_leaf(TreeLeaf(tree_of(leaf), record, leaf.extent, said))
 
     @counted
     def simplify(self, tolerance: float) -> "Solid":
@@ -724,6 +754,12 @@ class LastOperation:
 def from_node(node: ExpressionNode, factors: Factors = ()) -> Solid:
     """Return the solid of an expression under a transform."""
     return Solid._of(node, factors)
+
+
+def solid_of_mesh(mesh: Mesh, **options: Any) -> Solid:
+    """Return the solid of a mesh of this package, with its attributes; options as for `Solid`."""
+    said = None if mesh.carried is None else mesh.attributes
+    return solid_with(mesh.vertices, mesh.faces, said, **options)
 
 
 def solid_with(vertices: Any, faces: Any, attributes: Attributes | None, **options: Any) -> Solid:

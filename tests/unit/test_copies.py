@@ -44,6 +44,7 @@ def failure(kind: type[b.BspcsgError]) -> Callable[[], b.BspcsgError]:
 EXAMPLES: dict[type, Callable[[], Any]] = {
     b.CheckReport: (b.cube(2) - b.cube(1)).validate,
     b.Finding: lambda: b.Finding("code", "note", "A sentence.", (1, 2), 5),
+    b.Assembly: lambda: b.Assembly("a", [b.cube(1)], color=(1, 0, 0)),
     b.Material: lambda: b.Material((1, 0.5, 0)),
     b.Mesh: SHAPE.to_mesh,
     b.Solid: lambda: SHAPE.rotate(30),
@@ -114,6 +115,8 @@ def assert_same(a: Any, c: Any) -> None:
         assert np.array_equal(a, c, equal_nan=a.dtype.kind == "f")
     elif isinstance(a, BaseException):
         assert a.args == c.args
+    elif isinstance(a, b.Assembly):
+        assert [(p.path, p.color, p.solid) for p in a] == [(p.path, p.color, p.solid) for p in c]
     elif isinstance(a, bsp.StabTree):
         assert (a.stats(), a.pitch, a.dimension) == (c.stats(), c.pitch, c.dimension)
     elif isinstance(a, bsp.RayCaster):

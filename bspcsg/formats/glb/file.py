@@ -28,7 +28,7 @@ from .said import Pictures, columns_of
 TO_METRES = np.array(
     [[0.001, 0, 0, 0], [0, 0, 0.001, 0], [0, -0.001, 0, 0], [0, 0, 0, 1]], dtype=np.float64
 )
-_TO_MILLIMETRES = np.array(
+TO_MILLIMETRES = np.array(
     [[1000, 0, 0, 0], [0, 0, -1000, 0], [0, 1000, 0, 0], [0, 0, 0, 1]], dtype=np.float64
 )
 
@@ -61,7 +61,7 @@ def read(source: Source) -> RawMesh:
 
 def _placed(one: Shown) -> RawMesh:
     """Return the mesh of a node in millimetres; a mirrored one is turned right side out."""
-    placing = _TO_MILLIMETRES @ one.matrix
+    placing = TO_MILLIMETRES @ one.matrix
     with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused later
         vertices = _moved(one.vertices.astype(np.float64), placing)
         is_mirrored = np.linalg.det(placing[:3, :3]) < 0
@@ -108,7 +108,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     if said is not None:
         yield from _with_attributes(mesh, said)
         return
-    described = _Description(says_empty_set(mesh))
+    described = Description(says_empty_set(mesh))
     blocks = []
     for name, faces in parts_of(mesh):
         if len(faces) == 0:
@@ -117,37 +117,22 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
         vertices = mesh.vertices[used].astype("<f4")
         described.add(name, vertices, len(faces))
         blocks += [vertices.tobytes(), corners.astype("<u4").tobytes()]
-    yield from _container(described.text(), blocks)
+    yield from container(described.text(), blocks)
 
 
 def _with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[bytes]:
     """Yield the file with what is said: vertices are divided where corners differ."""
-    described = _Description(False)
+    described = Description(False)
     pictures = Pictures(said.materials, described.append)
-    names = said.face.get("material")
     start = 0
     for name, faces in parts_of(mesh):
         rows = np.arange(start, start + len(faces))
         start += len(faces)
-        if len(faces) == 0:
-            continue
-        columns = columns_of(said, rows)
-        first, corners = _divided(faces, columns)
-        vertices = mesh.vertices[faces.ravel()[first]].astype("<f4")
-        accessors = {"POSITION": described.append_column(vertices, with_bounds=True)}
-        for key, values in columns.items():
-            flat = values.reshape(3 * len(faces), *values.shape[2:])
-            accessors[key] = described.append_column(flat[first])
-        runs = _runs(None if names is None else names[rows], len(faces))
-        primitives = []
-        for begin, end, material in runs:
-            indices = described.append_indices(corners[begin:end])
-            painted = {"material": pictures.numbers[material]} if material else {}
-            primitives.append({"attributes": accessors, "indices": indices, "mode": 4, **painted})
-        described.add_object(name, primitives)
+        if len(faces):
+            primitives = described.append_mesh(mesh.vertices, faces, said.taken(rows), pictures)
+            described.add_object(name, primitives)
     further = pictures.described()
-    text = described.text(further)
-    yield from _container(text, described.blocks)
+    yield from container(described.text(further), described.blocks)
 
 
 def _divided(faces: IndexArray, columns: dict[str, Values]) -> tuple[IndexArray, IndexArray]:
@@ -171,7 +156,7 @@ def _runs(names: Values | None, count: int) -> list[tuple[int, int, str]]:
     return [(begin, end, str(names[begin])) for begin, end in zip(starts, ends, strict=True)]
 
 
-class _Description:
+class Description:
     """The JSON of a file, object by object."""
 
     def __init__(self, is_empty_set: bool) -> None:
@@ -212,6 +197,24 @@ class _Description:
         self._size += len(self.blocks[-1])
         return len(self._views) - 1
 
+    def append_mesh(
+        self, points: FloatArray, faces: IndexArray, said: Attributes, pictures: Pictures
+    ) -> list[dict[str, Any]]:
+        """Add the triangles of an object with what is said of them; return its primitives."""
+        columns = columns_of(said, np.arange(len(faces)))
+        first, corners = _divided(faces, columns)
+        vertices = points[faces.ravel()[first]].astype("<f4")
+        accessors = {"POSITION": self.append_column(vertices, with_bounds=True)}
+        for key, values in columns.items():
+            flat = values.reshape(3 * len(faces), *values.shape[2:])
+            accessors[key] = self.append_column(flat[first])
+        primitives = []
+        for begin, end, material in _runs(said.face.get("material"), len(faces)):
+            indices = self.append_indices(corners[begin:end])
+            painted = {"material": pictures.numbers[material]} if material else {}
+            primitives.append({"attributes": accessors, "indices": indices, "mode": 4, **painted})
+        return primitives
+
     def append_column(self, values: Values, with_bounds: bool = False) -> int:
         """Add values of vertices, and return the number of their accessor."""
         little = np.ascontiguousarray(values, values.dtype.newbyteorder("<"))
@@ -235,17 +238,22 @@ class _Description:
         self._accessors.append({**accessor, "type": "SCALAR"})
         return len(self._accessors) - 1
 
+    def _roots(self) -> list[int]:
+        return list(range(len(self._names)))
+
+    def _nodes(self) -> list[dict[str, Any]]:
+        matrix = TO_METRES.T.ravel().tolist()
+        return [
+            {**named, "mesh": number, "matrix": matrix} for number, named in enumerate(self._names)
+        ]
+
     def text(self, further: dict[str, Any] | None = None) -> bytes:
         """Return the JSON."""
         asset = {"version": "2.0", "generator": "bspcsg", **self._extras}
         tree: dict[str, Any] = {"asset": asset, "scene": 0}
-        tree["scenes"] = [{"nodes": list(range(len(self._names)))} if self._names else {}]
+        tree["scenes"] = [{"nodes": self._roots()} if self._names else {}]
         if self._names:
-            matrix = TO_METRES.T.ravel().tolist()
-            tree["nodes"] = [
-                {**named, "mesh": number, "matrix": matrix}
-                for number, named in enumerate(self._names)
-            ]
+            tree["nodes"] = self._nodes()
             tree["meshes"] = [
                 {**named, "primitives": self._primitives[number]}
                 for number, named in enumerate(self._names)
@@ -257,11 +265,31 @@ class _Description:
         return json.dumps(tree, separators=(",", ":"), ensure_ascii=False).encode()
 
 
+class SceneDescription(Description):
+    """The JSON of a file whose nodes are a tree.
+
+    Parameters
+    ----------
+    nodes : list of dict
+        As glTF has them; the first is the root.
+    """
+
+    def __init__(self, nodes: list[dict[str, Any]]) -> None:
+        super().__init__(False)
+        self._tree = nodes
+
+    def _nodes(self) -> list[dict[str, Any]]:
+        return self._tree
+
+    def _roots(self) -> list[int]:
+        return [0]
+
+
 def _primitive(number: int) -> dict[str, Any]:
     return {"attributes": {"POSITION": 2 * number}, "indices": 2 * number + 1, "mode": 4}
 
 
-def _container(description: bytes, blocks: list[bytes]) -> Iterator[bytes]:
+def container(description: bytes, blocks: list[bytes]) -> Iterator[bytes]:
     """Yield a file; the sizes of all blocks are multiples of four already."""
     text = description + b" " * (-len(description) % 4)
     held = sum(map(len, blocks))

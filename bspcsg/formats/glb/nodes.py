@@ -8,7 +8,7 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes
-from ...attributes.joining import Part, concatenated
+from ...attributes.joining import MeshPart, concatenated
 from ..raw import compacted
 from .container import Container
 from .said import materials_of, read_columns
@@ -71,7 +71,7 @@ def shown(container: Container) -> tuple[list[Shown], int]:
             continue
         mesh = tree["meshes"][node["mesh"]]
         if node["mesh"] not in meshes:
-            meshes[node["mesh"]] = _mesh(container, mesh)
+            meshes[node["mesh"]] = triangles_of(container, mesh)
         name = mesh.get("name") or node.get("name") or ""
         vertices, faces, said = meshes[node["mesh"]]
         found.append(Shown(str(name), vertices, faces, matrix, said))
@@ -94,13 +94,14 @@ def _visited(tree: dict[str, Any], nodes: list[dict[str, Any]]) -> Iterator[tupl
         if number in seen or not 0 <= number < len(nodes):
             raise IndexError(f"node {number} is shown twice or does not exist")
         seen.add(number)
-        matrix = outer @ _local(nodes[number])
+        matrix = outer @ local_matrix(nodes[number])
         yield number, matrix
         children = nodes[number].get("children", [])
         waiting.extend((child, matrix) for child in reversed(children))
 
 
-def _local(node: dict[str, Any]) -> FloatArray:
+def local_matrix(node: dict[str, Any]) -> FloatArray:
+    """Return the place of a node in the one around it, for column vectors."""
     if "matrix" in node:
         return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
     matrix = np.eye(4)
@@ -122,7 +123,7 @@ def _rotation(quaternion: list[float]) -> FloatArray:
     )
 
 
-def _mesh(container: Container, mesh: dict[str, Any]) -> _Triangles:
+def triangles_of(container: Container, mesh: dict[str, Any]) -> _Triangles:
     """Return the triangles of all primitives of a mesh, and what is said of them."""
     vertices: list[SingleArray] = [np.zeros((0, 3), np.float32)]
     faces = [np.zeros((0, 3), np.int64)]
@@ -147,7 +148,7 @@ def _mesh(container: Container, mesh: dict[str, Any]) -> _Triangles:
             face = {"material": np.full(len(corners), materials[primitive["material"]][0])}
         named = {name: one for name, one in materials if face and name == face["material"][:1]}
         said = Attributes(corners, columns, {}, face, named) if columns or face else None
-        parts.append(Part(len(points), corners, said))
+        parts.append(MeshPart(len(points), corners, said))
         vertices.append(points)
         faces.append(corners + start)
         start += len(points)

@@ -47,7 +47,7 @@ _CHUNK = 1 << 20
 _ENTRY = b"PK\x01\x02"
 
 #: What the standard library raises on damaged archives.
-_DAMAGES = (
+DAMAGES = (
     zipfile.BadZipFile,
     NotImplementedError,
     RuntimeError,
@@ -73,14 +73,14 @@ def read(source: Source) -> RawMesh:
         raise source.error(message, "too_large")
     try:
         with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
-            package = _Package(source, archive)
+            package = Package(source, archive)
             root = package.root()
             if package.is_empty_set(root):
                 return replace(empty_set(), unit="mm")
             return package.assemble(root)
     except FormatError:
         raise
-    except _DAMAGES as error:
+    except DAMAGES as error:
         message = f"the archive is damaged or cut off: {error}."
         raise source.error(message, "truncated") from error
 
@@ -89,7 +89,7 @@ def read(source: Source) -> RawMesh:
 _Waiting: TypeAlias = tuple[str, PlacedObject, tuple[FloatArray, ...]]
 
 
-class _Package:
+class Package:
     """The parts of one archive, each parsed once."""
 
     def __init__(self, source: Source, archive: zipfile.ZipFile) -> None:
@@ -121,12 +121,12 @@ class _Package:
 
     def assemble(self, root: str) -> RawMesh:
         """Return the mesh of all build items."""
-        part = self._part(root)
+        part = self.part(root)
         pieces, findings = [], list(_unit_finding(part))
         beams = skipped = triangles = 0
-        placed = self._placed(root, part.items)
+        placed = self.placed(root, part.items)
         for path, item, transforms in placed:
-            model = self._part(path)
+            model = self.part(path)
             beams += model.objects[item].beams
             if model.objects[item].kind != "model":
                 skipped += 1
@@ -149,7 +149,7 @@ class _Package:
         objects = (one for part in self._parts.values() for one in part.objects.values())
         return sum(bool(one.triangles or one.beams) for one in objects)
 
-    def _placed(
+    def placed(
         self, root: str, items: list[PlacedObject]
     ) -> list[tuple[str, str, tuple[FloatArray, ...]]]:
         """Return part, object and transforms (innermost first) of all meshes, in file order."""
@@ -163,7 +163,7 @@ class _Package:
             transforms: tuple[FloatArray, ...] = (placed.transform, *outer)
             if visited > _MOST_PLACED or len(transforms) > _DEEPEST:
                 raise self._source.error("the objects contain each other too often.", "too_large")
-            known = self._part(path).objects.get(placed.item)
+            known = self.part(path).objects.get(placed.item)
             if known is None:
                 message = f"object {placed.item} does not exist in {path}."
                 raise self._source.error(message, "index_out_of_range")
@@ -172,7 +172,8 @@ class _Package:
             waiting.extend((path, inner, transforms) for inner in reversed(known.components))
         return found
 
-    def _part(self, name: str) -> ModelPart:
+    def part(self, name: str) -> ModelPart:
+        """Return a part, parsed once."""
         if name not in self._parts:
             reader = PartReader(*self._opened(name), _part_name)
             self._parts[name] = reader.read()

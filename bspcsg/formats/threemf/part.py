@@ -64,6 +64,7 @@ class Object:
     components: list[PlacedObject] = field(default_factory=list)
     beams: int = 0
     name: str = ""
+    part_number: str = ""
     usual: tuple[str, int] | None = None
     properties: dict[int, tuple[str, tuple[int, ...]]] = field(default_factory=dict)
 
@@ -181,7 +182,7 @@ class PartReader:
             self._part.items.append(self._placed(attributes))
         elif tag == "object":
             kind, name = attributes.get("type", "model"), attributes.get("name", "")
-            self._current = Object(kind, name=name)
+            self._current = Object(kind, name=name, part_number=attributes.get("partnumber", ""))
             if "pid" in attributes:
                 self._current.usual = attributes["pid"], int(attributes.get("pindex", "0"))
             if attributes["id"] in self._part.objects:

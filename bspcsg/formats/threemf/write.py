@@ -8,14 +8,13 @@ import io
 import itertools
 import re
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes, Values
-from ...attributes.material import Material
 from ...errors import Finding
 from ...mesh.mesh import Mesh
 from ..raw import RawMesh, compacted, empty_set, parts_of, says_empty_set
@@ -44,18 +43,23 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the package; every coordinate reads back as the same double."""
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+    yield packed(_model(mesh))
+
+
+def packed(model: Iterator[str]) -> bytes:
+    """Return the package of a model."""
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, text in (
             ("[Content_Types].xml", iter([_TYPES])),
             ("_rels/.rels", iter([_RELATIONS])),
-            ("3D/3dmodel.model", _model(mesh)),
+            ("3D/3dmodel.model", model),
         ):
             entry = zipfile.ZipInfo(name, _EPOCH)
             entry.compress_type = zipfile.ZIP_DEFLATED
             with archive.open(entry, "w", force_zip64=True) as part:
                 part.writelines(line.encode() for line in text)
-    yield packed.getvalue()
+    return stream.getvalue()
 
 
 def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
@@ -101,13 +105,31 @@ def _model(mesh: Mesh | RawMesh) -> Iterator[str]:
 _GROUP = 1 << 30
 
 
+#: How a model begins.
+BEGIN = f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}">\n'
+
+
+def mesh_object(
+    number: int, name: str, vertices: FloatArray, faces: IndexArray, painted: str
+) -> Iterator[str]:
+    """Yield an object that is a mesh; `painted` names its property."""
+    lines = _object(number, name, vertices, faces[~_repeats_corner(faces)])
+    yield next(lines).replace("><mesh>", f"{painted}><mesh>", 1)
+    yield from lines
+
+
+def hex_of(color: Sequence[float]) -> str:
+    """Return a colour as 3MF writes it."""
+    return "#" + bytes(round(value * 255) for value in color).hex().upper()
+
+
 def _properties(said: Attributes) -> tuple[list[str], Values]:
     """Return the group of properties, and what each triangle says of them."""
     if "material" in said.face:
         names = said.face["material"]
         order = list(said.materials)
         lines = [
-            f'<base name={quoteattr(called(name))} displaycolor="{_hex(material)}"/>\n'
+            f'<base name={quoteattr(called(name))} displaycolor="{hex_of(material.color)}"/>\n'
             for name, material in said.materials.items()
         ]
         told = {name: f' pid="{_GROUP}" p1="{k}"' for k, name in enumerate(order)}
@@ -124,10 +146,6 @@ def _properties(said: Attributes) -> tuple[list[str], Values]:
 def _corner_words(first: int, second: int, third: int) -> str:
     same = first == second == third
     return f' pid="{_GROUP}" p1="{first}"' + ("" if same else f' p2="{second}" p3="{third}"')
-
-
-def _hex(material: Material) -> str:
-    return "#" + bytes(round(value * 255) for value in material.color).hex().upper()
 
 
 def _object(

@@ -4,7 +4,7 @@ from ..._types import Scalar, Vector
 from ...operations.parts import connected_parts, sides_of_plane
 from ...shapes.primitives import half_space
 from ...solid.counting import counted, uncounted
-from ...solid.solid import Solid
+from ...solid.solid import Solid, solid_of_mesh
 
 
 @uncounted
@@ -27,4 +27,4 @@ def decompose(solid: Solid) -> list[Solid]:
     meshes = connected_parts(solid)
     if len(meshes) == 1:
         return [solid]
-    return [Solid(mesh.vertices, mesh.faces, pitch=solid.pitch) for mesh in meshes]
+    return [solid_of_mesh(mesh, pitch=solid.pitch) for mesh in meshes]

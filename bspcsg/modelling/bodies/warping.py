@@ -6,12 +6,13 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ..._types import FloatArray, IndexArray, WindingRule
+from ...attributes.attributes import NORMALS
 from ...errors import InvalidMeshError, invalid_parameter
 from ...mesh.certificate import certify
 from ...mesh.interop import points_array
 from ...parameters import shown, winding_rule
 from ...solid.counting import counted
-from ...solid.solid import Solid
+from ...solid.solid import Solid, solid_with
 
 #: A function of all corners at once: (n, 3) float64 to the same shape.
 PointMap: TypeAlias = Callable[[FloatArray], Any]
@@ -32,7 +33,8 @@ def warp(solid: Solid, f: PointMap, winding: WindingRule | None = None) -> Solid
     vertices = _moved(f, mesh.vertices)
     if rule is None:
         _refuse_crossings(vertices, mesh.faces)
-    return Solid(vertices, mesh.faces, winding=rule or "nonzero")
+    said = None if mesh.carried is None else mesh.attributes.without(NORMALS)
+    return solid_with(vertices, mesh.faces, said, winding=rule or "nonzero")
 
 
 def _moved(f: PointMap, points: FloatArray) -> FloatArray:

@@ -1,0 +1,1 @@
+"""Assemblies: named, coloured, placed solids."""

@@ -1,0 +1,188 @@
+"""Assemblies in files: components of 3MF, nodes of GLB, objects of OBJ."""
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..attributes.attributes import Attributes
+from ..attributes.material import Material
+from ..errors import Finding, FormatError, format_errors
+from ..formats import single
+from ..formats.atomic import write_file
+from ..formats.files import form_of, read, write
+from ..formats.glb import scene as glb
+from ..formats.raw import RawMesh, joined, parts_of
+from ..formats.scene import SceneNode, are_alike
+from ..formats.solids import solid_of
+from ..formats.source import Source, content_of
+from ..formats.threemf import scene as threemf
+from ..geometry import transform
+from ..solid.solid import Solid
+from . import scripts
+from .tree import Assembly, moved
+
+#: Formats that hold a tree: how it is read and written.
+_TREES: dict[str, tuple[Callable[[Source], SceneNode], Callable[[SceneNode], Iterator[bytes]]]] = {
+    ".3mf": (threemf.read, threemf.encode),
+    ".glb": (glb.read, glb.encode),
+}
+
+#: Suffixes of scripts.
+_SCRIPTS = frozenset({".csg", ".json", ".scad"})
+
+#: Steps of a colour in a file.
+_BYTE = 255
+
+
+def load(path: str | os.PathLike[str], **options: Any) -> Assembly:
+    """Read an assembly (see `Assembly.load`)."""
+    suffix = Path(path).suffix.lower()
+    if suffix in _SCRIPTS:
+        return scripts.load(path, Path(path).stem, **options)
+    if suffix in _TREES:
+        return _Making(path, options).assembly(_scene(path, suffix))
+    raw = read(path)
+    start, children = 0, []
+    for name, faces in parts_of(raw):
+        rows = np.arange(start, start + len(faces))
+        start += len(faces)
+        said = None if raw.attributes is None else raw.attributes.taken(rows).with_used_materials()
+        solid = solid_of(RawMesh(raw.vertices, faces, name, attributes=said), path, **options)
+        children.append(Assembly(name, solid))
+    return Assembly(Path(path).stem, children)
+
+
+def _scene(path: str | os.PathLike[str], suffix: str) -> SceneNode:
+    name = os.fspath(path)
+    try:
+        data = content_of(Path(path))
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error
+    return _decoded(name, data, suffix)
+
+
+def _decoded(name: str, data: bytes, suffix: str) -> SceneNode:
+    with format_errors(name, suffix[1:].upper()):
+        return _TREES[suffix][0](Source(name, data))
+
+
+class _Making:
+    """The solids of one file: meshes that nodes share are shared by solids."""
+
+    def __init__(self, path: str | os.PathLike[str], options: dict[str, Any]) -> None:
+        self._path = path
+        self._options = options
+        self._solids: dict[int, Solid] = {}
+
+    def assembly(self, node: SceneNode) -> Assembly:
+        content: Any = [self.assembly(child) for child in node.children]
+        if node.mesh is not None:
+            content = self._solid(node.mesh, node.color is not None)
+        factor = transform.matrix_factor(node.matrix)
+        made = Assembly(node.name, content, color=node.color)
+        return made._moved((factor,))
+
+    def _solid(self, mesh: RawMesh, colored: bool) -> Solid:
+        if id(mesh) not in self._solids:
+            plain = replace(mesh, attributes=None) if colored else mesh
+            self._solids[id(mesh)] = solid_of(plain, self._path, **self._options)
+        return self._solids[id(mesh)]
+
+
+def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...]:
+    """Write an assembly (see `Assembly.save`)."""
+    suffix = Path(path).suffix.lower()
+    if suffix == ".csg":
+        return scripts.save(assembly, path)
+    if suffix == ".obj":
+        return write(_in_place(assembly), path)
+    if suffix not in _TREES:
+        form_of(path)
+        message = f"{os.fspath(path)}: assemblies are written as 3MF, GLB, OBJ and .csg."
+        raise FormatError(message, "unknown_format")
+    scene = _Describing(in_single=suffix == ".glb").node(assembly, None)
+    if suffix == ".3mf":
+        scene = _in_bytes(scene)
+
+    def prove(data: bytes) -> None:
+        if not are_alike(scene, _decoded(os.fspath(path), data, suffix)):
+            message = f"{os.fspath(path)}: the file that was written is not the assembly."
+            raise FormatError(message, "write_mismatch")
+
+    write_file(path, _TREES[suffix][1](scene), prove)
+    return _lost(scene, suffix)
+
+
+class _Describing:
+    """What files say of an assembly; solids that parts share are meshes that nodes share."""
+
+    def __init__(self, in_single: bool) -> None:
+        self._in_single = in_single
+        self._meshes: dict[int, tuple[Solid, RawMesh]] = {}
+
+    def node(self, assembly: Assembly, color: tuple[float, ...] | None) -> SceneNode:
+        color = color if assembly.color is None else assembly.color
+        matrix = transform.product(assembly.factors) if assembly.factors else np.eye(4)
+        if assembly.shape is None:
+            children = tuple(self.node(child, color) for child in assembly.children)
+            return SceneNode(assembly.name, matrix, None, None, children)
+        mesh = self._mesh(assembly.shape, assembly.name)
+        own = mesh.attributes is not None and {"color", "material"}.intersection(
+            mesh.attributes.names
+        )
+        return SceneNode(assembly.name, matrix, mesh, None if own else color)
+
+    def _mesh(self, solid: Solid, name: str) -> RawMesh:
+        if id(solid) not in self._meshes:
+            self._meshes[id(solid)] = (solid, _raw(solid, name, self._in_single))
+        return self._meshes[id(solid)][1]
+
+
+def _raw(solid: Solid, name: str, in_single: bool) -> RawMesh:
+    mesh = solid.normalized().to_mesh()
+    if in_single:
+        mesh, _ = single.settled(mesh)
+    vertices = mesh.vertices.astype(np.float32) if in_single else mesh.vertices
+    said = mesh.attributes if mesh.carried is not None else None
+    return RawMesh(vertices.astype(np.float64), mesh.faces, name, attributes=said)
+
+
+def _in_bytes(node: SceneNode) -> SceneNode:
+    """Return a tree with the colours that 3MF can hold."""
+    color = node.color and tuple(round(value * _BYTE) / _BYTE for value in node.color)
+    children = tuple(map(_in_bytes, node.children))
+    return SceneNode(node.name, node.matrix, node.mesh, color, children)
+
+
+def _lost(scene: SceneNode, suffix: str) -> tuple[Finding, ...]:
+    """Return the finding about attributes of 3MF's components, which have colours only."""
+    said = {
+        name
+        for node in scene.walk()
+        if node.mesh is not None and node.mesh.attributes is not None
+        for name in node.mesh.attributes.names
+    }
+    if suffix != ".3mf" or not said:
+        return ()
+    told = ", ".join(f"“{name}”" for name in sorted(said))
+    message = f"components of 3MF are written without attributes: {told} were left out."
+    return (Finding("attributes_left_out", "warning", message, (), len(said)),)
+
+
+def _in_place(assembly: Assembly) -> RawMesh:
+    """Return all parts as one mesh, each an object where it is."""
+    pieces = []
+    for part in assembly.parts:
+        mesh = moved(part.shape, part.factors).normalized().to_mesh()
+        said = mesh.attributes if mesh.carried is not None else None
+        if part.color is not None and said is None:
+            name = "#" + bytes(round(value * _BYTE) for value in part.color).hex()
+            face = {"material": np.full(len(mesh.faces), name)}
+            said = Attributes(mesh.faces, {}, {}, face, {name: Material(part.color)})
+        pieces.append(RawMesh(mesh.vertices, mesh.faces, part.path, attributes=said))
+    return joined(pieces)

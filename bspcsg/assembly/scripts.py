@@ -1,0 +1,79 @@
+"""Assemblies in `.csg` scripts: nodes that unite are the tree, and colours are those of parts."""
+
+import os
+from collections.abc import Iterable
+from typing import Any
+
+from .. import csg
+from ..csg import CsgTree, Node
+from ..csg.from_solid import tree_of
+from ..csg.syntax.tree import Argument
+from ..errors import Finding, InvalidMeshError
+from ..solid.solid import Solid
+from .tree import Assembly
+
+#: Nodes whose children stand beside each other.
+_UNITING = frozenset({"group", "union", "render", "color"})
+
+
+#: How many of them may lie in one another before what is in them is one part.
+_DEEPEST = 60
+
+
+def load(path: str | os.PathLike[str], name: str, **options: Any) -> Assembly:
+    """Return the assembly of a script; what is neither united, coloured nor moved is a part."""
+    reading = _Reading(csg.read_tree(path), options)
+    return Assembly(name, reading.assemblies(reading.tree.roots(), None, 0))
+
+
+class _Reading:
+    """A script, and how its nodes are evaluated."""
+
+    def __init__(self, tree: CsgTree, options: dict[str, Any]) -> None:
+        self.tree = tree
+        self._options = options
+
+    def assemblies(
+        self, nodes: Iterable[Node], color: tuple[float, ...] | None, depth: int
+    ) -> list[Assembly]:
+        """Return what is there of some nodes."""
+        found = (self._assembly(node, color, depth) for node in nodes if not node.is_ignored)
+        return [made for made in found if made is not None]
+
+    def _assembly(self, node: Node, color: tuple[float, ...] | None, depth: int) -> Assembly | None:
+        """Return a node as a tree; of colours in one another the outermost counts."""
+        is_moving = node.name == "multmatrix" and len(node.arguments) > 0
+        if depth > _DEEPEST or not (node.name in _UNITING or is_moving):
+            one = CsgTree((node,), self.tree.name, self.tree.folder)
+            body = csg.evaluate(one, **self._options)
+            return Assembly(node.name, body, color=color) if isinstance(body, Solid) else None
+        own = _color(node) if node.name == "color" and color is None else color
+        found = self.assemblies(node.children, own, depth + 1)
+        made = found[0] if len(found) == 1 else Assembly("", found)
+        return made.transform(node.arguments[0].value) if is_moving else made
+
+
+def _color(node: Node) -> tuple[float, ...] | None:
+    """Return what colour a node says, if it is one."""
+    try:
+        given: Any = node.arguments[0].value
+        return Assembly("", color=[float(value) for value in given]).color
+    except (IndexError, TypeError, ValueError, InvalidMeshError):
+        return None
+
+
+def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...]:
+    """Write each part in its place, under its colour; scripts have no names."""
+    nodes: list[Node] = []
+    for part in assembly.parts:
+        inner = tree_of(part.solid).nodes
+        if part.color is None:
+            nodes.append(Node("group", (), inner))
+        else:
+            nodes.append(Node("color", (Argument(None, part.color),), inner))
+    csg.dump(CsgTree(tuple(nodes)), path)
+    count = sum(bool(part.name) for part in assembly.parts)
+    if not count:
+        return ()
+    message = f"scripts have no names; those of {count} parts were left out."
+    return (Finding("names_left_out", "warning", message, (), count),)

@@ -1,0 +1,343 @@
+"""`Assembly`: a tree of named, coloured, placed solids, as an immutable value."""
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from .._types import FloatArray, Scalar, Vector
+from ..above import above
+from ..attributes.material import Material
+from ..errors import Finding, invalid_parameter
+from ..geometry import transform
+from ..geometry.transform import Factors
+from ..operations.setops import union
+from ..parameters import not_negative
+from ..solid.counting import uncounted
+from ..solid.solid import Solid
+from .bill import Bill, bill_of
+from .clashes import Clash, are_apart, clashes_of
+
+#: How deep assemblies may lie in one another, as in files.
+_DEEPEST = 64
+
+#: What an assembly is made of.
+Content: TypeAlias = Solid | Iterable[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A solid of an assembly, in its place.
+
+    Parameters
+    ----------
+    path : str
+        The names on the way to it, with ``/`` between them; no two parts have the same.
+    name : str
+    shape : Solid
+        As it was given; instances have the same object.
+    factors : tuple of Factor
+        Where it is put, outermost first.
+    color : (4,) tuple of float or None
+        Its own, or that of the assembly around it.
+    density : float or None
+        Mass of a cubic model unit.
+    """
+
+    path: str
+    name: str
+    shape: Solid
+    factors: Factors
+    color: tuple[float, ...] | None
+    density: float | None
+
+    @cached_property
+    def solid(self) -> Solid:
+        """The solid where it is."""
+        return moved(self.shape, self.factors)
+
+
+class Assembly:
+    """A tree of named, coloured, placed solids.
+
+    Solids and assemblies may appear several times: instances share their geometry, in files, too.
+    Iterating yields the parts, each with its solid in its place.
+
+    Parameters
+    ----------
+    name : str
+    content : Solid or sequence of Solid and Assembly
+        Whatever `Solid.from_mesh` takes counts as a solid.
+    color : (3,) or (4,) tuple of float, optional
+        Red, green, blue and opacity, 0 to 1; for everything inside that has none.
+    density : float, optional
+        Mass of a cubic model unit, for everything inside that has none.
+
+    Raises
+    ------
+    InvalidParameterError
+        If assemblies lie more than 64 deep, or the density is negative.
+    InvalidMeshError
+        If the colour is none.
+
+    Examples
+    --------
+    >>> import bspcsg as b
+    >>> wheel = b.Assembly("wheel", b.cylinder(h=2, r=5, segments=4), color=(0.2, 0.2, 0.2))
+    >>> car = b.Assembly("car", [wheel, wheel.translate(20, 0, 0)], density=0.5)
+    >>> [part.path for part in car]
+    ['car/wheel', 'car/wheel (2)']
+    >>> car.bill().mass
+    100.0
+    >>> car.clashes()
+    []
+    """
+
+    def __init__(
+        self,
+        name: str = "",
+        content: Content = (),
+        *,
+        color: Iterable[float] | None = None,
+        density: Scalar | None = None,
+    ) -> None:
+        self.name = str(name)
+        self.color = None if color is None else Material(tuple(color)).color
+        self.density = None if density is None else not_negative(density, "density")
+        self.shape = content if isinstance(content, Solid) else None
+        children = () if isinstance(content, Solid) else tuple(map(_as_assembly, content))
+        self.children: tuple[Assembly, ...] = children
+        self.factors: Factors = ()
+        self._depth: int = 1 + max((child._depth for child in children), default=0)
+        if self._depth > _DEEPEST:
+            raise invalid_parameter(f"Assemblies lie in one another at most {_DEEPEST} deep.")
+
+    def _with(self, **changes: Any) -> "Assembly":
+        other = object.__new__(Assembly)
+        kept = {name: value for name, value in vars(self).items() if name != "parts"}
+        other.__dict__.update(kept | changes)
+        return other
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """All solids, each in its place, in the order of the tree."""
+        found: list[Part] = []
+        taken: set[str] = set()
+        waiting: list[tuple[Assembly, str, Part | None]] = [(self, "", None)]
+        while waiting:
+            node, above, around = waiting.pop()
+            path = f"{above}/{node.name}" if above else node.name
+            path = _free(path or "part", taken) if node.shape is not None else path
+            inherited = node._inherited(path, around)
+            if node.shape is not None:
+                taken.add(path)
+                found.append(inherited)
+            waiting.extend((child, path, inherited) for child in reversed(node.children))
+        return tuple(found)
+
+    def _inherited(self, path: str, around: Part | None) -> Part:
+        """Return this node as a part, with what it has from the assembly around it."""
+        outer = () if around is None else around.factors
+        color = self.color if self.color is not None or around is None else around.color
+        density = self.density if self.density is not None or around is None else around.density
+        shape = Solid.empty() if self.shape is None else self.shape
+        return Part(path, self.name, shape, outer + self.factors, color, density)
+
+    def __iter__(self) -> Iterator[Part]:
+        """Yield the parts."""
+        return iter(self.parts)
+
+    def __len__(self) -> int:
+        """Return the number of parts."""
+        return len(self.parts)
+
+    def __getitem__(self, path: str) -> Part:
+        """Return the part of a path, or of a name that only one part has.
+
+        Raises
+        ------
+        KeyError
+            If there is no such part, or several of that name.
+        """
+        found = [part for part in self.parts if part.path == path]
+        found = found or [part for part in self.parts if part.name == path]
+        if len(found) != 1:
+            known = ", ".join(part.path for part in self.parts)
+            raise KeyError(f"{len(found)} parts are called “{path}”; there are {known}")
+        return found[0]
+
+    def __repr__(self) -> str:
+        """Say how many parts there are."""
+        count = len(self.parts)
+        return f"Assembly({self.name!r}, {count} part{'' if count == 1 else 's'})"
+
+    # Transforms
+
+    def translate(self, *offset: Scalar | Vector) -> "Assembly":
+        """Return the assembly moved, as `Solid.translate` does."""
+        vector: Any = offset[0] if len(offset) == 1 else offset
+        return self._moved((transform.translation(vector),))
+
+    def rotate(self, angle: Scalar | Vector, axis: str | Vector = "z") -> "Assembly":
+        """Return the assembly rotated about an axis through the origin, in degrees."""
+        about: Any = angle
+        if np.ndim(about) == 0:
+            return self._moved((transform.rotation(about, axis),))
+        return self._moved(transform.euler_rotation(about))
+
+    def scale(self, factor: Scalar | Vector) -> "Assembly":
+        """Return the assembly scaled about the origin."""
+        return self._moved((transform.scaling(factor),))
+
+    def mirror(self, normal: Vector) -> "Assembly":
+        """Return the mirror image in the plane through the origin with this normal."""
+        return self._moved((transform.mirroring(normal),))
+
+    def transform(self, matrix: Any) -> "Assembly":
+        """Return the image under an affine map, a (4, 4) or (3, 4) matrix for column vectors."""
+        return self._moved((transform.matrix_factor(matrix),))
+
+    def _moved(self, factors: Factors) -> "Assembly":
+        kept = tuple(factor for factor in factors if not factor.is_identity)
+        return self._with(factors=kept + self.factors) if kept else self
+
+    # Operations, object by object
+
+    def __sub__(self, tool: Any) -> "Assembly":
+        """Take a solid, or another assembly, from every part; parts that it misses stay shared."""
+        other = _as_solid(tool)
+        return self._each((), lambda part: part if are_apart(part, other) else part - other)
+
+    def __and__(self, tool: Any) -> "Assembly":
+        """Return what of every part lies in a solid or another assembly."""
+        other = _as_solid(tool)
+        return self._each((), lambda part: part & other)
+
+    def _each(self, outer: Factors, change: Callable[[Solid], Solid]) -> "Assembly":
+        """Return the tree with another solid for each part in its place, where that changes it."""
+        factors = outer + self.factors
+        if self.shape is None:
+            children = tuple(child._each(factors, change) for child in self.children)
+            return self._with(children=children, factors=())
+        placed = moved(self.shape, factors)
+        made = change(placed)
+        if made is placed:
+            return self._with(factors=factors)
+        return self._with(shape=made, factors=())
+
+    # What it comes to
+
+    @uncounted
+    def to_solid(self) -> Solid:
+        """Return the union of all parts.
+
+        Its faces say where they are from: the face attribute ``"part"`` is the path, and
+        ``"color"`` the colour of parts that have one and no attribute ``"color"``, in bytes.
+        """
+        return union([_tagged(part) for part in self.parts]) if self.parts else Solid.empty()
+
+    def clashes(self, clearance: Scalar = 0.0) -> list[Clash]:
+        """Return the pairs of parts that have volume in common, or come too near each other.
+
+        Parameters
+        ----------
+        clearance : float
+            The least distance that parts must keep, in model units. By default parts may touch.
+
+        Returns
+        -------
+        list of Clash
+            In the order of the parts. Pairs whose boxes are farther apart are not looked at.
+        """
+        return clashes_of(self.parts, not_negative(clearance, "clearance"))
+
+    def bill(self) -> Bill:
+        """Return the bill: how often each part is there, volumes, and masses by the densities."""
+        return bill_of(self.parts)
+
+    @property
+    def bounds(self) -> FloatArray | None:
+        """Lowest and highest coordinates, (2, 3) float64, or None if there is nothing."""
+        boxes = [box for part in self.parts if (box := part.solid.bounds) is not None]
+        if not boxes:
+            return None
+        lows, highs = zip(*boxes, strict=True)
+        return np.array([np.min(lows, axis=0), np.max(highs, axis=0)])
+
+    # Files
+
+    def save(self, path: str | os.PathLike[str]) -> tuple[Finding, ...]:
+        """Write the assembly; the suffix names the format.
+
+        3MF and GLB keep the tree, its names and colours, and that instances share geometry; OBJ
+        holds each part as an object in its place, ``.csg`` each part under its colour.
+
+        Returns
+        -------
+        tuple of Finding
+            What the format could not keep.
+
+        Raises
+        ------
+        FormatError
+            If the suffix is another one (code "unknown_format"), or as for `bspcsg.save`.
+        """
+        findings: tuple[Finding, ...] = above("save_assembly")(self, path)
+        return findings
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], **options: Any) -> "Assembly":
+        """Read an assembly; the suffix names the format.
+
+        Components of 3MF, nodes of GLB, and what scripts unite are the tree; objects of OBJ are its
+        parts. Any other mesh file is an assembly of one part.
+
+        Parameters
+        ----------
+        path : str or path
+        **options
+            For each solid, as for `Solid`; of scripts as for `bspcsg.csg.evaluate`.
+
+        Raises
+        ------
+        FormatError, InvalidMeshError
+            As for `bspcsg.load`.
+        """
+        assembly: Assembly = above("load_assembly")(path, **options)
+        return assembly
+
+
+def moved(solid: Solid, factors: Factors) -> Solid:
+    """Return a solid moved by factors, outermost first."""
+    for factor in reversed(factors):
+        solid = solid.transform(factor.matrix)
+    return solid
+
+
+def _as_assembly(content: Any) -> Assembly:
+    if isinstance(content, Assembly):
+        return content
+    return Assembly("", Solid.from_mesh(content))
+
+
+def _as_solid(tool: Any) -> Solid:
+    return tool.to_solid() if isinstance(tool, Assembly) else Solid.from_mesh(tool)
+
+
+def _free(path: str, taken: set[str]) -> str:
+    number, free = 1, path
+    while free in taken:
+        number += 1
+        free = f"{path} ({number})"
+    return free
+
+
+def _tagged(part: Part) -> Solid:
+    said = part.solid.to_mesh().attributes.names
+    values: dict[str, Any] = {"part": part.path}
+    if part.color is not None and not {"color", "material"}.intersection(said):
+        values["color"] = np.rint(np.array(part.color) * 255).astype(np.uint8)
+    return part.solid.tagged(**values)

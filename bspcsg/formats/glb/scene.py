@@ -1,0 +1,141 @@
+"""The tree of a GLB's nodes, in and out."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...attributes.attributes import Attributes
+from ...attributes.material import Material
+from ..raw import RawMesh
+from ..scene import SceneNode
+from ..source import Source
+from .container import Container, container_of
+from .file import TO_METRES, TO_MILLIMETRES, SceneDescription, called, container
+from .nodes import local_matrix, triangles_of
+from .said import Pictures, kept
+
+_IDENTITY = np.eye(4)
+
+
+def read(source: Source) -> SceneNode:
+    """Read the nodes of the scene, in millimetres with z upwards.
+
+    Raises
+    ------
+    FormatError
+        As for a mesh.
+    """
+    held = container_of(source)
+    try:
+        return _Reading(held).root()
+    except IndexError as error:
+        raise source.error(f"{error}.", "index_out_of_range") from error
+    except (ValueError, LookupError, TypeError, AttributeError) as error:
+        raise source.error(f"this GLB cannot be decoded: {error}.") from error
+
+
+class _Reading:
+    """The nodes of one file; a mesh at several nodes is one."""
+
+    def __init__(self, held: Container) -> None:
+        self._held = held
+        self._nodes = held.tree.get("nodes", [])
+        self._meshes: dict[int, RawMesh] = {}
+
+    def root(self) -> SceneNode:
+        scenes = self._held.tree.get("scenes", [])
+        if scenes:
+            roots = scenes[self._held.tree.get("scene", 0)].get("nodes", [])
+        else:
+            inner = {child for node in self._nodes for child in node.get("children", [])}
+            roots = [number for number in range(len(self._nodes)) if number not in inner]
+        if len(roots) == 1 and self._only_turns(self._nodes[roots[0]]):
+            return self._node(self._nodes[roots[0]]["children"][0], _IDENTITY)
+        found = tuple(self._node(number, TO_MILLIMETRES) for number in roots)
+        return found[0] if len(found) == 1 else SceneNode("", _IDENTITY, children=found)
+
+    def _only_turns(self, told: dict[str, Any]) -> bool:
+        """Whether a node is what this package puts around a tree: metres, y upwards."""
+        is_bare = set(told) == {"matrix", "children"} and len(told["children"]) == 1
+        return is_bare and bool((local_matrix(told) == TO_METRES).all())
+
+    def _node(self, number: int, outer: FloatArray) -> SceneNode:
+        """Return a node; the claims were checked, so that none is deeper than is bearable."""
+        if not 0 <= number < len(self._nodes):
+            raise IndexError(f"node {number} does not exist")
+        told = self._nodes[number]
+        mesh = self._mesh(told["mesh"]) if "mesh" in told else None
+        children = tuple(self._node(child, _IDENTITY) for child in told.get("children", []))
+        matrix = outer @ local_matrix(told)
+        name = str(told.get("name") or (mesh.name if mesh is not None else ""))
+        if mesh is None or not children:
+            return SceneNode(name, matrix, *_painted(mesh), children)
+        own = SceneNode(mesh.name, _IDENTITY, *_painted(mesh))
+        return SceneNode(name, matrix, None, None, (own, *children))
+
+    def _mesh(self, number: int) -> RawMesh:
+        if number not in self._meshes:
+            told = self._held.tree["meshes"][number]
+            vertices, faces, said = triangles_of(self._held, told)
+            points = vertices.astype(np.float64)
+            if not np.isfinite(points).all():
+                raise ValueError("a coordinate is not a finite number")
+            name = str(told.get("name") or "")
+            self._meshes[number] = RawMesh(points, faces, name, unit="mm", attributes=said)
+        return self._meshes[number]
+
+
+def _painted(mesh: RawMesh | None) -> tuple[RawMesh | None, tuple[float, ...] | None]:
+    """Return a mesh and the colour that it was written with, if it has one and nothing else."""
+    said = None if mesh is None else mesh.attributes
+    if mesh is None or said is None or said.names != ("material",):
+        return mesh, None
+    names = np.unique(said.face["material"]).tolist()
+    color = said.materials.get(names[0], Material()).color
+    return mesh, color if names == [_name_of(color)] else None
+
+
+def encode(root: SceneNode) -> Iterator[bytes]:
+    """Yield the file of a tree; what is at several nodes is there once."""
+    nodes: list[dict[str, Any]] = [{"matrix": TO_METRES.T.ravel().tolist()}]
+    described = SceneDescription(nodes)
+    taken: dict[str, Material] = {}
+    meshes: dict[tuple[int, tuple[float, ...] | None], tuple[int, Attributes, RawMesh]] = {}
+    waiting = [(root, 0)]
+    while waiting:
+        node, parent = waiting.pop()
+        number = len(nodes)
+        told: dict[str, Any] = {"matrix": node.matrix.T.ravel().tolist()}
+        nodes.append(told | ({"name": called(node.name)} if node.name else {}))
+        nodes[parent].setdefault("children", []).append(number)
+        if node.mesh is not None and len(node.mesh.faces):
+            key = (id(node.mesh), node.color)
+            if key not in meshes:
+                said = _said(node.mesh, node.color)
+                meshes[key] = (len(meshes), said.among(taken), node.mesh)
+            nodes[number]["mesh"] = meshes[key][0]
+        waiting.extend((child, number) for child in reversed(node.children))
+    pictures = Pictures(taken, described.append)
+    for _, said, mesh in meshes.values():
+        described.add_object(
+            mesh.name, described.append_mesh(mesh.vertices, mesh.faces, said, pictures)
+        )
+    further = pictures.described()
+    yield from container(described.text(further), described.blocks)
+
+
+def _said(mesh: RawMesh, color: tuple[float, ...] | None) -> Attributes:
+    said = Attributes(mesh.faces) if mesh.attributes is None else mesh.attributes
+    held = kept(said, mesh.vertices)
+    if color is None or {"color", "material"}.intersection(held.names):
+        return held
+    names = np.full(len(mesh.faces), _name_of(color))
+    return replace(held, face={"material": names}, materials={_name_of(color): Material(color)})
+
+
+def _name_of(color: tuple[float, ...]) -> str:
+    """Return what the material of a colour is called."""
+    return "#" + bytes(round(value * 255) for value in color).hex()

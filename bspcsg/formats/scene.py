@@ -1,0 +1,64 @@
+"""`SceneNode`: what files say of things in things, before anything is made of it."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._types import FloatArray
+from .raw import RawMesh
+
+
+@dataclass(frozen=True, eq=False)
+class SceneNode:
+    """A named thing in its place, with a mesh or with things in it.
+
+    Parameters
+    ----------
+    name : str
+    matrix : (4, 4) float64
+        From this node to the one around it, for column vectors; millimetres, z upwards.
+    mesh : RawMesh or None
+        Instances have the same object.
+    color : tuple of float or None
+    children : tuple of SceneNode
+    """
+
+    name: str
+    matrix: FloatArray
+    mesh: RawMesh | None = None
+    color: tuple[float, ...] | None = None
+    children: "tuple[SceneNode, ...]" = ()
+
+    def walk(self) -> "Iterator[SceneNode]":
+        """Yield this node and all in it, parents first."""
+        waiting = [self]
+        while waiting:
+            node = waiting.pop()
+            yield node
+            waiting.extend(reversed(node.children))
+
+
+def are_alike(one: SceneNode, other: SceneNode) -> bool:
+    """Whether two trees have the same names, places, colours and corners, and share alike."""
+    pairs = list(zip(one.walk(), other.walk(), strict=False))
+    if len(pairs) != sum(1 for _ in one.walk()) or len(pairs) != sum(1 for _ in other.walk()):
+        return False
+    shared: dict[tuple[int, tuple[float, ...] | None], int] = {}
+    for a, b in pairs:
+        same = a.name == b.name and len(a.children) == len(b.children) and a.color == b.color
+        if not same or not np.array_equal(a.matrix, b.matrix):
+            return False
+        if (a.mesh is None) != (b.mesh is None):
+            return False
+        if a.mesh is None or b.mesh is None:
+            continue
+        # What has two colours is two meshes in a file.
+        known = shared.setdefault((id(a.mesh), a.color), id(b.mesh))
+        if known != id(b.mesh) or not _same(a.mesh, b.mesh):
+            return False
+    return True
+
+
+def _same(one: RawMesh, other: RawMesh) -> bool:
+    return np.array_equal(one.vertices[one.faces], other.vertices[other.faces])

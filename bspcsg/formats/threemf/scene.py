@@ -1,0 +1,178 @@
+"""The tree of a 3MF's objects and components, in and out.
+
+A leaf whose name is not that of its mesh is an object of one component; its part number says so.
+"""
+
+import io
+import zipfile
+from collections.abc import Iterator
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...errors import FormatError
+from ..raw import RawMesh
+from ..scene import SceneNode
+from ..source import Source
+from .file import DAMAGES, Package
+from .part import MILLIMETRES, ModelPart, Object, PlacedObject
+from .properties import properties_of
+from .write import BEGIN, called, hex_of, mesh_object, packed
+
+#: The part number of an object that only gives its component another name.
+_INSTANCE = "bspcsg:instance"
+
+_IDENTITY = np.eye(4)
+
+
+def read(source: Source) -> SceneNode:
+    """Read the build items as a tree, in millimetres.
+
+    Raises
+    ------
+    FormatError
+        As for a mesh.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
+            package = Package(source, archive)
+            return _Reading(package, package.root()).tree()
+    except FormatError:
+        raise
+    except DAMAGES as error:
+        message = f"the archive is damaged or cut off: {error}."
+        raise source.error(message, "truncated") from error
+
+
+class _Reading:
+    """The objects of one package; one that is placed several times has one mesh."""
+
+    def __init__(self, package: Package, root: str) -> None:
+        self._package = package
+        self._root = root
+        self._meshes: dict[tuple[str, str], RawMesh] = {}
+
+    def tree(self) -> SceneNode:
+        part = self._package.part(self._root)
+        # This also refuses what is too deep or too often there.
+        self._package.placed(self._root, part.items)
+        found = tuple(self._node(self._root, item) for item in part.items)
+        scale = MILLIMETRES[part.unit]
+        if len(found) == 1 and scale == 1:
+            return found[0]
+        matrix = np.diag([scale, scale, scale, 1.0])
+        return SceneNode("", matrix, children=tuple(one for one in found))
+
+    def _node(self, here: str, placed: PlacedObject) -> SceneNode:
+        path = placed.path or here
+        part = self._package.part(path)
+        told = part.objects[placed.item]
+        matrix = _IDENTITY.copy()
+        matrix[:3] = placed.transform.T
+        if told.triangles:
+            mesh = self._mesh(path, part, placed.item)
+            return SceneNode(told.name, matrix, mesh, _color(part, told))
+        children = tuple(self._node(path, one) for one in told.components)
+        if told.part_number == _INSTANCE and len(children) == 1:
+            return SceneNode(told.name, matrix, children[0].mesh, children[0].color)
+        return SceneNode(told.name, matrix, None, None, children)
+
+    def _mesh(self, path: str, part: ModelPart, item: str) -> RawMesh:
+        if (path, item) not in self._meshes:
+            told = part.objects[item]
+            vertices, faces = told.arrays()
+            plain = _color(part, told) is not None
+            said = None if plain else properties_of(part, told, faces)
+            mesh = RawMesh(vertices, faces, told.name, unit="mm", attributes=said)
+            self._meshes[path, item] = mesh
+        return self._meshes[path, item]
+
+
+def _color(part: ModelPart, told: Object) -> tuple[float, ...] | None:
+    """Return the colour that an object has as a whole."""
+    if told.usual is None or told.properties or told.usual[0] not in part.bases:
+        return None
+    group = part.bases[told.usual[0]]
+    if not 0 <= told.usual[1] < len(group):
+        return None
+    return tuple(value / 255 for value in group[told.usual[1]][1])
+
+
+def encode(root: SceneNode) -> Iterator[bytes]:
+    """Yield the package of a tree; what is at several nodes is there once."""
+    yield packed(iter([*_model(root)]))
+
+
+def _model(root: SceneNode) -> Iterator[str]:
+    writing = _Writing(root)
+    top = writing.object_of(root)
+    yield BEGIN
+    yield "<resources>\n"
+    yield from writing.lines
+    yield f'</resources>\n<build>\n<item objectid="{top}"{_transform(root.matrix)}/>\n</build>\n'
+    yield "</model>\n"
+
+
+class _Writing:
+    """The objects of a package, each after those that it names."""
+
+    def __init__(self, root: SceneNode) -> None:
+        self.lines: list[str] = []
+        self._numbers: dict[tuple[int, tuple[float, ...] | None], tuple[int, str]] = {}
+        self._next = 1
+        self._colors: dict[tuple[float, ...], int] = {}
+        for node in root.walk():
+            if node.color is not None:
+                self._colors.setdefault(node.color, len(self._colors))
+        if self._colors:
+            self._group = self._free()
+            self.lines.append(f'<basematerials id="{self._group}">\n')
+            self.lines += [
+                f'<base name="{hex_of(color)}" displaycolor="{hex_of(color)}"/>\n'
+                for color in self._colors
+            ]
+            self.lines.append("</basematerials>\n")
+
+    def _free(self) -> int:
+        self._next += 1
+        return self._next - 1
+
+    def object_of(self, node: SceneNode) -> int:
+        """Write a node and all in it, and return the number of its object."""
+        if node.mesh is not None:
+            return self._leaf(node, node.mesh)
+        inner = [(self.object_of(child), child.matrix) for child in node.children]
+        return self._components(node.name, inner, "")
+
+    def _leaf(self, node: SceneNode, mesh: RawMesh) -> int:
+        key = (id(mesh), node.color)
+        if key not in self._numbers:
+            number = self._free()
+            self._numbers[key] = (number, node.name)
+            painted = ""
+            if node.color is not None:
+                painted = f' pid="{self._group}" pindex="{self._colors[node.color]}"'
+            self.lines += mesh_object(number, node.name, mesh.vertices, mesh.faces, painted)
+        number, name = self._numbers[key]
+        if name == node.name:
+            return number
+        return self._components(node.name, [(number, _IDENTITY)], _INSTANCE)
+
+    def _components(self, name: str, inner: list[tuple[int, FloatArray]], mark: str) -> int:
+        number = self._free()
+        named = f" name={quoteattr(called(name))}" if name else ""
+        marked = f' partnumber="{mark}"' if mark else ""
+        self.lines.append(f'<object id="{number}" type="model"{named}{marked}><components>\n')
+        self.lines += [
+            f'<component objectid="{one}"{_transform(matrix)}/>\n' for one, matrix in inner
+        ]
+        self.lines.append("</components></object>\n")
+        return number
+
+
+def _transform(matrix: FloatArray) -> str:
+    if (matrix == _IDENTITY).all():
+        return ""
+    words = " ".join(repr(value) for value in matrix[:3].T.ravel().tolist())
+    return f' transform="{words}"'

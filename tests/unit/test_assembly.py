@@ -1,0 +1,259 @@
+"""Assemblies: trees of named, coloured, placed solids."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+
+RED, GREY = (1.0, 0.0, 0.0, 1.0), (0.2, 0.2, 0.2, 1.0)
+
+
+def car() -> b.Assembly:
+    wheel = b.Assembly("wheel", b.cylinder(h=2, r=5, segments=16), color=GREY, density=2)
+    axle = b.Assembly("axle", [wheel, wheel.translate(0, 0, 20)])
+    body = b.Assembly("body", b.box((10, 10, 10)).translate(0, 0, 6), color=RED)
+    return b.Assembly("car", [axle, axle.translate(40, 0, 0), body], density=1)
+
+
+def test_parts_have_paths_places_and_what_they_inherit() -> None:
+    made = car()
+    assert [part.path for part in made] == [
+        "car/axle/wheel",
+        "car/axle/wheel (2)",
+        "car/axle/wheel (3)",
+        "car/axle/wheel (4)",
+        "car/body",
+    ]
+    assert len({id(part.shape) for part in made.parts[:4]}) == 1
+    assert made["car/axle/wheel (4)"].solid.bounds is not None
+    assert np.allclose(made["car/axle/wheel (4)"].solid.centroid, [40, 0, 21])
+    assert made["body"].color == RED and made["body"].density == 1
+    assert made["car/axle/wheel"].density == 2
+    with pytest.raises(KeyError, match="wheel"):
+        made["wheel"]
+    assert repr(made) == "Assembly('car', 5 parts)"
+    assert len(made) == 5
+    assert made.bounds is not None
+    assert np.allclose(made.bounds, [[-5, -5, 0], [45, 10, 22]])
+    assert b.Assembly("none").bounds is None
+
+
+@pytest.mark.parametrize(
+    "move",
+    [
+        lambda x: x.translate(1, 2, 3),
+        lambda x: x.rotate(30, (1, 2, 3)),
+        lambda x: x.rotate((10, 20, 30)),
+        lambda x: x.scale(2),
+        lambda x: x.mirror((1, 0, 0)),
+        lambda x: x.transform(np.diag([1, 2, 3, 1])),
+    ],
+)
+def test_transforms_are_those_of_solids(move: object) -> None:
+    assert callable(move)
+    made = move(car()).rotate(15)
+    for part, old in zip(made, car(), strict=True):
+        assert part.solid == move(old.solid).rotate(15)
+        assert part.shape.volume == old.shape.volume
+
+
+def test_a_tool_cuts_part_by_part_and_leaves_the_others_shared() -> None:
+    made = car()
+    cut = made - b.box((100, 100, 4)).translate(-50, -50, -3)
+    for part, old in zip(cut, made, strict=True):
+        assert part.path == old.path and part.color == old.color
+    assert cut.parts[0].solid.volume == pytest.approx(made.parts[0].solid.volume / 2)
+    assert cut.parts[1].shape is made.parts[1].shape
+    assert cut["body"].solid == made["body"].solid
+    kept = made & b.box((100, 100, 4)).translate(-50, -50, -3)
+    assert math.isclose(
+        sum(part.solid.volume for part in kept) + sum(part.solid.volume for part in cut),
+        made.bill().volume,
+    )
+    again = made - made
+    assert all(part.solid.is_empty for part in again)
+    assert (b.Assembly("x", [b.cube(1)]) - (np.zeros((0, 3)), [])).parts[0].solid.volume == 1
+
+
+def test_clashes_tell_who_how_much_and_where() -> None:
+    made = b.Assembly(
+        "box",
+        [
+            b.Assembly("a", b.cube(2)),
+            b.Assembly("b", b.cube(2).translate(1, 0, 0)),
+            b.Assembly("c", b.cube(2).translate(3, 0, 0)),
+            b.Assembly("d", b.cube(2).translate(5.25, 0, 0)),
+            b.Assembly("nothing", b.Solid.empty()),
+        ],
+    )
+    (only,) = made.clashes()
+    assert (only.first, only.second, only.volume, only.gap) == ("box/a", "box/b", 4.0, 0.0)
+    assert only.place.tolist() == [1.5, 1, 1]
+    assert "volume 4" in repr(only)
+    near = made.clashes(clearance=0.5)
+    assert [(one.first[-1], one.second[-1], one.gap) for one in near] == [
+        ("a", "b", 0.0),
+        ("b", "c", 0.0),
+        ("c", "d", 0.25),
+    ]
+    assert near[2].place[0] == 5.125
+    with pytest.raises(b.InvalidParameterError):
+        made.clashes(-1)
+
+
+def test_the_bill_counts_shapes_and_weighs_them() -> None:
+    bill = car().bill()
+    wheel = b.cylinder(h=2, r=5, segments=16).volume
+    assert [(row.name, row.count) for row in bill.rows] == [("wheel", 4), ("body", 1)]
+    assert bill.rows[0].mass == pytest.approx(8 * wheel)
+    assert bill.mass == pytest.approx(8 * wheel + 1000)
+    assert bill.volume == pytest.approx(4 * wheel + 1000)
+    assert str(bill).splitlines()[-1].split()[:2] == ["all", "5"]
+    assert bill.to_dict()["rows"][1]["volume"] == 1000
+    double = b.Assembly("x", [b.cube(1), b.Assembly("y", b.cube(1)).scale(2)]).bill()
+    assert [row.volume for row in double.rows] == [1, 8]
+    assert double.rows[0].mass is None and "–" in str(double)
+
+
+def test_the_union_says_of_each_face_which_part_it_is_of() -> None:
+    mesh = car().to_solid().to_mesh()
+    told = mesh.face_attributes["part"]
+    assert set(told.tolist()) == {part.path for part in car()}
+    red = mesh.face_attributes["color"][told == "car/body"]
+    assert (red == [255, 0, 0, 255]).all()
+    assert b.Assembly().to_solid().is_empty
+    assert b.Solid.from_mesh(car()).volume == car().to_solid().volume
+
+
+@pytest.mark.parametrize("suffix", [".3mf", ".glb"])
+def test_trees_names_colours_and_instances_survive_files(tmp_path: Path, suffix: str) -> None:
+    wheel = b.cylinder(h=2, r=5, segments=4)
+    made = b.Assembly(
+        "root & all",
+        [
+            b.Assembly("left", wheel, color=GREY).rotate(30, (1, 2, 3)),
+            b.Assembly("right", wheel, color=GREY).translate(0.1, 0.2, 0.3).mirror((1, 0, 0)),
+            b.Assembly("plain", wheel).scale((1, 2, 3)),
+            b.Assembly("group", [b.Assembly("inner", b.cube(1), color=RED)]).rotate(90),
+        ],
+    ).translate(1, 2, 3)
+    assert made.save(tmp_path / f"x{suffix}") == ()
+    again = b.Assembly.load(tmp_path / f"x{suffix}")
+    assert [part.path for part in again] == [part.path for part in made]
+    assert [part.color for part in again] == [part.color for part in made]
+    assert again.parts[0].shape is again.parts[1].shape
+    for part, old in zip(again, made, strict=True):
+        assert part.shape == old.shape
+        assert part.solid.volume == pytest.approx(old.solid.volume)
+        assert part.solid.bounds is not None and old.solid.bounds is not None
+        assert np.allclose(part.solid.bounds, old.solid.bounds)
+    again.save(tmp_path / f"y{suffix}")
+    once_more = b.Assembly.load(tmp_path / f"y{suffix}")
+    assert [part.path for part in once_more] == [part.path for part in made]
+    # glTF names meshes, too: those of instances after the first of them.
+    data = [(tmp_path / f"{name}{suffix}").read_bytes() for name in "xy"]
+    assert suffix == ".glb" or data[0] == data[1]
+    whole = b.load(tmp_path / f"x{suffix}")
+    assert whole.volume == pytest.approx(made.to_solid().volume)
+
+
+def test_instances_take_the_room_of_one(tmp_path: Path) -> None:
+    ball = b.Assembly("ball", b.sphere(1, segments=64))
+    many = b.Assembly("many", [ball.translate(3 * k, 0, 0) for k in range(50)])
+    for suffix in (".glb", ".3mf"):
+        many.save(tmp_path / f"many{suffix}")
+        b.Assembly("one", [ball]).save(tmp_path / f"one{suffix}")
+        sizes = [(tmp_path / f"{name}{suffix}").stat().st_size for name in ("many", "one")]
+        assert sizes[0] < 1.5 * sizes[1]
+
+
+def test_textures_travel_in_glb_and_are_named_in_3mf(tmp_path: Path) -> None:
+    mesh = b.cube(1).to_mesh()
+    solid = b.Solid(
+        mesh.vertices,
+        mesh.faces,
+        face_attributes={"material": np.full(12, "wood")},
+        corner_attributes={"uv": np.zeros((12, 3, 2))},
+        materials={"wood": b.Material((0.5, 0.25, 0))},
+    )
+    made = b.Assembly("desk", [b.Assembly("top", solid), b.Assembly("leg", b.cube(1))])
+    made.save(tmp_path / "x.glb")
+    told = b.Assembly.load(tmp_path / "x.glb")["top"].solid.to_mesh()
+    assert told.attributes.at_corners("uv").shape == (12, 3, 2)
+    assert told.materials == {"wood": b.Material((0.5, 0.25, 0))}
+    (finding,) = made.save(tmp_path / "x.3mf")
+    assert finding.code == "attributes_left_out"
+
+
+def test_objects_of_obj_are_parts_in_their_places(tmp_path: Path) -> None:
+    car().save(tmp_path / "x.obj")
+    again = b.Assembly.load(tmp_path / "x.obj")
+    assert [part.name for part in again] == [part.path for part in car()]
+    for part, old in zip(again, car(), strict=True):
+        assert part.solid == old.solid
+    told = again.parts[4].solid.to_mesh()
+    assert [one.color for one in told.materials.values()] == [RED]
+    b.cube(2).save(tmp_path / "x.stl")
+    assert b.Assembly.load(tmp_path / "x.stl").to_solid().volume == 8
+
+
+def test_what_cannot_be_written_or_read_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(b.FormatError) as caught:
+        car().save(tmp_path / "x.stl")
+    assert caught.value.code == "unknown_format"
+    with pytest.raises(b.FormatError):
+        b.Assembly.load(tmp_path / "none.3mf")
+    for suffix in (".3mf", ".glb"):
+        (tmp_path / f"bad{suffix}").write_bytes(b"nonsense")
+        with pytest.raises(b.FormatError):
+            b.Assembly.load(tmp_path / f"bad{suffix}")
+
+
+def test_bad_assemblies_are_refused() -> None:
+    deep = b.Assembly("x", b.cube(1))
+    for _ in range(63):
+        deep = b.Assembly("x", [deep])
+    with pytest.raises(b.InvalidParameterError, match="64"):
+        b.Assembly("x", [deep])
+    with pytest.raises(b.InvalidParameterError):
+        b.Assembly("x", density=-1)
+    with pytest.raises(b.InvalidMeshError):
+        b.Assembly("x", color=(1, 2, 3))
+    with pytest.raises(b.InvalidMeshError):
+        b.Assembly("x", [3])
+
+
+def test_tags_are_said_by_every_face() -> None:
+    part = b.cube(2).tagged(layer=1, who="me", color=np.array([1, 2, 3], np.uint8))
+    mesh = (part - b.cube(1).tagged(layer=2)).rotate(30).to_mesh()
+    assert set(mesh.face_attributes["layer"].tolist()) == {1, 2}
+    assert set(mesh.face_attributes["who"].tolist()) == {"me", ""}
+    assert part.volume == 8
+    again = part.tagged(who="you").to_mesh()
+    assert set(again.face_attributes["who"].tolist()) == {"you"}
+    assert again.face_attributes["color"].dtype == np.uint8
+    assert b.Solid.empty().tagged(x=1).is_empty
+    assert (b.half_space((0, 0, 1), 1).tagged(x=1) & b.cube(2)).volume == 4
+
+
+def test_colours_of_scripts_are_those_of_parts(tmp_path: Path) -> None:
+    (tmp_path / "x.csg").write_text(
+        "group() { color([1, 0, 0, 1]) { cube(size = 2); color([0, 1, 0, 1]) cylinder(h = 1,"
+        " r1 = 1, r2 = 1, $fn = 4); } multmatrix([[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0],"
+        " [0, 0, 0, 1]]) { union() { color([0, 0, 1, 0.5]) sphere(r = 1, $fn = 8); } }"
+        " difference() { cube(size = 3); color([0, 1, 0, 1]) cube(size = 1); } %cube(size = 9); }"
+    )
+    made = b.Assembly.load(tmp_path / "x.csg")
+    told = [(part.name, part.color) for part in made]
+    blue = (0.0, 0.0, 1.0, 0.5)
+    assert told == [("cube", RED), ("cylinder", RED), ("sphere", blue), ("difference", None)]
+    assert made["sphere"].solid.centroid[0] == pytest.approx(5)
+    assert made.to_solid() == b.load(tmp_path / "x.csg")
+    (finding,) = made.save(tmp_path / "y.csg")
+    assert finding.code == "names_left_out"
+    again = b.Assembly.load(tmp_path / "y.csg")
+    assert [part.color for part in again] == [part.color for part in made]
+    assert [part.solid.volume for part in again] == [part.solid.volume for part in made]
