@@ -94,7 +94,15 @@ def evaluate(
     allowed = tuple(Path(path).resolve() for path in allow_paths)
     name = tree.name if tree.intermediate is None else tree.intermediate.name
     invalid = "warn" if lenient and on_invalid == "error" else on_invalid
-    run = Evaluation(name, tree.folder, allowed, polish, on_invalid=invalid, lenient=lenient)
+    run = Evaluation(
+        name,
+        tree.folder,
+        allowed,
+        polish,
+        on_invalid=invalid,
+        lenient=lenient,
+        explained=lambda message: tree.explained(FormatError(message)).message,
+    )
     try:
         result, done = _polished(tree, run)
     except BspcsgError as error:

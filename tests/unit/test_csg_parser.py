@@ -251,9 +251,9 @@ def test_scad_goes_through_openscad(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 @pytest.mark.parametrize(
     ("source", "made", "place", "own"),
     [
-        ("// text(\n\nt = 1;\ntext(t);", "group() {\n  text(t = 1);\n}", "2:3", 4),
-        ("text(1);\ntext(2);", "group() {\n  text(t = 1);\n}", "2:3", None),
-        ("use <ball.scad>\ntext(1);", "group() {\n  text(t = 1);\n}", "2:3", None),
+        ("// roof(\n\nt = 1;\nroof(t);", "group() {\n  roof(t = 1);\n}", "2:3", 4),
+        ("roof(1);\nroof(2);", "group() {\n  roof(t = 1);\n}", "2:3", None),
+        ("use <ball.scad>\nroof(1);", "group() {\n  roof(t = 1);\n}", "2:3", None),
         ("cube(1); wrap();\n/*\nwarp()*/ warp();", "cube(1);\n  warp();", "2:3", 3),
         ("cube(1);", "cube(1);\n  cube(1;", "2:9", None),
     ],
@@ -276,3 +276,16 @@ def test_errors_of_scad_quote_the_line_that_they_name(
     assert first.startswith(f"{path}, as openscad's .csg:{place}: ")
     assert quoted == f"  line 2 of the .csg: {made.splitlines()[1].strip()}"
     assert rest == ([] if own is None else [f"  from {path}:{own}"])
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a POSIX shell")
+def test_warnings_of_scad_name_its_lines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "part.scad"
+    path.write_text("r = 1 / 0;\ncube(1);\nsphere(r);\n")
+    stand_in(tmp_path, 'printf "cube(1);\\nsphere(r = inf);\\n" > "$2"', monkeypatch)
+    with pytest.warns(csg.CsgWarning) as told:
+        assert csg.load(path).volume == 1
+    first, quoted, own = str(told[0].message).splitlines()
+    assert first.startswith(f"{path}, as openscad's .csg:2:1: sphere(): r must be a number")
+    assert first.endswith("It is left out.") and quoted == "  line 2 of the .csg: sphere(r = inf);"
+    assert own == f"  from {path}:3"

@@ -43,6 +43,8 @@ class Evaluation:
         Whether polyhedra and imported meshes that are not closed are errors, left out, or closed.
     lenient : bool
         Whether nodes that cannot be made are left out.
+    explained : callable
+        Adds to a message that begins with a place what is known about that.
     united : dict
         Unions of plane figures by their `id`, each with the figures that it is made of.
     """
@@ -53,6 +55,7 @@ class Evaluation:
     polish: bool = False
     on_invalid: OnInvalid = "error"
     lenient: bool = False
+    explained: Callable[[str], str] = str
     united: dict[int, tuple[Region, list[Region]]] = field(default_factory=dict)
 
     def arguments(self, node: Node, order: tuple[str, ...] = ()) -> Arguments:
@@ -70,7 +73,7 @@ class Evaluation:
 
     def tell(self, message: str) -> None:
         """Tell the caller what was left out, by a message that names its place."""
-        warnings.warn(message, CsgWarning, stacklevel=2)
+        warnings.warn(self.explained(message), CsgWarning, stacklevel=2)
 
     def closed_solid(self, node: Node, vertices: Any, faces: Any) -> Solid | None:
         """Return the solid of a mesh from outside, whichever way round it is oriented.

@@ -30,7 +30,7 @@ class Writing(NamedTuple):
     script: str = ""
 
 
-class Placed(NamedTuple):
+class PlacedGlyph(NamedTuple):
     """A glyph of a line of text, in units of its font's design.
 
     Parameters
@@ -49,7 +49,7 @@ class Placed(NamedTuple):
     advance: FloatArray
 
 
-def shaped(font: uharfbuzz.Font, text: str, writing: Writing) -> tuple[list[Placed], bool]:
+def shaped(font: uharfbuzz.Font, text: str, writing: Writing) -> tuple[list[PlacedGlyph], bool]:
     """Return the glyphs of a line of text, and whether it runs along x."""
     buffer = uharfbuzz.Buffer()
     buffer.add_str(text)
@@ -63,7 +63,7 @@ def shaped(font: uharfbuzz.Font, text: str, writing: Writing) -> tuple[list[Plac
     uharfbuzz.shape(font, buffer)
     pairs = zip(buffer.glyph_infos, buffer.glyph_positions or (), strict=True)
     placed = [
-        Placed(
+        PlacedGlyph(
             info.codepoint,
             info.cluster,
             np.array([at.x_offset, at.y_offset], dtype=np.float64),

@@ -14,7 +14,7 @@ from ....bsp import Region
 from ....errors import InvalidParameterError, invalid_parameter
 from ....parameters import positive, refuse_many_corners, shown, sides_around
 from .fonts import FAMILY, FontFile, font_file, opened
-from .shaping import Glyph, Placed, Writing, shaped
+from .shaping import Glyph, PlacedGlyph, Writing, shaped
 
 HorizontalAlignment: TypeAlias = Literal["left", "center", "right"]
 VerticalAlignment: TypeAlias = Literal["baseline", "bottom", "center", "top"]
@@ -174,7 +174,7 @@ def lettered(string: str, file: FontFile, look: Lettering) -> tuple[Region, list
     return Region.compose(parts), list(dict.fromkeys(missing))
 
 
-def _places(placed: Sequence[Placed], unit: float, spacing: float) -> list[FloatArray]:
+def _places(placed: Sequence[PlacedGlyph], unit: float, spacing: float) -> list[FloatArray]:
     """Return where each glyph is if the pen begins at the origin, and where it ends."""
     pen, places = np.zeros(2), []
     for one in placed:
