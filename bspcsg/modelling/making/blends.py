@@ -15,9 +15,10 @@ import numpy as np
 from ..._types import FloatArray, IndexArray, Scalar
 from ...errors import LimitError, invalid_parameter
 from ...geometry.polygon import triangulate_face
-from ...operations.setops import union
+from ...operations.setops import intersection, union
 from ...parameters import positive, refuse_many_corners, sides_around
-from ...solid.solid import Solid
+from ...solid.leaf import TreeLeaf
+from ...solid.solid import Solid, from_leaf
 from .edges import EdgeSelection, selection
 from .patches import arc_directions, patch_directions, patch_faces
 from .planes import Planes
@@ -87,10 +88,7 @@ class _Blend:
         parts += [self.planes.inside(face, sign) for face in self.skeleton.sides[edge].tolist()]
         for place in (0, 1):
             parts += self._ends(edge, place)
-        result = parts[0]
-        for part in parts[1:]:
-            result = result & part
-        return result
+        return _evaluated(intersection(parts))
 
     def _ends(self, edge: int, place: int) -> list[Solid]:
         """Return what the cutter is cut off by at one end of an edge."""
@@ -170,9 +168,8 @@ class _Blend:
         ]
         triangles = np.concatenate([patch[:, ::-1], patch + count, *sides])
         shell = Solid(np.concatenate([inner, outer]), triangles, pitch=self.pitch)
-        for face in faces:
-            shell = shell & self.planes.inside(face, sign)
-        return shell
+        planes = [self.planes.inside(face, sign) for face in faces]
+        return _evaluated(intersection(shell, planes))
 
     def corner_faces(self, vertex: int) -> list[int]:
         """Return the three faces at a vertex, counter-clockwise as the ball is seen."""
@@ -250,6 +247,14 @@ class _Blend:
         )
         length = float(np.linalg.norm(rings[1] - rings[0], axis=1).min())
         return math.ceil(2 * wide / (sines.min() if len(sines) else 1) / length) + 1
+
+
+def _evaluated(cutter: Solid) -> Solid:
+    """Return a cutter as a body of its own.
+
+    Else all prisms and planes, which reach far beyond it, would meet in one expression.
+    """
+    return from_leaf(TreeLeaf(cutter.tree))
 
 
 def _rim(steps: int) -> IndexArray:
