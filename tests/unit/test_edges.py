@@ -117,6 +117,21 @@ def _like(edges: b.EdgeSelection, original: b.Solid, turn: Any) -> b.EdgeSelecti
     return edges.where(near.classify(edges.middle) > 0)
 
 
+@pytest.mark.parametrize("turn", [TURNS[0], TURNS[2]])
+def test_cutters_do_not_reach_past_short_neighbours(turn: Any) -> None:
+    # The rim of a hole of 24 sides, each shorter than what its chamfer's mitres reach.
+    bore = b.cylinder(9, 3, segments=24, center=True)
+    plate = (b.box(20, 20, 5, center=True) - bore).rotate(turn)
+    side = 6 * math.sin(math.pi / 24)
+    rims = plate.edges().where(lambda e: np.abs(e.length - side) < 1e-6)
+    assert len(rims) == 48
+    low, high = (12 * r * r * math.sin(math.pi / 12) for r in (3, 3 + 0.5 / math.cos(math.pi / 24)))
+    ring = 0.5 / 3 * (low + high + math.sqrt(low * high)) - 0.5 * low
+    part = plate.chamfer(rims, 0.5)
+    assert plate.volume - part.volume == pytest.approx(2 * ring, abs=1e-6)
+    assert part.genus == 1 and part.to_mesh().certificate.ok
+
+
 def test_concave_edges_are_filled() -> None:
     inner = STEP.edges().where(lambda e: ~e.is_convex)
     filled = STEP.chamfer(inner, 0.5)

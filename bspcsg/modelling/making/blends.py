@@ -17,6 +17,7 @@ from ...errors import LimitError, invalid_parameter
 from ...geometry.polygon import triangulate_face
 from ...operations.setops import intersection, union
 from ...parameters import positive, refuse_many_corners, sides_around
+from ...shapes.primitives import half_space
 from ...solid.leaf import TreeLeaf
 from ...solid.solid import Solid, from_leaf
 from .edges import EdgeSelection, selection
@@ -32,6 +33,14 @@ _MOST_EDGES = 10_000
 #: The least sine between an edge and a plane at its end: the cutter must reach a hundred times as
 #: far beyond the end as it is wide.
 _FLATTEST = 0.01
+
+#: Two edges of a corner are mirror images if their cosines to the third differ by less than this:
+#: the new surfaces then meet within a millionth of their size of the mirror.
+_SYMMETRICAL = 1e-6
+
+#: How far cutters overlap behind the mirror between them, as a share of their size, so that no gap
+#: is left.
+_OVERLAP = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +96,7 @@ class _Blend:
         parts = [self.prism(edge)]
         parts += [self.planes.inside(face, sign) for face in self.skeleton.sides[edge].tolist()]
         for place in (0, 1):
-            parts += self._ends(edge, place)
+            parts += [*self._ends(edge, place), *self._mitres(edge, place)]
         return _evaluated(intersection(parts))
 
     def _ends(self, edge: int, place: int) -> list[Solid]:
@@ -107,6 +116,34 @@ class _Blend:
             if other != edge and other in self.chosen and self.sign(other) == sign
         ]
         return [outside | self.prism(partners[0]) if partners else outside]
+
+    def _mitres(self, edge: int, place: int) -> list[Solid]:
+        """Return half-spaces of what an edge's own cutter has to take off at a corner of three.
+
+        Where the corner is symmetrical, a neighbour takes off all beyond its mirror. Without this
+        cutters would reach past short neighbours.
+        """
+        vertex = int(self.skeleton.ends[edge, place])
+        around = self.skeleton.edges_at(vertex)
+        if len(around) != 3:
+            return []
+        away = {other: self._away(other, vertex) for other in around}
+        found = []
+        for other in around:
+            if other == edge or other not in self.chosen or self.sign(other) != self.sign(edge):
+                continue
+            (third,) = set(around) - {edge, other}
+            normal = away[other] - away[edge]
+            if abs(float(normal @ away[third])) < _SYMMETRICAL:
+                offset = float(normal @ self.skeleton.vertices[vertex])
+                beyond = _OVERLAP * self.profile.size * float(np.linalg.norm(normal))
+                found.append(half_space(normal, offset + beyond))
+        return found
+
+    def _away(self, edge: int, vertex: int) -> FloatArray:
+        """Return the unit vector along an edge away from one of its ends."""
+        along: FloatArray = self.skeleton.directions[edge]
+        return along if self.skeleton.ends[edge, 0] == vertex else -along
 
     def refuse_corners(self) -> None:
         """Raise an error where chosen edges meet in a way that has no cutter."""
