@@ -58,8 +58,8 @@ def load(path: str | os.PathLike[str], **options: Any) -> Solid:
         unit they were written in. What `save` wrote of the empty set is the empty set again; any
         other file without faces is refused.
     **options
-        For meshes as for `Solid`: ``pitch``, ``trusted``, ``winding``; for scripts as for
-        `bspcsg.csg.load`.
+        For meshes as for `Solid`: ``pitch``, ``trusted``, ``winding``, and ``attributes=False`` to
+        leave colours and the like in the file; for scripts as for `bspcsg.csg.load`.
 
     Raises
     ------

@@ -8,7 +8,9 @@ from ..solid.solid import Solid, solid_with
 from .raw import RawMesh
 
 
-def solid_of(raw: RawMesh, path: str | os.PathLike[str], **options: Any) -> Solid:
+def solid_of(
+    raw: RawMesh, path: str | os.PathLike[str], *, attributes: bool = True, **options: Any
+) -> Solid:
     """Return the solid of what was read from a file; errors name the file.
 
     A file that `save` wrote of the empty set is the empty set again; any other without faces is
@@ -17,7 +19,8 @@ def solid_of(raw: RawMesh, path: str | os.PathLike[str], **options: Any) -> Soli
     if raw.is_empty_set:
         return Solid.empty()
     try:
-        return solid_with(raw.vertices, raw.faces, raw.attributes, **options)
+        said = raw.attributes if attributes else None
+        return solid_with(raw.vertices, raw.faces, said, **options)
     except BspcsgError as error:
         message = f"{os.fspath(path)}: {error.message}"
         raise type(error)(message, error.code, error.where) from error

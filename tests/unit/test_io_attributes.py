@@ -139,6 +139,29 @@ def test_a_result_of_files_keeps_what_they_said(tmp_path: Path, suffix: str) -> 
     assert told == HELD[suffix] - lost
 
 
+def test_attributes_can_be_left_in_the_file(tmp_path: Path) -> None:
+    part().save(tmp_path / "x.ply")
+    assert b.load(tmp_path / "x.ply", attributes=False).to_mesh().carried is None
+
+
+@pytest.mark.parametrize("wrong", [-1, 7, "x", None])
+def test_a_material_that_does_not_exist_is_refused(tmp_path: Path, wrong: Any) -> None:
+    import json
+
+    part().save(tmp_path / "x.glb")
+    data = (tmp_path / "x.glb").read_bytes()
+    size = int.from_bytes(data[12:16], "little")
+    tree = json.loads(data[20 : 20 + size])
+    tree["meshes"][0]["primitives"][0]["material"] = wrong
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    rest = data[20 + size :]
+    head = b"glTF" + (2).to_bytes(4, "little") + (20 + len(text) + len(rest)).to_bytes(4, "little")
+    (tmp_path / "y.glb").write_bytes(head + len(text).to_bytes(4, "little") + b"JSON" + text + rest)
+    with pytest.raises(b.FormatError):
+        read(tmp_path / "y.glb")
+
+
 def test_objects_in_one_file_keep_their_own(tmp_path: Path) -> None:
     mesh = part().to_mesh()
     both = RawMesh(

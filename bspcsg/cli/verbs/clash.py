@@ -1,8 +1,5 @@
 """The verb that looks for parts in each other's way: clash."""
 
-import math
-from dataclasses import dataclass
-from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +13,8 @@ from ..output import Output, counted
 from ..tables import table_text
 
 if TYPE_CHECKING:
-    from ...solid.solid import Solid
+    from ..._types import FloatArray
+    from ...assembly.clashes import Clash
 
 _EPILOG = """\b
 Examples:
@@ -42,6 +40,7 @@ def clash(files: tuple[Path, ...], clearance: float | None, **given: Any) -> int
     It is decided exactly; files that only touch do not clash. Exits with 1 if a pair does, or if it
     is nearer than the clearance.
     """
+    from ...assembly.tree import Assembly
     from ...parameters import set_threads
 
     if len(files) < 2:
@@ -50,82 +49,31 @@ def clash(files: tuple[Path, ...], clearance: float | None, **given: Any) -> int
     out = Output.of(given)
     inputs = Inputs.of(out, given)
     inputs.refuse_early(files)
-    solids = [inputs.solid(path) for path in files]
-    found = _clashes([shown(path) for path in files], solids, clearance or 0.0)
-    values = [one.values() for one in found]
+    parts = [Assembly(shown(path), inputs.solid(path)) for path in files]
+    found = Assembly("", parts).clashes(clearance or 0.0)
+    values = [_values(one) for one in found]
     named = {"files": [str(path) for path in files], "clearance": clearance or 0.0}
     out.result(_text(found, len(files)), {**named, "clashes": values})
     return output.FOUND if found else output.DONE
 
 
-@dataclass(frozen=True)
-class _Clash:
-    """Two files in each other's way.
-
-    Parameters
-    ----------
-    a, b : str
-    volume : float
-        What they have in common, in cubic model units.
-    gap : float
-        Their distance, 0 if they touch or overlap.
-    place : list of float
-        The middle of what they have in common, or of the gap.
-    """
-
-    a: str
-    b: str
-    volume: float
-    gap: float
-    place: list[float]
-
-    def values(self) -> dict[str, Any]:
-        """Return a part of the document."""
-        pair = {"files": [self.a, self.b], "volume": self.volume}
-        return {**pair, "gap": self.gap, "place": self.place}
+def _values(one: "Clash") -> dict[str, Any]:
+    """Return a part of the document."""
+    pair = {"files": [one.first, one.second], "volume": one.volume}
+    return {**pair, "gap": one.gap, "place": one.place.tolist()}
 
 
-def _clashes(names: list[str], solids: "list[Solid]", clearance: float) -> list[_Clash]:
-    boxes = [solid.bounds for solid in solids]
-    found = []
-    for i, j in combinations(range(len(solids)), 2):
-        low, high = boxes[i], boxes[j]
-        if low is None or high is None or _box_gap(low, high) > clearance:
-            continue
-        one = _clash_of(names[i], names[j], solids[i], solids[j], clearance)
-        found.extend([one] if one is not None else [])
-    return found
-
-
-def _clash_of(a: str, b: str, one: "Solid", other: "Solid", clearance: float) -> _Clash | None:
-    common_part = (one & other).normalized()
-    bounds = common_part.bounds
-    if bounds is not None:
-        return _Clash(a, b, common_part.volume, 0.0, bounds.mean(axis=0).tolist())
-    if not clearance or (gap := one.min_gap(other)) >= clearance:
-        return None
-    near, far = one.closest_points(other)
-    middle = (near + far) / 2
-    return _Clash(a, b, 0.0, gap, middle.tolist())
-
-
-def _box_gap(box: Any, other: Any) -> float:
-    """Return the distance of two boxes, each as lowest and highest corner."""
-    sides = zip(*box.tolist(), *other.tolist(), strict=True)
-    return math.hypot(*(max(low - end, begin - high, 0.0) for low, high, begin, end in sides))
-
-
-def _text(found: list[_Clash], count: int) -> str:
+def _text(found: "list[Clash]", count: int) -> str:
     pairs = counted(count * (count - 1) // 2, "pair")
     if not found:
         return f"{pairs} of files, none clashes."
     rows = [
-        (f"{one.a}, {one.b}", f"{one.volume:.6g}", f"{one.gap:.6g}", _spoken(one.place))
+        (f"{one.first}, {one.second}", f"{one.volume:.6g}", f"{one.gap:.6g}", _spoken(one.place))
         for one in found
     ]
     table = table_text(("files", "common volume", "gap", "near"), rows, ("common volume", "gap"))
     return f"{table}\n{pairs} of files, {len(found)} in each other's way."
 
 
-def _spoken(place: list[float]) -> str:
-    return "({:.6g}, {:.6g}, {:.6g})".format(*place)
+def _spoken(place: "FloatArray") -> str:
+    return "({:.6g}, {:.6g}, {:.6g})".format(*place.tolist())

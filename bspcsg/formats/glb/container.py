@@ -186,6 +186,8 @@ class _Claims:
         total = 0
         for primitive in self._entry("meshes", node["mesh"])["primitives"]:
             mode = primitive.get("mode", _TRIANGLES)
+            if "material" in primitive:
+                self._entry("materials", primitive["material"])
             for accessor in primitive["attributes"].values():
                 self._entry("accessors", accessor)
             if mode == _FAN:

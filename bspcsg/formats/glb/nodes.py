@@ -11,7 +11,7 @@ from ...attributes.attributes import Attributes
 from ...attributes.joining import MeshPart, concatenated
 from ..raw import compacted
 from .container import Container
-from .said import materials_of, read_columns
+from .said import Named, materials_of, read_columns
 
 _Triangles: TypeAlias = "tuple[SingleArray, IndexArray, Attributes | None]"
 
@@ -63,6 +63,7 @@ def shown(container: Container) -> tuple[list[Shown], int]:
     """
     tree = container.tree
     nodes = tree.get("nodes", [])
+    materials = materials_of(tree, container.data)
     meshes: dict[int, _Triangles] = {}
     found = []
     for number, matrix in _visited(tree, nodes):
@@ -71,7 +72,7 @@ def shown(container: Container) -> tuple[list[Shown], int]:
             continue
         mesh = tree["meshes"][node["mesh"]]
         if node["mesh"] not in meshes:
-            meshes[node["mesh"]] = triangles_of(container, mesh)
+            meshes[node["mesh"]] = triangles_of(container, mesh, materials)
         name = mesh.get("name") or node.get("name") or ""
         vertices, faces, said = meshes[node["mesh"]]
         found.append(Shown(str(name), vertices, faces, matrix, said))
@@ -123,13 +124,12 @@ def _rotation(quaternion: list[float]) -> FloatArray:
     )
 
 
-def triangles_of(container: Container, mesh: dict[str, Any]) -> _Triangles:
+def triangles_of(container: Container, mesh: dict[str, Any], materials: Named) -> _Triangles:
     """Return the triangles of all primitives of a mesh, and what is said of them."""
     vertices: list[SingleArray] = [np.zeros((0, 3), np.float32)]
     faces = [np.zeros((0, 3), np.int64)]
     parts = []
     start = 0
-    materials = materials_of(container.tree, container.data)
     shared = _shared(mesh["primitives"])
     for primitive in mesh["primitives"]:
         mode = primitive.get("mode", _TRIANGLES)
@@ -146,7 +146,7 @@ def triangles_of(container: Container, mesh: dict[str, Any]) -> _Triangles:
         face = {}
         if "material" in primitive:
             face = {"material": np.full(len(corners), materials[primitive["material"]][0])}
-        named = {name: one for name, one in materials if face and name == face["material"][:1]}
+        named = dict([materials[primitive["material"]]]) if face else {}
         said = Attributes(corners, columns, {}, face, named) if columns or face else None
         parts.append(MeshPart(len(points), corners, said))
         vertices.append(points)

@@ -6,7 +6,7 @@ upper left corner of a picture, attributes count from the lower left, so they ar
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from ...attributes.material import Material
 from ...errors import InvalidMeshError
 from ..said import as_bytes, chosen, is_color
 from .container import Container
+
+#: Names and materials of a file, in its order.
+Named: TypeAlias = list[tuple[str, Material]]
 
 #: glTF's names of attributes that everybody knows.
 _KNOWN = {"NORMAL": "normal", "TEXCOORD_0": "uv", "COLOR_0": "color"}
@@ -151,9 +154,9 @@ def _elements(container: Container, number: int) -> Values | None:
     return native[:, 0] if width == 1 else native
 
 
-def materials_of(tree: Mapping[str, Any], data: bytes) -> list[tuple[str, Material]]:
+def materials_of(tree: Mapping[str, Any], data: bytes) -> Named:
     """Return names and materials of a file; those without a name are called by their numbers."""
-    found: list[tuple[str, Material]] = []
+    found: Named = []
     taken: set[str] = set()
     for number, told in enumerate(tree.get("materials", [])):
         name = str(told.get("name") or f"material {number}")

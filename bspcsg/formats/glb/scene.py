@@ -15,7 +15,7 @@ from ..source import Source
 from .container import Container, container_of
 from .file import TO_METRES, TO_MILLIMETRES, SceneDescription, called, container
 from .nodes import local_matrix, triangles_of
-from .said import Pictures, kept
+from .said import Pictures, kept, materials_of
 
 _IDENTITY = np.eye(4)
 
@@ -44,6 +44,7 @@ class _Reading:
         self._held = held
         self._nodes = held.tree.get("nodes", [])
         self._meshes: dict[int, RawMesh] = {}
+        self._materials = materials_of(held.tree, held.data)
 
     def root(self) -> SceneNode:
         scenes = self._held.tree.get("scenes", [])
@@ -79,7 +80,7 @@ class _Reading:
     def _mesh(self, number: int) -> RawMesh:
         if number not in self._meshes:
             told = self._held.tree["meshes"][number]
-            vertices, faces, said = triangles_of(self._held, told)
+            vertices, faces, said = triangles_of(self._held, told, self._materials)
             points = vertices.astype(np.float64)
             if not np.isfinite(points).all():
                 raise ValueError("a coordinate is not a finite number")
