@@ -39,6 +39,7 @@ Convenience: TypeAlias = Literal[
     "shadow",
     "simplify_region",
     "slice_solid",
+    "smooth",
     "solid_html",
     "solid_svg",
     "split",

@@ -40,6 +40,7 @@ _HOMES: dict[Convenience, str] = {
     "shadow": "modelling.planar.shadows:shadow",
     "simplify_region": "modelling.planar.simplifying:simplify_region",
     "slice_solid": "bsp:slice_solid",
+    "smooth": "modelling.bodies.smoothing:smooth",
     "solid_html": "report.viewer.notebook:solid_html",
     "solid_svg": "report.viewer.notebook:solid_svg",
     "split": "modelling.bodies.parts:split",

@@ -239,6 +239,40 @@ class Modelled:
         moved: Solid = above("warp")(self, f, winding)
         return moved
 
+    def smooth(self, n: int, *, sharp_angle: Scalar = 60.0) -> "Solid":
+        """Return the solid with faces bent smoothly through its corners, each in n² triangles.
+
+        Parameters
+        ----------
+        n : int
+            Into how many parts each edge falls.
+        sharp_angle : float
+            Edges that bend more than this stay sharp, in degrees from 0 to 180.
+
+        Raises
+        ------
+        InvalidMeshError
+            If bent faces cross ("self_crossing"; `where` lists them).
+        LimitError
+            If there would be more than ten million triangles.
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Notes
+        -----
+        Cubic patches over the triangles, after Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN
+        triangles". Their borders follow from the normals at both ends of an edge, on both sides.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> can = b.cylinder(h=2, r=1, segments=8)
+        >>> round(can.volume, 2), round(can.smooth(8).volume, 1)
+        (5.66, 6.2)
+        """
+        bent: Solid = above("smooth")(self, n, sharp_angle)
+        return bent
+
     def offset(self, r: Scalar, *, segments: int = 16) -> "Solid":
         """Return the solid thickened by a ball, or made thinner if `r` is negative.
 

@@ -249,6 +249,41 @@ def test_curvatures_add_up() -> None:
     assert b.cube(1).curvature()[1].min() > 0
 
 
+def test_smooth_bodies() -> None:
+    egg = b.cube(2, center=True).smooth(6, sharp_angle=180)
+    assert_sound(egg)
+    assert len(egg.faces) == 12 * 36 and egg.genus == 0
+    radii = np.linalg.norm(egg.vertices, axis=1)
+    assert radii.max() == pytest.approx(3**0.5) and radii.min() > 1.3
+    assert b.cube(2).smooth(3, sharp_angle=30) == b.cube(2)
+    assert holed().smooth(2, sharp_angle=20).volume == pytest.approx(holed().volume, abs=1e-6)
+    assert b.Solid.empty().smooth(3).is_empty
+
+
+@pytest.mark.parametrize("segments", [8, 12, 32])
+def test_smooth_cylinders_have_flat_ends_and_round_walls(segments: int) -> None:
+    can = b.cylinder(h=2, r=1, segments=segments).smooth(6)
+    assert_sound(can)
+    assert can.bounds is not None and can.bounds[:, 2] == pytest.approx([0, 2])
+    assert can.volume == pytest.approx(2 * np.pi, rel=0.02) and can.genus == 0
+    ball = b.sphere(1, segments=segments).smooth(4, sharp_angle=180)
+    assert np.linalg.norm(ball.vertices, axis=1) == pytest.approx(1, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("given", "kind"),
+    [
+        ({"n": 0}, b.InvalidParameterError),
+        ({"n": 2, "sharp_angle": 200}, b.InvalidParameterError),
+        ({"n": 2, "sharp_angle": -1}, b.InvalidParameterError),
+        ({"n": 5000}, b.LimitError),
+    ],
+)
+def test_smoothing_refuses(given: dict[str, Any], kind: type[Exception]) -> None:
+    with pytest.raises(kind):
+        b.cube(1).smooth(**given)
+
+
 def test_rays_hit_each_point_of_the_surface_once() -> None:
     hits = holed().ray_cast((1, 3, 1), (0, -1, 0))
     assert hits.t.tolist() == [1, 1.5, 2.5, 3]
@@ -270,3 +305,39 @@ def test_sections_by_many_planes_are_those_by_each() -> None:
 def test_inertia_is_that_of_the_mesh() -> None:
     assert np.diag(b.box((1, 2, 3)).inertia) == pytest.approx([6.5, 5.0, 2.5])
     assert np.isnan(b.Solid.empty().inertia).all()
+
+
+# Attributes
+
+
+def painted() -> b.Solid:
+    cube = b.cube(2).to_mesh()
+    heights = cube.vertices @ [1.0, 2.0, 4.0]
+    return b.Solid(
+        *cube,
+        vertex_attributes={"height": heights, "normal": cube.vertices / 2},
+        face_attributes={"number": np.arange(12)},
+    )
+
+
+@pytest.mark.parametrize("how", [{"n": 3}, {"edge_length": 0.4}])
+def test_finer_triangles_say_what_coarse_ones_do(how: dict[str, Any]) -> None:
+    mesh = painted().refine(**how).to_mesh()
+    assert mesh.vertex_attributes["height"] == pytest.approx(mesh.vertices @ [1.0, 2.0, 4.0])
+    numbers = mesh.face_attributes["number"]
+    assert sorted(set(numbers.tolist())) == list(range(12))
+    coarse = painted().vertices[painted().faces]
+    normals = np.cross(coarse[:, 1] - coarse[:, 0], coarse[:, 2] - coarse[:, 0])
+    middles = mesh.vertices[mesh.faces].mean(axis=1)
+    away = np.einsum("ij,ij->i", middles - coarse[numbers, 0], normals[numbers])
+    assert away == pytest.approx(0)
+
+
+def test_parts_and_warped_solids_keep_what_is_said() -> None:
+    far = b.cube(1).translate(9, 0, 0)
+    first, second = (painted() | far).decompose()
+    assert set(first.to_mesh().face_attributes["number"].tolist()) == set(range(12))
+    assert second.volume == 1
+    warped = painted().warp(lambda p: p * 3).to_mesh()
+    assert warped.vertex_attributes["height"].max() == 14
+    assert "normal" not in warped.attributes.names

@@ -11,7 +11,7 @@ from ...geometry.hyperplane import exact_number
 from ...solid.counting import uncounted
 from ...solid.solid import Solid
 from .boxes import BoxTree, Nearness, squared_gaps
-from .triangles import nearest_points
+from .triangles import least_gaps, nearest_points
 
 #: Relative error of distances in doubles, of the size of the coordinates: some dozens of roundings.
 _NOISE = 1e-14
@@ -90,19 +90,23 @@ def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, Inde
     scale = max(float(np.abs(first).max()), float(np.abs(second).max()))
     trees = BoxTree.over(first), BoxTree.over(second)
     search = Nearness(*trees, _bounded(_some_gap(first, second), scale))
+    boxes = [(corners.min(axis=1), corners.max(axis=1)) for corners in (first, second)]
     best, found = np.inf, []
     for leaves in search.leaves():
-        i, j = _pairs(trees, leaves)
-        for k in range(0, len(i), _CHUNK):
-            a, b = first[i[k : k + _CHUNK]], second[j[k : k + _CHUNK]]
-            near = squared_gaps(a.min(1), a.max(1), b.min(1), b.max(1)) <= search.limit
-            if near.any():
-                gaps, _, _ = nearest_points(a[near], b[near])
+        pairs = _pairs(trees, leaves)
+        for k in range(0, len(pairs[0]), _CHUNK):
+            i, j = (one[k : k + _CHUNK] for one in pairs)
+            (low, high), (low_b, high_b) = boxes
+            near = squared_gaps(low[i], high[i], low_b[j], high_b[j]) <= search.limit
+            i, j = i[near], j[near]
+            near = least_gaps(first[i], second[j]) <= search.limit
+            i, j = i[near], j[near]
+            if len(i):
+                gaps, _, _ = nearest_points(first[i], second[j])
                 best = min(best, float(gaps.min()))
                 search.limit = min(search.limit, _bounded(best, scale))
                 kept = gaps <= search.limit
-                rows = np.flatnonzero(near)[kept] + k
-                found.append((gaps[kept], i[rows], j[rows]))
+                found.append((gaps[kept], i[kept], j[kept]))
     gaps, i, j = (np.concatenate(column) for column in zip(*found, strict=True))
     order = np.lexsort((j, i, gaps))
     order = order[gaps[order] <= _bounded(best, scale)][:_MOST_EXACT]

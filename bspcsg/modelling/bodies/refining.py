@@ -1,14 +1,23 @@
 """Surfaces in smaller triangles, the same set of points."""
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from ..._types import BoolArray, FloatArray, IndexArray, MeshArrays
+from ..._types import FloatArray, IndexArray
+from ...attributes.attributes import Attributes
+from ...attributes.carrying import Surface, carried
 from ...errors import LimitError, invalid_parameter
+from ...mesh.mesh import Mesh
 from ...parameters import at_least, positive
 from ...solid.counting import counted
-from ...solid.solid import Solid
+from ...solid.solid import Solid, solid_with
+
+#: Vertices, triangles, and which of the triangles before each lies in.
+Finer: TypeAlias = tuple[FloatArray, IndexArray, IndexArray]
+
+#: Triangles, and the rows of those that they are parts of.
+_Piece: TypeAlias = tuple[IndexArray, IndexArray]
 
 #: Triangles of a result. While its solid is made each takes some 300 bytes, all of them 3 GB.
 _MOST_TRIANGLES = 10_000_000
@@ -27,13 +36,24 @@ def refine(solid: Solid, n: Any = None, edge_length: Any = None) -> Solid:
         refuse_many(len(mesh.faces) * parts**2)
         if parts == 1:
             return solid
-        arrays = divided(mesh.vertices, mesh.faces, parts)
+        finer = divided(mesh.vertices, mesh.faces, parts)
     else:
-        arrays = halved(mesh.vertices, mesh.faces, positive(edge_length, "edge_length"))
-    return Solid(*arrays, pitch=solid.pitch)
+        finer = halved(mesh.vertices, mesh.faces, positive(edge_length, "edge_length"))
+    said = None if mesh.carried is None else attributes_on(mesh, *finer)
+    return solid_with(*finer[:2], said, pitch=solid.pitch)
 
 
-def divided(vertices: FloatArray, faces: IndexArray, parts: int) -> MeshArrays:
+def attributes_on(
+    mesh: Mesh, vertices: FloatArray, faces: IndexArray, origins: IndexArray
+) -> Attributes:
+    """Return the attributes of triangles that lie in those of a mesh, whose numbers are given."""
+    source = np.stack([np.zeros_like(origins), origins], axis=1)
+    surface = Surface(vertices, faces, source, np.zeros(len(faces), dtype=bool))
+    known = mesh.vertices, mesh.vertices, mesh.faces, np.arange(len(mesh.faces))
+    return carried(surface, [mesh.attributes], lambda _: known)
+
+
+def divided(vertices: FloatArray, faces: IndexArray, parts: int) -> Finer:
     """Return each triangle in parts² alike, new corners evenly along edges and inside."""
     edges, sides = _edges(faces, len(vertices))
     shares = np.arange(1, parts) / parts
@@ -47,12 +67,18 @@ def divided(vertices: FloatArray, faces: IndexArray, parts: int) -> MeshArrays:
     grid = _grid(faces, edges, sides, parts, len(vertices))
     for number, (i, j) in enumerate(places):
         grid[i, j] = start + number * len(faces) + np.arange(len(faces))
+    pieces = [[grid[place] for place in corners] for corners in small_triangles(parts)]
+    small = np.stack([np.stack(piece, axis=1) for piece in pieces], axis=1).reshape(-1, 3)
+    points = np.concatenate([vertices, along.reshape(-1, 3), *inner])
+    return points, small, np.repeat(np.arange(len(faces)), parts**2)
+
+
+def small_triangles(parts: int) -> list[list[tuple[int, int]]]:
+    """Return the triangles that one falls into, each corner by its steps to corners 1 and 2."""
     low = [(i, j) for i in range(parts) for j in range(parts - i)]
     high = [(i, j) for i, j in low if i + j < parts - 1]
-    pieces = [(grid[i, j], grid[i + 1, j], grid[i, j + 1]) for i, j in low]
-    pieces += [(grid[i + 1, j], grid[i + 1, j + 1], grid[i, j + 1]) for i, j in high]
-    small = np.stack([np.stack(piece, axis=1) for piece in pieces], axis=1).reshape(-1, 3)
-    return np.concatenate([vertices, along.reshape(-1, 3), *inner]), small
+    upright = [[(i, j), (i + 1, j), (i, j + 1)] for i, j in low]
+    return upright + [[(i + 1, j), (i + 1, j + 1), (i, j + 1)] for i, j in high]
 
 
 def _grid(
@@ -76,12 +102,13 @@ def _between(low: FloatArray, high: FloatArray, shares: FloatArray) -> FloatArra
     return points
 
 
-def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> MeshArrays:
+def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> Finer:
     """Return the mesh with edges halved until none is longer.
 
     Triangles fall into two, three or four, as many of their edges as are halved, so that no corner
     lies within an edge.
     """
+    origins = np.arange(len(faces))
     while True:
         edges, sides = _edges(faces, len(vertices))
         ends = vertices[edges]
@@ -90,40 +117,57 @@ def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> MeshArray
         middles = (ends[:, 0] + ends[:, 1]) / 2
         long &= (middles != ends[:, 0]).any(axis=1) & (middles != ends[:, 1]).any(axis=1)
         if not long.any():
-            return vertices, faces
+            return vertices, faces, origins
         refuse_many(len(faces) + 2 * int(long.sum()))
         number = np.full(len(edges), -1)
         number[long] = len(vertices) + np.arange(int(long.sum()))
         vertices = np.concatenate([vertices, middles[long]])
-        faces = _cut_at(vertices, faces, number[sides])
+        faces, rows = _cut_at(vertices, faces, number[sides])
+        origins = origins[rows]
 
 
-def _cut_at(vertices: FloatArray, faces: IndexArray, middles: IndexArray) -> IndexArray:
-    """Return triangles cut at the middles of their edges, -1 where an edge is whole."""
-    count = (middles >= 0).sum(axis=1)
-    pieces = [faces[count == 0]]
-    faces_3, m = faces[count == 3], middles[count == 3]
-    pieces += [np.stack([faces_3[:, k], m[:, k], m[:, k - 1]], axis=1) for k in range(3)] + [m]
-    for k in range(3):
-        (a, b, c), m = _turned(faces, middles, (count == 1) & (middles[:, k] >= 0), k)
-        pieces += [np.stack([a, m[0], c], axis=1), np.stack([m[0], b, c], axis=1)]
-        whole = (count == 2) & (middles[:, k] < 0)
-        (a, b, c), m = _turned(faces, middles, whole, k)
-        pieces.append(np.stack([m[2], m[1], c], axis=1))
-        # The shorter diagonal of the quadrilateral that is left.
-        first = _lengths(vertices, a, m[1]) <= _lengths(vertices, b, m[2])
-        fourth, far = np.where(first, m[1], m[2]), np.where(first, a, b)
-        pieces.append(np.stack([a, b, fourth], axis=1))
-        pieces.append(np.stack([far, m[1], m[2]], axis=1))
-    return np.concatenate(pieces)
-
-
-def _turned(
-    faces: IndexArray, middles: IndexArray, chosen: BoolArray, k: int
+def _cut_at(
+    vertices: FloatArray, faces: IndexArray, middles: IndexArray
 ) -> tuple[IndexArray, IndexArray]:
-    """Return corners and middles of some triangles, (3, n), with edge k as the first."""
-    order = [k, (k + 1) % 3, (k + 2) % 3]
-    return faces[chosen][:, order].T, middles[chosen][:, order].T
+    """Return triangles cut at the middles of their edges, -1 where an edge is whole.
+
+    Also returns which triangle each lies in.
+    """
+    count = (middles >= 0).sum(axis=1)
+    pieces = [(np.flatnonzero(count == 0), faces[count == 0])]
+    pieces += _quartered(faces, middles, np.flatnonzero(count == 3))
+    for k in range(3):
+        is_cut = middles[:, k] >= 0
+        turn = [k, (k + 1) % 3, (k + 2) % 3]
+        faces_k, middles_k = faces[:, turn], middles[:, turn]
+        pieces += _cut_once(faces_k, middles_k, np.flatnonzero((count == 1) & is_cut))
+        pieces += _cut_twice(vertices, faces_k, middles_k, np.flatnonzero((count == 2) & ~is_cut))
+    rows, cut = (np.concatenate(column) for column in zip(*pieces, strict=True))
+    return cut, rows
+
+
+def _quartered(faces: IndexArray, middles: IndexArray, rows: IndexArray) -> list[_Piece]:
+    f, m = faces[rows], middles[rows]
+    corners = [np.stack([f[:, k], m[:, k], m[:, k - 1]], axis=1) for k in range(3)]
+    return [(rows, piece) for piece in (*corners, m)]
+
+
+def _cut_once(faces: IndexArray, middles: IndexArray, rows: IndexArray) -> list[_Piece]:
+    """Return the halves of triangles whose first edge is cut."""
+    (a, b, c), m = faces[rows].T, middles[rows, 0]
+    return [(rows, np.stack([a, m, c], axis=1)), (rows, np.stack([m, b, c], axis=1))]
+
+
+def _cut_twice(
+    vertices: FloatArray, faces: IndexArray, middles: IndexArray, rows: IndexArray
+) -> list[_Piece]:
+    """Return three parts of triangles whose first edge is whole."""
+    (a, b, c), (_, m, n) = faces[rows].T, middles[rows].T
+    # The shorter diagonal of the quadrilateral that is left.
+    first = _lengths(vertices, a, m) <= _lengths(vertices, b, n)
+    fourth, far = np.where(first, m, n), np.where(first, a, b)
+    parts = ([n, m, c], [a, b, fourth], [far, m, n])
+    return [(rows, np.stack(part, axis=1)) for part in parts]
 
 
 def _lengths(vertices: FloatArray, start: IndexArray, end: IndexArray) -> FloatArray:

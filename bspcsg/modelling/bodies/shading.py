@@ -11,6 +11,9 @@ from ...parameters import not_negative
 from ...solid.counting import uncounted
 from ...solid.solid import Solid
 
+#: Cosines of equal angles differ by less.
+_ROUNDING = 1e-12
+
 
 @uncounted
 def normals(solid: Solid, sharp_angle: Scalar = 30.0) -> FloatArray:
@@ -21,12 +24,12 @@ def normals(solid: Solid, sharp_angle: Scalar = 30.0) -> FloatArray:
     mesh = solid.normalized().to_mesh()
     if len(mesh.faces) == 0:
         return np.zeros((0, 3, 3))
-    own = _unit(_areas(mesh))
+    own = unit(_areas(mesh))
     fans = _fans(mesh, own, limit)
     weighted = (own[:, None] * _angles(mesh)[..., None]).reshape(-1, 3)
     sums = np.zeros((int(fans.max()) + 1, 3))
     np.add.at(sums, fans, weighted)
-    found: FloatArray = _unit(sums)[fans].reshape(-1, 3, 3)
+    found: FloatArray = unit(sums)[fans].reshape(-1, 3, 3)
     return found
 
 
@@ -38,10 +41,11 @@ def curvature(solid: Solid) -> tuple[FloatArray, FloatArray]:
     sizes = np.linalg.norm(_areas(mesh), axis=1) / 2
     shares = np.bincount(mesh.faces.ravel(), np.repeat(sizes / 3, 3), count)
     angles = np.bincount(mesh.faces.ravel(), _angles(mesh).ravel(), count)
-    first, second, start, end = _edges(mesh)
-    own = _unit(_areas(mesh))
-    bends = _signed_bends(own[first], own[second], mesh.vertices[end] - mesh.vertices[start])
-    quarters = np.linalg.norm(mesh.vertices[end] - mesh.vertices[start], axis=1) * bends / 4
+    forth, back = half_edges(mesh)
+    start, end = mesh.faces.ravel()[forth], mesh.faces.ravel()[back]
+    own, along = unit(_areas(mesh)), mesh.vertices[end] - mesh.vertices[start]
+    bends = _signed_bends(own[forth // 3], own[back // 3], along)
+    quarters = np.linalg.norm(along, axis=1) * bends / 4
     bent = np.bincount(start, quarters, count) + np.bincount(end, quarters, count)
     with np.errstate(divide="ignore", invalid="ignore"):
         return (2 * math.pi - angles) / shares, bent / shares
@@ -53,7 +57,8 @@ def _areas(mesh: Mesh) -> FloatArray:
     return np.cross(b - a, c - a)
 
 
-def _unit(vectors: FloatArray) -> FloatArray:
+def unit(vectors: FloatArray) -> FloatArray:
+    """Return vectors of length 1; zero stays zero."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     units: FloatArray = np.divide(vectors, lengths, np.zeros_like(vectors), where=lengths > 0)
     return units
@@ -70,14 +75,16 @@ def _angles(mesh: Mesh) -> FloatArray:
     return found
 
 
-def _edges(mesh: Mesh) -> tuple[IndexArray, IndexArray, IndexArray, IndexArray]:
-    """Return for each edge the face that runs along it and the one that runs back, and its ends."""
+def half_edges(mesh: Mesh) -> tuple[IndexArray, IndexArray]:
+    """Return for each edge the two sides of triangles that run along it, forth and back.
+
+    Side 3 f + k is that of face f from its corner k to the next.
+    """
     start, end = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
     count = np.int64(len(mesh.vertices))
     forth, back = np.argsort(start * count + end), np.argsort(end * count + start)
     once = start[forth] < end[forth]
-    forth, back = forth[once], back[once]
-    return forth // 3, back // 3, start[forth], end[forth]
+    return forth[once], back[once]
 
 
 def _signed_bends(one: FloatArray, other: FloatArray, along: FloatArray) -> FloatArray:
@@ -90,17 +97,19 @@ def _signed_bends(one: FloatArray, other: FloatArray, along: FloatArray) -> Floa
 
 def _fans(mesh: Mesh, own: FloatArray, limit: float) -> IndexArray:
     """Return a number for each corner, the same for those that no sharp edge parts."""
-    first, second, start, _ = _edges(mesh)
-    along = mesh.faces[first]
-    cosines = np.einsum("ij,ij->i", own[first], own[second])
-    flat = cosines >= math.cos(math.radians(limit)) - 1e-12
-    first, second, start, along = first[flat], second[flat], start[flat], along[flat]
-    place = (along == start[:, None]).argmax(axis=1)
-    end = mesh.faces[first, (place + 1) % 3]
+    forth, back = half_edges(mesh)
+    cosines = np.einsum("ij,ij->i", own[forth // 3], own[back // 3])
+    flat = cosines >= math.cos(math.radians(limit)) - _ROUNDING
+    forth, back = forth[flat], back[flat]
     count = mesh.faces.size
-    linked = [np.arange(count)[:, None].repeat(3, axis=1)]
-    for corner in (start, end):
-        here = first * 3 + (mesh.faces[first] == corner[:, None]).argmax(axis=1)
-        there = second * 3 + (mesh.faces[second] == corner[:, None]).argmax(axis=1)
-        linked.append(np.stack([here, there, there], axis=1))
+    alone = np.arange(count)
+    # The corner where one side starts is that where the other ends.
+    pairs = [(alone, alone), (forth, next_side(back)), (next_side(forth), back)]
+    linked = [np.stack([here, there, there], axis=1) for here, there in pairs]
     return surfaces_of(np.concatenate(linked), count)[:count]
+
+
+def next_side(side: IndexArray) -> IndexArray:
+    """Return the side after another one of the same triangle."""
+    following: IndexArray = side - side % 3 + (side + 1) % 3
+    return following

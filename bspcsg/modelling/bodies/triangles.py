@@ -4,6 +4,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from ..._types import FloatArray
+
 #: Numbers of one kind, float64 or fractions.
 Numbers: TypeAlias = np.ndarray[Any, np.dtype[Any]]
 
@@ -37,6 +39,22 @@ def nearest_points(first: Numbers, second: Numbers) -> tuple[Numbers, Numbers, N
         gap = np.where(counts, gap, best)
         best, p, q = _nearer((best, p, q), (gap, foot, second[:, corner]))
     return best, p, q
+
+
+def least_gaps(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Return squares that no squared distance of two triangles is below, but for rounding.
+
+    Parameters
+    ----------
+    first, second : (k, 3, 3) float64
+    """
+    ways = second.mean(axis=1) - first.mean(axis=1)
+    lengths = np.linalg.norm(ways, axis=1)
+    ends = np.einsum("kij,kj->ki", first, ways).max(axis=1)
+    starts = np.einsum("kij,kj->ki", second, ways).min(axis=1)
+    apart = np.divide(starts - ends, lengths, np.zeros_like(lengths), where=lengths > 0)
+    gaps: FloatArray = np.maximum(apart, 0.0) ** 2
+    return gaps
 
 
 def _nearer(

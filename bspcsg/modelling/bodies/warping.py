@@ -32,7 +32,7 @@ def warp(solid: Solid, f: PointMap, winding: WindingRule | None = None) -> Solid
         return solid
     vertices = _moved(f, mesh.vertices)
     if rule is None:
-        _refuse_crossings(vertices, mesh.faces)
+        refuse_crossings(vertices, mesh.faces, "Where f moves them")
     said = None if mesh.carried is None else mesh.attributes.without(NORMALS)
     return solid_with(vertices, mesh.faces, said, winding=rule or "nonzero")
 
@@ -54,14 +54,14 @@ def _moved(f: PointMap, points: FloatArray) -> FloatArray:
     return moved + 0.0
 
 
-def _refuse_crossings(vertices: FloatArray, faces: IndexArray) -> None:
+def refuse_crossings(vertices: FloatArray, faces: IndexArray, when: str) -> None:
+    """Raise `InvalidMeshError` if faces cross or overlap; `when` begins the sentence."""
     crossings = certify(vertices, faces).crossings
     if crossings:
         first = vertices[faces[crossings[0][0]]].mean(axis=0).round(6).tolist()
         message = (
-            f"Where f moves them, {len(crossings)} pairs of faces cross or overlap, the first near"
-            f" {first}. Refine the solid first, or let winding='positive' or 'nonzero' decide what"
-            " is inside."
+            f"{when}, {len(crossings)} pairs of faces cross or overlap, the first near {first}."
+            " Refine the solid first; warp can let winding numbers decide what is inside."
         )
         where = sorted({face for pair in crossings[:_FEW] for face in pair})
         raise InvalidMeshError(message, "self_crossing", where)
