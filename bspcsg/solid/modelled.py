@@ -8,7 +8,7 @@ from ..above import above
 
 if TYPE_CHECKING:
     from ..bsp import HitLists, Hits
-    from ..modelling.bodies.placing import Place
+    from ..modelling.bodies.placing import Anchor
     from .solid import Solid
 
 
@@ -333,9 +333,9 @@ class Modelled:
     def align(
         self,
         *,
-        x: "Place | None" = None,
-        y: "Place | None" = None,
-        z: "Place | None" = None,
+        x: "Anchor | None" = None,
+        y: "Anchor | None" = None,
+        z: "Anchor | None" = None,
         to: "Vector | Solid" = (0, 0, 0),
     ) -> "Solid":
         """Return the solid moved so that its box meets a point or the box of another solid.

@@ -12,13 +12,13 @@ from ...solid.counting import counted
 from ...solid.solid import Solid
 
 #: Which place of a solid goes where along an axis: one name for both, or one each.
-Place: TypeAlias = str | tuple[str, str]
+Anchor: TypeAlias = str | tuple[str, str]
 
 _SHARES = {"min": 0.0, "center": 0.5, "max": 1.0}
 
 
 @counted
-def align(solid: Solid, places: dict[str, Place | None], to: "Solid | Vector") -> Solid:
+def align(solid: Solid, places: dict[str, Anchor | None], to: "Solid | Vector") -> Solid:
     """Return the solid moved so that places of its box meet those of another (see `Solid.align`).
 
     Parameters
