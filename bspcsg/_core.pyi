@@ -22,12 +22,16 @@ __all__ = [
     "__version__",
     "fail_on_purpose",
     "hull_faces",
+    "mesh_counts",
     "mesh_faults",
     "mesh_in_single",
+    "mesh_measures",
     "normal_bits",
     "numbers_in",
     "set_threads",
     "suited_pitch",
+    "surfaces_of",
+    "welded_points",
 ]
 
 __version__: str
