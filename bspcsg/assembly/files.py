@@ -20,6 +20,7 @@ from ..formats.scene import SceneNode, are_alike
 from ..formats.solids import solid_of
 from ..formats.source import Source, content_of
 from ..formats.threemf import scene as threemf
+from ..formats.threemf.write import called
 from ..geometry import transform
 from ..solid.solid import Solid
 from . import scripts
@@ -105,7 +106,14 @@ def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...
         form_of(path)
         message = f"{os.fspath(path)}: assemblies are written as 3MF, GLB, OBJ and .csg."
         raise FormatError(message, "unknown_format")
-    scene = _Describing(in_single=suffix == ".glb").node(assembly, None)
+    describing = _Describing(in_single=suffix == ".glb")
+    try:
+        scene = describing.node(assembly, None)
+    except OverflowError:
+        message = f"{os.fspath(path)}: coordinates are beyond single precision; write 3MF."
+        raise FormatError(message, "too_large") from None
+    if scene is None:
+        raise FormatError(f"{os.fspath(path)}: no part of the assembly has volume.", "empty")
     if suffix == ".3mf":
         scene = _in_bytes(scene)
 
@@ -115,27 +123,42 @@ def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...
             raise FormatError(message, "write_mismatch")
 
     write_file(path, _TREES[suffix][1](scene), prove)
-    return _lost(scene, suffix)
+    return (*_lost(scene, suffix), *_empty(describing.empty))
+
+
+def _empty(count: int) -> tuple[Finding, ...]:
+    if not count:
+        return ()
+    message = f"{count} parts without volume were left out."
+    return (Finding("empty_parts", "warning", message, (), count),)
 
 
 class _Describing:
     """What files say of an assembly; solids that parts share are meshes that nodes share."""
 
     def __init__(self, in_single: bool) -> None:
+        #: How many parts have no volume, which files have no place for.
+        self.empty = 0
         self._in_single = in_single
         self._meshes: dict[int, tuple[Solid, RawMesh]] = {}
 
-    def node(self, assembly: Assembly, color: tuple[float, ...] | None) -> SceneNode:
+    def node(self, assembly: Assembly, color: tuple[float, ...] | None) -> SceneNode | None:
+        """Return what is said of an assembly, or None if there is nothing in it."""
+        name = called(assembly.name)
         color = color if assembly.color is None else assembly.color
         matrix = transform.product(assembly.factors) if assembly.factors else np.eye(4)
         if assembly.shape is None:
-            children = tuple(self.node(child, color) for child in assembly.children)
-            return SceneNode(assembly.name, matrix, None, None, children)
-        mesh = self._mesh(assembly.shape, assembly.name)
+            inner = (self.node(child, color) for child in assembly.children)
+            children = tuple(child for child in inner if child is not None)
+            return SceneNode(name, matrix, None, None, children) if children else None
+        mesh = self._mesh(assembly.shape, name)
+        if len(mesh.faces) == 0:
+            self.empty += 1
+            return None
         own = mesh.attributes is not None and {"color", "material"}.intersection(
             mesh.attributes.names
         )
-        return SceneNode(assembly.name, matrix, mesh, None if own else color)
+        return SceneNode(name, matrix, mesh, None if own else color)
 
     def _mesh(self, solid: Solid, name: str) -> RawMesh:
         if id(solid) not in self._meshes:

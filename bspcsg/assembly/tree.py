@@ -129,8 +129,9 @@ class Assembly:
         waiting: list[tuple[Assembly, str, Part | None]] = [(self, "", None)]
         while waiting:
             node, above, around = waiting.pop()
-            path = f"{above}/{node.name}" if above else node.name
-            path = _free(path or "part", taken) if node.shape is not None else path
+            name = node.name or ("part" if node.shape is not None else "")
+            path = "/".join(filter(None, (above, name)))
+            path = path if node.shape is None else _free(path, taken)
             inherited = node._inherited(path, around)
             if node.shape is not None:
                 taken.add(path)
@@ -173,6 +174,11 @@ class Assembly:
         """Say how many parts there are."""
         count = len(self.parts)
         return f"Assembly({self.name!r}, {count} part{'' if count == 1 else 's'})"
+
+    def _repr_html_(self) -> str | None:
+        """Return what a notebook shows: an interactive view of the union."""
+        page: str | None = above("solid_html")(self.to_solid())
+        return page
 
     # Transforms
 

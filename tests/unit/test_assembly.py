@@ -160,6 +160,25 @@ def test_trees_names_colours_and_instances_survive_files(tmp_path: Path, suffix:
     assert whole.volume == pytest.approx(made.to_solid().volume)
 
 
+@pytest.mark.parametrize("suffix", [".3mf", ".glb"])
+def test_empty_parts_and_names_that_files_cannot_hold(tmp_path: Path, suffix: str) -> None:
+    gone = b.Assembly("gone", [b.cube(1) - b.cube(1)])
+    made = b.Assembly("a\x01\ud800b", [b.cube(1), gone])
+    assert [part.path for part in made] == ["a\x01\ud800b/part", "a\x01\ud800b/gone/part"]
+    (finding,) = made.save(tmp_path / f"x{suffix}")
+    assert (finding.code, finding.count) == ("empty_parts", 1)
+    again = b.Assembly.load(tmp_path / f"x{suffix}")
+    assert [part.solid.volume for part in again] == [1]
+    with pytest.raises(b.FormatError) as caught:
+        gone.save(tmp_path / f"y{suffix}")
+    assert caught.value.code == "empty"
+    far = b.Assembly("far", b.cube(1e40))
+    if suffix == ".glb":
+        with pytest.raises(b.FormatError) as caught:
+            far.save(tmp_path / "far.glb")
+        assert caught.value.code == "too_large"
+
+
 def test_instances_take_the_room_of_one(tmp_path: Path) -> None:
     ball = b.Assembly("ball", b.sphere(1, segments=64))
     many = b.Assembly("many", [ball.translate(3 * k, 0, 0) for k in range(50)])
