@@ -36,7 +36,8 @@ def hull(*solids_or_points: Any) -> Solid | Region:
     Parameters
     ----------
     *solids_or_points : Solid, (n, 3) or (3,) array_like of float, or iterable of such
-        In model units. Points are snapped to the finest lattice of the solids. Or, in the plane,
+        In model units. Points, and corners that cuts have made between lattice points, are snapped
+        to the finest lattice of the solids. Or, in the plane,
         regions and (n, 2) points.
 
     Returns
