@@ -34,6 +34,10 @@ _MOST_EDGES = 10_000
 #: far beyond the end as it is wide.
 _FLATTEST = 0.01
 
+#: Faces whose cosine is nearer to one lie on each other: their fillet, ten thousand times as wide
+#: as its radius, has no room.
+_FOLDED = 2e-8
+
 #: Two edges of a corner are mirror images if their cosines to the third differ by less than this:
 #: the new surfaces then meet within a millionth of their size of the mirror.
 _SYMMETRICAL = 1e-6
@@ -83,7 +87,7 @@ class _Blend:
         if self.profile.is_round:
             inward = self.skeleton.inward[own]
             cosine = np.einsum("ij,ij->i", inward[:, 0], inward[:, 1])
-            widths[own] *= np.sqrt((1 + cosine) / np.maximum(1 - cosine, 1e-300))
+            widths[own] *= np.sqrt((1 + cosine) / np.maximum(1 - cosine, _FOLDED))
         return widths
 
     def sign(self, edge: int) -> int:
