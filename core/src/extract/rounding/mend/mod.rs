@@ -7,11 +7,14 @@
 //! Iterated rounding and repair as in Lazard and Valque, *Removing self-intersections in 3D meshes
 //! while preserving floating-point coordinates*, 2024. Changes here are local and never subdivide.
 
+mod blocks;
 mod edits;
 mod part;
 mod trial;
 
-use self::part::{distance, Edit};
+use std::collections::BTreeSet;
+
+use self::part::{both, distance, Edit};
 pub use self::part::{Mending, Precision};
 use crate::interrupt::spend;
 
@@ -51,30 +54,25 @@ impl Mending {
 
     /// Makes a change if it leaves fewer faults.
     fn attempt(&mut self, edit: &Edit) -> bool {
-        spend(1 + self.triangles.len() / 16);
-        self.work = self.work.saturating_sub(self.triangles.len());
+        spend(1 + self.blocks.count());
         let moved = edit.moves.iter().flat_map(|m| self.star(m.0));
         let mut touched: Vec<u32> = edit.triangles.iter().map(|m| m.0).chain(moved).collect();
         touched.sort_unstable();
         touched.dedup();
-        let is_touched = |t: &u32| touched.binary_search(t).is_ok();
-        let old_crossings: Vec<[u32; 2]> = self
-            .crossings
-            .iter()
-            .filter(|pair| pair.iter().any(is_touched))
-            .copied()
-            .collect();
-        let old_flat: Vec<u32> = self.flat.iter().copied().filter(is_touched).collect();
+        let of_all = touched.iter().flat_map(|t| self.crossings_of(*t));
+        let old_crossings: BTreeSet<[u32; 2]> = of_all.collect();
+        let is_flat = |t: &u32| self.flat.contains(t);
+        let old_flat: Vec<u32> = touched.iter().copied().filter(is_flat).collect();
         let undo = self.apply(edit);
         let most = old_crossings.len() + old_flat.len();
         if let Some((crossings, flat)) = self.faults_of(&touched, most) {
-            for pair in &old_crossings {
-                self.crossings.remove(pair);
+            for pair in old_crossings.into_iter().flat_map(both) {
+                self.crossings.remove(&pair);
             }
             for t in &old_flat {
                 self.flat.remove(t);
             }
-            self.crossings.extend(crossings);
+            self.crossings.extend(crossings.into_iter().flat_map(both));
             self.flat.extend(flat);
             for (v, old) in &undo.moves {
                 self.moved.insert(*v);

@@ -3,7 +3,9 @@
 use std::collections::BTreeSet;
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use smallvec::SmallVec;
 
+use super::blocks::Blocks;
 use crate::extract::rounding::crossings::Faults;
 use crate::geometry::doubles::{Point, Triangle};
 use crate::geometry::extent::Extent;
@@ -42,6 +44,9 @@ const FARTHEST: f64 = 4.0;
 /// Comparisons of boxes, at about a nanosecond each, after which mending gives up.
 const WORK: usize = 4_000_000_000;
 
+/// The triangles around a vertex.
+pub(super) type Star = SmallVec<[u32; 8]>;
+
 /// Part of a mesh that is being mended. Triangles keep their numbers; removed ones are `None`.
 pub struct Mending {
     /// The vertices; copies are added at the end.
@@ -53,7 +58,11 @@ pub struct Mending {
     /// Vertices of inputs, which others go to.
     pub(super) given: Vec<bool>,
     pub(super) extents: Vec<Extent>,
+    pub(super) blocks: Blocks,
+    /// For each vertex its triangles, ascending.
+    pub(super) stars: Vec<Star>,
     pub(super) flat: BTreeSet<u32>,
+    /// Each pair both ways round, so that those of a triangle are a range.
     pub(super) crossings: BTreeSet<[u32; 2]>,
     pub(super) halves: HashMap<[u32; 2], u32>,
     pub(super) precision: Precision,
@@ -90,7 +99,14 @@ impl Mending {
             .flatten()
             .fold(0.0f64, |m, x| m.max(x.abs()));
         let corners = |t: &[u32; 3]| t.map(|v| vertices[v as usize]);
-        let extents = triangles.iter().map(|t| Extent::of(&corners(t))).collect();
+        let extents: Vec<Extent> = triangles.iter().map(|t| Extent::of(&corners(t))).collect();
+        let mut stars = vec![Star::new(); vertices.len()];
+        for (t, &v) in (0u32..)
+            .zip(&triangles)
+            .flat_map(|(t, c)| c.iter().map(move |v| (t, v)))
+        {
+            stars[v as usize].push(t);
+        }
         let ends = |(t, c): (usize, &[u32; 3])| edges(c).map(|e| (e, t as u32));
         let drifts = vec![0.0; vertices.len()];
         let halves = triangles.iter().enumerate().flat_map(ends).collect();
@@ -99,9 +115,11 @@ impl Mending {
             vertices,
             fixed,
             given,
+            blocks: Blocks::new(&extents),
             extents,
+            stars,
             flat: faults.flat.iter().copied().collect(),
-            crossings: faults.crossings.iter().copied().collect(),
+            crossings: faults.crossings.iter().copied().flat_map(both).collect(),
             halves,
             precision,
             spacing: precision.spacing(largest),
@@ -119,7 +137,8 @@ impl Mending {
     /// The faults left; a flat triangle is a pair with itself.
     pub fn faults(&self) -> Vec<[u32; 2]> {
         let flat = self.flat.iter().map(|t| [*t, *t]);
-        self.crossings.iter().copied().chain(flat).collect()
+        let crossings = self.crossings.iter().filter(|pair| pair[0] < pair[1]);
+        crossings.copied().chain(flat).collect()
     }
 
     /// How far a vertex, or one that was merged with it, is from where it came when it is here.
@@ -131,19 +150,26 @@ impl Mending {
         FARTHEST * self.spacing
     }
 
-    pub(super) fn star(&self, v: u32) -> Vec<u32> {
-        let has = |t: &Option<[u32; 3]>| t.is_some_and(|t| t.contains(&v));
-        let triangles = self.triangles.iter().enumerate();
-        triangles
-            .filter(|(_, t)| has(t))
-            .map(|(t, _)| t as u32)
-            .collect()
+    /// The triangles around a vertex, ascending.
+    pub(super) fn star(&self, v: u32) -> Star {
+        self.stars[v as usize].clone()
+    }
+
+    /// The crossings of a triangle, each pair ascending.
+    pub(super) fn crossings_of(&self, t: u32) -> impl Iterator<Item = [u32; 2]> + '_ {
+        let own = self.crossings.range([t, 0]..=[t, u32::MAX]);
+        own.map(|&[t, u]| [t.min(u), t.max(u)])
     }
 
     pub(super) fn corners(&self, t: u32) -> Option<Triangle> {
         let corners = self.triangles[t as usize]?;
         Some(corners.map(|v| self.vertices[v as usize]))
     }
+}
+
+/// A pair, both ways round.
+pub(super) fn both([t, u]: [u32; 2]) -> [[u32; 2]; 2] {
+    [[t, u], [u, t]]
 }
 
 pub(super) fn edges(corners: &[u32; 3]) -> [[u32; 2]; 3] {

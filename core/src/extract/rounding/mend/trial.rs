@@ -1,6 +1,6 @@
 //! Changes carried out and taken back, and the faults that are left.
 
-use super::part::{edges, Edit, Mending};
+use super::part::{edges, Edit, Mending, Star};
 use crate::extract::rounding::crossings::crosses_at;
 use crate::geometry::extent::Extent;
 use crate::geometry::meeting::{has_no_area, meeting, Meeting};
@@ -14,6 +14,7 @@ impl Mending {
             self.fixed.push(self.fixed[v as usize]);
             self.given.push(self.given[v as usize]);
             self.drifts.push(self.drifts[v as usize]);
+            self.stars.push(Star::new());
         }
         for &(v, place) in &edit.moves {
             undo.moves.push((v, self.vertices[v as usize]));
@@ -42,6 +43,7 @@ impl Mending {
         self.fixed.truncate(count);
         self.given.truncate(count);
         self.drifts.truncate(count);
+        self.stars.truncate(count);
     }
 
     fn exchange(&mut self, triangles: &[(u32, Option<[u32; 3]>)], undo: &mut Edit) {
@@ -51,11 +53,18 @@ impl Mending {
             for edge in old.iter().flat_map(edges) {
                 self.halves.remove(&edge);
             }
+            for v in old.into_iter().flatten() {
+                self.stars[v as usize].retain(|other| *other != *t);
+            }
         }
         for &(t, corners) in triangles {
             self.triangles[t as usize] = corners;
             for edge in corners.iter().flat_map(edges) {
                 self.halves.insert(edge, t);
+            }
+            for v in corners.into_iter().flatten() {
+                let star = &mut self.stars[v as usize];
+                star.insert(star.partition_point(|other| *other < t), t);
             }
             self.measure(t);
         }
@@ -64,6 +73,7 @@ impl Mending {
     fn measure(&mut self, t: u32) {
         if let Some(corners) = self.corners(t) {
             self.extents[t as usize] = Extent::of(&corners);
+            self.blocks.grow(t, &self.extents[t as usize]);
         }
     }
 
@@ -81,12 +91,13 @@ impl Mending {
             return None;
         }
         for t in solid {
-            self.work = self.work.saturating_sub(self.triangles.len());
-            for u in 0..self.triangles.len() as u32 {
-                let first = u > t || some.binary_search(&u).is_err();
-                let near =
-                    first && u != t && !self.extents[t as usize].misses(&self.extents[u as usize]);
-                if near && self.cross(t, u, &flat) {
+            let extent = self.extents[t as usize];
+            let mut near: Vec<u32> = self.blocks.near(&extent).collect();
+            self.work = self.work.saturating_sub(self.blocks.count() + near.len());
+            near.retain(|u| !extent.misses(&self.extents[*u as usize]));
+            near.retain(|u| *u > t || *u < t && some.binary_search(u).is_err());
+            for u in near {
+                if self.cross(t, u, &flat) {
                     crossings.push([t.min(u), t.max(u)]);
                     if crossings.len() + flat.len() >= most {
                         return None;
