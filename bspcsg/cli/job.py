@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 _EXACT_FACES, _EXACT_BITS = 500, 10_000
 
 
+#: How many crossings a certificate names.
+_NAMED = 8
+
+
 class Job(ABC):
     """One operation on files.
 
@@ -150,6 +154,7 @@ class Job(ABC):
             "volume_exact": _exact_volume(result, mesh),
             "findings": output.finding_values(self._findings(result) + self._lost),
             "check": None if report is None else report.to_dict(),
+            "certificate": certificate_values(mesh),
             "seconds": self.seconds,
         }
 
@@ -171,6 +176,20 @@ def mesh_values(mesh: "Mesh") -> dict[str, Any]:
         "volume": mesh.volume,
         "area": mesh.area,
         "bounds": None if (bounds := mesh.bounds) is None else bounds.tolist(),
+    }
+
+
+def certificate_values(mesh: "Mesh") -> dict[str, Any]:
+    """Return what was proved of a mesh as JSON values: counts, and the first crossings."""
+    proof = mesh.certificate
+    return {
+        "ok": proof.ok,
+        "precision": proof.precision,
+        "triangles": proof.triangles,
+        "open_edges": proof.open_edges,
+        "crossings": len(proof.crossings),
+        "flat": len(proof.flat),
+        "where": [list(pair) for pair in proof.crossings[:_NAMED]],
     }
 
 

@@ -9,6 +9,9 @@ from ..shapes.primitives import half_space
 from ..solid.counting import uncounted
 from ..solid.solid import Solid
 
+#: So many corners of a cavity are looked at first: hardly ever do all lie on the shell around it.
+_FIRST = 16
+
 
 @uncounted
 def connected_parts(solid: Solid) -> list[Mesh]:
@@ -30,15 +33,9 @@ def connected_parts(solid: Solid) -> list[Mesh]:
     if len(mesh.faces) == 0:
         return []
     owner = surfaces_of(mesh.faces, len(mesh.vertices))
-    shells = [_selected(mesh, owner == number) for number in range(int(owner.max()) + 1)]
-    volumes = [shell.volume for shell in shells]
-    outer = [number for number, volume in enumerate(volumes) if volume > 0]
-    home = {number: number for number in outer}
-    for cavity in set(range(len(shells))) - set(outer):
-        home[cavity] = _around(shells, volumes, outer, cavity, solid.pitch)
-    groups = [np.isin(owner, [k for k in home if home[k] == number]) for number in outer]
-    parts = [_selected(mesh, group) for group in groups]
-    return sorted(parts, key=lambda part: -part.volume)
+    home = _Shells(mesh, owner, solid.pitch).homes()
+    _, part = np.unique(home[owner], return_inverse=True)
+    return sorted(_split(mesh, part), key=lambda part: -part.volume)
 
 
 @uncounted
@@ -66,32 +63,64 @@ def sides_of_plane(solid: Solid, normal: Vector, offset: Scalar) -> tuple[Solid,
     return solid & below, solid - below
 
 
-def _selected(mesh: Mesh, which: "np.ndarray[tuple[int], np.dtype[np.bool_]]") -> Mesh:
-    used, faces = np.unique(mesh.faces[which], return_inverse=True)
-    triangles, kept = faces.reshape(-1, 3), np.flatnonzero(which)
-    carried = None if mesh.carried is None else made(mesh.attributes.onto(triangles, kept))
-    return Mesh(mesh.vertices[used], triangles, mesh.source[which], carried)
+def _split(mesh: Mesh, owner: IndexArray) -> list[Mesh]:
+    """Return the faces of each number from 0 on as a mesh of their own."""
+    order = np.argsort(owner, kind="stable")
+    ends = np.cumsum(np.bincount(owner))
+    return [_selected(mesh, rows) for rows in np.split(order, ends[:-1])]
 
 
-def _around(
-    shells: list[Mesh], volumes: list[float], outer: list[int], cavity: int, pitch: int
-) -> int:
-    """Return the number of the smallest shell that a cavity's wall lies in."""
-    points = shells[cavity].vertices
-    for number in sorted(outer, key=lambda number: volumes[number]):
-        if _in_box(points, shells[number].vertices) and _is_inside(points, shells[number], pitch):
-            return number
-    # Only rounding can have pushed the wall out; the largest shell is the likeliest.
-    return max(outer, key=lambda number: volumes[number])
+def _selected(mesh: Mesh, rows: IndexArray) -> Mesh:
+    used, faces = np.unique(mesh.faces[rows], return_inverse=True)
+    triangles = faces.reshape(-1, 3)
+    carried = None if mesh.carried is None else made(mesh.attributes.onto(triangles, rows))
+    return Mesh(mesh.vertices[used], triangles, mesh.source[rows], carried)
 
 
-def _in_box(points: FloatArray, around: FloatArray) -> bool:
-    low, high = around.min(axis=0), around.max(axis=0)
-    return bool((points.min(axis=0) >= low).all() and (points.max(axis=0) <= high).all())
+class _Shells:
+    """The connected surfaces of a boundary, and which lies in which.
 
+    Parameters
+    ----------
+    mesh : Mesh
+    owner : (m,) int64
+        For each face the number of its surface, from 0.
+    pitch : int
+    """
 
-def _is_inside(points: FloatArray, shell: Mesh, pitch: int) -> bool:
-    """Whether points that do not cross a shell are inside it; one off the boundary decides."""
-    faces: IndexArray = shell.faces
-    sides = Solid(shell.vertices, faces, pitch=pitch).classify(points)
-    return bool((sides > 0).any() and not (sides < 0).any())
+    def __init__(self, mesh: Mesh, owner: IndexArray, pitch: int) -> None:
+        self._meshes = _split(Mesh(mesh.vertices, mesh.faces, mesh.source), owner)
+        self._volumes = np.array([shell.volume for shell in self._meshes])
+        boxes = np.array([shell.bounds for shell in self._meshes])
+        self._low, self._high = boxes[:, 0], boxes[:, 1]
+        self._pitch = pitch
+        self._solids: dict[int, Solid] = {}
+
+    def homes(self) -> IndexArray:
+        """Return for each shell the outer one that it belongs to: itself, or that around it."""
+        homes = np.arange(len(self._meshes))
+        for cavity in np.flatnonzero(self._volumes <= 0).tolist():
+            homes[cavity] = self._around(cavity)
+        return homes
+
+    def _around(self, cavity: int) -> int:
+        """Return the number of the smallest shell that a cavity's wall lies in."""
+        is_around = (self._low <= self._low[cavity]).all(axis=1) & (self._volumes > 0)
+        is_around &= (self._high >= self._high[cavity]).all(axis=1)
+        candidates = np.flatnonzero(is_around)
+        for number in candidates[np.argsort(self._volumes[candidates], kind="stable")].tolist():
+            if self._holds(number, self._meshes[cavity].vertices):
+                return int(number)
+        # Only rounding can have pushed the wall out; the largest shell is the likeliest.
+        return int(self._volumes.argmax())
+
+    def _holds(self, number: int, points: FloatArray) -> bool:
+        """Whether points that do not cross a shell are inside it; one off the boundary decides."""
+        if number not in self._solids:
+            shell = self._meshes[number]
+            self._solids[number] = Solid(shell.vertices, shell.faces, pitch=self._pitch)
+        for some in (points[:_FIRST], points[_FIRST:]):
+            sides = self._solids[number].classify(some)
+            if sides.any():
+                return bool((sides > 0).any() and not (sides < 0).any())
+        return False

@@ -49,6 +49,20 @@ def test_json_is_one_document(folder: Path, capsys: Capture) -> None:
     assert (found["volume"], found["volume_exact"]) == (14.0, "14")
     assert found["check"]["verdict"] == "agree"
     assert found["triangles"] == len(read("x.ply").faces)
+    proof = found["certificate"]
+    assert proof["ok"] and proof["triangles"] == found["triangles"]
+    assert (proof["open_edges"], proof["crossings"], proof["flat"]) == (0, 0, 0)
+
+
+@pytest.mark.parametrize(("depth", "compared"), [("quick", "measures"), ("full", "sets")])
+def test_how_the_result_is_checked(
+    folder: Path, capsys: Capture, depth: str, compared: str
+) -> None:
+    options = [f"--check={depth}", "--json"]
+    code, out, _ = ran(capsys, "union", "a.off", "c.stl", "-o", "x.ply", *options)
+    assert code == 0 and json.loads(out)["check"]["compared"] == compared
+    code, _, err = ran(capsys, "union", "--check", "a.off", "c.stl", "-o", "x.ply")
+    assert code == 2 and "'a.off' is not one of 'quick', 'full', 'off'" in err
 
 
 def test_json_of_volumes_with_thousands_of_digits(folder: Path, capsys: Capture) -> None:

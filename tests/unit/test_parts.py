@@ -1,10 +1,12 @@
 """Components with their cavities, and the two sides of a plane."""
 
 from fractions import Fraction
+from typing import Any
 
 import pytest
 
 import bspcsg as b
+from bspcsg.operations import parts as parts_module
 from bspcsg.operations.parts import connected_parts, sides_of_plane
 from support.checks import assert_sound
 from support.shapes import cuboid, flipped, joined
@@ -36,6 +38,21 @@ def test_a_cavity_in_the_box_of_another_part() -> None:
     hollow = (b.cube(2) - b.cube(1).translate(0.5, 0.5, 0.5)).translate(4, 4, 0)
     parts = connected_parts(frame | hollow)
     assert [solid_of(part).volume_exact for part in parts] == [200 - 162, 7]
+
+
+def test_many_cavities_ask_the_shell_around_them_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    cavities = [b.cube(1).translate(2 * k + 1, 1, 1) for k in range(30)]
+    whole = b.box(62, 3, 3) - b.union(cavities)
+    whole.to_mesh()
+    shells = []
+
+    def counted(*arrays: Any, **options: Any) -> b.Solid:
+        shells.append(arrays)
+        return b.Solid(*arrays, **options)
+
+    monkeypatch.setattr(parts_module, "Solid", counted)
+    (part,) = connected_parts(whole)
+    assert part.components == 31 and len(shells) == 1
 
 
 def test_nothing_has_no_parts() -> None:
