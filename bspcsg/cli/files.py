@@ -13,6 +13,7 @@ import click
 from ..errors import Finding, FormatError, InvalidMeshError
 from .lengths import MILLIMETRES
 from .output import Output, counted, discard_output
+from .scripts import is_script, made_by
 
 if TYPE_CHECKING:
     from ..formats.raw import RawMesh
@@ -73,7 +74,7 @@ class Inputs:
             if not path.suffix and path.is_dir():
                 message = f"{path}: this is a folder; name the files in it, as in {path / '*.stl'}."
                 raise FormatError(message, "unreadable")
-            if self.suffix_of(path) != self.suffix:
+            if self.suffix_of(path) != self.suffix and not is_script(path):
                 format_of(path)
 
     def tell_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
@@ -83,7 +84,9 @@ class Inputs:
         unknown = [
             path
             for path, target in pairs
-            if FORMATS[target.suffix.lower()].unit and not FORMATS[self.suffix_of(path)].unit
+            if not is_script(path)
+            and FORMATS[target.suffix.lower()].unit
+            and not FORMATS[self.suffix_of(path)].unit
         ]
         if unknown and self.unit is None:
             more = f" and {len(unknown) - 1} more have" if len(unknown) > 1 else " has"
@@ -98,11 +101,19 @@ class Inputs:
         own = path.suffix.lower()
         return own if own in FORMATS or not self.suffix else self.suffix
 
+    def up_of(self, path: Path) -> str:
+        """Return the axis that is up in a file, as is usual for its format."""
+        from ..formats.files import FORMATS
+
+        return "z" if is_script(path) else FORMATS[self.suffix_of(path)].up
+
     def raw(self, path: Path) -> "RawMesh":
-        """Read a mesh as it is, in millimetres if a unit is known or said."""
+        """Read a mesh, or make that of a script, in millimetres if a unit is known or said."""
         from ..formats.files import decoded, read_as
 
-        if str(path) == STREAM:
+        if is_script(path):
+            raw = self._mesh_of_script(path)
+        elif str(path) == STREAM:
             raw = decoded(STREAM, sys.stdin.buffer.read(), self.suffix)
         else:
             raw = read_as(path, self.suffix_of(path))
@@ -112,8 +123,17 @@ class Inputs:
         vertices = raw.vertices if scale == 1 else raw.vertices * scale
         return replace(raw, vertices=vertices, unit="mm")
 
+    def _mesh_of_script(self, path: Path) -> "RawMesh":
+        from ..formats.raw import RawMesh
+
+        mesh = made_by(path, self.out).normalized().to_mesh()
+        return RawMesh(mesh.vertices, mesh.faces, path.stem, is_empty_set=not len(mesh.faces))
+
     def solid(self, path: Path) -> "Solid":
-        """Read a solid, and tell what was noteworthy about the file."""
+        """Read a solid, or make that of a script, and tell what was noteworthy about the file."""
+        if is_script(path):
+            made = made_by(path, self.out)
+            return made if self.unit is None else made.scale(MILLIMETRES[self.unit])
         raw = self.raw(path)
         solid = self.as_solid(raw, path)
         noticed = [Finding.from_core(found) for found in solid.tree.findings]

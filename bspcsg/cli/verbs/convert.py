@@ -164,7 +164,7 @@ class _Conversion:
         from ...formats.turning import turned
 
         raw = self._inputs.raw(path)
-        usual_in = FORMATS[self._inputs.suffix_of(path)].up
+        usual_in = self._inputs.up_of(path)
         usual_out = FORMATS[target.suffix.lower()].up
         # Reading and writing turn by what is usual: what is left is the difference to that.
         told_in = self._settings["from_up"] or usual_in

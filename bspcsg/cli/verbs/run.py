@@ -2,7 +2,6 @@
 
 import ast
 import re
-import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,6 +14,7 @@ from ...errors import FormatError, InvalidMeshError
 from ..files import ON_INVALID, STREAM, shown, stream_text
 from ..job import Job
 from ..options import TIMEOUT, common, making
+from ..scripts import SUFFIXES, made_by
 
 if TYPE_CHECKING:
     from ...csg import Polish
@@ -74,8 +74,6 @@ Examples:
   bspcsg run bracket.scad -o bracket.3mf --polish -D width=12.5
   bspcsg run part.py -o part.stl
 """
-
-_SUFFIXES = (".csg", ".json", ".scad", ".py")
 
 #: Options that make sense for some scripts only, by their names, with those that they are not for.
 _NOT_FOR = {
@@ -166,8 +164,8 @@ class _Run(Job):
         return [self._script]
 
     def refuse_inputs(self) -> None:
-        if self._suffix not in _SUFFIXES:
-            known = ", ".join(_SUFFIXES)
+        if self._suffix not in SUFFIXES:
+            known = ", ".join(SUFFIXES)
             message = f"{shown(self._script)}: this is no script; known are {known}."
             raise FormatError(message, "unknown_format")
         self._refuse_options()
@@ -184,32 +182,15 @@ class _Run(Job):
                 raise click.UsageError(f"{option} is not for {self._suffix} files.")
 
     def combined(self) -> "Solid":
-        from ...script.run import run_script
-
         given = {"timeout": self.settings["timeout"], "defines": self._defines}
         options = {name: value for name, value in given.items() if value}
         if self._suffix == ".py":
-            return run_script(self._script, **options)
-        return self._loaded(**options)
-
-    def _loaded(self, **options: Any) -> "Solid":
-        """Return the solid of OpenSCAD's script; what was left out is told."""
-        from ... import csg
-
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", csg.CsgWarning)
-            names = ("polish", "on_invalid", "allow_paths", "lenient")
-            options |= {name: self.settings[name] for name in names}
-            options["on_polish"] = self._tell_polish
-            with self._advised():
-                if str(self._script) == STREAM:
-                    solid = csg.loads(stream_text(), name=STREAM, **options)
-                else:
-                    solid = csg.load(self._script, **options)
-        # A polished model is evaluated twice, and warns as often.
-        for said in dict.fromkeys(str(warning.message) for warning in caught):
-            self.out.warning(said)
-        return solid
+            return made_by(self._script, self.out, **options)
+        names = ("polish", "on_invalid", "allow_paths", "lenient")
+        options |= {name: self.settings[name] for name in names}
+        text = stream_text() if str(self._script) == STREAM else None
+        with self._advised():
+            return made_by(self._script, self.out, text, on_polish=self._tell_polish, **options)
 
     def _tell_polish(self, done: "Polish") -> None:
         if done.pitch is None:
