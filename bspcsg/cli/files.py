@@ -124,10 +124,11 @@ class Inputs:
         return replace(raw, vertices=vertices, unit="mm")
 
     def _mesh_of_script(self, path: Path) -> "RawMesh":
-        from ..formats.raw import RawMesh
+        from ..formats.said import said_of, saying
 
         mesh = made_by(path, self.out).normalized().to_mesh()
-        return RawMesh(mesh.vertices, mesh.faces, path.stem, is_empty_set=not len(mesh.faces))
+        raw = saying(mesh, said_of(mesh))
+        return replace(raw, name=path.stem, is_empty_set=not len(mesh.faces))
 
     def solid(self, path: Path) -> "Solid":
         """Read a solid, or make that of a script, and tell what was noteworthy about the file."""

@@ -25,7 +25,8 @@ class Mesh:
     """A closed triangle mesh, counter-clockwise when seen from outside.
 
     The arrays of a solid's mesh are read-only, because the solid hands out the same ones again;
-    copy them before you change them.
+    copy them before you change them. Measures are kept once they were asked for, so that a mesh
+    whose arrays changed has to be made anew.
 
     Parameters
     ----------

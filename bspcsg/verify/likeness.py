@@ -1,9 +1,9 @@
 """Whether two meshes are alike in all that is cheap to measure.
 
 Volume, area, bounds, parts and Euler number, and at points near the seam, where faces from several
-operands meet, the side on which they lie. Meshes that bound different sets by more than rounding
-differ in volume, or by pieces that outweigh each other, which the other measures or a side then
-tell; who needs to be sure builds the symmetric difference.
+operands meet, the side on which they lie. That finds what is missing, surplus or moved, but not two
+errors that outweigh each other in all measures, away from the points: who needs to be sure builds
+the symmetric difference.
 """
 
 import numpy as np
@@ -79,9 +79,10 @@ def sides_differ(ours: Mesh, theirs: Mesh, film: float) -> tuple[int, bool]:
 
 
 def _points_at_seam(mesh: Mesh, film: float) -> list[Point]:
-    """Return points on both sides of some faces that meet faces from another operand, if any do."""
-    is_at_seam = _is_at_seam(mesh)
-    faces = np.flatnonzero(is_at_seam if is_at_seam.any() else is_at_seam | True)
+    """Return points on both sides of faces that meet those of another operand, or of any."""
+    faces = np.flatnonzero(_is_at_seam(mesh))
+    if len(faces) == 0:
+        faces = np.arange(len(mesh.faces))
     chosen = faces[np.linspace(0, len(faces) - 1, min(_PROBED, len(faces))).astype(np.int64)]
     corners = mesh.vertices[mesh.faces[chosen]]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -70,9 +70,22 @@ def test_openscad_tells_right_from_wrong(tmp_path: Path, monkeypatch: pytest.Mon
     fake_openscad(monkeypatch, "OpenSCAD version 2021.01\n", question().ours)
     right, wrong = opinion("openscad", question()), opinion("openscad", question(WRONG))
     assert (right["agrees"], right["version"]) == (True, "2021.01") and wrong["agrees"] is False
-    ours = question().ours
-    assert script_opinion(tmp_path / "m.csg", ours, -9, 60.0)["agrees"] is True
-    assert script_opinion(tmp_path / "m.csg", WRONG.to_mesh(), -9, 60.0)["agrees"] is False
+    ours = b.cube(3) - b.cube(2).translate(2, 2, 2)
+    assert script_opinion(tmp_path / "m.csg", ours, 60.0)["agrees"] is True
+    assert script_opinion(tmp_path / "m.csg", WRONG, 60.0)["agrees"] is False
+
+
+def test_lattices_of_two_pitches_are_no_disagreement() -> None:
+    """The faces of a large part lie where the coarse lattice had them, its double did not."""
+    large = b.cube(1, center=True).rotate(33, axis=(1, 2, 3)).to_mesh()
+    operands = [b.Solid(*large), b.box(1, 0.8, 0.6), b.cube(1e-4).translate(3, 0, 0)]
+    result = b.union(operands)
+    found = examine(result, "union", operands)
+    meshes = [large, *(solid.to_mesh() for solid in operands[1:])]
+    place = ("union", found.program, meshes, found.ours, result.pitch, 60.0)
+    assert result.pitch < operands[0].pitch
+    assert opinion("pymeshlab", Question(*place, result.tree.snapped_by))["agrees"] is True
+    assert opinion("pymeshlab", Question(*place))["agrees"] is False
 
 
 def test_question_in_openscads_language_is_the_same_question(

@@ -29,6 +29,8 @@ class Question:
         Of the lattice of our result.
     timeout : float
         Seconds for one engine.
+    snapped_by : float
+        How far coordinates of operands were moved onto a lattice, which may have been coarser.
     """
 
     operation: str
@@ -37,6 +39,7 @@ class Question:
     ours: Mesh
     pitch: int
     timeout: float
+    snapped_by: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

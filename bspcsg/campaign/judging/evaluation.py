@@ -208,16 +208,15 @@ class _Evaluation:
         if self._is_script:
             path = Path(str(self._case.operands[0].file))
             ask = "openscad" in wanted or is_installed("openscad")
-            ours = result.normalized().to_mesh()
-            return [script_opinion(path, ours, result.pitch, limit)] if ask else []
+            return [script_opinion(path, result, limit)] if ask else []
         doubtful = found.report.verdict in _DOUBTFUL
         if doubtful and "pymeshlab" not in wanted and is_installed("pymeshlab"):
             wanted.append("pymeshlab")
         if not wanted and not doubtful:
             return []
         operands = [solid.normalized().to_mesh() for solid in solids]
-        place = (self._case.operation, found.program, operands, found.ours, result.pitch, limit)
-        question = Question(*place)
+        asked = (self._case.operation, found.program, operands, found.ours)
+        question = Question(*asked, result.pitch, limit, result.tree.snapped_by)
         said = [opinion(name, question) for name in wanted]
         if doubtful or any(record["agrees"] is False for record in said):
             said.append(crossings_opinion(question))

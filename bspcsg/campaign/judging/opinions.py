@@ -14,7 +14,7 @@ import numpy as np
 
 from ..._core import __version__
 from ...errors import BspcsgError, missing_part
-from ...mesh.mesh import Mesh
+from ...solid.solid import Solid
 from ...verify.check import TOLERANCES, same_set_bound
 from ...verify.comparison import require_distances
 from ...verify.discrepancy import SetDifference, difference_of
@@ -63,9 +63,10 @@ def opinion(engine: str, question: Question) -> OracleRecord:
     return _recorded(engine, question, lambda: _ASKED[engine](question))
 
 
-def script_opinion(path: Path, ours: Mesh, pitch: int, timeout: float) -> OracleRecord:
-    """Ask openscad what it makes of a script."""
-    question = Question("csg", [], [], ours, pitch, timeout)
+def script_opinion(path: Path, ours: Solid, timeout: float) -> OracleRecord:
+    """Ask openscad what it makes of a script of which we made a solid."""
+    mesh = ours.normalized().to_mesh()
+    question = Question("csg", [], [], mesh, ours.pitch, timeout, ours.tree.snapped_by)
     return _recorded("openscad", question, lambda: run_script(path, timeout))
 
 
@@ -101,7 +102,9 @@ def _silent(says: str) -> OracleRecord:
 
 def _compared(question: Question, answer: EngineAnswer) -> OracleRecord:
     mesh = answer.mesh
-    bound = same_set_bound(question.pitch, question.ours, mesh) + TOLERANCES * answer.shift
+    meshes = (question.ours, mesh)
+    film = same_set_bound(question.pitch, *meshes, snapped_by=question.snapped_by)
+    bound = film + TOLERANCES * answer.shift
     try:
         found, _ = difference_of(question.ours, mesh, question.pitch, bound)
     except BspcsgError as error:
