@@ -54,6 +54,11 @@ class Browser:
         self._running.get_log("performance")
         self._running.get(path.as_uri())
 
+    def size(self, width: int, height: int) -> None:
+        """Make pages as large as some device shows them."""
+        device = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": True}
+        self._running.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", device)
+
     def run(self, script: str, *arguments: Any) -> Any:
         """Return what the body of a function says in the page."""
         return self._running.execute_script(script, *arguments)

@@ -1,0 +1,115 @@
+"""The site is built without a warning, hangs together, and asks nothing of a network."""
+
+import re
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import pytest
+
+from support.browser import Browser, started
+from support.cli import script
+from support.documents import DOCS, ROOT
+
+#: Attributes by which a page loads something, or leads somewhere.
+_LOADED = {
+    ("script", "src"),
+    ("img", "src"),
+    ("source", "src"),
+    ("iframe", "src"),
+    ("link", "href"),
+}
+_LED = {("a", "href")}
+
+#: A style sheet's or a script's way to load something.
+_FETCHED = re.compile(r"(?:url\(|@import |fetch\(|src=)['\"]?(?:https?:)?//[^'\")]+")
+
+
+class _Page(HTMLParser):
+    """What a page loads, where it leads, and the places on it."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.loaded: list[str] = []
+        self.led: list[str] = []
+        self.places: set[str] = set()
+        self.feed(path.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        for name, value in attrs:
+            if value is None:
+                continue
+            if name == "id":
+                self.places.add(value)
+            elif (tag, name) in _LOADED:
+                self.loaded.append(value)
+            elif (tag, name) in _LED:
+                self.led.append(value)
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a site that was built as strictly as it can be."""
+    out = tmp_path_factory.mktemp("site") / "site"
+    done = script("site", str(out))
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stderr == ""
+    return out
+
+
+@pytest.fixture(scope="module")
+def pages(site: Path) -> dict[Path, _Page]:
+    return {path: _Page(path) for path in site.rglob("*.html")}
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with started(webgl=False) as running:
+        yield running
+
+
+def test_every_page_of_the_manual_is_a_page_of_the_site(site: Path) -> None:
+    for path in DOCS.rglob("*.md"):
+        assert (site / path.relative_to(ROOT).with_suffix(".html")).exists()
+
+
+def test_links_lead_somewhere(pages: dict[Path, _Page]) -> None:
+    checked = 0
+    for path, page in pages.items():
+        for link in page.led + page.loaded:
+            parts = urlsplit(link)
+            if parts.scheme or parts.netloc:
+                continue
+            target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
+            assert target.is_file(), f"{path.name}: {link}"
+            # Furo's link to the top of a page has no place of its own.
+            if parts.fragment and target in pages:
+                assert unquote(parts.fragment) in pages[target].places, f"{path.name}: {link}"
+            checked += 1
+    assert checked > 1000
+
+
+def test_nothing_is_loaded_from_a_network(site: Path, pages: dict[Path, _Page]) -> None:
+    for path, page in pages.items():
+        for link in page.loaded:
+            assert not urlsplit(link).netloc and urlsplit(link).scheme in ("", "data"), path
+    for pattern in ("*.css", "*.js"):
+        for path in site.rglob(pattern):
+            assert not _FETCHED.findall(path.read_text(encoding="utf-8")), path
+
+
+def test_pages_are_searched_without_a_server(site: Path, browser: Browser) -> None:
+    browser.open(site / "search.html")
+    browser.type("input[name=q]", "minkowski\n")
+    browser.wait("document.querySelectorAll('.search li').length > 2")
+    assert any("Modelling" in text for text in browser.texts(".search li a"))
+    assert browser.errors() == []
+
+
+def test_pages_fit_a_phone(site: Path, browser: Browser) -> None:
+    browser.size(390, 844)
+    for name in ("docs/index", "docs/verbs/union", "docs/api/solid", "docs/tasks/scans"):
+        browser.open(site / f"{name}.html")
+        assert browser.run("return document.documentElement.scrollWidth") <= 390, name
+        assert browser.errors() == []
