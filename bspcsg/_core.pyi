@@ -1,4 +1,4 @@
-"""Types of the compiled core; what each call means is described in `core/ARCHITECTURE.md`."""
+"""Types of the compiled core; `docs/design/binding.md` says what each call means."""
 
 from typing import (
     Literal,

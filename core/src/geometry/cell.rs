@@ -6,7 +6,7 @@ use crate::arith::bounds::COORDINATE_BITS;
 /// A box of the dyadic hierarchy: the lattice points `low[i] .. low[i] + 2^size[i]`.
 ///
 /// Its faces lie half a step outside these points, so that no lattice point, edge or face ever
-/// lies in one (design review, F2).
+/// lies in one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cell {
     low: Lattice,

@@ -1,7 +1,7 @@
 //! How the winding number changes along an axis-parallel segment between cell corners.
 //!
 //! Corners are shifted by (ε, ε², ε³), one vector for everything, so that no sign is ever zero and
-//! each count is the crossing number of one generic path (design review, "What holds").
+//! each count is the crossing number of one generic path.
 
 use super::plane::{first_sign, normal, Lattice, Plane};
 use super::polygon::{Carrier, Polygon};

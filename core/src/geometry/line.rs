@@ -10,9 +10,6 @@ use crate::arith::{inv_mod, P1};
 ///
 /// Equal lines have equal keys; two unequal lines share one by chance 2^-244 (four degrees of
 /// freedom, 61 bits each).
-///
-/// # Source
-/// Design review, F5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LineKey([u64; 6]);
 

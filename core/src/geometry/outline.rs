@@ -361,7 +361,7 @@ fn bounds(carrier: &Carrier, edges: &[BareEdge]) -> bool {
 /// A planar autopartition by the outline's own edges: the region lies on the minus side of each.
 ///
 /// # Source
-/// Lecture notes, autopartition; design review F9.
+/// Thibault, Naylor 1987 (autopartition).
 pub fn pieces(polygon: Polygon, edges: &[BareEdge]) -> Vec<Polygon> {
     let mut inside = Vec::new();
     let mut open = vec![(polygon, edges.to_vec())];

@@ -105,8 +105,7 @@ impl Plane {
 
     /// The plane through a lattice edge parallel to an axis; `None` if the edge is parallel to it.
     ///
-    /// # Source
-    /// Design review, F18: such planes are narrower than any plane through the edge and a normal.
+    /// Such planes are narrower than any plane through the edge and a normal.
     pub fn through_edge(a: &Lattice, b: &Lattice, axis: usize) -> Option<Self> {
         let n = edge_normal(a, b, axis);
         Self::new(n, -dot_lattice(&n, a))

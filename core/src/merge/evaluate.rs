@@ -23,7 +23,7 @@ use crate::tree::table::Table;
 /// `PitchMismatch` if the operands live on different lattices.
 ///
 /// # Source
-/// Naylor, Amanatides, Thibault 1990; `ARCHITECTURE.md`, "One descent".
+/// Naylor, Amanatides, Thibault 1990; `docs/design/descent.md`.
 pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Counters)> {
     let pitch = common_pitch(expression, solids)?;
     let mut operands = solids.to_vec();

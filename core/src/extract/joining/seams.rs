@@ -29,9 +29,6 @@ pub struct Edge {
 ///
 /// Opposite edges with equal ends pair and stay. The others still form a closed chain, for a
 /// boundary has no boundary: subdivided at each other's ends, line by line, they pair too.
-///
-/// # Source
-/// Design review F6.
 pub fn subdivisions(
     edges: &[Edge],
     mut line: impl FnMut(usize) -> LineKey,

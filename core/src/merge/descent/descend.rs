@@ -1,8 +1,8 @@
 //! One descent for a whole expression: operands are folded away cell by cell.
 //!
 //! # Source
-//! Naylor, Amanatides, Thibault 1990 (merging: a leaf decides, a common cut is descended);
-//! design review F12 (residual expressions), F14 (one hierarchy for all solids).
+//! Naylor, Amanatides, Thibault 1990 (merging: a leaf decides, a common cut is descended). The
+//! page `docs/design/descent.md` tells the whole way.
 
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

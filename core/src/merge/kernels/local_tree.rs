@@ -5,7 +5,7 @@
 //! are labelled rightly too: labels by plane sides would hold for simple boundaries only.
 //!
 //! # Source
-//! Thibault and Naylor 1987 (construction, classification); design review F3 (labels).
+//! Thibault and Naylor 1987 (construction, classification).
 
 use std::sync::Arc;
 

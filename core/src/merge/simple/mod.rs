@@ -2,9 +2,6 @@
 //!
 //! Nearly all pairs of faces in a small cell share a vertex or lie beyond each other's planes; such
 //! cells need no tree. The others are labelled, and so is one cell for each shell.
-//!
-//! # Source
-//! Design review F1: 99.9 % of the candidate pairs of a clean mesh share a vertex.
 
 pub(super) mod star;
 
