@@ -1,7 +1,9 @@
 //! Answers to "where does it lie?": sides, orientations and splits.
 
+use serde::{Deserialize, Serialize};
+
 /// Where a point lies relative to an oriented hyperplane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Side {
     /// Strictly inside: the hyperplane's value is negative.
     Minus,
@@ -35,7 +37,7 @@ impl Side {
 }
 
 /// One of the two open half-spaces of a hyperplane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Half {
     /// The inside.
     Minus,

@@ -11,7 +11,8 @@ pub mod op;
 pub mod pairs;
 pub mod simple;
 
-pub use generic::merge_trees::merge;
+pub use generic::case::SplitCase;
+pub use generic::merge_trees::{merge, merge_watched};
 pub use generic::partition_tree::partition_tree;
-pub use generic::split_tree::{split_case, split_tree, Halves, SplitCase};
+pub use generic::split_tree::{split_case, split_tree, split_tree_watched, Halves};
 pub use op::{Outcome, SetOp};

@@ -13,7 +13,6 @@ use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::Dim1;
 use crate::geometry::dim2::Dim2;
 use crate::geometry::dim3::Dim3;
-use crate::geometry::side::Half;
 use crate::merge::{merge, split_case, SetOp, SplitCase};
 use crate::merge::{partition_tree, split_tree};
 use crate::mesh::grid::Pitch;
@@ -138,7 +137,7 @@ impl Set {
             Self::Plane(tree) => split_case(tree, &span::<Dim2>(&in_plane(cut)?)?),
             Self::Space(tree) => split_case(tree, &span::<Dim3>(&in_space(cut)?)?),
         };
-        case.map(case_name)
+        case.map(SplitCase::name)
     }
 
     /// The same set as a tree of a size that its boundary asks for; in space the tree itself.
@@ -162,21 +161,6 @@ impl Set {
 
 fn bad_dimension(dimension: usize) -> Error {
     shape(format!("sets have dimension 1, 2 or 3, not {dimension}"))
-}
-
-fn case_name(case: SplitCase) -> &'static str {
-    match case {
-        SplitCase::Leaf => "leaf",
-        SplitCase::Same => "same",
-        SplitCase::Opposite => "opposite",
-        SplitCase::Crossing => "crossing",
-        SplitCase::OneSided { deep, home } => match (deep, home) {
-            (Half::Minus, Half::Minus) => "minus-minus",
-            (Half::Minus, Half::Plus) => "minus-plus",
-            (Half::Plus, Half::Minus) => "plus-minus",
-            (Half::Plus, Half::Plus) => "plus-plus",
-        },
-    }
 }
 
 fn span<S: AxisSpace>(cut: &S::Hyperplane) -> Result<S::Fragment> {

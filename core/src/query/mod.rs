@@ -9,6 +9,7 @@
 pub mod classify;
 pub mod exact;
 pub mod measure;
+pub mod path;
 pub mod ray;
 pub mod region;
 mod shares;

@@ -8,4 +8,5 @@ pub mod share;
 pub mod solid;
 pub mod stats;
 pub mod table;
+pub mod trace;
 pub mod work;

@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
-use super::split_tree::split_tree;
+use super::split_tree::split_tree_watched;
+use super::trace::{Because, Decision, Joined, Root, Seen};
 use crate::error::{Error, Result};
 use crate::geometry::side::Half;
 use crate::geometry::space::Space;
 use crate::interrupt::poll;
-use crate::merge::op::SetOp;
+use crate::merge::op::{Outcome, SetOp};
 use crate::tree::partition::{Cut, Facet, PartitionTree, Sheet};
+use crate::tree::trace::Watcher;
 
 /// Combines two trees of one region by a set operation.
 ///
@@ -32,16 +34,37 @@ pub fn merge<S: Space>(
     b: &PartitionTree<S>,
     op: SetOp,
 ) -> Result<PartitionTree<S>> {
+    merge_watched(a, b, op, &mut ())
+}
+
+/// Combines two trees as [`merge`] does, and tells of each pair and each split.
+///
+/// # Errors
+/// As for [`merge`].
+pub fn merge_watched<S: Space, W: Watcher<Seen<S>>>(
+    a: &PartitionTree<S>,
+    b: &PartitionTree<S>,
+    op: SetOp,
+    watcher: &mut W,
+) -> Result<PartitionTree<S>> {
     let mut steps = vec![Step::Merge(a.clone(), b.clone())];
     let mut done = Vec::new();
     while let Some(step) = steps.pop() {
         poll();
         match step {
-            Step::Merge(a, b) => match decided(&a, &b, op) {
-                Ok(tree) => done.push(tree),
-                Err(cut) => divide(cut, &b, &mut steps)?,
-            },
-            Step::Join { node, coplanar } => join(&node, coplanar, &mut done)?,
+            Step::Merge(a, b) => {
+                let found = decided(&a, &b, op);
+                watcher.tell(|| Seen::Pair {
+                    a: Root::of(&a),
+                    b: Root::of(&b),
+                    decision: found.as_ref().map_or(Decision::Divide, Decided::decision),
+                });
+                match found {
+                    Ok(decided) => done.push(decided.tree()),
+                    Err(cut) => divide(cut, &b, &mut steps, watcher)?,
+                }
+            }
+            Step::Join { node, coplanar } => join(&node, coplanar, &mut done, watcher)?,
         }
     }
     done.pop()
@@ -58,26 +81,61 @@ enum Step<S: Space> {
     },
 }
 
+/// What decides a pair, and how.
+struct Decided<'a, S: Space> {
+    outcome: Outcome,
+    operand: &'a PartitionTree<S>,
+    because: Because,
+}
+
+impl<S: Space> Decided<'_, S> {
+    fn tree(&self) -> PartitionTree<S> {
+        self.outcome.apply(self.operand)
+    }
+
+    fn decision(&self) -> Decision {
+        let because = self.because;
+        let second = because == Because::FirstIsLeaf;
+        match self.outcome {
+            Outcome::Leaf(label) => Decision::Leaf(label, because),
+            Outcome::Operand if second => Decision::Second(because),
+            Outcome::Operand => Decision::First(because),
+            Outcome::Complement if second => Decision::SecondComplement(because),
+            Outcome::Complement => Decision::FirstComplement(because),
+        }
+    }
+}
+
 /// The result where a leaf or equal references decide it, else the first operand's cut.
 fn decided<'a, S: Space>(
     a: &'a PartitionTree<S>,
-    b: &PartitionTree<S>,
+    b: &'a PartitionTree<S>,
     op: SetOp,
-) -> std::result::Result<PartitionTree<S>, &'a Cut<S>> {
-    if let PartitionTree::Leaf(label) = b {
-        return Ok(op.with_second(*label).apply(a));
-    }
-    match a {
-        PartitionTree::Leaf(label) => Ok(op.with_first(*label).apply(b)),
-        PartitionTree::Cut(_) if a.is_same(b) => Ok(op.with_itself().apply(a)),
-        PartitionTree::Cut(_) if a.is_complement(b) => Ok(op.with_complement().apply(a)),
-        PartitionTree::Cut(cut) => Err(cut),
+) -> std::result::Result<Decided<'a, S>, &'a Cut<S>> {
+    let by = |outcome, operand, because| {
+        Ok(Decided {
+            outcome,
+            operand,
+            because,
+        })
+    };
+    match (a, b) {
+        (_, PartitionTree::Leaf(label)) => by(op.with_second(*label), a, Because::SecondIsLeaf),
+        (PartitionTree::Leaf(label), _) => by(op.with_first(*label), b, Because::FirstIsLeaf),
+        _ if a.is_same(b) => by(op.with_itself(), a, Because::Same),
+        _ if a.is_complement(b) => by(op.with_complement(), a, Because::Complement),
+        (PartitionTree::Cut(cut), _) => Err(cut),
     }
 }
 
 /// Splits the second operand by the first one's cut and leaves the two sides to be combined.
-fn divide<S: Space>(cut: &Cut<S>, b: &PartitionTree<S>, steps: &mut Vec<Step<S>>) -> Result<()> {
-    let halves = split_tree(b, &cut.sheet().span)?;
+fn divide<S: Space>(
+    cut: &Cut<S>,
+    b: &PartitionTree<S>,
+    steps: &mut Vec<Step<S>>,
+    watcher: &mut impl Watcher<Seen<S>>,
+) -> Result<()> {
+    let halves = split_tree_watched(b, &cut.sheet().span, watcher)?;
     steps.push(Step::Join {
         node: cut.clone(),
         coplanar: halves.coplanar,
@@ -91,16 +149,31 @@ fn join<S: Space>(
     node: &Cut<S>,
     coplanar: Vec<Facet<S>>,
     done: &mut Vec<PartitionTree<S>>,
+    watcher: &mut impl Watcher<Seen<S>>,
 ) -> Result<()> {
     let (Some(plus), Some(minus)) = (done.pop(), done.pop()) else {
         return Err(Error::internal("merge joined a node before its subtrees"));
     };
-    done.push(if coplanar.is_empty() {
+    let tree = if coplanar.is_empty() {
         node.with_children(minus, plus)
     } else {
         PartitionTree::cut(joined(node.sheet(), coplanar), minus, plus)
-    });
+    };
+    watcher.tell(|| seen_join(node, &tree));
+    done.push(tree);
     Ok(())
+}
+
+fn seen_join<S: Space>(node: &Cut<S>, tree: &PartitionTree<S>) -> Seen<S> {
+    let joined = match tree {
+        PartitionTree::Leaf(label) => Joined::Collapsed(*label),
+        PartitionTree::Cut(_) if tree.is_same(&node.clone().into()) => Joined::Shared,
+        PartitionTree::Cut(_) => Joined::Rebuilt,
+    };
+    Seen::Join {
+        sheet: Arc::clone(node.sheet()),
+        joined,
+    }
 }
 
 /// A sheet with more coplanar fragments.

@@ -9,11 +9,14 @@
 
 use std::sync::Arc;
 
+use super::case::SplitCase;
+use super::trace::{Root, Seen};
 use crate::error::{Error, Result};
 use crate::geometry::side::{Half, Orientation, Split};
 use crate::geometry::space::Space;
 use crate::interrupt::poll;
 use crate::tree::partition::{Cut, Facet, PartitionTree, Sheet};
+use crate::tree::trace::Watcher;
 
 /// A tree's parts on the two sides of a hyperplane.
 #[derive(Clone, Debug)]
@@ -46,27 +49,6 @@ enum Case<S: Space> {
     },
 }
 
-/// The name of a [`Case`], and of what happens at a leaf.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum SplitCase {
-    /// The tree is a leaf: both halves are.
-    Leaf,
-    /// The hyperplane is the root's own.
-    Same,
-    /// The hyperplane is the root's own with its sides exchanged.
-    Opposite,
-    /// One-sided: the hyperplane's part lies on the side `deep` of the root's cut, the root's
-    /// sub-hyperplane on the side `home` of the hyperplane.
-    OneSided {
-        /// The subtree that is split.
-        deep: Half,
-        /// The half in which the root lives on.
-        home: Half,
-    },
-    /// The two cross.
-    Crossing,
-}
-
 /// Which case the root of a tree and a splitting hyperplane are.
 ///
 /// # Errors
@@ -75,12 +57,28 @@ pub fn split_case<S: Space>(tree: &PartitionTree<S>, span: &S::Fragment) -> Resu
     let PartitionTree::Cut(node) = tree else {
         return Ok(SplitCase::Leaf);
     };
-    Ok(match case_of(node, span)? {
-        Case::Same => SplitCase::Same,
-        Case::Opposite => SplitCase::Opposite,
-        Case::OneSided { deep, home } => SplitCase::OneSided { deep, home },
-        Case::Crossing { .. } => SplitCase::Crossing,
-    })
+    Ok(case_of(node, span)?.name())
+}
+
+impl<S: Space> Case<S> {
+    fn name(&self) -> SplitCase {
+        match self {
+            Self::Same => SplitCase::Same,
+            Self::Opposite => SplitCase::Opposite,
+            Self::OneSided { deep, home } => SplitCase::OneSided {
+                deep: *deep,
+                home: *home,
+            },
+            Self::Crossing { .. } => SplitCase::Crossing,
+        }
+    }
+
+    fn sheets(&self) -> Option<[Arc<Sheet<S>>; 2]> {
+        match self {
+            Self::Crossing { sheets, .. } => Some(sheets.clone()),
+            _ => None,
+        }
+    }
 }
 
 /// Splits a tree by a hyperplane into its parts on the minus and plus sides.
@@ -97,7 +95,19 @@ pub fn split_case<S: Space>(tree: &PartitionTree<S>, span: &S::Fragment) -> Resu
 /// # Errors
 /// `Internal` if `span` is not the part of its hyperplane inside the tree's region.
 pub fn split_tree<S: Space>(tree: &PartitionTree<S>, span: &S::Fragment) -> Result<Halves<S>> {
-    let mut splitter = Splitter::new();
+    split_tree_watched(tree, span, &mut ())
+}
+
+/// Splits a tree as [`split_tree`] does, and tells of each node.
+///
+/// # Errors
+/// As for [`split_tree`].
+pub fn split_tree_watched<S: Space, W: Watcher<Seen<S>>>(
+    tree: &PartitionTree<S>,
+    span: &S::Fragment,
+    watcher: &mut W,
+) -> Result<Halves<S>> {
+    let mut splitter = Splitter::new(watcher);
     splitter.steps.push(Step::Split(tree.clone(), span.clone()));
     while let Some(step) = splitter.steps.pop() {
         poll();
@@ -112,10 +122,11 @@ pub fn split_tree<S: Space>(tree: &PartitionTree<S>, span: &S::Fragment) -> Resu
     })
 }
 
-struct Splitter<S: Space> {
+struct Splitter<'a, S: Space, W> {
     steps: Vec<Step<S>>,
     done: Vec<(PartitionTree<S>, PartitionTree<S>)>,
     coplanar: Vec<Facet<S>>,
+    watcher: &'a mut W,
 }
 
 enum Step<S: Space> {
@@ -131,12 +142,13 @@ enum Step<S: Space> {
     Crossing { sheets: [Arc<Sheet<S>>; 2] },
 }
 
-impl<S: Space> Splitter<S> {
-    fn new() -> Self {
+impl<'a, S: Space, W: Watcher<Seen<S>>> Splitter<'a, S, W> {
+    fn new(watcher: &'a mut W) -> Self {
         Self {
             steps: Vec::new(),
             done: Vec::new(),
             coplanar: Vec::new(),
+            watcher,
         }
     }
 
@@ -144,7 +156,12 @@ impl<S: Space> Splitter<S> {
         match step {
             Step::Split(PartitionTree::Leaf(label), _) => {
                 let leaf = PartitionTree::Leaf(label);
-                self.done.push((leaf.clone(), leaf));
+                self.watcher.tell(|| Seen::Split {
+                    root: Root::Leaf(label),
+                    case: SplitCase::Leaf,
+                    parts: None,
+                });
+                self.push(leaf.clone(), leaf);
                 Ok(())
             }
             Step::Split(PartitionTree::Cut(node), span) => self.split(node, span),
@@ -154,7 +171,13 @@ impl<S: Space> Splitter<S> {
     }
 
     fn split(&mut self, node: Cut<S>, span: S::Fragment) -> Result<()> {
-        match case_of(&node, &span)? {
+        let case = case_of(&node, &span)?;
+        self.watcher.tell(|| Seen::Split {
+            root: Root::Cut(Arc::clone(node.sheet())),
+            case: case.name(),
+            parts: case.sheets(),
+        });
+        match case {
             Case::Same => self.open(&node, [Half::Minus, Half::Plus]),
             Case::Opposite => self.open(&node, [Half::Plus, Half::Minus]),
             Case::OneSided { deep, home } => {
@@ -177,16 +200,16 @@ impl<S: Space> Splitter<S> {
     fn open(&mut self, node: &Cut<S>, halves: [Half; 2]) {
         let [minus, plus] = halves.map(|half| node.child(half));
         self.coplanar.extend_from_slice(&node.sheet().facets);
-        self.done.push((minus, plus));
+        self.push(minus, plus);
     }
 
     /// The one-sided cases: the node lives on in the half `home`, the other half is clear of it.
     fn rebuild(&mut self, node: &Cut<S>, deep: Half, home: Half) -> Result<()> {
         let (minus, plus) = self.pop()?;
-        self.done.push(match home {
-            Half::Minus => (node.with_child(deep, minus), plus),
-            Half::Plus => (minus, node.with_child(deep, plus)),
-        });
+        match home {
+            Half::Minus => self.push(node.with_child(deep, minus), plus),
+            Half::Plus => self.push(minus, node.with_child(deep, plus)),
+        }
         Ok(())
     }
 
@@ -196,8 +219,15 @@ impl<S: Space> Splitter<S> {
         let (minus_minus, minus_plus) = self.pop()?;
         let minus = PartitionTree::cut(inner, minus_minus, plus_minus);
         let plus = PartitionTree::cut(outer, minus_plus, plus_plus);
-        self.done.push((minus, plus));
+        self.push(minus, plus);
         Ok(())
+    }
+
+    fn push(&mut self, minus: PartitionTree<S>, plus: PartitionTree<S>) {
+        self.watcher.tell(|| Seen::Halves {
+            roots: [Root::of(&minus), Root::of(&plus)],
+        });
+        self.done.push((minus, plus));
     }
 
     fn pop(&mut self) -> Result<(PartitionTree<S>, PartitionTree<S>)> {

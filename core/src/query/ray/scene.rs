@@ -116,9 +116,7 @@ impl<const D: usize> Scene<D> {
 
     /// A ray's parameter in model units per length of the given direction: correctly rounded.
     pub fn parameter(&self, at: &Ratio, exponent: i32) -> f64 {
-        let half = exponent / 2;
-        let steps = at.scaled_to_f64(self.pitch.exponent());
-        steps * power_of_two(half) * power_of_two(exponent - half)
+        parameter(self.pitch, at, exponent)
     }
 
     /// The point with barycentric coordinates in a facet, in model units.
@@ -134,6 +132,13 @@ impl<const D: usize> Scene<D> {
     pub fn order(&self, a: u32, b: u32) -> Ordering {
         self.numbers[a as usize].cmp(&self.numbers[b as usize])
     }
+}
+
+/// A ray's parameter in model units per length of the given direction: correctly rounded.
+pub fn parameter(pitch: Pitch, at: &Ratio, exponent: i32) -> f64 {
+    let half = exponent / 2;
+    let steps = at.scaled_to_f64(pitch.exponent());
+    steps * power_of_two(half) * power_of_two(exponent - half)
 }
 
 fn power_of_two(exponent: i32) -> f64 {

@@ -16,5 +16,5 @@ mod trace;
 mod walk;
 
 pub use cast::Cast;
-pub use trace::Trace;
+pub use trace::{StabEvent, Trace};
 pub use tree::StabTree;

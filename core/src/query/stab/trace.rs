@@ -1,4 +1,6 @@
-//! What a ray cost.
+//! What a ray cost, and what it did to the tree.
+
+use serde::{Deserialize, Serialize};
 
 /// Counts of one ray's way through a tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -9,4 +11,49 @@ pub struct Trace {
     pub leaves: u32,
     /// Facets tested, in leaves and in cuts.
     pub tests: u32,
+}
+
+/// A step of a ray through a tree that counts; facets by their places in the input.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum StabEvent {
+    /// A node is visited, an inner one or a leaf.
+    Visit {
+        /// The node.
+        node: u32,
+        /// T(v) after this visit.
+        visits: u64,
+        /// Whether it is a leaf.
+        leaf: bool,
+    },
+    /// A facet of a leaf's list or in a cut is tested.
+    Test {
+        /// The node.
+        node: u32,
+        /// The facet.
+        facet: u32,
+        /// Whether the ray meets it.
+        met: bool,
+    },
+    /// A facet of a leaf is hit within the leaf.
+    Count {
+        /// The leaf.
+        node: u32,
+        /// The facet.
+        facet: u32,
+        /// T(p) after this hit.
+        hits: u64,
+    },
+    /// A leaf is divided.
+    Divide {
+        /// The leaf, an inner node from now on.
+        node: u32,
+        /// The facet whose hyperplane is the cut.
+        facet: u32,
+        /// The facets in the cut.
+        coplanar: Vec<u32>,
+        /// The new leaves on the minus and the plus side.
+        children: [u32; 2],
+        /// L(v) of the new leaves, in the order of their heaps.
+        lists: [Vec<u32>; 2],
+    },
 }

@@ -12,7 +12,7 @@ use super::cast::Cast;
 use super::cut::Cut;
 use super::heap::{Entry, Heap};
 use super::node::{Content, Growth, Inner, Node};
-use super::trace::Trace;
+use super::trace::{StabEvent, Trace};
 use super::walk::Walk;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::Split;
@@ -20,6 +20,7 @@ use crate::interrupt::poll;
 use crate::query::ray::first::{Found, Query};
 use crate::query::ray::walk::clip;
 use crate::query::ray::{Ray, Scene};
+use crate::tree::trace::Watcher;
 
 /// A tree of supporting hyperplanes over the facets of a scene.
 #[derive(Debug)]
@@ -103,12 +104,22 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
 
     /// The first facet on a ray; counts visits and hits, and divides the leaves that are due.
     pub fn test_ray(&mut self, ray: &Ray<D>) -> (Option<Found<D>>, Trace) {
+        self.test_ray_watched(ray, &mut ())
+    }
+
+    /// Tests a ray as [`Self::test_ray`] does, and tells of visits, tests, counts and divisions.
+    pub fn test_ray_watched(
+        &mut self,
+        ray: &Ray<D>,
+        watcher: &mut impl Watcher<StabEvent>,
+    ) -> (Option<Found<D>>, Trace) {
         self.rays += 1;
         let mut trace = Trace::default();
         let mut due: SmallVec<[u32; 16]> = SmallVec::new();
         let found = {
             let query = Query::new(&self.scene, ray);
             let mut walk = Walk {
+                scene: &self.scene,
                 query: &query,
                 ray,
                 nodes: &mut self.nodes,
@@ -116,12 +127,14 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
                 best: None,
                 trace: &mut trace,
                 due: &mut due,
+                watcher,
             };
             walk.run(clip(ray, self.scene.cell()));
             walk.best.and_then(|best| query.found(&best))
         };
         for leaf in due {
             self.divide(leaf as usize);
+            watcher.tell(|| self.division(leaf));
         }
         (found, trace)
     }
@@ -133,6 +146,26 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         };
         if let [top, _, ..] = list.entries() {
             self.divide_by(at, top.facet);
+        }
+    }
+
+    /// The event of a leaf that was divided last.
+    fn division(&self, node: u32) -> StabEvent {
+        let number = |facet: &u32| self.scene.number(*facet);
+        let list = |child: u32| match &self.nodes[child as usize].content {
+            Content::Leaf(list) => list.entries().iter().map(|e| number(&e.facet)).collect(),
+            Content::Inner(_) => Vec::new(),
+        };
+        let (coplanar, children) = match &self.nodes[node as usize].content {
+            Content::Inner(inner) => (inner.coplanar.iter().map(number).collect(), inner.children),
+            Content::Leaf(_) => (Vec::new(), [node; 2]),
+        };
+        StabEvent::Divide {
+            node,
+            facet: coplanar.first().copied().unwrap_or(u32::MAX),
+            coplanar,
+            children,
+            lists: children.map(list),
         }
     }
 

@@ -4,11 +4,13 @@ use smallvec::SmallVec;
 
 use super::cast::Cast;
 use super::cut::Stab;
+use super::heap::Entry;
 use super::node::{Content, Growth, Inner, Node};
-use super::trace::Trace;
+use super::trace::{StabEvent, Trace};
 use crate::query::ray::filter::Probe;
 use crate::query::ray::first::{Candidate, Query};
-use crate::query::ray::Ray;
+use crate::query::ray::{Ray, Scene};
+use crate::tree::trace::Watcher;
 
 #[derive(Clone, Copy)]
 enum Open {
@@ -28,7 +30,8 @@ enum Far {
 type Stack = SmallVec<[Open; 64]>;
 
 /// One ray on its way.
-pub(super) struct Walk<'a, S: Cast<D>, const D: usize> {
+pub(super) struct Walk<'a, S: Cast<D>, W, const D: usize> {
+    pub(super) scene: &'a Scene<D>,
     pub(super) query: &'a Query<'a, D>,
     pub(super) ray: &'a Ray<D>,
     pub(super) nodes: &'a mut [Node<S, D>],
@@ -36,9 +39,10 @@ pub(super) struct Walk<'a, S: Cast<D>, const D: usize> {
     pub(super) best: Option<Candidate>,
     pub(super) trace: &'a mut Trace,
     pub(super) due: &'a mut SmallVec<[u32; 16]>,
+    pub(super) watcher: &'a mut W,
 }
 
-impl<S: Cast<D>, const D: usize> Walk<'_, S, D> {
+impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
     /// Visits what the ray meets between two depths, nearest first.
     pub(super) fn run(&mut self, span: Option<(f64, f64)>) {
         let mut open = Stack::new();
@@ -58,8 +62,14 @@ impl<S: Cast<D>, const D: usize> Walk<'_, S, D> {
     }
 
     fn visit(&mut self, node: u32, span: (f64, f64), open: &mut Stack) {
-        self.nodes[node as usize].visits += 1;
+        let visited = &mut self.nodes[node as usize];
+        visited.visits += 1;
         self.trace.nodes += 1;
+        self.watcher.tell(|| StabEvent::Visit {
+            node,
+            visits: visited.visits,
+            leaf: matches!(visited.content, Content::Leaf(_)),
+        });
         match &self.nodes[node as usize].content {
             Content::Leaf(_) => self.test_leaf(node, span.1),
             Content::Inner(inner) => push_parts(inner, self.ray, node, span, open),
@@ -73,7 +83,11 @@ impl<S: Cast<D>, const D: usize> Walk<'_, S, D> {
         };
         for facet in &inner.coplanar {
             self.trace.tests += 1;
-            self.query.offer(&mut self.best, *facet);
+            let met = self.query.offer(&mut self.best, *facet).is_some();
+            self.watcher.tell(|| {
+                let facet = self.scene.number(*facet);
+                StabEvent::Test { node, facet, met }
+            });
         }
         let Far::Child(child) = far else {
             return false;
@@ -94,6 +108,11 @@ impl<S: Cast<D>, const D: usize> Walk<'_, S, D> {
         for (place, entry) in list.entries().iter().enumerate() {
             self.trace.tests += 1;
             let depth = self.query.offer(&mut self.best, entry.facet);
+            let (facet, met) = (entry.facet, depth.is_some());
+            self.watcher.tell(|| {
+                let facet = self.scene.number(facet);
+                StabEvent::Test { node, facet, met }
+            });
             if depth.is_some_and(|d| d.low() <= to) {
                 hit.push(place);
             }
@@ -101,7 +120,13 @@ impl<S: Cast<D>, const D: usize> Walk<'_, S, D> {
         if let Growth::Visits(threshold) = self.growth {
             // Ascending, because a count changes no later place.
             for place in hit {
+                let Entry { facet, hits, .. } = list.entries()[place];
                 list.count_hit(place);
+                self.watcher.tell(|| StabEvent::Count {
+                    node,
+                    facet: self.scene.number(facet),
+                    hits: hits + 1,
+                });
             }
             if visits > threshold && list.len() > 1 {
                 self.due.push(node);

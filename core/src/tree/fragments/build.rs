@@ -3,11 +3,13 @@
 use super::axis::median_cut;
 use super::choice::Policy;
 use super::node::{Crossing, Fragment, FragmentTree, Node, NodeCut, Piece};
+use super::trace::{Candidate, Division, Reason};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::affine::{Affine, Polytope};
 use crate::geometry::side::{Half, Orientation, Split};
 use crate::interrupt::poll;
 use crate::tree::partition::SplitMix;
+use crate::tree::trace::Watcher;
 
 /// How a tree is to be built.
 #[derive(Clone, Debug)]
@@ -36,7 +38,19 @@ pub enum Plan<S: Affine> {
 ///
 /// # Errors
 /// `BadSnapshot` if given cuts do not suit the pieces.
-pub fn build<S: Affine>(mut pieces: Vec<Piece<S>>, plan: Plan<S>) -> Result<FragmentTree<S>> {
+pub fn build<S: Affine>(pieces: Vec<Piece<S>>, plan: Plan<S>) -> Result<FragmentTree<S>> {
+    build_watched(pieces, plan, &mut ())
+}
+
+/// Builds a tree and tells of each division; the tree is that of [`build`].
+///
+/// # Errors
+/// As for [`build`].
+pub fn build_watched<S: Affine, W: Watcher<Division>>(
+    mut pieces: Vec<Piece<S>>,
+    plan: Plan<S>,
+    watcher: &mut W,
+) -> Result<FragmentTree<S>> {
     let (chooser, region) = match plan {
         Plan::Policy {
             policy,
@@ -55,6 +69,7 @@ pub fn build<S: Affine>(mut pieces: Vec<Piece<S>>, plan: Plan<S>) -> Result<Frag
         tree: FragmentTree::empty(),
         open: Vec::new(),
         chooser,
+        watcher,
     };
     builder.push(Open {
         pieces,
@@ -83,20 +98,24 @@ enum Chooser {
 }
 
 impl Chooser {
-    fn choose<S: Affine>(&mut self, open: &Open<S>) -> Result<(NodeCut, S::Hyperplane)> {
+    fn choose<S: Affine>(
+        &mut self,
+        open: &Open<S>,
+        watcher: &mut impl Watcher<Candidate>,
+    ) -> Result<(NodeCut, S::Hyperplane, Reason)> {
         let pieces = &open.pieces;
         let (policy, top) = match self {
             Self::Given(cuts) => return given(cuts.next(), pieces),
             Self::Policy { policy, top } => (policy, *top),
         };
         if top.is_some_and(|leaf| pieces.len() > leaf) {
-            if let Some(found) = median_cut(pieces) {
-                return Ok(found);
+            if let Some((cut, hyperplane)) = median_cut(pieces) {
+                return Ok((cut, hyperplane, Reason::Median));
             }
         }
-        let pivot = &pieces[policy.pivot(pieces, open.region.as_ref())];
+        let pivot = &pieces[policy.pivot(pieces, open.region.as_ref(), watcher)];
         let cut = S::hyperplane(&pivot.fragment).clone();
-        Ok((NodeCut::Pivot(pivot.number), cut))
+        Ok((NodeCut::Pivot(pivot.number), cut, policy.reason()))
     }
 
     fn finish(self) -> Result<()> {
@@ -109,7 +128,10 @@ impl Chooser {
     }
 }
 
-fn given<S: Affine>(cut: Option<NodeCut>, pieces: &[Piece<S>]) -> Result<(NodeCut, S::Hyperplane)> {
+fn given<S: Affine>(
+    cut: Option<NodeCut>,
+    pieces: &[Piece<S>],
+) -> Result<(NodeCut, S::Hyperplane, Reason)> {
     let cut = cut.ok_or_else(|| unsuited("there are fewer cuts than regions with facets"))?;
     let hyperplane = match cut {
         NodeCut::Pivot(number) => pieces
@@ -119,7 +141,7 @@ fn given<S: Affine>(cut: Option<NodeCut>, pieces: &[Piece<S>]) -> Result<(NodeCu
         NodeCut::Axis { axis, at } => S::axis_cut(axis, at),
     };
     let hyperplane = hyperplane.ok_or_else(|| unsuited("a cut's facet is not in its region"))?;
-    Ok((cut, hyperplane))
+    Ok((cut, hyperplane, Reason::Given))
 }
 
 fn unsuited(why: &str) -> Error {
@@ -135,13 +157,14 @@ struct Open<S: Affine> {
     region: Option<Polytope<S>>,
 }
 
-struct Builder<S: Affine> {
+struct Builder<'a, S: Affine, W> {
     tree: FragmentTree<S>,
     open: Vec<Open<S>>,
     chooser: Chooser,
+    watcher: &'a mut W,
 }
 
-impl<S: Affine> Builder<S> {
+impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
     fn push(&mut self, open: Open<S>) {
         if !open.pieces.is_empty() {
             self.open.push(open);
@@ -150,19 +173,41 @@ impl<S: Affine> Builder<S> {
 
     fn divide(&mut self, open: Open<S>) -> Result<()> {
         let node = self.next_number()?;
-        let (cut, hyperplane) = self.chooser.choose(&open)?;
+        let mut candidates = Vec::new();
+        let (cut, hyperplane, reason) = if W::LISTENS {
+            self.chooser.choose(&open, &mut candidates)?
+        } else {
+            self.chooser.choose(&open, &mut ())?
+        };
         let [minus_region, plus_region] = match &open.region {
             Some(region) => region.divided(&hyperplane),
             None => [None, None],
         };
-        let start = narrow(self.tree.fragments.len())?;
+        let pieces = if W::LISTENS {
+            numbers(&open.pieces)
+        } else {
+            Vec::new()
+        };
+        let (start, crossed) = (self.tree.fragments.len(), self.tree.crossings.len());
         let [minus, plus] = self.distribute(open.pieces, &hyperplane, node);
-        let end = narrow(self.tree.fragments.len())?;
+        self.watcher.tell(|| Division {
+            node,
+            place: open.place,
+            depth: open.depth,
+            cut,
+            reason,
+            candidates,
+            pieces,
+            minus: numbers(&minus),
+            plus: numbers(&plus),
+            split: crossing(&self.tree.crossings[crossed..]),
+            coplanar: coplanar(&self.tree.fragments[start..]),
+        });
         self.hang(open.place, node);
         self.tree.nodes.push(Node {
             hyperplane,
             cut,
-            coplanar: start..end,
+            coplanar: narrow(start)?..narrow(self.tree.fragments.len())?,
             minus: None,
             plus: None,
             parent: open.place,
@@ -226,6 +271,19 @@ impl<S: Affine> Builder<S> {
         }
         [minus, plus]
     }
+}
+
+fn numbers<S: Affine>(pieces: &[Piece<S>]) -> Vec<u32> {
+    pieces.iter().map(|piece| piece.number).collect()
+}
+
+fn crossing(crossings: &[Crossing]) -> Vec<u32> {
+    crossings.iter().map(|crossing| crossing.piece).collect()
+}
+
+fn coplanar<S: Affine>(fragments: &[Fragment<S>]) -> Vec<u32> {
+    let number = |fragment: &Fragment<S>| fragment.piece.number;
+    fragments.iter().map(number).collect()
 }
 
 fn narrow(count: usize) -> Result<u32> {

@@ -1,9 +1,11 @@
 //! Pivot policies: whose hyperplane divides a region.
 
 use super::node::Piece;
+use super::trace::{Candidate, Reason};
 use crate::geometry::affine::{Affine, Polytope};
 use crate::geometry::side::Split;
 use crate::interrupt::poll;
+use crate::tree::trace::Watcher;
 
 /// How many candidates a policy compares at each node, evenly spaced in its list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +62,16 @@ impl Tally {
         tally
     }
 
+    fn candidate(&self, piece: u32, score: f64) -> Candidate {
+        Candidate {
+            piece,
+            minus: self.minus as u32,
+            plus: self.plus as u32,
+            splits: self.splits as u32,
+            score,
+        }
+    }
+
     /// By how many fragments the sides differ.
     fn skew(&self) -> f64 {
         self.minus.abs_diff(self.plus) as f64
@@ -77,20 +89,36 @@ impl Policy {
         matches!(self, Self::LeastCost(_))
     }
 
+    /// Why the pivot is the pivot.
+    pub(super) fn reason(&self) -> Reason {
+        match self {
+            Self::First => Reason::First,
+            Self::Random(_) => Reason::Random,
+            Self::LeastSplits(_) => Reason::LeastSplits,
+            Self::Balanced(_) => Reason::Balanced,
+            Self::Weighted(..) => Reason::Weighted,
+            Self::LeastCost(_) => Reason::LeastCost,
+        }
+    }
+
     /// The position in the list, which is not empty, of the piece that becomes the pivot.
     pub(super) fn pivot<S: Affine>(
         &self,
         pieces: &[Piece<S>],
         region: Option<&Polytope<S>>,
+        watcher: &mut impl Watcher<Candidate>,
     ) -> usize {
+        let mut best = |sample, penalty: &dyn Fn(&Tally, &S::Hyperplane) -> f64| {
+            best(pieces, sample, penalty, watcher)
+        };
         match *self {
             Self::First | Self::Random(_) => 0,
-            Self::LeastSplits(sample) => best(pieces, sample, |tally, _| tally.splits as f64),
-            Self::Balanced(sample) => best(pieces, sample, |tally, _| tally.skew()),
-            Self::Weighted(sample, alpha) => best(pieces, sample, |tally, _| {
+            Self::LeastSplits(sample) => best(sample, &|tally, _| tally.splits as f64),
+            Self::Balanced(sample) => best(sample, &|tally, _| tally.skew()),
+            Self::Weighted(sample, alpha) => best(sample, &|tally, _| {
                 alpha * tally.skew() + (1.0 - alpha) * tally.splits as f64
             }),
-            Self::LeastCost(sample) => best(pieces, sample, |tally, cut| {
+            Self::LeastCost(sample) => best(sample, &|tally, cut| {
                 let [minus, plus] = shares(region, cut);
                 minus * tally.minus as f64 + plus * tally.plus as f64
             }),
@@ -116,12 +144,17 @@ fn shares<S: Affine>(region: Option<&Polytope<S>>, cut: &S::Hyperplane) -> [f64;
 fn best<S: Affine>(
     pieces: &[Piece<S>],
     Sample(count): Sample,
-    penalty: impl Fn(&Tally, &S::Hyperplane) -> f64,
+    penalty: &dyn Fn(&Tally, &S::Hyperplane) -> f64,
+    watcher: &mut impl Watcher<Candidate>,
 ) -> usize {
     let stride = pieces.len().div_ceil(count.max(1)).max(1);
     let judged = (0..pieces.len()).step_by(stride).map(|candidate| {
-        let cut = S::hyperplane(&pieces[candidate].fragment);
-        (candidate, penalty(&Tally::of(pieces, cut), cut))
+        let Piece { fragment, number } = &pieces[candidate];
+        let cut = S::hyperplane(fragment);
+        let tally = Tally::of(pieces, cut);
+        let score = penalty(&tally, cut);
+        watcher.tell(|| tally.candidate(*number, score));
+        (candidate, score)
     });
     judged
         .min_by(|a, b| a.1.total_cmp(&b.1))

@@ -21,10 +21,12 @@ mod measure;
 mod node;
 mod order;
 mod perfect;
+mod trace;
 
-pub use build::{build, Plan};
+pub use build::{build, build_watched, Plan};
 pub use choice::{Policy, Sample};
 pub use measure::{measures, Measure};
 pub use node::{Crossing, Fragment, FragmentTree, Node, NodeCut, Piece};
 pub use order::{back_to_front, sides};
 pub use perfect::{perfect, PERFECT_LIMIT};
+pub use trace::{Candidate, Division, Reason};

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use crate::geometry::affine::{Affine, Polytope};
 use crate::geometry::side::Half;
 
@@ -24,7 +26,7 @@ pub struct Fragment<S: Affine> {
 }
 
 /// Where a node's hyperplane comes from: enough to build the same tree again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum NodeCut {
     /// The supporting hyperplane of the input piece with this number.
     Pivot(u32),

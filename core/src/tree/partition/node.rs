@@ -4,11 +4,13 @@ use std::fmt;
 use std::mem;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::geometry::side::{Half, Split};
 use crate::geometry::space::Space;
 
 /// What a leaf says about its region.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Label {
     /// The region belongs to the set.
     In,

@@ -1,0 +1,252 @@
+//! What splitting and merging trees do, node by node.
+//!
+//! The algorithms tell of shared nodes ([`Seen`]); a [`Journal`] numbers the nodes of both operands
+//! in preorder and keeps plain records ([`MergeStep`]). From the operands as lists of numbers and
+//! labels, the records lead to the same result without any geometry.
+
+use std::sync::Arc;
+
+use rustc_hash::FxHashMap;
+use serde::{Deserialize, Serialize};
+
+use super::case::SplitCase;
+use crate::geometry::space::Space;
+use crate::tree::partition::{Label, PartitionTree, Sheet};
+use crate::tree::trace::Watcher;
+
+/// A tree's root: a leaf, or what lies in its cut.
+#[derive(Clone, Debug)]
+pub enum Root<S: Space> {
+    /// An undivided region.
+    Leaf(Label),
+    /// A divided one; complements have the same sheets.
+    Cut(Arc<Sheet<S>>),
+}
+
+impl<S: Space> Root<S> {
+    pub(super) fn of(tree: &PartitionTree<S>) -> Self {
+        match tree {
+            PartitionTree::Leaf(label) => Self::Leaf(*label),
+            PartitionTree::Cut(cut) => Self::Cut(Arc::clone(cut.sheet())),
+        }
+    }
+}
+
+/// What happens, told by shared nodes.
+#[derive(Clone, Debug)]
+pub enum Seen<S: Space> {
+    /// A pair of trees of one region is to be combined.
+    Pair {
+        /// The part of the first operand.
+        a: Root<S>,
+        /// The part of the second.
+        b: Root<S>,
+        /// What becomes of them.
+        decision: Decision,
+    },
+    /// A subtree is to be split.
+    Split {
+        /// Its root.
+        root: Root<S>,
+        /// How the splitting hyperplane lies to it.
+        case: SplitCase,
+        /// Where the two cross: what lies in the cut on the minus and the plus side.
+        parts: Option<[Arc<Sheet<S>>; 2]>,
+    },
+    /// A subtree has been split.
+    Halves {
+        /// The roots on the minus and the plus side.
+        roots: [Root<S>; 2],
+    },
+    /// The combined subtrees of a node of the first operand have been joined.
+    Join {
+        /// The node's own sheet.
+        sheet: Arc<Sheet<S>>,
+        /// What it has become.
+        joined: Joined,
+    },
+}
+
+/// What becomes of a pair of trees of one region.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Decision {
+    /// The second tree is split by the first one's root; the halves are combined.
+    Divide,
+    /// A leaf, and why.
+    Leaf(Label, Because),
+    /// The first tree as it is, shared.
+    First(Because),
+    /// The complement of the first tree.
+    FirstComplement(Because),
+    /// The second tree as it is, shared.
+    Second(Because),
+    /// The complement of the second tree.
+    SecondComplement(Because),
+}
+
+/// What decides a pair of trees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Because {
+    /// The first tree is a leaf.
+    FirstIsLeaf,
+    /// The second tree is a leaf.
+    SecondIsLeaf,
+    /// Both are the same shared tree.
+    Same,
+    /// One is the complement of the other.
+    Complement,
+}
+
+/// What a node of the first operand has become.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Joined {
+    /// Itself: nothing below it changed.
+    Shared,
+    /// A new node with the same cut.
+    Rebuilt,
+    /// This leaf, because both its sides had become equal ones.
+    Collapsed(Label),
+}
+
+/// A tree's root by number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Name {
+    /// An undivided region.
+    Leaf(Label),
+    /// The inner node of the first operand with this place in preorder, minus before plus.
+    First(u32),
+    /// The inner node of the second operand, or a part of it.
+    Second(u32),
+}
+
+/// One step of splitting or merging, in the order of the work.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MergeStep {
+    /// A pair of trees of one region.
+    Pair {
+        /// The part of the first operand.
+        a: Name,
+        /// The part of the second.
+        b: Name,
+        /// What becomes of them.
+        decision: Decision,
+    },
+    /// A subtree is split by the first tree's cut chosen last.
+    Split {
+        /// The subtree's root.
+        root: Name,
+        /// How the splitting hyperplane lies to it.
+        case: SplitCase,
+    },
+    /// A subtree has been split.
+    Halves {
+        /// The root on the minus side.
+        minus: Name,
+        /// The root on the plus side.
+        plus: Name,
+    },
+    /// The combined subtrees of a node have been joined.
+    Join {
+        /// The node of the first operand.
+        node: Name,
+        /// What it has become.
+        joined: Joined,
+    },
+}
+
+/// A watcher that writes down the steps with the operands' nodes by number.
+///
+/// It holds what it has numbered, so that no address comes twice.
+#[derive(Debug)]
+pub struct Journal<S: Space> {
+    first: Numbers<S>,
+    second: Numbers<S>,
+    steps: Vec<MergeStep>,
+}
+
+type Numbers<S> = FxHashMap<*const Sheet<S>, (u32, Arc<Sheet<S>>)>;
+
+impl<S: Space> Journal<S> {
+    /// A journal of merging two trees, or of splitting the second one.
+    pub fn new(first: &PartitionTree<S>, second: &PartitionTree<S>) -> Self {
+        Self {
+            first: numbered(first),
+            second: numbered(second),
+            steps: Vec::new(),
+        }
+    }
+
+    /// What has been written down.
+    pub fn into_steps(self) -> Vec<MergeStep> {
+        self.steps
+    }
+
+    fn note(&mut self, seen: &Seen<S>) -> MergeStep {
+        match seen {
+            Seen::Pair { a, b, decision } => MergeStep::Pair {
+                a: self.first_name(a),
+                b: self.second_name(b),
+                decision: *decision,
+            },
+            Seen::Split { root, case, parts } => {
+                let name = self.second_name(root);
+                if let (Name::Second(number), Some(parts)) = (name, parts) {
+                    let part = |p: &Arc<_>| (Arc::as_ptr(p), (number, Arc::clone(p)));
+                    self.second.extend(parts.iter().map(part));
+                }
+                MergeStep::Split {
+                    root: name,
+                    case: *case,
+                }
+            }
+            Seen::Halves { roots } => MergeStep::Halves {
+                minus: self.second_name(&roots[0]),
+                plus: self.second_name(&roots[1]),
+            },
+            Seen::Join { sheet, joined } => MergeStep::Join {
+                node: self.first_name(&Root::Cut(Arc::clone(sheet))),
+                joined: *joined,
+            },
+        }
+    }
+
+    fn first_name(&self, root: &Root<S>) -> Name {
+        name(root, &self.first, Name::First)
+    }
+
+    fn second_name(&self, root: &Root<S>) -> Name {
+        name(root, &self.second, Name::Second)
+    }
+}
+
+impl<S: Space> Watcher<Seen<S>> for Journal<S> {
+    const LISTENS: bool = true;
+
+    fn tell(&mut self, event: impl FnOnce() -> Seen<S>) {
+        let step = self.note(&event());
+        self.steps.push(step);
+    }
+}
+
+fn name<S: Space>(root: &Root<S>, numbers: &Numbers<S>, make: impl Fn(u32) -> Name) -> Name {
+    match root {
+        Root::Leaf(label) => Name::Leaf(*label),
+        // All sheets that can come up are numbered; a strange one would get a number of no node.
+        Root::Cut(sheet) => make(numbers.get(&Arc::as_ptr(sheet)).map_or(u32::MAX, |e| e.0)),
+    }
+}
+
+/// The inner nodes of a tree in preorder, minus before plus, by what lies in their cuts.
+fn numbered<S: Space>(tree: &PartitionTree<S>) -> Numbers<S> {
+    let mut numbers = Numbers::default();
+    let mut pending = vec![tree.clone()];
+    while let Some(next) = pending.pop() {
+        if let PartitionTree::Cut(cut) = next {
+            let sheet = Arc::clone(cut.sheet());
+            let number = numbers.len() as u32;
+            numbers.insert(Arc::as_ptr(&sheet), (number, sheet));
+            pending.extend(cut.children());
+        }
+    }
+    numbers
+}

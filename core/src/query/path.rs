@@ -1,0 +1,336 @@
+//! The way of a point and of a ray through a tree of fragments, exact and step by step.
+//!
+//! A ray visits the child on the side of its origin first, then what lies in the cut, then the
+//! other child, and stops at the first hit. All depths are exact fractions. Children that the ray
+//! only touches in a point are visited, so that singular cases need no code.
+//!
+//! # Source
+//! Lecture notes on BSP trees, "Ray casting" and "Distribution optimized BSP"; Havran, Kopal,
+//! Bittner, Žára 1997 for the order of children.
+
+use serde::{Deserialize, Serialize};
+
+use crate::arith::Int;
+use crate::geometry::affine::{Affine, Viewpoint};
+use crate::geometry::side::{Half, Side};
+use crate::interrupt::poll;
+use crate::mesh::facets::Facet;
+use crate::mesh::grid::Pitch;
+use crate::query::ray::facet::meet;
+use crate::query::ray::scene::parameter;
+use crate::query::ray::{Ratio, Ray};
+use crate::query::stab::Cast;
+use crate::tree::fragments::FragmentTree;
+use crate::tree::trace::Watcher;
+
+/// A step of a point from the root down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PointStep {
+    /// The node.
+    pub node: u32,
+    /// The side of its hyperplane on which the point lies.
+    pub side: Side,
+}
+
+/// The nodes that a point passes, down to its leaf or to the first hyperplane it lies in.
+pub fn locate<S: Affine>(tree: &FragmentTree<S>, point: &Viewpoint) -> Vec<PointStep> {
+    let mut steps = Vec::new();
+    let mut next = (!tree.nodes().is_empty()).then_some(0);
+    while let Some(number) = next {
+        poll();
+        let node = &tree.nodes()[number as usize];
+        let side = point.side::<S>(&node.hyperplane);
+        steps.push(PointStep { node: number, side });
+        next = match side {
+            Side::Minus => node.minus,
+            Side::Plus => node.plus,
+            Side::On => None,
+        };
+    }
+    steps
+}
+
+/// What happens to a ray on its way; parameters are in model units per length of the direction.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum RayEvent {
+    /// An inner node is visited.
+    Visit {
+        /// The node.
+        node: u32,
+        /// Where the ray enters the node's region.
+        from: f64,
+        /// Where it leaves the region; `None` if it does not.
+        to: Option<f64>,
+        /// The side of the hyperplane on which the ray starts: the near child.
+        near: Side,
+        /// Where the ray's line crosses the hyperplane; `None` if it runs beside or within.
+        at: Option<f64>,
+    },
+    /// A piece in a node's hyperplane is tested.
+    Test {
+        /// The node.
+        node: u32,
+        /// The piece.
+        piece: u32,
+        /// Where the ray meets it.
+        at: Option<f64>,
+    },
+    /// A leaf, which is an empty region, is stabbed.
+    Leaf {
+        /// The node above; `None` for a tree without nodes.
+        place: Option<(u32, Half)>,
+        /// Where the ray enters the region.
+        from: f64,
+        /// Where it leaves the region; `None` if it does not.
+        to: Option<f64>,
+    },
+}
+
+/// What a ray met first, and what it cost.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RayPath {
+    /// The piece and the parameter, correctly rounded.
+    pub hit: Option<(u32, f64)>,
+    /// Inner nodes visited.
+    pub nodes: u64,
+    /// Leaves stabbed.
+    pub leaves: u64,
+    /// Pieces tested.
+    pub tests: u64,
+}
+
+impl RayPath {
+    /// C(T): all nodes visited, leaves among them.
+    pub fn cost(&self) -> u64 {
+        self.nodes + self.leaves
+    }
+}
+
+/// The first piece on a ray.
+///
+/// Of several pieces at one point it is the one that the tree meets first, and of those in one
+/// node the first of the input.
+///
+/// `facets` are those of the tree, by the numbers of its pieces.
+pub fn cast_ray<S: Cast<D> + Affine, const D: usize>(
+    tree: &FragmentTree<S>,
+    facets: &[Facet],
+    pitch: Pitch,
+    ray: &Ray<D>,
+    watcher: &mut impl Watcher<RayEvent>,
+) -> RayPath {
+    let mut walk = Walk {
+        tree,
+        facets,
+        pitch,
+        ray,
+        best: None,
+        path: RayPath {
+            hit: None,
+            nodes: 0,
+            leaves: 0,
+            tests: 0,
+        },
+        watcher,
+    };
+    walk.run();
+    let mut path = walk.path;
+    let best = walk.best;
+    path.hit = best.map(|(piece, at)| (piece, parameter(pitch, &at, ray.exponent())));
+    path
+}
+
+/// A stretch of the ray; without an end it is unbounded.
+#[derive(Clone, Copy)]
+struct Stretch {
+    from: Ratio,
+    to: Option<Ratio>,
+}
+
+impl Stretch {
+    fn before(&self, at: Ratio) -> Self {
+        let to = Some(self.to.map_or(at, |to| to.min(at)));
+        Self { to, ..*self }
+    }
+
+    fn after(&self, at: Ratio) -> Self {
+        let from = self.from.max(at);
+        Self { from, ..*self }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.to.is_some_and(|to| to < self.from)
+    }
+}
+
+enum Open {
+    /// A child, perhaps empty, at this place.
+    Child(Option<u32>, Option<(u32, Half)>, Stretch),
+    /// What lies in a node's hyperplane.
+    Cut(u32, Stretch),
+}
+
+impl Open {
+    fn stretch(&self) -> &Stretch {
+        match self {
+            Self::Child(_, _, stretch) | Self::Cut(_, stretch) => stretch,
+        }
+    }
+}
+
+struct Walk<'a, S: Affine, W, const D: usize> {
+    tree: &'a FragmentTree<S>,
+    facets: &'a [Facet],
+    pitch: Pitch,
+    ray: &'a Ray<D>,
+    best: Option<(u32, Ratio)>,
+    path: RayPath,
+    watcher: &'a mut W,
+}
+
+impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D> {
+    fn run(&mut self) {
+        let whole = Stretch {
+            from: Ratio::ZERO,
+            to: None,
+        };
+        let root = (!self.tree.nodes().is_empty()).then_some(0);
+        let mut open = vec![Open::Child(root, None, whole)];
+        while let Some(next) = open.pop() {
+            poll();
+            let stretch = next.stretch();
+            let late = self.best.is_some_and(|(_, at)| at <= stretch.from);
+            if late || stretch.is_empty() {
+                continue;
+            }
+            match next {
+                Open::Child(None, place, stretch) => self.stab(place, &stretch),
+                Open::Child(Some(node), _, stretch) => self.visit(node, stretch, &mut open),
+                Open::Cut(node, _) => self.test(node),
+            }
+        }
+    }
+
+    fn stab(&mut self, place: Option<(u32, Half)>, stretch: &Stretch) {
+        self.path.leaves += 1;
+        let (pitch, exponent) = (self.pitch, self.ray.exponent());
+        self.watcher.tell(|| RayEvent::Leaf {
+            place,
+            from: parameter(pitch, &stretch.from, exponent),
+            to: stretch.to.map(|to| parameter(pitch, &to, exponent)),
+        });
+    }
+
+    fn visit(&mut self, number: u32, stretch: Stretch, open: &mut Vec<Open>) {
+        self.path.nodes += 1;
+        let node = &self.tree.nodes()[number as usize];
+        let crossing = Crossing::of::<S, D>(&node.hyperplane, self.ray);
+        let (pitch, exponent) = (self.pitch, self.ray.exponent());
+        let units = |at: Ratio| parameter(pitch, &at, exponent);
+        self.watcher.tell(|| RayEvent::Visit {
+            node: number,
+            from: units(stretch.from),
+            to: stretch.to.map(units),
+            near: crossing.start,
+            at: crossing.at.map(units),
+        });
+        let child = |half: Half, stretch| {
+            let link = match half {
+                Half::Minus => node.minus,
+                Half::Plus => node.plus,
+            };
+            Open::Child(link, Some((number, half)), stretch)
+        };
+        match (crossing.at, crossing.first) {
+            (None, Some(half)) => open.push(child(half, stretch)),
+            (None, None) => open.extend([
+                child(Half::Plus, stretch),
+                child(Half::Minus, stretch),
+                Open::Cut(number, stretch),
+            ]),
+            (Some(at), first) => {
+                let first = first.unwrap_or(Half::Minus);
+                let beyond = stretch.after(at);
+                open.push(child(first.opposite(), beyond));
+                if at >= stretch.from {
+                    open.push(Open::Cut(number, beyond));
+                }
+                open.push(child(first, stretch.before(at)));
+            }
+        }
+    }
+
+    fn test(&mut self, number: u32) {
+        let node = &self.tree.nodes()[number as usize];
+        let range = node.coplanar.start as usize..node.coplanar.end as usize;
+        for fragment in &self.tree.fragments()[range] {
+            let piece = fragment.piece.number;
+            let at = meeting::<D>(&self.facets[piece as usize], self.ray);
+            self.path.tests += 1;
+            let (pitch, exponent) = (self.pitch, self.ray.exponent());
+            self.watcher.tell(|| RayEvent::Test {
+                node: number,
+                piece,
+                at: at.map(|at| parameter(pitch, &at, exponent)),
+            });
+            let Some(at) = at else {
+                continue;
+            };
+            let better = |(kept, best): (u32, Ratio)| (at, piece) < (best, kept);
+            if self.best.is_none_or(better) {
+                self.best = Some((piece, at));
+            }
+        }
+    }
+}
+
+/// How a ray and a hyperplane lie to each other.
+struct Crossing {
+    /// The side on which the ray starts.
+    start: Side,
+    /// Where the ray's line crosses; `None` if it runs beside or within.
+    at: Option<Ratio>,
+    /// The half that comes first on the line; `None` if the line runs within.
+    first: Option<Half>,
+}
+
+impl Crossing {
+    fn of<S: Cast<D>, const D: usize>(cut: &S::Hyperplane, ray: &Ray<D>) -> Self {
+        let (normal, offset) = S::coefficients(cut);
+        let rise = |k: usize| Int::<2>::from_i128(normal[k]).mul_i128(ray.direction()[k]);
+        let term = |k: usize| Int::<2>::from_i128(normal[k]).mul_i64(ray.origin()[k]);
+        let slope: Int<4> = (0..D).fold(Int::ZERO, |sum, k| sum + rise(k));
+        let value: Int<3> = (0..D).fold(offset, |sum, k| sum + term(k));
+        let start = Side::from_sign(value.signum());
+        let first = if slope.is_zero() {
+            start
+        } else {
+            Side::from_sign(-slope.signum())
+        };
+        Self {
+            start,
+            at: (!slope.is_zero()).then(|| Ratio::new(-value, slope)),
+            first: match first {
+                Side::Minus => Some(Half::Minus),
+                Side::Plus => Some(Half::Plus),
+                Side::On => None,
+            },
+        }
+    }
+}
+
+/// Where a ray first meets a convex facet, as a fan of facets of `D` corners.
+fn meeting<const D: usize>(facet: &Facet, ray: &Ray<D>) -> Option<Ratio> {
+    let corner = |i: usize| -> [f64; D] { std::array::from_fn(|k| facet.corners[i][k] as f64) };
+    let last = facet.corners.len();
+    let parts = (D.max(1) - 1..last).map(|end| -> [[f64; D]; D] {
+        std::array::from_fn(|i| match i {
+            0 => corner(0),
+            _ => corner(end + 1 + i - D),
+        })
+    });
+    parts
+        .filter_map(|part| meet(ray, &part))
+        .map(|meeting| meeting.at)
+        .min()
+}
