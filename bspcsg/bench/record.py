@@ -61,7 +61,7 @@ def read(path: Path) -> dict[str, Any]:
     except (ValueError, RecursionError):
         record = None
     if not isinstance(record, dict) or record.get("type") != "bench":
-        message = f"{path}: this is no record; bspcsg bench --json writes such files."
+        message = f"{path}: this is no record; bspcsg bench -o writes such files."
         raise FormatError(message, "unreadable")
     if record.get("schema") != SCHEMA:
         said = f"schema {record.get('schema')}, and this version reads {SCHEMA}"

@@ -1,6 +1,5 @@
 """One drawing of one file, from reading to telling what came out."""
 
-import time
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import FormatError
-from . import output
-from .files import STREAM, Inputs, put, refuse_unwritable, shown
+from . import clock, output
+from .files import STREAM, Inputs, is_dropped, put, refuse_unwritable, shown
 from .output import Output
 
 if TYPE_CHECKING:
@@ -49,12 +48,11 @@ class Drawing(ABC):
         from ..parameters import set_threads
 
         set_threads(self.settings["threads"])
-        began = time.perf_counter()
         refuse_unwritable(self.target, self.settings["overwrite"])
         self.inputs.refuse_early([self.file])
         data, words, values = self.drawn()
         put(self.target, [data], self.settings["overwrite"])
-        seconds = time.perf_counter() - began
+        seconds = clock.elapsed()
         names = {"file": str(self.file), "output": str(self.target)}
         document = {**names, **values, "seconds": round(seconds, 4)}
         self.out.result(f"{shown(self.target)}  {words}  {seconds:.2f} s", document)
@@ -78,6 +76,8 @@ class Drawing(ABC):
             suffix = f".{form.lower().removeprefix('.')}"
             if suffix not in self._suffixes:
                 raise click.UsageError(f"--to: {form!r} cannot be drawn; it takes {known}.")
+        elif is_dropped(self.target):
+            suffix = self._suffixes[0]
         elif self._is_stream:
             raise click.UsageError(f"to write to standard output, say the format: --to {known}.")
         else:

@@ -14,6 +14,7 @@ _AGAIN = 0.01
 try:
     import signal
     import sys
+    import time
     from types import FrameType
 except KeyboardInterrupt:
     os._exit(_INTERRUPTED)
@@ -65,6 +66,7 @@ def _replace(old: object, new: object) -> None:
 
 def main() -> None:
     """Run the command line and end the process with its exit code."""
+    began = time.perf_counter()
     _replace(signal.default_int_handler, _end_quietly)
     from . import main as command_line
 
@@ -72,7 +74,7 @@ def main() -> None:
         # From here on files may be open, which an exception closes and takes away.
         sys.unraisablehook = _catch_lost
         _replace(_end_quietly, _end_in_order)
-        command_line.main()
+        command_line.main(began=began)
     except KeyboardInterrupt:
         _end_quietly()
     finally:

@@ -13,7 +13,7 @@ import click
 from ..errors import Finding, FormatError, InvalidMeshError
 from .lengths import MILLIMETRES
 from .output import Output, counted, discard_output
-from .scripts import is_script, made_by
+from .scripts import STREAMED, SUFFIXES, made_by
 
 if TYPE_CHECKING:
     from ..formats.raw import RawMesh
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 #: The name that stands for standard input or standard output.
 STREAM = "-"
+
+#: The format of what nobody keeps and for which none is said: one that keeps all digits.
+_ANY = ".ply"
 
 #: What can be done where a mesh is refused because it is not closed.
 ON_INVALID = "  --on-invalid repair fills it; --on-invalid warn goes on without it."
@@ -71,11 +74,19 @@ class Inputs:
         for path in paths:
             if str(path) == STREAM and not self.suffix:
                 raise click.UsageError("to read standard input, say its format: --from stl.")
+            if self.is_script(path) and self.suffix_of(path) != path.suffix.lower():
+                self._refuse_programs(path)
             if not path.suffix and path.is_dir():
                 message = f"{path}: this is a folder; name the files in it, as in {path / '*.stl'}."
                 raise FormatError(message, "unreadable")
-            if self.suffix_of(path) != self.suffix and not is_script(path):
+            if self.suffix_of(path) != self.suffix and not self.is_script(path):
                 format_of(path)
+
+    def _refuse_programs(self, path: Path) -> None:
+        """Refuse scripts that other programs read, where they have no name of their own."""
+        if self.suffix not in STREAMED:
+            message = f"{shown(path)}: {self.suffix} scripts are run by name; save it to a file."
+            raise click.UsageError(message)
 
     def tell_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
         """Say once which inputs have no unit although their outputs state one."""
@@ -84,7 +95,7 @@ class Inputs:
         unknown = [
             path
             for path, target in pairs
-            if not is_script(path)
+            if not self.is_script(path)
             and FORMATS[target.suffix.lower()].unit
             and not FORMATS[self.suffix_of(path)].unit
         ]
@@ -99,19 +110,23 @@ class Inputs:
         from ..formats.files import FORMATS
 
         own = path.suffix.lower()
-        return own if own in FORMATS or not self.suffix else self.suffix
+        return own if own in FORMATS or own in SUFFIXES or not self.suffix else self.suffix
+
+    def is_script(self, path: Path) -> bool:
+        """Return whether a file is read as a script."""
+        return self.suffix_of(path) in SUFFIXES
 
     def up_of(self, path: Path) -> str:
         """Return the axis that is up in a file, as is usual for its format."""
         from ..formats.files import FORMATS
 
-        return "z" if is_script(path) else FORMATS[self.suffix_of(path)].up
+        return "z" if self.is_script(path) else FORMATS[self.suffix_of(path)].up
 
     def raw(self, path: Path) -> "RawMesh":
         """Read a mesh, or make that of a script, in millimetres if a unit is known or said."""
         from ..formats.files import decoded, read_as
 
-        if is_script(path):
+        if self.is_script(path):
             raw = self._mesh_of_script(path)
         elif str(path) == STREAM:
             raw = decoded(STREAM, sys.stdin.buffer.read(), self.suffix)
@@ -123,17 +138,23 @@ class Inputs:
         vertices = raw.vertices if scale == 1 else raw.vertices * scale
         return replace(raw, vertices=vertices, unit="mm")
 
+    def _made_by(self, path: Path) -> "Solid":
+        """Return the solid of a script, which is text if its name does not say what it is."""
+        if path.suffix.lower() in SUFFIXES:
+            return made_by(path, self.out)
+        return made_by(path, self.out, _text_of(path), self.suffix)
+
     def _mesh_of_script(self, path: Path) -> "RawMesh":
         from ..formats.said import said_of, saying
 
-        mesh = made_by(path, self.out).normalized().to_mesh()
+        mesh = self._made_by(path).normalized().to_mesh()
         raw = saying(mesh, said_of(mesh))
         return replace(raw, name=path.stem, is_empty_set=not len(mesh.faces))
 
     def solid(self, path: Path) -> "Solid":
         """Read a solid, or make that of a script, and tell what was noteworthy about the file."""
-        if is_script(path):
-            made = made_by(path, self.out)
+        if self.is_script(path):
+            made = self._made_by(path)
             return made if self.unit is None else made.scale(MILLIMETRES[self.unit])
         raw = self.raw(path)
         solid = self.as_solid(raw, path)
@@ -223,7 +244,7 @@ class Target:
     @classmethod
     def of(cls, path: Path, settings: dict[str, Any]) -> "Target":
         """Return the target that the options of a verb say."""
-        suffix = settings.get("to_format") or path.suffix
+        suffix = settings.get("to_format") or path.suffix or (_ANY if is_dropped(path) else "")
         return cls(path, suffix, settings["text"], settings["overwrite"], settings["digits"])
 
     @property
@@ -271,7 +292,7 @@ class Target:
         """Write the files that go beside the one that was written; a stream has none."""
         from ..formats.files import write_beside
 
-        if not self.is_stream:
+        if not self.is_stream and not is_dropped(self.path):
             write_beside(self.path, files)
 
 
@@ -315,10 +336,27 @@ def stream_text() -> str:
     FormatError
         If it is not UTF-8.
     """
+    return _decoded(sys.stdin.buffer.read(), STREAM)
+
+
+def _text_of(path: Path) -> str:
+    """Read a file or standard input as text."""
+    from ..formats.source import limited_content
+
+    if str(path) == STREAM:
+        return stream_text()
     try:
-        return sys.stdin.buffer.read().decode("utf-8")
+        return _decoded(limited_content(path), str(path))
+    except OSError as error:
+        message = f"{path}: cannot read this file: {error.strerror}."
+        raise FormatError(message, "unreadable") from error
+
+
+def _decoded(data: bytes, name: str) -> str:
+    try:
+        return data.decode("utf-8")
     except UnicodeDecodeError as error:
-        message = f"{STREAM}: this is no text: byte {error.start} is no UTF-8."
+        message = f"{name}: this is no text: byte {error.start} is no UTF-8."
         raise FormatError(message, "syntax", [error.start]) from error
 
 
@@ -326,7 +364,7 @@ def refuse_unwritable(path: Path, overwrite: bool = True) -> None:
     """Refuse a file that is there and to be kept, or in a folder that is missing or forbidden."""
     if str(path) == STREAM:
         return
-    if not overwrite and os.path.lexists(path):
+    if not overwrite and os.path.lexists(path) and not is_dropped(path):
         message = f"{path}: this file is there already; --overwrite replaces it."
         raise FormatError(message, "unwritable")
     refuse_folder(path)
@@ -334,10 +372,26 @@ def refuse_unwritable(path: Path, overwrite: bool = True) -> None:
 
 def refuse_folder(path: Path) -> None:
     """Refuse a file to be written to a folder that is not there or forbidden."""
+    if is_dropped(path):
+        return
     folder = path.parent
     if not folder.is_dir() or not os.access(folder, os.W_OK):
         message = f"{path}: there is no folder {folder} that can be written to."
         raise FormatError(message, "unwritable")
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder for files, and those around it."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        message = f"{folder}: cannot make this folder: {error.strerror}."
+        raise FormatError(message, "unwritable") from error
+
+
+def is_dropped(path: Path) -> bool:
+    """Whether what is written there is kept by nobody."""
+    return str(path) == os.devnull
 
 
 def is_among(path: Path, others: Iterable[Path]) -> bool:
@@ -352,6 +406,8 @@ def shown(path: Path) -> str:
 
 def expanded(pattern: Path, replacement: str) -> Path:
     """Return a path with a text for each ``%`` in its last part, or else before its suffix."""
+    if is_dropped(pattern):
+        return pattern
     if "%" in pattern.name:
         return pattern.with_name(pattern.name.replace("%", replacement))
     return pattern.with_name(f"{pattern.stem}-{replacement}{pattern.suffix}")

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import output
+from . import clock, output, status
 from .files import Inputs, Target, shown
 from .output import Output, counted
 
@@ -44,7 +44,7 @@ class Job(ABC):
         self.target = Target.of(target, settings)
         self.out = Output.of(settings, self.target.is_stream)
         self.inputs = Inputs.of(self.out, settings)
-        self.seconds: dict[str, float] = {}
+        self.seconds: dict[str, float] = {"start": round(clock.elapsed(), 4)}
         self._lost: tuple[Finding, ...] = ()
         self._noticed: tuple[Finding, ...] = ()
         self._last = time.perf_counter()
@@ -77,10 +77,12 @@ class Job(ABC):
         set_threads(self.settings["threads"])
         self.target.refuse_early(self.out.as_json)
         self.refuse_inputs()
+        status.tell(f"{self.op}: evaluating")
         result = self.combined()
         mesh = self._mesh_of(result)
         self.lap("combine")
         is_checked = self.settings["check"] != "off"
+        status.tell(f"{self.op}: comparing with manifold3d" if is_checked else self.op)
         report = self.compared(result) if is_checked else None
         self.lap("check")
         if report is not None and report.verdict == "subject failed":
@@ -88,6 +90,7 @@ class Job(ABC):
             return output.FOUND
         if self.settings["tolerance"]:
             result, mesh = self._simplified(result, mesh)
+        status.tell(f"{self.op}: writing {shown(self.target.path)}")
         self._lost = self.target.write(mesh)
         for finding in self._lost:
             self.out.finding(shown(self.target.path), finding)
@@ -130,7 +133,7 @@ class Job(ABC):
                 self.out.finding(name, finding)
         for note in () if report is None else report.notes:
             self.out.detail(f"note: {note}")
-        line = summary(name, mesh, sum(self.seconds.values()))
+        line = summary(name, mesh, True)
         if report is not None:
             line = f"{line}\n  check: {report.summary()}"
         elif self.settings["check"] != "off":
@@ -155,7 +158,7 @@ class Job(ABC):
             "findings": output.finding_values(self._findings(result) + self._lost),
             "check": None if report is None else report.to_dict(),
             "certificate": certificate_values(mesh),
-            "seconds": self.seconds,
+            "seconds": {**self.seconds, "total": round(clock.elapsed(), 4)},
         }
 
     def lap(self, name: str) -> None:
@@ -202,8 +205,8 @@ def _exact_volume(result: "Solid", mesh: "Mesh") -> str | None:
     return str(volume) if longest <= _EXACT_BITS else None
 
 
-def summary(name: str, mesh: "Mesh", seconds: float | None) -> str:
-    """Return one line about a mesh that was written."""
+def summary(name: str, mesh: "Mesh", timed: bool) -> str:
+    """Return one line about a mesh that was written, maybe with the seconds that it took."""
     words = [name, "empty"]
     if len(mesh.faces):
         triangles, surfaces = (
@@ -212,4 +215,4 @@ def summary(name: str, mesh: "Mesh", seconds: float | None) -> str:
         )
         measures = [f"genus {mesh.genus}", f"volume {mesh.volume:.9g}", "closed"]
         words = [name, triangles, surfaces, *measures]
-    return "  ".join(words if seconds is None else [*words, f"{seconds:.2f} s"])
+    return "  ".join([*words, f"{clock.elapsed():.2f} s"] if timed else words)

@@ -12,7 +12,7 @@ import click
 
 from .._core import __version__
 from ..errors import BspcsgError, FormatError, InternalError
-from . import output
+from . import clock, output, status, terminal
 
 _EPILOG = """\b
 Exit codes:
@@ -121,13 +121,13 @@ def commands() -> None:
     """
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line and end the process with its exit code."""
+def main(arguments: Sequence[str] | None = None, began: float | None = None) -> None:
+    """Run the command line, which began at some moment, and end the process with its exit code."""
     _fill_closed_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors=_ERRORS)
-    sys.exit(run(sys.argv[1:] if arguments is None else arguments))
+    sys.exit(run(sys.argv[1:] if arguments is None else arguments, began))
 
 
 def _fill_closed_streams() -> None:
@@ -143,8 +143,9 @@ def _fill_closed_streams() -> None:
                 setattr(sys, name, os.fdopen(handle, "w" if number else "r", encoding="utf-8"))
 
 
-def run(arguments: Sequence[str]) -> int:
+def run(arguments: Sequence[str], began: float | None = None) -> int:
     """Run the command line and return its exit code; no exception leaves but with ``--debug``."""
+    clock.start(began)
     try:
         code = _invoked(list(arguments))
         sys.stdout.flush()
@@ -160,7 +161,7 @@ def run(arguments: Sequence[str]) -> int:
         click.echo(error.format_message(), err=True)
         return output.USAGE
     except click.ClickException as error:
-        return _usage_error(error)
+        return _usage_error(error, _asks_for_json(arguments))
     except Exception as error:
         if "--debug" in arguments:
             raise
@@ -192,22 +193,30 @@ def _invoked(arguments: list[str]) -> int:
         from click.shell_completion import shell_complete
 
         return shell_complete(commands, {}, "bspcsg", _COMPLETE, os.environ[_COMPLETE])
-    with commands.make_context("bspcsg", arguments, obj=tuple(arguments)) as context:
+    quiet = bool({"-q", "--quiet"}.intersection(arguments))
+    with (
+        commands.make_context("bspcsg", arguments, obj=tuple(arguments)) as context,
+        status.watched(arguments[0], quiet),
+    ):
         code = commands.invoke(context)
     return code if isinstance(code, int) else output.DONE
 
 
-def _usage_error(error: click.ClickException) -> int:
+def _usage_error(error: click.ClickException, as_json: bool) -> int:
     context = error.ctx if isinstance(error, click.UsageError) else None
-    click.echo(f"bspcsg: error: {error.format_message()}", err=True)
+    message = error.format_message()
+    terminal.say_error(message)
+    if as_json:
+        values = {"code": "usage", "message": message, "where": []}
+        output.print_error(values, error.exit_code)
     if context is not None:
         click.echo(f"  Try: {context.command_path} --help", err=True)
     return error.exit_code
 
 
 def _asks_for_json(arguments: Sequence[str]) -> bool:
-    """Whether a document is wanted on standard output; bench names a file with the option."""
-    return "--json" in arguments and arguments[0] != "bench"
+    """Whether a document is wanted on standard output."""
+    return "--json" in arguments
 
 
 def _failed(error: Exception, as_json: bool) -> int:

@@ -9,6 +9,7 @@ import click
 
 from ..parameters import MOST_PITCH, MOST_THREADS
 from .lengths import MILLIMETRES, as_length
+from .scripts import STREAMED, SUFFIXES
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
@@ -36,6 +37,21 @@ _COMMON = [
 ]
 
 
+def _formats(context: click.Context, option: click.Parameter, begun: str) -> list[str]:
+    """Return the formats whose names begin so, for whoever completes a line."""
+    from ..formats.files import FORMATS
+
+    known = (*FORMATS, *(STREAMED if option.name == "from_format" else ()))
+    names = sorted(suffix.removeprefix(".") for suffix in known)
+    return [name for name in names if name.startswith(begun.lower())]
+
+
+def _as_source(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
+    """Return the suffix of a format or of a script's language, with or without its dot."""
+    suffix = "" if value is None else f".{value.lower().lstrip('.')}"
+    return suffix if suffix in SUFFIXES else _as_suffix(context, option, value)
+
+
 def _as_suffix(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
     """Return the suffix of a format given with or without its dot."""
     from ..formats.files import FORMATS
@@ -54,8 +70,9 @@ _READING = [
         "--from",
         "from_format",
         metavar="FORMAT",
-        callback=_as_suffix,
-        help="Format of standard input, and of files without a known suffix, e.g. stl.",
+        callback=_as_source,
+        shell_complete=_formats,
+        help="Format of standard input, and of files without a known suffix, e.g. stl or csg.",
     ),
     click.option(
         "--unit",
@@ -92,6 +109,7 @@ _WRITING = [
         "to_format",
         metavar="FORMAT",
         callback=_as_suffix,
+        shell_complete=_formats,
         help="Format of the output, e.g. ply.",
     ),
     click.option("--ascii", "text", is_flag=True, help="Write STL and PLY as text."),

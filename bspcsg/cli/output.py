@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from ..errors import BspcsgError, Finding, FormatError, InternalError, MissingPartError
+from . import status, terminal
 
 #: Version of the JSON documents.
 SCHEMA = 1
@@ -69,14 +70,17 @@ class Output:
     def result(self, line: str, document: dict[str, Any]) -> None:
         """Print a result, as text or as the document."""
         if self.as_json:
-            click.echo(json.dumps({"schema": SCHEMA, **document}, allow_nan=False))
+            with status.hidden():
+                click.echo(json.dumps({"schema": SCHEMA, **document}, allow_nan=False))
         elif line and not (self.taken and self.verbosity < 0):
-            click.echo(line, err=self.taken)
+            with status.hidden():
+                click.echo(line, err=self.taken)
 
     def detail(self, line: str) -> None:
         """Say on standard error what only ``--verbose`` asks for."""
         if self.verbosity > 0:
-            click.echo(line, err=True)
+            with status.hidden():
+                click.echo(line, err=True)
 
     @property
     def advises(self) -> bool:
@@ -86,19 +90,19 @@ class Output:
     def note(self, line: str) -> None:
         """Say on standard error what ``--quiet`` silences."""
         if self.verbosity >= 0:
-            click.echo(f"note: {line}", err=True)
+            terminal.say("note", line)
 
     def warning(self, line: str) -> None:
         """Say on standard error what ``--quiet`` silences, but with more weight."""
         if self.verbosity >= 0:
-            click.echo(f"warning: {line}", err=True)
+            terminal.say("warning", line)
 
     def finding(self, name: str, finding: Finding) -> None:
         """Say on standard error what was noteworthy about a file."""
         least = -1 if finding.severity == "error" else 0
         if self.verbosity >= least:
             said = f"{finding.message}{_places(finding)}"
-            click.echo(f"{finding.severity}: {name}: {said}", err=True)
+            terminal.say(finding.severity, f"{name}: {said}")
 
 
 def _places(finding: Finding) -> str:
@@ -125,11 +129,20 @@ def exit_code_of(error: BspcsgError) -> int:
 def tell_error(error: BspcsgError, as_json: bool) -> int:
     """Say what failed, on standard error and as JSON if that was asked for."""
     code = exit_code_of(error)
-    click.echo(f"bspcsg: error: {error.message}", err=True)
+    terminal.say_error(error.message)
     if as_json:
-        said = {"code": error.code, "message": error.message, "where": list(error.where)}
-        click.echo(json.dumps({"schema": SCHEMA, "error": said, "exit": code}))
+        print_error(error_values(error), code)
     return code
+
+
+def print_error(values: dict[str, Any], code: int) -> None:
+    """Print what failed as the one document on standard output."""
+    click.echo(json.dumps({"schema": SCHEMA, "error": values, "exit": code}))
+
+
+def error_values(error: BspcsgError) -> dict[str, Any]:
+    """Return an error as JSON values."""
+    return {"code": error.code, "message": error.message, "where": list(error.where)}
 
 
 def discard_output() -> None:
@@ -144,7 +157,7 @@ def finding_values(findings: tuple[Finding, ...]) -> list[dict[str, Any]]:
 
 def grouped(number: int) -> str:
     """Return a whole number with its thousands apart."""
-    return f"{number:,}".replace(",", "\N{NO-BREAK SPACE}" if sys.stdout.isatty() else " ")
+    return f"{number:,}".replace(",", terminal.thousands())
 
 
 def counted(number: int, one: str) -> str:

@@ -2,8 +2,9 @@
 
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
+from . import status
 from .output import Output
 
 if TYPE_CHECKING:
@@ -12,13 +13,13 @@ if TYPE_CHECKING:
 #: OpenSCAD's tree and its JSON form, its language, and Python.
 SUFFIXES = (".csg", ".json", ".scad", ".py")
 
-
-def is_script(path: Path) -> bool:
-    """Return whether a file's suffix is that of a script."""
-    return path.suffix.lower() in SUFFIXES
+#: Those that may come from standard input; the others are run by programs that read files.
+STREAMED = (".csg", ".json")
 
 
-def made_by(path: Path, out: Output, text: str | None = None, **options: Any) -> "Solid":
+def made_by(
+    path: Path, out: Output, text: str | None = None, suffix: str | None = None, **options: Any
+) -> "Solid":
     """Return the solid that a script makes; what was left out is told.
 
     Parameters
@@ -27,12 +28,16 @@ def made_by(path: Path, out: Output, text: str | None = None, **options: Any) ->
     out : Output
     text : str, optional
         The script, if it was read already.
+    suffix : str, optional
+        Of its language, if its name does not say it.
     **options
         As for `run_script` or `csg.load`.
     """
-    if path.suffix.lower() == ".py":
+    if (suffix or path.suffix.lower()) == ".py":
         from ..script.run import run_script
 
+        # What it prints has the terminal.
+        status.end()
         return run_script(path, **options)
     from .. import csg
 
@@ -41,7 +46,8 @@ def made_by(path: Path, out: Output, text: str | None = None, **options: Any) ->
         if text is None:
             solid = csg.load(path, **options)
         else:
-            solid = csg.loads(text, name=str(path), **options)
+            form: Literal["csg", "json"] = "json" if suffix == ".json" else "csg"
+            solid = csg.loads(text, name=str(path), form=form, **options)
     # A polished model is evaluated twice, and warns as often.
     for said in dict.fromkeys(str(warning.message) for warning in caught):
         out.warning(said)

@@ -2,20 +2,62 @@
 
 from collections.abc import Iterable, Sequence
 
+from . import terminal
+
+#: What a table is ruled with on a terminal, and in a pipe or a file.
+_RULE, _PLAIN_RULE = "─", "-"
+
+#: Columns of the terminal that a column takes besides its text.
+_MARGIN = 3
+
 
 def table_text(
     columns: Sequence[str], rows: Iterable[Sequence[str]], right: Sequence[str] = ()
 ) -> str:
-    """Return a table as lines of text.
+    """Return a table as lines of text: as wide as its entries in a pipe, else as the terminal.
+
+    Words stay whole: where the terminal has no room for the longest ones side by side, each row
+    becomes lines of a name and a value.
 
     Parameters
     ----------
     columns : sequence of str
-        The first may be of any length and is never cut.
     rows : iterable of sequence of str
     right : sequence of str
         Columns to align at the right.
     """
+    listed = [list(row) for row in rows]
+    entries = list(zip(columns, *listed, strict=True))
+    width = terminal.width()
+    # A table in a pipe or a log must not lose letters.
+    widths = [max(map(len, column)) for column in entries]
+    if width is None:
+        whole = sum(widths) + _MARGIN * len(columns)
+        return _drawn(columns, listed, right, widths, whole).replace(_RULE, _PLAIN_RULE)
+    least = [max(_longest_word(entry) for entry in column) for column in entries]
+    if sum(least) + _MARGIN * len(columns) > width:
+        return "\n\n".join(_stacked(columns, row) for row in listed)
+    return _drawn(columns, listed, right, least, width)
+
+
+def _longest_word(text: str) -> int:
+    # Not at blanks that do not break, which keep the digits of a number together.
+    return max(map(len, text.split(" ")))
+
+
+def _stacked(columns: Sequence[str], row: Sequence[str]) -> str:
+    named = max(map(len, columns))
+    pairs = zip(columns, row, strict=True)
+    return "\n".join(f"{name:{named}}  {value}".strip() for name, value in pairs if value)
+
+
+def _drawn(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    right: Sequence[str],
+    least: Sequence[int],
+    width: int,
+) -> str:
     from io import StringIO
 
     from rich import box
@@ -23,14 +65,13 @@ def table_text(
     from rich.table import Table
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in columns:
-        table.add_column(name, justify="right" if name in right else "left", no_wrap=True)
-    listed = [list(row) for row in rows]
-    for row in listed:
+    for name, narrowest in zip(columns, least, strict=True):
+        if name in right:
+            table.add_column(name, justify="right", min_width=narrowest)
+        else:
+            table.add_column(name, min_width=narrowest)
+    for row in rows:
         table.add_row(*row)
-    # Wide enough for any entry: a table in a pipe or a log must not lose letters.
-    texts = [list(columns), *listed]
-    width = 80 + sum(max(len(row[k]) for row in texts) for k in range(len(columns)))
     drawn = StringIO()
     Console(file=drawn, width=width, highlight=False, markup=False).print(table)
     return "\n".join(line.rstrip() for line in drawn.getvalue().splitlines() if line.strip())

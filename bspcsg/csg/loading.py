@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from ..bsp import Region
 from ..errors import BspcsgError, FormatError
@@ -89,8 +89,9 @@ def loads(
     lenient: bool = False,
     folder: str | Path | None = None,
     name: str = "<csg>",
+    form: Literal["csg", "json"] = "csg",
 ) -> Solid:
-    """Return the solid of a script's text (see `load`).
+    """Return the solid of a script's text (see `load`), in its own language or as JSON.
 
     Examples
     --------
@@ -98,7 +99,7 @@ def loads(
     >>> csg.loads("difference() { cube(size = 2); cube(size = 1); }").volume
     7.0
     """
-    tree = parse(text, name, folder)
+    tree = from_json(text, name, folder) if form == "json" else parse(text, name, folder)
     body = evaluate(
         tree,
         polish=polish,

@@ -34,6 +34,8 @@ def test_the_list_names_all_cases(capsys: Capture) -> None:
     code, out, _ = ran(capsys, "bench", "--list")
     assert code == 0
     assert [line.split()[0] for line in out.splitlines()[2:]] == list(CASES)
+    document = json.loads(ran(capsys, "bench", "--list", "--json")[1])
+    assert document["schema"] == 1 and [one["case"] for one in document["cases"]] == list(CASES)
 
 
 @pytest.mark.timeout(300)
@@ -43,7 +45,7 @@ def test_cases_are_measured_recorded_and_shown_again(capsys: Capture, tmp_path: 
     code, out, err = ran(
         capsys,
         *["bench", *cases, "--quick", "--runs", "1", "--against", "manifold3d", "-q"],
-        *["--json", str(record_path), "--plot", str(plot_path)],
+        *["-o", str(record_path), "--plot", str(plot_path)],
     )
     assert (code, err) == (0, ""), out
     record = json.loads(record_path.read_text())
@@ -64,6 +66,8 @@ def test_cases_are_measured_recorded_and_shown_again(capsys: Capture, tmp_path: 
     assert len(drawing.findall(".//{*}circle")) == 2 * len(CASES["sizes"].small)
     code, again, _ = ran(capsys, "bench", "--from", str(record_path))
     assert (code, again) == (0, out)
+    code, printed, _ = ran(capsys, "bench", "--from", str(record_path), "--json")
+    assert code == 0 and json.loads(printed) == record
     code, counters, _ = ran(capsys, "bench", "--from", str(record_path), "--counters")
     assert counters.startswith(out) and "nodes" in counters[len(out) :]
     code, table, _ = ran(capsys, "bench", "--from", str(record_path), "--format", "md")
@@ -102,10 +106,10 @@ def test_cases_without_their_data_are_left_out(capsys: Capture, tmp_path: Path) 
     [
         (["cubs"], 2, "'cubs' is no case; see --list."),
         (["cubes", "--against", "blender"], 2, "'blender' is no engine; known are manifold3d,"),
-        (["--from", "pyproject.toml"], 3, "pyproject.toml: this is no record; bspcsg bench --json"),
+        (["--from", "pyproject.toml"], 3, "pyproject.toml: this is no record; bspcsg bench -o"),
         (["--from", "missing.json"], 3, "missing.json: cannot read this file: No such file or"),
-        (["cubes", "--json", "no/such/x.json"], 5, "no/such/x.json: there is no folder no/such"),
-        (["cubes", "--json", "-"], 2, "--json and --plot take names of files, not streams."),
+        (["cubes", "-o", "no/such/x.json"], 5, "no/such/x.json: there is no folder no/such"),
+        (["cubes", "-o", "-"], 2, "-o and --plot take names of files, not streams; --json prints."),
         (["cubes", "--plot", "no/such/x.svg"], 5, "no/such/x.svg: there is no folder no/such"),
         (["cubes", "--core", "none.so"], 3, "none.so: there is no such build of the core."),
     ],

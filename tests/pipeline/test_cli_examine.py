@@ -242,9 +242,10 @@ def test_doctor_names_what_is_missing(
     monkeypatch.setattr("bspcsg.cli.verbs.doctor.find_spec", lambda name: name != "meshio" or None)
     code, out, _ = ran(capsys, "doctor")
     assert code == 0 and "49 of 58 plug-ins" in out and "libgl1 libopengl0" in out
-    lines = {line.split()[0]: line for line in out.splitlines() if line.split()}
-    assert "missing" in lines["meshio"] and 'pip install "bspcsg[vtk]"' in lines["meshio"]
-    assert "missing" in lines["openscad"] and "apt-get install openscad" in lines["openscad"]
+    # What is missing has the line to type below the sentence.
+    said = "meshio is missing, needed for VTK and VTU files. Try:\n  pip install"
+    assert f'{said} "bspcsg[vtk]"\n' in out
+    assert "openscad is missing" in out and out.endswith("\n  apt-get install openscad\n")
 
 
 def test_doctor_fails_without_what_is_required(

@@ -253,7 +253,7 @@ def test_streams_of_drawings_that_cannot_be(
     folder: Path, capsys: Capture, arguments: list[str], said: str
 ) -> None:
     code, out, err = ran(capsys, "render", "a.off", *arguments)
-    assert (code, out) == (2, "") and said in err
+    assert (code, "error" in out) == (2, "--json" in arguments) and said in err
 
 
 def test_a_name_may_be_anything_if_the_format_is_said(folder: Path, capsys: Capture) -> None:

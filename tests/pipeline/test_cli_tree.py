@@ -133,4 +133,4 @@ def test_wrong_use(
 ) -> None:
     Path("bad.csg").write_text("cube(;")
     got, out, err = ran(capsys, "tree", *arguments)
-    assert (got, out) == (code, "") and said in err
+    assert (got, "error" in out) == (code, "--json" in arguments) and said in err

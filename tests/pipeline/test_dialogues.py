@@ -232,7 +232,10 @@ def test_what_holds_for_a_format_is_told_once(capsys: Capture) -> None:
 
 def test_an_error_after_json_was_asked_for_wrongly(capsys: Capture) -> None:
     code, out, err = ran(capsys, "union", "--json")
-    assert (code, out) == (2, "") and err.startswith("bspcsg: error: Missing argument")
+    assert code == 2 and err.startswith("bspcsg: error: Missing argument")
+    said = json.loads(out)
+    assert (said["exit"], said["error"]["code"]) == (2, "usage")
+    assert said["error"]["message"] in err
 
 
 def test_a_stream_that_is_no_mesh(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,5 +1,6 @@
 """The verb that measures: bench."""
 
+import json
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import FormatError
-from .. import output
+from .. import output, status
 from ..files import STREAM, refuse_folder
 from ..tables import table_text
 
@@ -20,7 +21,7 @@ _EPILOG = """\b
 Examples:
   bspcsg bench --list
   bspcsg bench spheres-328k cubes --against manifold3d,trueform
-  bspcsg bench --json bench.json --plot sizes.svg        (all cases: an hour or more)
+  bspcsg bench -o bench.json --plot sizes.svg        (all cases: an hour or more)
   bspcsg bench --from bench.json --format md
 """
 
@@ -47,6 +48,13 @@ def _as_engines(
     return list(dict.fromkeys([next(iter(ENGINES)), *asked]))
 
 
+def _cases_from(context: click.Context, option: click.Parameter, begun: str) -> list[str]:
+    """Return the names of cases that begin so."""
+    from ...bench.cases import CASES
+
+    return [name for name in CASES if name.startswith(begun)]
+
+
 def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str, ...]) -> list[str]:
     """Return names of cases; none means all."""
     from ...bench.cases import CASES
@@ -58,7 +66,9 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
 
 
 @click.command("bench", short_help="Time set operations beside other engines.", epilog=_EPILOG)
-@click.argument("cases", nargs=-1, callback=_as_cases, metavar="[CASE]...")
+@click.argument(
+    "cases", nargs=-1, callback=_as_cases, metavar="[CASE]...", shell_complete=_cases_from
+)
 @click.option("--list", "listed", is_flag=True, help="Name the cases and what each is to reach.")
 @click.option(
     "--against",
@@ -115,7 +125,15 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     help="Folder with meshes/ and chains/; cases that need them are left out without.",
 )
 @click.option("--core", type=_PATH, help="Measure with another build of the compiled core.")
-@click.option("--json", "record_path", type=_PATH, help="Write the record to this file.")
+@click.option(
+    "-o",
+    "--output",
+    "record_path",
+    metavar="FILE",
+    type=_PATH,
+    help="Write the record there.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the record instead of a table.")
 @click.option("--plot", "plot_path", type=_PATH, help="Draw time against size, as SVG.")
 @click.option("--from", "source", type=_PATH, help="Measure nothing; show this record.")
 @click.option(
@@ -138,7 +156,7 @@ def bench(cases: list[str], listed: bool, **given: Any) -> int:
     The exit code is 1 if an answer differs from ours by more than rounding explains, or if we fail.
     """
     if listed:
-        click.echo(_listing(cases))
+        _tell_cases(cases, given["as_json"])
         return output.DONE
     _refuse_early(given)
     source: Path | None = given["source"]
@@ -146,8 +164,8 @@ def bench(cases: list[str], listed: bool, **given: Any) -> int:
 
     record = records.read(source) if source else _measured(cases, given)
     with _whole_record(source):
-        text = _table(record, given["style"])
-        if given["counters"]:
+        text = json.dumps(record) + "\n" if given["as_json"] else _table(record, given["style"])
+        if given["counters"] and not given["as_json"]:
             text += _counters(record) + "\n"
         plotted = _plot(record) if given["plot_path"] else ""
         code = output.FOUND if _is_wrong(record) else output.DONE
@@ -160,7 +178,7 @@ def _refuse_early(given: dict[str, Any]) -> None:
     """Refuse what would fail only after everything was measured."""
     for path in (given["record_path"], given["plot_path"]):
         if path and str(path) == STREAM:
-            raise click.UsageError("--json and --plot take names of files, not streams.")
+            raise click.UsageError("-o and --plot take names of files, not streams; --json prints.")
         if path:
             refuse_folder(path)
     core: Path | None = given["core"]
@@ -180,14 +198,16 @@ def _whole_record(source: Path | None) -> Iterator[None]:
         raise FormatError(message, "malformed") from error
 
 
-def _listing(cases: list[str]) -> str:
+def _tell_cases(cases: list[str], as_json: bool) -> None:
     from ...bench.cases import CASES
 
-    rows = [
-        [name, CASES[name].title, "; ".join(target.text for target in CASES[name].targets)]
-        for name in cases
-    ]
-    return table_text(["case", "what", "to reach"], rows)
+    told = [(name, CASES[name].title, [t.text for t in CASES[name].targets]) for name in cases]
+    if as_json:
+        values = [dict(zip(("case", "title", "targets"), one, strict=True)) for one in told]
+        click.echo(json.dumps({"schema": output.SCHEMA, "cases": values}))
+    else:
+        rows = [(name, title, "; ".join(texts)) for name, title, texts in told]
+        click.echo(table_text(["case", "what", "to reach"], rows))
 
 
 def _measured(cases: list[str], given: dict[str, Any]) -> dict[str, Any]:
@@ -195,6 +215,7 @@ def _measured(cases: list[str], given: dict[str, Any]) -> dict[str, Any]:
     from ...bench.runner import run_case
 
     settings = _settings(given)
+    status.end()
     told = _silence if given["quiet"] else _tell
     rows = []
     for name in cases:

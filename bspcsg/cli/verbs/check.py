@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import BspcsgError, FormatError, MissingPartError
-from .. import output
+from .. import output, terminal
 from ..files import Inputs, repair_command, shown
-from ..options import PATH, common, reading
+from ..options import common, reading
 from ..output import Output, counted, grouped
+from ..patterns import files_argument
 from ..tables import table_text
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ Example:
 
 
 @click.command("check", epilog=_EPILOG)
-@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE [...]")
+@files_argument("FILE [...]")
 @click.option("--strict", is_flag=True, help="Count warnings as failures too.")
 @reading
 @common
@@ -47,7 +48,7 @@ def check(files: tuple[Path, ...], strict: bool, **given: Any) -> int:
     out.result("" if given["as_json"] else _text(results, out), {"files": documents})
     for path, found in results:
         if isinstance(found, BspcsgError):
-            click.echo(f"bspcsg: error: {_named(path, found)}", err=True)
+            terminal.say_error(_named(path, found))
     return max(codes)
 
 
@@ -70,8 +71,7 @@ def _exit_code(found: "Diagnosis | BspcsgError", strict: bool) -> int:
 
 def _document(path: Path, found: "Diagnosis | BspcsgError") -> dict[str, Any]:
     if isinstance(found, BspcsgError):
-        said = {"code": found.code, "message": found.message, "where": list(found.where)}
-        return {"file": str(path), "verdict": "unreadable", "error": said}
+        return {"file": str(path), "verdict": "unreadable", "error": output.error_values(found)}
     return {"file": str(path), **found.to_dict()}
 
 

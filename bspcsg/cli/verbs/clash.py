@@ -8,8 +8,9 @@ import click
 from .. import output
 from ..files import Inputs, shown
 from ..lengths import as_length
-from ..options import PATH, common, reading, sets
+from ..options import common, reading, sets
 from ..output import Output, counted
+from ..patterns import files_argument
 from ..tables import table_text
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ Examples:
 
 
 @click.command("clash", short_help="Say which files are in each other's way.", epilog=_EPILOG)
-@click.argument("files", nargs=-1, required=True, type=PATH, metavar="A B [C ...]")
+@files_argument("A B [C ...]")
 @click.option(
     "--clearance",
     metavar="LENGTH",

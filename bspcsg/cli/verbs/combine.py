@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..job import Job
-from ..options import PATH, from_files
+from ..options import from_files
+from ..patterns import files_argument
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid
@@ -31,7 +32,7 @@ _EXAMPLES = {
 def _verb(op: str) -> click.Command:
     """Return the command of an operation."""
 
-    @click.argument("files", nargs=-1, required=True, type=PATH, metavar="A B [C ...]")
+    @files_argument("A B [C ...]")
     @from_files
     def run(**given: Any) -> int:
         return _Named(op, **given).run()

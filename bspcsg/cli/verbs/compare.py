@@ -7,8 +7,9 @@ import click
 
 from .. import output
 from ..files import Inputs, shown
-from ..options import PATH, common, reading, sets
+from ..options import common, reading, sets
 from ..output import Output, grouped
+from ..patterns import file_argument
 from ..tables import table_text
 
 if TYPE_CHECKING:
@@ -23,8 +24,8 @@ Example:
 @click.command(
     "compare", short_help="Say whether two files hold the same set of points.", epilog=_EPILOG
 )
-@click.argument("a", type=PATH)
-@click.argument("b", type=PATH)
+@file_argument("A", "a")
+@file_argument("B", "b")
 @click.option(
     "--tol",
     metavar="DISTANCE",

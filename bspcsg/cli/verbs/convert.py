@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import BspcsgError, Finding
-from .. import output
-from ..files import STREAM, Inputs, Target, expanded, put, shown
+from .. import output, status, terminal
+from ..files import STREAM, Inputs, Target, expanded, is_dropped, make_folder, put, shown
+from ..lengths import MILLIMETRES
 from ..options import PATH, SIMPLIFY, common, reading, writing
 from ..output import Output, counted
+from ..patterns import files_argument
 
 if TYPE_CHECKING:
     from ...formats.raw import RawMesh
@@ -24,6 +26,7 @@ _EPILOG = """\b
 Examples:
   bspcsg convert part.3mf -o part.ply --fail-on-loss
   bspcsg convert parts/*.stl --to glb --outdir web
+  bspcsg convert part.stl --unit in --to-unit cm -o part-cm.ply
 """
 
 #: Files from which on a bar shows how far it is.
@@ -31,7 +34,7 @@ _MANY = 4
 
 
 @click.command("convert", epilog=_EPILOG)
-@click.argument("files", nargs=-1, required=True, type=PATH, metavar="IN [...]")
+@files_argument("IN [...]")
 @click.option(
     "-o",
     "--output",
@@ -40,9 +43,19 @@ _MANY = 4
     type=PATH,
     help="File to write; with several inputs, % stands for the name of each.",
 )
-@click.option("--outdir", metavar="FOLDER", type=PATH, help="Folder for the files, with --to.")
+@click.option(
+    "--outdir",
+    metavar="FOLDER",
+    type=PATH,
+    help="Folder for the files, with --to; it is made if it is not there.",
+)
 @writing
 @SIMPLIFY
+@click.option(
+    "--to-unit",
+    type=click.Choice(list(MILLIMETRES)),
+    help="Unit of the coordinates that are written, by default mm; 3MF and GLB have their own.",
+)
 @click.option(
     "--up",
     type=click.Choice(["y", "z"]),
@@ -74,6 +87,7 @@ class _Conversion:
         self, files: tuple[Path, ...], target: Path | None, outdir: Path | None, **settings: Any
     ) -> None:
         self._settings = settings
+        self._outdir = outdir
         self._pairs = [
             (path, Target.of(where, settings))
             for path, where in _targets(files, target, outdir, settings["to_format"])
@@ -94,8 +108,8 @@ class _Conversion:
                         raise
                     # One bad file of many does not keep the others.
                     found = output.exit_code_of(error)
-                    click.echo(f"bspcsg: error: {error.message}", err=True)
-                    document, lost = {"file": str(path), "error": error.message}, False
+                    terminal.say_error(error.message)
+                    document, lost = {"file": str(path), "error": output.error_values(error)}, False
                     code = max(code, found)
                 documents.append(document)
                 if lost and self._settings["fail_on_loss"]:
@@ -105,10 +119,22 @@ class _Conversion:
         return code
 
     def _refuse_early(self) -> None:
-        for _, target in self._pairs:
-            target.refuse_early(self._out.as_json)
         self._inputs.refuse_early([path for path, _ in self._pairs])
+        if self._outdir is not None:
+            make_folder(self._outdir)
+        for _, target in self._pairs:
+            self._refuse_unit(target)
+            target.refuse_early(self._out.as_json)
         self._inputs.tell_units(self._pairs)
+
+    def _refuse_unit(self, target: Target) -> None:
+        """Refuse a unit for files that state their own."""
+        from ...formats.files import FORMATS
+
+        known = FORMATS.get(target.suffix.lower())
+        if self._settings["to_unit"] is not None and known is not None and known.unit:
+            said = f"{target.suffix.removeprefix('.').upper()} files state their unit"
+            raise click.UsageError(f"--to-unit: {said}, and need no other.")
 
     def _converted(self, path: Path, target: Target) -> tuple[dict[str, Any], bool]:
         """Convert one file; return what happened to it, and whether anything was lost."""
@@ -170,7 +196,12 @@ class _Conversion:
         told_in = self._settings["from_up"] or usual_in
         told_out = self._settings["up"] or usual_out
         quarters = (told_in == "y") - (usual_in == "y") - (told_out == "y") + (usual_out == "y")
-        return turned(raw, quarters)
+        return turned(self._in_unit(raw), quarters)
+
+    def _in_unit(self, raw: "RawMesh") -> "RawMesh":
+        """Return a mesh of millimetres in the unit asked for."""
+        scale = MILLIMETRES[self._settings["to_unit"] or "mm"]
+        return raw if scale == 1 else replace(raw, vertices=raw.vertices / scale)
 
     def _tell(self, target: Target, finding: Finding) -> None:
         """Tell about a file; what is so for all files of a format is told once."""
@@ -202,6 +233,8 @@ def _targets(
         pairs = [(path, outdir / f"{_stem(path)}{suffix}") for path in files]
     elif len(files) == 1 or target is None:
         return [(files[0], target or Path(STREAM))]
+    elif is_dropped(target):
+        return [(path, target) for path in files]
     elif "%" not in target.name:
         raise click.UsageError(
             "for several inputs, -o needs a % for their names, as in 'web/%.glb'."
@@ -235,6 +268,7 @@ def _progress(
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
 
+    status.end()
     columns = ("converting", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         yield iter(bar.track(pairs))

@@ -152,5 +152,12 @@ def _output_of(command: list[str]) -> str:
 
 
 def _text(parts: list[_Part]) -> str:
-    rows = [(part.name, part.found or "missing", part.purpose, part.remedy) for part in parts]
-    return table_text(("part", "found", "needed for", "to install"), rows)
+    rows = [(part.name, part.found or "missing", part.purpose) for part in parts]
+    lacking = [part for part in parts if part.remedy]
+    return "\n".join([table_text(("part", "found", "needed for"), rows), *map(_advice, lacking)])
+
+
+def _advice(part: _Part) -> str:
+    """Return what is missing and the line to type."""
+    state = "incomplete" if part.found else "missing"
+    return f"{part.name} is {state}, needed for {part.purpose}. Try:\n  {part.remedy}"

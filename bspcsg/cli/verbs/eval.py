@@ -10,6 +10,7 @@ from ...errors import BspcsgError
 from ..formula import File, Formula, FormulaError, evaluated, files_of, parse
 from ..job import Job
 from ..options import from_files
+from ..patterns import matches
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid
@@ -22,7 +23,8 @@ a - b          difference        a ^ b   what is inside exactly one
 ~a             what is outside   (a)     first this
 
 ~ binds tightest, then + and -, then &, then ^, then |, as in Python. Put names with blanks in
-quotes, and blanks around + and -, which may be part of a name.
+quotes, and blanks around + and -, which may be part of a name. A pattern such as hole*.stl means
+the union of the files that it matches.
 """
 
 _EPILOG = """\b
@@ -51,16 +53,20 @@ class _Evaluation(Job):
         super().__init__("eval", **settings)
 
     def paths(self) -> Sequence[Path]:
-        return [Path(file.name) for file in files_of(self._formula)]
+        return [path for file in files_of(self._formula) for path in self._paths(file)]
 
     def combined(self) -> "Solid":
         solids = {file.name: self._loaded(file) for file in files_of(self._formula)}
         self.lap("read")
         return evaluated(self._formula, lambda file: solids[file.name], _combined)
 
+    def _paths(self, file: File) -> list[Path]:
+        """Return the files that a name in the formula means."""
+        return matches(Path(file.name))
+
     def _loaded(self, file: File) -> "Solid":
         try:
-            return self.inputs.solid(Path(file.name))
+            return _combined("union", [self.inputs.solid(path) for path in self._paths(file)])
         except BspcsgError as error:
             if error.code != "unreadable" or not any(sign in file.name for sign in "+-"):
                 raise
@@ -72,7 +78,9 @@ class _Evaluation(Job):
 def _combined(name: str, solids: list["Solid"]) -> "Solid":
     from ...operations.setops import OPERATIONS
 
-    return ~solids[0] if name == "complement" else OPERATIONS[name](*solids)
+    if len(solids) == 1:
+        return ~solids[0] if name == "complement" else solids[0]
+    return OPERATIONS[name](*solids)
 
 
 def _pointed(formula: str, message: str, column: int) -> str:

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import output
-from ..files import Inputs, Target, expanded, shown
+from ..files import Inputs, Target, expanded, is_dropped, shown
 from ..job import mesh_values, summary
 from ..options import PATH, common, reading, sets, writing
 from ..output import Output
+from ..patterns import files_argument
 
 if TYPE_CHECKING:
     from ...mesh.mesh import Mesh
@@ -23,7 +24,7 @@ Example:
 @click.command(
     "explode", short_help="Write each connected part of files to its own.", epilog=_EPILOG
 )
-@click.argument("files", nargs=-1, required=True, type=PATH, metavar="A [B ...]")
+@files_argument("A [B ...]")
 @click.option(
     "-o",
     "--output",
@@ -85,7 +86,7 @@ class _Exploding:
     def _refuse_early(self) -> None:
         self._inputs.refuse_early(self._files)
         names = [self._target(path, 1).path for path in self._files]
-        if len(set(names)) < len(names):
+        if len(set(names)) < len(names) and not is_dropped(self._pattern):
             raise click.UsageError("two of the files have one name, and so would their parts.")
         for path in self._files:
             self._target(path, 1).refuse_early()
@@ -96,7 +97,7 @@ class _Exploding:
         for finding in lost:
             self._out.finding(shown(target.path), finding)
         if not self._out.as_json:
-            self._out.result(summary(shown(target.path), mesh, None), {})
+            self._out.result(summary(shown(target.path), mesh, False), {})
         document = {"file": str(path), "output": str(target.path), **mesh_values(mesh)}
         return {**document, "findings": output.finding_values(lost)}
 

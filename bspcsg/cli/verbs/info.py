@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import BspcsgError
-from .. import output
+from .. import output, terminal
 from ..files import Inputs, shown
-from ..options import PATH, common, reading
+from ..options import common, reading
 from ..output import Output, counted, grouped
+from ..patterns import files_argument
 from ..tables import table_text
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ Examples:
 @click.command(
     "info", short_help="Say what is in each file: counts, size, volume, findings.", epilog=_EPILOG
 )
-@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE [...]")
+@files_argument("FILE [...]")
 @reading
 @common
 def info(files: tuple[Path, ...], **given: Any) -> int:
@@ -45,7 +46,7 @@ def info(files: tuple[Path, ...], **given: Any) -> int:
     out.result("" if out.as_json else _text(described), {"files": [e.document for e in described]})
     for entry in described:
         if entry.error is not None:
-            click.echo(f"bspcsg: error: {entry.error.message}", err=True)
+            terminal.say_error(entry.error.message)
     return max(entry.code for entry in described)
 
 
@@ -69,8 +70,7 @@ class _Entry:
     @property
     def document(self) -> dict[str, Any]:
         if self.error is not None:
-            said = {"code": self.error.code, "message": self.error.message}
-            return {"file": str(self.path), "error": {**said, "where": list(self.error.where)}}
+            return {"file": str(self.path), "error": output.error_values(self.error)}
         if self.found is None:
             return {"file": str(self.path)}
         raw, diagnosis = self.found

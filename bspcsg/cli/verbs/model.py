@@ -8,7 +8,8 @@ import click
 
 from ..job import Job
 from ..lengths import as_length
-from ..options import ALLOW_EMPTY, OUTPUT, PATH, SIMPLIFY, common, reading, sets, writing
+from ..options import ALLOW_EMPTY, OUTPUT, SIMPLIFY, common, reading, sets, writing
+from ..patterns import file_argument, files_argument
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid
@@ -27,7 +28,7 @@ Example:
 @click.command(
     "hull", short_help="Write the convex hull of all files together.", epilog=_HULL_EPILOG
 )
-@click.argument("files", nargs=-1, required=True, type=PATH, metavar="A [B ...]")
+@files_argument("A [B ...]")
 @OUTPUT
 @writing
 @SIMPLIFY
@@ -46,7 +47,7 @@ def hull(files: tuple[Path, ...], **given: Any) -> int:
 @click.command(
     "simplify", short_help="Write a solid without short edges and slivers.", epilog=_SIMPLIFY_EPILOG
 )
-@click.argument("file", type=PATH, metavar="FILE")
+@file_argument()
 @OUTPUT
 @click.option(
     "--tolerance",

@@ -8,8 +8,9 @@ import click
 from .. import output
 from ..drawing import Drawing
 from ..files import shown
-from ..options import PATH, common, drawing, reading, sets
+from ..options import common, drawing, reading, sets
 from ..output import counted
+from ..patterns import file_argument
 
 _EPILOG = """\b
 Example:
@@ -22,7 +23,7 @@ _SUFFIXES = (".svg", ".dxf")
 @click.command(
     "project", short_help="Write the outline of a solid seen from above.", epilog=_EPILOG
 )
-@click.argument("file", type=PATH, metavar="FILE")
+@file_argument()
 @drawing
 @reading
 @sets

@@ -8,8 +8,9 @@ import click
 from ...errors import BspcsgError
 from ..drawing import Drawing
 from ..files import shown
-from ..options import PATH, common, drawing, reading
+from ..options import common, drawing, reading
 from ..output import counted
+from ..patterns import file_argument
 
 if TYPE_CHECKING:
     from ...bsp import Picture
@@ -57,7 +58,7 @@ def _as_colour(context: click.Context, option: click.Parameter, value: str) -> s
 
 
 @click.command("render", short_help="Write a picture of a mesh.", epilog=_EPILOG)
-@click.argument("file", type=PATH, metavar="FILE")
+@file_argument()
 @drawing
 @click.option(
     "--view",

@@ -7,8 +7,9 @@ import click
 
 from .. import output
 from ..files import Inputs, Target, shown
-from ..options import OUTPUT, PATH, TIMEOUT, common, reading, writing
+from ..options import OUTPUT, TIMEOUT, common, reading, writing
 from ..output import Output, counted, grouped
+from ..patterns import file_argument
 from ..tables import table_text
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ _DEFECTS = {
 
 
 @click.command("repair", short_help="Close and orient a mesh with pymeshlab.", epilog=_EPILOG)
-@click.argument("file", type=PATH, metavar="FILE")
+@file_argument()
 @OUTPUT
 @writing
 @click.option(

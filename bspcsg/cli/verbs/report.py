@@ -1,7 +1,6 @@
 """The verb that makes pages of results: report."""
 
 import sys
-import time
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import FormatError
-from .. import output
-from ..files import STREAM, is_among, refuse_folder, shown
+from .. import clock, output, status
+from ..files import STREAM, is_among, is_dropped, refuse_folder, shown
 from ..options import PATH, common
 from ..output import Output, counted
+from ..patterns import files_argument
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -33,7 +33,7 @@ _FORMATS = ("html", "md", "json", "junit")
 @click.command(
     "report", short_help="Make a page, or JUnit, of what validate found.", epilog=_EPILOG
 )
-@click.argument("files", nargs=-1, required=True, type=PATH, metavar="RESULTS.jsonl [...]")
+@files_argument("RESULTS.jsonl [...]")
 @click.option(
     "-o",
     "--output",
@@ -80,7 +80,8 @@ class _Reporting:
         self._settings = settings
         self._is_stream = str(target) == STREAM
         self._out = Output.of(settings)
-        self._form = settings["form"] or _SUFFIXES.get(target.suffix.lower())
+        suffix = ".html" if is_dropped(target) else target.suffix.lower()
+        self._form = settings["form"] or _SUFFIXES.get(suffix)
 
     def run(self) -> int:
         from ...campaign.record import is_failure
@@ -89,14 +90,13 @@ class _Reporting:
 
         set_threads(self._settings["threads"])
         self._refuse_early()
-        began = time.perf_counter()
         results = merged(self._files)
         text = self._text(results)
         self._put(text.encode("utf-8"))
         if self._is_stream:
             return output.DONE
         failures = sum(map(is_failure, results.cases.values()))
-        seconds = time.perf_counter() - began
+        seconds = clock.elapsed()
         line = (
             f"{shown(self._target)}  {counted(len(results.cases), 'case')}"
             f"  {counted(failures, 'failure')}  {len(text) / 1000:.0f} kB  {seconds:.2f} s"
@@ -173,6 +173,7 @@ def _progress(out: Output) -> "Iterator[Callable[[list[CaseRecord]], Iterable[Ca
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
 
+    status.end()
     columns = ("drawing", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         yield bar.track

@@ -14,6 +14,7 @@ from ...errors import FormatError, InvalidMeshError
 from ..files import ON_INVALID, STREAM, shown, stream_text
 from ..job import Job
 from ..options import TIMEOUT, common, making
+from ..patterns import file_argument
 from ..scripts import SUFFIXES, made_by
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
 @click.command(
     "run", short_help="Write the solid that an OpenSCAD or Python script makes.", epilog=_EPILOG
 )
-@click.argument("script", type=click.Path(path_type=Path, readable=False), metavar="SCRIPT")
+@file_argument("SCRIPT", "script")
 @click.option(
     "-D",
     "defines",

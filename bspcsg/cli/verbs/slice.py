@@ -10,8 +10,9 @@ from ...errors import Finding
 from .. import output
 from ..drawing import Drawing
 from ..files import shown
-from ..options import PATH, common, drawing, numbers, reading, sets
+from ..options import common, drawing, numbers, reading, sets
 from ..output import counted
+from ..patterns import file_argument
 
 _EPILOG = """\b
 Example:
@@ -32,7 +33,7 @@ def _as_finite(
 
 
 @click.command("slice", short_help="Write the section of a solid by a plane.", epilog=_EPILOG)
-@click.argument("file", type=PATH, metavar="FILE")
+@file_argument()
 @drawing
 @click.option(
     "--z", "height", type=float, metavar="HEIGHT", callback=_as_finite, help="Cut at this height."

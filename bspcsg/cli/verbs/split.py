@@ -12,6 +12,7 @@ from ..files import Inputs, Target, expanded, shown
 from ..job import mesh_values, summary
 from ..options import PATH, SIMPLIFY, check_depth, common, numbers, reading, sets, writing
 from ..output import Output
+from ..patterns import file_argument
 
 if TYPE_CHECKING:
     from ...mesh.mesh import Mesh
@@ -30,7 +31,7 @@ Examples:
     short_help="Write the connected parts of a solid, or both sides of a cut.",
     epilog=_EPILOG,
 )
-@click.argument("file", type=PATH, metavar="FILE")
+@file_argument()
 @click.option(
     "-o",
     "--output",
@@ -143,7 +144,7 @@ class _Splitting:
             for finding in lost:
                 self._out.finding(shown(target.path), finding)
             verdict = verdicts[number - 1] if verdicts else None
-            line = summary(shown(target.path), mesh, None)
+            line = summary(shown(target.path), mesh, False)
             line += f"\n  check: {verdict}" if verdict else ""
             document = {"output": str(target.path), **mesh_values(mesh), "check": verdict}
             documents.append({**document, "findings": output.finding_values(lost)})

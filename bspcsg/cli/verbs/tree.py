@@ -9,9 +9,10 @@ import click
 
 from ...errors import FormatError
 from .. import output
-from ..files import STREAM, put, refuse_unwritable, shown, stream_text
+from ..files import STREAM, is_dropped, put, refuse_unwritable, shown, stream_text
 from ..options import OVERWRITE, PATH, TIMEOUT, common
 from ..output import Output, counted
+from ..patterns import file_argument
 
 if TYPE_CHECKING:
     from ...csg import CsgTree
@@ -36,7 +37,7 @@ _FORMS = {
 
 
 @click.command("tree", short_help="Show or convert the tree of an OpenSCAD script.", epilog=_EPILOG)
-@click.argument("file", type=PATH, metavar="FILE")
+@file_argument()
 @click.option(
     "-o",
     "--output",
@@ -143,7 +144,7 @@ class _Showing:
 
 def _form_of(target: Path | None) -> str:
     """Return what a suffix stands for; text if there is none."""
-    if target is None or str(target) == STREAM:
+    if target is None or str(target) == STREAM or is_dropped(target):
         return "text"
     suffix = target.suffix.lower()
     if suffix not in _FORMS:

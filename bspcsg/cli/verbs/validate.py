@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .. import output
+from .. import output, status
 from ..campaign_options import (
     OPERATIONS,
     POSES,
@@ -24,6 +24,7 @@ from ..campaign_options import (
 from ..files import STREAM, is_among, refuse_folder, shown
 from ..options import telling
 from ..output import Output, counted
+from ..patterns import files_argument
 from ..tables import table_text
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ _FILE = click.Path(path_type=Path, readable=False)
 
 
 @click.command("validate", short_help="Compare many results with other engines'.", epilog=_EPILOG)
-@click.argument("paths", nargs=-1, required=True, type=_FILE, metavar="CASES...")
+@files_argument("CASES...", "paths")
 @click.option(
     "--op",
     "operations",
@@ -315,6 +316,7 @@ class _Validation:
 
         from ...campaign.record import is_failure
 
+        status.end()
         times = TimeElapsedColumn(), TimeRemainingColumn()
         columns = ("validating", BarColumn(), MofNCompleteColumn(), *times)
         with Progress(*columns, console=Console(stderr=True), transient=True) as bar:

@@ -11,9 +11,10 @@ import click
 
 from ...errors import FormatError
 from .. import output
-from ..files import Inputs, refuse_folder, shown
-from ..options import PATH, common, reading
+from ..files import Inputs, is_dropped, refuse_folder, shown
+from ..options import common, reading
 from ..output import Output, counted
+from ..patterns import files_argument
 
 if TYPE_CHECKING:
     from ...report.viewer.layer import Layer
@@ -31,7 +32,7 @@ _LARGE = 20_000_000
 
 
 @click.command("view", short_help="Show meshes in a browser, as one page.", epilog=_EPILOG)
-@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE [...]")
+@files_argument("FILE [...]")
 @click.option(
     "-o",
     "--output",
@@ -76,12 +77,12 @@ class _Viewing:
         write_file(target, [page])
         if len(page) > _LARGE:
             self._out.note(f"the page has {len(page) / 1e6:.0f} MB; browsers take a while for it.")
-        opened = self._settings["opens"] and self._opened(target)
+        opened = self._settings["opens"] and not is_dropped(target) and self._opened(target)
         self._tell(target, layers, len(page), opened)
         return output.DONE
 
     def _refuse_early(self) -> None:
-        if self._target is not None:
+        if self._target is not None and not is_dropped(self._target):
             if self._target.suffix.lower() not in _SUFFIXES:
                 message = f"{shown(self._target)}: the name must end in .html."
                 raise FormatError(message, "unknown_format")

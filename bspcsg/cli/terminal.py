@@ -1,0 +1,57 @@
+"""What the terminal shows: colours and widths by the conventions of the command line."""
+
+import os
+import shutil
+import sys
+from typing import TextIO
+
+import click
+
+from . import status
+
+#: Colours of what a line begins with.
+_COLOURS = {"error": "red", "warning": "yellow", "note": "cyan"}
+
+#: The least width that a table is fitted to.
+_NARROWEST = 40
+
+
+def wants_colour(stream: TextIO) -> bool:
+    """Whether colours go to a stream: `NO_COLOR`, then `FORCE_COLOR`, then what it is decide."""
+    if os.environ.get("NO_COLOR"):
+        return False
+    forced = os.environ.get("FORCE_COLOR")
+    if forced:
+        return forced != "0"
+    return os.environ.get("TERM") != "dumb" and stream.isatty()
+
+
+def labelled(label: str, line: str) -> str:
+    """Return a line after a label such as "note", for standard error."""
+    if wants_colour(sys.stderr):
+        bold = label == "error"
+        return f"{click.style(f'{label}:', fg=_COLOURS[label], bold=bold)} {line}"
+    return f"{label}: {line}"
+
+
+def say(label: str, line: str, before: str = "") -> None:
+    """Say a line with its label on standard error."""
+    with status.hidden():
+        click.echo(before + labelled(label, line), err=True, color=wants_colour(sys.stderr))
+
+
+def say_error(message: str) -> None:
+    """Say on standard error what failed."""
+    say("error", message, "bspcsg: ")
+
+
+def width() -> int | None:
+    """Return the columns of the terminal that standard output goes to, or None if it is none."""
+    if not sys.stdout.isatty():
+        return None
+    return max(_NARROWEST, shutil.get_terminal_size().columns)
+
+
+def thousands() -> str:
+    """Return what stands between thousands: a blank that does not break, nothing in a pipe."""
+    return "\N{NO-BREAK SPACE}" if sys.stdout.isatty() else ""

@@ -1,0 +1,290 @@
+"""What makes the command line pleasant every day: one test for each thing that once was not."""
+
+import json
+import os
+import pty
+import re
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import bspcsg as b
+from bspcsg.cli import status
+from bspcsg.cli.tables import table_text
+from support.cli import Capture, finished, process, put, ran
+from support.shapes import cuboid, icosphere
+
+POSIX = pytest.mark.skipif(os.name != "posix", reason="as POSIX has it")
+
+CSG = "multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]) cube([2, 2, 1]);"
+
+
+def at_terminal(monkeypatch: pytest.MonkeyPatch, columns: int) -> None:
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    monkeypatch.setenv("COLUMNS", str(columns))
+
+
+# Outputs
+
+
+@POSIX
+@pytest.mark.parametrize(
+    "line",
+    [
+        "union a.off c.stl",
+        "union a.off c.stl --to glb",
+        "hull a.off c.stl",
+        "convert a.off",
+        "convert a.off c.stl --to obj",
+        "split a.off",
+        "explode a.off c.stl",
+        "repair a.off",
+        "simplify a.off --tolerance 0.1",
+        "render a.off",
+        "slice a.off --z 1",
+        "project a.off",
+        "tree m.csg",
+        "run m.csg --no-overwrite",
+        "view a.off --no-open",
+    ],
+)
+def test_the_null_device_takes_every_output(folder: Path, capsys: Capture, line: str) -> None:
+    Path("m.csg").write_text(CSG)
+    code, out, err = ran(capsys, *line.split(), "-o", os.devnull)
+    assert code == 0 and "error" not in err and os.devnull in out
+    assert os.path.exists(os.devnull) and not Path(os.devnull).is_file()
+
+
+def test_outdir_is_made(folder: Path, capsys: Capture) -> None:
+    line = ["convert", "a.off", "c.stl", "--to", "ply", "--outdir", "new/inner"]
+    assert ran(capsys, *line)[0] == 0
+    assert b.load("new/inner/a.ply").volume == b.load("new/inner/c.ply").volume == 8
+
+
+def test_outdir_is_not_made_for_nothing(folder: Path, capsys: Capture) -> None:
+    code, _, _ = ran(capsys, "convert", "-", "--to", "ply", "--outdir", "new")
+    assert code == 2 and not Path("new").exists()
+    code, _, err = ran(capsys, "convert", "a.off", "--to", "ply", "--outdir", "a.off/x")
+    assert code == 5 and "a.off/x: cannot make this folder" in err
+
+
+@pytest.mark.parametrize(("unit", "size"), [("mm", 50.8), ("cm", 5.08), ("in", 2.0)])
+def test_units_are_converted(folder: Path, capsys: Capture, unit: str, size: float) -> None:
+    line = ["convert", "a.off", "-o", "x.ply", "--unit", "in", "--to-unit", unit]
+    assert ran(capsys, *line)[0] == 0
+    bounds = b.load("x.ply").bounds
+    assert bounds is not None and bounds[1].tolist() == pytest.approx([size] * 3, rel=1e-15)
+
+
+def test_formats_with_units_take_no_other(folder: Path, capsys: Capture) -> None:
+    code, _, err = ran(capsys, "convert", "a.off", "-o", "x.3mf", "--to-unit", "cm")
+    assert code == 2 and "--to-unit: 3MF files state their unit" in err
+
+
+# Inputs
+
+
+@pytest.mark.parametrize(
+    ("line", "volume"),
+    [
+        ("union *.off c.stl", 15),
+        ("hull [ac].*", 8 + 3 * 4),
+        ("eval *.off-c.stl", None),
+        ("eval [ac].*", 15),
+        ("eval c.stl - *.off", 7),
+        ("convert *.stl", 8),
+        ("simplify a.* --tolerance 0.1", 8),
+    ],
+)
+def test_patterns_that_the_shell_left_are_matched(
+    folder: Path, capsys: Capture, line: str, volume: float | None
+) -> None:
+    verb, *words = line.split()
+    if verb == "eval":
+        words = [" ".join(words)]
+    code, _, err = ran(capsys, verb, *words, "-o", "x.ply")
+    if volume is None:
+        assert code == 3 and "*.off-c.stl: no file matches this pattern." in err
+    else:
+        assert code == 0 and b.load("x.ply").volume == pytest.approx(volume)
+
+
+def test_patterns_without_a_match(folder: Path, capsys: Capture) -> None:
+    code, _, err = ran(capsys, "info", "none*.stl")
+    assert code == 3 and "none*.stl: no file matches this pattern." in err
+    code, _, err = ran(capsys, "slice", "*.*", "--z", "1", "-o", "x.svg")
+    assert code == 2 and "*.* matches 2 files; name one of them, as a.off." in err
+
+
+def test_names_that_look_like_patterns_are_names(folder: Path, capsys: Capture) -> None:
+    Path("a.off").rename("a[1].off")
+    assert ran(capsys, "check", "a[1].off")[0] == 0
+
+
+def test_scripts_come_from_standard_input(folder: Path) -> None:
+    code, out, err = finished(
+        *["union", "a.off", "-", "--from", "csg", "-o", "x.ply"], given=CSG.encode()
+    )
+    assert code == 0, err
+    assert b.load("x.ply").volume == 12
+    made = finished("tree", "-", "--to", "json", "-o", "m.json", given=CSG.encode())
+    assert made[0] == 0
+    tree = Path("m.json").read_bytes()
+    code, out, _ = finished("info", "-", "--from", "json", "--json", given=tree)
+    assert code == 0 and json.loads(out)["files"][0]["volume"] == 4
+    code, _, err = finished("info", "-", "--from", "csg", given=b"cube(;")
+    assert code == 3 and err.startswith(b"bspcsg: error: -:1:6: expected")
+    code, _, err = finished("info", "-", "--from", "py", given=b"")
+    assert code == 2 and b"-: .py scripts are run by name; save it to a file." in err
+
+
+def test_scripts_may_have_any_suffix(folder: Path, capsys: Capture) -> None:
+    Path("model.txt").write_text(CSG)
+    assert "volume" in ran(capsys, "info", "model.txt", "--from", "csg")[1]
+
+
+# What is said
+
+
+def test_numbers_are_whole_in_pipes_and_grouped_at_terminals(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    put("ball.ply", icosphere(4))
+    out = ran(capsys, "info", "ball.ply")[1]
+    assert re.search(r"triangles +5120\n", out) and "\N{NO-BREAK SPACE}" not in out
+    assert " ball.ply\n ------" in out
+    at_terminal(monkeypatch, 80)
+    out = ran(capsys, "info", "ball.ply")[1]
+    assert "5\N{NO-BREAK SPACE}120" in out and "\n ─────" in out
+
+
+TABLE = (
+    ["part", "needed for", "count"],
+    [["a", "several words of some length", "7"], ["b", "others", "12"]],
+)
+
+
+@pytest.mark.parametrize("columns", [44, 60, 200])
+def test_tables_fit_the_terminal(columns: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    at_terminal(monkeypatch, columns)
+    lines = table_text(*TABLE, right=["count"]).splitlines()
+    assert max(map(len, lines)) <= columns
+    assert " ".join(lines).split().count("words") == 1
+
+
+def test_tables_without_room_become_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    at_terminal(monkeypatch, 40)
+    names = ["one", "another", "a third", "the fourth", "number five"]
+    text = table_text(names, [["x" * 9] * 5, ["y" * 9, "", "y", "y", "y"]])
+    assert text.splitlines()[:2] == ["one          xxxxxxxxx", "another      xxxxxxxxx"]
+    assert "\n\none          yyyyyyyyy\na third      y\n" in text
+
+
+def test_tables_in_pipes_lose_nothing() -> None:
+    long = "word " * 60
+    assert long.strip() in table_text(["a", "b"], [["x", long]])
+
+
+@pytest.mark.parametrize(
+    ("environment", "terminal", "coloured"),
+    [
+        ({}, True, True),
+        ({}, False, False),
+        ({"NO_COLOR": "1"}, True, False),
+        ({"NO_COLOR": ""}, True, True),
+        ({"FORCE_COLOR": "1"}, False, True),
+        ({"FORCE_COLOR": "0"}, True, False),
+        ({"FORCE_COLOR": "1", "NO_COLOR": "1"}, True, False),
+        ({"TERM": "dumb"}, True, False),
+    ],
+)
+def test_colours_by_convention(
+    folder: Path,
+    capsys: Capture,
+    monkeypatch: pytest.MonkeyPatch,
+    environment: dict[str, str],
+    terminal: bool,
+    coloured: bool,
+) -> None:
+    for name in ("NO_COLOR", "FORCE_COLOR", "TERM"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
+    for arguments in (["unoin"], ["info", "none.stl"]):
+        err = ran(capsys, *arguments)[2]
+        assert ("\033[31m" in err) == coloured
+        assert re.sub(r"\033\[\d+m", "", err).startswith("bspcsg: error: ")
+
+
+@pytest.mark.parametrize(
+    "verb", ["union", "info", "convert", "slice", "bench", "validate", "unoin"]
+)
+def test_wrong_use_is_json_too(folder: Path, capsys: Capture, verb: str) -> None:
+    code, out, err = ran(capsys, verb, "--no-such-option", "--json")
+    said = json.loads(out)
+    assert code == said["exit"] == 2 and said["schema"] == 1
+    assert said["error"]["code"] == "usage" and said["error"]["message"] in err
+
+
+def test_one_error_of_many_has_a_code(folder: Path, capsys: Capture) -> None:
+    put("bad.off", cuboid((0, 0, 0), (1, 1, 1)))
+    Path("bad.off").write_text("OFF\n")
+    _, out, _ = ran(capsys, "convert", "a.off", "bad.off", "--to", "ply", "--outdir", ".", "--json")
+    error = json.loads(out)["files"][1]["error"]
+    assert set(error) == {"code", "message", "where"} and error["message"].startswith("bad.off:")
+
+
+def test_seconds_are_all_of_them(folder: Path, capsys: Capture) -> None:
+    put("ball.ply", icosphere(5))
+    began = time.perf_counter()
+    line = ["union", "ball.ply", "a.off", "-o", "x.stl"]
+    seconds = json.loads(ran(capsys, *line, "--json")[1])["seconds"]
+    taken = time.perf_counter() - began
+    assert {"start", "read", "combine", "check", "write", "total"} <= set(seconds)
+    parts = sum(seconds.values()) - seconds["total"]
+    assert parts <= seconds["total"] + 0.01
+    assert 0.9 * taken - 0.05 < seconds["total"] <= taken
+
+
+def test_seconds_count_from_the_start_of_the_process(folder: Path) -> None:
+    code, out, _ = finished("union", "a.off", "c.stl", "-o", "x.ply", "--json")
+    assert code == 0 and json.loads(out)["seconds"]["start"] > 0.005
+
+
+@POSIX
+def test_long_work_says_for_how_long_at_a_terminal(folder: Path) -> None:
+    leader, follower = pty.openpty()
+    running = process(
+        *["info", "-", "--from", "csg"],
+        stdin=-1,
+        stdout=-1,
+        stderr=follower,
+        more={"TERM": "xterm"},
+    )
+    os.close(follower)
+    said = b""
+    while b"info \xe2\x80\xa6 2 s" not in said:
+        said += os.read(leader, 1000)
+    assert running.stdin is not None and running.stdout is not None
+    running.stdin.write(CSG.encode())
+    running.stdin.close()
+    with running.stdout as out:
+        assert b"volume" in out.read() and running.wait(timeout=60) == 0
+    # The line goes before the process ends.
+    said += os.read(leader, 1000)
+    os.close(leader)
+    assert said.endswith(b"\r\033[K")
+
+
+def test_nothing_is_under_way_in_pipes(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(status, "_PATIENCE", 0.0)
+    with status.watched("work", quiet=False):
+        assert status._line is None
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    for name, quiet in (("dumb", False), ("xterm", True)):
+        monkeypatch.setenv("TERM", name)
+        with status.watched("work", quiet):
+            assert status._line is None
