@@ -1,17 +1,15 @@
 """Reports of defects: a file with what was called, on what, and how it failed."""
 
-import io
 import itertools
-import json
 import os
-import platform
-import tempfile
 import time
-import zipfile
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ._core import ObjectTree, PanicException, Tree, __version__
+
+if TYPE_CHECKING:
+    import zipfile
 
 #: A program that goes on after a defect may meet it often: a process writes no more reports.
 _MOST = 16
@@ -33,7 +31,13 @@ def report(message: str, call: str, inputs: Mapping[str, Any]) -> str | None:
 
 
 def _written(message: str, call: str, inputs: Mapping[str, Any]) -> str:
-    import numpy as np  # late: errors are needed where numpy is not, as by --help
+    # Late: every start needs this module, and hardly any writes a report.
+    import json
+    import platform
+    import tempfile
+    import zipfile
+
+    import numpy as np
 
     facts = {
         "message": message,
@@ -57,8 +61,10 @@ def _written(message: str, call: str, inputs: Mapping[str, Any]) -> str:
     return path
 
 
-def _put(archive: zipfile.ZipFile, name: str, value: Any) -> Any:
+def _put(archive: "zipfile.ZipFile", name: str, value: Any) -> Any:
     """Put a large input into the archive; return what `report.json` says of it."""
+    import io
+
     import numpy as np
 
     try:

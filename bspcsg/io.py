@@ -11,7 +11,6 @@ from typing import Any
 
 from .errors import Finding, FormatError
 from .formats.files import (
-    FORMATS,
     decoded,
     encoded,
     form_of,
@@ -21,6 +20,7 @@ from .formats.files import (
     write,
 )
 from .formats.raw import RawMesh
+from .formats.registry import FORMATS
 from .formats.solids import solid_of
 from .solid.counting import counted
 from .solid.solid import Solid

@@ -90,7 +90,7 @@ class Inputs:
 
     def tell_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
         """Say once which inputs have no unit although their outputs state one."""
-        from ..formats.files import FORMATS
+        from ..formats.registry import FORMATS
 
         unknown = [
             path
@@ -107,7 +107,7 @@ class Inputs:
 
     def suffix_of(self, path: Path) -> str:
         """Return the suffix of the format that a file is read as."""
-        from ..formats.files import FORMATS
+        from ..formats.registry import FORMATS
 
         own = path.suffix.lower()
         return own if own in FORMATS or own in SUFFIXES or not self.suffix else self.suffix
@@ -118,7 +118,7 @@ class Inputs:
 
     def up_of(self, path: Path) -> str:
         """Return the axis that is up in a file, as is usual for its format."""
-        from ..formats.files import FORMATS
+        from ..formats.registry import FORMATS
 
         return "z" if self.is_script(path) else FORMATS[self.suffix_of(path)].up
 

@@ -54,7 +54,7 @@ def _as_source(context: click.Context, option: click.Parameter, value: str | Non
 
 def _as_suffix(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
     """Return the suffix of a format given with or without its dot."""
-    from ..formats.files import FORMATS
+    from ..formats.registry import FORMATS
 
     if value is None:
         return None

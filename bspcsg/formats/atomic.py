@@ -2,7 +2,6 @@
 
 import contextlib
 import os
-import secrets
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TypeAlias
@@ -41,7 +40,7 @@ def write_file(
     target = Path(os.path.realpath(name))
     try:
         _check_target(target)
-        part = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+        part = target.with_name(f".{target.name}.{os.urandom(4).hex()}.part")
         _write_new(part, target, chunks, prove)
     except OSError as error:
         reason = error.strerror or type(error).__name__

@@ -1,4 +1,4 @@
-"""Which suffix stands for which format, and reading and writing by it."""
+"""Reading and writing files by their suffixes."""
 
 import itertools
 import os
@@ -6,134 +6,18 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TypeAlias
 
 import numpy as np
 
-from .._types import FloatArray
-from ..attributes.attributes import Attributes
 from ..errors import Finding, FormatError, format_errors
 from ..mesh.mesh import Mesh
-from . import held, obj, off, single, stl, vtk
+from . import single
 from .atomic import write_file
-from .glb import file as glb
-from .glb import said as glb_said
-from .ply import columns
-from .ply import file as ply
-from .proof import Called, Scan, prove, prove_with_attributes
+from .proof import prove, prove_with_attributes
 from .raw import RawMesh, empty_set
+from .registry import FORMATS, Form, Format
 from .said import left_out, said_of, saying
 from .source import Source, content_of
-from .threemf import file as threemf
-from .threemf import properties as threemf_properties
-from .threemf import write as threemf_write
-
-Encoder: TypeAlias = Callable[[Mesh | RawMesh], Iterator[bytes]]
-Keeper: TypeAlias = Callable[[Attributes, FloatArray], Attributes]
-Companions: TypeAlias = Callable[[RawMesh, str], tuple[bytes, dict[str, bytes]]]
-LossFinder: TypeAlias = Callable[[Mesh | RawMesh], tuple[Finding, ...]]
-
-
-@dataclass(frozen=True)
-class Form:
-    """One way to write a format, and to prove what was written.
-
-    Parameters
-    ----------
-    encode : callable
-    scan : callable
-        Takes a written file apart.
-    called : callable, optional
-        What the name of an object becomes; None if files do not tell objects apart.
-    losses : callable, optional
-        What the form cannot keep; raises OverflowError if it cannot hold the numbers.
-    repeats : bool
-        Whether it holds triangles that name a vertex twice.
-    is_single : bool
-        Whether it holds single precision only.
-    keeps : callable, optional
-        Returns what it holds of attributes over vertices, as they read back; None if it holds none.
-    beside : callable, optional
-        Returns what a file begins with to name files beside it, and those, from the mesh and the
-        stem of the file.
-    """
-
-    encode: Encoder
-    scan: Scan
-    called: Called | None = None
-    losses: LossFinder | None = None
-    repeats: bool = True
-    is_single: bool = False
-    keeps: Keeper | None = None
-    beside: Companions | None = None
-
-
-@dataclass(frozen=True)
-class Format:
-    """How one format is read and written; one of the written forms may be missing.
-
-    Parameters
-    ----------
-    read : callable
-    text, binary : Form, optional
-    unit : str
-        ``"mm"`` if files say how long a unit is, and are read and written in millimetres.
-    up : {"z", "y"}
-        Which axis is up in files; meshes in memory have z up.
-    """
-
-    read: Callable[[Source], RawMesh]
-    text: Form | None = None
-    binary: Form | None = None
-    unit: str = ""
-    up: str = "z"
-
-
-FORMATS = {
-    ".stl": Format(
-        stl.read,
-        Form(stl.text, held.text_stl, stl.called),
-        Form(stl.binary, held.binary_stl, losses=stl.losses, is_single=True),
-    ),
-    ".obj": Format(
-        obj.read,
-        Form(
-            obj.text, held.obj, obj.called, keeps=lambda said, _: obj.kept(said), beside=obj.beside
-        ),
-    ),
-    ".ply": Format(
-        ply.read,
-        Form(ply.text, held.text_ply, keeps=lambda said, _: columns.kept(said)),
-        Form(ply.binary, held.binary_ply, keeps=lambda said, _: columns.kept(said)),
-    ),
-    ".off": Format(off.read, Form(off.text, held.off, keeps=lambda said, _: off.kept(said))),
-    ".3mf": Format(
-        threemf.read,
-        None,
-        Form(
-            threemf_write.binary,
-            held.archive_3mf,
-            threemf_write.called,
-            threemf_write.losses,
-            repeats=False,
-            keeps=lambda said, _: threemf_properties.kept(said),
-        ),
-        "mm",
-    ),
-    ".glb": Format(
-        glb.read,
-        None,
-        Form(glb.binary, held.glb, glb.called, glb.losses, is_single=True, keeps=glb_said.kept),
-        "mm",
-        "y",
-    ),
-    **{
-        suffix: Format(
-            vtk.reader(suffix), None, Form(vtk.writer(suffix), partial(held.vtk_grid, suffix))
-        )
-        for suffix in (".vtk", ".vtu")
-    },
-}
 
 _BREP = (
     "{} is a format of curved surfaces, and bspcsg reads meshes only. Make a mesh of it first, for"
@@ -362,7 +246,5 @@ def _refuse_unwritable(name: str, mesh: Mesh | RawMesh, form: Form) -> None:
     if len(mesh.faces) and not 0 <= mesh.faces.min() <= mesh.faces.max() < count:
         message = f"{name}: a triangle names a vertex that does not exist."
         raise FormatError(message, "index_out_of_range")
-    if form.encode is ply.binary and count > np.iinfo(np.int32).max:
-        raise FormatError(f"{name}: too many vertices for PLY; write OBJ.", "too_large")
-    if form.encode is glb.binary and glb.most_bytes(mesh) > np.iinfo(np.uint32).max:
-        raise FormatError(f"{name}: too many triangles for GLB; write 3MF.", "too_large")
+    if form.beyond is not None and (reason := form.beyond(mesh)):
+        raise FormatError(f"{name}: {reason}", "too_large")

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from .._types import IndexArray
 from ..errors import FormatError, words_of
 from ..mesh.mesh import Mesh
-from .held import Held
+from .held.layout import Held
 from .raw import RawMesh, parts_of
 
 #: Triangles compared together: their arrays fit into a processor's cache.

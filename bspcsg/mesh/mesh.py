@@ -155,7 +155,9 @@ class Mesh:
             return None
         used = self.vertices
         if self._counts[0] < len(used):
-            used = used[np.unique(self.faces)]
+            is_used = np.zeros(len(used), dtype=bool)
+            is_used[self.faces] = True
+            used = used[is_used]
         return np.array([used.min(axis=0), used.max(axis=0)])
 
     @property

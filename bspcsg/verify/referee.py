@@ -1,12 +1,12 @@
 """Who is right where two engines disagree: exact counts of crossings, with no tree in them.
 
-A point of the dispute is classified against the operands by counting, in rational arithmetic, how
+A point of the dispute is classified against the operands by counting, in whole numbers, how
 a ray from it crosses their triangles. This shares no code with the core.
 """
 
 from collections.abc import Sequence
 from enum import Enum
-from fractions import Fraction
+from math import lcm
 
 import numpy as np
 
@@ -110,7 +110,7 @@ class Columns:
     def _winding_along(self, point: Point, axis: int) -> int | None:
         """Return the winding number, by a ray along an axis that must not touch an edge."""
         order = [axis, (axis + 1) % 3, (axis + 2) % 3]
-        start = [Fraction(point[k]) for k in order]
+        start = [point[k] for k in order]
         winding = 0
         for triangle in self._met(point, order):
             crossing = _crossing(triangle, start)
@@ -139,24 +139,32 @@ class Columns:
         return self._extents[axis]
 
 
-def _crossing(triangle: FloatArray, start: list[Fraction]) -> int | None:
+def _crossing(triangle: FloatArray, start: list[float]) -> int | None:
     """Return +1 if the ray leaves through the triangle, -1 if it enters, 0 if it misses."""
-    a, b, c = ([Fraction(value) for value in corner] for corner in triangle.tolist())
-    areas = [_doubled_area(b, c, start), _doubled_area(c, a, start), _doubled_area(a, b, start)]
-    if any(area > 0 for area in areas) and any(area < 0 for area in areas):
+    numbers = _whole([*triangle.ravel().tolist(), *start])
+    a, b, c, ray = (numbers[k : k + 3] for k in range(0, 12, 3))
+    areas = [_doubled_area(b, c, ray), _doubled_area(c, a, ray), _doubled_area(a, b, ray)]
+    if min(areas) < 0 < max(areas):
         return 0
-    if any(area == 0 for area in areas):
+    if 0 in areas:
         return None
-    whole = sum(areas, Fraction(0))
-    height = sum((area * p[0] for area, p in zip(areas, (a, b, c), strict=True)), Fraction(0))
-    distance = height / whole - start[0]
-    if distance == 0:
+    whole = sum(areas)
+    # The distance to the triangle's plane, times `whole`, which may be negative.
+    ahead = sum(area * (p[0] - ray[0]) for area, p in zip(areas, (a, b, c), strict=True))
+    if ahead == 0:
         return None
-    if distance < 0:
+    if (ahead > 0) != (whole > 0):
         return 0
     return 1 if whole > 0 else -1
 
 
-def _doubled_area(a: list[Fraction], b: list[Fraction], c: list[Fraction]) -> Fraction:
+def _whole(numbers: list[float]) -> list[int]:
+    """Return doubles as multiples of the same power of two."""
+    ratios = [number.as_integer_ratio() for number in numbers]
+    scale = lcm(*(below for _, below in ratios))
+    return [above * (scale // below) for above, below in ratios]
+
+
+def _doubled_area(a: list[int], b: list[int], c: list[int]) -> int:
     """Return twice the signed area, seen against the ray."""
     return (b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1])

@@ -22,6 +22,7 @@ from rooms import PICTURE, picture
 #: verb needs.
 DEFERRED = {
     "bspcsg/io.py": "mesh files are read without the scripts' evaluator",
+    "bspcsg/formats/registry.py": "a format is imported when a file has its suffix",
     "bspcsg/bench/engines.py": "an engine is imported by the process that measures it",
     "bspcsg/bench/real.py": "cases are listed without the package",
 }

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from bspcsg.errors import FormatError
-from bspcsg.formats import files as formats
-from bspcsg.formats.files import Form
+from bspcsg.formats.registry import MAKERS, Form
 from bspcsg.io import FORMATS, RawMesh, encoded, read, write
 from bspcsg.mesh.mesh import Mesh
 from support.io import cube_mesh
@@ -40,10 +39,10 @@ def encode_with(
     """Let a format be written by something else."""
     form, known = form_of(suffix, text), FORMATS[suffix]
     other = dataclasses.replace(form, encode=encode)
-    changed = dataclasses.replace(known, text=other)
-    if form is known.binary:
-        changed = dataclasses.replace(known, binary=other)
-    monkeypatch.setitem(formats.FORMATS, suffix, changed)
+    is_text = text or known.binary is None
+    text_form, binary = (other, known.binary) if is_text else (known.text, other)
+    changed = dataclasses.replace(known, text=text_form, binary=binary)
+    monkeypatch.setitem(MAKERS, suffix, lambda: changed)
 
 
 def changed_mesh(edit: Callable[[RawMesh], RawMesh]) -> Callable[[Form], Callable[..., Chunks]]:

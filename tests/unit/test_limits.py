@@ -13,7 +13,7 @@ import pytest
 import bspcsg as b
 from bspcsg import csg
 from bspcsg.bsp import Region, load_dxf, load_svg
-from bspcsg.formats import files as formats
+from bspcsg.formats.registry import MAKERS, Format
 from bspcsg.io import decoded
 
 HUGE = 10**5000
@@ -149,7 +149,7 @@ def test_whatever_a_parser_raises_names_the_file_and_keeps_its_cause(
     def fails(source: object) -> Any:
         raise error
 
-    monkeypatch.setitem(formats.FORMATS, ".off", formats.Format(fails))
+    monkeypatch.setitem(MAKERS, ".off", lambda: Format(fails))
     with pytest.raises(b.FormatError, match=r"part.off: .* as OFF \(") as caught:
         decoded("part.off", b"OFF", ".off")
     assert caught.value.code == "malformed" and caught.value.__cause__ is error
@@ -162,7 +162,7 @@ def test_interrupts_and_our_own_errors_pass(monkeypatch: pytest.MonkeyPatch) -> 
         def fails(source: object, error: BaseException = error) -> Any:
             raise error
 
-        monkeypatch.setitem(formats.FORMATS, ".off", formats.Format(fails))
+        monkeypatch.setitem(MAKERS, ".off", lambda: Format(fails))
         with pytest.raises(type(error)) as caught:
             decoded("part.off", b"OFF", ".off")
         assert caught.value is error

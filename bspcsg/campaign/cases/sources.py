@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import FormatError
-from ...formats.files import FORMATS
+from ...formats.registry import FORMATS
 from .case import OPERATIONS, SCRIPT, Case, Operand, command_for, digest_of, digest_of_mesh
 from .poses import COINCIDENT
 

@@ -186,7 +186,7 @@ class _Conversion:
 
     def _turned(self, path: Path, target: Target) -> "RawMesh":
         """Read a file, turned so that the axis asked for is up in the output."""
-        from ...formats.files import FORMATS
+        from ...formats.registry import FORMATS
         from ...formats.turning import turned
 
         raw = self._inputs.raw(path)

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from ...bsp import Region
-from ...formats import files
+from ...formats.files import read
+from ...formats.registry import FORMATS
 from ...modelling.making.heights import (
     BRIGHTEST,
     height_map,
@@ -33,11 +34,11 @@ def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geome
         return _dxf(path, arguments, arguments.number("scale", 1.0))
     if suffix == ".svg":
         return svg_region(path, arguments.number("dpi", 72.0), arguments.flag("center"))
-    if suffix not in files.FORMATS:
-        known = ", ".join(sorted([*files.FORMATS, ".dxf", ".svg"]))
+    if suffix not in FORMATS:
+        known = ", ".join(sorted([*FORMATS, ".dxf", ".svg"]))
         message = f"“{suffix}” files are not supported; known are {known}."
         raise arguments.error(message, "unsupported")
-    raw = files.read(path)
+    raw = read(path)
     if raw.is_empty_set:
         return Solid.empty()
     return run.closed_solid(owner, raw.vertices, raw.faces)

@@ -102,6 +102,12 @@ def most_bytes(mesh: Mesh | RawMesh) -> int:
     return 12 * (len(mesh.faces) + vertices)
 
 
+def beyond(mesh: Mesh | RawMesh) -> str:
+    """Say why no file can hold so large a mesh; nothing if one can."""
+    is_beyond = most_bytes(mesh) > np.iinfo(np.uint32).max
+    return "too many triangles for GLB; write 3MF." if is_beyond else ""
+
+
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; coordinates are rounded to single precision."""
     said = said_of(mesh)

@@ -341,6 +341,12 @@ def _type_of(values: Values) -> str:
     return TYPES[f"{values.dtype.kind}{values.dtype.itemsize}"]
 
 
+def beyond(mesh: Mesh | RawMesh) -> str:
+    """Say why no file can hold so large a mesh; nothing if one can."""
+    is_beyond = len(mesh.vertices) > np.iinfo(np.int32).max
+    return "too many vertices for PLY; write OBJ." if is_beyond else ""
+
+
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the little-endian form, in double precision."""
     yield _header(mesh, "binary_little_endian")

@@ -1,0 +1,15 @@
+"""What files of GLB hold."""
+
+from ..glb.container import container_of
+from ..glb.file import TO_METRES
+from ..glb.nodes import shown
+from ..source import Source
+from .layout import Held
+
+
+def objects(data: bytes) -> list[Held]:
+    """Return what the nodes show, in metres each."""
+    found, hidden = shown(container_of(Source("file", data)))
+    if hidden or any((one.matrix != TO_METRES).any() for one in found):
+        raise ValueError("a node is not where it should be")
+    return [Held(one.vertices, one.faces, one.name) for one in found]

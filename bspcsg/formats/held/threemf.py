@@ -1,0 +1,48 @@
+"""What archives of 3MF hold."""
+
+import io
+import zipfile
+from collections.abc import Iterator
+from xml.etree import ElementTree
+
+from .layout import Held, rows_of, whole_numbers
+
+
+def archive(data: bytes) -> list[Held]:
+    """Return the objects of the model in the archive, each of which is built once."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        if (damaged := archive.testzip()) is not None:
+            raise ValueError(f"its part {damaged} is damaged")
+        model = archive.read("3D/3dmodel.model")
+    found, at = list(_objects(model)), model.index(b"</resources>")
+    items = b"".join(b'<item objectid="%d"/>\n' % (number + 1) for number in range(len(found)))
+    end = b"</resources>\n<build>\n" + items + b"</build>\n</model>\n"
+    if model[at:] != end:
+        raise ValueError("its build does not name each object once")
+    return found
+
+
+def _objects(model: bytes) -> Iterator[Held]:
+    opening, between, closing = (
+        b"<mesh><vertices>\n",
+        b"</vertices><triangles>\n",
+        b"</triangles></mesh></object>\n",
+    )
+    at, number = model.index(b"<resources>\n") + len(b"<resources>\n"), 0
+    while model.startswith(b"<object ", at):
+        number += 1
+        start = model.index(opening, at)
+        middle = model.index(between, start)
+        end = model.index(closing, middle)
+        told = ElementTree.fromstring(model[at:start] + b"</object>").attrib
+        if told.get("id") != str(number) or told.get("type") != "model":
+            raise ValueError(f"its object {number} is another one")
+        vertices = rows_of(model[start + len(opening) : middle], _VERTEX, 3)
+        faces = rows_of(model[middle + len(between) : end], _TRIANGLE, 3)
+        yield Held(vertices, whole_numbers(faces), told.get("name", ""))
+        at = end + len(closing)
+    if not model.startswith(b"</resources>", at):
+        raise ValueError(f"something else follows its object {number}")
+
+
+_VERTEX, _TRIANGLE = b'<vertex x="0" y="0" z="0"/>\n', b'<triangle v1="0" v2="0" v3="0"/>\n'

@@ -1,0 +1,192 @@
+"""Which suffix stands for which format; its modules are imported when it is asked for."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import TypeAlias
+
+from .._types import FloatArray
+from ..attributes.attributes import Attributes
+from ..errors import Finding
+from ..mesh.mesh import Mesh
+from .proof import Called, Scan
+from .raw import RawMesh
+from .source import Source
+
+Encoder: TypeAlias = Callable[[Mesh | RawMesh], Iterator[bytes]]
+Keeper: TypeAlias = Callable[[Attributes, FloatArray], Attributes]
+Companions: TypeAlias = Callable[[RawMesh, str], tuple[bytes, dict[str, bytes]]]
+LossFinder: TypeAlias = Callable[[Mesh | RawMesh], tuple[Finding, ...]]
+Limit: TypeAlias = Callable[[Mesh | RawMesh], str]
+
+
+@dataclass(frozen=True)
+class Form:
+    """One way to write a format, and to prove what was written.
+
+    Parameters
+    ----------
+    encode : callable
+    scan : callable
+        Takes a written file apart.
+    called : callable, optional
+        What the name of an object becomes; None if files do not tell objects apart.
+    losses : callable, optional
+        What the form cannot keep; raises OverflowError if it cannot hold the numbers.
+    repeats : bool
+        Whether it holds triangles that name a vertex twice.
+    is_single : bool
+        Whether it holds single precision only.
+    keeps : callable, optional
+        Returns what it holds of attributes over vertices, as they read back; None if it holds none.
+    beyond : callable, optional
+        Says why no file can hold so large a mesh; nothing if one can.
+    beside : callable, optional
+        Returns what a file begins with to name files beside it, and those, from the mesh and the
+        stem of the file.
+    """
+
+    encode: Encoder
+    scan: Scan
+    called: Called | None = None
+    losses: LossFinder | None = None
+    repeats: bool = True
+    is_single: bool = False
+    keeps: Keeper | None = None
+    beyond: Limit | None = None
+    beside: Companions | None = None
+
+
+@dataclass(frozen=True)
+class Format:
+    """How one format is read and written; one of the written forms may be missing.
+
+    Parameters
+    ----------
+    read : callable
+    text, binary : Form, optional
+    unit : str
+        ``"mm"`` if files say how long a unit is, and are read and written in millimetres.
+    up : {"z", "y"}
+        Which axis is up in files; meshes in memory have z up.
+    """
+
+    read: Callable[[Source], RawMesh]
+    text: Form | None = None
+    binary: Form | None = None
+    unit: str = ""
+    up: str = "z"
+
+
+def _stl() -> Format:
+    from . import stl
+    from .held import plain
+
+    return Format(
+        stl.read,
+        Form(stl.text, plain.text_stl, stl.called),
+        Form(stl.binary, plain.binary_stl, losses=stl.losses, is_single=True),
+    )
+
+
+def _obj() -> Format:
+    from . import obj
+    from .held import plain
+
+    text = Form(
+        obj.text, plain.obj, obj.called, keeps=lambda said, _: obj.kept(said), beside=obj.beside
+    )
+    return Format(obj.read, text)
+
+
+def _ply() -> Format:
+    from .held import plain
+    from .ply import columns, file
+
+    return Format(
+        file.read,
+        Form(file.text, plain.text_ply, keeps=lambda said, _: columns.kept(said)),
+        Form(
+            file.binary,
+            plain.binary_ply,
+            keeps=lambda said, _: columns.kept(said),
+            beyond=file.beyond,
+        ),
+    )
+
+
+def _off() -> Format:
+    from . import off
+    from .held import plain
+
+    return Format(off.read, Form(off.text, plain.off, keeps=lambda said, _: off.kept(said)))
+
+
+def _threemf() -> Format:
+    from .held import threemf
+    from .threemf import file, properties, write
+
+    binary = Form(
+        write.binary,
+        threemf.archive,
+        write.called,
+        write.losses,
+        repeats=False,
+        keeps=lambda said, _: properties.kept(said),
+    )
+    return Format(file.read, None, binary, "mm")
+
+
+def _glb() -> Format:
+    from .glb import file, said
+    from .held import glb
+
+    binary = Form(
+        file.binary,
+        glb.objects,
+        file.called,
+        file.losses,
+        is_single=True,
+        keeps=said.kept,
+        beyond=file.beyond,
+    )
+    return Format(file.read, None, binary, "mm", "y")
+
+
+def _vtk(suffix: str) -> Format:
+    from . import vtk
+    from .held.vtk import grid
+
+    return Format(vtk.reader(suffix), None, Form(vtk.writer(suffix), partial(grid, suffix)))
+
+
+#: What makes each format.
+MAKERS: dict[str, Callable[[], Format]] = {
+    ".stl": _stl,
+    ".obj": _obj,
+    ".ply": _ply,
+    ".off": _off,
+    ".3mf": _threemf,
+    ".glb": _glb,
+    ".vtk": partial(_vtk, ".vtk"),
+    ".vtu": partial(_vtk, ".vtu"),
+}
+
+
+class _Formats(Mapping[str, Format]):
+    """The formats by their suffixes."""
+
+    def __getitem__(self, suffix: str) -> Format:
+        return MAKERS[suffix]()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(MAKERS)
+
+    def __len__(self) -> int:
+        return len(MAKERS)
+
+    def __contains__(self, suffix: object) -> bool:
+        return suffix in MAKERS
+
+
+FORMATS: Mapping[str, Format] = _Formats()

@@ -1,0 +1,72 @@
+"""What the command line imports before it works: only what the verb at hand needs."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import bspcsg as b
+
+#: What costs a tenth of a second or more, or comes with dozens of modules, and no small boolean
+#: of STL files needs. numpy.unique imports numpy.ma, xml.sax.saxutils imports urllib.request.
+HEAVY = [
+    "PIL",
+    "email",
+    "ezdxf",
+    "importlib.metadata",
+    "jinja2",
+    "meshio",
+    "numpy.ma",
+    "pyclipper",
+    "rich",
+    "scipy",
+    "tempfile",
+    "trimesh",
+    "uharfbuzz",
+    "urllib.request",
+    "zipfile",
+]
+
+#: Runs the command line and names the modules that are there when it ends.
+PROGRAM = """
+import sys
+try:
+    from bspcsg.cli.main import main
+    main(sys.argv[1:])
+finally:
+    print(*sys.modules, file=sys.stderr)
+"""
+
+
+def imported(*arguments: str) -> set[str]:
+    command = [sys.executable, "-c", PROGRAM, *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=100, check=True)
+    return set(done.stderr.splitlines()[-1].split())
+
+
+@pytest.fixture(scope="module")
+def cubes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("cubes")
+    b.cube(2).save(folder / "a.stl")
+    b.cube(2).translate(1, 1, 1).save(folder / "b.stl")
+    return folder
+
+
+@pytest.mark.parametrize("arguments", [("--version",), ("difference", "--help")])
+def test_the_version_and_the_help_need_no_numpy(arguments: tuple[str, ...]) -> None:
+    assert imported(*arguments).isdisjoint({*HEAVY, "numpy", "manifold3d"})
+
+
+@pytest.mark.parametrize("kind", ["stl", "obj", "ply"])
+def test_a_checked_boolean_imports_little(cubes: Path, kind: str) -> None:
+    result = str(cubes / f"c.{kind}")
+    found = imported("difference", str(cubes / "a.stl"), str(cubes / "b.stl"), "-o", result)
+    assert {"numpy", "manifold3d"} <= found
+    assert found.isdisjoint(HEAVY)
+
+
+def test_importing_the_package_needs_no_numpy() -> None:
+    program = "import sys, bspcsg; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
+    assert b"numpy" not in done.stdout.split()
