@@ -39,7 +39,7 @@ _COMMON = [
 
 def _formats(context: click.Context, option: click.Parameter, begun: str) -> list[str]:
     """Return the formats whose names begin so, for whoever completes a line."""
-    from ..formats.files import FORMATS
+    from ..formats.registry import FORMATS
 
     known = (*FORMATS, *(STREAMED if option.name == "from_format" else ()))
     names = sorted(suffix.removeprefix(".") for suffix in known)

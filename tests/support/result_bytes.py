@@ -11,7 +11,7 @@ import numpy as np
 
 import bspcsg as b
 from bspcsg._types import FloatArray
-from bspcsg.formats.files import FORMATS
+from bspcsg.formats.registry import FORMATS
 from corpus.test_corpus import CASES, evaluate, operand
 
 REPOSITORY = Path(__file__).parents[2]

@@ -129,7 +129,7 @@ class _Conversion:
 
     def _refuse_unit(self, target: Target) -> None:
         """Refuse a unit for files that state their own."""
-        from ...formats.files import FORMATS
+        from ...formats.registry import FORMATS
 
         known = FORMATS.get(target.suffix.lower())
         if self._settings["to_unit"] is not None and known is not None and known.unit:
