@@ -1,7 +1,17 @@
 //! Every target holds on its seeds and on damaged copies of them, without libFuzzer.
 
-use bspcsg_fuzz::seeds::seeds;
-use bspcsg_fuzz::targets;
+#[path = "../../fuzz/src/scene.rs"]
+mod scene;
+#[expect(dead_code, reason = "libFuzzer's targets write seeds as files")]
+#[path = "../../fuzz/src/seeds.rs"]
+mod seeds;
+mod support;
+#[path = "../../fuzz/src/targets/mod.rs"]
+mod targets;
+#[path = "../../fuzz/src/winding.rs"]
+mod winding;
+
+use seeds::seeds;
 
 fn holds_around_its_seeds(name: &str, target: fn(&[u8])) {
     for (number, seed) in seeds(name).into_iter().enumerate() {
