@@ -187,6 +187,14 @@ TIMEOUT = click.option(
     help="Seconds to give it.",
 )
 
+PORT = click.option(
+    "--port",
+    metavar="N",
+    type=click.IntRange(0, 65535),
+    default=0,
+    help="Where a page that is served is found; by default one that is free.",
+)
+
 
 def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, ...] | None]:
     """Return the callback of an option that takes a direction, and maybe more numbers after it.

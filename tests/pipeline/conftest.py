@@ -1,9 +1,11 @@
 """The folder that the tests of the command line work in."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from support.browser import Browser, started
 from support.cli import put
 from support.shapes import cuboid
 
@@ -15,3 +17,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     put("a.off", cuboid((0, 0, 0), (2, 2, 2)))
     put("c.stl", cuboid((1, 1, 1), (3, 3, 3)))
     return tmp_path
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """Return the one browser of all tests of pages."""
+    with started(webgl=True) as running:
+        yield running

@@ -23,12 +23,6 @@ _DRAWN = "document.querySelector('.stage[data-drawn]')"
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with started(webgl=True) as running:
-        yield running
-
-
-@pytest.fixture(scope="module")
 def blind() -> Iterator[Browser]:
     """Return a browser without WebGL."""
     with started(webgl=False) as running:
@@ -138,7 +132,7 @@ def test_the_view_of_a_case(browser: Browser, report: Path) -> None:
     browser.click("#case-1 .opener")
     browser.wait(_DRAWN)
     assert browser.texts("#case-1 .tools button") == [
-        "A", "B", "result", "difference", "edges", "reset", "close",
+        "A", "B", "result", "difference", "parallel", "reset", "close",
     ]  # fmt: skip
     canvas = "#case-1 canvas"
     shown = browser.pixels(canvas)
@@ -176,6 +170,8 @@ def test_the_view_looks_as_it_did(browser: Browser, view: Path, tmp_path: Path) 
 def test_the_view_turns_cuts_and_hides(browser: Browser, view: Path) -> None:
     browser.open(view)
     browser.wait(_DRAWN)
+    # With the ring of the focus, which stays.
+    browser.type("canvas", Keys.ESCAPE)
     first = browser.pixels("canvas")
     browser.type("canvas", Keys.LEFT, Keys.LEFT)
     turned = browser.pixels("canvas")
@@ -185,14 +181,14 @@ def test_the_view_turns_cuts_and_hides(browser: Browser, view: Path) -> None:
     browser.click(".tools button", 0)
     assert _change(first, browser.pixels("canvas")) > 0.1
     browser.click(".tools button", 0)
-    browser.click(".tools button", 2)
+    browser.choose("Edges", "none")
     assert 0.0005 < _change(first, browser.pixels("canvas")) < 0.1
-    browser.click(".tools button", 2)
-    _set(browser, ".tools select", 2)
-    assert browser.texts(".tools output") == ["0.5 mm"]
+    browser.choose("Edges", "features")
+    browser.choose("Section", "2")
+    assert browser.texts(".tools > output") == ["0.5 mm"]
     halved = browser.pixels("canvas")
-    _set(browser, ".tools input", 900)
-    assert browser.texts(".tools output") == ["1.7 mm"]
+    _set(browser, ".tools > input", 900)
+    assert browser.texts(".tools > output") == ["1.7 mm"]
     assert _change(halved, browser.pixels("canvas")) > 0.05 and browser.errors() == []
 
 
@@ -202,8 +198,8 @@ def test_a_section_is_filled(browser: Browser, tmp_path: Path) -> None:
     page.write_text(view_page([Layer("ball", mesh.vertices, mesh.faces)], "ball"))
     browser.open(page)
     browser.wait(_DRAWN)
-    browser.click(".tools button", 1)
-    _set(browser, ".tools select", 2)
+    browser.choose("Edges", "none")
+    browser.choose("Section", "2")
     cut = browser.pixels("canvas").astype(int)
     height, width, _ = cut.shape
     # Around the middle lies the disk of the cut, in one colour; below it the ball, shaded.

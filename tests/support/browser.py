@@ -81,6 +81,54 @@ class Browser:
         """Give keys to an element."""
         self._running.find_element("css selector", selector).send_keys(*keys)
 
+    def choose(self, label: str, value: str) -> None:
+        """Choose among the options of the select with a label."""
+        self.run(
+            "const e = document.querySelector(`select[aria-label='${arguments[0]}']`);"
+            "e.value = arguments[1]; e.dispatchEvent(new Event('change'))",
+            label,
+            value,
+        )
+
+    def slide(self, label: str, value: float) -> None:
+        """Move the slider with a label to a value."""
+        self.run(
+            "const e = [...document.querySelectorAll('label')].find("
+            "l => l.firstChild.textContent === arguments[0]).querySelector('input');"
+            "e.value = arguments[1]; e.dispatchEvent(new Event('input'))",
+            label,
+            value,
+        )
+
+    def press_button(self, text: str) -> None:
+        """Click the button with a text."""
+        self.run(
+            "[...document.querySelectorAll('button')].find("
+            "e => e.textContent.trim() === arguments[0]).click()",
+            text,
+        )
+
+    def press(self, selector: str, x: float, y: float) -> None:
+        """Press and release the mouse at a place of an element."""
+        self.run(
+            "const [element, x, y] = arguments; const box = element.getBoundingClientRect();"
+            "for (const kind of ['pointerdown', 'pointerup']) element.dispatchEvent("
+            "new PointerEvent(kind, { clientX: box.left + x, clientY: box.top + y,"
+            " pointerId: 1, isPrimary: true, bubbles: true }))",
+            self._running.find_element("css selector", selector),
+            x,
+            y,
+        )
+
+    def prefer(self, theme: str) -> None:
+        """Say that the system is "light" or "dark"."""
+        features = [{"name": "prefers-color-scheme", "value": theme}]
+        self._running.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+
+    def run_later(self, script: str) -> Any:
+        """Return what the body of a function gives to its last argument."""
+        return self._running.execute_async_script(script)
+
     def wait(self, condition: str) -> None:
         """Wait until an expression holds in the page."""
         from selenium.webdriver.support.ui import WebDriverWait

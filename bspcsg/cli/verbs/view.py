@@ -1,9 +1,10 @@
-"""The verb that shows meshes in a browser: view."""
+"""The verb that shows files in a browser: view."""
 
 import os
 import sys
 import tempfile
 import webbrowser
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,10 +12,11 @@ import click
 
 from ...errors import FormatError
 from .. import output
-from ..files import Inputs, is_dropped, refuse_folder, shown
-from ..options import common, reading
+from ..files import STREAM, Inputs, is_dropped, refuse_folder, shown
+from ..options import PORT, common, reading
 from ..output import Output, counted
 from ..patterns import files_argument
+from ..seen import layers_of
 
 if TYPE_CHECKING:
     from ...report.viewer.layer import Layer
@@ -23,6 +25,8 @@ _EPILOG = """\b
 Examples:
   bspcsg view part.stl
   bspcsg view before.stl after.stl -o both.html --no-open
+  bspcsg view part.py --live
+  bspcsg view parts/
 """
 
 _SUFFIXES = (".html", ".htm")
@@ -44,13 +48,24 @@ _LARGE = 20_000_000
 @click.option(
     "--open/--no-open", "opens", default=True, help="Open the page in a browser (default)."
 )
+@click.option(
+    "--thickness", is_flag=True, help="Offer to colour faces by how thick the part is there."
+)
+@click.option(
+    "--live", is_flag=True, help="Serve the page on this machine; it follows the files' changes."
+)
+@PORT
 @reading
 @common
 def view(files: tuple[Path, ...], target: Path | None, **given: Any) -> int:
-    """Show meshes in a browser: turn, zoom, cut, edges on and off, a button for each file.
+    """Show meshes in a browser: turn, zoom, cut, measure, see through, a button for each part.
 
-    The page is one file that needs no network and can be sent to others. Meshes need not be closed.
-    Without a screen, as over ssh, it is only written.
+    Faces have the colours and textures of the file, or can be coloured by the operand of a script
+    that they are from. The page is one file that needs no network and can be sent to others. Meshes
+    need not be closed. Without a screen, as over ssh, it is only written.
+
+    With --live, and always for a folder, a server on this machine alone shows the page, and makes
+    it anew when a file changes, until Ctrl-C.
     """
     return _Viewing(files, target, **given).run()
 
@@ -70,18 +85,61 @@ class _Viewing:
         from ...report.viewer.view import view_page
 
         self._refuse_early()
-        layers, unit = self._layers()
+        if self._settings["live"] or self._folder is not None:
+            return self._served()
+        layers, unit = self._scene(self._files)
         title = ", ".join(layer.name for layer in layers)
         page = view_page(layers, title, unit=unit).encode("utf-8")
         target = self._target or _temporary(layers[0].name)
         write_file(target, [page])
         if len(page) > _LARGE:
             self._out.note(f"the page has {len(page) / 1e6:.0f} MB; browsers take a while for it.")
-        opened = self._settings["opens"] and not is_dropped(target) and self._opened(target)
+        opens = self._settings["opens"] and not is_dropped(target)
+        opened = opens and self._opened(target.resolve().as_uri())
         self._tell(target, layers, len(page), opened)
         return output.DONE
 
+    @property
+    def _folder(self) -> Path | None:
+        """The folder that is to be shown, if it is one."""
+        return self._files[0] if len(self._files) == 1 and self._files[0].is_dir() else None
+
+    def _scene(self, files: Sequence[Path]) -> "tuple[list[Layer], str]":
+        from ...report.viewer.parts import with_thickness
+
+        layers, unit = layers_of(self._inputs, files)
+        if self._settings["thickness"]:
+            layers = [with_thickness(layer) for layer in layers]
+        return layers, unit
+
+    def _served(self) -> int:
+        """Show the files until Ctrl-C."""
+        from ..live import LiveServer
+        from ..showing import site_of_files, site_of_folder
+
+        folder = self._folder
+        site = (
+            site_of_files(self._files, self._scene)
+            if folder is None
+            else site_of_folder(folder, self._scene)
+        )
+        server = LiveServer(site, self._settings["port"])
+        opened = self._settings["opens"] and self._opened(server.address)
+        files = [str(path) for path in self._files]
+        document = {"files": files, "address": server.address, "opened": opened}
+        self._out.result(f"{server.address}  until Ctrl-C", document)
+        sys.stdout.flush()
+        server.serve()
+        return output.DONE
+
     def _refuse_early(self) -> None:
+        serves = self._settings["live"] or self._folder is not None
+        if serves and self._target is not None:
+            raise click.UsageError("a page that is served follows its files; leave out -o.")
+        if self._folder is not None:
+            return
+        if self._settings["live"] and any(str(path) == STREAM for path in self._files):
+            raise click.UsageError("--live is for files, not for standard input.")
         if self._target is not None and not is_dropped(self._target):
             if self._target.suffix.lower() not in _SUFFIXES:
                 message = f"{shown(self._target)}: the name must end in .html."
@@ -89,27 +147,12 @@ class _Viewing:
             refuse_folder(self._target)
         self._inputs.refuse_early(self._files)
 
-    def _layers(self) -> "tuple[list[Layer], str]":
-        """Return a layer for each file, and the unit if all files have it."""
-        from ...report.viewer.layer import COLOURS, RESULT, Layer
-
-        layers, units = [], set()
-        for number, path in enumerate(self._files):
-            raw = self._inputs.raw(path)
-            self._inputs.tell(path, raw.findings)
-            if not len(raw.faces):
-                self._out.warning(f"{shown(path)}: there is nothing in it to be seen.")
-            colour = RESULT if len(self._files) == 1 else COLOURS[number % len(COLOURS)]
-            layers.append(Layer(path.name, raw.vertices, raw.faces, colour))
-            units.add(raw.unit)
-        return layers, units.pop() if len(units) == 1 else ""
-
-    def _opened(self, target: Path) -> bool:
+    def _opened(self, address: str) -> bool:
         """Open the page, or say why not."""
         if not _has_screen():
             self._out.note("there is no screen here; open the page in a browser yourself.")
             return False
-        if webbrowser.open(target.resolve().as_uri()):
+        if webbrowser.open(address):
             return True
         self._out.note("no browser could be started; open the page yourself.")
         return False

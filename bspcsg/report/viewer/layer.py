@@ -1,12 +1,13 @@
 """`Layer`: one mesh of a view, and how it looks there."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...mesh.weld import welded
+from .paint import Paint
 
 #: Colours of operands in their order, taken again from the start after the last.
 COLOURS = ("#6f9bd1", "#e0a458", "#7fb285", "#a98bc9", "#c98b8b", "#79b7bd")
@@ -31,6 +32,10 @@ class Layer:
         From 0 to 1.
     shown : bool
         Whether it is seen at first.
+    paints : tuple of Paint
+        Other ways to colour its faces, which the page offers.
+    lines : (k, 2) int64
+        Pairs of vertices, drawn as thick lines in front of all.
     """
 
     name: str
@@ -39,6 +44,8 @@ class Layer:
     colour: str = RESULT
     opacity: float = 1.0
     shown: bool = True
+    paints: tuple[Paint, ...] = ()
+    lines: IndexArray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
 
     @property
     def is_closed(self) -> bool:
@@ -60,12 +67,19 @@ class Layer:
         counts = np.bincount(same)[:, None]
         sums = [np.bincount(same, axis) for axis in (self.vertices - low).T]
         faces = same[self.faces]
-        kept = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
-        return replace(self, vertices=low + np.column_stack(sums) / counts, faces=kept)
+        kept = np.flatnonzero((faces != np.roll(faces, 1, axis=1)).all(axis=1))
+        return replace(
+            self,
+            vertices=low + np.column_stack(sums) / counts,
+            faces=faces[kept],
+            paints=tuple(paint.taken(kept) for paint in self.paints),
+            lines=same[self.lines],
+        )
 
 
 def bounds_of(layers: Sequence[Layer]) -> tuple[FloatArray, FloatArray]:
-    """Return lowest and highest coordinates, (3,) each, of all vertices that a face uses."""
-    used = [layer.vertices[np.unique(layer.faces)] for layer in layers if len(layer.faces)]
+    """Return lowest and highest coordinates, (3,) each, of all vertices that are drawn."""
+    drawn = [np.union1d(layer.faces, layer.lines) for layer in layers]
+    used = [layer.vertices[some] for layer, some in zip(layers, drawn, strict=True) if len(some)]
     points = np.concatenate(used) if used else np.zeros((1, 3))
     return points.min(axis=0), points.max(axis=0)

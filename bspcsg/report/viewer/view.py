@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from ..assets import rendered
+from .landmark import Landmark
 from .layer import Layer, bounds_of
 from .packing import packed
 from .still import still
@@ -11,7 +12,15 @@ _SIZE = (800, 600)
 
 
 def view_page(
-    layers: Sequence[Layer], title: str, *, unit: str = "", embedded: bool = False
+    layers: Sequence[Layer],
+    title: str,
+    *,
+    unit: str = "",
+    embedded: bool = False,
+    paint: str = "",
+    places: Sequence[Landmark] = (),
+    notes: Sequence[str] = (),
+    live: str = "",
 ) -> str:
     """Return a page that shows meshes, whole in one file.
 
@@ -23,6 +32,14 @@ def view_page(
         What lengths are shown in.
     embedded : bool
         Leave out what a notebook's cell has no room for.
+    paint : str
+        The name of the paint that is on at first; by default colours and materials, if there are.
+    places : sequence of Landmark
+        What the page offers to look at.
+    notes : sequence of str
+        Sentences below the title.
+    live : str
+        Where the page asks whether it is out of date, on the server that it is from.
 
     Raises
     ------
@@ -30,12 +47,21 @@ def view_page(
         If Jinja2 is not installed.
     """
     low, high = bounds_of(layers)
+    chosen = paint or _own_colours(layers)
     return rendered(
         "view.html",
         title=title,
-        model=packed(layers, quantised=embedded, unit=unit),
+        model=packed(layers, quantised=embedded, unit=unit, paint=chosen, places=places),
         picture=still(layers, size=_SIZE),
+        notes=notes,
+        live=live,
         size=" × ".join(f"{side:.6g}" for side in (high - low).tolist()),
         unit=unit,
         embedded=embedded,
     )
+
+
+def _own_colours(layers: Sequence[Layer]) -> str:
+    """Return the paint that shows layers as their files say they look, if one does."""
+    names = {paint.name for layer in layers for paint in layer.paints}
+    return next((name for name in ("material", "color") if name in names), "")

@@ -1,0 +1,154 @@
+"""A server on this machine alone, whose pages load again when what they show has changed."""
+
+import contextlib
+import os
+import threading
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+from ..errors import FormatError
+
+#: The only address that is listened at.
+_HERE = "127.0.0.1"
+
+#: Names that a browser on this machine uses; any other may be a page elsewhere that was tricked
+#: into asking here.
+_OWN_NAMES = (_HERE, "localhost")
+
+#: Requests that are answered at the same time; a browser sends six.
+_MOST_AT_ONCE = 8
+
+#: Seconds after which a silent connection is closed.
+_PATIENCE = 30
+
+#: Files of a folder that are looked at for changes.
+_MOST_FILES = 2000
+
+#: Seconds between two looks at whether the server has to end.
+_LOOK = 0.2
+
+
+@dataclass(frozen=True)
+class Site:
+    """What a server shows.
+
+    Parameters
+    ----------
+    page : callable
+        Returns the page at a path, or None if there is none.
+    state : callable
+        Returns a text that changes when pages do.
+    """
+
+    page: Callable[[str], str | None]
+    state: Callable[[], str]
+
+
+class LiveServer(ThreadingHTTPServer):
+    """A server that ends when the process does, without waiting for anybody.
+
+    Parameters
+    ----------
+    site : Site
+    port : int
+        0 for one that is free.
+
+    Raises
+    ------
+    FormatError
+        If the port is taken or forbidden; code "unwritable".
+    """
+
+    daemon_threads = True
+    block_on_close = False
+
+    def __init__(self, site: Site, port: int = 0) -> None:
+        try:
+            super().__init__((_HERE, port), _Handler)
+        except OSError as error:
+            message = f"port {port}: cannot listen here: {error.strerror}; leave out --port."
+            raise FormatError(message, "unwritable") from error
+        self.site = site
+        self.places = threading.BoundedSemaphore(_MOST_AT_ONCE)
+        self.making = threading.Lock()
+
+    @property
+    def address(self) -> str:
+        """What a browser is to open."""
+        return f"http://{_HERE}:{self.server_port}/"
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Say nothing: a browser that closes a connection early is no error."""
+
+    def serve(self) -> None:
+        """Answer until Ctrl-C."""
+        with contextlib.suppress(KeyboardInterrupt):
+            self.serve_forever(_LOOK)
+        self.server_close()
+
+
+class _Handler(BaseHTTPRequestHandler):
+    """One connection."""
+
+    timeout = _PATIENCE
+    server: LiveServer
+
+    def do_GET(self) -> None:
+        """Answer with a page, or with the state."""
+        host = urlsplit(f"//{self.headers.get('Host', '')}").hostname
+        if host not in _OWN_NAMES:
+            self._send(HTTPStatus.FORBIDDEN, "This server is for its own machine.", "plain")
+            return
+        path = urlsplit(self.path).path
+        with self.server.places:
+            if path == "/changes":
+                self._send(HTTPStatus.OK, self.server.site.state(), "plain")
+                return
+            with self.server.making:
+                page = self.server.site.page(path)
+        if page is None:
+            self._send(HTTPStatus.NOT_FOUND, "There is no such page.", "plain")
+        else:
+            self._send(HTTPStatus.OK, page, "html")
+
+    def _send(self, status: HTTPStatus, text: str, kind: str) -> None:
+        data = text.encode("utf-8", "replace")
+        self.send_response(status)
+        self.send_header("Content-Type", f"text/{kind}; charset=utf-8")
+        self.send_header("Content-Length", str(len(data)))
+        self.send_header("Cache-Control", "no-store")
+        self.end_headers()
+        self.wfile.write(data)
+
+    def log_message(self, *args: Any) -> None:
+        """Say nothing of requests."""
+
+
+def stamp(paths: Iterable[Path]) -> str:
+    """Return a text that changes when one of some files does, or a folder gets or loses one."""
+    marks = []
+    for path in _files(paths):
+        try:
+            found = path.stat()
+        except OSError:
+            marks.append(f"{path}:gone")
+        else:
+            marks.append(f"{path}:{found.st_mtime_ns}:{found.st_size}")
+    return f"{hash(tuple(marks)):x}"
+
+
+def _files(paths: Iterable[Path]) -> list[Path]:
+    """Return the files named, and those in folders that are named, as many as are looked at."""
+    found: list[Path] = []
+    for path in paths:
+        if path.is_dir():
+            with contextlib.suppress(OSError), os.scandir(path) as entries:
+                found += sorted(Path(entry.path) for entry in entries if not entry.is_dir())
+        else:
+            found.append(path)
+    return found[:_MOST_FILES]

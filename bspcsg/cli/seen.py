@@ -1,0 +1,46 @@
+"""Files as what is to be seen of them."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .files import Inputs, shown
+
+if TYPE_CHECKING:
+    from ..report.viewer.layer import Layer
+
+
+def layers_of(inputs: Inputs, files: Iterable[Path]) -> "tuple[list[Layer], str]":
+    """Return a layer for each object of each file, and the unit if all files have it.
+
+    What was noteworthy about the files is told; meshes need not be closed.
+    """
+    from ..report.viewer.parts import told_apart
+
+    found: list[tuple[Path, list[Layer]]] = []
+    units = set()
+    for path in files:
+        layers, unit = _layers_of(inputs, path)
+        if not any(len(layer.faces) for layer in layers):
+            inputs.out.warning(f"{shown(path)}: there is nothing in it to be seen.")
+        found.append((path, layers))
+        units.add(unit)
+    several = len(found) > 1
+    named = [
+        replace(layer, name=f"{path.name}: {layer.name}") if several and len(layers) > 1 else layer
+        for path, layers in found
+        for layer in layers
+    ]
+    return told_apart(named), units.pop() if len(units) == 1 else ""
+
+
+def _layers_of(inputs: Inputs, path: Path) -> "tuple[list[Layer], str]":
+    from ..report.viewer.parts import layers_of_file, layers_of_solid
+
+    name = shown(path) if shown(path) == "-" else path.name
+    if inputs.is_script(path):
+        return layers_of_solid(inputs.solid(path), name), "" if inputs.unit is None else "mm"
+    raw = inputs.raw(path)
+    inputs.tell(path, raw.findings)
+    return layers_of_file(raw, name), raw.unit

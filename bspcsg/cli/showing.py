@@ -1,0 +1,112 @@
+"""Pages that a live server shows: files together, or a folder with a page for each file."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+from urllib.parse import quote, unquote
+
+from ..errors import BspcsgError
+from .live import Site, stamp
+from .scripts import SUFFIXES
+
+if TYPE_CHECKING:
+    from ..report.viewer.layer import Layer
+
+#: What is to be seen of some files, made anew whenever it is asked for: layers and their unit.
+Showing: TypeAlias = Callable[[Sequence[Path]], "tuple[list[Layer], str]"]
+
+_PART = "/part/"
+
+
+def page_of(files: Sequence[Path], scene: Showing) -> str:
+    """Return the page of some files that is loaded again when they change, or of what failed."""
+    from ..report.assets import rendered
+    from ..report.viewer.view import view_page
+
+    title = ", ".join(path.name for path in files)
+    try:
+        layers, unit = scene(files)
+    except BspcsgError as error:
+        return rendered("live.html", title=title, error=error.message, folder="", files=())
+    return view_page(layers, title, unit=unit, live=title)
+
+
+def site_of_files(files: Sequence[Path], scene: Showing) -> Site:
+    """Return a site of one page that shows some files together."""
+    kept = _Kept(lambda: stamp(files), lambda: stamp(folders_of(files)))
+
+    def page(path: str) -> str | None:
+        return kept.page(path, lambda: page_of(files, scene)) if path == "/" else None
+
+    return Site(page, kept.state)
+
+
+def site_of_folder(folder: Path, scene: Showing) -> Site:
+    """Return a site with a list of the files in a folder that can be seen, and a page for each."""
+    kept = _Kept(lambda: stamp([folder]), str)
+
+    def page(path: str) -> str | None:
+        names = seen_in(folder)
+        if path == "/":
+            return kept.page(path, lambda: _list(folder, names))
+        name = unquote(path.removeprefix(_PART))
+        if not path.startswith(_PART) or name not in names:
+            return None
+        return kept.page(path, lambda: page_of([folder / name], scene))
+
+    return Site(page, kept.state)
+
+
+def seen_in(folder: Path) -> list[str]:
+    """Return the names of the files in a folder that can be seen."""
+    from ..formats.registry import FORMATS
+
+    try:
+        found = [path for path in folder.iterdir() if path.is_file()]
+    except OSError:
+        return []
+    return sorted(p.name for p in found if p.suffix.lower() in {*FORMATS, *SUFFIXES})
+
+
+def folders_of(files: Sequence[Path]) -> list[Path]:
+    """Return the folders of scripts, which read what lies beside them."""
+    return sorted({path.parent for path in files if path.suffix.lower() in SUFFIXES})
+
+
+def _list(folder: Path, names: Sequence[str]) -> str:
+    from ..report.assets import rendered
+
+    files = [(name, _PART + quote(name)) for name in names]
+    title = folder.resolve().name or str(folder)
+    return rendered("live.html", title=title, error="", folder=str(folder), files=files)
+
+
+class _Kept:
+    """The page that was made last, as long as nothing has changed.
+
+    Parameters
+    ----------
+    own, around : callable
+        The state of the files that are shown, and of what lies beside them: that may change while
+        a page is made, for a script may write there, which is no reason to run it again.
+    """
+
+    def __init__(self, own: Callable[[], str], around: Callable[[], str]) -> None:
+        self._own = own
+        self._around = around
+        self._made_of = ("", "")
+        self._pages: dict[str, str] = {}
+
+    def state(self) -> str:
+        """Return a text that changes when pages do."""
+        return "".join((self._own(), self._around()))
+
+    def page(self, path: str, make: Callable[[], str]) -> str:
+        """Return the page at a path."""
+        if self._made_of != (self._own(), self._around()):
+            self._pages.clear()
+        if path not in self._pages:
+            own = self._own()
+            self._pages = {path: make()}
+            self._made_of = own, self._around()
+        return self._pages[path]

@@ -1,0 +1,85 @@
+"""What attributes of a mesh look like: its materials, colours, labels and numbers as paints."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...attributes.attributes import NORMALS, Attributes, Values
+from ...attributes.material import Material
+from ...formats.said import as_bytes, is_color
+from .paint import DISTANCE, PALETTE, Colours, Labels, Paint, Scale
+
+#: Attributes that a page offers; more are of no use to somebody who looks.
+_MOST = 6
+
+#: Labels that can be told apart.
+_MOST_LABELS = 1000
+
+#: The colour of faces without a material.
+_PLAIN = Material((0.7, 0.76, 0.82, 1.0))
+
+
+def paints_of(said: Attributes | None) -> tuple[Paint, ...]:
+    """Return paints for what is said of a mesh, colours and materials first."""
+    if said is None or said.is_empty:
+        return ()
+    found = [paint for paint in _each(said) if paint is not None]
+    return tuple(sorted(found, key=lambda paint: isinstance(paint, Scale))[:_MOST])
+
+
+def _each(said: Attributes) -> Iterator[Paint | None]:
+    if "material" in said.face:
+        yield _materials(said)
+    for name in said.names:
+        values = said.at_corners(name) if said.kind_of(name) != "face" else said.face[name]
+        depth = 1 if said.kind_of(name) == "face" else 2
+        if name == "material" or name == "uv" or name in NORMALS:
+            continue
+        if is_color(name, values, depth):
+            yield Colours(name, _with_opacity(as_bytes(values)))
+        elif values.ndim == depth:
+            yield _labels(name, values) if depth == 1 else _scale(name, values)
+
+
+def _materials(said: Attributes) -> Labels:
+    names, numbers = np.unique(said.face["material"], return_inverse=True)
+    used = [said.materials.get(name, _PLAIN) for name in names.tolist()]
+    colours = [hexadecimal(material.color) for material in used]
+    labels = [name or "no material" for name in names.tolist()]
+    has_images = said.kind_of("uv") not in (None, "face") and any(one.texture for one in used)
+    if not has_images:
+        return Labels("material", numbers.ravel(), labels, colours)
+    uv = np.asarray(said.at_corners("uv"), dtype=np.float64)
+    images = [material.texture for material in used]
+    return Labels("material", numbers.ravel(), labels, colours, uv, images)
+
+
+def _labels(name: str, values: Values) -> Paint | None:
+    """Return whole numbers, texts and truth values of faces as labels if they are not too many."""
+    if values.dtype.kind == "f":
+        return _scale(name, values)
+    kinds, numbers = np.unique(values, return_inverse=True)
+    if len(kinds) > _MOST_LABELS:
+        return _scale(name, values) if values.dtype.kind in "iu" else None
+    colours = [PALETTE[k % len(PALETTE)] for k in range(len(kinds))]
+    return Labels(name, numbers.ravel(), [str(kind) for kind in kinds.tolist()], colours)
+
+
+def _scale(name: str, values: Values) -> Paint | None:
+    if values.dtype.kind not in "iuf":
+        return None
+    numbers: FloatArray = values.astype(np.float64)
+    return Scale(name, numbers, DISTANCE)
+
+
+def _with_opacity(colours: Values) -> Values:
+    if colours.shape[-1] == 4:
+        return colours
+    return np.concatenate([colours, np.full_like(colours[..., :1], 255)], axis=-1)
+
+
+def hexadecimal(colour: tuple[float, ...]) -> str:
+    """Return a colour from 0 to 1 as ``"#rrggbb"``, or ``"#rrggbbaa"`` if it is not opaque."""
+    digits = "".join(f"{round(value * 255):02x}" for value in colour)
+    return f"#{digits.removesuffix('ff') if len(digits) == 8 else digits}"

@@ -1,0 +1,142 @@
+"""Ways to colour the faces of a layer: by labels, on a scale, or in colours of their own."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..._types import FloatArray, IndexArray
+
+#: What has a value of its own.
+At: TypeAlias = Literal["face", "corner"]
+
+#: Colours of labels in their order, taken again from the start after the last.
+PALETTE = (
+    "#6f9bd1", "#e0a458", "#7fb285", "#a98bc9", "#c98b8b", "#79b7bd", "#b8a46a", "#8d99ae",
+    "#d48fb0", "#94b35c",
+)  # fmt: skip
+
+#: From thin, red, to thick, blue; told apart by whoever sees no red or green, too.
+THICKNESS = ("#b2182b", "#ef8a62", "#f3d9c5", "#cfe0ec", "#67a9cf", "#2166ac")
+
+#: From none, grey, to far, dark red.
+DISTANCE = ("#dfe4ea", "#fdd49e", "#fc8d59", "#d7301f", "#7f0000")
+
+#: Of the typical value: what is larger has the last colour, so that the rest can be told apart.
+_CAP = 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class Labels:
+    """A label for each face.
+
+    Parameters
+    ----------
+    name : str
+    numbers : (m,) int64
+        Of the label of each face.
+    labels, colours : sequence of str
+        Colours as ``"#rrggbb"``, or ``"#rrggbbaa"`` with an opacity.
+    uv : (m, 3, 2) float64, optional
+        Where the corners are in the picture of their label, from its left and from below.
+    images : sequence of bytes or None
+        A PNG or JPEG file for each label, where there is one.
+    """
+
+    name: str
+    numbers: IndexArray
+    labels: Sequence[str]
+    colours: Sequence[str]
+    uv: FloatArray | None = None
+    images: Sequence[bytes | None] = ()
+
+    def taken(self, faces: IndexArray) -> "Labels":
+        """Return the paint of some faces."""
+        uv = None if self.uv is None else self.uv[faces]
+        return replace(self, numbers=self.numbers[faces], uv=uv)
+
+
+@dataclass(frozen=True, eq=False)
+class Scale:
+    """A number for each face or corner.
+
+    Parameters
+    ----------
+    name : str
+    values : (m,) or (m, 3) float64
+        NaN where nothing is known.
+    stops : sequence of str
+        Colours from the lowest to the highest value, evenly spaced.
+    """
+
+    name: str
+    values: FloatArray
+    stops: Sequence[str]
+
+    @property
+    def at(self) -> At:
+        """What has a value."""
+        return "face" if self.values.ndim == 1 else "corner"
+
+    @property
+    def low(self) -> float:
+        """The value of the first colour."""
+        return float(self._known.min()) if len(self._known) else 0.0
+
+    @property
+    def high(self) -> float:
+        """The value of the last colour; larger ones have it, too."""
+        if not len(self._known):
+            return 0.0
+        largest, typical = float(self._known.max()), float(np.median(self._known))
+        return min(largest, _CAP * typical) if typical > 0 else largest
+
+    @property
+    def is_capped(self) -> bool:
+        """Whether there are larger values than `high`."""
+        return bool(len(self._known)) and float(self._known.max()) > self.high
+
+    @property
+    def _known(self) -> FloatArray:
+        return self.values[np.isfinite(self.values)]
+
+    def steps(self, most: int) -> npt.NDArray[np.uint16]:
+        """Return values as whole numbers from 1 to `most`, 0 where nothing is known."""
+        low, side = self.low, self.high - self.low
+        known = np.isfinite(self.values)
+        share = (np.where(known, self.values, low) - low) / (side or 1.0)
+        numbers = 1 + np.rint(np.clip(share, 0, 1) * (most - 1))
+        return np.where(known, numbers, 0).astype(np.uint16)
+
+    def taken(self, faces: IndexArray) -> "Scale":
+        """Return the paint of some faces."""
+        return replace(self, values=self.values[faces])
+
+
+@dataclass(frozen=True, eq=False)
+class Colours:
+    """A colour for each face or corner.
+
+    Parameters
+    ----------
+    name : str
+    values : (m, 4) or (m, 3, 4) uint8
+        Red, green, blue and opacity, as a screen shows them.
+    """
+
+    name: str
+    values: npt.NDArray[np.uint8]
+
+    @property
+    def at(self) -> At:
+        """What has a colour."""
+        return "face" if self.values.ndim == 2 else "corner"
+
+    def taken(self, faces: IndexArray) -> "Colours":
+        """Return the paint of some faces."""
+        return replace(self, values=self.values[faces])
+
+
+Paint: TypeAlias = Labels | Scale | Colours

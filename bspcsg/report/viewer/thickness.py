@@ -1,0 +1,39 @@
+"""How thick a solid is at each of its faces."""
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...bsp import RayCaster
+
+#: Rays begin so far inside, as a share of the mesh's longest side, lest they meet their own face.
+_INSIDE = 1e-7
+
+
+def thickness(vertices: FloatArray, faces: IndexArray) -> FloatArray:
+    """Return the way from each face's middle straight through the solid to the other side, (m,).
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64
+    faces : (m, 3) int64
+        Their normals point outwards.
+
+    Returns
+    -------
+    (m,) float64
+        In model units; NaN where there is no other side, or the face has no area.
+    """
+    corners = vertices[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1)
+    sound = np.flatnonzero(lengths > 0)
+    found = np.full(len(faces), np.nan)
+    if not len(sound):
+        return found
+    inwards = -normals[sound] / lengths[sound, None]
+    step = _INSIDE * float(np.ptp(vertices, axis=0).max())
+    hits = RayCaster((vertices, faces)).first_hit(
+        corners[sound].mean(axis=1) + step * inwards, inwards
+    )
+    found[sound] = np.where(np.isfinite(hits.t), hits.t + step, np.nan)
+    return found

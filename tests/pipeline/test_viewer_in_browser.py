@@ -1,0 +1,248 @@
+"""What the view of a model can do, in a real browser."""
+
+import base64
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+from selenium.webdriver.common.keys import Keys
+
+import bspcsg as b
+from bspcsg.report.viewer.landmark import Landmark
+from bspcsg.report.viewer.layer import Layer
+from bspcsg.report.viewer.paint import Labels
+from bspcsg.report.viewer.parts import layers_of_solid, told_apart, with_thickness
+from bspcsg.report.viewer.view import view_page
+from support.browser import Browser
+from support.shapes import icosphere
+
+_DRAWN = "document.querySelector('.stage[data-drawn]')"
+
+
+@pytest.fixture(scope="module")
+def part(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the page of a plate with a hole, and a ball beside it."""
+    plate = b.box((8, 6, 2)) - b.cylinder(h=4, r=1, segments=32).translate(4, 3, -1)
+    ball = b.sphere(r=1, segments=16).translate(12, 3, 1)
+    layers = [*layers_of_solid(plate, "plate"), *layers_of_solid(ball, "ball")]
+    layers = [with_thickness(layer) for layer in told_apart(layers)]
+    place = Landmark("the hole", np.array([4.0, 3.0, 2.0]), 1.0)
+    page = tmp_path_factory.mktemp("view") / "part.html"
+    text = view_page(layers, "plate & ball", unit="mm", places=[place])
+    page.write_text(text, encoding="utf-8")
+    return page
+
+
+@pytest.fixture
+def opened(browser: Browser, part: Path) -> Browser:
+    browser.open(part)
+    browser.wait(_DRAWN)
+    browser.run("window.view = document.querySelector('.stage').view")
+    return browser
+
+
+def _looks(browser: Browser) -> "np.ndarray[Any, Any]":
+    return browser.pixels("canvas").astype(int)
+
+
+def _change(before: "np.ndarray[Any, Any]", after: "np.ndarray[Any, Any]") -> float:
+    return float((np.abs(before - after).max(axis=2) > 12).mean())
+
+
+def _point(browser: Browser, *place: float) -> list[float]:
+    """Return where a point of the model is on the canvas."""
+    script = """
+        const { low, high, longest } = view.model;
+        const at = arguments[0].map((x, i) => ((x - (low[i] + high[i]) / 2) * 2) / longest);
+        return view.measure.onCanvas(view.eye.controls.target.clone().set(...at)).slice(0, 2);
+    """
+    return [float(x) for x in browser.run(script, list(place))]
+
+
+def _measured(browser: Browser, kind: str, *places: tuple[float, float, float]) -> str:
+    browser.choose("Measure", kind)
+    for place in places:
+        browser.press("canvas", *_point(browser, *place))
+    return browser.texts(".told")[0]
+
+
+def test_distances_angles_and_radii(opened: Browser) -> None:
+    told = _measured(opened, "distance", (8, 0, 2), (8, 6, 2))
+    assert told == "Distance 6 mm · Δx 0 mm, Δy 6 mm, Δz 0 mm"
+    corner = _measured(opened, "angle", (0, 0, 2), (8, 0, 2), (8, 6, 2))
+    assert corner == "Angle 90°"
+    round_ = [(4 + np.cos(a), 3 + np.sin(a), 2.0) for a in (0, np.pi / 2, np.pi)]
+    told = _measured(opened, "radius", *round_)
+    assert told == "Radius 1 mm · diameter 2 mm · center (4, 3, 2)"
+    opened.type("canvas", Keys.ESCAPE)
+    assert opened.texts(".told")[0].startswith("Click three points")
+    assert opened.errors() == []
+
+
+def test_points_are_taken_from_the_keyboard(opened: Browser) -> None:
+    opened.type("canvas", "6", "m")
+    assert opened.texts(".told") == ["Click two points."]
+    opened.type("canvas", Keys.ENTER)
+    assert opened.texts(".told")[0].startswith("1 of 2: (")
+    opened.type("canvas", Keys.SHIFT, Keys.LEFT, Keys.NULL, Keys.ENTER)
+    assert opened.texts(".told")[0].startswith("Distance ")
+
+
+def test_projections_and_sides(opened: Browser) -> None:
+    first = _looks(opened)
+    opened.type("canvas", "p")
+    assert opened.run("return view.eye.isParallel") and _change(first, _looks(opened)) > 0.01
+    opened.choose("View from", "front")
+    left, right = _point(opened, 0, 0, 0), _point(opened, 8, 0, 0)
+    far = _point(opened, 0, 6, 0)
+    assert left[1] == pytest.approx(right[1], abs=0.01) and far == pytest.approx(left, abs=0.01)
+    opened.type("canvas", "p", Keys.HOME)
+    assert _change(first, _looks(opened)) < 0.02
+
+
+def test_shading_follows_the_angle(opened: Browser) -> None:
+    opened.choose("Edges", "none")
+    smooth = _looks(opened)
+    opened.slide("smooth up to", 0)
+    opened.wait("view.settings.crease === 0")
+    faceted = _looks(opened)
+    assert _change(smooth, faceted) > 0.0004
+    counts = []
+    for crease in (0, 30, 180):
+        opened.run("return view.dress({ crease: arguments[0] })", crease)
+        counts.append(opened.run("return view.layers[1].fine.geometry.attributes.position.count"))
+    # The ball's corners are one each if smooth; the plate's edges are sharp below 90 degrees.
+    vertices = opened.run("return view.layers[1].given.vertices")
+    assert counts == [vertices] * 3
+    opened.run("return view.dress({ crease: 30 })")
+    shown = opened.run("return view.layers[0].fine.geometry.attributes.position.count")
+    assert shown > opened.run("return view.layers[0].given.vertices")
+
+
+def test_parts_move_apart_and_let_through(opened: Browser) -> None:
+    first = _looks(opened)
+    before = _point(opened, 12, 3, 1)
+    opened.slide("opacity", 30)
+    seen = _looks(opened)
+    assert _change(first, seen) > 0.02
+    opened.slide("opacity", 100)
+    assert _change(first, _looks(opened)) < 0.001
+    opened.slide("explode", 50)
+    assert _change(first, _looks(opened)) > 0.02
+    moved = opened.run("return view.layers[1].group.position.x")
+    assert moved > 0.3 and before == pytest.approx(_point(opened, 12, 3, 1), abs=30)
+    assert opened.errors() == []
+
+
+def test_colours_say_what_they_mean(opened: Browser) -> None:
+    plain = _looks(opened)
+    opened.choose("Colours", "origin")
+    by_origin = _looks(opened)
+    assert _change(plain, by_origin) > 0.003
+    assert opened.texts(".legend > span") == [
+        "operand 1: 12 triangles",
+        "operand 2: 124 triangles",
+    ]
+    opened.choose("Colours", "thickness")
+    assert _change(by_origin, _looks(opened)) > 0.02
+    assert opened.texts(".legend > span")[0] == "thickness"
+    opened.choose("Colours", "")
+    assert _change(plain, _looks(opened)) < 0.001 and opened.texts(".legend > span") == []
+
+
+def test_lines_alone_and_all_edges(opened: Browser) -> None:
+    first = _looks(opened)
+    opened.type("canvas", "e")
+    every = _looks(opened)
+    opened.type("canvas", "e")
+    wire = _looks(opened)
+    assert _change(first, every) > 0.003 and _change(every, wire) > 0.1
+
+
+def test_a_section_from_the_other_side(opened: Browser) -> None:
+    opened.choose("Section", "0")
+    one = _looks(opened)
+    opened.press_button("flip")
+    assert _change(one, _looks(opened)) > 0.05
+
+
+def test_the_canvas_follows_the_theme_until_it_is_chosen(opened: Browser) -> None:
+    light = _looks(opened)
+    opened.prefer("dark")
+    dark = _looks(opened)
+    assert light[60, 60].min() > 200 and dark[60, 60].max() < 80
+    opened.run("document.querySelector('.more').open = true")
+    opened.press_button("dark canvas")
+    opened.prefer("light")
+    opened.prefer("dark")
+    assert _looks(opened)[60, 60].min() > 200
+    opened.prefer("light")
+
+
+def test_a_picture_is_saved(opened: Browser) -> None:
+    script = """
+        const done = arguments[0];
+        view.picture("#ffffff").then(async (blob) => {
+          const reader = new FileReader();
+          reader.onload = () => done([blob.type, reader.result]);
+          reader.readAsDataURL(blob);
+        });
+    """
+    kind, address = opened.run_later(script)
+    data = base64.b64decode(address.partition(",")[2])
+    with Image.open(io.BytesIO(data)) as image:
+        pixels = np.asarray(image.convert("RGB")).astype(int)
+    assert kind == "image/png" and (pixels[2, 2] == 255).all()
+    assert (np.ptp(pixels, axis=2) > 40).mean() > 0.02
+    opened.run("HTMLAnchorElement.prototype.click = function () { window.saved = this.download; }")
+    opened.type("canvas", "s")
+    opened.wait("window.saved")
+    assert opened.run("return window.saved") == "plate-ball.png"
+
+
+def test_places_are_looked_at(opened: Browser) -> None:
+    first = _looks(opened)
+    opened.choose("Places", "0")
+    assert _change(first, _looks(opened)) > 0.1
+    middle = opened.run("return [view.host.clientWidth / 2, view.host.clientHeight / 2]")
+    assert _point(opened, 4, 3, 2) == pytest.approx(middle, abs=1)
+    assert opened.run("return document.querySelectorAll('.overlay .ring').length") == 1
+
+
+def test_every_control_has_a_name(opened: Browser) -> None:
+    opened.run("document.querySelector('.more').open = true")
+    nameless = opened.run(
+        "return [...document.querySelectorAll('button, select, input, summary, canvas')]"
+        ".filter(e => !(e.ariaLabel || e.textContent.trim() || e.closest('label')))"
+        ".map(e => e.outerHTML)"
+    )
+    assert nameless == []
+    assert opened.run("return document.querySelectorAll('main').length") == 1
+
+
+def test_large_models_are_rough_while_they_move(browser: Browser, tmp_path: Path) -> None:
+    vertices, faces = icosphere(6)
+    paint = Labels("half", faces[:, 0] % 2, ["even", "odd"], ["#c02020", "#2020c0"])
+    layer = Layer("ball", vertices, faces, paints=(paint,))
+    page = tmp_path / "ball.html"
+    page.write_text(view_page([layer], "ball"), encoding="utf-8")
+    browser.open(page)
+    browser.wait(_DRAWN)
+    browser.run("window.view = document.querySelector('.stage').view")
+    still = _looks(browser)
+    # In one go, or it stands still in between.
+    counts = browser.run(
+        "view.eye.turn(0.1, 0); view.move(); view.render(); const { rough, fine } = view.layers[0];"
+        "return [rough.visible, fine.visible, rough.geometry.index.count / 3]"
+    )
+    assert counts[:2] == [True, False] and 1000 < counts[2] <= 30_000
+    browser.wait("view.layers[0].fine.visible")
+    browser.run("view.eye.turn(-0.1, 0); view.move()")
+    browser.wait("!view.isMoving && view.layers[0].fine.visible")
+    assert _change(still, _looks(browser)) < 0.002
+    browser.choose("Colours", "half")
+    assert browser.run("view.move(); view.render(); return view.layers[0].rough.visible")
+    assert browser.errors() == []
