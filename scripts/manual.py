@@ -1,8 +1,9 @@
 """Writes what can be generated of the manual: options of the verbs, the API, the shown examples.
 
-Pages under docs/ are written by hand but for the options between two marks on the pages of verbs
-and for docs/api. With --examples, the commands on the pages are run and what they print is written
-below them; look at the difference before you commit it.
+Pages under docs/ are written by hand but for docs/api, and what stands between two marks: options
+on the pages of verbs, scripts on that of parts side by side. With --examples, the commands on the
+pages are run, what they print is written below them and the pictures they make beside the page;
+look at the difference before you commit it.
 """
 
 import argparse
@@ -11,6 +12,7 @@ from pathlib import Path
 
 from manual_api import api_pages
 from manual_options import with_options
+from manual_side import with_parts
 from support.documents import DOCS, page_files, rewritten
 
 #: Pages that grow beyond this are split by hand, in bytes.
@@ -22,6 +24,8 @@ def generated() -> dict[Path, str]:
     pages = {path: with_options(path.stem, path.read_text()) for path in verb_files()}
     for name, text in api_pages().items():
         pages[DOCS / "api" / f"{name}.md"] = text
+    side = DOCS / "side_by_side.md"
+    pages[side] = with_parts(side.read_text())
     return pages
 
 

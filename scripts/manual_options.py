@@ -14,12 +14,17 @@ _AS_IS = "\b"
 
 
 def with_options(verb: str, page: str) -> str:
-    """Return a page with what lies between its marks written anew."""
+    """Return a page with synopsis, help and options of its verb written anew."""
+    return with_generated(verb, page, _described(verb))
+
+
+def with_generated(name: str, page: str, text: str) -> str:
+    """Return a page with a text between its marks."""
     before, begin, rest = page.partition(_BEGIN)
     _, end, after = rest.partition(_END)
     if not begin or not end:
-        raise SystemExit(f"manual: the page of {verb} needs the lines {_BEGIN} and {_END}")
-    return f"{before}{_BEGIN}\n\n{_described(verb)}\n{_END}{after}"
+        raise SystemExit(f"manual: the page of {name} needs the lines {_BEGIN} and {_END}")
+    return f"{before}{_BEGIN}\n\n{text}\n{_END}{after}"
 
 
 def _described(verb: str) -> str:

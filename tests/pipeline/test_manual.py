@@ -1,6 +1,7 @@
 """The manual is what happens: its code runs, its output is right, its links lead somewhere."""
 
 import doctest
+import json
 import re
 from importlib import import_module
 from pathlib import Path
@@ -18,7 +19,9 @@ from support.documents import (
     blocks,
     exchanges,
     expected_of,
+    looks_like,
     page_files,
+    pictures,
     prepare,
     same,
 )
@@ -40,6 +43,10 @@ def test_pages_show_what_happens(
     session = Session()
     for language, block in blocks(path.read_text()):
         assert language in RUN + SHOWN
+        if language == "py":
+            compile(block, path.name, "exec")
+        if language == "json":
+            json.loads(block)
         if language == "python":
             assert session.python(block).splitlines() == expected_of(block)
         if language == "console":
@@ -47,6 +54,8 @@ def test_pages_show_what_happens(
                 printed = session.command(command)
                 assert "Traceback" not in printed
                 assert same(printed, shown), f"$ {command}\n{printed}"
+    for picture in pictures(path.read_text()):
+        assert looks_like(tmp_path / picture, path.parent / "pictures" / picture), picture
 
 
 def test_same_ignores_times_and_versions_only() -> None:

@@ -7,12 +7,16 @@ import itertools
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from PIL import Image
 
 from bspcsg.cli.main import run
 
@@ -23,7 +27,7 @@ _BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 #: Languages whose blocks are run, and that of blocks that only show something.
 RUN = ("console", "python")
-SHOWN = ("text",)
+SHOWN = ("json", "openscad", "py", "text", "yaml")
 
 #: What only a shell can do.
 _SHELL = re.compile(r"[|<>;&`]|\$[^?]|\n")
@@ -119,13 +123,30 @@ def _lines(text: str) -> list[str]:
     return [line.rstrip() for line in text.strip("\n").splitlines()]
 
 
+def pictures(page: str) -> list[str]:
+    """Return the pictures that the code of a page makes; they lie in `pictures` beside it."""
+    return re.findall(r"!\[[^\]]+\]\(pictures/([^)]+)\)", page)
+
+
+def looks_like(path: Path, expected: Path) -> bool:
+    """Say whether two pictures are of one size, and the same but for how edges are smoothed."""
+    with Image.open(path) as one, Image.open(expected) as other:
+        if one.size != other.size:
+            return False
+        colours = [np.asarray(image.convert("RGB")).astype(int) for image in (one, other)]
+    return float(np.abs(colours[0] - colours[1]).mean()) < 1
+
+
 def page_files() -> list[Path]:
     """Return the pages written by hand."""
     return sorted(path for path in DOCS.rglob("*.md") if path.parent.name != "api")
 
 
 def rewritten(path: Path) -> str:
-    """Return a page with the output of its commands as it is; what has “…” in it is kept."""
+    """Return a page with the output of its commands as it is, and put its pictures beside it.
+
+    Output that has “…” in it is kept.
+    """
     import tempfile
 
     page, session = path.read_text(), Session()
@@ -146,7 +167,13 @@ def rewritten(path: Path) -> str:
 
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         prepare(Path())
-        return _BLOCK.sub(anew, page)
+        text = _BLOCK.sub(anew, page)
+        for name in pictures(page):
+            kept = path.parent / "pictures" / name
+            kept.parent.mkdir(exist_ok=True)
+            if not kept.exists() or not looks_like(Path(name), kept):
+                shutil.copyfile(name, kept)
+        return text
 
 
 def _trimmed(printed: str) -> str:

@@ -1,0 +1,5 @@
+import bspcsg as b
+
+holes = b.grid(b.cylinder(h=6, d=5, center=True), (4, 3), (20, 15), center=True)
+part = b.box(90, 60, 4, center=True) - holes
+print(part.volume)
