@@ -132,21 +132,26 @@ def _with_navigation(_: Sphinx, name: str, source: list[str]) -> None:
             )
 
 
-class PagesAsTheyAre(SphinxTransform):
-    """Let links to other HTML files open these; they are copied beside the pages that name them."""
+class PathsOfTheRepository(SphinxTransform):
+    """Let links to other HTML files open these, and name folders, which are no pages.
+
+    The HTML files are copied to where the links lead.
+    """
 
     default_priority = 10
 
     def apply(self, **_: object) -> None:
-        """Put links in the place of downloads."""
+        """Put links in the place of downloads, and text in that of links to folders."""
+        here = Path(self.env.doc2path(self.env.docname)).parent
         for download in list(self.document.findall(addnodes.download_reference)):
-            target = download["reftarget"]
-            path = (Path(self.env.doc2path(self.env.docname)).parent / target).resolve()
+            path = (here / download["reftarget"]).resolve()
             if path.suffix == ".html" and path.exists():
-                link = nodes.reference("", "", *download.children, refuri=target)
-                download.replace_self(link)
-                copied = self.config.html_files_beside
-                copied.add(str(path.relative_to(ROOT)))
+                target = download["reftarget"]
+                download.replace_self(nodes.reference("", "", *download.children, refuri=target))
+                self.config.html_files_beside.add(str(path.relative_to(ROOT)))
+        for link in list(self.document.findall(addnodes.pending_xref)):
+            if (here / link["reftarget"]).is_dir():
+                link.replace_self(link.children)
 
 
 def _copy(app: Sphinx, failed: Exception | None) -> None:
@@ -165,6 +170,6 @@ def _copy(app: Sphinx, failed: Exception | None) -> None:
 def setup(app: Sphinx) -> None:
     """Connect what stands above."""
     app.add_config_value("html_files_beside", set(), "")
-    app.add_transform(PagesAsTheyAre)
+    app.add_transform(PathsOfTheRepository)
     app.connect("source-read", _with_navigation)
     app.connect("build-finished", _copy)
