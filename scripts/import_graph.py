@@ -56,7 +56,7 @@ def rust_graph() -> nx.DiGraph:
         ): path
         for path in source.rglob("*.rs")
     }
-    codes = {name: _code(path) for name, path in modules.items()}
+    codes = {name: code_of(path) for name, path in modules.items()}
     graph = nx.DiGraph()
     for name, code in codes.items():
         graph.add_node("::".join(name), lines=_lines(modules[name]))
@@ -67,7 +67,8 @@ def rust_graph() -> nx.DiGraph:
     return graph
 
 
-def _code(path: Path) -> str:
+def code_of(path: Path) -> str:
+    """Return a Rust file without comments and without the tests at its end."""
     text = re.sub(r"//.*", "", path.read_text(encoding="utf-8"))
     return re.split(r"#\[cfg\(test\)\]\s*mod ", text)[0]
 

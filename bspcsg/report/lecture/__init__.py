@@ -1,0 +1,1 @@
+"""The lecture on partition trees as a page."""
