@@ -10,6 +10,7 @@ import re
 from pathlib import Path
 
 import networkx as nx
+
 from import_graph import ROOT, code_of, rust_graph
 
 CRATE = ROOT / "lecture"

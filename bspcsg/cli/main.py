@@ -63,6 +63,7 @@ _VERBS = {
     "validate": ("validate", "validate"),
     "report": ("report", "report"),
     "view": ("view", "view"),
+    "lecture": ("lecture", "lecture"),
     "bench": ("bench", "bench"),
     "doctor": ("doctor", "doctor"),
 }

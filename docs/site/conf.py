@@ -40,6 +40,7 @@ exclude_patterns = [
     "**/target",
     "bspcsg",
     "fuzz",
+    "lecture",
     "scripts",
     "core/src",
 ]

@@ -59,6 +59,11 @@ class Browser:
         device = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": True}
         self._running.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", device)
 
+    def device(self, looks: dict[str, Any] | None) -> None:
+        """Show pages as a device of this size does; as before for None."""
+        order = "clearDeviceMetricsOverride" if looks is None else "setDeviceMetricsOverride"
+        self._running.execute_cdp_cmd(f"Emulation.{order}", looks or {})
+
     def run(self, script: str, *arguments: Any) -> Any:
         """Return what the body of a function says in the page."""
         return self._running.execute_script(script, *arguments)

@@ -35,36 +35,28 @@ let wasm_bindgen = (function(exports) {
          * @param {Float64Array | number[]} room
          */
         constructor(dimension, corners, offsets, room) {
+            const val4 = +dimension;
+            let ptr0, len0, ptr1, len1, ptr2, len2;
             try {
-                const retptr = wasm.__wbindgen_add_to_stack_pointer(-16) >>> 0;
-                const val4 = +dimension;
-                let ptr0, len0, ptr1, len1, ptr2, len2;
-                try {
-                    ptr0 = passArrayF64ToWasm0(corners, wasm.__wbindgen_export);
-                    len0 = WASM_VECTOR_LEN;
-                    ptr1 = passArray32ToWasm0(offsets, wasm.__wbindgen_export);
-                    len1 = WASM_VECTOR_LEN;
-                    ptr2 = passArrayF64ToWasm0(room, wasm.__wbindgen_export);
-                    len2 = WASM_VECTOR_LEN;
-                } catch (e) {
-                    if (ptr2) { wasm.__wbindgen_export2(ptr2, len2 * 8, 8); }
-                    if (ptr1) { wasm.__wbindgen_export2(ptr1, len1 * 4, 4); }
-                    if (ptr0) { wasm.__wbindgen_export2(ptr0, len0 * 8, 8); }
-                    throw e;
-                }
-                wasm.autopartition_new(retptr, val4, ptr0, len0, ptr1, len1, ptr2, len2);
-                var r0 = getDataViewMemory0().getInt32(retptr + 4 * 0, true);
-                var r1 = getDataViewMemory0().getInt32(retptr + 4 * 1, true);
-                var r2 = getDataViewMemory0().getInt32(retptr + 4 * 2, true);
-                if (r2) {
-                    throw takeFromExternrefTable0(r1);
-                }
-                this.__wbg_ptr = r0;
-                AutopartitionFinalization.register(this, this.__wbg_ptr, this);
-                return this;
-            } finally {
-                wasm.__wbindgen_add_to_stack_pointer(16);
+                ptr0 = passArrayF64ToWasm0(corners, wasm.__wbindgen_malloc);
+                len0 = WASM_VECTOR_LEN;
+                ptr1 = passArray32ToWasm0(offsets, wasm.__wbindgen_malloc);
+                len1 = WASM_VECTOR_LEN;
+                ptr2 = passArrayF64ToWasm0(room, wasm.__wbindgen_malloc);
+                len2 = WASM_VECTOR_LEN;
+            } catch (e) {
+                if (ptr2) { wasm.__wbindgen_free(ptr2, len2 * 8, 8); }
+                if (ptr1) { wasm.__wbindgen_free(ptr1, len1 * 4, 4); }
+                if (ptr0) { wasm.__wbindgen_free(ptr0, len0 * 8, 8); }
+                throw e;
             }
+            const ret = wasm.autopartition_new(val4, ptr0, len0, ptr1, len1, ptr2, len2);
+            if (ret[2]) {
+                throw takeFromExternrefTable0(ret[1]);
+            }
+            this.__wbg_ptr = ret[0];
+            AutopartitionFinalization.register(this, this.__wbg_ptr, this);
+            return this;
         }
         /**
          * The nodes from the farthest to the nearest, and the eye's sides.
@@ -77,24 +69,18 @@ let wasm_bindgen = (function(exports) {
             let deferred2_0;
             let deferred2_1;
             try {
-                const retptr = wasm.__wbindgen_add_to_stack_pointer(-16) >>> 0;
-                wasm.autopartition_order(retptr, this.__wbg_ptr, x, y, z);
-                var r0 = getDataViewMemory0().getInt32(retptr + 4 * 0, true);
-                var r1 = getDataViewMemory0().getInt32(retptr + 4 * 1, true);
-                var r2 = getDataViewMemory0().getInt32(retptr + 4 * 2, true);
-                var r3 = getDataViewMemory0().getInt32(retptr + 4 * 3, true);
-                var ptr1 = r0;
-                var len1 = r1;
-                if (r3) {
+                const ret = wasm.autopartition_order(this.__wbg_ptr, x, y, z);
+                var ptr1 = ret[0];
+                var len1 = ret[1];
+                if (ret[3]) {
                     ptr1 = 0; len1 = 0;
-                    throw takeFromExternrefTable0(r2);
+                    throw takeFromExternrefTable0(ret[2]);
                 }
                 deferred2_0 = ptr1;
                 deferred2_1 = len1;
                 return getStringFromWasm0(ptr1, len1);
             } finally {
-                wasm.__wbindgen_add_to_stack_pointer(16);
-                wasm.__wbindgen_export2(deferred2_0, deferred2_1, 1);
+                wasm.__wbindgen_free(deferred2_0, deferred2_1, 1);
             }
         }
         /**
@@ -107,24 +93,18 @@ let wasm_bindgen = (function(exports) {
             let deferred2_0;
             let deferred2_1;
             try {
-                const retptr = wasm.__wbindgen_add_to_stack_pointer(-16) >>> 0;
-                wasm.autopartition_orders(retptr, this.__wbg_ptr, trials, seed);
-                var r0 = getDataViewMemory0().getInt32(retptr + 4 * 0, true);
-                var r1 = getDataViewMemory0().getInt32(retptr + 4 * 1, true);
-                var r2 = getDataViewMemory0().getInt32(retptr + 4 * 2, true);
-                var r3 = getDataViewMemory0().getInt32(retptr + 4 * 3, true);
-                var ptr1 = r0;
-                var len1 = r1;
-                if (r3) {
+                const ret = wasm.autopartition_orders(this.__wbg_ptr, trials, seed);
+                var ptr1 = ret[0];
+                var len1 = ret[1];
+                if (ret[3]) {
                     ptr1 = 0; len1 = 0;
-                    throw takeFromExternrefTable0(r2);
+                    throw takeFromExternrefTable0(ret[2]);
                 }
                 deferred2_0 = ptr1;
                 deferred2_1 = len1;
                 return getStringFromWasm0(ptr1, len1);
             } finally {
-                wasm.__wbindgen_add_to_stack_pointer(16);
-                wasm.__wbindgen_export2(deferred2_0, deferred2_1, 1);
+                wasm.__wbindgen_free(deferred2_0, deferred2_1, 1);
             }
         }
         /**
@@ -136,24 +116,18 @@ let wasm_bindgen = (function(exports) {
             let deferred2_0;
             let deferred2_1;
             try {
-                const retptr = wasm.__wbindgen_add_to_stack_pointer(-16) >>> 0;
-                wasm.autopartition_policies(retptr, this.__wbg_ptr, seed);
-                var r0 = getDataViewMemory0().getInt32(retptr + 4 * 0, true);
-                var r1 = getDataViewMemory0().getInt32(retptr + 4 * 1, true);
-                var r2 = getDataViewMemory0().getInt32(retptr + 4 * 2, true);
-                var r3 = getDataViewMemory0().getInt32(retptr + 4 * 3, true);
-                var ptr1 = r0;
-                var len1 = r1;
-                if (r3) {
+                const ret = wasm.autopartition_policies(this.__wbg_ptr, seed);
+                var ptr1 = ret[0];
+                var len1 = ret[1];
+                if (ret[3]) {
                     ptr1 = 0; len1 = 0;
-                    throw takeFromExternrefTable0(r2);
+                    throw takeFromExternrefTable0(ret[2]);
                 }
                 deferred2_0 = ptr1;
                 deferred2_1 = len1;
                 return getStringFromWasm0(ptr1, len1);
             } finally {
-                wasm.__wbindgen_add_to_stack_pointer(16);
-                wasm.__wbindgen_export2(deferred2_0, deferred2_1, 1);
+                wasm.__wbindgen_free(deferred2_0, deferred2_1, 1);
             }
         }
         /**
@@ -165,24 +139,18 @@ let wasm_bindgen = (function(exports) {
             let deferred2_0;
             let deferred2_1;
             try {
-                const retptr = wasm.__wbindgen_add_to_stack_pointer(-16) >>> 0;
-                wasm.autopartition_shields(retptr, this.__wbg_ptr, i);
-                var r0 = getDataViewMemory0().getInt32(retptr + 4 * 0, true);
-                var r1 = getDataViewMemory0().getInt32(retptr + 4 * 1, true);
-                var r2 = getDataViewMemory0().getInt32(retptr + 4 * 2, true);
-                var r3 = getDataViewMemory0().getInt32(retptr + 4 * 3, true);
-                var ptr1 = r0;
-                var len1 = r1;
-                if (r3) {
+                const ret = wasm.autopartition_shields(this.__wbg_ptr, i);
+                var ptr1 = ret[0];
+                var len1 = ret[1];
+                if (ret[3]) {
                     ptr1 = 0; len1 = 0;
-                    throw takeFromExternrefTable0(r2);
+                    throw takeFromExternrefTable0(ret[2]);
                 }
                 deferred2_0 = ptr1;
                 deferred2_1 = len1;
                 return getStringFromWasm0(ptr1, len1);
             } finally {
-                wasm.__wbindgen_add_to_stack_pointer(16);
-                wasm.__wbindgen_export2(deferred2_0, deferred2_1, 1);
+                wasm.__wbindgen_free(deferred2_0, deferred2_1, 1);
             }
         }
         /**
@@ -199,24 +167,18 @@ let wasm_bindgen = (function(exports) {
             let deferred2_0;
             let deferred2_1;
             try {
-                const retptr = wasm.__wbindgen_add_to_stack_pointer(-16) >>> 0;
-                wasm.autopartition_shoot(retptr, this.__wbg_ptr, x, y, z, towards_x, towards_y, towards_z);
-                var r0 = getDataViewMemory0().getInt32(retptr + 4 * 0, true);
-                var r1 = getDataViewMemory0().getInt32(retptr + 4 * 1, true);
-                var r2 = getDataViewMemory0().getInt32(retptr + 4 * 2, true);
-                var r3 = getDataViewMemory0().getInt32(retptr + 4 * 3, true);
-                var ptr1 = r0;
-                var len1 = r1;
-                if (r3) {
+                const ret = wasm.autopartition_shoot(this.__wbg_ptr, x, y, z, towards_x, towards_y, towards_z);
+                var ptr1 = ret[0];
+                var len1 = ret[1];
+                if (ret[3]) {
                     ptr1 = 0; len1 = 0;
-                    throw takeFromExternrefTable0(r2);
+                    throw takeFromExternrefTable0(ret[2]);
                 }
                 deferred2_0 = ptr1;
                 deferred2_1 = len1;
                 return getStringFromWasm0(ptr1, len1);
             } finally {
-                wasm.__wbindgen_add_to_stack_pointer(16);
-                wasm.__wbindgen_export2(deferred2_0, deferred2_1, 1);
+                wasm.__wbindgen_free(deferred2_0, deferred2_1, 1);
             }
         }
         /**
@@ -227,24 +189,18 @@ let wasm_bindgen = (function(exports) {
             let deferred2_0;
             let deferred2_1;
             try {
-                const retptr = wasm.__wbindgen_add_to_stack_pointer(-16) >>> 0;
-                wasm.autopartition_view(retptr, this.__wbg_ptr);
-                var r0 = getDataViewMemory0().getInt32(retptr + 4 * 0, true);
-                var r1 = getDataViewMemory0().getInt32(retptr + 4 * 1, true);
-                var r2 = getDataViewMemory0().getInt32(retptr + 4 * 2, true);
-                var r3 = getDataViewMemory0().getInt32(retptr + 4 * 3, true);
-                var ptr1 = r0;
-                var len1 = r1;
-                if (r3) {
+                const ret = wasm.autopartition_view(this.__wbg_ptr);
+                var ptr1 = ret[0];
+                var len1 = ret[1];
+                if (ret[3]) {
                     ptr1 = 0; len1 = 0;
-                    throw takeFromExternrefTable0(r2);
+                    throw takeFromExternrefTable0(ret[2]);
                 }
                 deferred2_0 = ptr1;
                 deferred2_1 = len1;
                 return getStringFromWasm0(ptr1, len1);
             } finally {
-                wasm.__wbindgen_add_to_stack_pointer(16);
-                wasm.__wbindgen_export2(deferred2_0, deferred2_1, 1);
+                wasm.__wbindgen_free(deferred2_0, deferred2_1, 1);
             }
         }
     }
@@ -274,36 +230,28 @@ let wasm_bindgen = (function(exports) {
          * @param {Uint32Array | number[]} hits
          */
         constructor(corners, room, threshold, hits) {
+            const val4 = +threshold;
+            let ptr0, len0, ptr1, len1, ptr2, len2;
             try {
-                const retptr = wasm.__wbindgen_add_to_stack_pointer(-16) >>> 0;
-                const val4 = +threshold;
-                let ptr0, len0, ptr1, len1, ptr2, len2;
-                try {
-                    ptr0 = passArrayF64ToWasm0(corners, wasm.__wbindgen_export);
-                    len0 = WASM_VECTOR_LEN;
-                    ptr1 = passArrayF64ToWasm0(room, wasm.__wbindgen_export);
-                    len1 = WASM_VECTOR_LEN;
-                    ptr2 = passArray32ToWasm0(hits, wasm.__wbindgen_export);
-                    len2 = WASM_VECTOR_LEN;
-                } catch (e) {
-                    if (ptr2) { wasm.__wbindgen_export2(ptr2, len2 * 4, 4); }
-                    if (ptr1) { wasm.__wbindgen_export2(ptr1, len1 * 8, 8); }
-                    if (ptr0) { wasm.__wbindgen_export2(ptr0, len0 * 8, 8); }
-                    throw e;
-                }
-                wasm.selforganising_new(retptr, ptr0, len0, ptr1, len1, val4, ptr2, len2);
-                var r0 = getDataViewMemory0().getInt32(retptr + 4 * 0, true);
-                var r1 = getDataViewMemory0().getInt32(retptr + 4 * 1, true);
-                var r2 = getDataViewMemory0().getInt32(retptr + 4 * 2, true);
-                if (r2) {
-                    throw takeFromExternrefTable0(r1);
-                }
-                this.__wbg_ptr = r0;
-                SelfOrganisingFinalization.register(this, this.__wbg_ptr, this);
-                return this;
-            } finally {
-                wasm.__wbindgen_add_to_stack_pointer(16);
+                ptr0 = passArrayF64ToWasm0(corners, wasm.__wbindgen_malloc);
+                len0 = WASM_VECTOR_LEN;
+                ptr1 = passArrayF64ToWasm0(room, wasm.__wbindgen_malloc);
+                len1 = WASM_VECTOR_LEN;
+                ptr2 = passArray32ToWasm0(hits, wasm.__wbindgen_malloc);
+                len2 = WASM_VECTOR_LEN;
+            } catch (e) {
+                if (ptr2) { wasm.__wbindgen_free(ptr2, len2 * 4, 4); }
+                if (ptr1) { wasm.__wbindgen_free(ptr1, len1 * 8, 8); }
+                if (ptr0) { wasm.__wbindgen_free(ptr0, len0 * 8, 8); }
+                throw e;
             }
+            const ret = wasm.selforganising_new(ptr0, len0, ptr1, len1, val4, ptr2, len2);
+            if (ret[2]) {
+                throw takeFromExternrefTable0(ret[1]);
+            }
+            this.__wbg_ptr = ret[0];
+            SelfOrganisingFinalization.register(this, this.__wbg_ptr, this);
+            return this;
         }
         /**
          * Tests one ray.
@@ -317,24 +265,18 @@ let wasm_bindgen = (function(exports) {
             let deferred2_0;
             let deferred2_1;
             try {
-                const retptr = wasm.__wbindgen_add_to_stack_pointer(-16) >>> 0;
-                wasm.selforganising_shoot(retptr, this.__wbg_ptr, x, y, towards_x, towards_y);
-                var r0 = getDataViewMemory0().getInt32(retptr + 4 * 0, true);
-                var r1 = getDataViewMemory0().getInt32(retptr + 4 * 1, true);
-                var r2 = getDataViewMemory0().getInt32(retptr + 4 * 2, true);
-                var r3 = getDataViewMemory0().getInt32(retptr + 4 * 3, true);
-                var ptr1 = r0;
-                var len1 = r1;
-                if (r3) {
+                const ret = wasm.selforganising_shoot(this.__wbg_ptr, x, y, towards_x, towards_y);
+                var ptr1 = ret[0];
+                var len1 = ret[1];
+                if (ret[3]) {
                     ptr1 = 0; len1 = 0;
-                    throw takeFromExternrefTable0(r2);
+                    throw takeFromExternrefTable0(ret[2]);
                 }
                 deferred2_0 = ptr1;
                 deferred2_1 = len1;
                 return getStringFromWasm0(ptr1, len1);
             } finally {
-                wasm.__wbindgen_add_to_stack_pointer(16);
-                wasm.__wbindgen_export2(deferred2_0, deferred2_1, 1);
+                wasm.__wbindgen_free(deferred2_0, deferred2_1, 1);
             }
         }
         /**
@@ -345,24 +287,18 @@ let wasm_bindgen = (function(exports) {
             let deferred2_0;
             let deferred2_1;
             try {
-                const retptr = wasm.__wbindgen_add_to_stack_pointer(-16) >>> 0;
-                wasm.selforganising_view(retptr, this.__wbg_ptr);
-                var r0 = getDataViewMemory0().getInt32(retptr + 4 * 0, true);
-                var r1 = getDataViewMemory0().getInt32(retptr + 4 * 1, true);
-                var r2 = getDataViewMemory0().getInt32(retptr + 4 * 2, true);
-                var r3 = getDataViewMemory0().getInt32(retptr + 4 * 3, true);
-                var ptr1 = r0;
-                var len1 = r1;
-                if (r3) {
+                const ret = wasm.selforganising_view(this.__wbg_ptr);
+                var ptr1 = ret[0];
+                var len1 = ret[1];
+                if (ret[3]) {
                     ptr1 = 0; len1 = 0;
-                    throw takeFromExternrefTable0(r2);
+                    throw takeFromExternrefTable0(ret[2]);
                 }
                 deferred2_0 = ptr1;
                 deferred2_1 = len1;
                 return getStringFromWasm0(ptr1, len1);
             } finally {
-                wasm.__wbindgen_add_to_stack_pointer(16);
-                wasm.__wbindgen_export2(deferred2_0, deferred2_1, 1);
+                wasm.__wbindgen_free(deferred2_0, deferred2_1, 1);
             }
         }
     }
@@ -384,48 +320,42 @@ let wasm_bindgen = (function(exports) {
         let deferred9_0;
         let deferred9_1;
         try {
-            const retptr = wasm.__wbindgen_add_to_stack_pointer(-16) >>> 0;
             const val7 = +dimension;
             let ptr0, len0, ptr1, len1, ptr2, len2, ptr3, len3, ptr4, len4, ptr5, len5;
             try {
-                ptr0 = passArrayF64ToWasm0(a_corners, wasm.__wbindgen_export);
+                ptr0 = passArrayF64ToWasm0(a_corners, wasm.__wbindgen_malloc);
                 len0 = WASM_VECTOR_LEN;
-                ptr1 = passArray32ToWasm0(a_offsets, wasm.__wbindgen_export);
+                ptr1 = passArray32ToWasm0(a_offsets, wasm.__wbindgen_malloc);
                 len1 = WASM_VECTOR_LEN;
-                ptr2 = passArrayF64ToWasm0(b_corners, wasm.__wbindgen_export);
+                ptr2 = passArrayF64ToWasm0(b_corners, wasm.__wbindgen_malloc);
                 len2 = WASM_VECTOR_LEN;
-                ptr3 = passArray32ToWasm0(b_offsets, wasm.__wbindgen_export);
+                ptr3 = passArray32ToWasm0(b_offsets, wasm.__wbindgen_malloc);
                 len3 = WASM_VECTOR_LEN;
-                ptr4 = passStringToWasm0(operation, wasm.__wbindgen_export, wasm.__wbindgen_export4);
+                ptr4 = passStringToWasm0(operation, wasm.__wbindgen_malloc, wasm.__wbindgen_realloc);
                 len4 = WASM_VECTOR_LEN;
-                ptr5 = passArrayF64ToWasm0(room, wasm.__wbindgen_export);
+                ptr5 = passArrayF64ToWasm0(room, wasm.__wbindgen_malloc);
                 len5 = WASM_VECTOR_LEN;
             } catch (e) {
-                if (ptr5) { wasm.__wbindgen_export2(ptr5, len5 * 8, 8); }
-                if (ptr4) { wasm.__wbindgen_export2(ptr4, len4 * 1, 1); }
-                if (ptr3) { wasm.__wbindgen_export2(ptr3, len3 * 4, 4); }
-                if (ptr2) { wasm.__wbindgen_export2(ptr2, len2 * 8, 8); }
-                if (ptr1) { wasm.__wbindgen_export2(ptr1, len1 * 4, 4); }
-                if (ptr0) { wasm.__wbindgen_export2(ptr0, len0 * 8, 8); }
+                if (ptr5) { wasm.__wbindgen_free(ptr5, len5 * 8, 8); }
+                if (ptr4) { wasm.__wbindgen_free(ptr4, len4 * 1, 1); }
+                if (ptr3) { wasm.__wbindgen_free(ptr3, len3 * 4, 4); }
+                if (ptr2) { wasm.__wbindgen_free(ptr2, len2 * 8, 8); }
+                if (ptr1) { wasm.__wbindgen_free(ptr1, len1 * 4, 4); }
+                if (ptr0) { wasm.__wbindgen_free(ptr0, len0 * 8, 8); }
                 throw e;
             }
-            wasm.merge(retptr, val7, ptr0, len0, ptr1, len1, ptr2, len2, ptr3, len3, ptr4, len4, ptr5, len5);
-            var r0 = getDataViewMemory0().getInt32(retptr + 4 * 0, true);
-            var r1 = getDataViewMemory0().getInt32(retptr + 4 * 1, true);
-            var r2 = getDataViewMemory0().getInt32(retptr + 4 * 2, true);
-            var r3 = getDataViewMemory0().getInt32(retptr + 4 * 3, true);
-            var ptr8 = r0;
-            var len8 = r1;
-            if (r3) {
+            const ret = wasm.merge(val7, ptr0, len0, ptr1, len1, ptr2, len2, ptr3, len3, ptr4, len4, ptr5, len5);
+            var ptr8 = ret[0];
+            var len8 = ret[1];
+            if (ret[3]) {
                 ptr8 = 0; len8 = 0;
-                throw takeFromExternrefTable0(r2);
+                throw takeFromExternrefTable0(ret[2]);
             }
             deferred9_0 = ptr8;
             deferred9_1 = len8;
             return getStringFromWasm0(ptr8, len8);
         } finally {
-            wasm.__wbindgen_add_to_stack_pointer(16);
-            wasm.__wbindgen_export2(deferred9_0, deferred9_1, 1);
+            wasm.__wbindgen_free(deferred9_0, deferred9_1, 1);
         }
     }
     exports.merge = merge;
@@ -443,42 +373,36 @@ let wasm_bindgen = (function(exports) {
         let deferred7_0;
         let deferred7_1;
         try {
-            const retptr = wasm.__wbindgen_add_to_stack_pointer(-16) >>> 0;
             const val5 = +dimension;
             let ptr0, len0, ptr1, len1, ptr2, len2, ptr3, len3;
             try {
-                ptr0 = passArrayF64ToWasm0(corners, wasm.__wbindgen_export);
+                ptr0 = passArrayF64ToWasm0(corners, wasm.__wbindgen_malloc);
                 len0 = WASM_VECTOR_LEN;
-                ptr1 = passArray32ToWasm0(offsets, wasm.__wbindgen_export);
+                ptr1 = passArray32ToWasm0(offsets, wasm.__wbindgen_malloc);
                 len1 = WASM_VECTOR_LEN;
-                ptr2 = passArrayF64ToWasm0(points, wasm.__wbindgen_export);
+                ptr2 = passArrayF64ToWasm0(points, wasm.__wbindgen_malloc);
                 len2 = WASM_VECTOR_LEN;
-                ptr3 = passArrayF64ToWasm0(room, wasm.__wbindgen_export);
+                ptr3 = passArrayF64ToWasm0(room, wasm.__wbindgen_malloc);
                 len3 = WASM_VECTOR_LEN;
             } catch (e) {
-                if (ptr3) { wasm.__wbindgen_export2(ptr3, len3 * 8, 8); }
-                if (ptr2) { wasm.__wbindgen_export2(ptr2, len2 * 8, 8); }
-                if (ptr1) { wasm.__wbindgen_export2(ptr1, len1 * 4, 4); }
-                if (ptr0) { wasm.__wbindgen_export2(ptr0, len0 * 8, 8); }
+                if (ptr3) { wasm.__wbindgen_free(ptr3, len3 * 8, 8); }
+                if (ptr2) { wasm.__wbindgen_free(ptr2, len2 * 8, 8); }
+                if (ptr1) { wasm.__wbindgen_free(ptr1, len1 * 4, 4); }
+                if (ptr0) { wasm.__wbindgen_free(ptr0, len0 * 8, 8); }
                 throw e;
             }
-            wasm.split(retptr, val5, ptr0, len0, ptr1, len1, ptr2, len2, ptr3, len3);
-            var r0 = getDataViewMemory0().getInt32(retptr + 4 * 0, true);
-            var r1 = getDataViewMemory0().getInt32(retptr + 4 * 1, true);
-            var r2 = getDataViewMemory0().getInt32(retptr + 4 * 2, true);
-            var r3 = getDataViewMemory0().getInt32(retptr + 4 * 3, true);
-            var ptr6 = r0;
-            var len6 = r1;
-            if (r3) {
+            const ret = wasm.split(val5, ptr0, len0, ptr1, len1, ptr2, len2, ptr3, len3);
+            var ptr6 = ret[0];
+            var len6 = ret[1];
+            if (ret[3]) {
                 ptr6 = 0; len6 = 0;
-                throw takeFromExternrefTable0(r2);
+                throw takeFromExternrefTable0(ret[2]);
             }
             deferred7_0 = ptr6;
             deferred7_1 = len6;
             return getStringFromWasm0(ptr6, len6);
         } finally {
-            wasm.__wbindgen_add_to_stack_pointer(16);
-            wasm.__wbindgen_export2(deferred7_0, deferred7_1, 1);
+            wasm.__wbindgen_free(deferred7_0, deferred7_1, 1);
         }
     }
     exports.split = split;
@@ -513,14 +437,6 @@ let wasm_bindgen = (function(exports) {
     const SelfOrganisingFinalization = (typeof FinalizationRegistry === 'undefined')
         ? { register: () => {}, unregister: () => {} }
         : new FinalizationRegistry(ptr => wasm.__wbg_selforganising_free(ptr, 1));
-
-    let cachedDataViewMemory0 = null;
-    function getDataViewMemory0() {
-        if (cachedDataViewMemory0 === null || cachedDataViewMemory0.buffer.detached === true || (cachedDataViewMemory0.buffer.detached === undefined && cachedDataViewMemory0.buffer !== wasm.memory.buffer)) {
-            cachedDataViewMemory0 = new DataView(wasm.memory.buffer);
-        }
-        return cachedDataViewMemory0;
-    }
 
     let cachedFloat64ArrayMemory0 = null;
     function getFloat64ArrayMemory0() {
@@ -604,7 +520,7 @@ let wasm_bindgen = (function(exports) {
 
     function takeFromExternrefTable0(idx) {
         const value = wasm.__wbindgen_externrefs.get(idx);
-        wasm.__wbindgen_export3(idx);
+        wasm.__externref_table_dealloc(idx);
         return value;
     }
 
@@ -634,7 +550,6 @@ let wasm_bindgen = (function(exports) {
         wasmInstance = instance;
         wasm = instance.exports;
         wasmModule = module;
-        cachedDataViewMemory0 = null;
         cachedFloat64ArrayMemory0 = null;
         cachedUint32ArrayMemory0 = null;
         cachedUint8ArrayMemory0 = null;

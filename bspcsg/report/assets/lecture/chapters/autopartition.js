@@ -135,27 +135,27 @@ function histogram(host) {
     const mark = (value, words, look, y) => {
       plot.append(drawn("line", { x1: x(value), x2: x(value), y1: y, y2: height - 26, class: `mark ${look}` }));
       const anchor = x(value) > width - 120 ? "end" : "start";
-      plot.append(drawn("text", { x: x(value) + (anchor === "end" ? -4 : 4), y: y + 9, class: "axis-name", "text-anchor": anchor }, words));
+      plot.append(drawn("text", { x: x(value) + (anchor === "end" ? -4 : 4), y: y + 9, class: "axis-name", style: `text-anchor:${anchor}` }, words));
     };
     mark(mean, `mean ${rounded(mean, 1)}`, "", 18);
     mark(bound, `n + 2n ln n = ${rounded(bound, 1)}`, "limit", 2);
     plot.append(drawn("line", { x1: 20, x2: width - 20, y1: height - 26, y2: height - 26, class: "axis" }));
     for (const value of new Set([low, Math.round((low + high) / 2), high])) {
-      plot.append(drawn("text", { x: x(value), y: height - 11, class: "axis-name", "text-anchor": "middle" }, String(value)));
+      plot.append(drawn("text", { x: x(value), y: height - 11, class: "axis-name", style: "text-anchor:middle" }, String(value)));
     }
-    plot.append(drawn("text", { x: width / 2, y: height - 1, class: "axis-name", "text-anchor": "middle" }, "fragments"));
+    plot.append(drawn("text", { x: width / 2, y: height - 1, class: "axis-name", style: "text-anchor:middle" }, "fragments"));
     plot.setAttribute("aria-label", `Fragments over ${counts.length} random orders: mean ${rounded(mean, 1)}, bound ${rounded(bound, 1)}, this order ${mine}`);
   };
 }
 
 function autopartitionFigure(figure) {
   const plane = new Plane(figure.querySelector(".room-pane"), "Segments and the regions of their autopartition", ...ROOM);
-  const state = { view: null, lit: null, seed: 11, count: 7, statistics: 0 };
+  const state = { view: null, lit: null, seed: 11, count: 8, statistics: 0 };
   const tree = new TreePicture(figure.querySelector(".tree-pane"), "The tree of the autopartition", (id) => {
     state.lit = id;
     draw(stepper.at);
   });
-  const tell = tiles(figure.querySelector(".read"), [["n", "segments n"], ["fragments", "fragments n̄ so far"], ["cuts", "cuts so far"], ["depth", "depth"], ["nodes", "nodes 2n̄ − 1, leaves with |S| ≤ 1"], ["bound", "n + 2 n ln n"]]);
+  const tell = tiles(figure.querySelector(".read"), [["n", "segments n"], ["fragments", "fragments n̄ so far"], ["cuts", "cuts so far"], ["depth", "depth"], ["nodes", "nodes of the whole tree, 2n̄ + 1"], ["bound", "n + 2 n ln n"]]);
   const plotted = histogram(figure.querySelector(".plot-pane"));
   const stepper = new Stepper(figure.querySelector(".steps"), draw, (step) => (state.view ? stepWords(state.view, step) : ""));
   const chips = new Order(figure.querySelector(".order-pane"), "Order of the segments", (order) => {
@@ -176,7 +176,7 @@ function autopartitionFigure(figure) {
     const fragments = growth.parts().length;
     const bound = n + 2 * n * Math.log(n);
     const depth = Math.max(0, ...growth.made.map((node) => node.depth + 1));
-    tell({ n, fragments, cuts: fragments - n, depth, nodes: 2 * view.fragments - 1, bound: rounded(bound, 1) });
+    tell({ n, fragments, cuts: fragments - n, depth, nodes: 2 * view.nodes.length + 1, bound: rounded(bound, 1) });
   }
 
   /** Statistics wait until dragging pauses. */
@@ -200,7 +200,7 @@ function autopartitionFigure(figure) {
 
   const buttons = figure.querySelector(".buttons");
   const random = randomOf(5);
-  const fresh = () => scene.set(randomSegments(state.count, ...ROOM, state.seed, { longest: 210 }));
+  const fresh = () => scene.set(randomSegments(state.count, ...ROOM, state.seed, { shortest: 100, longest: 250 }));
   button(buttons, "shuffle the order", () => {
     scene.order = shuffled(scene.order, random);
     renew();

@@ -178,16 +178,16 @@ function costCurve(host) {
     const y = (value) => height - 24 - (value / high) * (height - 44);
     for (const value of [0, Math.round(high / 2), Math.floor(high)]) {
       plot.append(drawn("line", { x1: 30, x2: width - 14, y1: y(value), y2: y(value), class: "grid" }));
-      plot.append(drawn("text", { x: 24, y: y(value) + 4, class: "axis-name", "text-anchor": "end" }, String(value)));
+      plot.append(drawn("text", { x: 24, y: y(value) + 4, class: "axis-name", style: "text-anchor:end" }, String(value)));
     }
     curves.forEach((curve, k) => {
       const points = curve.map((value, i) => `${x(i).toFixed(1)},${y(value).toFixed(1)}`).join(" ");
       plot.append(drawn("polyline", { points, class: `curve ${k ? "other" : "mine"}` }));
     });
-    plot.append(drawn("text", { x: 30, y: 12, class: "axis-name" }, `nodes per ray (mean of ${window})`));
-    plot.append(drawn("text", { x: width - 14, y: height - 6, class: "axis-name", "text-anchor": "end" }, `${costs.length} rays →`));
-    plot.append(drawn("text", { x: width - 14, y: 12, class: "axis-name mine", "text-anchor": "end" }, "self-organising"));
-    plot.append(drawn("text", { x: width - 110, y: 12, class: "axis-name other", "text-anchor": "end" }, "static"));
+    plot.append(drawn("text", { x: 30, y: 12, class: "axis-name", style: "text-anchor:start" }, `nodes per ray (mean of ${window})`));
+    plot.append(drawn("text", { x: width - 14, y: height - 6, class: "axis-name", style: "text-anchor:end" }, `${costs.length} rays →`));
+    plot.append(drawn("text", { x: width - 14, y: 12, class: "axis-name mine", style: "text-anchor:end" }, "self-organising"));
+    plot.append(drawn("text", { x: width - 110, y: 12, class: "axis-name other", style: "text-anchor:end" }, "static"));
     const last = curves.map((curve) => curve[curve.length - 1] ?? 0);
     plot.setAttribute("aria-label", `Nodes per ray after ${costs.length} rays: self-organising ${rounded(last[0], 1)}, static ${rounded(last[1], 1)}`);
   };

@@ -4,7 +4,7 @@ function hyperplaneFigure(figure) {
   const plane = new Plane(figure.querySelector(".room-pane"), "A line and a point", ...size);
   const tell = tiles(figure.querySelector(".read"), [["n", "normal n"], ["d", "offset d"], ["value", "n·x + d"], ["side", "side of x"]]);
   const ends = [[110, 60], [330, 215]];
-  let point = [150, 210];
+  let point = [236, 262];
 
   function show() {
     const room = [[0, 0], size];

@@ -96,11 +96,9 @@ function splitFigure(figure) {
       const node = second.nodes[place];
       plane.span(node.span, { class: `cut plain ${number === now ? "now" : ""}` });
     });
-    plane.polygon(outlineOf.corners, { class: "shape a" });
-    second.inner.forEach((place) => {
-      const node = second.nodes[place];
-      if (node.span.length) plane.badge(between(...node.span), node.name, { class: "grey" });
-    });
+    plane.polygon(outlineOf.corners, { class: "shape a hollow" });
+    const { corners } = outlineOf;
+    corners.forEach((corner, i) => plane.badge(between(corner, corners[(i + 1) % corners.length]), `a${i + 1}`, { class: "grey" }));
     plane.span(span, { class: "cut h" });
     const [, b] = span;
     plane.text(between(span[0], b, 0.06), "H", { class: "big-name" });

@@ -67,7 +67,7 @@ function painterFigure(figure) {
 
 /** What the eye sees all around, painted stroke by stroke: directions from west over north and east. */
 function filmStrip(host) {
-  const [width, height] = [720, 54];
+  const [width, height] = [420, 34];
   const strip = drawn("svg", { viewBox: `0 0 ${width} ${height + 18}`, class: "strip", role: "img", "aria-label": "What the eye sees all around" });
   host.append(strip);
   const across = (angle) => ((Math.PI - angle) / (2 * Math.PI)) * width;
@@ -83,7 +83,7 @@ function filmStrip(host) {
     }
     ["west", "north", "east", "south", "west"].forEach((name, k) => {
       const anchor = ["start", "middle", "middle", "middle", "end"][k];
-      strip.append(drawn("text", { x: (k * width) / 4, y: height + 14, class: "axis-name", "text-anchor": anchor }, name));
+      strip.append(drawn("text", { x: (k * width) / 4, y: height + 13, class: "axis-name", style: `text-anchor:${anchor}` }, name));
     });
   };
 }

@@ -60,8 +60,10 @@ function rayFigure(figure) {
     if (done && hit) plane.dot(at(hit[1]), 6.5, { class: "hit" });
     showTree(seen, last);
     const leaves = seen.filter((event) => event.Leaf).length;
+    // Leaves are nodes as well.
+    const depth = view.depth + 1;
     const tests = seen.filter((event) => event.Test).length;
-    tell({ nodes: visited.size + leaves, inner: visited.size, leaves, tests, depth: view.depth, bound: `${view.depth} · ${leaves} = ${view.depth * leaves}` });
+    tell({ nodes: visited.size + leaves, inner: visited.size, leaves, tests, depth, bound: `${depth} · ${leaves} = ${depth * leaves}` });
   }
 
   function showTree(seen, last) {

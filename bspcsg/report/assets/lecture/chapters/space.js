@@ -7,10 +7,10 @@ const cross3 = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], 
 
 /** A camera that circles the middle of the cube; `turned` is told whenever it moves. */
 class Orbit {
-  constructor(host, label, turned) {
+  constructor(host, label, turned, elevation = 0.42) {
     this.size = [420, 380];
     this.azimuth = 0.62;
-    this.elevation = 0.42;
+    this.elevation = elevation;
     this.turned = turned;
     this.picture = drawn("g", { "aria-hidden": "true" });
     this.svg = drawn("svg", { viewBox: `0 0 ${this.size.join(" ")}`, class: "room orbit", tabindex: 0, role: "application", "aria-label": `${label}; drag or arrow keys turn it` }, this.picture);
@@ -59,7 +59,7 @@ class Orbit {
   /** Where a point of space is in the picture. */
   at(point) {
     const from = minus3(point, [50, 50, 50]);
-    const zoom = 700 / (330 - dot3(from, this.back));
+    const zoom = 860 / (330 - dot3(from, this.back));
     return [this.size[0] / 2 + dot3(from, this.right) * zoom, this.size[1] / 2 - dot3(from, this.up) * zoom];
   }
 
@@ -77,7 +77,7 @@ class Orbit {
   light(corners) {
     const normal = cross3(minus3(corners[1], corners[0]), minus3(corners[2], corners[0]));
     const length = Math.hypot(...normal) || 1;
-    return 0.35 + 0.65 * Math.abs(dot3(normal, [0.36, -0.48, 0.8]) / length);
+    return 0.6 + 0.4 * Math.abs(dot3(normal, [0.36, -0.48, 0.8]) / length);
   }
 
   /** The edges of the cube, those behind or those in front. */
@@ -96,10 +96,10 @@ class Orbit {
 const quad = (...corners) => corners;
 
 const BARS = [
-  quad([10, 20, 30], [85, 22, 60], [85, 38, 60], [10, 36, 30]),
-  quad([64, 10, 30], [80, 10, 30], [78, 88, 62], [62, 88, 62]),
-  quad([88, 66, 28], [88, 82, 28], [12, 80, 64], [12, 64, 64]),
-  quad([20, 90, 26], [36, 90, 26], [38, 12, 66], [22, 12, 66]),
+  quad([4, 16, 30], [92, 16, 66], [92, 36, 66], [4, 36, 30]),
+  quad([64, 4, 30], [84, 4, 30], [84, 92, 66], [64, 92, 66]),
+  quad([96, 64, 30], [96, 84, 30], [8, 84, 66], [8, 64, 66]),
+  quad([16, 96, 30], [16, 8, 66], [36, 8, 66], [36, 96, 30]),
 ];
 
 const ROOMS = [
@@ -112,7 +112,7 @@ const ROOMS = [
 ];
 
 function spaceFigure(figure) {
-  const orbit = new Orbit(figure.querySelector(".room-pane"), "Polygons in space", () => draw(stepper.at));
+  const orbit = new Orbit(figure.querySelector(".room-pane"), "Polygons in space", () => draw(stepper.at), 0.95);
   const tree = new TreePicture(figure.querySelector(".tree-pane"), "The tree of the polygons");
   const tell = tiles(figure.querySelector(".read"), [["n", "polygons"], ["fragments", "fragments"], ["depth", "depth"], ["cost", "C(T), points"]]);
   const state = { facets: BARS, order: [0, 1, 2, 3], partition: null, view: null, sorted: true };

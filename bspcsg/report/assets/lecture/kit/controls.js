@@ -50,6 +50,8 @@ function choice(host, label, options, act) {
   return group;
 }
 
+const icon = (shape) => drawn("svg", { viewBox: "0 0 20 20", class: "icon", "aria-hidden": "true" }, drawn("path", { d: shape }));
+
 /** Milliseconds between two steps that play by themselves. */
 const PACE = 1100;
 
@@ -62,11 +64,12 @@ class Stepper {
     this.count = 0;
     this.timer = null;
     const bar = element("div", { class: "stepper", role: "group", "aria-label": "Steps" });
-    button(bar, "⏮", () => this.go(0), { "aria-label": "First step" });
-    button(bar, "◀", () => this.go(this.at - 1), { "aria-label": "Step back", class: "back" });
-    this.player = button(bar, "▶▶", () => this.play(), { "aria-label": "Play", "aria-pressed": false });
-    button(bar, "▶", () => this.go(this.at + 1), { "aria-label": "Step forward", class: "forward" });
-    button(bar, "⏭", () => this.go(this.count), { "aria-label": "Last step" });
+    const press = (name, shape, act, looks = {}) => button(bar, icon(shape), act, { "aria-label": name, title: name, ...looks });
+    press("First step", "M5 4v12M15 4 7 10l8 6z", () => this.go(0));
+    press("Step back", "M13 4 5 10l8 6z", () => this.go(this.at - 1), { class: "back" });
+    this.player = press("Play", "M4 4l7 6-7 6zM10 4l7 6-7 6z", () => this.play(), { "aria-pressed": false });
+    press("Step forward", "M7 4l8 6-8 6z", () => this.go(this.at + 1), { class: "forward" });
+    press("Last step", "M15 4v12M5 4l8 6-8 6z", () => this.go(this.count));
     this.range = element("input", { type: "range", min: 0, max: 0, value: 0, "aria-label": "Step" });
     this.range.addEventListener("input", () => this.go(Number(this.range.value)));
     this.place = element("output", { class: "place" });
@@ -125,4 +128,4 @@ function tiles(host, names) {
   };
 }
 
-const rounded = (x, digits = 2) => Number(x).toLocaleString("en", { maximumFractionDigits: digits, minimumFractionDigits: digits });
+const rounded = (x, digits = 2) => Number(x).toLocaleString("en", { maximumFractionDigits: digits, minimumFractionDigits: digits }).replace("-", "−");

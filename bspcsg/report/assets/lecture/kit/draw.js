@@ -137,7 +137,7 @@ class Handle {
       "g",
       { class: `handle ${look}`, tabindex: 0, role: "slider", "aria-label": `${label}; arrow keys move it` },
       drawn("circle", { r: 18, class: "grip" }),
-      drawn("circle", { r: 6.5, class: "knob" }),
+      look === "aim" ? drawn("rect", { x: -5.5, y: -5.5, width: 11, height: 11, class: "knob" }) : drawn("circle", { r: 6.5, class: "knob" }),
     );
     plane.handles.append(this.node);
     this.listen();
