@@ -11,10 +11,11 @@ from PIL import Image
 from selenium.webdriver.common.keys import Keys
 
 import bspcsg as b
+from bspcsg.io import read
 from bspcsg.report.viewer.landmark import Landmark
 from bspcsg.report.viewer.layer import Layer
 from bspcsg.report.viewer.paint import Labels
-from bspcsg.report.viewer.parts import layers_of_solid, told_apart, with_thickness
+from bspcsg.report.viewer.parts import layers_of_file, layers_of_solid, told_apart, with_thickness
 from bspcsg.report.viewer.view import view_page
 from support.browser import Browser
 from support.shapes import icosphere
@@ -221,6 +222,60 @@ def test_every_control_has_a_name(opened: Browser) -> None:
     )
     assert nameless == []
     assert opened.run("return document.querySelectorAll('main').length") == 1
+
+
+def _checkered() -> bytes:
+    """Return a picture of coloured squares, each with a darker corner."""
+    squares = np.random.default_rng(1).integers(60, 255, (8, 8, 3), dtype=np.uint8)
+    pixels = squares.repeat(16, axis=0).repeat(16, axis=1)
+    pixels.reshape(8, 16, 8, 16, 3)[:, 10:, :, :6] //= 3
+    stream = io.BytesIO()
+    Image.fromarray(pixels).save(stream, "PNG")
+    return stream.getvalue()
+
+
+def _textured_ball() -> b.Solid:
+    vertices, faces = icosphere(3)
+    x, y, z = vertices[faces].transpose(2, 0, 1)
+    around = np.arctan2(y, x) / (2 * np.pi) + 0.5
+    # Where a face reaches over the seam, some of its corners are a turn further.
+    around += (around < 0.5) & (np.ptp(around, axis=1) > 0.5)[:, None]
+    uv = np.stack([2 * around, np.arcsin(np.clip(z, -1, 1)) / np.pi + 0.5], axis=-1)
+    return b.Solid(
+        vertices,
+        faces,
+        corner_attributes={"uv": uv.astype(np.float32)},
+        face_attributes={"material": np.full(len(faces), "squares")},
+        materials={"squares": b.Material((1, 1, 1, 1), _checkered())},
+    )
+
+
+def test_a_textured_file_cut_in_two_looks_the_same(browser: Browser, tmp_path: Path) -> None:
+    _textured_ball().save(tmp_path / "ball.glb")
+    whole = b.Solid.load(tmp_path / "ball.glb")
+    halves = whole.split((1, -0.3, 0.2), 0.05)
+    for name, half in zip("ab", halves, strict=True):
+        half.save(tmp_path / f"{name}.glb")
+    looks = []
+    for names in (["ball"], ["a", "b"], ["a"]):
+        raws = [read(tmp_path / f"{name}.glb") for name in names]
+        layers = [layer for raw in raws for layer in layers_of_file(raw, "part")]
+        page = tmp_path / "view.html"
+        page.write_text(view_page(layers, "ball"), encoding="utf-8")
+        browser.open(page)
+        browser.wait(_DRAWN)
+        browser.choose("Edges", "none")
+        # Smooth normals would be those of one half along the cut.
+        browser.run(
+            "document.querySelector('.legend').hidden = true;"
+            "return document.querySelector('.stage').view.dress({ crease: 0 })"
+        )
+        looks.append(_looks(browser))
+    ball, together, alone = looks
+    # Many colours, so a texture is to be seen; along the cut pixels are drawn of both.
+    assert len({tuple(colour) for colour in (ball // 32).reshape(-1, 3).tolist()}) > 60
+    assert np.abs(ball - together).mean() < 0.15 and _change(ball, together) < 0.004
+    assert _change(ball, alone) > 0.05 and browser.errors() == []
 
 
 def test_large_models_are_rough_while_they_move(browser: Browser, tmp_path: Path) -> None:

@@ -9,16 +9,21 @@ function number(value) {
   return String(Number(value.toPrecision(4)));
 }
 
-function labelLegend({ labels, colours, values }) {
-  const used = new Set(values);
-  const seen = labels.map((label, index) => [label, colours[index]])
-    .filter((_, index) => used.has(index));
-  const entries = seen.slice(0, MOST_LABELS).map(([label, colour]) => {
+/** Labels that some face has, each once, whatever layers have it. */
+function labelLegend(paints) {
+  const seen = new Map();
+  for (const { labels, colours, values } of paints) {
+    const used = new Set(values);
+    labels.forEach((label, index) => {
+      if (used.has(index)) seen.set(`${label} ${colours[index]}`, [label, colours[index]]);
+    });
+  }
+  const entries = [...seen.values()].slice(0, MOST_LABELS).map(([label, colour]) => {
     const swatch = element("span", { className: "swatch" });
     swatch.style.background = colour;
     return element("span", {}, swatch, label);
   });
-  const more = seen.length - entries.length;
+  const more = seen.size - entries.length;
   return more ? [...entries, element("span", {}, `and ${more} more`)] : entries;
 }
 
@@ -36,5 +41,5 @@ export function legendOf(view) {
     .filter(({ name }) => name === view.settings.paint);
   const scale = on.find(({ kind }) => kind === "scale");
   if (scale) return scaleLegend(scale, view.model.unit);
-  return on.filter(({ kind }) => kind === "labels").flatMap(labelLegend);
+  return labelLegend(on.filter(({ kind }) => kind === "labels"));
 }

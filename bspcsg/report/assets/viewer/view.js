@@ -14,6 +14,10 @@ const MOST_FOR_EDGES = 100_000;
 // Beyond this many, smooth normals would take seconds; faces this small look smooth anyway.
 const MOST_FOR_SMOOTH = 3_000_000;
 
+// Beyond this many, edges are smooth only when the view stands still, by drawing pixels of half the
+// size: several samples a pixel double the time of a frame where the processor draws.
+const MOST_SAMPLED = 200_000;
+
 // After so many milliseconds without a change the view stands still.
 const STILL = 180;
 
@@ -22,9 +26,11 @@ export class View {
     this.host = host;
     this.model = model;
     this.plane = new Plane(new Vector3(0, 0, -1), 0);
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, stencil: true });
+    const triangles = model.layers.reduce((sum, layer) => sum + layer.triangles, 0);
+    this.isLarge = triangles > MOST_SAMPLED;
+    this.renderer = new WebGLRenderer({ antialias: !this.isLarge, alpha: true, stencil: true });
     this.renderer.localClippingEnabled = true;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.sharpen(false);
     this.canvas = this.renderer.domElement;
     this.scene = new Scene();
     this.layers = model.layers.map((layer, order, all) => (
@@ -97,6 +103,13 @@ export class View {
     this.draw();
   }
 
+  /** Draw as many pixels as the screen has, or as it takes for a moving view. */
+  sharpen(isMoving) {
+    const own = Math.min(window.devicePixelRatio, 2);
+    const ratio = this.isLarge ? (isMoving ? 1 : 2) : own;
+    if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
+  }
+
   draw() {
     if (this.pending) return;
     this.pending = requestAnimationFrame(() => {
@@ -108,6 +121,7 @@ export class View {
   render() {
     const { camera } = this.eye;
     this.layers.forEach((layer) => layer.hurry(Boolean(this.isMoving)));
+    this.sharpen(Boolean(this.isMoving));
     this.eye.enclose();
     this.lamp.position.copy(this.over).applyQuaternion(camera.quaternion);
     this.renderer.render(this.scene, camera);
