@@ -43,13 +43,17 @@ class Drawing(ABC):
     def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
         """Return the bytes of the drawing, what to say of it, and its part of the document."""
 
+    def sources(self) -> Sequence[Path]:
+        """Return the files that are read."""
+        return [self.file]
+
     def run(self) -> int:
         """Do it, and return the exit code."""
         from ..parameters import set_threads
 
         set_threads(self.settings["threads"])
         refuse_unwritable(self.target, self.settings["overwrite"])
-        self.inputs.refuse_early([self.file])
+        self.inputs.refuse_early(self.sources())
         data, words, values = self.drawn()
         put(self.target, [data], self.settings["overwrite"])
         seconds = clock.elapsed()

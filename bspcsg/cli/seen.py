@@ -1,6 +1,6 @@
 """Files as what is to be seen of them."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,17 +11,20 @@ if TYPE_CHECKING:
     from ..report.viewer.layer import Layer
 
 
-def layers_of(inputs: Inputs, files: Iterable[Path]) -> "tuple[list[Layer], str]":
+def layers_of(
+    inputs: Inputs, files: Iterable[Path], section: Sequence[float] | None = None
+) -> "tuple[list[Layer], str]":
     """Return a layer for each object of each file, and the unit if all files have it.
 
-    What was noteworthy about the files is told; meshes need not be closed.
+    What was noteworthy about the files is told; meshes need not be closed, unless a section is
+    given: then only what has nx x + ny y + nz z up to d is there.
     """
     from ..report.viewer.parts import told_apart
 
     found: list[tuple[Path, list[Layer]]] = []
     units = set()
     for path in files:
-        layers, unit = _layers_of(inputs, path)
+        layers, unit = _layers_of(inputs, path, section)
         if not any(len(layer.faces) for layer in layers):
             inputs.out.warning(f"{shown(path)}: there is nothing in it to be seen.")
         found.append((path, layers))
@@ -35,12 +38,19 @@ def layers_of(inputs: Inputs, files: Iterable[Path]) -> "tuple[list[Layer], str]
     return told_apart(named), units.pop() if len(units) == 1 else ""
 
 
-def _layers_of(inputs: Inputs, path: Path) -> "tuple[list[Layer], str]":
-    from ..report.viewer.parts import layers_of_file, layers_of_solid
+def _layers_of(
+    inputs: Inputs, path: Path, section: Sequence[float] | None
+) -> "tuple[list[Layer], str]":
+    from ..report.viewer.parts import layers_of_file, layers_of_solid, with_origin
 
     name = shown(path) if shown(path) == "-" else path.name
+    unit = "" if inputs.unit is None else "mm"
+    if section is not None:
+        *normal, offset = section
+        kept, _ = with_origin(inputs.solid(path)).split(normal, offset)
+        return layers_of_solid(kept, name), unit
     if inputs.is_script(path):
-        return layers_of_solid(inputs.solid(path), name), "" if inputs.unit is None else "mm"
+        return layers_of_solid(inputs.solid(path), name), unit
     raw = inputs.raw(path)
     inputs.tell(path, raw.findings)
     return layers_of_file(raw, name), raw.unit

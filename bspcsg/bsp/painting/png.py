@@ -35,13 +35,14 @@ def png(painting: Painting, background: ColourArray | None, line: float, samples
         Each pixel is the mean of this many squared.
     """
     buffer = io.BytesIO()
-    _image(painting, background, line, samples).save(buffer, "PNG", optimize=True)
+    image(painting, background, line, samples).save(buffer, "PNG", optimize=True)
     return buffer.getvalue()
 
 
-def _image(
+def image(
     painting: Painting, background: ColourArray | None, line: float, samples: int
 ) -> "Image.Image":
+    """Return the pixels; parameters are those of `png`."""
     try:
         from PIL import Image, ImageDraw
     except ImportError as error:

@@ -1,32 +1,44 @@
 """The verb that makes pictures: render."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ...errors import BspcsgError
+from ..camera import camera_of, refuse_contradictions, seeing
 from ..drawing import Drawing
-from ..files import shown
-from ..options import common, drawing, reading
+from ..options import common, drawing, numbers, reading
 from ..output import counted
-from ..patterns import file_argument
+from ..patterns import files_argument
+from ..seen import layers_of
 
 if TYPE_CHECKING:
-    from ...bsp import Picture
+    from ..._types import FloatArray
+    from ...bsp import PartitionTree, Picture
+    from ...report.viewer.layer import Layer
 
 _EPILOG = """\b
 Examples:
   bspcsg render part.stl -o part.png --view front --size 1200x900
+  bspcsg render a.stl b.stl -o both.png --azimuth 30 --elevation 20
+  bspcsg render part.py -o inside.png --section 1,0,0,5 --colours origin
+  bspcsg render part.stl -o turning.gif --frames 48
   bspcsg render part.stl -o - --to svg | display
 """
 
-_SUFFIXES = (".svg", ".png")
-_VIEWS = ("iso", "front", "back", "left", "right", "top", "bottom")
+_SUFFIXES = (".svg", ".png", ".gif")
 _STYLES = ("shaded", "hidden", "edges")
 
 #: The background that lets through what is behind the picture.
 _TRANSPARENT = "none"
+
+#: Pictures of one turn at most, and how many there are unless that is said.
+_MOST_FRAMES, _FRAMES = 360, 36
+
+#: Points of the circle that a turning corner runs through.
+_AROUND = 72
 
 
 def _as_size(context: click.Context, option: click.Parameter, value: str) -> tuple[int, int]:
@@ -57,16 +69,22 @@ def _as_colour(context: click.Context, option: click.Parameter, value: str) -> s
     return value
 
 
-@click.command("render", short_help="Write a picture of a mesh.", epilog=_EPILOG)
-@file_argument()
+def _as_colours(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
+    """Return the name of a way to colour, or a colour as hexadecimal digits."""
+    from ...bsp.painting.colours import colour, hexadecimal
+
+    if value is None or not value.startswith("#"):
+        return value
+    try:
+        return hexadecimal(colour(value))
+    except BspcsgError as error:
+        raise click.BadParameter(error.message, context, option) from None
+
+
+@click.command("render", short_help="Write a picture of meshes.", epilog=_EPILOG)
+@files_argument("FILE [...]")
 @drawing
-@click.option(
-    "--view",
-    type=click.Choice(_VIEWS),
-    default="iso",
-    show_default=True,
-    help="From where; z is up, front looks along +y.",
-)
+@seeing
 @click.option(
     "--size",
     metavar="WxH",
@@ -83,6 +101,21 @@ def _as_colour(context: click.Context, option: click.Parameter, value: str) -> s
     help="Light and edges, a drawing with hidden lines removed, or all edges.",
 )
 @click.option(
+    "--colours",
+    "--colors",
+    "colours",
+    metavar="WHAT",
+    callback=_as_colours,
+    help="part, origin (which operand of a script), the name of an attribute, or a colour like"
+    " '#3070b0'; by default the file's own.",
+)
+@click.option(
+    "--section",
+    metavar="NX,NY,NZ,D",
+    callback=numbers("section", "nx,ny,nz,d", "0,0,1,2.5"),
+    help="Show only what has nx x + ny y + nz z up to d, closed where it is cut.",
+)
+@click.option(
     "--background",
     metavar="COLOUR",
     default="white",
@@ -90,39 +123,130 @@ def _as_colour(context: click.Context, option: click.Parameter, value: str) -> s
     callback=_as_colour,
     help="white, black, a colour like '#3070b0', or none for transparent.",
 )
+@click.option(
+    "--frames",
+    metavar="N",
+    type=click.IntRange(2, _MOST_FRAMES),
+    default=_FRAMES,
+    show_default=True,
+    help="Pictures of one turn around z, in a GIF.",
+)
+@click.option(
+    "--seconds",
+    metavar="T",
+    type=click.FloatRange(0, min_open=True),
+    default=4.0,
+    show_default=True,
+    help="How long one turn takes, in a GIF.",
+)
 @reading
 @common
-def render(file: Path, target: Path, **given: Any) -> int:
-    """Write a picture of a mesh as SVG or PNG, painted from back to front.
+def render(files: tuple[Path, ...], target: Path, **given: Any) -> int:
+    """Write a picture of meshes as SVG or PNG, painted from back to front, or a turn as GIF.
 
-    The mesh need not be closed. PNG needs Pillow; bspcsg doctor says whether it is there.
+    Meshes need not be closed, but for --section. PNG and GIF need Pillow; bspcsg doctor says
+    whether it is there.
     """
-    return _Rendering(file, target, _SUFFIXES, **given).run()
+    return _Rendering(files, target, _SUFFIXES, **given).run()
 
 
 class _Rendering(Drawing):
-    """One mesh, seen from somewhere."""
+    """Meshes, seen from somewhere."""
+
+    def __init__(self, files: tuple[Path, ...], *paths: Any, **settings: Any) -> None:
+        super().__init__(files[0], *paths, **settings)
+        refuse_contradictions(settings)
+        self._files = files
+
+    def sources(self) -> tuple[Path, ...]:
+        return self._files
 
     def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
-        picture = self._picture()
         width, height = self.settings["size"]
-        polygons = len(picture.painting.source)
-        values = {
-            "view": self.settings["view"],
-            "style": self.settings["style"],
-            "size": [width, height],
-            "polygons": polygons,
-        }
-        data = picture.svg.encode() if self.suffix == ".svg" else picture.png
-        return data, f"{width} x {height} pixels  {counted(polygons, 'polygon')}", values
+        layers, _ = layers_of(self.inputs, self._files, self.settings["section"])
+        names = ("view", "style")
+        values = {**{name: self.settings[name] for name in names}, "size": [width, height]}
+        if self.suffix == ".gif":
+            data, more, words = self._turn(layers)
+        else:
+            picture = self._picture(layers)
+            data = picture.svg.encode() if self.suffix == ".svg" else picture.png
+            polygons = len(picture.painting.source)
+            more, words = {"polygons": polygons}, counted(polygons, "polygon")
+        return data, f"{width} x {height} pixels  {words}", {**values, **more}
 
-    def _picture(self) -> "Picture":
+    def _looks(self, layers: "list[Layer]") -> dict[str, Any]:
+        names = ("size", "style", "background")
+        looks = {name: self.settings[name] for name in names}
+        return {**looks, "colors": self._colours(layers)}
+
+    def _colours(self, layers: "list[Layer]") -> Any:
+        """Return a colour for each face, one for all, or None for the one that is usual."""
+        from ...report.viewer.faces import face_colours
+
+        given = self.settings["colours"]
+        if given is not None and given.startswith("#"):
+            return given
+        if given is None and len(layers) == 1 and not layers[0].paints:
+            return None
+        try:
+            colours = face_colours(layers, given)
+        except BspcsgError as error:
+            raise click.UsageError(f"--colours: {error.message}") from None
+        return colours if len(colours) else None
+
+    def _picture(self, layers: "list[Layer]") -> "Picture":
+        from ...bsp.painting.picture import picture
+        from ...report.viewer.faces import joined
+
+        mesh = joined(layers)
+        width, height = self.settings["size"]
+        camera = camera_of(self.settings, mesh[0][_used(mesh[1])], width / height)
+        return picture(mesh, camera=camera, **self._looks(layers))
+
+    def _turn(self, layers: "list[Layer]") -> tuple[bytes, dict[str, Any], str]:
+        from ...bsp import PartitionTree
+        from ...bsp.painting.turntable import gif
+        from ...report.viewer.faces import joined
+
+        frames = self.settings["frames"]
+        vertices, faces = joined(layers)
+        # One tree has the order for every point of view.
+        tree = PartitionTree(vertices[faces], "random", top=16, degenerate="drop")
+        pictures = self._turning(layers, tree, vertices[_used(faces)])
+        data = gif(pictures, self.settings["seconds"])
+        return data, {"frames": frames}, counted(frames, "frame")
+
+    def _turning(
+        self, layers: "list[Layer]", tree: "PartitionTree", points: "FloatArray"
+    ) -> "Iterator[Picture]":
         from ...bsp.painting.picture import picture
 
-        raw = self.inputs.raw(self.file)
-        self.inputs.tell(self.file, raw.findings)
-        if not len(raw.faces):
-            self.out.warning(f"{shown(self.file)}: there is nothing in it to be seen.")
-        names = ("view", "size", "style", "background")
-        looks = {name: self.settings[name] for name in names}
-        return picture((raw.vertices, raw.faces), **looks)
+        width, height = self.settings["size"]
+        looks = self._looks(layers)
+        room = _room_to_turn(points)
+        for frame in range(self.settings["frames"]):
+            turn = 360 * frame / self.settings["frames"]
+            camera = camera_of(self.settings, room, width / height, turn)
+            yield picture(tree, camera=camera, **looks)
+
+
+def _used(faces: Any) -> Any:
+    import numpy as np
+
+    return np.unique(faces)
+
+
+def _room_to_turn(points: "FloatArray") -> "FloatArray":
+    """Return points around all places of a box that turns around its middle."""
+    import numpy as np
+
+    if not len(points):
+        return points
+    low, high = points.min(axis=0), points.max(axis=0)
+    angles = np.arange(_AROUND) * (2 * np.pi / _AROUND)
+    radius = np.hypot(*(high - low)[:2]) / 2
+    circle = np.column_stack([np.cos(angles), np.sin(angles)]) * radius + (low + high)[:2] / 2
+    rings = [np.column_stack([circle, np.full(_AROUND, z)]) for z in (low[2], high[2])]
+    room: FloatArray = np.concatenate(rings)
+    return room

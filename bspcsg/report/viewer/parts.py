@@ -13,7 +13,7 @@ from ...mesh.weld import welded
 from ...solid.solid import Solid
 from .attributes import paints_of
 from .layer import COLOURS, RESULT, Layer
-from .paint import PALETTE, THICKNESS, Labels, Paint, Scale
+from .paint import PALETTE, THICKNESS, Labels, Scale
 from .thickness import thickness
 
 #: Objects of one file that become parts with a button each; a file with more is one part.
@@ -57,22 +57,44 @@ def layers_of_solid(solid: Solid, name: str) -> list[Layer]:
     """Return the layer of a solid, which can be coloured by the operand that faces come from."""
     mesh = solid.normalized().to_mesh()
     layers = layers_of_file(replace(saying(mesh, said_of(mesh)), name=name), name)
-    origin = _origins(solid, mesh.source[:, 0])
-    if origin is None:
+    found = _operands(solid)
+    if not found or any(paint.name == ORIGIN for layer in layers for paint in layer.paints):
         return layers
+    colours = [PALETTE[k % len(PALETTE)] for k in range(len(found))]
+    origin = Labels(ORIGIN, mesh.source[:, 0], found, colours)
     return [replace(layer, paints=(*layer.paints, origin)) for layer in layers]
 
 
-def _origins(solid: Solid, slots: IndexArray) -> Paint | None:
+def with_origin(solid: Solid) -> Solid:
+    """Return a solid whose faces say which operand they come from, and go on doing so."""
+    found = _operands(solid)
+    if not found:
+        return solid
+    mesh = solid.normalized().to_mesh()
+    said = {**mesh.face_attributes, ORIGIN: np.array(found)[mesh.source[:, 0]]}
+    return Solid(
+        mesh.vertices,
+        mesh.faces,
+        vertex_attributes=mesh.vertex_attributes,
+        corner_attributes=mesh.corner_attributes,
+        face_attributes=said,
+        materials=mesh.materials,
+    )
+
+
+def _operands(solid: Solid) -> list[str]:
+    """Return what to call the operands of the operation that made a solid; none if it was none."""
     last = solid.last_operation
     if last is None or not 1 < len(last.operands) <= _MOST_OPERANDS:
-        return None
-    labels = []
-    for number, operand in enumerate(last.operands):
-        count = len(operand.to_mesh().faces)
-        labels.append(f"operand {number + 1}: {count:,} triangle{'s' if count != 1 else ''}")
-    colours = [PALETTE[k % len(PALETTE)] for k in range(len(labels))]
-    return Labels(ORIGIN, slots, labels, colours)
+        return []
+    return [f"operand {k + 1}{_size(operand)}" for k, operand in enumerate(last.operands)]
+
+
+def _size(operand: Solid) -> str:
+    if not operand.is_bounded:
+        return ""
+    count = len(operand.to_mesh().faces)
+    return f": {count:,} triangle{'s' if count != 1 else ''}"
 
 
 def with_thickness(layer: Layer) -> Layer:

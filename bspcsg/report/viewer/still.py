@@ -9,6 +9,7 @@ import numpy as np
 
 from ...bsp import Camera, Picture
 from ...bsp.painting.picture import picture
+from .faces import face_colours, joined
 from .layer import DIFFERENCE, Layer, bounds_of
 
 #: Triangles above which a mesh is simplified first, to so many cells a side: more are smaller than
@@ -100,15 +101,13 @@ def _painted(
     count = sum(len(layer.faces) for layer in layers)
     whole = count <= _MOST_TRIANGLES
     meshes = list(layers) if whole else [layer.simplified(_CELLS) for layer in layers]
-    starts = np.cumsum([0, *(len(layer.vertices) for layer in meshes)]).tolist()
-    faces = [layer.faces + start for layer, start in zip(meshes, starts, strict=False)]
-    colours = [layer.colour for layer in meshes for _ in range(len(layer.faces))]
+    colours = face_colours(meshes)
     return picture(
-        (np.concatenate([layer.vertices for layer in meshes]), np.concatenate(faces)),
+        joined(meshes),
         camera=camera,
         size=size,
         edges="feature" if edges and count <= _MOST_WITH_EDGES * size[0] / 320 else "none",
-        colors=colours or None,
+        colors=colours if len(colours) else None,
         background=None,
         line_width=1.0,
     )

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from ..assets import rendered
+from .faces import OWN
 from .landmark import Landmark
 from .layer import Layer, bounds_of
 from .packing import packed
@@ -64,4 +65,4 @@ def view_page(
 def _own_colours(layers: Sequence[Layer]) -> str:
     """Return the paint that shows layers as their files say they look, if one does."""
     names = {paint.name for layer in layers for paint in layer.paints}
-    return next((name for name in ("material", "color") if name in names), "")
+    return next((name for name in OWN if name in names), "")

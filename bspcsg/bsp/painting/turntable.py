@@ -1,0 +1,46 @@
+"""Pictures one after another as an animated GIF."""
+
+import io
+from collections.abc import Iterable
+
+from .picture import Picture
+from .png import image
+
+#: The shortest time that browsers show a picture for, in milliseconds.
+_SHORTEST = 20
+
+
+def gif(pictures: Iterable[Picture], seconds: float) -> bytes:
+    """Return the bytes of a GIF file that repeats for ever.
+
+    Parameters
+    ----------
+    pictures : iterable of Picture
+        Of one size.
+    seconds : float
+        For all of them.
+
+    Raises
+    ------
+    BspcsgError
+        If Pillow is not installed; code "missing_dependency".
+    """
+    frames = [image(one.painting, one.background, one.line_width, one.samples) for one in pictures]
+    from PIL import Image
+
+    palette = frames[0].convert("RGB").quantize(255)
+    # One palette for all: a GIF with one each is larger, and flickers.
+    flat = [
+        frame.convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames
+    ]
+    buffer = io.BytesIO()
+    flat[0].save(
+        buffer,
+        "GIF",
+        save_all=True,
+        append_images=flat[1:],
+        duration=max(_SHORTEST, round(1000 * seconds / len(flat))),
+        loop=0,
+        optimize=False,
+    )
+    return buffer.getvalue()
