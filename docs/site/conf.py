@@ -6,6 +6,10 @@ navigation, which stands here, and their links are paths between files. `scripts
 Sphinx, because it is kept (Material for MkDocs is not extended any more), finds broken links and
 lost pages by itself, and its search works in pages that are opened as files; Furo, because it is
 light and dark, readable on a phone, and loads neither fonts nor scripts from elsewhere.
+
+What `static/site.js` says to screen readers was missing when axe-core 4.14 looked at eleven pages
+in Chromium, light and dark, 1280 and 390 wide. With it, axe finds no violation on them but that the
+page of results has no heading before something is searched for.
 """
 
 import shutil
@@ -59,7 +63,23 @@ NAVIGATION = {
         "docs/tutorials/clusters",
         "docs/tutorials/*",
     ],
-    "Tasks": ["docs/tasks/*"],
+    "Tasks": [
+        "docs/tasks/making",
+        "docs/tasks/assemblies",
+        "docs/tasks/folder",
+        "docs/tasks/scans",
+        "docs/tasks/openscad",
+        "docs/tasks/validate",
+        "docs/tasks/pictures",
+        "docs/tasks/libraries",
+        "docs/tasks/plugins",
+        "docs/tasks/trees",
+        "docs/tasks/precision",
+        "docs/tasks/errors",
+        "docs/tasks/formats",
+        "docs/tasks/performance",
+        "docs/tasks/*",
+    ],
     "Compare": ["docs/side_by_side", "docs/compare", "docs/measured"],
     "Command line": ["docs/verbs/*"],
     "Python": ["docs/api/index", "docs/api/*"],
@@ -78,11 +98,13 @@ NAVIGATION = {
 
 myst_enable_extensions = ["colon_fence"]
 myst_heading_anchors = 4
+smartquotes = False  # two hyphens begin an option
 
 html_theme = "furo"
 html_title = "bspcsg"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
+html_js_files = ["site.js"]
 html_copy_source = False
 html_show_sphinx = False
 # Excerpts are fetched, which browsers allow of servers only; titles and places are found without.

@@ -107,6 +107,22 @@ def test_pages_are_searched_without_a_server(site: Path, browser: Browser) -> No
     assert browser.errors() == []
 
 
+def test_pages_speak_to_screen_readers_and_keyboards(site: Path, browser: Browser) -> None:
+    browser.size(390, 844)
+    browser.open(site / "docs/index.html")
+    browser.wait("document.querySelector('.sidebar-drawer[aria-label]')")
+    assert browser.run("return document.documentElement.lang") == "en"
+    silent = "return document.querySelectorAll('[role=heading]:not([aria-level])').length"
+    assert browser.run(silent) == 0
+    wide = "[...document.querySelectorAll('pre')].filter(e => e.scrollWidth > e.clientWidth)"
+    assert browser.run(f"return {wide}.length") > 0
+    assert browser.run(f"return {wide}.every(e => e.tabIndex == 0)")
+
+
+def test_options_keep_their_hyphens(site: Path) -> None:
+    assert "--check=off" in (site / "docs/verbs/union.html").read_text(encoding="utf-8")
+
+
 def test_pages_fit_a_phone(site: Path, browser: Browser) -> None:
     browser.size(390, 844)
     for name in ("docs/index", "docs/verbs/union", "docs/api/solid", "docs/tasks/scans"):
