@@ -1,0 +1,151 @@
+"""What is wrong with a script, and what is left out of it."""
+
+from pathlib import Path
+
+import pytest
+
+import bspcsg as b
+from bspcsg import csg
+from support.scripts import moved
+
+# Errors
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('cube(size = "a");', 'size must be 3 numbers within ±1e100, not "a"'),
+        ("cube(size = [1, 2]);", "size must be 3 numbers"),
+        ("cube(1e300);", "size must be 3 numbers"),
+        ('cube(1, center = "yes");', "center must be true or false"),
+        ("sphere(r = true);", "r must be a number"),
+        ("multmatrix(3) cube(1);", "matrix of 4 rows"),
+        ("multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,1]]) cube(1);", "last row"),
+        ("polyhedron(points = [[0, 0]], faces = []);", "points[0] must be 3"),
+        ("polyhedron(points = [[0, 0, 0]], faces = [[0, 1, 2]]);", "from 0 to 0"),
+        ("polygon(points = 3);", "points must be a list of points"),
+        ("polygon(points = [[0, 0]], paths = [[0.5]]);", "whole numbers"),
+        ("rotate_extrude() square(2, center = true);", "must not cross the axis"),
+        ('linear_extrude(file = "../a.dxf");', "outside the script's folder"),
+        ("linear_extrude(height = 1, v = [1, 0, 1]) square(1);", "only v = [0, 0, 1]"),
+        ("sphere(r = 1, $fn = 1e9);", "more than 4,000,000 corners"),
+        ("linear_extrude(height = 1, twist = 1, slices = 1e12) square(1);", "corners"),
+        ("text(text = 3);", "text must be a text"),
+        ('text("a", size = "b");', "size must be a number"),
+        ("roof() square(1);", "roof() is not supported. Supported: circle color"),
+    ],
+)
+def test_errors_name_node_line_and_column(text: str, says: str) -> None:
+    with pytest.raises(b.FormatError) as caught:
+        csg.loads("group() {\n  " + text + " }", name="part.csg")
+    assert str(caught.value).startswith("part.csg:2:3: ")
+    assert caught.value.where == (2, 3)
+    assert says in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "cube(1e-300);",
+        "cube(1e99);",
+        f"{moved(1e90, 0, 0)} cube(1);",
+        "resize([1e90, 0, 0]) cube(1);",
+    ],
+)
+def test_sizes_beyond_the_lattice_are_errors_not_crashes(text: str) -> None:
+    with pytest.raises((b.LimitError, b.InvalidMeshError), match=r"^<csg>:"):
+        csg.loads(text)
+
+
+# What is left out
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('import(file = "none.stl");', "there is no file “none.stl”"),
+        ('import(file = ".");', "there is no file"),
+        ('import(file = "a\\x01b.stl");', "there is no file"),
+        ('linear_extrude(1) import(file = "none.svg");', "there is no file"),
+        ('surface(file = "none.dat");', "there is no file"),
+        ("import();", "file is missing"),
+        ("cube(size = [nan, 1, 1]);", "size must be 3 numbers"),
+        ("cube(inf);", "size must be 3 numbers"),
+        ("sphere(r = -inf);", "r must be a number"),
+        ("cylinder(h = nan, r = 1);", "h must be a number"),
+        ("polyhedron(points = [[0, 0, inf]], faces = []);", "points"),
+        ("polyhedron(points = undef, faces = undef);", "points is missing"),
+        ("linear_extrude(1) circle(inf);", "r must be a number"),
+        ("linear_extrude(1) square([1, nan]);", "size must be 2 numbers"),
+        ("linear_extrude(1) polygon(points = undef, paths = undef);", "points is missing"),
+        ("linear_extrude(1) offset(r = inf) square(1);", "r must be a number"),
+        ('linear_extrude(1) text("a", size = inf);', "size must be a number"),
+    ],
+)
+def test_what_openscad_leaves_out_is_left_out_and_told(text: str, says: str) -> None:
+    with pytest.warns(csg.CsgWarning) as told:
+        solid = csg.loads("cube(2);\n" + text, name="part.csg")
+    assert solid.volume == 8
+    [message] = [str(one.message) for one in told]
+    assert message.startswith("part.csg:2:") and says in message
+    assert message.endswith("It is left out.")
+
+
+@pytest.mark.parametrize(
+    ("text", "volume"),
+    [
+        ('intersection() { cube(3); import("none.stl"); }', 0),
+        ('difference() { cube(3); import("none.stl"); }', 27),
+        ('difference() { import("none.stl"); cube(3); }', 0),
+        ('minkowski() { cube(3); import("none.stl"); }', 27),
+        ('linear_extrude(1) minkowski() { square(3); import("none.svg"); }', 0),
+        ("hull() { cube(3); sphere(inf); }", 27),
+    ],
+)
+def test_what_is_left_out_counts_as_openscads_empty_set(text: str, volume: float) -> None:
+    with pytest.warns(csg.CsgWarning):
+        assert csg.loads(text).volume == volume
+
+
+BAD_CHILDREN = [
+    "roof() square(1);",
+    "polyhedron(points = [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], faces = [[0,1,2],[0,3,1],[1,3,2]]);",
+    "polyhedron(points = [[0,0,0]], faces = [[0,1,2]]);",
+    "rotate_extrude() square(2, center = true);",
+    'cube("a");',
+    "linear_extrude(1) polygon(points = 3);",
+    "sphere(r = 1, $fn = 1e9);",
+    'import("words.stl");',
+    "multmatrix(3) cube(1);",
+]
+
+
+@pytest.mark.parametrize("text", BAD_CHILDREN)
+def test_a_lenient_evaluation_drops_bad_children_with_their_place(
+    text: str, tmp_path: Path
+) -> None:
+    (tmp_path / "words.stl").write_text("not at all\n")
+    script = f"difference() {{ cube(4);\n  {text}\n  cube(2); }}"
+    with pytest.raises(b.BspcsgError):
+        csg.loads(script, folder=tmp_path)
+    with pytest.warns(csg.CsgWarning) as told:
+        assert csg.loads(script, name="part.csg", folder=tmp_path, lenient=True).volume == 56
+    [message] = [str(one.message) for one in told]
+    assert message.startswith("part.csg:2:") and message.endswith("It is left out.")
+
+
+def test_a_lenient_evaluation_repairs_what_it_is_told_to(tmp_path: Path) -> None:
+    with pytest.warns(csg.CsgWarning, match="It is repaired"):
+        solid = csg.loads(BAD_CHILDREN[1], lenient=True, on_invalid="repair")
+    assert solid.volume == pytest.approx(1 / 6)
+
+
+def test_what_is_not_the_scripts_fault_is_never_dropped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a.svg").write_text("<svg/>")
+    monkeypatch.setitem(__import__("sys").modules, "svgelements", None)
+    with pytest.raises(b.BspcsgError, match=r"bspcsg\[2d\]"):
+        csg.loads('linear_extrude(1) import("a.svg");', folder=tmp_path, lenient=True)
+    with pytest.raises(b.FormatError, match=r"part\.csg:1"):
+        csg.loads("cube(", name="part.csg", lenient=True)

@@ -1,0 +1,189 @@
+"""Files that scripts read: meshes, drawings, tables and pictures of heights."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg import csg
+from bspcsg.bsp import Region
+
+# Files
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        ("1 2 3\n4 5 6\n7 8\n", (12 + 16 + 24 + 19) / 4),
+        ("1 2 3\n4 5 6\n7 8", (12 + 16 + 24 + 19) / 4),
+        ("1 1 1\n1 1 1\n1\n", 1 + 1 + 3 / 4 + 2 / 4),
+        ("1 1 1\n\n# two\n1\n1 1 1\n", (3 + 2) / 2),
+        ("-1 -1\n-1\n", 2 - 3 / 4),
+    ],
+)
+def test_rows_of_a_surface_may_be_shorter(tmp_path: Path, rows: str, expected: float) -> None:
+    (tmp_path / "x.dat").write_text(rows)
+    text = 'surface(file = "x.dat");'
+    assert csg.loads(text, folder=tmp_path).volume == pytest.approx(expected)
+
+
+DRAWING = '<svg xmlns="http://www.w3.org/2000/svg">{}</svg>'
+
+
+@pytest.mark.parametrize(
+    ("shapes", "area"),
+    [
+        ('<path fill="none" d="M0 0 L10 0 L10 10 L0 10 Z"/>', 100),
+        ('<rect style="fill:none" width="10" height="2"/>', 20),
+        ('<path fill-rule="nonzero" d="M0 0H10V10H0Z M2 2H4V4H2Z"/>', 96),
+        ('<polyline points="0,0 10,0" stroke-width="2" stroke-linecap="butt"/>', 20),
+        ('<line x2="10" stroke-width="2"/>', 24),
+        ('<g transform="scale(2)"><path d="M0 0H10" stroke-linecap="butt"/></g>', 40),
+        ('<rect display="none" width="10" height="2"/>', 0),
+    ],
+)
+def test_drawings_are_filled_as_openscad_fills_them(
+    tmp_path: Path, shapes: str, area: float
+) -> None:
+    pytest.importorskip("svgelements")
+    (tmp_path / "x.svg").write_text(DRAWING.format(shapes))
+    found = csg.evaluate(csg.parse('import("x.svg");', folder=tmp_path))
+    assert isinstance(found, Region) and found.area == pytest.approx(area)
+
+
+def test_imports_are_relative_to_the_script(tmp_path: Path) -> None:
+    b.cube(2).save(tmp_path / "part.stl")
+    b.cube(2).save(tmp_path / "part.off")
+    for name in ("part.stl", "part.off"):
+        (tmp_path / "all.csg").write_text(f'import(file = "{name}", layer = "", timestamp = 1);')
+        assert b.load(tmp_path / "all.csg").volume == 8
+
+
+def inside_and_outside(folder: Path) -> Path:
+    """Return a script's folder beside which, and by a link in which, lie other files."""
+    own = folder / "own"
+    (own / "parts").mkdir(parents=True)
+    (own / "parts" / "table.dat").write_text("1 1\n1 1\n")
+    (folder / "table.dat").write_text("secret 1\n1 1\n")
+    (folder / "heights.dat").write_text("1 1\n1 1\n")
+    (own / "link.dat").symlink_to(folder / "heights.dat")
+    (own / "round.dat").symlink_to(own / "round.dat")
+    return own
+
+
+@pytest.mark.parametrize("name", ["parts/table.dat", "parts/../parts/table.dat"])
+def test_files_in_the_scripts_folder_are_read(tmp_path: Path, name: str) -> None:
+    own = inside_and_outside(tmp_path)
+    assert csg.loads(f'surface("{name}");', folder=own).volume == 1
+
+
+@pytest.mark.parametrize("node", ["surface", "import"])
+@pytest.mark.parametrize(
+    "name", ["../heights.dat", "../none.dat", "link.dat", "parts/../../heights.dat", "/etc/passwd"]
+)
+def test_files_elsewhere_are_not_even_looked_for(tmp_path: Path, node: str, name: str) -> None:
+    own = inside_and_outside(tmp_path)
+    with pytest.raises(b.FormatError, match="outside the script's folder") as caught:
+        csg.loads(f'{node}("{name}");', folder=own)
+    assert caught.value.code == "forbidden_path" and caught.value.where == (1, 1)
+
+
+def test_further_folders_can_be_allowed(tmp_path: Path) -> None:
+    own = inside_and_outside(tmp_path)
+    for name in ("../heights.dat", "link.dat"):
+        text = f'surface("{name}");'
+        assert csg.loads(text, folder=own, allow_paths=[tmp_path]).volume == 1
+        assert csg.evaluate(csg.parse(text, folder=own), allow_paths=[str(tmp_path)]) is not None
+    with pytest.raises(b.FormatError, match="outside"):
+        csg.loads('surface("../heights.dat");', folder=own, allow_paths=[own / "parts"])
+    with pytest.raises(b.FormatError):
+        csg.loads('surface("round.dat");', folder=own)
+
+
+def test_errors_do_not_repeat_what_stands_in_files(tmp_path: Path) -> None:
+    own = inside_and_outside(tmp_path)
+    with pytest.raises(b.FormatError, match=r"table.dat:1: a word is no number") as caught:
+        csg.loads('surface("../table.dat");', folder=own, allow_paths=[tmp_path])
+    assert "secret" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "says"),
+    [
+        ('import(file = "x.amf");', "unsupported", "“.amf” files are not supported"),
+        ('import(file = "x.stl");', "empty_file", "empty"),
+        ('surface(file = "x.amf");', "syntax", "two rows and columns"),
+        ('surface(file = "words.dat");', "syntax", "words.dat:1"),
+        ('surface(file = "x.png");', "malformed", "x.png"),
+        ('surface(file = "words.png");', "malformed", "cannot be read as PNG"),
+        ('import(file = "words.dxf");', "syntax", "no valid DXF"),
+        ('import(file = "words.svg");', "syntax", "words.svg"),
+    ],
+)
+def test_files_that_are_not_what_they_should(
+    tmp_path: Path, text: str, code: str, says: str
+) -> None:
+    for name in ("x.amf", "x.stl", "x.png"):
+        (tmp_path / name).touch()
+    for name in ("words.dat", "words.dxf", "words.svg", "words.png"):
+        (tmp_path / name).write_text("not at all\n")
+    with pytest.raises(b.FormatError) as caught:
+        csg.loads(text, folder=tmp_path)
+    assert caught.value.code == code
+    assert str(caught.value).startswith("<csg>:1:1: ")
+    assert says in str(caught.value)
+
+
+# Polish
+
+
+def test_extrusions_that_name_their_drawing(tmp_path: Path) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    document = ezdxf.new()
+    document.modelspace().add_lwpolyline([(1, 0), (3, 0), (3, 2)], close=True)
+    document.saveas(tmp_path / "a.dxf")
+    upright = 'linear_extrude(file = "a.dxf", origin = [1, 0], height = 3, scale = [0, 0]);'
+    assert csg.loads(upright, folder=tmp_path).volume == 2
+    turned = csg.loads('rotate_extrude(file = "a.dxf", $fn = 4);', folder=tmp_path)
+    assert turned == csg.loads('rotate_extrude($fn = 4) import("a.dxf");', folder=tmp_path)
+
+
+# Surfaces of pictures
+
+
+def picture(path: Path, pixels: Any, dtype: Any = np.uint8) -> Path:
+    image = pytest.importorskip("PIL.Image")
+    image.fromarray(np.array(pixels, dtype=dtype)).save(path)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("pixels", "dtype", "heights"),
+    [
+        ([[0, 51], [102, 255]], np.uint8, [[40, 100], [0, 20]]),
+        # Of 16 bits the upper half counts.
+        ([[0, 51 * 256 + 255], [102 * 256, 65535]], np.uint16, [[40, 100], [0, 20]]),
+        ([[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [255, 255, 255]]], np.uint8,
+         [[7.22, 100], [21.26, 71.52]]),
+        # However opaque.
+        ([[[0, 0, 0, 9], [51, 51, 51, 0]], [[102, 102, 102, 1], [255] * 4]], np.uint8,
+         [[40, 100], [0, 20]]),
+    ],
+)  # fmt: skip
+def test_pictures_are_tables_of_heights(
+    tmp_path: Path, pixels: Any, dtype: Any, heights: list[list[float]]
+) -> None:
+    path = picture(tmp_path / "a.png", pixels, dtype)
+    assert b.surface(path) == b.surface(np.round(heights, 9))
+    assert csg.loads('surface("a.png");', folder=tmp_path) == b.surface(path)
+    turned = csg.loads('surface("a.png", invert = true);', folder=tmp_path)
+    assert turned == b.surface(100 / 255 - np.array(heights))
+
+
+def test_pictures_that_are_none_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(b.FormatError, match="two rows and columns of pixels"):
+        b.surface(picture(tmp_path / "a.png", [[1, 2, 3]]))
+    with pytest.raises(b.LimitError, match="This surface"):
+        b.surface(picture(tmp_path / "b.png", np.zeros((1500, 1500))))

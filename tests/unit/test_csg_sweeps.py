@@ -1,0 +1,165 @@
+"""Extrusions, hulls, sums, projections and offsets of scripts."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg import csg
+from bspcsg.bsp import Region
+from support.scripts import moved, region, volume
+
+# Sweeps and hulls
+
+
+def test_straight_and_tapered_extrusions() -> None:
+    assert volume("linear_extrude(height = 3, center = true) square(2);") == 12
+    pyramid = "linear_extrude(height = 3, scale = 0) square(2, center = true);"
+    assert volume(pyramid) == pytest.approx(4)
+    assert csg.loads("linear_extrude(height = -3) square(2);").is_empty
+    assert csg.loads("linear_extrude(height = 3) group();").is_empty
+
+
+def test_turned_extrusions() -> None:
+    ring = f"rotate_extrude({{}}$fn = 4) {moved(2, 0, 0)} square(1);"
+    assert volume(ring.format("")) == pytest.approx(10)
+    assert volume(ring.format("angle = 400, ")) == pytest.approx(10)
+    assert volume(ring.format("angle = 90, ")) == pytest.approx(2.5)
+    assert csg.loads(ring.format("angle = 0, ")).is_empty
+    bounds = csg.loads(ring.format("angle = -90, ")).bounds
+    np.testing.assert_array_equal(bounds, [[0, -3, 0], [3, 0, 1]])
+
+
+def test_hulls() -> None:
+    assert volume(f"hull() {{ cube(1); {moved(0, 0, 4)} cube(1); }}") == 5
+    assert region(f"hull() {{ square(1); {moved(4, 0, 0)} square(1); }}").area == 5
+    assert csg.loads("hull();").is_empty
+    assert csg.loads("hull() { group(); cube(size = [0, 1, 1]); }").is_empty
+
+
+def test_minkowski_sums() -> None:
+    assert volume("minkowski() { cube(2); cube(1); cube(1); }") == 64
+    assert region("minkowski() { square(2); square([1, 3]); }").area == 15
+    corner = f"difference() {{ cube(4); {moved(1, 1, -1)} cube(9); }}"
+    assert volume(f"minkowski() {{ {corner} cube(1); }}") == 5 * (25 - 9)
+
+
+@pytest.mark.parametrize(
+    ("children", "expected"),
+    [
+        ("cube(2); cube(0);", 8),
+        ("cube(0); cube(2);", 8),
+        ("cube(2); group(); cube(1);", 27),
+        ("cube(0);", 0),
+        ("cube(0); sphere(0);", 0),
+    ],
+)
+def test_minkowski_leaves_empty_solids_out(children: str, expected: float) -> None:
+    assert volume(f"minkowski() {{ {children} }}") == expected
+
+
+@pytest.mark.parametrize(
+    ("children", "area"),
+    [
+        ("square(2);", 4),
+        ("square(0);", 0),
+        ("square(2); square(0);", 0),
+        ("square(0); square(2);", 0),
+        ("square(2); group();", 0),
+        ("square(2); square(1); square(0);", 9),
+        ("square(2); square(0); square(1);", 9),
+    ],
+)
+def test_minkowski_in_the_plane_keeps_openscads_rule(children: str, area: float) -> None:
+    assert region(f"minkowski() {{ {children} }}").area == area
+
+
+@pytest.mark.filterwarnings("ignore::bspcsg.csg.CsgWarning")
+def test_intersections_of_both_dimensions_are_empty() -> None:
+    assert csg.loads("intersection() { cube(5); circle(2); }").is_empty
+    assert region("intersection() { circle(2); cube(5); }").is_empty
+    assert volume("difference() { cube(5); circle(2); }") == 125
+    assert volume("union() { cube(5); circle(2); }") == 125
+    with pytest.warns(csg.CsgWarning, match="2D and 3D"):
+        csg.loads("intersection() { cube(5); circle(2); }")
+
+
+def test_minkowski_of_what_is_far_from_convex() -> None:
+    ball = "difference() { sphere(r = 20, $fn = 80); cube(3); }"
+    with pytest.raises(
+        b.FormatError, match=r":1:1: minkowski\(\): a solid is not convex"
+    ) as caught:
+        csg.loads(f"minkowski() {{ {ball} cube(1); }}")
+    assert caught.value.code == "too_large"
+
+
+def test_sizes() -> None:
+    assert volume("resize(newsize = [4, 0, 0]) cube(2);") == 16
+    assert volume("resize(newsize = [4, 0, 0], auto = [0, 1, 0]) cube(2);") == 32
+    assert volume("resize(newsize = [4, 0, 6], auto = true) cube(2);") == 4 * 6 * 6
+    assert region("resize(newsize = [4, 6, 9]) square(2);").area == 24
+
+
+def test_projections() -> None:
+    ball = moved(0, 0, 3) + " cube(2, center = true);"
+    assert region(f"projection() {ball}").area == 4
+    assert region(f"projection(cut = true) {ball}").is_empty
+    assert region("projection(cut = true) cube(2);").area == 4
+    with pytest.warns(csg.CsgWarning, match="plane figures; they are ignored"):
+        assert csg.evaluate(csg.parse("projection() square(1);")) is None
+
+
+def test_offsets() -> None:
+    assert region("offset(delta = 1) square(2);").area == 16
+    assert region("offset(delta = -0.5) square(2);").area == 1
+    assert region("offset(delta = -5) square(2);").is_empty
+    assert region("offset(r = 1, $fn = 4) square(2);").area == pytest.approx(4 + 8 + 2)
+    with pytest.warns(csg.CsgWarning, match="solids; they are ignored"):
+        assert csg.evaluate(csg.parse("offset(r = 1) cube(1);")) is None
+
+
+@pytest.mark.parametrize("hair", [1e-5, 1e-4])
+@pytest.mark.parametrize("around", ["union()", "group() union()", "union() { union()"])
+def test_offsets_do_not_widen_what_six_digits_part(hair: float, around: str) -> None:
+    parts = f"square(10); {moved(10 + hair, 0, 0)} square(10); {moved(5, 5, 0)} square(10);"
+    figure = f"{around} {{ {parts} }}" + " }" * around.count("{")
+    inner = region(f"offset(delta = -0.3) {{ {figure} }}")
+    # Two rectangles, and 0.3 off all around.
+    assert inner.area == pytest.approx(19.4 * 9.4 + 9.4 * 5, abs=2 * hair * 30)
+
+
+def test_offsets_do_not_draw_out_what_six_digits_leave_over() -> None:
+    sliver = "polygon([[0, 0], [20, 0], [0, 0.0002]]);"
+    assert region(f"offset(delta = 0.5) {{ square(10); {sliver} }}").area == pytest.approx(
+        121, abs=0.001 * 40
+    )
+
+
+def test_fine_figures_are_grown_as_they_are() -> None:
+    ring = region("circle(r = 0.0005, $fn = 100);")
+    grown = region("offset(delta = 0.0005) circle(r = 0.0005, $fn = 100);")
+    assert grown.area == pytest.approx(4 * ring.area, rel=2e-3)
+    assert len(grown.outlines[0].points) == 100
+
+
+# Polish
+
+
+def test_round_pens_have_openscads_corners(tmp_path: Path) -> None:
+    line = '<path d="m 10,30 25,-20 25,20" fill="none" stroke="black" stroke-width="12" {}/>'
+    styles = ["", 'stroke-linecap="round"', 'stroke-linejoin="round"', 'stroke-linejoin="bevel"']
+    areas = []
+    for style in styles:
+        (tmp_path / "a.svg").write_text(f"<svg>{line.format(style)}</svg>")
+        found = csg.evaluate(csg.parse('import("a.svg");', folder=tmp_path))
+        assert isinstance(found, Region)
+        areas.append(found.area)
+        assert len(found.outlines[0].points) < 2000
+    plain, cap, joint, bevel = areas
+    # Two half discs in place of two half squares, and a sector in place of a kite.
+    assert plain - cap == pytest.approx(144 - 36 * math.pi, rel=1e-4)
+    turn = 2 * math.atan(20 / 25)
+    assert plain - joint == pytest.approx(36 * (math.tan(turn / 2) - turn / 2), rel=1e-3)
+    assert joint < plain and bevel < plain
