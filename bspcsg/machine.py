@@ -14,7 +14,7 @@ _FORGET_PEAK = "5"
 
 
 class Machine(TypedDict):
-    """What a figure was measured on."""
+    """The machine on which a figure was measured."""
 
     processor: str
     cores: int

@@ -55,7 +55,7 @@ def clashes_of(parts: Sequence["Part"], clearance: float) -> list[Clash]:
 
 
 def are_apart(solid: Solid, other: Solid) -> bool:
-    """Whether the boxes around two solids have no point in common."""
+    """Say whether the boxes around two solids have no point in common."""
     if not (solid.is_bounded and other.is_bounded):
         return False
     own, others = solid.bounds, other.bounds

@@ -134,7 +134,7 @@ def _empty(count: int) -> tuple[Finding, ...]:
 
 
 class _Describing:
-    """What files say of an assembly; solids that parts share are meshes that nodes share."""
+    """The words of files about an assembly; solids that parts share are meshes that nodes share."""
 
     def __init__(self, in_single: bool) -> None:
         #: How many parts have no volume, which files have no place for.

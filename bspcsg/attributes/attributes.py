@@ -50,7 +50,7 @@ class Attributes:
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is no array."""
+        """True if there is no array."""
         return not (self.vertex or self.corner or self.face)
 
     @property
@@ -140,7 +140,7 @@ class Attributes:
 
     @cached_property
     def patches(self) -> tuple[IndexArray, list[bytes]]:
-        """Which faces have the same values everywhere: (m,) numbers, and the values behind them.
+        """The faces that have the same values everywhere: (m,) numbers, and the values behind them.
 
         Faces whose corners differ have numbers of their own, above those that stand for values.
         """
@@ -185,7 +185,7 @@ def _bytes_of(values: Values, count: int) -> npt.NDArray[np.uint8]:
 
 
 def is_normal(name: str, values: Values) -> bool:
-    """Whether an array turns with the mesh: by its name, three floats for each element."""
+    """Say whether an array turns with the mesh: by its name, three floats for each element."""
     return name in NORMALS and values.dtype.kind == "f" and values.shape[-1:] == (3,)
 
 

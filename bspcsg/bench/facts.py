@@ -27,7 +27,7 @@ class Volume:
 
 @dataclass(frozen=True)
 class AnswerFacts:
-    """What two answers are compared by, and what the tables show.
+    """The facts by which two answers are compared, and which the tables show.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ _BOOT = Path(__file__).with_name("boot.py")
 
 @dataclass(frozen=True)
 class Settings:
-    """How cases are run.
+    """The settings with which cases are run.
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ def _listen(
 
 
 class _Lines:
-    """What a process writes, line by line."""
+    """The output of a process, line by line."""
 
     def __init__(self, child: "subprocess.Popen[bytes]") -> None:
         self._descriptor = held(child.stdout, "the process's output").fileno()
@@ -214,7 +214,7 @@ class _Lines:
 
 
 class Gathered:
-    """What workers said about one item."""
+    """The answers of workers about one item."""
 
     def __init__(self, label: str) -> None:
         self._label = label
@@ -252,7 +252,7 @@ class Gathered:
         self._engines.setdefault(engine, _nothing_yet()).update(reason)
 
     def is_over(self, engine: str) -> bool:
-        """Whether an engine failed, or has all its runs."""
+        """Say whether an engine failed, or has all its runs."""
         found = self._engines.get(engine, {})
         wanted = found.get("planned", 0) + 1
         return "state" in found or len(found.get("seconds", ())) >= wanted

@@ -17,7 +17,7 @@ Items = Sequence[dict[str, Any]]
 
 @dataclass(frozen=True)
 class Reached:
-    """What a row reached of one target.
+    """The share of one target that a row reached.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Goal(Protocol):
 
     @property
     def text(self) -> str:
-        """What is asked for."""
+        """The wish in words."""
 
     def reached(self, items: Items) -> Reached:
         """Look what was measured."""
@@ -53,7 +53,7 @@ class Faster:
 
     @property
     def text(self) -> str:
-        """What is asked for."""
+        """The wish in words."""
         return f"≥ {self.factor:g} × {self.engine}"
 
     def reached(self, items: Items) -> Reached:
@@ -75,7 +75,7 @@ class MeanFaster:
 
     @property
     def text(self) -> str:
-        """What is asked for."""
+        """The wish in words."""
         return f"mean ≥ {self.factor:g} × {self.engine}"
 
     def reached(self, items: Items) -> Reached:
@@ -95,7 +95,7 @@ class Within:
 
     @property
     def text(self) -> str:
-        """What is asked for."""
+        """The wish in words."""
         return f"< {self.seconds:g} s"
 
     def reached(self, items: Items) -> Reached:
@@ -115,7 +115,7 @@ class MemoryWithin:
 
     @property
     def text(self) -> str:
-        """What is asked for."""
+        """The wish in words."""
         return f"< {self.megabytes:g} MB"
 
     def reached(self, items: Items) -> Reached:
@@ -135,7 +135,7 @@ class SteadySteps:
 
     @property
     def text(self) -> str:
-        """What is asked for."""
+        """The wish in words."""
         return f"last steps ≤ {self.factor:g} × step 1 000"
 
     def reached(self, items: Items) -> Reached:
@@ -156,7 +156,7 @@ class GrowthTarget:
 
     @property
     def text(self) -> str:
-        """What is asked for."""
+        """The wish in words."""
         return f"∝ n^{self.exponent:g}"
 
     def reached(self, items: Items) -> Reached:
@@ -175,7 +175,7 @@ def result_of(item: dict[str, Any], engine: str) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Ratio:
-    """How many times faster we are.
+    """The number of times that we are faster.
 
     Parameters
     ----------

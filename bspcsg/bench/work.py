@@ -18,7 +18,7 @@ Tell = Callable[[int], None]
 
 @dataclass
 class Outcome:
-    """What one run gave.
+    """The result of one run.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class SurfaceExtent:
-    """How much surface the operands have, and how far out it is; it bounds wrong volumes."""
+    """The area of the operands, and how far out it is; it bounds wrong volumes."""
 
     area: float
     size: float

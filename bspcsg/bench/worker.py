@@ -30,7 +30,7 @@ _WINDOW = 100
 
 @dataclass(frozen=True)
 class Task:
-    """What a worker is to do.
+    """The work of a worker.
 
     Parameters
     ----------

@@ -56,7 +56,7 @@ class RunRecord(TypedDict):
 
 
 class FactsRecord(TypedDict):
-    """What a mesh is like; lengths in model units, inertia about the centroid at density 1.
+    """The facts about a mesh; lengths in model units, inertia about the centroid at density 1.
 
     ``self_intersections`` is 0 if no two faces cross or touch but in common edges and corners,
     exactly; None if some do, or if nobody looked.
@@ -75,7 +75,7 @@ class FactsRecord(TypedDict):
 
 
 class OperandRecord(TypedDict):
-    """What went in; `pose` holds the rows of an affine map, or None for none."""
+    """An operand that went in; `pose` holds the rows of an affine map, or None for none."""
 
     name: str
     file: str | None
@@ -86,7 +86,7 @@ class OperandRecord(TypedDict):
 
 
 class OracleRecord(TypedDict):
-    """What another engine said; `agrees` is None if that could not be told."""
+    """The answer of another engine; `agrees` is None if that could not be told."""
 
     name: str
     version: str
@@ -122,7 +122,7 @@ class BoundsRecord(TypedDict):
 
 
 class IdentityRecord(TypedDict):
-    """Whether exact volumes add up as the equation says."""
+    """The check that exact volumes add up as the equation says."""
 
     equation: str
     holds: bool
@@ -138,7 +138,7 @@ class SecondsRecord(TypedDict):
 
 
 class CaseRecord(TypedDict):
-    """What came of one case."""
+    """The result of one case."""
 
     schema: int
     type: Literal["case"]
@@ -164,7 +164,7 @@ class CaseRecord(TypedDict):
 
 
 def is_failure(case: CaseRecord) -> bool:
-    """Whether a case fails the campaign that it is part of."""
+    """Say whether a case fails the campaign that it is part of."""
     return case["verdict"] in FAILURES
 
 

@@ -32,7 +32,7 @@ ON_INVALID = "  --on-invalid repair fills it; --on-invalid warn goes on without 
 
 @dataclass(frozen=True)
 class Inputs:
-    """How input files are read.
+    """The reading of input files.
 
     Parameters
     ----------
@@ -220,7 +220,7 @@ def repair_command(path: Path) -> str:
 
 @dataclass(frozen=True)
 class Target:
-    """Where an output goes.
+    """The file or stream that takes an output.
 
     Parameters
     ----------
@@ -249,7 +249,7 @@ class Target:
 
     @property
     def is_stream(self) -> bool:
-        """Whether it is standard output."""
+        """True if it is standard output."""
         return str(self.path) == STREAM
 
     def refuse_early(self, as_json: bool = False) -> None:
@@ -390,12 +390,12 @@ def make_folder(folder: Path) -> None:
 
 
 def is_dropped(path: Path) -> bool:
-    """Whether what is written there is kept by nobody."""
+    """Say whether what is written there is kept by nobody."""
     return str(path) == os.devnull
 
 
 def is_among(path: Path, others: Iterable[Path]) -> bool:
-    """Whether a file is there and one of others, by whatever name."""
+    """Say whether a file is there and one of others, by whatever name."""
     return any(path.exists() and other.exists() and path.samefile(other) for other in others)
 
 

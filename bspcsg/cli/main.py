@@ -216,7 +216,7 @@ def _usage_error(error: click.ClickException, as_json: bool) -> int:
 
 
 def _asks_for_json(arguments: Sequence[str]) -> bool:
-    """Whether a document is wanted on standard output."""
+    """Say whether a document is wanted on standard output."""
     return "--json" in arguments
 
 

@@ -46,7 +46,7 @@ class EmptyResultError(BspcsgError):
 
 @dataclass(frozen=True)
 class Output:
-    """Where a command tells what.
+    """The streams to which a command tells what.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class Output:
 
     @property
     def advises(self) -> bool:
-        """Whether somebody is there to be told what to type next."""
+        """True if somebody is there to be told what to type next."""
         return self.verbosity >= 0 and sys.stdout.isatty()
 
     def note(self, line: str) -> None:

@@ -17,7 +17,7 @@ _NARROWEST = 40
 
 
 def wants_colour(stream: TextIO) -> bool:
-    """Whether colours go to a stream: `NO_COLOR`, then `FORCE_COLOR`, then what it is decide."""
+    """Say whether colours go to a stream: `NO_COLOR`, then `FORCE_COLOR`, then what it is decide."""
     if os.environ.get("NO_COLOR"):
         return False
     forced = os.environ.get("FORCE_COLOR")

@@ -30,7 +30,7 @@ _SURFACES = frozenset({b"surf", b"curv", b"cstype", b"bmat"})
 
 @dataclass
 class _Found:
-    """What the statements say, in their order; lines are those of the rows beside them."""
+    """The content of the statements, in their order; lines are those of the rows beside them."""
 
     rows: list[list[bytes]] = field(default_factory=list)
     row_lines: list[int] = field(default_factory=list)

@@ -186,7 +186,7 @@ def _compare_corners(
 
 
 def _has_arrays(held: Held, vertices: npt.NDArray[Any], faces: IndexArray) -> bool:
-    """Whether a file has the very arrays, which is the fastest of all proofs."""
+    """Say whether a file has the very arrays, which is the fastest of all proofs."""
     if held.faces is None or held.vertices.shape != vertices.shape:
         return False
     return bool((held.faces == faces).all() and (held.vertices == vertices).all())

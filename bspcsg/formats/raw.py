@@ -60,12 +60,12 @@ class RawMesh:
 
     @property
     def passed_by(self) -> tuple[str, ...]:
-        """What the reader said it left out."""
+        """The things that the reader said it left out."""
         return tuple(found.message for found in self.findings if found.code in _PASSED_BY)
 
 
 def says_empty_set(mesh: Mesh | RawMesh) -> bool:
-    """Whether a file of this mesh is to say that it is the empty set."""
+    """Say whether a file of this mesh is to say that it is the empty set."""
     return len(mesh.faces) == 0 and (isinstance(mesh, Mesh) or mesh.is_empty_set)
 
 
@@ -160,7 +160,7 @@ class IndexPolygons:
 
     @property
     def dropped(self) -> tuple[str, ...]:
-        """What triangles do not keep of these polygons, as `RawMesh.dropped` says it."""
+        """The things that triangles do not keep of these polygons, as `RawMesh.dropped` says it."""
         return (POLYGONS,) if self.counts.max(initial=0) > 3 else ()
 
     @classmethod
@@ -253,7 +253,7 @@ def _fan(count: int) -> IndexArray:
 
 
 def _are_convex(corners: FloatArray) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
-    """Whether each of (k, n, 3) polygons is strictly convex, and the fan of corner 0 is inside."""
+    """Say whether (k, n, 3) polygons are strictly convex, with the fan of corner 0 inside."""
     local = corners - corners[:, :1]
     with np.errstate(over="ignore", invalid="ignore"):
         normal = np.cross(local, np.roll(local, -1, axis=1)).sum(axis=1)

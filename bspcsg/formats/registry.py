@@ -59,7 +59,7 @@ class Form:
 
 @dataclass(frozen=True)
 class Format:
-    """How one format is read and written; one of the written forms may be missing.
+    """The reading and writing of one format; one of the written forms may be missing.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ _PLURAL: dict[Kind, str] = {"vertex": "vertices", "corner": "corners", "face": "
 
 
 def is_color(name: str, values: Values, depth: int) -> bool:
-    """Whether an attribute is a colour: three or four numbers."""
+    """Say whether an attribute is a colour: three or four numbers."""
     is_number = values.dtype.kind in "uf"
     return name == "color" and is_number and values.shape[depth:] in ((3,), (4,))
 

@@ -40,7 +40,7 @@ class SceneNode:
 
 
 def are_alike(one: SceneNode, other: SceneNode) -> bool:
-    """Whether two trees have the same names, places, colours and corners, and share alike."""
+    """Say whether two trees have the same names, places, colours and corners, and share alike."""
     pairs = list(zip(one.walk(), other.walk(), strict=False))
     if len(pairs) != sum(1 for _ in one.walk()) or len(pairs) != sum(1 for _ in other.walk()):
         return False

@@ -28,7 +28,7 @@ _MOST_DIGITS = 40
 
 @dataclass(frozen=True)
 class Source:
-    """What a reader reads.
+    """A file that a reader reads.
 
     Parameters
     ----------

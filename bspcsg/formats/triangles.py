@@ -28,7 +28,7 @@ _Normals = tuple[FloatArray, FloatArray]
 
 
 def are_flat(corners: FloatArray) -> npt.NDArray[np.bool_]:
-    """Whether each of (m, 3, 3) triangles has no area, decided exactly."""
+    """Say whether each of (m, 3, 3) triangles has no area, decided exactly."""
     normals, errors = _normals(corners)
     flat = np.asarray(~(np.abs(normals) > errors[:, None]).any(axis=1))
     unsure = np.flatnonzero(flat)
@@ -58,7 +58,7 @@ def _flat_by_products(corners: FloatArray) -> tuple[npt.NDArray[np.bool_], npt.N
 
 
 def _is_difference(found: FloatArray, end: FloatArray, start: FloatArray) -> npt.NDArray[np.bool_]:
-    """Whether (m, 3) differences were not rounded, by Knuth's error of a sum."""
+    """Say whether (m, 3) differences were not rounded, by Knuth's error of a sum."""
     back = found - end
     exact: npt.NDArray[np.bool_]
     exact = ((end - (found - back)) + (-start - back) == 0).all(axis=1)
@@ -79,7 +79,7 @@ def _halves(values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def are_turned(before: FloatArray, after: FloatArray) -> npt.NDArray[np.bool_]:
-    """Whether the normals of (m, 3, 3) triangles are more than a right angle apart, exactly."""
+    """Say whether the normals of (m, 3, 3) triangles are more than a right angle apart, exactly."""
     (first, first_error), (second, second_error) = _normals(before), _normals(after)
     with np.errstate(over="ignore", invalid="ignore"):
         cosines = np.einsum("mi,mi->m", first, second)

@@ -59,7 +59,7 @@ class LatticeHyperplane:
 
     @property
     def note(self) -> str | None:
-        """What a finding says if it is not the hyperplane that was asked for."""
+        """The text of the finding, if it is not the hyperplane that was asked for."""
         if self.moved is None:
             return None
         return (

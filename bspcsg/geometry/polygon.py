@@ -108,7 +108,7 @@ def signed_area(contour: FloatArray) -> float:
 
 
 def runs_clockwise(contour: FloatArray) -> bool:
-    """Whether the area of a contour is negative, exactly."""
+    """Say whether the area of a contour is negative, exactly."""
     x, y = (contour - contour[0]).T
     terms = np.concatenate([x * np.roll(y, -1), -np.roll(x, -1) * y])
     area = float(terms.sum())
@@ -205,7 +205,7 @@ def _overlapping_boxes(contours: list[FloatArray]) -> Iterator[tuple[int, int]]:
 
 
 def _contains(outer: FloatArray, inner: FloatArray) -> bool:
-    """Whether most corners and edge midpoints of `inner` are inside; some may touch `outer`."""
+    """Say whether most corners and edge midpoints of `inner` are inside; some may touch `outer`."""
     probes = np.concatenate([inner, (inner + np.roll(inner, -1, axis=0)) / 2])
     return bool(np.mean([_crossings(outer, probe) % 2 for probe in probes]) > 0.5)
 
@@ -220,7 +220,7 @@ def _crossings(contour: FloatArray, point: FloatArray) -> int:
 
 
 def _has_border(triangles: IndexArray, contours: Sequence[FloatArray]) -> bool:
-    """Whether the triangles' directed edges cancel to those of the contours."""
+    """Say whether the triangles' directed edges cancel to those of the contours."""
     count = sum(len(contour) for contour in contours)
     border = directed_edges(contours)
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])

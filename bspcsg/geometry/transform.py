@@ -44,7 +44,7 @@ class Factor:
         self.key = self.matrix.tobytes()
 
     def __eq__(self, other: object) -> bool:
-        """Whether both matrices agree in every bit."""
+        """Say whether both matrices agree in every bit."""
         return isinstance(other, Factor) and self.key == other.key
 
     def __hash__(self) -> int:
@@ -61,7 +61,7 @@ class Factor:
 
     @property
     def is_identity(self) -> bool:
-        """Whether the map moves nothing."""
+        """True if the map moves nothing."""
         return self.key == _IDENTITY_KEY
 
 
@@ -250,7 +250,7 @@ class LatticeMotion:
 
     @property
     def is_identity(self) -> bool:
-        """Whether the motion moves nothing."""
+        """True if the motion moves nothing."""
         return self == LatticeMotion()
 
     @property

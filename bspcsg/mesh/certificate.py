@@ -18,7 +18,7 @@ Precision: TypeAlias = Literal["double", "single"]
 
 @dataclass(frozen=True)
 class Certificate:
-    """What was proved of a mesh, triangle by triangle, for the coordinates as they are.
+    """A proof about a mesh, triangle by triangle, for the coordinates as they are.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Certificate:
 
     @property
     def ok(self) -> bool:
-        """Whether the mesh is closed, crosses itself nowhere, and each triangle has area."""
+        """True if the mesh is closed, crosses itself nowhere, and each triangle has area."""
         return not (self.open_edges or self.crossings or self.flat)
 
 

@@ -67,7 +67,7 @@ def _advice(mesh: Any) -> str:
 
 
 def are_empty(arrays: AnyArrays) -> bool:
-    """Whether there are neither vertices nor faces; vertices alone are a cloud of points."""
+    """Say whether there are neither vertices nor faces; vertices alone are a cloud of points."""
     try:
         return not any(map(len, arrays))
     except TypeError:  # no arrays at all, which is said elsewhere

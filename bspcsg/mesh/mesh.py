@@ -96,7 +96,7 @@ class Mesh:
 
     @property
     def materials(self) -> Mapping[str, Material]:
-        """What the names in the face attribute ``"material"`` stand for."""
+        """The materials that the names in the face attribute ``"material"`` stand for."""
         return self.attributes.materials
 
     def carrying(self, carried: Later) -> "Mesh":
@@ -105,7 +105,7 @@ class Mesh:
 
     @cached_property
     def certificate(self) -> Certificate:
-        """What an exact look at all triangles proves: closed, no crossings, none without area."""
+        """The proof by an exact look at all triangles: closed, no crossings, none without area."""
         return certify(self.vertices, self.faces)
 
     @property

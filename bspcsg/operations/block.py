@@ -51,12 +51,12 @@ class Block:
 
     @property
     def solids(self) -> tuple[Solid, ...]:
-        """What counts so far, in order."""
+        """The solids that count so far, in order."""
         return tuple(solid for solid in self._ledger.solids if isinstance(solid, Solid))
 
     @property
     def solid(self) -> Solid:
-        """What the operation makes of the solids that count.
+        """The result of the operation on the solids that count.
 
         Raises
         ------

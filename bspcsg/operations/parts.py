@@ -115,7 +115,7 @@ class _Shells:
         return int(self._volumes.argmax())
 
     def _holds(self, number: int, points: FloatArray) -> bool:
-        """Whether points that do not cross a shell are inside it; one off the boundary decides."""
+        """Say whether points that cross no shell are inside it; one off the boundary decides."""
         if number not in self._solids:
             shell = self._meshes[number]
             self._solids[number] = Solid(shell.vertices, shell.faces, pitch=self._pitch)

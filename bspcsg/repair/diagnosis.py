@@ -30,7 +30,7 @@ _FLAT = 1e-6
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What was found out about a mesh.
+    """The findings about a mesh.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class Diagnosis:
 
     @property
     def is_solid(self) -> bool:
-        """Whether the mesh bounds a set, the right way round."""
+        """True if the mesh bounds a set, the right way round."""
         return self.verdict == "solid"
 
     def to_dict(self) -> dict[str, Any]:
@@ -155,12 +155,12 @@ class _Edges:
 
     @property
     def are_closed(self) -> bool:
-        """Whether every edge has as many faces one way as the other."""
+        """True if every edge has as many faces one way as the other."""
         return len(self.open) == 0 and len(self.turned) == 0
 
     @property
     def are_manifold(self) -> bool:
-        """Whether every edge has two faces, one either way."""
+        """True if every edge has two faces, one either way."""
         return self.are_closed and len(self.crowded) == 0 and len(self.edge) > 0
 
     def faces_at(self, edges: IndexArray) -> tuple[int, ...]:

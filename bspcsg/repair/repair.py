@@ -26,7 +26,7 @@ _MISSING = 6
 
 @dataclass(frozen=True, eq=False)
 class Repair:
-    """What came of a repair.
+    """The result of a repair.
 
     Parameters
     ----------

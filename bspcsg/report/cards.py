@@ -45,7 +45,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Card:
-    """What a page shows of one case.
+    """One case as a page shows it.
 
     Parameters
     ----------

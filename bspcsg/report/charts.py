@@ -26,7 +26,7 @@ class Curve(NamedTuple):
 
 
 class Chart(NamedTuple):
-    """What the template draws: curves, labels of the axes, and the frame in pixels."""
+    """A chart as the template draws it: curves, labels of the axes, and the frame in pixels."""
 
     curves: list[Curve]
     across: list[Mark]

@@ -18,7 +18,7 @@ _OPERAND_OPACITY = 0.4
 
 
 class Stored(NamedTuple):
-    """What was kept of one case: operands in their order, the result, and what is too much in it.
+    """The meshes kept of one case: operands in their order, the result, and what is too much in it.
 
     `difference` is where the result and the oracle's are not the same; empty if they are.
     """

@@ -14,7 +14,7 @@ def from_arrays(vertices: FloatArray, faces: IndexArray) -> Solid:
 
 
 def _survives_snapping(vertices: FloatArray, faces: IndexArray) -> bool:
-    """Whether no triangle is so thin that moving its corners to the lattice could turn it over."""
+    """Say whether every triangle keeps its orientation when its corners move to the lattice."""
     a, b, c = (vertices[faces[:, corner]] for corner in range(3))
     sides = np.array(
         [

@@ -63,7 +63,7 @@ def surface_of_revolution(
 
 
 class RingLayout:
-    """Where the vertices of each profile point are, point by point.
+    """The places of the vertices of each profile point, point by point.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ _SHARPEST = 1e-6
 
 @dataclass(frozen=True)
 class Rise:
-    """How a figure changes from the lower to the upper end.
+    """The change of a figure from the lower to the upper end.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Rise:
 
     @property
     def is_upright(self) -> bool:
-        """Whether nothing changes."""
+        """True if nothing changes."""
         return self.twist == 0 and self.scale == (1.0, 1.0) and self.inset == 0
 
     def section(self, points: FloatArray, lean: FloatArray, level: int) -> FloatArray:

@@ -39,7 +39,7 @@ class Ledger:
 
     @property
     def solids(self) -> tuple[Measured, ...]:
-        """What counts, each in the place of the first solid it was made of."""
+        """The solids that count, each in the place of the first solid it was made of."""
         with self._lock:
             ranked = sorted(self._kept.values(), key=lambda entry: entry[0])
         return tuple(solid for _, solid in ranked)

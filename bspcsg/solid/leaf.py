@@ -79,7 +79,7 @@ class MeshLeaf:
 
     @property
     def sayings(self) -> "Sayings":
-        """What else is said of the mesh."""
+        """The attributes of the mesh."""
         return () if self._attributes is None else (self._attributes,)
 
     def arrays(self) -> tuple[FloatArray, IndexArray]:
@@ -132,7 +132,7 @@ class MeshLeaf:
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """How a tree was made: a program and the leaves it names, one operation deep."""
+    """The making of a tree: a program and the leaves it names, one operation deep."""
 
     program: list[ProgramLine]
     leaves: tuple["ExpressionLeaf", ...]
@@ -411,7 +411,7 @@ def transformed_arrays(
 
 
 def _mirror(factors: Factors) -> bool:
-    """Whether a transform turns right hands into left ones."""
+    """Say whether a transform turns right hands into left ones."""
     return math.prod(transform.determinant_sign(factor.matrix) for factor in factors) < 0
 
 

@@ -62,7 +62,7 @@ class Measured(ABC):
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What was noteworthy about the inputs and about making the mesh."""
+        """The notes about the inputs and about making the mesh."""
         found = self.tree.findings
         if self.is_bounded:
             self.to_mesh()
@@ -76,12 +76,12 @@ class Measured(ABC):
 
     @property
     def is_empty(self) -> bool:
-        """Whether no volume is inside."""
+        """True if no volume is inside."""
         return self.normalized().tree.is_empty
 
     @property
     def is_bounded(self) -> bool:
-        """Whether the solid fits into some box."""
+        """True if the solid fits into some box."""
         return self.tree.is_bounded
 
     @property

@@ -156,7 +156,7 @@ class Modelled:
         return pair
 
     def intersects(self, other: "Solid") -> bool:
-        """Whether the solids have a point in common; a common point of their surfaces will do.
+        """Say whether the solids have a point in common; a common point of their surfaces will do.
 
         Whether they have volume in common is the opposite of `isdisjoint`.
 

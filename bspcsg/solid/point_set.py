@@ -25,15 +25,15 @@ class PointSet(ABC):
     @property
     @abstractmethod
     def is_empty(self) -> bool:
-        """Whether nothing is inside."""
+        """True if nothing is inside."""
 
     @abstractmethod
     def equals(self, other: Any) -> bool:
-        """Whether both are the same set of points, exactly."""
+        """Say whether both are the same set of points, exactly."""
 
     @abstractmethod
     def _is_alike(self, other: object) -> bool:
-        """Whether the other is a set of the same space."""
+        """Say whether the other is a set of the same space."""
 
     @abstractmethod
     def _size_key(self) -> object:
@@ -44,7 +44,7 @@ class PointSet(ABC):
         """Difference."""
 
     def __eq__(self, other: object) -> bool:
-        """Whether both are the same set of points, exactly."""
+        """Say whether both are the same set of points, exactly."""
         if self is other:
             return True
         return self.equals(other) if self._is_alike(other) else NotImplemented
@@ -55,29 +55,29 @@ class PointSet(ABC):
 
     @uncounted
     def __le__(self, other: object) -> bool:
-        """Whether this set is part of the other, exactly."""
+        """Say whether this set is part of the other, exactly."""
         return (self - other).is_empty if self._is_alike(other) else NotImplemented
 
     @uncounted
     def __lt__(self, other: object) -> bool:
-        """Whether this set is part of the other and not equal to it, exactly."""
+        """Say whether this set is part of the other and not equal to it, exactly."""
         if not isinstance(other, PointSet) or not self._is_alike(other):
             return NotImplemented
         return (self - other).is_empty and not (other - self).is_empty
 
     def __ge__(self, other: object) -> bool:
-        """Whether the other set is part of this one, exactly."""
+        """Say whether the other set is part of this one, exactly."""
         alike = isinstance(other, PointSet) and self._is_alike(other)
         return other <= self if alike else NotImplemented
 
     def __gt__(self, other: object) -> bool:
-        """Whether the other set is part of this one and not equal to it, exactly."""
+        """Say whether the other set is part of this one and not equal to it, exactly."""
         alike = isinstance(other, PointSet) and self._is_alike(other)
         return other < self if alike else NotImplemented
 
     @uncounted
     def __contains__(self, point: object) -> bool:
-        """Whether a point is inside or on the boundary; it is snapped to the lattice.
+        """Say whether a point is inside or on the boundary; it is snapped to the lattice.
 
         For many points `classify` is faster, and tells the boundary apart.
         """
@@ -88,5 +88,5 @@ class PointSet(ABC):
 
     @uncounted
     def __bool__(self) -> bool:
-        """Whether the set is not empty; this evaluates it."""
+        """Say whether the set is not empty; this evaluates it."""
         return not self.is_empty

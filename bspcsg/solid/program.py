@@ -22,7 +22,7 @@ COMPLEMENT: list[ProgramLine] = [("leaf", [0]), ("not", [0])]
 
 @dataclass(frozen=True)
 class Algebra(Generic[_Value]):
-    """What the operators mean for one kind of value."""
+    """The meaning of the operators for one kind of value."""
 
     union: Callable[[Sequence[_Value]], _Value]
     intersection: Callable[[Sequence[_Value]], _Value]

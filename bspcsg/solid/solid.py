@@ -261,12 +261,12 @@ class Solid(Measured, Modelled, PointSet):
 
     @uncounted
     def equals(self, other: "Solid") -> bool:
-        """Whether both are the same set of points, exactly; so says ``==``, too."""
+        """Say whether both are the same set of points, exactly; so says ``==``, too."""
         return (self ^ other).is_empty
 
     @uncounted
     def isdisjoint(self, other: "Solid") -> bool:
-        """Whether the two have no volume in common; contact is allowed."""
+        """Say whether the two have no volume in common; contact is allowed."""
         return (self & other).is_empty
 
     def _is_alike(self, other: object) -> bool:
@@ -370,7 +370,7 @@ class Solid(Measured, Modelled, PointSet):
 
     @property
     def _sayings(self) -> Sayings:
-        """What is said of each source of the tree besides its shape."""
+        """The attributes of each source of the tree."""
         return self._leaf().sayings
 
     def to_mesh(self) -> Mesh:

@@ -26,7 +26,7 @@ _BATCH = 1000
 
 @dataclass(frozen=True)
 class SetComparison:
-    """How two solids differ.
+    """The difference of two solids.
 
     Parameters
     ----------

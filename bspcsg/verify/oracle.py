@@ -31,7 +31,7 @@ class OracleFailedError(Exception):
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What manifold3d makes of a program.
+    """The answer of manifold3d to a program.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ _TOLD = 4
 
 @dataclass(frozen=True)
 class Losses:
-    """How two meshes differ that should be the same.
+    """The difference of two meshes that should be the same.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Losses:
 
     @property
     def any(self) -> bool:
-        """Whether anything was lost."""
+        """True if anything was lost."""
         return bool(self.sentences())
 
     def sentences(self) -> list[str]:

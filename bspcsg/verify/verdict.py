@@ -9,7 +9,7 @@ from .discrepancy import SetDifference
 
 
 class Verdict(StrEnum):
-    """What came of a check."""
+    """The result of a check."""
 
     AGREE = "agree"
     OTHER_TOPOLOGY = "same set, other topology"
@@ -22,7 +22,7 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class Facts:
-    """What a mesh is like.
+    """The facts about a mesh.
 
     Parameters
     ----------
@@ -103,12 +103,12 @@ class CheckReport:
 
     @property
     def ok(self) -> bool:
-        """Whether nothing speaks against the result; a silent oracle does not."""
+        """True if nothing speaks against the result; a silent oracle does not."""
         return self.verdict not in (Verdict.DISAGREE, Verdict.SUBJECT_FAILED)
 
     @property
     def compared(self) -> Literal["nothing", "measures", "sets"]:
-        """What of the engines' answers was compared."""
+        """The parts of the engines' answers that were compared."""
         if self.set_difference is not None:
             return "sets"
         return "measures" if self.verdict is Verdict.AGREE else "nothing"

@@ -77,7 +77,7 @@ class Facets:
 
     @cached_property
     def is_closed(self) -> bool:
-        """Whether the facets bound a volume above zero: every edge has as many opposites."""
+        """True if the facets bound a volume above zero: every edge has as many opposites."""
         forth, back = self._keys
         if not len(forth) or not np.array_equal(np.sort(forth), np.sort(back)):
             return False

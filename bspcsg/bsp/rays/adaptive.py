@@ -64,7 +64,7 @@ class StabStats:
 
 
 class StabTree:
-    """What both kinds of trees have in common; make an `AdaptiveTree` or a `StaticTree`."""
+    """The common part of both kinds of trees; make an `AdaptiveTree` or a `StaticTree`."""
 
     _facets: RayTargets
     _tree: RayTree

@@ -18,7 +18,7 @@ MISS, INTERIOR, EDGE, VERTEX = -1, 0, 1, 2
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """Where rays meet facets, one row for each ray (or for each hit of `RayCaster.all_hits`).
+    """The hits of rays, one row for each ray (or for each hit of `RayCaster.all_hits`).
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class Hits:
 
     @property
     def hit(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """Whether each ray meets a facet, (n,) bool."""
+        """True where a ray meets a facet, (n,) bool."""
         return self.facet >= 0
 
     def __getitem__(self, rows: Any) -> "Hits":

@@ -87,7 +87,7 @@ class Intervals(ObjectTree):
         return ends.reshape(-1, 2)
 
     def _holds_lowest(self) -> bool:
-        """Whether the set reaches to minus infinity."""
+        """Say whether the set reaches to minus infinity."""
         nodes = self.nodes
         at = 0
         while at >= 0:

@@ -30,7 +30,7 @@ class Outline:
 
     @property
     def is_hole(self) -> bool:
-        """Whether the loop runs clockwise."""
+        """True if the loop runs clockwise."""
         before, at, after = self.points[-1], self.points[0], self.points[1]
         # The first corner is convex, so that its turn is the loop's.
         (ax, ay), (bx, by) = at - before, after - at

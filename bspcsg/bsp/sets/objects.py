@@ -241,7 +241,7 @@ class ObjectTree(TreeQueries, PointSet):
         return self._tree.moved(axes, shift, scale, pitch)
 
     def equals(self, other: "ObjectTree") -> bool:
-        """Whether both are the same set of points, exactly; so says ``==``, too.
+        """Say whether both are the same set of points, exactly; so says ``==``, too.
 
         Raises
         ------
@@ -263,7 +263,7 @@ class ObjectTree(TreeQueries, PointSet):
         return self.dimension, -outside.measure - 1 if outside.is_bounded else None
 
     def isdisjoint(self, other: "ObjectTree") -> bool:
-        """Whether the two have no interior point in common; contact is allowed."""
+        """Say whether the two have no interior point in common; contact is allowed."""
         return (self & other).is_empty
 
     # Division by a hyperplane

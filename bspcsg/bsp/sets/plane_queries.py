@@ -145,7 +145,7 @@ class PlaneQueries(ObjectTree):
 
     @property
     def _border(self) -> float:
-        """What no finite coordinate exceeds."""
+        """A bound that no finite coordinate exceeds."""
         return (2**53 - 2) * 10.0**self.pitch
 
     def convex_parts(self) -> list[FloatArray]:

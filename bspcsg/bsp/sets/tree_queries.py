@@ -130,15 +130,15 @@ class TreeQueries:
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing is inside."""
+        """True if nothing is inside."""
         return self._tree.is_empty
 
     @property
     def is_full(self) -> bool:
-        """Whether everything is inside."""
+        """True if everything is inside."""
         return self._tree.is_full
 
     @property
     def is_bounded(self) -> bool:
-        """Whether the set fits into some box."""
+        """True if the set fits into some box."""
         return self._tree.is_bounded

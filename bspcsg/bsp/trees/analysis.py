@@ -29,7 +29,7 @@ _SQUARE = 1 << 24
 
 @dataclass(frozen=True)
 class Growth:
-    """How the tree of one scene turned out.
+    """The size of the tree of one scene.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def ruled_grid(n: int) -> FloatArray:
 
 @dataclass(frozen=True)
 class CutFrequency:
-    """How often the line of one segment cut another one.
+    """The number of times that the line of one segment cut another one.
 
     Parameters
     ----------
@@ -321,7 +321,7 @@ def _whole(segments: Any) -> IndexArray:
 
 
 def _meet(segments: IndexArray, other: IndexArray) -> Any:
-    """Whether each of the segments has a point in common with another one; exact for 2^25."""
+    """Say whether each of the segments has a point in common with another one; exact for 2^25."""
     p, q = segments[:, 0], segments[:, 1]
     r, s = other
 

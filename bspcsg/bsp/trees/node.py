@@ -20,7 +20,7 @@ RegionShape = FloatArray | list[FloatArray]
 
 
 class Visitor(Protocol):
-    """What `PartitionTree.visit` calls."""
+    """The functions that `PartitionTree.visit` calls."""
 
     def node(self, node: "Node") -> None:
         """Take note of an inner node."""
@@ -59,7 +59,7 @@ class Node:
 
     @property
     def is_free(self) -> bool:
-        """Whether H(v) is an axis-parallel cut that no facet gave."""
+        """True if H(v) is an axis-parallel cut that no facet gave."""
         return bool(self.tree.arrays["cut"][self.index, 0] >= 0)
 
     @property

@@ -219,7 +219,7 @@ class PartitionTree(Ordered):
 
     @cached_property
     def margin(self) -> float:
-        """How far regions reach beyond the box of the facets, in model units."""
+        """The distance by which regions reach beyond the box of the facets, in model units."""
         if self._margin is not None:
             return self._margin
         corners, _ = self.core.lattice()
@@ -300,7 +300,7 @@ class PartitionTree(Ordered):
     # As a value
 
     def __eq__(self, other: object) -> bool:
-        """Whether both have the same facets, on the same lattice, and the same cuts."""
+        """Say whether both have the same facets, on the same lattice, and the same cuts."""
         if not isinstance(other, PartitionTree):
             return NotImplemented
         mine, theirs = self.core.lattice(), other.core.lattice()

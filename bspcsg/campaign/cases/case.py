@@ -23,7 +23,7 @@ _KEY_DIGITS = 16
 
 @dataclass(frozen=True)
 class Operand:
-    """What goes in.
+    """One mesh that goes in.
 
     Parameters
     ----------

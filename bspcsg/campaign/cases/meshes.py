@@ -12,7 +12,7 @@ from ...mesh.mesh import Mesh
 
 @dataclass(frozen=True, eq=False)
 class CaseMeshes:
-    """What a file holds.
+    """The meshes that a file holds.
 
     Parameters
     ----------

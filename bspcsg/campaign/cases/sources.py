@@ -37,7 +37,7 @@ class CaseInputs:
 
 @dataclass(frozen=True)
 class Draw:
-    """How pairs are placed.
+    """The rule by which pairs are placed.
 
     Parameters
     ----------

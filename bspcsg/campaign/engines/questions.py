@@ -16,7 +16,7 @@ class NoOpinionError(Exception):
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """What is asked of an engine.
+    """A question to an engine.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class Question:
 
 @dataclass(frozen=True, eq=False)
 class EngineAnswer:
-    """What an engine found.
+    """The answer of an engine.
 
     Parameters
     ----------

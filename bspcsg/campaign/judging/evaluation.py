@@ -48,7 +48,7 @@ _SHARE = 0.4
 
 @dataclass(frozen=True)
 class EvaluationSettings:
-    """How cases are evaluated.
+    """The settings with which cases are evaluated.
 
     Parameters
     ----------

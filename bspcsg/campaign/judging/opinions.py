@@ -40,7 +40,7 @@ _BESIDE = 1e-4
 
 
 def is_installed(engine: str) -> bool:
-    """Whether an engine can be asked."""
+    """Say whether an engine can be asked."""
     return bool(shutil.which(engine)) if engine == "openscad" else find_spec(engine) is not None
 
 

@@ -22,7 +22,7 @@ _VERSIONED = ("manifold3d", "pymeshlab", "trimesh", "numpy")
 
 @dataclass(frozen=True)
 class CampaignPlan:
-    """What is to be run, and how.
+    """The cases of a run, and how to run them.
 
     Parameters
     ----------

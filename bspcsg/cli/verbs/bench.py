@@ -294,7 +294,7 @@ def _write(
 
 
 def _is_wrong(record: dict[str, Any]) -> bool:
-    """Whether an answer differs from ours, or we gave none."""
+    """Say whether an answer differs from ours, or we gave none."""
     from ...bench.targets import OURS, result_of
 
     for row in record["cases"]:

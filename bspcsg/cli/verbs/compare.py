@@ -70,7 +70,7 @@ def compare(a: Path, b: Path, tol: float, samples: int, seed: int, **given: Any)
 
 
 def _within(found: "SetComparison", tolerance: float) -> bool:
-    """Whether the surfaces are no farther apart than that, as far as samples tell."""
+    """Say whether the surfaces are no farther apart than that, as far as samples tell."""
     return found.hausdorff is not None and max(found.hausdorff, found.difference.thickness) <= (
         tolerance
     )

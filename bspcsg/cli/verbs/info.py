@@ -51,7 +51,7 @@ def info(files: tuple[Path, ...], **given: Any) -> int:
 
 
 class _Entry:
-    """What is told about one file."""
+    """The facts that are told about one file."""
 
     def __init__(
         self,

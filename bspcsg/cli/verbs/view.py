@@ -176,7 +176,7 @@ def _temporary(name: str) -> Path:
 
 
 def _has_screen() -> bool:
-    """Whether a browser that is started here can be seen."""
+    """Say whether a browser that is started here can be seen."""
     if os.environ.get("SSH_CONNECTION") or os.environ.get("SSH_TTY"):
         return False
     if sys.platform in ("win32", "darwin"):

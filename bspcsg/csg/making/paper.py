@@ -35,7 +35,7 @@ _CLOSED = 0.1
 
 @dataclass(frozen=True)
 class _Page:
-    """Where user units lie on a page, in millimetres from its lower left corner."""
+    """The place of user units on a page, in millimetres from its lower left corner."""
 
     scale: float
     x: float
@@ -96,7 +96,7 @@ def _steps_of(shape: Any) -> Callable[[Any], int]:
 
 
 def _meets(corners: FloatArray) -> bool:
-    """Whether a subpath that nothing closes ends where it begins."""
+    """Say whether a subpath that nothing closes ends where it begins."""
     return len(corners) > 2 and bool(np.hypot(*(corners[0] - corners[-1])) <= _CLOSED)
 
 

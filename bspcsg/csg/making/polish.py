@@ -42,7 +42,7 @@ def polished_matrix(matrix: FloatArray) -> FloatArray:
 
 
 class Polish(NamedTuple):
-    """What polishing did besides making matrices rotations.
+    """The changes of polishing, besides matrices that became rotations.
 
     Parameters
     ----------

@@ -88,7 +88,7 @@ def _path(arguments: Arguments, run: Evaluation) -> Path:
 
 
 def _is_allowed(path: Path, run: Evaluation) -> bool:
-    """Whether a file lies where the script may read, wherever links lead."""
+    """Say whether a file lies where the script may read, wherever links lead."""
     try:
         target = path.resolve()
         return any(target.is_relative_to(one) for one in (run.folder.resolve(), *run.allowed))

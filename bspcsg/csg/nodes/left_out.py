@@ -21,7 +21,7 @@ _OPENSCADS = frozenset({"missing_file", "missing_argument", "not_finite"})
 
 
 def is_left_out(error: BspcsgError, *, lenient: bool) -> bool:
-    """Whether a node that fails so is left out with a warning.
+    """Say whether a node that fails so is left out with a warning.
 
     In a lenient evaluation each is whose own fault it is; defects of this package and missing parts
     of the installation never are.

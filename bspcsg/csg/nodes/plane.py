@@ -78,7 +78,7 @@ def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 
 
 def _is_combined(owner: Node) -> bool:
-    """Whether the figure in a node is made of others, so that OpenSCAD has cleaned it."""
+    """Say whether the figure in a node is made of others, so that OpenSCAD has cleaned it."""
     while True:
         children = [child for child in owner.children if not child.is_ignored]
         if len(children) != 1:

@@ -27,7 +27,7 @@ class CsgWarning(UserWarning):
 
 @dataclass
 class Evaluation:
-    """What nodes share while one tree is evaluated.
+    """The state that nodes share while one tree is evaluated.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ NodeMaker: TypeAlias = Callable[[Node, list[Geometry], Evaluation], Geometry]
 
 @dataclass(frozen=True)
 class Recipe:
-    """How a node is evaluated.
+    """The evaluation of one kind of node.
 
     Parameters
     ----------

@@ -46,7 +46,7 @@ class Arguments:
         return error_at(self._script, self.node.place, message, code)
 
     def __contains__(self, name: str) -> bool:
-        """Whether the argument is there and not undef."""
+        """Say whether the argument is there and not undef."""
         return self._values.get(name) is not None
 
     def value(self, name: str) -> Value:
@@ -144,7 +144,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _is_finite(value: Any) -> bool:
-    """Whether no number of a value, however deep in it, is infinite or none at all."""
+    """Say whether no number of a value, however deep in it, is infinite or none at all."""
     waiting = [value]
     while waiting:
         one = waiting.pop()

@@ -32,7 +32,7 @@ class Intermediate:
 
     @property
     def name(self) -> str:
-        """What errors call the `.csg` text."""
+        """The name of the `.csg` text in errors."""
         return f"{self.script}, as openscad's .csg"
 
     def explained(self, error: BspcsgError) -> BspcsgError:

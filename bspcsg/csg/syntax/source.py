@@ -10,7 +10,7 @@ from .tree import Place
 
 @dataclass(frozen=True)
 class Script:
-    """What a parser reads.
+    """A text that a parser reads.
 
     Parameters
     ----------

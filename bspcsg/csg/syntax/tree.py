@@ -12,7 +12,7 @@ Value: TypeAlias = "float | str | bool | tuple[Value, ...] | None"
 
 
 class Place(NamedTuple):
-    """Where something stands in a script, both numbers from 1; (0, 0) if nowhere."""
+    """A place in a script, both numbers from 1; (0, 0) if nowhere."""
 
     line: int
     column: int
@@ -61,13 +61,13 @@ class Node:
 
     @property
     def is_ignored(self) -> bool:
-        """Whether a modifier takes the node out of the model."""
+        """True if a modifier takes the node out of the model."""
         return "%" in self.modifiers or "*" in self.modifiers
 
 
 @dataclass(frozen=True)
 class CsgTree:
-    """What a script holds: its top nodes, which are united.
+    """The content of a script: its top nodes, which are united.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ class _Reading:
         return found[0] if len(found) == 1 else SceneNode("", _IDENTITY, children=found)
 
     def _only_turns(self, told: dict[str, Any]) -> bool:
-        """Whether a node is what this package puts around a tree: metres, y upwards."""
+        """Say whether a node is what this package puts around a tree: metres, y upwards."""
         is_bare = set(told) == {"matrix", "children"} and len(told["children"]) == 1
         return is_bare and bool((local_matrix(told) == TO_METRES).all())
 

@@ -24,7 +24,7 @@ _FACE_LISTS = ("vertex_indices", "vertex_index")
 
 @dataclass
 class _Found:
-    """What the elements read so far hold."""
+    """The content of the elements read so far."""
 
     vertices: FloatArray | None = None
     polygons: IndexPolygons | None = None

@@ -48,7 +48,7 @@ class Element:
 
     @property
     def has_lists(self) -> bool:
-        """Whether records may differ in size."""
+        """True if records may differ in size."""
         return any(prop.count is not None for prop in self.properties)
 
     def index(self, *names: str) -> int | None:
@@ -59,7 +59,7 @@ class Element:
 
 @dataclass(frozen=True)
 class Header:
-    """What the header says, and where the data begin.
+    """The content of the header, and where the data begin.
 
     Parameters
     ----------

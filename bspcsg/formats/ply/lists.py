@@ -133,7 +133,7 @@ def _cut_off(source: Source, element: Element, number: int, length: int) -> Form
 
 
 class _Step:
-    """How one property of a record is read."""
+    """The reading of one property of a record."""
 
     def __init__(self, prop: Property, order: Order) -> None:
         self.size = prop.item.itemsize

@@ -112,7 +112,7 @@ class Package:
         return targets[0] if targets else "3D/3dmodel.model"
 
     def is_empty_set(self, root: str) -> bool:
-        """Whether the model is what this package writes for the empty set."""
+        """Say whether the model is what this package writes for the empty set."""
         entry = self._entries.get(root.lower())
         if entry is None or entry.file_size != len(NOTHING):
             return False

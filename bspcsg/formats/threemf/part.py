@@ -76,7 +76,7 @@ class Object:
 
 @dataclass(eq=False)
 class ModelPart:
-    """What one model part holds."""
+    """The content of one model part."""
 
     unit: str = "millimeter"
     objects: dict[str, Object] = field(default_factory=dict)

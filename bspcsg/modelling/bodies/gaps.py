@@ -47,7 +47,7 @@ def closest_points(solid: Solid, other: Solid) -> tuple[FloatArray, FloatArray]:
 
 @uncounted
 def intersects(solid: Solid, other: Solid) -> bool:
-    """Whether two solids have a point in common (see `Solid.intersects`)."""
+    """Say whether two solids have a point in common (see `Solid.intersects`)."""
     if solid.is_empty or other.is_empty:
         return False
     if _apart(solid, other):
@@ -57,7 +57,7 @@ def intersects(solid: Solid, other: Solid) -> bool:
 
 
 def _apart(solid: Solid, other: Solid) -> bool:
-    """Whether the boxes around two bounded solids have no point in common."""
+    """Say whether the boxes around two bounded solids have no point in common."""
     (low, high), (low_b, high_b) = (_box(one) for one in (solid, other))
     return bool((low > high_b).any() or (low_b > high).any())
 

@@ -116,7 +116,7 @@ def convex_parts(solid: Solid) -> ConvexParts:
 
 
 def is_convex(solid: Solid) -> bool:
-    """Whether the hull is no larger, but for the rounding of its corners."""
+    """Say whether the hull is no larger, but for the rounding of its corners."""
     mesh = solid.normalized().to_mesh()
     return hull_of(mesh.vertices, solid.pitch).volume <= mesh.volume * (1 + 1e-9)
 

@@ -80,7 +80,7 @@ class _Blend:
 
     @cached_property
     def widths(self) -> FloatArray:
-        """How far from each edge the new surface meets its faces, (e,), 0 where it is not asked."""
+        """The distance of the new surface from each edge on its faces, (e,), 0 where not asked."""
         own = sorted(self.chosen)
         widths = np.zeros(len(self.skeleton.ends))
         widths[own] = self.profile.size
@@ -167,7 +167,7 @@ class _Blend:
                 raise self._refused(vertex, "more than three round edges would meet")
 
     def _is_cone(self, vertex: int) -> bool:
-        """Whether all edges at a vertex run behind all planes there, or all before them."""
+        """Say whether all edges at a vertex run behind all planes there, or all before them."""
         normals = self.skeleton.normals[sorted(self.skeleton.faces_at(vertex))]
         edges = self.skeleton.edges_at(vertex)
         away = np.where(self.skeleton.ends[edges, 0] == vertex, 1, -1)[:, None]
@@ -180,7 +180,7 @@ class _Blend:
         return invalid_parameter(f"At ({point}) {reason}.", [vertex])
 
     def is_round_corner(self, vertex: int) -> bool:
-        """Whether three edges meet whose fillets leave a ball between them."""
+        """Say whether three edges meet whose fillets leave a ball between them."""
         edges = self.skeleton.edges_at(vertex)
         is_full = len(edges) == 3 and all(edge in self.chosen for edge in edges)
         return self.profile.is_round and is_full

@@ -37,7 +37,7 @@ class EdgeSelection:
 
     @property
     def ends(self) -> FloatArray:
-        """Where each edge begins and ends, (n, 2, 3), in model units."""
+        """The beginning and end of each edge, (n, 2, 3), in model units."""
         ends: FloatArray = self._skeleton.vertices[self._skeleton.ends[self._numbers]]
         return ends
 
@@ -71,7 +71,7 @@ class EdgeSelection:
 
     @property
     def is_convex(self) -> BoolArray:
-        """Whether the angle is below 180 degrees, (n,)."""
+        """True where the angle is below 180 degrees, (n,)."""
         convex: BoolArray = self._skeleton.is_convex[self._numbers]
         return convex
 

@@ -36,7 +36,7 @@ class Section:
 
     @property
     def is_tip(self) -> bool:
-        """Whether this is one point."""
+        """True if this is one point."""
         return len(self.loops[0]) == 1
 
     def cap(self) -> IndexArray:

@@ -61,7 +61,7 @@ class Skeleton:
 
     @cached_property
     def is_convex(self) -> BoolArray:
-        """Whether the material is on the inside of the bend, (e,)."""
+        """True where the material is on the inside of the bend, (e,)."""
         bend = np.einsum("ij,ij->i", self.inward[:, 0], self.normals[self.sides[:, 1]])
         return np.asarray(bend < 0)
 
@@ -137,7 +137,7 @@ def _are_flat(
     segments: IndexArray,
     owners: IndexArray,
 ) -> BoolArray:
-    """Whether the smaller triangle at each segment lies in the plane of the larger one."""
+    """Say whether the smaller triangle at each segment lies in the plane of the larger one."""
     size = np.linalg.norm(areas, axis=1)
     first_is_large = size[owners[:, 0]] >= size[owners[:, 1]]
     large = np.where(first_is_large, owners[:, 0], owners[:, 1])

@@ -28,7 +28,7 @@ _UPRIGHT = 1e-9
 
 @dataclass(frozen=True)
 class Spine:
-    """Where the corners of a profile go along a path.
+    """The way of the corners of a profile along a path.
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ class Layer:
 
     @property
     def is_closed(self) -> bool:
-        """Whether every directed edge has as many opposite ones, so that a section is filled."""
+        """True if every directed edge has as many opposite ones, so that a section is filled."""
         start, end = self.faces.ravel(), np.roll(self.faces, -1, axis=1).ravel()
         size = max(len(self.vertices), 1)
         low, high = np.minimum(start, end), np.maximum(start, end)

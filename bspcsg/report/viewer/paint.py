@@ -95,7 +95,7 @@ class Scale:
 
     @property
     def is_capped(self) -> bool:
-        """Whether there are larger values than `high`."""
+        """True if there are larger values than `high`."""
         return bool(len(self._known)) and float(self._known.max()) > self.high
 
     @property

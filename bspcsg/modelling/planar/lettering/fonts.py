@@ -107,7 +107,7 @@ def opened(file: FontFile) -> uharfbuzz.Font:
 
 
 def wants_whole_pixels(file: FontFile) -> bool:
-    """Whether a font says that its em is to be a whole number of pixels."""
+    """Say whether a font says that its em is to be a whole number of pixels."""
     head = opened(file).face.reference_table("head").data or b""
     # The flags of the table "head", of which the fourth one says so.
     return len(head) >= _HEAD_FLAGS.stop and bool(head[_HEAD_FLAGS][1] & 8)

@@ -13,7 +13,7 @@ _Stroke: TypeAlias = list[tuple[float, float]]
 
 
 class Writing(NamedTuple):
-    """How text runs, as HarfBuzz wants to know it; what is empty follows from the text.
+    """The direction, script and language of text; what is empty follows from the text.
 
     Parameters
     ----------

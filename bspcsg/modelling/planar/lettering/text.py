@@ -26,7 +26,7 @@ EM = 100 / 72
 
 @dataclass(frozen=True)
 class Lettering:
-    """How a line of text looks, but for its font.
+    """The look of a line of text, but for its font.
 
     Parameters
     ----------
