@@ -74,6 +74,14 @@ impl ErrorKind {
 }
 
 /// An error: what, where, and what to do about it.
+///
+/// # Example
+/// ```
+/// use bspcsg::error::{Error, ErrorKind};
+///
+/// let error = Error::at(ErrorKind::NotClosed, vec![3], "face 3 has an open edge");
+/// assert_eq!((error.kind().code(), error.place()), ("not_closed", &[3][..]));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error {
     kind: ErrorKind,

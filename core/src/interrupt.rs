@@ -44,6 +44,21 @@ thread_local! {
 }
 
 /// A call that can be stopped while it runs.
+///
+/// # Example
+/// ```
+/// use bspcsg::error::ErrorKind;
+/// use bspcsg::interrupt::{spend, Call};
+///
+/// let call = Call::new();
+/// call.stop();
+/// // Work that polls ends at its next look.
+/// let ended = call.run::<()>(|| loop {
+///     spend(1024);
+/// });
+/// let error = ended.expect_err("it was stopped");
+/// assert_eq!(error.kind(), ErrorKind::Cancelled);
+/// ```
 #[derive(Debug)]
 pub struct Call {
     number: u64,

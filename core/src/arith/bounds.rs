@@ -7,6 +7,16 @@
 //!
 //! Notation: `p` bounds a lattice coordinate. A corner of a cell lies half a step between
 //! lattice points; it enters doubled, as the homogeneous point (2x, 2y, 2z, 2).
+//!
+//! # Example
+//! ```
+//! use bspcsg::arith::bounds::{limbs_for, offset, plane_at_point, COORDINATE_BITS};
+//!
+//! // The offset of a plane through lattice points is a determinant of three coordinates.
+//! assert_eq!(offset(COORDINATE_BITS), 3 * 53 + 2);
+//! // A side test takes a point where three planes meet against a fourth plane.
+//! assert_eq!(limbs_for(plane_at_point(COORDINATE_BITS)), 8);
+//! ```
 
 /// Lattice coordinates are below 2^`COORDINATE_BITS` in magnitude.
 ///

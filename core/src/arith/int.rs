@@ -14,6 +14,17 @@ use super::round;
 /// in every build. Products need no check where the result has the limbs of both factors.
 ///
 /// Values are meant to stay within the symmetric range |x| < 2^(64 `N` − 1).
+///
+/// # Example
+/// ```
+/// use bspcsg::arith::Int;
+///
+/// // A product of two integers of two limbs fits four.
+/// let big = Int::<2>::from_i128(1 << 100);
+/// let square: Int<4> = big.mul(&big);
+/// assert_eq!(square.bit_length(), 201);
+/// assert_eq!((square - square).signum(), 0);
+/// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Int<const N: usize> {
     limbs: [u64; N],

@@ -26,6 +26,14 @@ pub fn mantissa_and_exponent(x: f64) -> (i64, i32) {
 ///
 /// Subnormal results are rounded once, like all others; ratios beyond the largest double
 /// give an infinity. A zero numerator gives +0.
+///
+/// # Example
+/// ```
+/// use bspcsg::arith::{ratio_to_f64, Int};
+///
+/// let third = ratio_to_f64(&Int::<1>::from_i64(1), &Int::<1>::from_i64(3));
+/// assert_eq!(third, 1.0 / 3.0);
+/// ```
 #[inline]
 pub fn ratio_to_f64<const A: usize, const B: usize>(
     numerator: &Int<A>,

@@ -11,6 +11,17 @@ const PARTS: usize = 64;
 ///
 /// # Source
 /// Shewchuk 1997, "Adaptive precision floating-point arithmetic", § 2.4, GROW-EXPANSION.
+///
+/// # Example
+/// ```
+/// use bspcsg::arith::Sum;
+///
+/// let mut sum = Sum::default();
+/// for number in [1e100, 1.0, -1e100] {
+///     sum.add(number);
+/// }
+/// assert_eq!(sum.rounded(), 1.0);
+/// ```
 #[derive(Debug, Default)]
 pub struct Sum {
     parts: SmallVec<[f64; PARTS]>,

@@ -7,6 +7,18 @@ use crate::arith::bounds::COORDINATE_BITS;
 ///
 /// Its faces lie half a step outside these points, so that no lattice point, edge or face ever
 /// lies in one.
+///
+/// # Example
+/// ```
+/// use bspcsg::geometry::cell::Cell;
+///
+/// let cell = Cell::around(&[0; 3], &[5, 3, 3]);
+/// assert_eq!((*cell.low(), cell.high()), ([0; 3], [7; 3]));
+/// // The longest axis is halved, between two lattice points.
+/// let cut = cell.cut().expect("more than one point");
+/// assert_eq!((cut.axis, cut.at), (0, 4));
+/// assert_eq!(cell.half(cut, true).low(), &[4, 0, 0]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cell {
     low: Lattice,

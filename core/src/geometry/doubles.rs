@@ -80,6 +80,16 @@ impl<'a> Facing<'a> {
 }
 
 /// The side of the plane through a triangle's corners on which a point lies; exact.
+///
+/// # Example
+/// ```
+/// use bspcsg::geometry::doubles::side;
+///
+/// let floor = [[0.0, 0.0, 0.1], [1.0, 0.0, 0.1], [0.0, 1.0, 0.1]];
+/// // The sum of these doubles is a little more than the double 0.3.
+/// assert_eq!(side(&floor, &[0.2, 0.2, 0.1 + 0.2 - 0.2]), 1);
+/// assert_eq!(side(&floor, &[0.2, 0.2, 0.1]), 0);
+/// ```
 #[inline]
 pub fn side(triangle: &Triangle, d: &Point) -> i32 {
     Facing::of(triangle).side(d)

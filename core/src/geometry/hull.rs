@@ -31,6 +31,16 @@ struct Face {
 ///
 /// All corners are corners of the hull as a set: none lies within an edge or a side of it. Empty if
 /// all points lie in one plane.
+///
+/// # Example
+/// ```
+/// use bspcsg::geometry::hull::hull;
+///
+/// let mut points = vec![[0.0; 3], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0]];
+/// points.push([1.0; 3]);
+/// // The last point lies inside: the hull is a tetrahedron.
+/// assert_eq!(hull(&points).len(), 4);
+/// ```
 #[must_use]
 pub fn hull(points: &[Point]) -> Vec<[usize; 3]> {
     let faces = Polytope::around(points);

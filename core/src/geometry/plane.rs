@@ -14,6 +14,17 @@ pub type Lattice = [i64; 3];
 ///
 /// # Bits
 /// Supporting planes of lattice triangles: |n| ≤ 2^108, |d| ≤ 2^164 (`arith::bounds`).
+///
+/// # Example
+/// ```
+/// use bspcsg::geometry::plane::Plane;
+///
+/// // Counterclockwise from above: the minus side, the inside, is below.
+/// let floor = Plane::through(&[0, 0, 5], &[1, 0, 5], &[0, 1, 5]).expect("not on one line");
+/// assert_eq!(floor.normal(), &[0, 0, 1]);
+/// assert_eq!(floor.side_of_lattice(&[7, 7, 4]), -1);
+/// assert_eq!(floor.side_of_lattice(&[7, 7, 5]), 0);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Plane {
     n: [i128; 3],

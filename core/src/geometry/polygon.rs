@@ -120,6 +120,24 @@ pub fn straddle(sides: &[i32]) -> (bool, bool) {
 }
 
 /// A convex polygon of positive area, counterclockwise as seen from its support's plus side.
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::geometry::plane::Plane;
+/// use bspcsg::geometry::polygon::{Polygon, PolygonSplit};
+///
+/// let corners = [[0, 0, 0], [4, 0, 0], [0, 4, 0]];
+/// let support = Plane::through(&corners[0], &corners[1], &corners[2]).expect("a plane");
+/// let triangle = Polygon::triangle(&corners, Arc::new(support));
+/// // The plane x = 1; twice a coordinate, so that cuts between lattice points have numbers, too.
+/// let cut = Arc::new(Plane::axis_cut(0, 2));
+/// let PolygonSplit::Both(minus, plus) = triangle.split(&cut) else {
+///     panic!("the cut crosses the triangle");
+/// };
+/// assert_eq!((minus.corners().len(), plus.corners().len()), (4, 3));
+/// ```
 #[derive(Clone, Debug)]
 pub struct Polygon {
     support: Arc<Plane>,

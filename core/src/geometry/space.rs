@@ -3,6 +3,21 @@
 //! Everything in `tree::partition` and `merge` is written against [`Space`] and nothing else, so
 //! that a law tested exhaustively on the line holds for the plane and for space as far as the tree
 //! goes. Invariant: a fragment never is empty and never is lower-dimensional than its hyperplane.
+//!
+//! # Example
+//! ```
+//! use bspcsg::geometry::dim1::{Dim1, Direction, Point1};
+//! use bspcsg::geometry::dim2::{Dim2, Line2, Segment2};
+//! use bspcsg::geometry::side::{Side, Split};
+//! use bspcsg::geometry::space::Space;
+//!
+//! // On the line a hyperplane is a point, with the inside on one side of it.
+//! assert_eq!(Dim1::side(&Point1::new(3, Direction::Below), &2), Side::Minus);
+//! // In the plane it is a line, and cuts segments.
+//! let segment = Segment2::between([0, 0], [4, 0]).expect("two points");
+//! let line = Line2::through([1, 0], [1, 1]).expect("two points");
+//! assert!(matches!(Dim2::split(&segment, &line), Split::Both { .. }));
+//! ```
 
 use std::fmt::Debug;
 use std::hash::Hash;

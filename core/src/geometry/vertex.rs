@@ -17,6 +17,26 @@ use crate::arith::Int;
 ///
 /// # Bits
 /// x, y, z below 2^379, w below 2^326 (`arith::bounds`).
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::geometry::plane::Plane;
+/// use bspcsg::geometry::vertex::Vertex;
+///
+/// // Three planes meet in (1/2, 0, 0), which is no lattice point.
+/// let [slanted, front, floor] = [
+///     Plane::through(&[0, 0, 1], &[1, 0, -1], &[0, 1, 1]),
+///     Plane::through(&[0, 0, 0], &[1, 0, 0], &[0, 0, 1]),
+///     Plane::through(&[0, 0, 0], &[1, 0, 0], &[0, 1, 0]),
+/// ]
+/// .map(|plane| Arc::new(plane.expect("not on one line")));
+/// let corner = Vertex::meet(&slanted, &front, &floor).expect("one point");
+/// assert_eq!(corner.as_lattice(), None);
+/// assert_eq!(corner.approx(), [0.5, 0.0, 0.0]);
+/// assert_eq!(corner.side_of(&floor), 0);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Vertex {
     place: Place,

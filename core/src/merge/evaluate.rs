@@ -24,6 +24,31 @@ use crate::tree::table::Table;
 ///
 /// # Source
 /// Naylor, Amanatides, Thibault 1990; `docs/design/descent.md`.
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::merge::evaluate::evaluate;
+/// use bspcsg::merge::expression::{Expression, Term};
+/// use bspcsg::mesh::import::import;
+/// use bspcsg::query::measure::volume;
+/// use bspcsg::tree::solid::Solid;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let moved = vertices.map(|[x, y, z]| [x + 0.5, y, z]);
+/// let of_mesh = |vertices| -> Result<Solid, bspcsg::error::Error> {
+///     Ok(Solid::of_source(Arc::new(import(vertices, &faces, None)?), false))
+/// };
+/// let solids = [of_mesh(&vertices)?, of_mesh(&moved)?];
+/// let both = vec![Term::Operand(0), Term::Operand(1), Term::And(vec![0, 1])];
+/// let (common, _) = evaluate(&Expression::new(both)?, &solids)?;
+/// // A tetrahedron of half the size, exactly.
+/// let size = volume(&common)?;
+/// assert_eq!(size.numerator * 48, size.denominator);
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Counters)> {
     let pitch = common_pitch(expression, solids)?;
     let mut operands = solids.to_vec();

@@ -41,6 +41,21 @@ impl Term {
 }
 
 /// An expression as topologically ordered lines; the last one is its value.
+///
+/// # Example
+/// ```
+/// use bspcsg::merge::expression::{Expression, Residual, Term};
+///
+/// // a − b: operands 0 and 1, the complement of line 1, the intersection of lines 0 and 2.
+/// let [a, b] = [Term::Operand(0), Term::Operand(1)];
+/// let difference = Expression::new(vec![a, b, Term::Not(1), Term::And(vec![0, 2])])?;
+/// // Inside b nothing is left, and outside of b it is a.
+/// let inside = difference.residual(|operand| (operand == 1).then_some(true));
+/// assert!(matches!(inside, Residual::Constant(false)));
+/// let outside = difference.residual(|operand| (operand == 1).then_some(false));
+/// assert!(matches!(outside, Residual::Literal(0, false)));
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Expression {
     terms: Vec<Term>,

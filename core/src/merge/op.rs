@@ -4,6 +4,16 @@ use crate::geometry::space::Space;
 use crate::tree::partition::{Label, PartitionTree};
 
 /// A regularized set operation of two operands.
+///
+/// # Example
+/// ```
+/// use bspcsg::merge::{Outcome, SetOp};
+/// use bspcsg::tree::partition::Label;
+///
+/// assert_eq!(SetOp::Difference.labels(Label::In, Label::In), Label::Out);
+/// // A leaf decides: nothing minus anything is nothing.
+/// assert_eq!(SetOp::Difference.with_first(Label::Out), Outcome::Leaf(Label::Out));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SetOp {
     /// In either.

@@ -8,6 +8,17 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
 
 /// The lattice step 10^exponent, in model units.
+///
+/// # Example
+/// ```
+/// use bspcsg::mesh::grid::Pitch;
+///
+/// // Steps of a thousandth: 0.3 is 300 of them, though no double is 0.3.
+/// let pitch = Pitch::new(-3)?;
+/// assert_eq!(pitch.snap(0.1 + 0.2)?, 300);
+/// assert_eq!(pitch.coordinate(300), 0.3);
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pitch(i8);
 

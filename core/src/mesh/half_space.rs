@@ -15,6 +15,18 @@ use crate::geometry::plane::Plane;
 ///
 /// # Errors
 /// As [`bounding_plane`].
+///
+/// # Example
+/// ```
+/// use bspcsg::arith::Int;
+/// use bspcsg::mesh::grid::Pitch;
+/// use bspcsg::mesh::half_space::half_space;
+///
+/// // All points with z ≤ 7 steps.
+/// let below = half_space([0, 0, 1], &Int::from_i64(7), Pitch::DEFAULT, None)?;
+/// assert_eq!(below.plane(0).side_of_lattice(&[0, 0, 8]), 1);
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 pub fn half_space(
     normal: [i128; 3],
     offset: &Int<3>,

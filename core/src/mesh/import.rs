@@ -23,6 +23,19 @@ use crate::interrupt::poll;
 ///
 /// # Errors
 /// `NonFinite`, `IndexOutOfRange`, `TooLarge`, `EmptyMesh`, and `NotClosed` with the faces at open edges.
+///
+/// # Example
+/// ```
+/// use bspcsg::mesh::import::import;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let source = import(&vertices, &faces, None)?;
+/// assert!(source.closes());
+/// let open = import(&vertices, &faces[1..], None).expect_err("a face is missing");
+/// assert_eq!(open.kind().code(), "not_closed");
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -> Result<Source> {
     let mut findings = Vec::new();
     let faces = check_indices(faces, vertices.len())?;

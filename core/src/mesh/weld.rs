@@ -16,6 +16,14 @@ pub struct Welded {
 /// Finds the points whose coordinates are equal as numbers.
 ///
 /// Linear in the points. There must be fewer than 2^32.
+///
+/// # Example
+/// ```
+/// use bspcsg::mesh::weld::welded;
+///
+/// let [a, b] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
+/// assert_eq!(welded(&[a, b, a]).same, [0, 1, 0]);
+/// ```
 pub fn welded(points: &[[f64; 3]]) -> Welded {
     let mut numbers: FxHashMap<[u64; 3], u32> = FxHashMap::default();
     let mut different = Vec::new();

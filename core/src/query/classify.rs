@@ -30,6 +30,25 @@ const LEAF: usize = 20;
 ///
 /// # Errors
 /// None.
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::mesh::grid::Pitch;
+/// use bspcsg::mesh::import::import;
+/// use bspcsg::query::classify::{classify, Location};
+/// use bspcsg::tree::solid::Solid;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let pitch = Pitch::new(-1)?;
+/// let source = import(&vertices, &faces, Some(pitch))?;
+/// let solid = Solid::of_source(Arc::new(source), false);
+/// let found = classify(&solid, &[[1, 1, 1], [0, 0, 5], [9, 9, 9]])?;
+/// assert_eq!(found, [Location::Inside, Location::Boundary, Location::Outside]);
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 pub fn classify(solid: &Solid, points: &[Lattice]) -> Result<Vec<Location>> {
     let sources = Sources::new(solid.sources().clone());
     let mut found = vec![Location::Outside; points.len()];

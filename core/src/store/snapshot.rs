@@ -28,6 +28,25 @@ use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
 use crate::tree::solid::Solid;
 
 /// An exact boundary without its tree.
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::mesh::import::import;
+/// use bspcsg::store::snapshot::Snapshot;
+/// use bspcsg::tree::solid::Solid;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let solid = Solid::of_source(Arc::new(import(&vertices, &faces, None)?), false);
+/// let mut bytes = Snapshot::of(&solid).to_bytes()?;
+/// assert_eq!(Snapshot::solid_from_bytes(&bytes)?.pitch(), solid.pitch());
+/// // Damage is noticed.
+/// bytes[40] ^= 1;
+/// assert!(Snapshot::solid_from_bytes(&bytes).is_err());
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Snapshot {
     pitch: i64,

@@ -17,6 +17,25 @@ use crate::mesh::source::{Shape, Source};
 const SPARE: usize = 64;
 
 /// A set of points as a partition tree. Immutable; clones share everything.
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::mesh::import::import;
+/// use bspcsg::tree::node::Node;
+/// use bspcsg::tree::solid::Solid;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let solid = Solid::of_source(Arc::new(import(&vertices, &faces, None)?), false);
+/// // Nothing is divided yet: one leaf lists all faces.
+/// let Node::Deferred(leaf) = &*solid.root().node else {
+///     panic!("a mesh is one deferred leaf");
+/// };
+/// assert_eq!(leaf.len(), 4);
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Solid {
     root: Branch,

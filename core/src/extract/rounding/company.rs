@@ -110,7 +110,10 @@ impl Grid {
     }
 
     /// The stretches of marks that a block covers.
-    fn columns(&self, Block(low, high): Block) -> impl Iterator<Item = std::ops::Range<usize>> {
+    fn columns(
+        &self,
+        Block(low, high): Block,
+    ) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
         let [low, high] = [low, high].map(|c| c.map(usize::from));
         let size = self.size;
         (low[0]..=high[0]).flat_map(move |x| {

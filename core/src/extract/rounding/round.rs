@@ -19,6 +19,23 @@ use crate::tree::solid::Solid;
 ///
 /// # Errors
 /// `Unbounded`.
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::extract::rounding::round::mesh;
+/// use bspcsg::mesh::import::import;
+/// use bspcsg::tree::solid::Solid;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let solid = Solid::of_source(Arc::new(import(&vertices, &faces, None)?), false);
+/// // Nothing was cut, so it comes out as it came in.
+/// let mesh = mesh(&solid)?;
+/// assert_eq!((mesh.vertices.len(), mesh.triangles.len()), (4, 4));
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 pub fn mesh(solid: &Solid) -> Result<Mesh> {
     mesh_of_patches(solid, &Patches::default())
 }

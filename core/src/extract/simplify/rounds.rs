@@ -32,6 +32,18 @@ pub struct Simplified {
 }
 
 /// Takes short edges and slivers out of a mesh that is closed by index with one fan at each vertex.
+///
+/// # Example
+/// ```
+/// use bspcsg::extract::simplify::rounds::simplify;
+///
+/// // A tetrahedron, one of whose edges a vertex divides a hair beside its end.
+/// let hair = [0.001, 0.0, 0.0];
+/// let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], hair];
+/// let faces = vec![[0, 2, 4], [4, 2, 1], [0, 4, 3], [4, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let simple = simplify(vertices, faces, 0.01);
+/// assert_eq!(simple.triangles.len(), 4);
+/// ```
 pub fn simplify(vertices: Vec<Point>, triangles: Vec<[u32; 3]>, tolerance: f64) -> Simplified {
     let mut simplifying = Simplifying::new(vertices, triangles, tolerance);
     for _ in 0..ROUNDS {

@@ -84,7 +84,7 @@ fn is_ear<P: Planar>(points: &P, corners: &[u32], turns: &[i32], k: usize) -> bo
     let blunt = corners
         .iter()
         .zip(turns)
-        .filter(|(v, &turn)| turn <= 0 && !ear.contains(v));
+        .filter(|(v, turn)| **turn <= 0 && !ear.contains(v));
     !blunt.into_iter().any(|(&v, _)| is_in(points, ear, v))
 }
 

@@ -24,6 +24,36 @@ use std::fmt;
 /// Exact questions about the points of one plane, asked by id.
 ///
 /// Different ids must stand for different points, and the answers must agree with one placement of them.
+///
+/// # Example
+/// ```
+/// use std::cmp::Ordering;
+///
+/// use bspcsg::extract::triangulate::{triangulate, Planar};
+///
+/// struct Points(Vec<[i32; 2]>);
+///
+/// impl Planar for Points {
+///     fn compare(&self, a: u32, b: u32) -> Ordering {
+///         self.0[a as usize].cmp(&self.0[b as usize])
+///     }
+///
+///     fn orient(&self, a: u32, b: u32, c: u32) -> i32 {
+///         let [a, b, c] = [a, b, c].map(|p| self.0[p as usize]);
+///         let left = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+///         left.signum()
+///     }
+///
+///     fn approx(&self, a: u32) -> [f64; 2] {
+///         self.0[a as usize].map(f64::from)
+///     }
+/// }
+///
+/// let square = Points(vec![[0, 0], [1, 0], [1, 1], [0, 1]]);
+/// let triangles = triangulate(&square, &[(0, 1), (1, 2), (2, 3), (3, 0)])?;
+/// assert_eq!(triangles.len(), 2);
+/// # Ok::<(), bspcsg::extract::triangulate::Error>(())
+/// ```
 pub trait Planar {
     /// Lexicographic order of two points by (x, y).
     fn compare(&self, a: u32, b: u32) -> Ordering;

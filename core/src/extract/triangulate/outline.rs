@@ -35,7 +35,7 @@ impl Outline {
         let open = leaving
             .iter()
             .zip(&arriving)
-            .find(|(&out, &into)| edges[out].0 != edges[into].1);
+            .find(|&(&out, &into)| edges[out].0 != edges[into].1);
         if let Some((&out, &into)) = open {
             return Err(Error::Open {
                 vertex: edges[out].0.min(edges[into].1),

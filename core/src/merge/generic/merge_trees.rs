@@ -29,6 +29,25 @@ use crate::tree::trace::Watcher;
 ///
 /// # Source
 /// Naylor, Amanatides, Thibault 1990, section 3.
+///
+/// # Example
+/// ```
+/// use bspcsg::geometry::dim1::{Dim1, Direction, Point1};
+/// use bspcsg::merge::{merge, SetOp};
+/// use bspcsg::tree::partition::{
+///     autopartition, classify, Facet, Label, Location, PartitionTree, PivotPolicy,
+/// };
+///
+/// let up_to = |at| -> Result<PartitionTree<Dim1>, bspcsg::error::Error> {
+///     let fragment = Point1::new(at, Direction::Below);
+///     let facets = vec![Facet { fragment, source: 0 }];
+///     Ok(autopartition(facets, (), Label::Out, PivotPolicy::First)?.tree)
+/// };
+/// let between = merge(&up_to(10)?, &up_to(4)?, SetOp::Difference)?;
+/// assert_eq!(classify(&between, &7), Location::In);
+/// assert_eq!(classify(&between, &3), Location::Out);
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 pub fn merge<S: Space>(
     a: &PartitionTree<S>,
     b: &PartitionTree<S>,

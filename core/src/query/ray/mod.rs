@@ -7,6 +7,22 @@
 //!
 //! Layers, from the bottom: `bounds` < `ray` < `facet` | `filter` < `scene` | `node` < `closed` |
 //! `walk` < `first` | `crossings` < `answer` < `batch`.
+//!
+//! # Example
+//! ```
+//! use bspcsg::mesh::grid::Pitch;
+//! use bspcsg::query::ray::answer::{hit, Kind};
+//! use bspcsg::query::ray::first::Query;
+//! use bspcsg::query::ray::{Ray, Scene};
+//!
+//! let wall = [[[5.0, -9.0, -9.0], [5.0, 9.0, -9.0], [5.0, 0.0, 9.0]]];
+//! let scene = Scene::new(&wall, Some(Pitch::new(0)?))?;
+//! let ray = Ray::new([0; 3], &[1.0, 0.0, 0.0])?;
+//! let found = Query::new(&scene, &ray).first().expect("the wall stands in the way");
+//! let hit = hit(&scene, &ray, &found);
+//! assert_eq!((hit.t, hit.kind), (5.0, Kind::Interior));
+//! # Ok::<(), bspcsg::error::Error>(())
+//! ```
 
 pub mod answer;
 pub mod batch;

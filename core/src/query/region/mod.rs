@@ -1,4 +1,24 @@
 //! Questions to sets of the line and the plane: outlines, measures, lines through them, sections.
+//!
+//! # Example
+//! ```
+//! use bspcsg::geometry::dim2::{Dim2, Segment2};
+//! use bspcsg::mesh::grid::Pitch;
+//! use bspcsg::query::region::moments::area;
+//! use bspcsg::query::region::outlines::outlines;
+//! use bspcsg::tree::partition::{enclosed, Facet, PartitionTree, Plan};
+//!
+//! let corners = [[0, 0], [4, 0], [4, 3], [0, 3]];
+//! let sides = (0..4).map(|i| Facet {
+//!     fragment: Segment2::between(corners[i], corners[(i + 1) % 4]).expect("two points"),
+//!     source: 0,
+//! });
+//! let rectangle: PartitionTree<Dim2> = enclosed(sides.collect(), 0, |w| w > 0, &Plan::BALANCED)?;
+//! let loops = outlines(&rectangle)?;
+//! assert_eq!(loops[0].corners.len(), 4);
+//! assert_eq!(area(&loops, Pitch::new(0)?).numerator, 12.into());
+//! # Ok::<(), bspcsg::error::Error>(())
+//! ```
 
 pub mod cast;
 pub mod condense;

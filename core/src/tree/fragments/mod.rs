@@ -7,6 +7,25 @@
 //!
 //! # Source
 //! Fuchs, Kedem, Naylor 1980; Paterson, Yao 1990; de Berg et al., Computational Geometry, chapter 12.
+//!
+//! # Example
+//! ```
+//! use bspcsg::geometry::affine::{Affine, Viewpoint};
+//! use bspcsg::geometry::dim2::Dim2;
+//! use bspcsg::tree::fragments::{back_to_front, build, Piece, Plan, Policy};
+//!
+//! // Two walls, one behind the other, seen from far above.
+//! let walls = [[[0, 0, 0], [9, 0, 0]], [[0, 5, 0], [9, 5, 0]]];
+//! let pieces = (0..).zip(walls).map(|(number, corners)| {
+//!     let fragment = Dim2::fragment(&corners).expect("a segment");
+//!     Piece::<Dim2> { fragment, number }
+//! });
+//! let plan = Plan::Policy { policy: Policy::First, top: None, region: None };
+//! let tree = build(pieces.collect(), plan)?;
+//! let eye = Viewpoint::direction(&[0.0, 1.0, 0.0]);
+//! assert_eq!(back_to_front(&tree, &eye), [0, 1]);
+//! # Ok::<(), bspcsg::error::Error>(())
+//! ```
 
 #![allow(
     clippy::cast_possible_truncation,

@@ -7,6 +7,23 @@
 //!
 //! # Source
 //! Fuchs, Kedem, Naylor 1980; Thibault, Naylor 1987.
+//!
+//! # Example
+//! ```
+//! use bspcsg::geometry::dim1::{Dim1, Direction, Point1};
+//! use bspcsg::tree::partition::{
+//!     autopartition, classify, Facet, Label, Location, PartitionTree, PivotPolicy,
+//! };
+//!
+//! // The points between 0 and 10 on the line.
+//! let ends = [(0, Direction::Above), (10, Direction::Below)];
+//! let facets = ends.map(|(at, inside)| Facet { fragment: Point1::new(at, inside), source: 0 });
+//! let built = autopartition(facets.to_vec(), (), Label::Out, PivotPolicy::First)?;
+//! let between: PartitionTree<Dim1> = built.tree;
+//! assert_eq!(classify(&between, &5), Location::In);
+//! assert_eq!(classify(&between, &10), Location::On);
+//! # Ok::<(), bspcsg::error::Error>(())
+//! ```
 
 mod boundary;
 mod bounded;
