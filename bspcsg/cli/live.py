@@ -35,7 +35,7 @@ _LOOK = 0.2
 
 @dataclass(frozen=True)
 class Site:
-    """What a server shows.
+    """The pages that a server shows.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class LiveServer(ThreadingHTTPServer):
 
     @property
     def address(self) -> str:
-        """What a browser is to open."""
+        """The address that a browser is to open."""
         return f"http://{_HERE}:{self.server_port}/"
 
     def handle_error(self, request: Any, client_address: Any) -> None:

@@ -17,7 +17,7 @@ _NARROWEST = 40
 
 
 def wants_colour(stream: TextIO) -> bool:
-    """Say whether colours go to a stream: `NO_COLOR`, then `FORCE_COLOR`, then what it is decide."""
+    """Say whether colours go to a stream: `NO_COLOR` or else `FORCE_COLOR` or its kind decides."""
     if os.environ.get("NO_COLOR"):
         return False
     forced = os.environ.get("FORCE_COLOR")

@@ -77,7 +77,7 @@ class Scale:
 
     @property
     def at(self) -> At:
-        """What has a value."""
+        """The elements that have a value."""
         return "face" if self.values.ndim == 1 else "corner"
 
     @property
@@ -131,7 +131,7 @@ class Colours:
 
     @property
     def at(self) -> At:
-        """What has a colour."""
+        """The elements that have a colour."""
         return "face" if self.values.ndim == 2 else "corner"
 
     def taken(self, faces: IndexArray) -> "Colours":
