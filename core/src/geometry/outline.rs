@@ -246,10 +246,10 @@ struct Event<'a> {
 fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>) {
     let run: SmallVec<[&OutlineEdge; 16]> = run.iter().map(|p| &edges[p.edge as usize]).collect();
     let axis = run[0].line.axis();
-    if let [a, b] = run[..] {
-        if is_opposite(a, b, axis) {
-            return;
-        }
+    if let [a, b] = run[..]
+        && is_opposite(a, b, axis)
+    {
+        return;
     }
     let mut events: SmallVec<[Event; 32]> = SmallVec::with_capacity(2 * run.len());
     for edge in &run {

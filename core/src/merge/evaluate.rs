@@ -187,10 +187,11 @@ fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
     if simple == Some(true) {
         return Ok(solid.clone().with_reduced(true));
     }
-    if simple == Some(false) && rule != Rule::EvenOdd {
-        if let Some(united) = union_of_shells(solid, &sources)? {
-            return Ok(united);
-        }
+    if simple == Some(false)
+        && rule != Rule::EvenOdd
+        && let Some(united) = union_of_shells(solid, &sources)?
+    {
+        return Ok(united);
     }
     let descent = Descent::new(&sources, rule, false, 1);
     let expression = Expression::new(vec![Term::Operand(0)])?;

@@ -31,10 +31,10 @@ fn snap_chunk(
     first_row: usize,
     lattice: &mut [Lattice],
 ) -> Result<()> {
-    if let Some(power) = pitch.steps_per_unit() {
-        if snap_clear(points, power, lattice) {
-            return Ok(());
-        }
+    if let Some(power) = pitch.steps_per_unit()
+        && snap_clear(points, power, lattice)
+    {
+        return Ok(());
     }
     for (row, (point, place)) in points.iter().zip(lattice).enumerate() {
         *place = snap_point(pitch, point).map_err(|e| at_row(&e, first_row + row))?;

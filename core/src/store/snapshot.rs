@@ -319,11 +319,11 @@ impl Snapshot {
 
     /// The label at the low corner of the universe: a lone plane decides it by its side there.
     fn label_at_infinity(&self) -> Result<i32> {
-        if let [only] = self.wholes.as_slice() {
-            if let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot as usize) {
-                let side = plane.plane()?.side_of_corner(&Cell::UNIVERSE.corner());
-                return Ok(i32::from((side < 0) != only.flip));
-            }
+        if let [only] = self.wholes.as_slice()
+            && let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot as usize)
+        {
+            let side = plane.plane()?.side_of_corner(&Cell::UNIVERSE.corner());
+            return Ok(i32::from((side < 0) != only.flip));
         }
         Ok(self.outside)
     }

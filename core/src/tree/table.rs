@@ -131,10 +131,10 @@ impl Table {
     /// This table and after it the sources of another that it does not have.
     #[must_use]
     pub fn joined(&self, other: &Self) -> Self {
-        if let (Entries::Many(own), Entries::Many(others)) = (&self.0, &other.0) {
-            if Arc::ptr_eq(&own.log, &others.log) {
-                return if own.len < others.len { other } else { self }.clone();
-            }
+        if let (Entries::Many(own), Entries::Many(others)) = (&self.0, &other.0)
+            && Arc::ptr_eq(&own.log, &others.log)
+        {
+            return if own.len < others.len { other } else { self }.clone();
         }
         self.extended(other.iter())
     }

@@ -222,10 +222,10 @@ fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
 
 /// Whether the leaves that list a part have all of it; errs on no.
 fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
-    if let [leaf] = leaves {
-        if cells[*leaf as usize] == part.home {
-            return !part.edges.is_empty();
-        }
+    if let [leaf] = leaves
+        && cells[*leaf as usize] == part.home
+    {
+        return !part.edges.is_empty();
     }
     let once = leaves.windows(2).all(|pair| pair[0] != pair[1]);
     once && fill(part_box(part), leaves.iter().copied(), cells)

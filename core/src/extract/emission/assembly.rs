@@ -138,10 +138,10 @@ impl<'a> Assembly<'a> {
 
     pub(in crate::extract) fn finish(mut self, findings: Vec<Finding>) -> ExactMesh {
         for vertex in &mut self.vertices {
-            if let Corner::Point(point) = *vertex {
-                if let Some((slot, index)) = self.names.get(&point) {
-                    *vertex = Corner::Source(*slot, *index);
-                }
+            if let Corner::Point(point) = *vertex
+                && let Some((slot, index)) = self.names.get(&point)
+            {
+                *vertex = Corner::Source(*slot, *index);
             }
         }
         self.drop_unused();

@@ -214,15 +214,15 @@ impl<'a> Descent<'a> {
         let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
             return Ok(self.leaf(cell, &expression, states, total));
         };
-        if total <= (ORTHOGONAL * states.len()).min(CROWD) {
-            if let Some(branch) = self.among_orthogonal(cell, &expression, &states, total) {
-                return Ok(branch);
-            }
+        if total <= (ORTHOGONAL * states.len()).min(CROWD)
+            && let Some(branch) = self.among_orthogonal(cell, &expression, &states, total)
+        {
+            return Ok(branch);
         }
-        if round.is_overcrowded(&cell, &states) {
-            if let Some(parted) = self.parted(&expression) {
-                return self.grouped(cell, parted, states, 0);
-            }
+        if round.is_overcrowded(&cell, &states)
+            && let Some(parted) = self.parted(&expression)
+        {
+            return self.grouped(cell, parted, states, 0);
         }
         // No level of bins suited these faces, so halving will not separate them either.
         let long = listed && opening >= MANY;
@@ -231,10 +231,10 @@ impl<'a> Descent<'a> {
                 return Ok(branch);
             }
             round.refused(total);
-            if round.is_crowded(&cell, &states) {
-                if let Some(parted) = self.parted(&expression) {
-                    return self.grouped(cell, parted, states, 0);
-                }
+            if round.is_crowded(&cell, &states)
+                && let Some(parted) = self.parted(&expression)
+            {
+                return self.grouped(cell, parted, states, 0);
             }
         }
         let round = round.next(total, states.len());
@@ -286,10 +286,11 @@ impl<'a> Descent<'a> {
         states: States,
         depth: u32,
     ) -> Result<Branch> {
-        if states.len() >= GROUPED && depth < DEEPEST {
-            if let Some(parted) = expression.parted() {
-                return self.grouped(cell, parted, states, depth + 1);
-            }
+        if states.len() >= GROUPED
+            && depth < DEEPEST
+            && let Some(parted) = expression.parted()
+        {
+            return self.grouped(cell, parted, states, depth + 1);
         }
         let residual = expression.residual(|_| None);
         self.resolve(cell, residual, states, Round::START)

@@ -237,14 +237,14 @@ fn opened_leaf(branch: Branch, sources: &Sources, binned: &AtomicU64) -> State {
 }
 
 fn divide_tree(branch: Branch, cell: &Cell, cut: Cut) -> (State, State) {
-    if branch.cell == *cell {
-        if let Node::Cut(halves) = &*branch.node {
-            let [minus, plus] = &halves.children;
-            return (
-                State::Tree(branch.child(minus)),
-                State::Tree(branch.child(plus)),
-            );
-        }
+    if branch.cell == *cell
+        && let Node::Cut(halves) = &*branch.node
+    {
+        let [minus, plus] = &halves.children;
+        return (
+            State::Tree(branch.child(minus)),
+            State::Tree(branch.child(plus)),
+        );
     }
     let around = State::Constant(branch.outside);
     if cell.half(cut, false).holds(&branch.cell) {

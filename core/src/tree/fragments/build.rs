@@ -108,10 +108,10 @@ impl Chooser {
             Self::Given(cuts) => return given(cuts.next(), pieces),
             Self::Policy { policy, top } => (policy, *top),
         };
-        if top.is_some_and(|leaf| pieces.len() > leaf) {
-            if let Some((cut, hyperplane)) = median_cut(pieces) {
-                return Ok((cut, hyperplane, Reason::Median));
-            }
+        if top.is_some_and(|leaf| pieces.len() > leaf)
+            && let Some((cut, hyperplane)) = median_cut(pieces)
+        {
+            return Ok((cut, hyperplane, Reason::Median));
         }
         let pivot = &pieces[policy.pivot(pieces, open.region.as_ref(), watcher)];
         let cut = S::hyperplane(&pivot.fragment).clone();

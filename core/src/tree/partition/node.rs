@@ -116,10 +116,10 @@ impl<S: Space> PartitionTree<S> {
 
     /// The tree divided along a sheet; a cut between two equal leaves is no cut.
     pub fn cut(sheet: Arc<Sheet<S>>, minus: Self, plus: Self) -> Self {
-        if let (Self::Leaf(a), Self::Leaf(b)) = (&minus, &plus) {
-            if a == b {
-                return minus;
-            }
+        if let (Self::Leaf(a), Self::Leaf(b)) = (&minus, &plus)
+            && a == b
+        {
+            return minus;
         }
         let node = Node { sheet, minus, plus };
         Self::Cut(Cut {

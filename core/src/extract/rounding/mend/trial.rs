@@ -118,10 +118,10 @@ impl Mending {
             return false;
         }
         let met = meeting(&p, &q);
-        if let Meeting::Edges(i, j) = met {
-            if self.ends(pair[0], i) == self.ends(pair[1], j).map(|[a, b]| [b, a]) {
-                return false;
-            }
+        if let Meeting::Edges(i, j) = met
+            && self.ends(pair[0], i) == self.ends(pair[1], j).map(|[a, b]| [b, a])
+        {
+            return false;
         }
         let mate = |which: usize, edge: usize| {
             let [a, b] = self.ends(pair[which], edge)?;
