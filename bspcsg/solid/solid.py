@@ -11,23 +11,22 @@ kept and the expression let go. Two things are promised, and two kinds of query 
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, overload
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from .._core import Tree
-from .._types import ProgramLine, Scalar, Vector, WindingRule
+from .._types import ProgramLine, WindingRule
 from ..above import above
 from ..attributes.attributes import Attributes, Given
 from ..attributes.material import Material
-from ..errors import core_errors, invalid_parameter
-from ..geometry import transform
+from ..errors import core_errors
 from ..geometry.transform import Factors, common_prefix
 from ..mesh import interop, visuals
 from ..mesh.mesh import Mesh
 from ..parameters import not_negative, optional_pitch, winding_rule
+from .convertible import Convertible
 from .counting import count, counted, uncounted
 from .describe import describe
+from .edged import Edged
 from .expression import ExpressionNode, Placed, complement, evaluate, operation
 from .leaf import (
     ConstantLeaf,
@@ -42,20 +41,17 @@ from .leaf import (
     tagged,
     tree_of,
 )
-from .measure import Measured, deprecated, residues_of_volume
+from .measure import residues_of_volume
 from .modelled import Modelled
+from .movable import Movable
 from .point_set import PointSet
 from .program import Operator
 
 if TYPE_CHECKING:
-    import manifold3d
-    import trimesh
-
-    from ..bsp import Region
-    from ..modelling.making.edges import EdgeSelection
+    pass
 
 
-class Solid(Measured, Modelled, PointSet):
+class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     """A closed triangle mesh as a set of points.
 
     Inside is where the winding number of the faces satisfies the rule; faces may cross, overlap,
@@ -281,74 +277,6 @@ class Solid(Measured, Modelled, PointSet):
         bounded = outside.is_bounded
         return ("outside", residues_of_volume(outside)) if bounded else "unbounded"
 
-    # Transforms
-
-    def translate(self, *offset: Scalar | Vector) -> "Solid":
-        """Return the solid moved by three numbers or one vector, in model units.
-
-        Exact if the numbers are whole lattice steps, as short decimals are.
-        """
-        vector: Any = offset[0] if len(offset) == 1 else offset
-        return self._moved((transform.translation(vector),))
-
-    def rotate(
-        self,
-        angle: Scalar | Vector | None = None,
-        axis: str | Vector = "z",
-        *,
-        x: Scalar = 0,
-        y: Scalar = 0,
-        z: Scalar = 0,
-        about: Vector = (0, 0, 0),
-    ) -> "Solid":
-        """Return the solid rotated about an axis.
-
-        Quarter turns about a coordinate axis are exact.
-
-        Parameters
-        ----------
-        angle : float or (3,) float, optional
-            In degrees, counter-clockwise when the axis points at the viewer. Three angles turn
-            about x, then y, then z, and `axis` is ignored.
-        axis : {"x", "y", "z"} or (3,) float
-        x, y, z : float
-            In degrees, instead of `angle`: about x, then y, then z.
-        about : (3,) float
-            A point of the axes.
-
-        Examples
-        --------
-        >>> import bspcsg as b
-        >>> b.box((1, 2, 3)).rotate(z=90).bounds[0].tolist()
-        [-2.0, 0.0, 0.0]
-        """
-        if angle is not None and (x, y, z) != (0, 0, 0):
-            raise invalid_parameter("A rotation is by an angle and an axis, or by x, y and z.")
-        turn: Any = (x, y, z) if angle is None else angle
-        is_one = np.ndim(turn) == 0
-        factors = (transform.rotation(turn, axis),) if is_one else transform.euler_rotation(turn)
-        return self._moved(transform.about(about, factors))
-
-    def scale(self, factor: Scalar | Vector, *, about: Vector = (0, 0, 0)) -> "Solid":
-        """Return the solid scaled by one factor, or by one per axis; the point `about` stays."""
-        return self._moved(transform.about(about, (transform.scaling(factor),)))
-
-    def mirror(self, normal: Vector, *, about: Vector = (0, 0, 0)) -> "Solid":
-        """Return the mirror image in the plane with this normal through the point `about`."""
-        return self._moved(transform.about(about, (transform.mirroring(normal),)))
-
-    def transform(self, matrix: Any) -> "Solid":
-        """Return the image under an affine map, a (4, 4) or (3, 4) matrix for column vectors.
-
-        Solids that were moved by bitwise equal matrices are combined first and moved afterwards.
-
-        Raises
-        ------
-        InvalidMeshError
-            If the matrix is no invertible affine map.
-        """
-        return self._moved((transform.matrix_factor(matrix),))
-
     @counted
     def _moved(self, factors: Factors) -> "Solid":
         kept = tuple(factor for factor in factors if not factor.is_identity)
@@ -491,115 +419,6 @@ class Solid(Measured, Modelled, PointSet):
     def _outside(self) -> "Solid":
         return (~self).normalized()
 
-    def to_trimesh(self) -> "trimesh.Trimesh":
-        """Return a `trimesh.Trimesh` with the same vertices and faces."""
-        return interop.to_trimesh(self.normalized().to_mesh())
-
-    def to_manifold(self) -> "manifold3d.Manifold":
-        """Return a `manifold3d.Manifold`; ask its ``status()`` whether it was accepted."""
-        return interop.to_manifold(self.normalized().to_mesh())
-
-    def save(self, path: str | os.PathLike[str], **options: Any) -> None:
-        """Write the mesh to a file; the suffix names the format (see `bspcsg.save`)."""
-        above("save")(self, path, **options)
-
-    def to_csg(self, *, flat: bool = False) -> str:
-        """Return the expression that made the solid as a `.csg` script (see `bspcsg.csg.dumps`)."""
-        text: str = above("dumps")(self, flat=flat)
-        return text
-
-    @classmethod
-    def load(cls, path: str | os.PathLike[str], **options: Any) -> "Solid":
-        """Read a mesh file; the suffix names the format (see `bspcsg.load`)."""
-        solid: Solid = above("load")(path, **options)
-        return solid
-
-    # Edges
-
-    @uncounted
-    def edges(self) -> "EdgeSelection":
-        """Return the edges between plane faces, to choose some of them (see `EdgeSelection`).
-
-        Raises
-        ------
-        UnboundedError
-            If the solid reaches to infinity.
-
-        Examples
-        --------
-        >>> import bspcsg as b
-        >>> len(b.box(1, 2, 3).edges().parallel("z"))
-        4
-        """
-        edges: EdgeSelection = above("edges")(self)
-        return edges
-
-    @counted
-    def chamfer(self, edges: "EdgeSelection", size: Scalar) -> "Solid":
-        """Return the solid with flat surfaces instead of edges.
-
-        Material is taken off along convex edges and filled in along concave ones. At corners the
-        new surfaces run into each other.
-
-        Parameters
-        ----------
-        edges : EdgeSelection
-            Some of the solid's own.
-        size : float
-            From the edge to where the new surface begins, on both faces, in model units.
-
-        Raises
-        ------
-        InvalidParameterError
-            If the faces leave no room, or convex and concave edges meet, or a corner is not convex
-            and of more than three faces; the message names the place.
-        LimitError
-            If more than 10 000 edges are chosen.
-
-        Examples
-        --------
-        >>> import bspcsg as b
-        >>> part = b.box(10, 10, 10)
-        >>> part.chamfer(part.edges().parallel("z"), 1).volume
-        980.0
-        """
-        solid: Solid = above("chamfer")(self, edges, size)
-        return solid
-
-    @counted
-    def fillet(self, edges: "EdgeSelection", radius: Scalar, segments: int = 32) -> "Solid":
-        """Return the solid with round surfaces instead of edges.
-
-        Material is taken off along convex edges and filled in along concave ones, to a cylinder
-        that touches both faces. Where three such edges meet and all are chosen, the corner is part
-        of a ball.
-
-        Parameters
-        ----------
-        edges : EdgeSelection
-            Some of the solid's own.
-        radius : float
-            In model units.
-        segments : int
-            Sides of a full circle, at least 4; all edges have as many sides as the sharpest needs.
-
-        Raises
-        ------
-        InvalidParameterError
-            As for `chamfer`; or if more than three round edges would meet.
-        LimitError
-            If more than 10 000 edges are chosen, or the solid would have too many corners.
-
-        Examples
-        --------
-        >>> import bspcsg as b
-        >>> part = b.box(4, 3, 2)
-        >>> part.fillet(part.edges(), 0.5) == b.rounded_box((4, 3, 2), 0.5)
-        True
-        """
-        solid: Solid = above("fillet")(self, edges, radius, segments)
-        return solid
-
     # Where it came from
 
     @property
@@ -617,79 +436,6 @@ class Solid(Measured, Modelled, PointSet):
         operands = tuple(from_leaf(leaf) for leaf in record.leaves)
         return LastOperation(record.program, operands, from_node(self._node))
 
-    @overload
-    def slice(
-        self, offset: Scalar = 0.0, normal: Vector = (0, 0, 1), *, origin: Vector | None = None
-    ) -> "Region": ...
-    @overload
-    def slice(self, offset: Vector, normal: Vector = (0, 0, 1)) -> "list[Region]": ...
-    def slice(
-        self, offset: Any = 0.0, normal: Vector = (0, 0, 1), *, origin: Vector | None = None
-    ) -> "Region | list[Region]":
-        """Return the section by a plane as a region of the plane (`bspcsg.Region`).
-
-        The boundary is cut exactly, by the plane that `half_space` has for these numbers: the one
-        asked for if it holds lattice points, else the nearest of its direction that does. Each
-        corner of the section is rounded to the lattice point nearest to it, so that corners with
-        lattice coordinates are exact.
-
-        Parameters
-        ----------
-        offset : float or (n,) float
-            The plane holds the points x with ``normal . x == offset``: by default a height z. Of
-            several planes the sections come as a list.
-        normal : (3,) float
-            Need not have unit length. The region is seen from where it points: z gives coordinates
-            (x, y), x gives (y, z), y gives (z, x), negative axes exchange the two; for others see
-            `bspcsg.bsp.plane_frame`, whose coordinates are rounded once more.
-        origin : (3,) float, optional
-            A point of the plane, instead of `offset`.
-
-        Raises
-        ------
-        InvalidMeshError
-            If the normal is zero or a number is not finite.
-        UnboundedError
-            If the solid reaches to infinity.
-
-        Notes
-        -----
-        A face in the plane lies above it: the section is the limit from the minus side, that of a
-        box standing on z = 0 is empty at 0 and full at its top.
-        """
-        region: Region | list[Region] = above("slice_solid")(self, offset, normal, origin=origin)
-        return region
-
-    @uncounted
-    def project(self) -> "Region":
-        """Return the shadow on the plane z = 0 of light along z: all (x, y) below or above a point.
-
-        Turn the solid first to project it along another direction.
-
-        Raises
-        ------
-        UnboundedError
-            If the solid reaches to infinity.
-
-        Examples
-        --------
-        >>> import bspcsg as b
-        >>> b.torus(3, 1, segments=4).rotate(90, "x").project().bounds.tolist()
-        [[-4.0, -1.0], [4.0, 1.0]]
-        """
-        region: Region = above("shadow")(self)
-        return region
-
-    @uncounted
-    def validate(self, **options: Any) -> Any:
-        """Compare the operation that made this solid with manifold3d (see `bspcsg.validate`)."""
-        return above("validate")(self, **options)
-
-    def check(self, **options: Any) -> Any:
-        """Do as `validate` does; deprecated."""
-        deprecated("check", "validate")
-        return self.validate(**options)
-
     # As a value
 
     def __repr__(self) -> str:
@@ -697,16 +443,6 @@ class Solid(Measured, Modelled, PointSet):
         if self._placed is None:
             return f"Solid({describe(self._node, self._factors, self._mesh)})"
         return f"Solid({describe(ExpressionNode(self._placed), (), self._mesh)})"
-
-    def _repr_html_(self) -> str | None:
-        """Return what a notebook shows: an interactive view, or why there is none."""
-        page: str | None = above("solid_html")(self)
-        return page
-
-    def _repr_svg_(self) -> str:
-        """Return a picture, for notebooks that show no HTML."""
-        picture: str = above("solid_svg")(self)
-        return picture
 
     def _alias(self) -> "Solid":
         other = from_node(self._node, self._factors)

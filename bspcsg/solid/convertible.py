@@ -1,0 +1,129 @@
+"""Files, other libraries, drawings and checks of a solid, as methods."""
+
+import os
+from typing import TYPE_CHECKING, Any, overload
+
+from .._types import Scalar, Vector
+from ..above import above
+from ..mesh import interop
+from .counting import uncounted
+from .measure import Measured, deprecated
+
+if TYPE_CHECKING:
+    import manifold3d
+    import trimesh
+
+    from ..bsp import Region
+    from .solid import Solid
+
+
+class Convertible(Measured):
+    """A solid that files, other libraries and drawings take."""
+
+    __slots__ = ()
+
+    def to_trimesh(self) -> "trimesh.Trimesh":
+        """Return a `trimesh.Trimesh` with the same vertices and faces."""
+        return interop.to_trimesh(self.normalized().to_mesh())
+
+    def to_manifold(self) -> "manifold3d.Manifold":
+        """Return a `manifold3d.Manifold`; ask its ``status()`` whether it was accepted."""
+        return interop.to_manifold(self.normalized().to_mesh())
+
+    def save(self, path: str | os.PathLike[str], **options: Any) -> None:
+        """Write the mesh to a file; the suffix names the format (see `bspcsg.save`)."""
+        above("save")(self, path, **options)
+
+    def to_csg(self, *, flat: bool = False) -> str:
+        """Return the expression that made the solid as a `.csg` script (see `bspcsg.csg.dumps`)."""
+        text: str = above("dumps")(self, flat=flat)
+        return text
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], **options: Any) -> "Solid":
+        """Read a mesh file; the suffix names the format (see `bspcsg.load`)."""
+        solid: Solid = above("load")(path, **options)
+        return solid
+
+    @overload
+    def slice(
+        self, offset: Scalar = 0.0, normal: Vector = (0, 0, 1), *, origin: Vector | None = None
+    ) -> "Region": ...
+    @overload
+    def slice(self, offset: Vector, normal: Vector = (0, 0, 1)) -> "list[Region]": ...
+    def slice(
+        self, offset: Any = 0.0, normal: Vector = (0, 0, 1), *, origin: Vector | None = None
+    ) -> "Region | list[Region]":
+        """Return the section by a plane as a region of the plane (`bspcsg.Region`).
+
+        The boundary is cut exactly, by the plane that `half_space` has for these numbers: the one
+        asked for if it holds lattice points, else the nearest of its direction that does. Each
+        corner of the section is rounded to the lattice point nearest to it, so that corners with
+        lattice coordinates are exact.
+
+        Parameters
+        ----------
+        offset : float or (n,) float
+            The plane holds the points x with ``normal . x == offset``: by default a height z. Of
+            several planes the sections come as a list.
+        normal : (3,) float
+            Need not have unit length. The region is seen from where it points: z gives coordinates
+            (x, y), x gives (y, z), y gives (z, x), negative axes exchange the two; for others see
+            `bspcsg.bsp.plane_frame`, whose coordinates are rounded once more.
+        origin : (3,) float, optional
+            A point of the plane, instead of `offset`.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the normal is zero or a number is not finite.
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Notes
+        -----
+        A face in the plane lies above it: the section is the limit from the minus side, that of a
+        box standing on z = 0 is empty at 0 and full at its top.
+        """
+        region: Region | list[Region] = above("slice_solid")(self, offset, normal, origin=origin)
+        return region
+
+    @uncounted
+    def project(self) -> "Region":
+        """Return the shadow on the plane z = 0 of light along z: all (x, y) below or above a point.
+
+        Turn the solid first to project it along another direction.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> b.torus(3, 1, segments=4).rotate(90, "x").project().bounds.tolist()
+        [[-4.0, -1.0], [4.0, 1.0]]
+        """
+        region: Region = above("shadow")(self)
+        return region
+
+    @uncounted
+    def validate(self, **options: Any) -> Any:
+        """Compare the operation that made this solid with manifold3d (see `bspcsg.validate`)."""
+        return above("validate")(self, **options)
+
+    def check(self, **options: Any) -> Any:
+        """Do as `validate` does; deprecated."""
+        deprecated("check", "validate")
+        return self.validate(**options)
+
+    def _repr_html_(self) -> str | None:
+        """Return what a notebook shows: an interactive view, or why there is none."""
+        page: str | None = above("solid_html")(self)
+        return page
+
+    def _repr_svg_(self) -> str:
+        """Return a picture, for notebooks that show no HTML."""
+        picture: str = above("solid_svg")(self)
+        return picture
