@@ -1,9 +1,9 @@
-"""Set operations on any number of solids, and on bare arrays."""
+"""Set operations on any number of solids or regions, and on bare arrays."""
 
 import operator
 from collections.abc import Callable, Iterable, Sequence
 from functools import reduce
-from typing import Any, overload
+from typing import Any, TypeVar, overload
 
 from .._core import CoreError, Tree
 from .._types import FloatArray, IndexArray, SetOp
@@ -11,43 +11,55 @@ from ..errors import core_errors, invalid_parameter
 from ..mesh import interop
 from ..solid.counting import counted
 from ..solid.leaf import at_pitch
+from ..solid.point_set import PointSet
 from ..solid.program import Operator, program_of
 from ..solid.solid import Solid, combine
 from .block import Unfilled
+
+#: Solids, or regions, or intervals: operands are all of one kind.
+Set = TypeVar("Set", bound=PointSet)
 
 
 @overload
 def union() -> Unfilled: ...
 @overload
-def union(*solids: Solid | Iterable[Solid]) -> Solid: ...
-def union(*solids: Solid | Iterable[Solid]) -> Solid:
-    """Return what is inside at least one solid; the empty set if there is none.
+def union(*sets: Solid | Iterable[Solid]) -> Solid: ...
+@overload
+def union(*sets: Set | Iterable[Set]) -> Set: ...
+def union(*sets: Any) -> Any:
+    """Return what is inside at least one operand; the empty set if there is none.
 
     Parameters
     ----------
-    *solids : Solid or iterable of Solid
-        Without any, ``with union() as u:`` opens a block (see `bspcsg.block`).
+    *sets : Solid or Region, or iterable of them
+        All solids or all regions. Without any, ``with union() as u:`` opens a block
+        (see `bspcsg.block`).
 
     Examples
     --------
     >>> import bspcsg as b
     >>> b.union(b.cube(1).translate(i, 0, 0) for i in range(3)).volume
     3.0
+    >>> b.union(b.Region.rectangle(3, 1), b.Region.rectangle(1, 2)).area
+    4.0
     """
-    return _united(_flat(solids)) if solids else Unfilled(_united)
+    return _applied("union", sets) if sets else Unfilled(_united)
 
 
 @overload
 def intersection() -> Unfilled: ...
 @overload
-def intersection(*solids: Solid | Iterable[Solid]) -> Solid: ...
-def intersection(*solids: Solid | Iterable[Solid]) -> Solid:
-    """Return what is inside all solids; all of space if there is none.
+def intersection(*sets: Solid | Iterable[Solid]) -> Solid: ...
+@overload
+def intersection(*sets: Set | Iterable[Set]) -> Set: ...
+def intersection(*sets: Any) -> Any:
+    """Return what is inside all operands; all of space if there is none.
 
     Parameters
     ----------
-    *solids : Solid or iterable of Solid
-        Without any, ``with intersection() as i:`` opens a block (see `bspcsg.block`).
+    *sets : Solid or Region, or iterable of them
+        All solids or all regions. Without any, ``with intersection() as i:`` opens a block
+        (see `bspcsg.block`).
 
     Examples
     --------
@@ -55,20 +67,23 @@ def intersection(*solids: Solid | Iterable[Solid]) -> Solid:
     >>> b.intersection(b.cube(2), b.cube(2).translate(1, 1, 1)).volume
     1.0
     """
-    return _intersected(_flat(solids)) if solids else Unfilled(_intersected, full=True)
+    return _applied("intersection", sets) if sets else Unfilled(_intersected, full=True)
 
 
 @overload
 def difference() -> Unfilled: ...
 @overload
-def difference(*solids: Solid | Iterable[Solid]) -> Solid: ...
-def difference(*solids: Solid | Iterable[Solid]) -> Solid:
-    """Return what is inside the first solid and none of the others; the empty set if there is none.
+def difference(*sets: Solid | Iterable[Solid]) -> Solid: ...
+@overload
+def difference(*sets: Set | Iterable[Set]) -> Set: ...
+def difference(*sets: Any) -> Any:
+    """Return what is inside the first operand and no other; the empty set if there is none.
 
     Parameters
     ----------
-    *solids : Solid or iterable of Solid
-        Without any, ``with difference() as d:`` opens a block (see `bspcsg.block`).
+    *sets : Solid or Region, or iterable of them
+        All solids or all regions. Without any, ``with difference() as d:`` opens a block
+        (see `bspcsg.block`).
 
     Examples
     --------
@@ -81,20 +96,23 @@ def difference(*solids: Solid | Iterable[Solid]) -> Solid:
     >>> plate.solid.volume
     3820.0
     """
-    return _less(_flat(solids)) if solids else Unfilled(_less)
+    return _applied("difference", sets) if sets else Unfilled(_less)
 
 
 @overload
 def xor() -> Unfilled: ...
 @overload
-def xor(*solids: Solid | Iterable[Solid]) -> Solid: ...
-def xor(*solids: Solid | Iterable[Solid]) -> Solid:
-    """Return what is inside an odd number of the solids; the empty set if there is none.
+def xor(*sets: Solid | Iterable[Solid]) -> Solid: ...
+@overload
+def xor(*sets: Set | Iterable[Set]) -> Set: ...
+def xor(*sets: Any) -> Any:
+    """Return what is inside an odd number of operands; the empty set if there is none.
 
     Parameters
     ----------
-    *solids : Solid or iterable of Solid
-        Without any, ``with xor() as x:`` opens a block (see `bspcsg.block`).
+    *sets : Solid or Region, or iterable of them
+        All solids or all regions. Without any, ``with xor() as x:`` opens a block
+        (see `bspcsg.block`).
 
     Examples
     --------
@@ -102,7 +120,7 @@ def xor(*solids: Solid | Iterable[Solid]) -> Solid:
     >>> b.xor(b.cube(2), b.cube(2)).is_empty
     True
     """
-    return _odd(_flat(solids)) if solids else Unfilled(_odd)
+    return _applied("xor", sets) if sets else Unfilled(_odd)
 
 
 def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, IndexArray]:
@@ -192,11 +210,49 @@ def _combined(op: Operator, operands: Sequence[Solid]) -> Solid:
     return operands[0] if len(operands) == 1 else combine(op, operands)
 
 
-def _flat(solids: Iterable[Solid | Iterable[Solid]]) -> list[Solid]:
-    flat: list[Solid] = []
-    for entry in solids:
-        flat.extend([entry] if isinstance(entry, Solid) else entry)
-    for solid in flat:
-        if not isinstance(solid, Solid):
-            raise invalid_parameter(f"Expected solids, not {type(solid).__name__}.")
+_OF_SOLIDS: dict[SetOp, Callable[[Sequence[Solid]], Solid]] = {
+    "union": _united,
+    "intersection": _intersected,
+    "difference": _less,
+    "xor": _odd,
+}
+
+_OF_TREES: dict[SetOp, Callable[[Any, Any], Any]] = {
+    "union": operator.or_,
+    "intersection": operator.and_,
+    "xor": operator.xor,
+}
+
+
+def _applied(op: SetOp, entries: Iterable[Any]) -> Any:
+    sets = _flat(entries)
+    if all(isinstance(entry, Solid) for entry in sets):
+        return _OF_SOLIDS[op](sets)
+    for entry in sets:
+        if not sets[0]._is_alike(entry):
+            raise invalid_parameter(
+                f"Expected sets of one kind, not {type(sets[0]).__name__} and "
+                f"{type(entry).__name__}."
+            )
+    if op == "difference":
+        return sets[0] - _balanced(operator.or_, sets[1:]) if sets[1:] else sets[0]
+    return _balanced(_OF_TREES[op], sets)
+
+
+def _balanced(merge: Callable[[Any, Any], Any], trees: Sequence[Any]) -> Any:
+    """Merge neighbours, then what they became: each tree takes part in few merges."""
+    while len(trees) > 1:
+        pairs = [trees[k : k + 2] for k in range(0, len(trees), 2)]
+        trees = [merge(*pair) if len(pair) == 2 else pair[0] for pair in pairs]
+    return trees[0]
+
+
+def _flat(entries: Iterable[Any]) -> list[Any]:
+    flat: list[Any] = []
+    for entry in entries:
+        is_list = isinstance(entry, Iterable) and not isinstance(entry, PointSet)
+        flat.extend(entry if is_list else [entry])
+    for entry in flat:
+        if not isinstance(entry, PointSet):
+            raise invalid_parameter(f"Expected solids or regions, not {type(entry).__name__}.")
     return flat

@@ -262,3 +262,21 @@ def test_the_perimeter_of_a_complement_is_that_of_the_region() -> None:
     for endless in (R.half_plane((1, 0)), R.half_plane((1, 0)) - plate()):
         with pytest.raises(b.UnboundedError):
             endless.perimeter  # noqa: B018
+
+
+def test_named_operations_take_regions() -> None:
+    bars = [R.rectangle(2, 2).translate(k, 0) for k in range(5)]
+    assert b.union(bars) == R.rectangle(6, 2)
+    assert b.union(bars[0], bars[4:]) == bars[0] | bars[4]
+    assert b.intersection(bars[:2]) == bars[0] & bars[1]
+    assert b.difference(bars) == R.rectangle(1, 2)
+    assert b.difference(bars[0]) == bars[0]
+    assert b.xor(bars) == bars[0] ^ bars[1] ^ bars[2] ^ bars[3] ^ bars[4]
+
+
+@pytest.mark.parametrize("other", [b.cube(1), 1, None, bsp.Intervals([(0, 1)])])
+@pytest.mark.parametrize("operation", [b.union, b.intersection, b.difference, b.xor])
+def test_named_operations_refuse_a_mixture(operation: Any, other: Any) -> None:
+    for operands in [(R.rectangle(1, 1), other), (other, R.rectangle(1, 1))]:
+        with pytest.raises(b.InvalidParameterError):
+            operation(*operands)
