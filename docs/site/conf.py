@@ -20,6 +20,8 @@ from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.transforms import SphinxTransform
 
+from bspcsg.report.lecture.page import lecture_page
+
 ROOT = Path(__file__).resolve().parents[2]
 
 project = "bspcsg"
@@ -153,6 +155,8 @@ def _with_navigation(_: Sphinx, name: str, source: list[str]) -> None:
             source[0] += (
                 f"\n```{{toctree}}\n:hidden:\n:titlesonly:\n:caption: {head}\n\n{names}\n```\n"
             )
+    if name == "docs/verbs/lecture":
+        source[0] += '\n<p><a href="../../lecture.html">The lecture that it writes.</a></p>\n'
 
 
 class PathsOfTheRepository(SphinxTransform):
@@ -169,7 +173,7 @@ class PathsOfTheRepository(SphinxTransform):
         for download in list(self.document.findall(addnodes.download_reference)):
             path = (here / download["reftarget"]).resolve()
             if path.suffix == ".html" and path.exists():
-                target = download["reftarget"]
+                target = str(Path(download["reftarget"]).with_name(_beside(path).name))
                 download.replace_self(nodes.reference("", "", *download.children, refuri=target))
                 self.config.html_files_beside.add(str(path.relative_to(ROOT)))
         for link in list(self.document.findall(addnodes.pending_xref)):
@@ -177,17 +181,26 @@ class PathsOfTheRepository(SphinxTransform):
                 link.replace_self(link.children)
 
 
-def _copy(app: Sphinx, failed: Exception | None) -> None:
-    if failed is None and app.builder.format == "html":
-        out = Path(app.outdir)
-        for name in app.config.html_files_beside:
-            (out / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(ROOT / name, out / name)
-        (out / "index.html").write_text(
-            '<!doctype html><html lang="en"><meta charset="utf-8"><title>bspcsg</title>'
-            f'<meta http-equiv="refresh" content="0; url={root_doc}.html">'
-            f'<p><a href="{root_doc}.html">bspcsg</a></p></html>\n'
-        )
+def _beside(path: Path) -> Path:
+    """Return where an HTML file goes, which is not where a page of its name goes."""
+    return path.with_suffix(".page.html") if path.with_suffix(".md").exists() else path
+
+
+def _add_pages(app: Sphinx, failed: Exception | None) -> None:
+    """Add the pages that Sphinx does not make: what links name, the lecture, and the entrance."""
+    if failed is not None or app.builder.format != "html":
+        return
+    out = Path(app.outdir)
+    for name in app.config.html_files_beside:
+        copy = out / _beside(ROOT / name).relative_to(ROOT)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(ROOT / name, copy)
+    (out / "lecture.html").write_text(lecture_page(), encoding="utf-8")
+    (out / "index.html").write_text(
+        '<!doctype html><html lang="en"><meta charset="utf-8"><title>bspcsg</title>'
+        f'<meta http-equiv="refresh" content="0; url={root_doc}.html">'
+        f'<p><a href="{root_doc}.html">bspcsg</a></p></html>\n'
+    )
 
 
 def setup(app: Sphinx) -> None:
@@ -195,4 +208,4 @@ def setup(app: Sphinx) -> None:
     app.add_config_value("html_files_beside", set(), "")
     app.add_transform(PathsOfTheRepository)
     app.connect("source-read", _with_navigation)
-    app.connect("build-finished", _copy)
+    app.connect("build-finished", _add_pages)

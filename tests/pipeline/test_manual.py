@@ -3,6 +3,7 @@
 import doctest
 import json
 import re
+import tomllib
 from importlib import import_module
 from pathlib import Path
 
@@ -123,6 +124,14 @@ def test_examples_of_docstrings(
     monkeypatch.chdir(tmp_path)
     failed, tried = doctest.testmod(import_module(module))
     assert tried and not failed
+
+
+def test_the_install_page_has_every_extra() -> None:
+    page = (DOCS / "install.md").read_text()
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert set(re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE)) == (
+        set(project["optional-dependencies"]) - {"test"}
+    )
 
 
 def test_the_readme_leads_to_the_manual() -> None:
