@@ -99,7 +99,7 @@ def diagnose(raw: RawMesh) -> Diagnosis:
 def _diagnosed(raw: RawMesh) -> Diagnosis:
     vertices, same = welded(raw.vertices) if len(raw.vertices) else (raw.vertices, np.zeros(0, int))
     mesh = Mesh(vertices, same[raw.faces], np.zeros((len(raw.faces), 2), dtype=np.int64))
-    edges = _Edges(mesh.faces, len(vertices))
+    edges = EdgeUses(mesh.faces, len(vertices))
     findings = [*raw.findings, *_edge_findings(mesh, edges), *_face_findings(mesh, edges)]
     solid, verdict = _as_solid(raw, findings)
     # Inside out, the set is empty, and comparing the mesh with its boundary says nothing.
@@ -128,7 +128,7 @@ def _diagnosed(raw: RawMesh) -> Diagnosis:
 _RANK = {"error": 0, "warning": 1, "note": 2}
 
 
-class _Edges:
+class EdgeUses:
     """The undirected edges of triangles, and how often faces run along them either way.
 
     Parameters
@@ -169,8 +169,11 @@ class _Edges:
         return tuple(np.unique(self.face[at])[:_PLACES].tolist())
 
 
-def _edge_findings(mesh: Mesh, edges: _Edges) -> list[Finding]:
-    holes = f" around {_many(_chains(edges.ends[edges.open]), 'hole')}" if len(edges.open) else ""
+def _edge_findings(mesh: Mesh, edges: EdgeUses) -> list[Finding]:
+    holes = ""
+    if len(edges.open):
+        count = int(connected(edges.ends[edges.open]).max()) + 1
+        holes = f" around {_many(count, 'hole')}"
     kinds = (
         ("open_edges", "error", edges.open, f"with one triangle only,{holes}"),
         ("orientation", "error", edges.turned, "whose triangles do not run opposite ways"),
@@ -185,21 +188,21 @@ def _edge_findings(mesh: Mesh, edges: _Edges) -> list[Finding]:
     return found
 
 
-def _chains(ends: IndexArray) -> int:
-    """Count the connected chains of edges."""
+def connected(ends: IndexArray) -> IndexArray:
+    """Return for each edge the number of the connected chain that it is in, (k,), from 0."""
     used, edges = np.unique(ends, return_inverse=True)
     # An edge is a triangle with a corner twice.
-    return int(surfaces_of(edges.reshape(-1, 2)[:, [0, 1, 1]], len(used)).max()) + 1
+    return surfaces_of(edges.reshape(-1, 2)[:, [0, 1, 1]], len(used))
 
 
-def _face_findings(mesh: Mesh, edges: _Edges) -> list[Finding]:
+def _face_findings(mesh: Mesh, edges: EdgeUses) -> list[Finding]:
     del edges
     found = []
-    flat = _flat_faces(mesh)
+    flat = flat_faces(mesh)
     if len(flat):
         message = f"{_many(len(flat), 'triangle')} without area{_first(mesh, flat)}"
         found.append(Finding("degenerate", "warning", message, _few(flat), len(flat)))
-    repeated = _repeated_faces(mesh.faces)
+    repeated = repeated_faces(mesh.faces)
     if len(repeated):
         message = f"{_many(len(repeated), 'triangle')} over the corners of another"
         message += _first(mesh, repeated)
@@ -211,7 +214,7 @@ def _face_findings(mesh: Mesh, edges: _Edges) -> list[Finding]:
     return found
 
 
-def _flat_faces(mesh: Mesh) -> IndexArray:
+def flat_faces(mesh: Mesh) -> IndexArray:
     """Return the faces whose area is exactly zero."""
     corners = mesh.vertices[mesh.faces]
     scale = np.abs(corners - corners[:, :1]).max(axis=(1, 2))[:, None]
@@ -231,7 +234,7 @@ def _is_flat(corners: FloatArray) -> bool:
     return all(u[k] * v[k - 1] == u[k - 1] * v[k] for k in range(3))
 
 
-def _repeated_faces(faces: IndexArray) -> IndexArray:
+def repeated_faces(faces: IndexArray) -> IndexArray:
     """Return the faces over the same three corners as an earlier face."""
     if len(faces) == 0:
         return np.zeros(0, dtype=np.int64)

@@ -153,12 +153,23 @@ def require_distances() -> None:
 
 def _farthest(mesh: Mesh, points: FloatArray) -> float:
     """Return the largest distance of the points from a mesh."""
+    return float(distances(mesh, points).max(initial=0.0))
+
+
+def distances(mesh: Mesh, points: FloatArray) -> FloatArray:
+    """Return the distance of each point from a mesh, (k,), in model units.
+
+    Raises
+    ------
+    MissingPartError
+        If rtree or scipy are not installed.
+    """
     require_distances()
     from trimesh import proximity
 
     nearby_faces: Any = proximity.nearby_faces
     target, corners = interop.to_trimesh(mesh), mesh.vertices[mesh.faces]
-    farthest = 0.0
+    found = np.zeros(len(points))
     for at in range(0, len(points), _BATCH):
         batch = points[at : at + _BATCH]
         # Which faces can be the nearest is taken from trimesh, but not how far they are: there it
@@ -166,7 +177,7 @@ def _farthest(mesh: Mesh, points: FloatArray) -> float:
         near = nearby_faces(target, batch)
         counts = np.array([len(faces) for faces in near])
         faces = np.concatenate(near).astype(np.int64)
-        found = distances_to_triangles(np.repeat(batch, counts, axis=0), corners[faces])
+        each = distances_to_triangles(np.repeat(batch, counts, axis=0), corners[faces])
         starts = np.concatenate([[0], counts.cumsum()[:-1]])
-        farthest = max(farthest, float(np.minimum.reduceat(found, starts).max()))
-    return farthest
+        found[at : at + _BATCH] = np.minimum.reduceat(each, starts)
+    return found

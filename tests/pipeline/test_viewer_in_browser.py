@@ -32,7 +32,7 @@ def part(tmp_path_factory: pytest.TempPathFactory) -> Path:
     layers = [with_thickness(layer) for layer in told_apart(layers)]
     place = Landmark("the hole", np.array([4.0, 3.0, 2.0]), 1.0)
     page = tmp_path_factory.mktemp("view") / "part.html"
-    text = view_page(layers, "plate & ball", unit="mm", places=[place])
+    text = view_page(layers, "plate & ball", unit="mm", landmarks=[place])
     page.write_text(text, encoding="utf-8")
     return page
 

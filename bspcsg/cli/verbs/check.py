@@ -7,30 +7,43 @@ import click
 
 from ...errors import BspcsgError, FormatError, MissingPartError
 from .. import output, terminal
-from ..files import Inputs, repair_command, shown
+from ..files import STREAM, Inputs, repair_command, shown
+from ..lengths import as_length
 from ..options import common, reading
 from ..output import Output, counted, grouped
+from ..pages import PAGE, refuse_page, write_page
 from ..patterns import files_argument
 from ..tables import table_text
 
 if TYPE_CHECKING:
+    from ...formats.raw import RawMesh
     from ...repair.diagnosis import Diagnosis
 
 #: Relative difference up to which two volumes are told as one.
 _SAME = 1e-6
 
 _EPILOG = """\b
-Example:
+Examples:
   bspcsg check parts/*.stl || echo "some are no solids"
+  bspcsg check part.stl --html check.html --thin 0.8mm
 """
 
 
 @click.command("check", epilog=_EPILOG)
 @files_argument("FILE [...]")
 @click.option("--strict", is_flag=True, help="Count warnings as failures too.")
+@PAGE
+@click.option(
+    "--thin",
+    metavar="LENGTH",
+    callback=as_length,
+    help="Mark walls of closed meshes that are thinner, as 0.8mm, in the page of --html.",
+)
 @reading
 @common
-def check(files: tuple[Path, ...], strict: bool, **given: Any) -> int:
+def check(
+    files: tuple[Path, ...], strict: bool, page: Path | None, thin: float | None, **given: Any
+) -> int:
     """Say what is wrong with each file, and whether it is a solid.
 
     Names open edges, triangles turned round, edges with more than two triangles, triangles without
@@ -42,14 +55,37 @@ def check(files: tuple[Path, ...], strict: bool, **given: Any) -> int:
     set_threads(given["threads"])
     out = Output.of(given)
     inputs = Inputs.of(out, given)
+    _refuse_page(files, page, thin)
     results = [_examined(inputs, path) for path in files]
     codes = [_exit_code(found, strict) for _, found in results]
     documents = [_document(path, found) for path, found in results]
+    for path, found in results:
+        if page is not None and not isinstance(found, BspcsgError):
+            _write_page(inputs.raw(path), found, path, page, thin)
     out.result("" if given["as_json"] else _text(results, out), {"files": documents})
     for path, found in results:
         if isinstance(found, BspcsgError):
             terminal.say_error(_named(path, found))
     return max(codes)
+
+
+def _refuse_page(files: tuple[Path, ...], page: Path | None, thin: float | None) -> None:
+    if page is None and thin is not None:
+        raise click.UsageError("--thin marks walls in a page; say --html too.")
+    if page is not None:
+        if len(files) > 1:
+            raise click.UsageError("--html is for one file; check each by itself.")
+        if str(files[0]) == STREAM:
+            raise click.UsageError("--html reads the mesh twice; save it to a file.")
+        refuse_page(page)
+
+
+def _write_page(
+    raw: "RawMesh", found: "Diagnosis", path: Path, page: Path, thin: float | None
+) -> None:
+    from ...report.viewer.checked import checked_page
+
+    write_page(page, checked_page(raw, found, path.name, thin))
 
 
 def _examined(inputs: Inputs, path: Path) -> tuple[Path, "Diagnosis | BspcsgError"]:

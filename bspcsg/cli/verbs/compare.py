@@ -9,15 +9,18 @@ from .. import output
 from ..files import Inputs, shown
 from ..options import common, reading, sets
 from ..output import Output, grouped
+from ..pages import PAGE, refuse_page, write_page
 from ..patterns import file_argument
 from ..tables import table_text
 
 if TYPE_CHECKING:
+    from ...solid.solid import Solid
     from ...verify.comparison import SetComparison
 
 _EPILOG = """\b
-Example:
+Examples:
   bspcsg compare old.stl new.stl --tol 1e-6 || echo changed
+  bspcsg compare old.stl new.stl --html difference.html
 """
 
 
@@ -43,10 +46,13 @@ Example:
 @click.option(
     "--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Of the random points."
 )
+@PAGE
 @reading
 @sets
 @common
-def compare(a: Path, b: Path, tol: float, samples: int, seed: int, **given: Any) -> int:
+def compare(
+    a: Path, b: Path, tol: float, samples: int, seed: int, page: Path | None, **given: Any
+) -> int:
     """Say whether two files hold the same set of points, and how they differ.
 
     Triangles do not matter, only what is inside. Equality is decided exactly; the distance of the
@@ -61,12 +67,31 @@ def compare(a: Path, b: Path, tol: float, samples: int, seed: int, **given: Any)
     out = Output.of(given)
     inputs = Inputs.of(out, given)
     inputs.refuse_early([a, b])
-    found = compared(inputs.solid(a), inputs.solid(b), samples, seed)
+    if page is not None:
+        refuse_page(page)
+    solids = inputs.solid(a), inputs.solid(b)
+    found = compared(*solids, samples, seed)
     same = found.equal or _within(found, tol)
     names = {"files": [str(a), str(b)], "same": same, "tolerance": tol}
     document = {**names, **found.to_dict()} if out.as_json else {}
+    if page is not None:
+        _write_page(page, solids, (a, b), found, same)
     out.result(_text(found, shown(a), shown(b), same), document)
     return output.DONE if same else output.FOUND
+
+
+def _write_page(
+    page: Path,
+    solids: "tuple[Solid, Solid]",
+    files: tuple[Path, Path],
+    found: "SetComparison",
+    same: bool,
+) -> None:
+    from ...report.viewer.compared import compared_page
+
+    first, second = (path.name for path in files)
+    names = (first, second if first != second else f"{second} (2)")
+    write_page(page, compared_page(solids, names, found, _differences(found, same)))
 
 
 def _within(found: "SetComparison", tolerance: float) -> bool:

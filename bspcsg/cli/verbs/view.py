@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ...errors import FormatError
 from .. import output
-from ..files import STREAM, Inputs, is_dropped, refuse_folder, shown
+from ..files import STREAM, Inputs, is_dropped, shown
 from ..options import PORT, common, reading
 from ..output import Output, counted
+from ..pages import refuse_page, write_page
 from ..patterns import files_argument
 from ..seen import layers_of
 
@@ -28,8 +28,6 @@ Examples:
   bspcsg view part.py --live
   bspcsg view parts/
 """
-
-_SUFFIXES = (".html", ".htm")
 
 #: Bytes above which a page takes a browser seconds to open.
 _LARGE = 20_000_000
@@ -81,7 +79,6 @@ class _Viewing:
         self._inputs = Inputs.of(self._out, settings)
 
     def run(self) -> int:
-        from ...formats.atomic import write_file
         from ...report.viewer.view import view_page
 
         self._refuse_early()
@@ -89,14 +86,14 @@ class _Viewing:
             return self._served()
         layers, unit = self._scene(self._files)
         title = ", ".join(layer.name for layer in layers)
-        page = view_page(layers, title, unit=unit).encode("utf-8")
+        page = view_page(layers, title, unit=unit)
         target = self._target or _temporary(layers[0].name)
-        write_file(target, [page])
-        if len(page) > _LARGE:
-            self._out.note(f"the page has {len(page) / 1e6:.0f} MB; browsers take a while for it.")
+        size = write_page(target, page)
+        if size > _LARGE:
+            self._out.note(f"the page has {size / 1e6:.0f} MB; browsers take a while for it.")
         opens = self._settings["opens"] and not is_dropped(target)
         opened = opens and self._opened(target.resolve().as_uri())
-        self._tell(target, layers, len(page), opened)
+        self._tell(target, layers, size, opened)
         return output.DONE
 
     @property
@@ -140,11 +137,8 @@ class _Viewing:
             return
         if self._settings["live"] and any(str(path) == STREAM for path in self._files):
             raise click.UsageError("--live is for files, not for standard input.")
-        if self._target is not None and not is_dropped(self._target):
-            if self._target.suffix.lower() not in _SUFFIXES:
-                message = f"{shown(self._target)}: the name must end in .html."
-                raise FormatError(message, "unknown_format")
-            refuse_folder(self._target)
+        if self._target is not None:
+            refuse_page(self._target)
         self._inputs.refuse_early(self._files)
 
     def _opened(self, address: str) -> bool:

@@ -28,7 +28,7 @@ def packed(
     quantised: bool,
     unit: str = "",
     paint: str = "",
-    places: Iterable[Landmark] = (),
+    landmarks: Iterable[Landmark] = (),
 ) -> dict[str, Any]:
     """Return a model as JSON values.
 
@@ -41,7 +41,7 @@ def packed(
         What lengths are shown in.
     paint : str
         The name of the paint that is on at first.
-    places : iterable of Landmark
+    landmarks : iterable of Landmark
         What somebody may want to look at.
     """
     low, high = bounds_of(layers)
@@ -68,7 +68,7 @@ def packed(
                 "at": ((place.at - middle) * (2 / longest)).tolist(),
                 "size": place.size * 2 / longest,
             }
-            for place in places
+            for place in landmarks
         ],
         "data": compressed(b"".join(chunks)),
     }

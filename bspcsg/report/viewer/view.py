@@ -19,7 +19,7 @@ def view_page(
     unit: str = "",
     embedded: bool = False,
     paint: str = "",
-    places: Sequence[Landmark] = (),
+    landmarks: Sequence[Landmark] = (),
     notes: Sequence[str] = (),
     live: str = "",
 ) -> str:
@@ -35,7 +35,7 @@ def view_page(
         Leave out what a notebook's cell has no room for.
     paint : str
         The name of the paint that is on at first; by default colours and materials, if there are.
-    places : sequence of Landmark
+    landmarks : sequence of Landmark
         What the page offers to look at.
     notes : sequence of str
         Sentences below the title.
@@ -52,7 +52,7 @@ def view_page(
     return rendered(
         "view.html",
         title=title,
-        model=packed(layers, quantised=embedded, unit=unit, paint=chosen, places=places),
+        model=packed(layers, quantised=embedded, unit=unit, paint=chosen, landmarks=landmarks),
         picture=still(layers, size=_SIZE),
         notes=notes,
         live=live,

@@ -1,0 +1,42 @@
+"""Pages that verbs write beside what they say."""
+
+from pathlib import Path
+
+import click
+
+from ..errors import FormatError
+from .files import is_dropped, refuse_folder, shown
+
+_SUFFIXES = (".html", ".htm")
+
+PAGE = click.option(
+    "--html",
+    "page",
+    metavar="FILE",
+    type=click.Path(path_type=Path, readable=False),
+    help="Write a page, too, that shows it in 3D in a browser.",
+)
+
+
+def refuse_page(path: Path) -> None:
+    """Refuse what can be known to be no page that can be written.
+
+    Raises
+    ------
+    FormatError
+        If the name has another ending, or its folder cannot be written to.
+    """
+    if is_dropped(path):
+        return
+    if path.suffix.lower() not in _SUFFIXES:
+        raise FormatError(f"{shown(path)}: the name must end in .html.", "unknown_format")
+    refuse_folder(path)
+
+
+def write_page(path: Path, text: str) -> int:
+    """Write a page, and return how many bytes it has."""
+    from ..formats.atomic import write_file
+
+    data = text.encode("utf-8")
+    write_file(path, [data])
+    return len(data)

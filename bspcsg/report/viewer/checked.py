@@ -1,0 +1,130 @@
+"""The page of a mesh with what is wrong with it marked: holes, crossings, thin walls."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...formats.raw import RawMesh, compacted
+from ...repair.diagnosis import Diagnosis
+from ...repair.marks import Marks, marks_of
+from .landmark import Landmark
+from .layer import RESULT, Layer
+from .paint import THICKNESS, Scale
+from .parts import layers_of_file
+from .thickness import thickness
+from .view import view_page
+
+_RED, _VIOLET, _PINK, _ORANGE, _YELLOW = "#e0202f", "#8b3fd1", "#d13fa6", "#f08a24", "#d6b400"
+
+#: Places of one kind that a page offers to look at.
+_MOST = 30
+
+#: Opacity of the mesh where something in it is marked.
+_BEHIND = 0.45
+
+
+def checked_page(raw: RawMesh, found: Diagnosis, name: str, thin: float | None = None) -> str:
+    """Return a page that shows a mesh and what a check has found in it.
+
+    Parameters
+    ----------
+    raw : RawMesh
+    found : Diagnosis
+        Of that mesh.
+    name : str
+    thin : float, optional
+        Thickness in model units below which a wall is marked.
+
+    Raises
+    ------
+    MissingPartError
+        If Jinja2 is not installed.
+    """
+    marks = marks_of(raw)
+    layers = list(_marked(marks))
+    landmarks = [*_holes(marks), *_crossings(marks)]
+    walls = thickness(marks.vertices, marks.faces) if found.closed else None
+    mesh = Layer("mesh", marks.vertices, marks.faces, RESULT)
+    own = layers_of_file(replace(raw, objects=()), "mesh")[0]
+    mesh = replace(mesh, paints=own.paints)
+    if walls is not None:
+        mesh = replace(mesh, paints=(*mesh.paints, Scale("thickness", walls, THICKNESS)))
+        layers += _thin_walls(marks, walls, thin)
+        landmarks += _thinnest(marks, walls)
+    if layers:
+        mesh = replace(mesh, opacity=_BEHIND)
+    notes = [f"{found.verdict}", *(f"{one.severity}: {one.message}" for one in found.findings)]
+    return view_page([mesh, *layers], name, unit=raw.unit, landmarks=landmarks, notes=notes)
+
+
+def _marked(marks: Marks) -> Iterator[Layer]:
+    kinds = (
+        ("open edges", marks.open, _RED),
+        ("turned edges", marks.turned, _PINK),
+        ("edges of more than two", marks.crowded, _VIOLET),
+    )
+    for name, edges, colour in kinds:
+        if len(edges):
+            used, numbers = np.unique(edges, return_inverse=True)
+            none = np.zeros((0, 3), dtype=np.int64)
+            lines = numbers.reshape(-1, 2)
+            yield Layer(name, marks.vertices[used], none, colour, lines=lines)
+    crossing = np.unique(marks.crossings)
+    faults = (
+        ("crossing triangles", crossing, _ORANGE),
+        ("flat triangles", marks.flat, _YELLOW),
+        ("repeated triangles", marks.repeated, _VIOLET),
+    )
+    for name, faces, colour in faults:
+        if len(faces):
+            yield _outlined(marks, faces, name, colour)
+
+
+def _outlined(marks: Marks, faces: IndexArray, name: str, colour: str) -> Layer:
+    """Return some of the faces with their edges as lines, for they may have no area."""
+    used, renumbered = compacted(marks.faces[faces])
+    lines = np.stack([renumbered, np.roll(renumbered, -1, axis=1)], axis=-1).reshape(-1, 2)
+    return Layer(name, marks.vertices[used], renumbered, colour, lines=lines)
+
+
+def _thin_walls(marks: Marks, walls: FloatArray, thin: float | None) -> list[Layer]:
+    if thin is None:
+        return []
+    faces = np.flatnonzero(walls < thin)
+    if not len(faces):
+        return []
+    used, renumbered = compacted(marks.faces[faces])
+    return [Layer(f"thinner than {thin:g}", marks.vertices[used], renumbered, _RED)]
+
+
+def _thinnest(marks: Marks, walls: FloatArray) -> list[Landmark]:
+    if not np.isfinite(walls).any():
+        return []
+    face = int(np.nanargmin(walls))
+    name = f"thinnest: {walls[face]:.4g}"
+    return [_around(name, marks.vertices[marks.faces[face]])]
+
+
+def _holes(marks: Marks) -> Iterator[Landmark]:
+    """Yield the holes, the longest around first."""
+    if not len(marks.open):
+        return
+    counts = np.bincount(marks.holes)
+    for number, hole in enumerate(np.argsort(-counts, kind="stable")[:_MOST].tolist()):
+        ends = marks.open[marks.holes == hole]
+        yield _around(f"hole {number + 1}: {counts[hole]} edges", marks.vertices[ends.ravel()])
+
+
+def _crossings(marks: Marks) -> Iterator[Landmark]:
+    for number, pair in enumerate(marks.crossings[:_MOST]):
+        corners = marks.vertices[marks.faces[pair].ravel()]
+        one, other = pair.tolist()
+        yield _around(f"crossing {number + 1}: triangles {one} and {other}", corners)
+
+
+def _around(name: str, points: FloatArray | Sequence[FloatArray]) -> Landmark:
+    places = np.asarray(points)
+    low, high = places.min(axis=0), places.max(axis=0)
+    return Landmark(name, (low + high) / 2, float(np.linalg.norm(high - low)))

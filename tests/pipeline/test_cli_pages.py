@@ -1,0 +1,125 @@
+"""Pages that checks and comparisons write."""
+
+import json
+import os
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg.io import RawMesh
+from bspcsg.repair.marks import marks_of
+from support.browser import Browser
+from support.cli import Capture, put, ran
+from support.shapes import cube, cuboid
+
+
+def model(page: str) -> dict[str, Any]:
+    """Return what a page gives to the viewer."""
+    text = Path(page).read_text(encoding="utf-8")
+    found = re.search(r'<script type="application/json" id="model">(.*?)</script>', text)
+    assert found is not None
+    result: dict[str, Any] = json.loads(found[1])
+    return result
+
+
+def layers(page: str) -> dict[str, int]:
+    """Return the triangles of each layer, or its lines if it has none."""
+    return {one["name"]: one["triangles"] or one["segments"] for one in model(page)["layers"]}
+
+
+def names(page: str) -> list[str]:
+    return [place["name"] for place in model(page)["places"]]
+
+
+def test_what_only_one_has_is_shown(folder: Path, capsys: Capture) -> None:
+    put("b.off", cuboid((0, 0, 0), (2, 2, 3)))
+    code, out, err = ran(capsys, "compare", "a.off", "b.off", "--html", "x.html")
+    assert (code, err) == (1, "") and "The sets differ." in out
+    assert layers("x.html") == {"a.off": 12, "b.off": 12, "only in b.off": 12}
+    assert names("x.html") == ["thickest difference: 0.5"]
+    (paint,) = model("x.html")["layers"][1]["paints"]
+    assert (paint["name"], paint["low"], paint["high"]) == ("difference", 0.0, 1.0)
+    assert "The sets differ." in Path("x.html").read_text(encoding="utf-8")
+
+
+def test_equal_sets_are_said_to_be(folder: Path, capsys: Capture) -> None:
+    assert ran(capsys, "compare", "a.off", "a.off", "--html", "x.html")[0] == 0
+    assert layers("x.html") == {"a.off": 12, "a.off (2)": 12}
+    assert "equal, exactly" in Path("x.html").read_text(encoding="utf-8") and not names("x.html")
+
+
+def test_holes_are_marked(folder: Path, capsys: Capture) -> None:
+    vertices, faces = b.sphere(r=1, segments=16).to_mesh()
+    put("open.off", (vertices, np.delete(faces, [0, 40, 41], axis=0)))
+    code, out, _ = ran(capsys, "check", "open.off", "--html", "x.html")
+    assert code == 1 and "not closed" in out
+    found = layers("x.html")
+    assert found["mesh"] == len(faces) - 3 and found["open edges"] in (7, 9)
+    assert [name.split(":")[0] for name in names("x.html")] == ["hole 1", "hole 2"]
+
+
+def test_thin_walls_are_marked(folder: Path, capsys: Capture) -> None:
+    (b.cube(10) - b.box((8, 8, 9.5)).translate(1, 1, 0.5)).save("cup.off")
+    assert ran(capsys, "check", "cup.off", "--html", "x.html", "--thin", "0.6mm")[0] == 0
+    assert layers("x.html")["thinner than 0.6"] == 4
+    assert names("x.html") == ["thinnest: 0.5"]
+    assert ran(capsys, "check", "cup.off", "--html", "x.html")[0] == 0
+    assert list(layers("x.html")) == ["mesh"]
+    (paint,) = model("x.html")["layers"][0]["paints"]
+    assert paint["name"] == "thickness" and paint["low"] == pytest.approx(0.5)
+
+
+def test_crossings_are_marked(folder: Path, capsys: Capture) -> None:
+    one, other = cuboid((0, 0, 0), (2, 2, 2)), cuboid((1, 1, 1), (3, 3, 3))
+    both = np.concatenate([one[0], other[0]]), np.concatenate([one[1], other[1] + len(one[0])])
+    put("both.off", both)
+    ran(capsys, "check", "both.off", "--html", "x.html")
+    marks = marks_of(RawMesh(*both))
+    assert layers("x.html")["crossing triangles"] == len(np.unique(marks.crossings)) > 0
+    assert names("x.html")[0].startswith("crossing 1: triangles ")
+
+
+def test_other_faults_are_marked(folder: Path) -> None:
+    vertices, faces = cube()
+    turned = np.concatenate([faces[:-1], faces[-1:, ::-1]])
+    assert len(marks_of(RawMesh(vertices, turned)).turned) == 3
+    fin = np.vstack([faces, [[*faces[0][:2], len(vertices)]]])
+    marks = marks_of(RawMesh(np.vstack([vertices, [[5.0, 5, 5]]]), fin))
+    assert len(marks.crowded) == 1 and len(marks.open) == 2 and len(set(marks.holes.tolist())) == 1
+    flat = np.vstack([faces, [[0, 0, 1]], faces[:1]])
+    marks = marks_of(RawMesh(vertices, flat))
+    assert marks.flat.tolist() == [12] and marks.repeated.tolist() == [13]
+
+
+def test_marks_are_drawn(folder: Path, capsys: Capture, browser: Browser) -> None:
+    vertices, faces = b.sphere(r=1, segments=16).to_mesh()
+    put("open.off", (vertices, np.delete(faces, [100, 101], axis=0)))
+    ran(capsys, "check", "open.off", "--html", "x.html")
+    browser.open(folder / "x.html")
+    browser.wait("document.querySelector('.stage[data-drawn]')")
+    seen = browser.pixels("canvas").astype(int)
+    assert ((seen[:, :, 0] > 150) & (seen[:, :, 1:] < 130).all(axis=2)).sum() > 50
+    assert browser.errors() == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["compare", "a.off", "c.stl", "--html", "x.png"], 3, "must end in .html"),
+        (["compare", "a.off", "c.stl", "--html", "no/x.html"], 5, "no folder"),
+        (["check", "a.off", "c.stl", "--html", "x.html"], 2, "one file"),
+        (["check", "-", "--from", "stl", "--html", "x.html"], 2, "save it to a file"),
+        (["check", "a.off", "--thin", "1"], 2, "say --html too"),
+        (["check", "a.off", "--html", "x.html", "--thin", "-1"], 2, "no length"),
+    ],
+)
+def test_refusals(
+    folder: Path, capsys: Capture, arguments: list[str], code: int, words: str
+) -> None:
+    before = sorted(os.listdir())
+    found, out, err = ran(capsys, *arguments)
+    assert (found, out) == (code, "") and words in err and sorted(os.listdir()) == before
