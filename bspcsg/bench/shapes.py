@@ -1,10 +1,12 @@
 """Meshes of the bench, as plain arrays that any engine takes."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
 from .._types import FloatArray, IndexArray, MeshArrays
+from ..errors import missing_part
 
 #: Vertices (n, 3) and faces (m, 3), counter-clockwise seen from outside.
 
@@ -53,12 +55,19 @@ def unit_vector(random: np.random.Generator) -> FloatArray:
     return np.asarray(direction / np.linalg.norm(direction))
 
 
+def _creation() -> Any:
+    try:
+        import trimesh
+    except ImportError as error:
+        raise missing_part("trimesh", "for the meshes of bench", "pip install trimesh") from error
+    return trimesh.creation
+
+
 def box(low: object, high: object) -> MeshArrays:
     """Return the 12 triangles of an axis-parallel box."""
-    import trimesh
-
+    creation = _creation()
     corners = np.array([low, high], dtype=np.float64)
-    mesh = trimesh.creation.box(bounds=corners)
+    mesh = creation.box(bounds=corners)
     # Which corner a vertex is, rather than where the library's sums put it.
     nearest = mesh.vertices > corners.mean(axis=0)
     return np.where(nearest, corners[1], corners[0]), np.asarray(mesh.faces, dtype=np.int64)
@@ -66,9 +75,8 @@ def box(low: object, high: object) -> MeshArrays:
 
 def icosphere(level: int) -> MeshArrays:
     """Return a unit sphere of 20 · 4^level triangles."""
-    import trimesh
-
-    mesh = trimesh.creation.icosphere(subdivisions=level)
+    creation = _creation()
+    mesh = creation.icosphere(subdivisions=level)
     return np.array(mesh.vertices, dtype=np.float64), np.array(mesh.faces, dtype=np.int64)
 
 

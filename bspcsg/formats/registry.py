@@ -190,3 +190,4 @@ class _Formats(Mapping[str, Format]):
 
 
 FORMATS: Mapping[str, Format] = _Formats()
+"""The formats of meshes by their suffixes, such as ``".stl"``, which `in` and `len` know."""

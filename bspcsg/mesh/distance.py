@@ -32,11 +32,41 @@ def distances_to_triangles(points: FloatArray, corners: FloatArray) -> FloatArra
     return found
 
 
+def nearest_on_triangles(points: FloatArray, corners: FloatArray) -> FloatArray:
+    """Return the point of its triangle that is nearest to each point, (k, 3) float64.
+
+    Parameters
+    ----------
+    points : (k, 3) float64
+    corners : (k, 3, 3) float64
+    """
+    local = corners - points[:, None]
+    starts, ends = local, np.roll(local, -1, axis=1)
+    feet = _feet(starts, ends)
+    which = np.linalg.norm(feet, axis=2).argmin(axis=1)
+    normals = np.cross(local[:, 1] - local[:, 0], local[:, 2] - local[:, 0])
+    squares = np.einsum("ki,ki->k", normals, normals)
+    sides = np.einsum("kij,kj->ki", np.cross(starts, ends), normals)
+    inside = (sides > 0).all(axis=1) & (squares > 0)
+    height = np.einsum("ki,ki->k", local[:, 0], normals)
+    part = np.divide(height, squares, np.zeros_like(height), where=inside)
+    found: FloatArray = np.where(
+        inside[:, None], part[:, None] * normals, feet[np.arange(len(feet)), which]
+    )
+    return points + found
+
+
 def _to_segments(starts: FloatArray, ends: FloatArray) -> FloatArray:
     """Return the distance of the origin from segments, (…, 3) each."""
+    found: FloatArray = np.linalg.norm(_feet(starts, ends), axis=-1)
+    return found
+
+
+def _feet(starts: FloatArray, ends: FloatArray) -> FloatArray:
+    """Return the points of segments that are nearest to the origin, (…, 3) each."""
     along = ends - starts
     squares = np.einsum("...i,...i->...", along, along)
     dots = -np.einsum("...i,...i->...", starts, along)
     part = np.divide(dots, squares, np.zeros_like(dots), where=squares > 0).clip(0, 1)
-    found: FloatArray = np.linalg.norm(starts + part[..., None] * along, axis=-1)
+    found: FloatArray = starts + part[..., None] * along
     return found

@@ -258,8 +258,8 @@ _READERS: tuple[tuple[tuple[str, ...], Callable[[Any], AnyArrays]], ...] = (
 )
 
 
-def optional(name: str, extra: str) -> Any:
-    """Return a module that comes with one of this package's extras.
+def optional(name: str, package: str) -> Any:
+    """Return a module that comes with another package, which is what pip is to install.
 
     Raises
     ------
@@ -270,15 +270,16 @@ def optional(name: str, extra: str) -> Any:
         return importlib.import_module(name)
     except ImportError as error:
         raise InvalidMeshError(
-            f"This needs the package {name}: pip install 'bspcsg[{extra}]'.", "missing_package"
+            f"This needs the package {name}: pip install {package}.", "missing_package"
         ) from error
 
 
 def to_trimesh(mesh: Mesh) -> "trimesh.Trimesh":
     """Return a `trimesh.Trimesh` with copies of the same arrays."""
-    import trimesh
-
-    return trimesh.Trimesh(mesh.vertices.copy(), mesh.faces.copy(), process=False)
+    made: trimesh.Trimesh = optional("trimesh", "trimesh").Trimesh(
+        mesh.vertices.copy(), mesh.faces.copy(), process=False
+    )
+    return made
 
 
 def to_manifold(mesh: Mesh) -> "manifold3d.Manifold":

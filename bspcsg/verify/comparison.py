@@ -10,15 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from .._types import FloatArray
-from ..errors import missing_part
-from ..mesh import interop
+from .._types import FloatArray, IndexArray
 from ..mesh.distance import distances_to_triangles
 from ..mesh.mesh import Mesh
 from ..solid.counting import uncounted
 from ..solid.solid import Solid
 from .discrepancy import SetDifference, measured
 from .verdict import Facts
+
+#: Added to a distance, as a part of the largest coordinate: far more than its rounding.
+_SLACK = 1e-12
 
 #: How many points are measured at once; more need more memory.
 _BATCH = 1000
@@ -70,8 +71,6 @@ def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> SetComp
     ------
     UnboundedError
         If a solid reaches to infinity.
-    MissingPartError
-        If distances are wanted and rtree or scipy are not installed.
 
     Examples
     --------
@@ -107,11 +106,6 @@ def hausdorff(
     samples : int
         How many points of its faces, and of its vertices at most.
     seed : int
-
-    Raises
-    ------
-    MissingPartError
-        If rtree or scipy are not installed.
     """
     if difference is None or not all(len(one.faces) for one in (a, b, difference)):
         return 0.0, 0.0, 0
@@ -135,49 +129,31 @@ def _sampled(mesh: Mesh, count: int, rng: np.random.Generator) -> FloatArray:
     return np.concatenate([vertices, inner])
 
 
-def require_distances() -> None:
-    """Refuse to measure distances without what that needs.
-
-    Raises
-    ------
-    MissingPartError
-        If rtree or scipy are not installed.
-    """
-    try:
-        import rtree  # noqa: F401
-        import scipy  # noqa: F401
-    except ImportError as error:
-        remedy = 'pip install "bspcsg[compare]", or say --samples 0'
-        raise missing_part(str(error.name), "to measure distances", remedy) from error
-
-
 def _farthest(mesh: Mesh, points: FloatArray) -> float:
     """Return the largest distance of the points from a mesh."""
     return float(distances(mesh, points).max(initial=0.0))
 
 
 def distances(mesh: Mesh, points: FloatArray) -> FloatArray:
-    """Return the distance of each point from a mesh, (k,), in model units.
-
-    Raises
-    ------
-    MissingPartError
-        If rtree or scipy are not installed.
-    """
-    require_distances()
-    from trimesh import proximity
-
-    nearby_faces: Any = proximity.nearby_faces
-    target, corners = interop.to_trimesh(mesh), mesh.vertices[mesh.faces]
+    """Return the distance of each point from a mesh, (k,), in model units."""
+    corners = mesh.vertices[mesh.faces]
+    lows, highs = corners.min(axis=1), corners.max(axis=1)
+    boxes = _index((np.arange(len(corners)), lows, highs))
+    slack = _SLACK * max(np.abs(corners).max(), np.abs(points).max(initial=0.0))
     found = np.zeros(len(points))
     for at in range(0, len(points), _BATCH):
         batch = points[at : at + _BATCH]
-        # Which faces can be the nearest is taken from trimesh, but not how far they are: there it
-        # is wrong for needles by a good part of their length.
-        near = nearby_faces(target, batch)
-        counts = np.array([len(faces) for faces in near])
-        faces = np.concatenate(near).astype(np.int64)
+        # How far any triangle is bounds the least distance; whatever is nearer has a box nearer.
+        known, _ = boxes.nearest_v(batch, batch, num_results=1, strict=True)
+        reach = (distances_to_triangles(batch, corners[known]) + slack)[:, None]
+        faces, counts = boxes.intersection_v(batch - reach, batch + reach)
+        counts = counts.astype(np.int64)
         each = distances_to_triangles(np.repeat(batch, counts, axis=0), corners[faces])
-        starts = np.concatenate([[0], counts.cumsum()[:-1]])
-        found[at : at + _BATCH] = np.minimum.reduceat(each, starts)
+        found[at : at + _BATCH] = np.minimum.reduceat(each, counts.cumsum() - counts)
     return found
+
+
+def _index(boxes: tuple[IndexArray, FloatArray, FloatArray]) -> Any:
+    from rtree.index import Index, Property  # late: most comparisons measure no distances
+
+    return Index(boxes, properties=Property(dimension=3))

@@ -110,15 +110,6 @@ def test_compare_refusals(
     assert (found, out) == (code, "") and words in err
 
 
-def test_distances_need_a_part(
-    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(sys.modules, "rtree", None)
-    code, _, err = ran(capsys, "compare", "a.off", "c.stl")
-    assert code == 6 and 'pip install "bspcsg[compare]"' in err
-    assert ran(capsys, "compare", "a.off", "c.stl", "--samples", "0")[0] == 1
-
-
 # split
 
 

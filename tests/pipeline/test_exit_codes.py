@@ -254,7 +254,6 @@ def test_the_process_ends_with_the_code(place: Path, line: str) -> None:
         ("convert a.off -o x.vtk", "meshio"),
         ("render a.off -o x.png", "PIL"),
         ("slice a.off --z 1 -o x.dxf", "ezdxf"),
-        ("compare a.off c.stl", "rtree"),
     ],
 )
 def test_code_6_names_what_to_install(

@@ -20,6 +20,7 @@ HEAVY = [
     "numpy.ma",
     "pyclipper",
     "rich",
+    "rtree",
     "scipy",
     "tempfile",
     "trimesh",

@@ -1,12 +1,11 @@
 """Equality, symmetric difference and distances of two solids."""
 
-import builtins
-from typing import Any
-
+import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg.errors import MissingPartError
+from bspcsg.mesh.distance import distances_to_triangles
+from bspcsg.verify import comparison
 from bspcsg.verify.comparison import compare
 
 
@@ -44,15 +43,13 @@ def test_an_empty_set_has_no_distance() -> None:
     assert not found.equal and found.hausdorff is None and found.difference.volume == 1
 
 
-def test_what_is_missing_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    plain = builtins.__import__
-
-    def refusing(name: str, *rest: Any, **more: Any) -> Any:
-        if name == "rtree":
-            raise ImportError("No module named 'rtree'", name="rtree")
-        return plain(name, *rest, **more)
-
-    monkeypatch.setattr(builtins, "__import__", refusing)
-    with pytest.raises(MissingPartError) as caught:
-        compare(b.cube(1), b.cube(2))
-    assert "bspcsg[compare]" in caught.value.message and "--samples 0" in caught.value.message
+@pytest.mark.parametrize("shift", [0.0, 1e6])
+def test_the_farthest_of_many_points_is_that_of_all_pairs(shift: float) -> None:
+    body = (b.sphere(3, segments=24) - b.cylinder(9, 0.001, segments=64)).translate(shift, 0, 0)
+    mesh, points = body.to_mesh(), np.random.default_rng(4).normal(size=(300, 3)) * 3
+    points[:, 0] += shift
+    corners = mesh.vertices[mesh.faces]
+    every = [
+        distances_to_triangles(np.tile(point, (len(corners), 1)), corners).min() for point in points
+    ]
+    assert comparison._farthest(mesh, points) == max(every)

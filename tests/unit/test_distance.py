@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bspcsg.mesh.distance import distances_to_triangles
+from bspcsg.mesh.distance import distances_to_triangles, nearest_on_triangles
 
 RIGHT = np.array([(0.0, 0, 0), (4, 0, 0), (0, 3, 0)])
 
@@ -45,3 +45,15 @@ def test_triangle_without_area_is_its_longest_side() -> None:
     flat = np.array([[(0.0, 0, 0), (2, 0, 0), (1, 0, 0)]])
     assert distances_to_triangles(np.array([(1.5, 2, 0)]), flat)[0] == 2
     assert distances_to_triangles(np.array([(5.0, 4, 0)]), flat[:, [0, 0, 0]])[0] == 41**0.5
+
+
+def test_nearest_points_are_at_the_distances() -> None:
+    rng = np.random.default_rng(2)
+    corners = rng.normal(size=(5000, 3, 3))
+    points = rng.normal(size=(5000, 3)) * 2
+    found = nearest_on_triangles(points, corners)
+    distances = distances_to_triangles(points, corners)
+    assert np.linalg.norm(found - points, axis=1) == pytest.approx(distances, abs=1e-12)
+    assert distances_to_triangles(found, corners).max() < 1e-12
+    flat = np.array([[(0.0, 0, 0), (2, 0, 0), (1, 0, 0)]])
+    assert nearest_on_triangles(np.array([(1.5, 2, 0)]), flat).tolist() == [[1.5, 0, 0]]

@@ -78,7 +78,7 @@ def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
 
 def dxf_data(region: Region) -> bytes:
     """Return what `save_dxf` writes."""
-    ezdxf = optional("ezdxf", "2d")
+    ezdxf = optional("ezdxf", "ezdxf")
     outlines = region.to_polygons()
     document = ezdxf.new("R2010")
     for points in outlines:
@@ -91,7 +91,7 @@ def dxf_data(region: Region) -> bytes:
 
 def read_document(path: str | os.PathLike[str]) -> Any:
     """Return the ezdxf document of a file; `FormatError` if it is none."""
-    ezdxf = optional("ezdxf", "2d")
+    ezdxf = optional("ezdxf", "ezdxf")
     name = os.fspath(path)
     text = limited_content(name).decode("utf-8", errors="surrogateescape")
     try:

@@ -70,7 +70,7 @@ def shown_shapes(path: str | os.PathLike[str]) -> list[Any]:
         As `load_svg` does.
     """
     data = _checked(path)
-    elements = optional("svgelements", "2d")
+    elements = optional("svgelements", "svgelements")
     try:
         drawing = elements.SVG.parse(io.BytesIO(_in_user_units(data)), reify=False, ppi=96.0)
         shapes = [shape for shape in drawing.elements() if isinstance(shape, elements.Shape)]
@@ -187,7 +187,7 @@ def outlines_of(shape: Any, steps: Callable[[Any], int]) -> Iterator[tuple[Float
     steps : callable
         Says of an arc or a curve of svgelements how many chords replace it.
     """
-    elements = optional("svgelements", "2d")
+    elements = optional("svgelements", "svgelements")
     matrix = shape.transform
     linear = np.array([(matrix.a, matrix.c), (matrix.b, matrix.d)], dtype=np.float64)
     for subpath in elements.Path(shape).as_subpaths():

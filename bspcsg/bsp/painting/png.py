@@ -46,7 +46,7 @@ def image(
     try:
         from PIL import Image, ImageDraw
     except ImportError as error:
-        message = "PNG pictures need Pillow: pip install 'bspcsg[pictures]'."
+        message = "PNG pictures need Pillow: pip install pillow."
         raise BspcsgError(message, "missing_dependency") from error
     width, height = painting.size
     if width * height * samples**2 > _MOST:

@@ -1,11 +1,11 @@
 """The nearest points of segments and polygons, in doubles."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
 from ..._types import FloatArray
+from ...mesh.distance import nearest_on_triangles
 from .pieces import Pieces
 
 #: How many pairs of point and piece are looked at together.
@@ -28,17 +28,12 @@ def nearest_on_segments(points: FloatArray, segments: FloatArray) -> FloatArray:
 
 def nearest_on_polygons(points: FloatArray, polygons: Pieces) -> FloatArray:
     """Return the point of any convex polygon in space that is nearest to each of (k, 3) points."""
-    # It takes most of a second to import, which pictures need not wait for.
-    import trimesh
-
     triangles = np.concatenate([_fan(polygons[k]) for k in range(len(polygons))])
 
     def candidates(block: FloatArray) -> FloatArray:
         pairs = np.repeat(block, len(triangles), axis=0)
         copies = np.tile(triangles, (len(block), 1, 1))
-        closest: Any = trimesh.triangles.closest_point
-        found = closest(copies, pairs)
-        return np.asarray(found).reshape(len(block), len(triangles), 3)
+        return nearest_on_triangles(pairs, copies).reshape(len(block), len(triangles), 3)
 
     return _nearest(points, len(triangles), candidates)
 

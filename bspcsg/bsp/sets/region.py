@@ -419,7 +419,7 @@ class Region(PlaneQueries):
 
     def to_shapely(self) -> Any:
         """Return a ``shapely.MultiPolygon``; shapely must be installed."""
-        shapely = interop.optional("shapely", "2d")
+        shapely = interop.optional("shapely", "shapely")
         shells = [k for k, outline in enumerate(self.outlines) if not outline.is_hole]
         holes: Sequence[list[FloatArray]] = [
             [o.points for o in self.outlines if o.is_hole and o.parent == k] for k in shells

@@ -16,7 +16,6 @@ from ..._core import __version__
 from ...errors import BspcsgError, missing_part
 from ...solid.solid import Solid
 from ...verify.check import TOLERANCES, same_set_bound
-from ...verify.comparison import require_distances
 from ...verify.discrepancy import SetDifference, difference_of
 from ...verify.referee import count_agreeing
 from ..engines.openscad import ask_openscad, run_script
@@ -44,15 +43,13 @@ def is_installed(engine: str) -> bool:
     return bool(shutil.which(engine)) if engine == "openscad" else find_spec(engine) is not None
 
 
-def require(engines: Sequence[str], samples: int) -> None:
-    """Refuse engines, and points to measure distances from, if what they need is not installed.
+def require(engines: Sequence[str]) -> None:
+    """Refuse engines that are not installed.
 
     Raises
     ------
     MissingPartError
     """
-    if samples:
-        require_distances()
     for engine in engines:
         if not is_installed(engine):
             raise missing_part(engine, "to compare with", ENGINES[engine])

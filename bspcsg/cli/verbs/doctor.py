@@ -23,16 +23,25 @@ Example:
   bspcsg doctor
 """
 
-_REQUIRED = ("numpy", "click", "rich", "jinja2", "manifold3d", "pyclipper", "trimesh", "uharfbuzz")
+_REQUIRED = {
+    "click": "the command line",
+    "ezdxf": "DXF files",
+    "jinja2": "pages of report and view",
+    "manifold3d": "checking results",
+    "numpy": "everything",
+    "pillow": "PNG pictures",
+    "pyclipper": "offsets",
+    "rich": "tables",
+    "rtree": "distances in compare and validate",
+    "svgelements": "reading SVG files",
+    "uharfbuzz": "text",
+}
 
 #: Optional packages, what each is for, and the extra that brings it.
 _OPTIONAL = (
     ("pymeshlab", "repair", "repair"),
     ("meshio", "VTK and VTU files", "vtk"),
-    ("scipy", "distances in compare", "compare"),
-    ("rtree", "distances in compare", "compare"),
-    ("pillow", "PNG files of render, small pictures in report", "pictures"),
-    ("ezdxf", "DXF files of slice", "2d"),
+    ("trimesh", "the trimesh engine, to_trimesh, meshes of bench", "trimesh"),
     ("distributed", "validate on a cluster", "cluster"),
 )
 
@@ -98,7 +107,9 @@ def _own() -> list[_Part]:
 
 def _required(name: str) -> _Part:
     found = _version_of(name)
-    return _Part(name, found, "everything", "" if found else f"pip install {name}", required=True)
+    return _Part(
+        name, found, _REQUIRED[name], "" if found else f"pip install {name}", required=True
+    )
 
 
 def _packages() -> list[_Part]:

@@ -172,7 +172,7 @@ class _Validation:
         from ...campaign.record import is_failure
 
         self._refuse_early()
-        require(self._settings["against"], self._settings["samples"])
+        require(self._settings["against"])
         answering = self._answering()
         cases = self._cases(answering)
         header = self._header()

@@ -83,7 +83,7 @@ def _drawn(path: Path) -> Region:
 
 def _steps_of(shape: Any) -> Callable[[Any], int]:
     """Return how many chords OpenSCAD gives the arcs and curves of a shape."""
-    elements = optional("svgelements", "2d")
+    elements = optional("svgelements", "svgelements")
     if isinstance(shape, (elements.Circle, elements.Ellipse)):
         return lambda _: _QUARTER_STEPS
 

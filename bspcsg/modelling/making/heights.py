@@ -147,7 +147,7 @@ def read_picture(path: Path) -> Heights:
     MissingPartError
         If Pillow is not installed.
     """
-    pillow = optional("PIL.Image", "pictures")
+    pillow = optional("PIL.Image", "pillow")
     with format_errors(str(path), "PNG"), warnings.catch_warnings():
         # Pictures too large are refused below.
         warnings.simplefilter("ignore", pillow.DecompressionBombWarning)
