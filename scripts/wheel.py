@@ -1,0 +1,195 @@
+"""Builds wheels of what is committed, looks into them, and tries them where no Rust is.
+
+Zig links them against an old C library, so that they run on old systems, too; it and maturin are
+installed into out/wheel. What is built for this machine is installed into an environment of its
+own, without compilers on the path: there the time from `pip install` to the first checked boolean
+is measured, then scripts/smoke.py and the demo run. With --record the figures are kept.
+"""
+
+import argparse
+import os
+import platform
+import resource
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+import time
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+
+from recording import REPOSITORY, keep
+from wheel_contents import problems_of
+
+OUT = REPOSITORY / "out" / "wheel"
+DIST = REPOSITORY / "dist"
+
+#: What each kind of wheel is compiled for, and the systems that it promises to run on.
+TARGETS = {
+    "manylinux": ("x86_64-unknown-linux-gnu", "manylinux_2_17"),
+    "musllinux": ("x86_64-unknown-linux-musl", "musllinux_1_2"),
+    "manylinux-aarch64": ("aarch64-unknown-linux-gnu", "manylinux_2_17"),
+    "musllinux-aarch64": ("aarch64-unknown-linux-musl", "musllinux_1_2"),
+}
+
+#: Seconds within which a user has a checked result, downloads included.
+PATIENCE = 60
+
+#: No compilers are found here.
+_PLAIN_PATH = "/usr/bin:/bin"
+
+_BOOLEAN = ("examples/meshes/plate_holes.stl", "examples/meshes/half_plate.off")
+
+
+def run(*command: object, **settings: object) -> None:
+    """Run a command, and end this program if it fails."""
+    line = [str(word) for word in command]
+    done = subprocess.run(line, check=False, **settings)  # type: ignore[call-overload]
+    if done.returncode:
+        raise SystemExit(f"{' '.join(line)}: code {done.returncode}")
+
+
+def tools() -> Path:
+    """Return the folder of the programs that build, installed when they are not there."""
+    folder = OUT / "tools"
+    if not (folder / "bin" / "maturin").exists():
+        run(sys.executable, "-m", "venv", folder)
+        run(folder / "bin" / "pip", "install", "--quiet", "maturin>=1.8,<2", "ziglang")
+    return folder / "bin"
+
+
+def committed(folder: Path) -> Path:
+    """Lay what is committed into a folder, with the page that an index shows."""
+    done = subprocess.run(
+        ["git", "-C", str(REPOSITORY), "archive", "HEAD"], capture_output=True, check=True
+    )
+    with tarfile.open(fileobj=BytesIO(done.stdout)) as archive:
+        archive.extractall(folder, filter="data")
+    run(sys.executable, folder / "scripts" / "readme_for_index.py", cwd=folder)
+    return folder
+
+
+def built(kind: str) -> Path:
+    """Build one kind of wheel and return where it is."""
+    target, tag = TARGETS[kind]
+    run("rustup", "target", "add", target, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    binaries = tools()
+    known = {"CARGO_TARGET_DIR": str(REPOSITORY / "core" / "target")} | dict(os.environ)
+    environment = known | {"PATH": f"{binaries}:{os.environ['PATH']}"}
+    with tempfile.TemporaryDirectory() as name:
+        options = ["--zig", "--compatibility", tag, "--target", target, "--profile", "dist"]
+        command = [binaries / "maturin", "build", "--quiet", *options, "--out", name + "/dist"]
+        run(*command, cwd=committed(Path(name)), env=environment)
+        found = next(Path(name, "dist").glob("*.whl"))
+        DIST.mkdir(exist_ok=True)
+        return Path(shutil.move(found, DIST / found.name))
+
+
+def source() -> Path:
+    """Build the source distribution and return where it is."""
+    with tempfile.TemporaryDirectory() as name:
+        command = [tools() / "maturin", "sdist", "--quiet", "--out", name + "/dist"]
+        run(*command, cwd=committed(Path(name)))
+        found = next(Path(name, "dist").glob("*.tar.gz"))
+        DIST.mkdir(exist_ok=True)
+        return Path(shutil.move(found, DIST / found.name))
+
+
+@dataclass
+class Trial:
+    """What it takes from a wheel to the first checked boolean.
+
+    Parameters
+    ----------
+    seconds, processor_seconds : float
+    packages : int
+        How many packages were installed.
+    megabytes : float
+        What the environment holds then.
+    """
+
+    seconds: float
+    processor_seconds: float
+    packages: int
+    megabytes: float
+
+
+def tried(wheel: Path) -> Trial:
+    """Install a wheel where no Rust is, combine two meshes, then run the smoke test and the demo.
+
+    Downloads come from the index; what pip has kept is left aside.
+    """
+    with tempfile.TemporaryDirectory() as name:
+        home = Path(name)
+        plain = {"PATH": _PLAIN_PATH, "HOME": name, "LANG": "C.UTF-8"}
+        plain |= {key: value for key, value in os.environ.items() if key.startswith("PIP_")}
+        if shutil.which("cargo", path=_PLAIN_PATH):
+            raise SystemExit(f"a cargo in {_PLAIN_PATH} makes this no trial")
+        python, before, start = home / "venv/bin/python", _used(), time.monotonic()
+        run(Path(sys.base_prefix) / "bin" / "python3", "-m", "venv", home / "venv", env=plain)
+        pip = [python, "-m", "pip", "install", "--quiet", "--no-cache-dir"]
+        run(*pip, "--disable-pip-version-check", wheel, env=plain, cwd=home)
+        program = home / "venv/bin/bspcsg"
+        run(program, "difference", *_BOOLEAN, "-o", home / "half.stl", env=plain, cwd=REPOSITORY)
+        trial = Trial(time.monotonic() - start, _used() - before, *_sizes(home / "venv"))
+        run(python, REPOSITORY / "scripts" / "smoke.py", env=plain, cwd=home)
+        demo = plain | {"BSPCSG": str(program)}
+        run(REPOSITORY / "scripts" / "demo", env=demo, stdout=subprocess.DEVNULL, cwd=home)
+        return trial
+
+
+def _used() -> float:
+    """Return the processor time of all that this program started, in seconds."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def _sizes(folder: Path) -> tuple[int, float]:
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    packages = [path for path in files if path.name == "METADATA"]
+    return len(packages), sum(path.stat().st_size for path in files) / 1e6
+
+
+def runs_here(kind: str) -> bool:
+    """Whether a kind of wheel can be installed on this machine."""
+    library = "manylinux" if platform.libc_ver()[0] == "glibc" else "musllinux"
+    return TARGETS[kind][0].startswith(platform.machine()) and kind.startswith(library)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("kinds", nargs="*", metavar="kind", help=f"of {', '.join(TARGETS)}, sdist")
+    parser.add_argument("--wheel", type=Path, help="a built wheel, to be looked at and tried only")
+    parser.add_argument("--record", action="store_true", help="keep the figures")
+    options = parser.parse_args()
+    kinds = options.kinds or ["manylinux"]
+    unknown = [kind for kind in kinds if kind not in {*TARGETS, "sdist"}]
+    if unknown:
+        parser.error(f"no such kind: {', '.join(unknown)}")
+    found = {}
+    for kind in kinds:
+        path = options.wheel or (source() if kind == "sdist" else built(kind))
+        megabytes, problems = path.stat().st_size / 1e6, problems_of(path)
+        print(f"{path.name}: {megabytes:.2f} MB", *problems, sep="\n  ", flush=True)
+        if problems:
+            return 1
+        found[kind] = {"file": path.name, "megabytes": round(megabytes, 2)}
+        if kind != "sdist" and runs_here(kind):
+            trial = tried(path)
+            found[kind] |= {name: round(value, 1) for name, value in vars(trial).items()}
+            print(
+                f"  {trial.packages} packages of {trial.megabytes:.0f} MB; first checked boolean"
+                f" after {trial.seconds:.1f} s, {trial.processor_seconds:.1f} s of them on a"
+                f" processor (at most {PATIENCE} s)"
+            )
+            if trial.seconds > PATIENCE:
+                return 1
+    if options.record:
+        print(f"kept in {keep('wheel', {'wheels': found})}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,109 @@
+"""Checks what is in wheels and source distributions: all of the package, and nothing else.
+
+`python scripts/wheel_contents.py dist/*` prints a line for each file, and ends with 1 if something
+is wrong. Needs nothing but Python.
+"""
+
+import re
+import sys
+import tarfile
+import zipfile
+from email.message import Message
+from email.parser import Parser
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+#: The largest wheel and source distribution, in bytes.
+LARGEST = 8_000_000
+
+#: What no source distribution holds.
+_FOREIGN = re.compile(r"(^|/)(\.git|\.venv|target|out|dist|__pycache__)/|\.(so|pyd|pyc)$")
+
+#: What a source distribution has beside the package.
+_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md", "core/Cargo.toml")
+
+#: Sections of a library that was not stripped.
+_SYMBOLS = (b".symtab\0", b".debug_info\0")
+
+
+def package() -> set[str]:
+    """Return the files of the package as they stand here, without what is built."""
+    found = (path for path in (ROOT / "bspcsg").rglob("*") if path.is_file())
+    names = {path.relative_to(ROOT).as_posix() for path in found}
+    return {name for name in names if not _FOREIGN.search(name)}
+
+
+def problems_of_wheel(path: Path) -> list[str]:
+    """Return what is wrong with a wheel."""
+    with zipfile.ZipFile(path) as archive:
+        names = {name for name in archive.namelist() if not name.endswith("/")}
+        info = next(name.split("/")[0] for name in names if ".dist-info/" in name)
+        about = archive.read(f"{info}/METADATA").decode("utf-8")
+        tags = archive.read(f"{info}/WHEEL").decode("utf-8")
+        cores = [name for name in names if re.fullmatch(r"bspcsg/_core\.(abi3\.so|pyd)", name)]
+        bare = all(mark not in archive.read(name) for name in cores for mark in _SYMBOLS)
+    own = {name for name in names if not name.startswith(f"{info}/")} - set(cores)
+    problems = [f"{name} is missing" for name in sorted(package() - own)]
+    problems += [f"{name} should not be there" for name in sorted(own - package())]
+    problems += _problems_of_metadata(Parser().parsestr(about))
+    if len(cores) != 1:
+        problems.append(f"it has {len(cores)} native cores")
+    if not bare:
+        problems.append("the native core is not stripped")
+    if "-abi3-" not in tags:
+        problems.append("it is for one version of Python only")
+    return problems + _problems_of_size(path)
+
+
+def problems_of_source(path: Path) -> list[str]:
+    """Return what is wrong with a source distribution."""
+    with tarfile.open(path) as archive:
+        names = {name.partition("/")[2] for name in archive.getnames()}
+    core = {f.relative_to(ROOT).as_posix() for f in (ROOT / "core/src").rglob("*.rs")}
+    wanted = package() | core | {*_SOURCES, "core/Cargo.lock", "PKG-INFO"}
+    problems = [f"{name} is missing" for name in sorted(wanted - names)]
+    foreign = [name for name in sorted(names) if _FOREIGN.search(name)]
+    return problems + [f"{name} should not be there" for name in foreign] + _problems_of_size(path)
+
+
+def _problems_of_size(path: Path) -> list[str]:
+    size = path.stat().st_size
+    return [f"it has {size:,} bytes, more than {LARGEST:,}"] if size > LARGEST else []
+
+
+def _problems_of_metadata(about: Message) -> list[str]:
+    urls = about.get_all("Project-URL") or []
+    missing = [
+        name
+        for name in ("Homepage", "Documentation", "Changelog", "Issues", "Source")
+        if not any(url.startswith(f"{name}, https://") for url in urls)
+    ]
+    problems = [f"it names no {name}" for name in missing]
+    wanted = {"Author": "bspcsg contributors", "License-Expression": "Apache-2.0"}
+    problems += [f"{key} is not {word}" for key, word in wanted.items() if about[key] != word]
+    if not about.get_all("Classifier"):
+        problems.append("it has no classifiers")
+    page = str(about.get_payload())
+    relative = re.findall(r"\]\((?!https?:|mailto:|#)([^)\s]+)\)", page)
+    return problems + [f"its page links to {name}, which an index has not" for name in relative]
+
+
+def problems_of(path: Path) -> list[str]:
+    """Return what is wrong with a distribution."""
+    return problems_of_wheel(path) if path.suffix == ".whl" else problems_of_source(path)
+
+
+def main() -> int:
+    code = 0
+    for path in map(Path, sys.argv[1:]):
+        problems = problems_of(path)
+        print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB, {len(problems)} problems")
+        for problem in problems:
+            print(f"  {problem}")
+            code = 1
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())
