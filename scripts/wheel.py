@@ -90,7 +90,7 @@ def built(kind: str) -> Path:
 def source() -> Path:
     """Build the source distribution and return where it is."""
     with tempfile.TemporaryDirectory() as name:
-        command = [tools() / "maturin", "sdist", "--quiet", "--out", name + "/dist"]
+        command = [tools() / "maturin", "sdist", "--out", name + "/dist"]
         run(*command, cwd=committed(Path(name)))
         found = next(Path(name, "dist").glob("*.tar.gz"))
         DIST.mkdir(exist_ok=True)

@@ -1,0 +1,143 @@
+"""What packages hold, and that a fault in one is named; wheels are built by scripts/wheel."""
+
+import re
+import subprocess
+import sys
+import tarfile
+import tomllib
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import readme_for_index
+import wheel_contents
+from wheel_contents import ROOT, package, problems_of
+
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+ABOUT = """Metadata-Version: 2.4
+Name: bspcsg
+Author: bspcsg contributors
+License-Expression: Apache-2.0
+Classifier: Typing :: Typed
+Project-URL: Homepage, https://example.org
+Project-URL: Documentation, https://example.org
+Project-URL: Changelog, https://example.org
+Project-URL: Issues, https://example.org
+Project-URL: Source, https://example.org
+
+{page}
+"""
+
+
+def put_wheel(folder: Path, change: Callable[[dict[str, bytes]], object] = len) -> Path:
+    """Write a wheel of this package with a core of a few bytes, changed somehow."""
+    files = {name: (ROOT / name).read_bytes() for name in package()}
+    page = readme_for_index.absolute((ROOT / "README.md").read_text(), readme_for_index.home())
+    files["bspcsg/_core.abi3.so"] = b"\x7fELF"
+    files["bspcsg-1.dist-info/METADATA"] = ABOUT.format(page=page).encode()
+    files["bspcsg-1.dist-info/WHEEL"] = b"Tag: cp311-abi3-manylinux_2_17_x86_64\n"
+    change(files)
+    path = folder / "bspcsg-1-cp311-abi3-linux_x86_64.whl"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in files.items():
+            archive.writestr(name, data)
+    return path
+
+
+def test_a_wheel_of_all_files_is_in_order(tmp_path: Path) -> None:
+    assert len(package()) > 300 and not [name for name in package() if "test" in name]
+    assert problems_of(put_wheel(tmp_path)) == []
+
+
+FAULTS: dict[str, tuple[Callable[[dict[str, bytes]], object], str]] = {
+    "a font less": (
+        lambda files: files.pop(next(name for name in files if name.endswith(".ttf"))),
+        ".ttf is missing",
+    ),
+    "a page's part less": (
+        lambda files: files.pop("bspcsg/report/assets/viewer.js"),
+        "viewer.js is missing",
+    ),
+    "tests": (
+        lambda files: files.update({"tests/unit/test_a.py": b""}),
+        "tests/unit/test_a.py should not be there",
+    ),
+    "symbols": (
+        lambda files: files.update({"bspcsg/_core.abi3.so": b"\x7fELF\0.symtab\0"}),
+        "the native core is not stripped",
+    ),
+    "no core": (lambda files: files.pop("bspcsg/_core.abi3.so"), "it has 0 native cores"),
+    "a relative link": (
+        lambda files: files.update({"bspcsg-1.dist-info/METADATA": b"\n![a](b.png)\n"}),
+        "its page links to b.png, which an index has not",
+    ),
+    "one version": (
+        lambda files: files.update({"bspcsg-1.dist-info/WHEEL": b"Tag: cp311-cp311-linux\n"}),
+        "it is for one version of Python only",
+    ),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_faults_of_a_wheel_are_named(tmp_path: Path, fault: str) -> None:
+    change, words = FAULTS[fault]
+    assert words in "\n".join(problems_of(put_wheel(tmp_path, change)))
+
+
+def test_a_large_wheel_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(wheel_contents, "LARGEST", 1000)
+    assert "more than 1,000" in "\n".join(problems_of(put_wheel(tmp_path)))
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("source")
+    command = [sys.executable, "-m", "maturin", "sdist", "--out", str(folder)]
+    subprocess.run(command, cwd=ROOT, check=True, capture_output=True, timeout=300)
+    return next(folder.glob("*.tar.gz"))
+
+
+def test_the_source_distribution_has_what_a_build_needs(source: Path) -> None:
+    assert problems_of(source) == []
+
+
+def test_the_metadata_say_who_and_where(source: Path) -> None:
+    with tarfile.open(source) as archive:
+        found = next(name for name in archive.getnames() if name.endswith("/PKG-INFO"))
+        stream = archive.extractfile(found)
+        assert stream is not None
+        about = stream.read().decode()
+    assert "Author: bspcsg contributors" in about
+    assert about.count("\nProject-URL: ") == 5
+    assert "\nProvides-Extra: all\n" in about
+
+
+def test_links_become_absolute() -> None:
+    text = "![a](b/c.png) [d](e.md#f) [g](#h) [i](https://j)"
+    assert readme_for_index.absolute(text, "https://x/y") == (
+        "![a](https://x/y/raw/main/b/c.png) [d](https://x/y/blob/main/e.md#f) [g](#h) [i](https://j)"
+    )
+
+
+def test_all_is_what_users_want() -> None:
+    """All extras but those that measure, document and test."""
+    extras = PROJECT["optional-dependencies"]
+    named = re.findall(r"[\w-]+", extras["all"][0].partition("[")[2])
+    assert set(named) == set(extras) - {"all", "bench", "docs", "test"}
+
+
+def test_what_a_plain_install_brings_is_what_doctor_asks_for() -> None:
+    from bspcsg.cli.verbs import doctor
+
+    brought = {re.match(r"[\w-]+", line)[0] for line in PROJECT["dependencies"]}  # type: ignore[index]
+    assert brought == set(doctor._REQUIRED)
+
+
+def test_the_smoke_test_passes(tmp_path: Path) -> None:
+    command = [sys.executable, str(ROOT / "scripts/smoke.py")]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.count("ok: ") == 5
