@@ -1,5 +1,6 @@
 """Types of the compiled core; `docs/design/binding.md` says what each call means."""
 
+from collections.abc import Callable
 from typing import (
     Literal,
     TypeAlias,
@@ -174,6 +175,58 @@ class Tree:
 _Floats: TypeAlias = npt.NDArray[np.float64]
 _Indices: TypeAlias = npt.NDArray[np.int64]
 
+_DivisionRow: TypeAlias = tuple[
+    tuple[int, int, int, int, list[int], _Reason],
+    list[tuple[int, int, int, int, float]],
+    list[list[int]],
+]
+_RayEventRow: TypeAlias = tuple[
+    Literal["visit", "test", "leaf"],
+    int,
+    int,
+    int,
+    float | None,
+    float | None,
+    float | None,
+]
+_StabRow: TypeAlias = tuple[
+    Literal["visit", "leaf", "test", "count", "divide"], int, int, int, list[list[int]] | None
+]
+_MergeRow: TypeAlias = tuple[Literal["pair", "split", "halves", "join"], int, int, str, str]
+_Reason: TypeAlias = Literal[
+    "first",
+    "random",
+    "least-splits",
+    "balanced",
+    "weighted",
+    "least-cost",
+    "end-points",
+    "median",
+    "given",
+    "asked",
+]
+
+@type_check_only
+class StabArrays(TypedDict):
+    visits: _Indices
+    depth: _Indices
+    minus: _Indices
+    plus: _Indices
+    offsets: _Indices
+    facets: _Indices
+    hits: _Indices
+    hyperplanes: list[list[int]]
+
+@type_check_only
+class CasterArrays(TypedDict):
+    low: _Floats
+    high: _Floats
+    axis: _Indices
+    minus: _Indices
+    plus: _Indices
+    offsets: _Indices
+    facets: _Indices
+
 @final
 class RayScene:
     def __new__(cls, dimension: int, corners: _Floats, pitch: int | None = None) -> RayScene: ...
@@ -181,6 +234,7 @@ class RayScene:
     @property
     def pitch(self) -> int: ...
     def complete(self, threads: int = 0) -> None: ...
+    def nodes(self) -> CasterArrays: ...
     def first(
         self, origins: _Floats, directions: _Floats, threads: int = 0
     ) -> tuple[_Indices, _Floats, npt.NDArray[np.int8], _Floats, _Floats]: ...
@@ -220,6 +274,14 @@ class RayTree:
     def test(
         self, origins: _Floats, directions: _Floats
     ) -> tuple[tuple[_Indices, _Floats, npt.NDArray[np.int8], _Floats, _Floats], _Indices]: ...
+    def test_watched(
+        self, origin: _Floats, direction: _Floats
+    ) -> tuple[
+        tuple[_Indices, _Floats, npt.NDArray[np.int8], _Floats, _Floats],
+        _Indices,
+        list[_StabRow],
+    ]: ...
+    def nodes(self) -> StabArrays: ...
     def stats(self) -> dict[str, int]: ...
 
 @final
@@ -245,6 +307,8 @@ class ObjectTree:
     def load(cls, data: bytes) -> ObjectTree: ...
     def dump(self) -> bytes: ...
     def merge(self, other: ObjectTree, op: str) -> ObjectTree: ...
+    def merge_steps(self, other: ObjectTree, op: str) -> tuple[ObjectTree, list[_MergeRow]]: ...
+    def hyperplanes(self) -> list[list[int]]: ...
     def equals(self, other: ObjectTree) -> bool: ...
     def complement(self) -> ObjectTree: ...
     def partitioned(self, hyperplane: list[int]) -> ObjectTree: ...
@@ -301,7 +365,40 @@ class FragmentTree:
         top: int = 0,
         pitch: int | None = None,
         lenience: tuple[bool, bool] = ...,
+        own: list[list[int]] | None = None,
     ) -> FragmentTree: ...
+    @classmethod
+    def asked(
+        cls,
+        corners: npt.NDArray[np.float64],
+        offsets: npt.NDArray[np.int64],
+        answer: Callable[
+            [int, int, list[tuple[int, int, int, int, float]]], tuple[int, list[int] | None]
+        ],
+        sample: int,
+        pitch: int,
+        lenience: tuple[bool, bool],
+        own: list[list[int]],
+    ) -> FragmentTree: ...
+    def grown(
+        self,
+        corners: npt.NDArray[np.float64],
+        offsets: npt.NDArray[np.int64],
+        policy: str,
+        seed: int,
+        sample: int,
+        alpha: float,
+        lenience: tuple[bool, bool],
+    ) -> FragmentTree: ...
+    def construction(self) -> list[_DivisionRow]: ...
+    def path(self, point: list[float]) -> list[tuple[int, int]]: ...
+    def cast(
+        self, origins: npt.NDArray[np.float64], directions: npt.NDArray[np.float64]
+    ) -> tuple[_Indices, _Floats, _Indices, _Indices, _Indices]: ...
+    def ray_events(
+        self, origin: list[float], direction: list[float]
+    ) -> tuple[tuple[int, float] | None, list[_RayEventRow]]: ...
+    def own(self) -> list[list[int]]: ...
     @classmethod
     def rebuild(
         cls,
@@ -310,6 +407,7 @@ class FragmentTree:
         pitch: int,
         cuts: npt.NDArray[np.int64],
         lenience: tuple[bool, bool],
+        own: list[list[int]] | None = None,
     ) -> FragmentTree: ...
     def __len__(self) -> int: ...
     def perfect_cuts(self) -> npt.NDArray[np.int64] | None: ...

@@ -12,6 +12,7 @@ _ROOT = Path(__file__).resolve().parent.parent
 _PACKAGES = (
     "bspcsg",
     "bspcsg.bsp",
+    "bspcsg.bsp.analysis",
     "bspcsg.csg",
     "bspcsg.io",
     "bspcsg.block",
@@ -82,7 +83,7 @@ def api_pages() -> dict[str, str]:
     placed: dict[str, list[tuple[str, Any]]] = {name: [] for name in _TITLES}
     seen: set[str] = set()
     for package in _PACKAGES:
-        module = loader.modules_collection[package]
+        module = _module(loader.modules_collection[package])
         for name in _public(module):
             entity = None if name.startswith("_") else _target(module[name])
             if entity is not None and entity.path not in seen:
@@ -90,6 +91,11 @@ def api_pages() -> dict[str, str]:
                 placed[_page(entity)].append((f"{package}.{name}", entity))
     pages = {name: _page_text(_TITLES[name], held) for name, held in placed.items() if held}
     return {"index": _index(placed), **pages}
+
+
+def _module(found: Any) -> Any:
+    """Return a module itself, if what was found is another name for it."""
+    return found.final_target if found.is_alias else found
 
 
 def _public(module: Any) -> list[str]:

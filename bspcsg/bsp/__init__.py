@@ -12,20 +12,43 @@ from .painting.camera import Camera
 from .painting.panorama import panorama
 from .painting.picture import Picture, picture
 from .rays.adaptive import AdaptiveTree, StabStats, StabTree, StaticTree, Tests
-from .rays.caster import EDGE, INTERIOR, MISS, VERTEX, HitLists, Hits, InsideSpans, RayCaster
+from .rays.caster import (
+    EDGE,
+    INTERIOR,
+    MISS,
+    VERTEX,
+    CasterNodes,
+    HitLists,
+    Hits,
+    InsideSpans,
+    RayCaster,
+)
 from .rays.distribution import optimised_tree, scores
+from .rays.trace import LeafDivision, StabNodes, StabStep, StabTrace
 from .sets.interval import Intervals
 from .sets.loops import Outline
 from .sets.objects import ObjectTree, merge, partition_tree, split_tree
 from .sets.pieces import NodeTable, Pieces
 from .sets.region import Region
 from .sets.slicing import plane_frame, slice_solid
+from .sets.trace import MergeHalves, MergeJoin, MergePair, MergeSplit, MergeTrace
 from .trees import analysis as analysis
+from .trees.asking import Choice
 from .trees.cost import Query, Stats
 from .trees.fragments import Fragments
+from .trees.leaf_form import LeafForm
 from .trees.node import Leaf, Node
 from .trees.policies import Comparison, PolicyRow, compare_policies
 from .trees.policy import POLICIES, Policy
+from .trees.trace import (
+    Candidate,
+    Construction,
+    Division,
+    PointTrace,
+    RayCosts,
+    RayStep,
+    RayTrace,
+)
 from .trees.tree import PartitionTree
 
 __all__ = [
@@ -36,13 +59,25 @@ __all__ = [
     "VERTEX",
     "AdaptiveTree",
     "Camera",
+    "Candidate",
+    "CasterNodes",
+    "Choice",
     "Comparison",
+    "Construction",
+    "Division",
     "Fragments",
     "HitLists",
     "Hits",
     "InsideSpans",
     "Intervals",
     "Leaf",
+    "LeafDivision",
+    "LeafForm",
+    "MergeHalves",
+    "MergeJoin",
+    "MergePair",
+    "MergeSplit",
+    "MergeTrace",
     "Node",
     "NodeTable",
     "ObjectTree",
@@ -50,16 +85,24 @@ __all__ = [
     "PartitionTree",
     "Picture",
     "Pieces",
+    "PointTrace",
     "Policy",
     "PolicyRow",
     "Query",
     "RayCaster",
+    "RayCosts",
+    "RayStep",
+    "RayTrace",
     "Region",
+    "StabNodes",
     "StabStats",
+    "StabStep",
+    "StabTrace",
     "StabTree",
     "StaticTree",
     "Stats",
     "Tests",
+    "analysis",
     "compare_policies",
     "load_dxf",
     "load_svg",

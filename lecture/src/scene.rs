@@ -150,7 +150,7 @@ impl<S: Affine> Scene<S> {
         NodeView {
             pivot: match node.cut {
                 NodeCut::Pivot(piece) => self.facets[piece as usize].source,
-                NodeCut::Axis { .. } => u32::MAX,
+                NodeCut::Axis { .. } | NodeCut::Own(_) => u32::MAX,
             },
             hyperplane: on_page_plane::<S>(cut),
             parent: node.parent.map(|(above, _)| above),
@@ -318,7 +318,7 @@ fn pairs<S: Affine>(tree: &FragmentTree<S>) -> Vec<(usize, usize)> {
         .iter()
         .filter_map(|crossing| match tree.nodes()[crossing.node as usize].cut {
             NodeCut::Pivot(cutter) => Some((cutter as usize, crossing.piece as usize)),
-            NodeCut::Axis { .. } => None,
+            NodeCut::Axis { .. } | NodeCut::Own(_) => None,
         })
         .collect();
     found.sort_unstable();

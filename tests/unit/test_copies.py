@@ -24,12 +24,29 @@ CASTER = bsp.RayCaster(SHAPE)
 ORIGINS, UP = [[0.5, 0.5, -1.0], [1.5, 0.25, -1.0]], [0.0, 0.0, 1.0]
 SCRIPT = csg.parse("union() { cube(size = [1, 2, 3], center = true); }")
 OBJECT = bsp.ObjectTree([[0, 2], [5, 6]])
+OTHER = bsp.ObjectTree([[1, 3]])
+TREE_BY_COUNT = bsp.PartitionTree(SEGMENTS, "least-splits")
 
 
 def grown(threshold: int = 3) -> bsp.AdaptiveTree:
     tree = bsp.AdaptiveTree(SEGMENTS, threshold=threshold)
     tree.test_ray(STARTS, ALONG)
     return tree
+
+
+def choice() -> bsp.Choice:
+    seen: list[bsp.Choice] = []
+
+    def first(shown: bsp.Choice) -> int:
+        seen.append(shown)
+        return 0
+
+    bsp.PartitionTree(SEGMENTS, first)
+    return seen[0]
+
+
+def merging(kind: type) -> Any:
+    return next(step for step in OBJECT.trace_merge(OTHER, "xor") if isinstance(step, kind))
 
 
 def leaf() -> bsp.Leaf:
@@ -51,6 +68,25 @@ EXAMPLES: dict[type, Callable[[], Any]] = {
     b.Solid: lambda: SHAPE.rotate(30),
     b.Verdict: lambda: next(iter(b.Verdict)),
     bsp.AdaptiveTree: grown,
+    bsp.Candidate: lambda: TREE_BY_COUNT.trace()[0].candidates[0],
+    bsp.CasterNodes: lambda: CASTER.nodes,
+    bsp.Choice: choice,
+    bsp.Construction: TREE_BY_COUNT.trace,
+    bsp.Division: lambda: TREE.trace()[1],
+    bsp.MergeHalves: lambda: merging(bsp.MergeHalves),
+    bsp.MergeJoin: lambda: merging(bsp.MergeJoin),
+    bsp.LeafDivision: lambda: grown().trace()[0],
+    bsp.LeafForm: TREE.leaf_form,
+    bsp.MergeTrace: lambda: OBJECT.trace_merge(OTHER, "xor"),
+    bsp.MergePair: lambda: merging(bsp.MergePair),
+    bsp.PointTrace: lambda: TREE.trace_point((0.5, 0.25)),
+    bsp.RayCosts: lambda: TREE.test_ray(STARTS, ALONG),
+    bsp.RayStep: lambda: TREE.trace_ray(STARTS[0], ALONG).steps[0],
+    bsp.RayTrace: lambda: TREE.trace_ray(STARTS[0], ALONG),
+    bsp.MergeSplit: lambda: merging(bsp.MergeSplit),
+    bsp.StabNodes: lambda: grown().nodes,
+    bsp.StabStep: lambda: grown().trace_ray(STARTS[0], ALONG).steps[0],
+    bsp.StabTrace: lambda: grown().trace_ray(STARTS[0], ALONG),
     bsp.Camera: lambda: bsp.Camera.orthographic((0, 1, 0)),
     bsp.Comparison: lambda: bsp.compare_policies(SEGMENTS, policies=["first", "random"]),
     bsp.Fragments: lambda: TREE.fragments,

@@ -1,5 +1,6 @@
 """Trees of supporting hyperplanes that rays stab: self-organising, and static to compare with."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,9 +9,13 @@ import numpy as np
 from ..._core import RayTree
 from ..._types import IndexArray
 from ...errors import core_errors, invalid_parameter
-from ...parameters import at_least, pitch_exponent, seed_number
+from ...parameters import at_least, not_negative, pitch_exponent, seed_number
+from ..trees.node import RegionShape
+from ..trees.tree import MARGIN, PartitionTree
 from .caster import Hits, hits_of
+from .regions import region_of
 from .targets import RayTargets, facets_from, ray_arrays
+from .trace import LeafDivision, StabNodes, StabTrace, stab_nodes, stab_step
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +103,75 @@ class StabTree:
     def stats(self) -> StabStats:
         """Return the size of the tree and the counts of what it has been through."""
         return StabStats(**self._tree.stats())
+
+    @property
+    def nodes(self) -> StabNodes:
+        """The nodes as they are now: T(v), L(v) and T(p), S(v), hyperplanes, children."""
+        with core_errors():
+            return stab_nodes(self._tree.nodes())
+
+    def trace(self) -> tuple[LeafDivision, ...]:
+        """Return the divisions that made the tree, in their order."""
+        return self.nodes.divisions
+
+    def trace_ray(self, origin: Any, direction: Any) -> StabTrace:
+        """Test one ray as `test_ray` does, and return each step of its way.
+
+        It counts, and lets the tree grow, as every ray does.
+
+        Parameters
+        ----------
+        origin, direction : (d,) array_like of float
+        """
+        first, second = ray_arrays(origin, direction, self.dimension)
+        if len(first) != 1:
+            raise invalid_parameter("A trace is that of one ray.")
+        with core_errors():
+            columns, counts, rows = self._tree.test_watched(first.ravel(), second.ravel())
+        steps = tuple(map(stab_step, rows))
+        nodes, leaves, tests = counts.tolist()
+        return StabTrace(hits_of(self._facets, columns), nodes, leaves, tests, steps)
+
+    def region(self, node: int, margin: float | None = None) -> RegionShape:
+        """Return R(v) within the box of the facets, grown by a margin.
+
+        Parameters
+        ----------
+        node : int
+        margin : float, optional
+            In model units; by default a twentieth of the largest extent.
+
+        Returns
+        -------
+        (2,) float64, (k, 2) float64 or list of (k, 3) float64
+            As of `PartitionTree.region`, the corners rounded from exact ones.
+        """
+        reach = self._margin() if margin is None else not_negative(margin, "margin")
+        return region_of(self.nodes, node, self._facets.corners, self.pitch, reach)
+
+    def _margin(self) -> float:
+        corners = self._facets.corners.reshape(-1, self.dimension)
+        return MARGIN * float(np.ptp(corners, axis=0).max()) if len(corners) else 1.0
+
+    def to_partition_tree(self) -> PartitionTree:
+        """Return the partition tree with the same cuts, over the same facets.
+
+        A facet that is left in a leaf becomes a node of its own, as `PartitionTree` has no facets
+        in leaves.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a leaf holds several facets; let more rays divide it, or make a `StaticTree`.
+        """
+        tree = PartitionTree(
+            self._facets.corners.reshape(-1) if self.dimension == 1 else self._facets.corners,
+            "first",
+            pitch=self.pitch,
+            degenerate="drop",
+        )
+        pieces = {int(facet): k for k, facet in enumerate(tree.core.piece_sources())}
+        return tree.with_cuts([(-1, pieces[facet]) for facet in _pivots(self.nodes)])
 
     def test_ray(self, origins: Any, directions: Any) -> Tests:
         """Return the first hit of each ray, in the order given, and what each ray cost.
@@ -226,6 +300,21 @@ class StaticTree(StabTree):
                 hits=hits.tolist(),
                 limit=at_least(1, max_nodes, "max_nodes"),
             )
+
+
+def _pivots(nodes: StabNodes) -> Iterator[int]:
+    """Yield the facet of each cut in preorder, one for each region that has facets."""
+    pending = [0]
+    while pending:
+        node = pending.pop()
+        held = nodes.held(node)
+        if not nodes.is_leaf(node):
+            yield int(held[0])
+            pending += [int(nodes.plus[node]), int(nodes.minus[node])]
+        elif len(held) > 1:
+            raise invalid_parameter(f"Leaf {node} holds {len(held)} facets.")
+        else:
+            yield from held.tolist()
 
 
 def _regrown(

@@ -131,6 +131,42 @@ class InsideSpans:
         return np.asarray(sums[self.offsets[1:]] - sums[self.offsets[:-1]])
 
 
+@dataclass(frozen=True, eq=False)
+class CasterNodes:
+    """The nodes of a `RayCaster` that rays have reached; what is deferred is not divided yet.
+
+    Parameters
+    ----------
+    low, high : (n, d) float64
+        The box of each node, in model units.
+    axis : (n,) int64
+        The axis that a node is cut across; -1 for a leaf, -2 for a node that is deferred.
+    minus, plus : (n,) int64
+        The children, -1 for none; a cut is where the box of the one ends and the other's begins.
+    offsets : (n + 1,) int64
+        Leaf v lists ``facets[offsets[v]:offsets[v + 1]]``.
+    facets : (k,) int64
+        A facet is in the list of every leaf that it may have a point in.
+    """
+
+    low: FloatArray
+    high: FloatArray
+    axis: IndexArray
+    minus: IndexArray
+    plus: IndexArray
+    offsets: IndexArray
+    facets: IndexArray
+
+    def __len__(self) -> int:
+        """Return the number of nodes."""
+        return len(self.axis)
+
+    def held(self, node: int) -> IndexArray:
+        """Return the facets that a leaf lists."""
+        at = range(len(self))[node]
+        return self.facets[self.offsets[at] : self.offsets[at + 1]]
+
+
 class RayCaster:
     """Facets that rays can be cast at, in one, two or three dimensions.
 
@@ -194,6 +230,23 @@ class RayCaster:
             if not deferred:
                 self._scene.complete()
         self._normals = facets.normals()
+
+    @property
+    def nodes(self) -> CasterNodes:
+        """The nodes of the tree that rays have reached so far, in preorder."""
+        with core_errors():
+            arrays = self._scene.nodes()
+        shape = (-1, self._facets.dimension)
+        low, high = arrays["low"].reshape(shape), arrays["high"].reshape(shape)
+        return CasterNodes(
+            low,
+            high,
+            arrays["axis"],
+            arrays["minus"],
+            arrays["plus"],
+            arrays["offsets"],
+            arrays["facets"],
+        )
 
     def __copy__(self) -> Self:
         """Return the caster itself, whose answers never change."""

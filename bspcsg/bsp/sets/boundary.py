@@ -4,11 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from ..._core import suited_pitch
 from ..._types import FloatArray, IndexArray
-from ...errors import InvalidMeshError, core_errors, invalid_parameter
+from ...errors import InvalidMeshError, invalid_parameter
 from ...geometry.arrays import doubles
-from ...parameters import pitch_exponent
 
 
 def boundary_arrays(facets: Any) -> tuple[int, FloatArray, IndexArray | None]:
@@ -49,20 +47,6 @@ def segment_rows(segments: FloatArray) -> FloatArray:
     """
     _check_closed(segments)
     return np.ascontiguousarray(segments.reshape(-1, 4))
-
-
-def chosen_pitch(given: Any, points: FloatArray) -> int:
-    """Return the exponent of the lattice step: the given one, or what suits these points."""
-    return _suited_pitch(points) if given is None else pitch_exponent(given)
-
-
-def _suited_pitch(points: FloatArray) -> int:
-    """Return the exponent of the lattice step for these points: -9 unless their size asks else."""
-    if len(points) == 0 or not np.isfinite(points).all():
-        return -9
-    extent = float(np.ptp(points, axis=0).max())
-    with core_errors():
-        return suited_pitch(float(np.abs(points).max()), extent)
 
 
 def _numbers(facets: Any) -> FloatArray:

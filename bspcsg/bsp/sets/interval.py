@@ -12,7 +12,8 @@ from ...geometry.arrays import doubles
 from ...geometry.hyperplane import Hyperplane
 from ...geometry.transform import whole_steps
 from ...parameters import number
-from .boundary import chosen_pitch, interval_rows
+from ..trees.facets import chosen_pitch
+from .boundary import interval_rows
 from .objects import ObjectTree
 
 

@@ -16,9 +16,11 @@ from ...errors import core_errors, invalid_parameter
 from ...mesh import interop
 from ...parameters import at_least, pitch_exponent, seed_number, winding_rule
 from ...solid.point_set import PointSet
-from .boundary import boundary_arrays, chosen_pitch
+from ..trees.facets import chosen_pitch
+from .boundary import boundary_arrays
 from .pieces import BuildPolicy, NormalAndOffset, SplitCase
 from .rows import hyperplane, hyperplane_row, hyperplane_rows
+from .trace import MergeTrace, merge_trace
 from .tree_queries import TreeQueries
 
 #: A result is built anew when its tree is this many times larger than its operands' were.
@@ -239,6 +241,28 @@ class ObjectTree(TreeQueries, PointSet):
 
     def _moved(self, axes: list[int], shift: list[int], scale: int, pitch: int) -> CoreTree:
         return self._tree.moved(axes, shift, scale, pitch)
+
+    def trace_merge(self, other: "ObjectTree", op: SetOp) -> MergeTrace:
+        """Return a set operation step by step: pairs of nodes, cases, what was shared or dropped.
+
+        Parameters
+        ----------
+        other : ObjectTree
+            Of the same dimension.
+        op : {"union", "intersection", "difference", "xor"}
+
+        Notes
+        -----
+        The nodes of the trace are those of ``trace.first`` and ``trace.second``, which are the
+        operands on one lattice. Results of set operations on regions may be built anew from their
+        boundary; ``trace.result`` is what merging leaves.
+        """
+        if op not in ("union", "intersection", "difference", "xor"):
+            raise invalid_parameter(f"There is no operation {op!r}.")
+        a, b = self._aligned(other)
+        with core_errors():
+            result, rows = a.merge_steps(b, op)
+        return merge_trace(self._of(a), self._of(b), self._of(result), op, rows)
 
     def equals(self, other: "ObjectTree") -> bool:
         """Say whether both are the same set of points, exactly; so says ``==``, too.

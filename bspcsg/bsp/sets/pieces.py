@@ -62,11 +62,14 @@ class NodeTable:
         A normal of length 1 and the offset, in model units, rounded.
     minus, plus : (n,) int64
         The children's rows; -1 for a leaf outside, -2 for a leaf inside.
+    coefficients : tuple of tuple of int
+        The same hyperplanes exactly: whole numbers n, c with n·x = c, x in lattice steps.
     """
 
     hyperplanes: FloatArray
     minus: IndexArray
     plus: IndexArray
+    coefficients: tuple[tuple[int, ...], ...] = ()
 
     #: What `minus` and `plus` hold for leaves.
     OUT: ClassVar[int] = -1

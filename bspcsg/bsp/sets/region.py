@@ -19,7 +19,8 @@ from ...parameters import number, positive, sides_around, winding_rule
 from ...shapes.primitives import extrude, revolve
 from ...shapes.sweep import unit_circle
 from ...solid.solid import Solid
-from .boundary import chosen_pitch, segment_rows
+from ..trees.facets import chosen_pitch
+from .boundary import segment_rows
 from .loops import closed_loops, loop_segments, moved_points
 from .plane_queries import PlaneQueries, vector2
 

@@ -112,7 +112,7 @@ class TreeQueries:
     def nodes(self) -> NodeTable:
         """The inner nodes as arrays; none if the tree is a leaf."""
         with core_errors():
-            return NodeTable(*self._tree.nodes)
+            return NodeTable(*self._tree.nodes, tuple(map(tuple, self._tree.hyperplanes())))
 
     def stats(self) -> dict[str, int]:
         """Return the numbers of inner nodes, leaves and coplanar fragments, and the depth."""

@@ -147,6 +147,55 @@ def _cell(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
+# What rays cost
+
+
+@dataclass(frozen=True, eq=False)
+class VisitBound:
+    """What rays cost beside the bound of the notes: C(T) ≤ depth(T) · stabbed leaves.
+
+    A leaf and the nodes above it are as many as its level, and every node that a ray visits is
+    above a leaf that it stabs.
+
+    Parameters
+    ----------
+    cost : (n,) int64
+        C(T) of each ray: all nodes visited, leaves among them.
+    leaves : (n,) int64
+        Leaves stabbed.
+    levels : int
+        depth(T): the nodes on the longest way from the root to a leaf, both counted.
+    """
+
+    cost: IndexArray
+    leaves: IndexArray
+    levels: int
+
+    @property
+    def bound(self) -> IndexArray:
+        """``levels * leaves``, (n,) int64."""
+        most: IndexArray = self.levels * self.leaves
+        return most
+
+    @property
+    def holds(self) -> bool:
+        """True if no ray costs more than its bound."""
+        return bool((self.cost <= self.bound).all())
+
+
+def visit_bound(tree: PartitionTree, origins: Any, directions: Any) -> VisitBound:
+    """Cast rays through a tree, and compare what each cost with depth · stabbed leaves.
+
+    Parameters
+    ----------
+    tree : PartitionTree
+    origins, directions
+        As for `PartitionTree.test_ray`.
+    """
+    costs = tree.test_ray(origins, directions)
+    return VisitBound(costs.cost, costs.leaves, tree.stats().depth + 1)
+
+
 # Scenes
 
 

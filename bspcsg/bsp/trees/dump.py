@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 Parts: TypeAlias = tuple[FragmentTree, tuple[bool, bool], float]
 
 _FORMAT = "bspcsg partition tree"
-_VERSION = 2
+_VERSION = 3
+#: The version that had no hyperplanes of one's own; trees without them are still written so.
+_SECOND = 2
 #: The version that had no checksum.
 _FIRST = 1
 
@@ -27,7 +29,7 @@ def to_json(tree: "PartitionTree") -> str:
     corners, offsets = tree.core.lattice()
     content = {
         "format": _FORMAT,
-        "version": _VERSION,
+        "version": _VERSION if tree.own_hyperplanes else _SECOND,
         "dimension": tree.dimension,
         "pitch": tree.pitch,
         "non_planar": "triangulate" if tree.lenience[0] else "error",
@@ -37,6 +39,9 @@ def to_json(tree: "PartitionTree") -> str:
         "offsets": offsets.tolist(),
         "cuts": tree.arrays["cut"].tolist(),
     }
+    if tree.own_hyperplanes:
+        # As texts, since they can be wider than what some readers take for whole numbers.
+        content["own"] = [[str(entry) for entry in row] for row in tree.own_hyperplanes]
     return _text(content | {"checksum": _checksum(content)})
 
 
@@ -44,7 +49,7 @@ def parsed(text: str) -> Parts:
     """Return what `to_json` wrote."""
     try:
         content = json.loads(text)
-        known = content["format"] == _FORMAT and content["version"] in (_FIRST, _VERSION)
+        known = content["format"] == _FORMAT and content["version"] in (_FIRST, _SECOND, _VERSION)
     except (ValueError, TypeError, KeyError) as error:
         raise FormatError("This is not a partition tree in JSON.", "bad_snapshot") from error
     if not known:
@@ -81,6 +86,7 @@ def _rebuilt(content: dict[str, Any]) -> Parts:
             int(content["pitch"]),
             _whole(content["cuts"], 2),
             lenience,
+            [[int(entry) for entry in row] for row in content.get("own", ())],
         )
     return core, lenience, float(content["margin"])
 

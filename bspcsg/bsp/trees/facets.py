@@ -5,9 +5,12 @@ from typing import Any
 
 import numpy as np
 
+from ..._core import suited_pitch
 from ..._types import FloatArray, IndexArray
-from ...errors import InvalidMeshError
+from ...errors import InvalidMeshError, core_errors, invalid_parameter
+from ...geometry.arrays import doubles
 from ...mesh import interop
+from ...parameters import pitch_exponent
 from ...solid.solid import Solid
 
 #: Corners (n, d) float64, and offsets (k + 1,) int64 at which the facets start.
@@ -65,3 +68,37 @@ def mesh_triangles(mesh: Any) -> FloatArray:
         raise InvalidMeshError(message, "index_out_of_range")
     triangles: FloatArray = vertices[faces]
     return triangles
+
+
+def chosen_pitch(given: Any, points: FloatArray) -> int:
+    """Return the exponent of the lattice step: the given one, or what suits these points."""
+    return _suited_pitch(points) if given is None else pitch_exponent(given)
+
+
+def _suited_pitch(points: FloatArray) -> int:
+    """Return the exponent of the lattice step for these points: -9 unless their size asks else."""
+    if len(points) == 0 or not np.isfinite(points).all():
+        return -9
+    extent = float(np.ptp(points, axis=0).max())
+    with core_errors():
+        return suited_pitch(float(np.abs(points).max()), extent)
+
+
+def vector_rows(given: Any, dimension: int, name: str) -> FloatArray:
+    """Return (n, d) float64 of points or directions; one alone becomes the only row.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the shape is another.
+    """
+    array = doubles(given, invalid_parameter(f"{name} must be numbers."))
+    if dimension == 1 and array.ndim <= 1:
+        array = array.reshape(-1, 1)
+    array = np.atleast_2d(array)
+    if array.ndim != 2 or array.shape[1] != dimension:
+        shape = np.shape(given)
+        raise invalid_parameter(
+            f"{name} must have shape (n, {dimension}) or ({dimension},), not {shape}."
+        )
+    return np.ascontiguousarray(array)

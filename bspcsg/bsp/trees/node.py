@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 #: The two sides of a hyperplane; minus is inside.
 Side = Literal["minus", "plus"]
 
+#: What the rows of cuts have for an axis if a facet gave the cut.
+_PIVOT = -1
+
 #: A bounded convex region: (2,) ends in 1D, (k, 2) corners counterclockwise in 2D, a list of
 #: (k, 3) faces counterclockwise seen from outside in 3D.
 RegionShape = FloatArray | list[FloatArray]
@@ -59,14 +62,14 @@ class Node:
 
     @property
     def is_free(self) -> bool:
-        """True if H(v) is an axis-parallel cut that no facet gave."""
-        return bool(self.tree.arrays["cut"][self.index, 0] >= 0)
+        """True if no facet gave H(v): it is parallel to axes, or one of your own."""
+        return bool(self.tree.arrays["cut"][self.index, 0] != _PIVOT)
 
     @property
     def pivot(self) -> int | None:
         """The facet whose supporting hyperplane H(v) is, or None for a free cut."""
         axis, piece = self.tree.arrays["cut"][self.index]
-        return None if axis >= 0 else int(self.tree.core.piece_sources()[piece])
+        return None if axis != _PIVOT else int(self.tree.core.piece_sources()[piece])
 
     @property
     def coplanar(self) -> Fragments:

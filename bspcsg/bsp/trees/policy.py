@@ -19,9 +19,15 @@ least-cost
     the expected cost of the subtrees, unknown at this time, for their sizes). Regions are kept
     while building, so that this policy is several times slower than the others.
 
-Each divides by supporting hyperplanes only (autopartition). With ``top=k``, regions with more than
-k facets are divided by axis-parallel hyperplanes through the median instead, as long as neither
-side gets more than three quarters of the facets (general partition).
+end-points
+    In the plane the lines through two end points of segments, in space the planes through three
+    corners: of `sample` of these, evenly spaced among all, and as many supporting hyperplanes the
+    one whose larger side has the fewest pieces. A restricted partition rather than an
+    autopartition, and not one of `POLICIES`.
+
+The others divide by supporting hyperplanes only (autopartition). With ``top=k``, regions with more
+than k facets are divided by axis-parallel hyperplanes through the median instead, as long as
+neither side gets more than three quarters of the facets (general partition).
 """
 
 from typing import Any, Literal, TypeAlias, get_args
@@ -30,16 +36,19 @@ from ...errors import invalid_parameter
 from ...parameters import at_least, number, optional_pitch, seed_number
 
 #: The names of the pivot policies.
-Policy: TypeAlias = Literal["first", "random", "least-splits", "balanced", "weighted", "least-cost"]
+Policy: TypeAlias = Literal[
+    "first", "random", "least-splits", "balanced", "weighted", "least-cost", "end-points"
+]
 
-#: All pivot policies.
-POLICIES: tuple[Policy, ...] = get_args(Policy)
+#: All policies of autopartitions.
+POLICIES: tuple[Policy, ...] = get_args(Policy)[:-1]
 
 
 def checked_policy(policy: Any) -> Policy:
     """Return the policy, or raise an error that lists the names."""
-    if policy not in POLICIES:
-        raise invalid_parameter(f"Unknown policy {policy!r}; there are {', '.join(POLICIES)}.")
+    if policy not in get_args(Policy):
+        names = ", ".join(get_args(Policy))
+        raise invalid_parameter(f"Unknown policy {policy!r}; there are {names}, or a callable.")
     result: Policy = policy
     return result
 

@@ -1,23 +1,28 @@
 """`PartitionTree`: a binary space partition over facets of any kind."""
 
+import math
 import os
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 
 from ..._core import FragmentTree
-from ..._types import IndexArray
+from ..._types import FloatArray, IndexArray
 from ...errors import core_errors, invalid_parameter
 from ...geometry.polygon import convex_corners
 from ...parameters import not_negative
+from .asking import Chooser, asked_tree, lattice_rows
 from .cost import Query, Stats, cost, stats
 from .dump import parsed, to_dot, to_json, to_svg
-from .facets import corners_of, mesh_triangles
+from .facets import chosen_pitch, corners_of, mesh_triangles, vector_rows
 from .fragments import Fragments
+from .leaf_form import LeafForm, leaf_form
 from .node import Leaf, Node, RegionShape, Side
 from .order import Ordered
 from .policy import Policy, checked_policy, core_options
+from .trace import Construction, PointTrace, RayCosts, RayTrace, division, point_trace, ray_trace
 
 if TYPE_CHECKING:
     from ..._core import NodeArrays
@@ -40,8 +45,10 @@ class PartitionTree(Ordered):
         3D or a list of (k, 3), planar, convex or not, counterclockwise seen from the plus side.
         They may cross, touch, overlap and repeat. An array without facets gives a tree without
         nodes.
-    policy : str
-        Whose hyperplane divides a region, see `bspcsg.bsp.policy`.
+    policy : str or callable
+        Whose hyperplane divides a region, see `bspcsg.bsp.trees.policy`. A callable takes a
+        `Choice`, which has the candidates and their counts, and returns the place of one of them,
+        or a hyperplane (normal, offset).
     seed : int
         For the policy "random".
     top : int
@@ -51,6 +58,10 @@ class PartitionTree(Ordered):
         How many candidates a policy compares at each node.
     alpha : float
         From 0 (least splits) to 1 (balance), for the policy "weighted".
+    cuts : sequence of (normal, offset)
+        Hyperplanes of one's own, ``normal · x = offset`` in model units, with the minus side where
+        the product is smaller. In each region the first of them that does not leave all pieces on
+        one side comes before the policy. They are snapped as `ObjectTree.half_space` does it.
     pitch : int, optional
         The lattice step is ``10**pitch`` units. By default -9 or what the size asks for.
     non_planar : {"error", "triangulate"}
@@ -87,18 +98,18 @@ class PartitionTree(Ordered):
     def __init__(
         self,
         facets: Any,
-        policy: Policy = "random",
+        policy: Policy | Chooser = "random",
         *,
         seed: int = 0,
         top: int = 0,
         sample: int = 8,
         alpha: float = 0.5,
+        cuts: Sequence[tuple[Any, Any]] = (),
         pitch: int | None = None,
         non_planar: Literal["error", "triangulate"] = "error",
         degenerate: Literal["error", "drop"] = "error",
         margin: float | None = None,
     ) -> None:
-        name = checked_policy(policy)
         options = core_options(seed, sample, alpha, top, pitch)
         if non_planar not in ("error", "triangulate"):
             raise invalid_parameter(f"non_planar is 'error' or 'triangulate', not {non_planar!r}.")
@@ -106,8 +117,18 @@ class PartitionTree(Ordered):
             raise invalid_parameter(f"degenerate is 'error' or 'drop', not {degenerate!r}.")
         corners, offsets = corners_of(facets)
         lenience = non_planar == "triangulate", degenerate == "drop"
+        step = chosen_pitch(pitch, corners)
+        own = lattice_rows(cuts, corners.shape[1], step)
         with core_errors():
-            core = FragmentTree.build(corners, offsets, name, lenience=lenience, **options)
+            if callable(policy):
+                count = options["sample"]
+                core = asked_tree((corners, offsets), policy, count, step, lenience, own)
+            else:
+                options["pitch"] = step if own else options["pitch"]
+                name = checked_policy(policy)
+                core = FragmentTree.build(
+                    corners, offsets, name, lenience=lenience, own=own, **options
+                )
         self._set(core, lenience, margin)
 
     def _set(self, core: FragmentTree, lenience: tuple[bool, bool], margin: float | None) -> None:
@@ -165,11 +186,27 @@ class PartitionTree(Ordered):
         tree = cls(facets, "first", **options)
         with core_errors():
             cuts = tree.core.perfect_cuts()
-            if cuts is None:
-                return None
-            corners, offsets = tree.core.lattice()
-            core = FragmentTree.rebuild(corners, offsets, tree.pitch, cuts, tree.lenience)
-        return cls.from_core(core, tree.lenience, tree._margin)
+        return None if cuts is None else tree.with_cuts(cuts)
+
+    def with_cuts(self, cuts: Any) -> "PartitionTree":
+        """Return the tree over the same facets with other cuts.
+
+        Parameters
+        ----------
+        cuts : (n, 2) array_like of int
+            One row for each node in preorder, as ``arrays["cut"]`` has them.
+
+        Raises
+        ------
+        FormatError
+            If there are too many or too few, or a facet is not in the region that it is to cut.
+        """
+        rows = np.ascontiguousarray(np.asarray(cuts, dtype=np.int64).reshape(-1, 2))
+        corners, offsets = self.core.lattice()
+        own = [list(row) for row in self.own_hyperplanes]
+        with core_errors():
+            core = FragmentTree.rebuild(corners, offsets, self.pitch, rows, self.lenience, own)
+        return self.from_core(core, self.lenience, self._margin)
 
     # Parts
 
@@ -193,7 +230,8 @@ class PartitionTree(Ordered):
 
         ``normal`` (n, d) and ``offset`` (n,) as in `Node.hyperplane`; ``minus``, ``plus``,
         ``parent`` (n,) node indices or -1; ``depth`` (n,); ``start``, ``end`` (n,) the coplanar set
-        as a range of `fragments`; ``cut`` (n, 2): (-1, convex piece) or (axis, lattice coordinate).
+        as a range of `fragments`; ``cut`` (n, 2): (-1, convex piece), (axis, lattice coordinate) or
+        (-2, place in `own_hyperplanes`).
         """
         return self.core.nodes()
 
@@ -202,6 +240,14 @@ class PartitionTree(Ordered):
         """The fragments of all coplanar sets, node by node in preorder."""
         with core_errors():
             return Fragments(*self.core.fragments())
+
+    @cached_property
+    def own_hyperplanes(self) -> tuple[tuple[int, ...], ...]:
+        """Hyperplanes that no facet and no axis gave, as whole numbers n, c in lattice steps.
+
+        Points x of one have n·x = c.
+        """
+        return tuple(tuple(row) for row in self.core.own())
 
     @property
     def _tree(self) -> "PartitionTree":
@@ -250,6 +296,118 @@ class PartitionTree(Ordered):
         if self.dimension == 1:
             return np.sort(np.concatenate(walls).ravel())
         return convex_corners(walls) if self.dimension == 2 else walls
+
+    # Traces
+
+    def trace(self) -> Construction:
+        """Return how the tree came about: who divided each region, why, and who went where.
+
+        The construction is repeated, as the tree itself keeps no trace. For a tree that was made by
+        a callable, read from a file or inserted into, the cuts themselves are "given".
+        """
+        with core_errors():
+            rows = self.core.construction()
+            return Construction(tuple(map(division, rows)), self.core.piece_sources())
+
+    def trace_point(self, point: Any) -> PointTrace:
+        """Return the way of a point, down to its leaf or to the hyperplane in which it lies.
+
+        Parameters
+        ----------
+        point : (d,) array_like of float
+            In model units. It is not snapped: sides are decided for these doubles.
+        """
+        place = vector_rows(point, self.dimension, "The point")[0]
+        with core_errors():
+            return point_trace(self, self.core.path(_filled(place)))
+
+    def locate(self, point: Any) -> Node | Leaf:
+        """Return the leaf in which a point lies, or the node in whose hyperplane it lies."""
+        return self.trace_point(point).end
+
+    def test_ray(self, origins: Any, directions: Any) -> RayCosts:
+        """Return the first facet on each ray, and what the way there cost.
+
+        The child on the side of the ray's origin comes first, then what lies in the hyperplane,
+        then the other child, until there is a hit. Facets are closed; of several at one point it is
+        the one that the tree meets first, and of those in one node the first of the input.
+
+        Parameters
+        ----------
+        origins, directions : (n, d) or (d,) array_like of float
+            Origins are snapped to the lattice; directions need no unit length.
+
+        Raises
+        ------
+        InvalidMeshError
+            For a direction that is zero or not finite (`where` has the ray).
+        """
+        first, second = self._rays(origins, directions)
+        with core_errors():
+            return RayCosts(*self.core.cast(first, second))
+
+    def trace_ray(self, origin: Any, direction: Any) -> RayTrace:
+        """Return the way of one ray step by step (see `test_ray`)."""
+        first, second = self._rays(origin, direction)
+        if len(first) != 1:
+            raise invalid_parameter("A trace is that of one ray.")
+        with core_errors():
+            hit, rows = self.core.ray_events(_filled(first[0]), _filled(second[0]))
+        if hit is None:
+            return ray_trace(None, math.inf, rows)
+        return ray_trace(int(self.core.piece_sources()[hit[0]]), hit[1], rows)
+
+    def _rays(self, origins: Any, directions: Any) -> tuple[FloatArray, FloatArray]:
+        first = vector_rows(origins, self.dimension, "Origins")
+        second = vector_rows(directions, self.dimension, "Directions")
+        if len(first) != len(second) and 1 not in (len(first), len(second)):
+            raise invalid_parameter(f"There are {len(first)} origins and {len(second)} directions.")
+        first, second = np.broadcast_arrays(first, second)
+        return np.ascontiguousarray(first), np.ascontiguousarray(second)
+
+    # More facets
+
+    def insert(
+        self,
+        facets: Any,
+        policy: Policy = "random",
+        *,
+        seed: int = 0,
+        sample: int = 8,
+        alpha: float = 0.5,
+    ) -> "PartitionTree":
+        """Return the tree with more facets: its nodes stay, and what was empty is divided.
+
+        New facets are cut by the hyperplanes that are there; those that reach an empty region
+        divide it by the policy.
+
+        Parameters
+        ----------
+        facets, policy, seed, sample, alpha
+            As for `PartitionTree`; facets of the same dimension, numbered after those that are
+            there, on the tree's own lattice.
+        """
+        corners, offsets = corners_of(facets)
+        if corners.shape[1] != self.dimension:
+            message = f"The tree has dimension {self.dimension}, the facets {corners.shape[1]}."
+            raise invalid_parameter(message)
+        options = core_options(seed, sample, alpha, 0, self.pitch)
+        name = checked_policy(policy)
+        with core_errors():
+            core = self.core.grown(
+                corners,
+                offsets,
+                name,
+                options["seed"],
+                options["sample"],
+                options["alpha"],
+                self.lenience,
+            )
+        return self.from_core(core, self.lenience, self._margin)
+
+    def leaf_form(self) -> LeafForm:
+        """Return the tree as the lecture notes draw it: leaves store at most one fragment."""
+        return leaf_form(self)
 
     # Quality
 
@@ -308,6 +466,7 @@ class PartitionTree(Ordered):
             (self.dimension, self.pitch, len(self)) == (other.dimension, other.pitch, len(other))
             and all(map(np.array_equal, mine, theirs))
             and np.array_equal(self.arrays["cut"], other.arrays["cut"])
+            and self.own_hyperplanes == other.own_hyperplanes
         )
 
     def __hash__(self) -> int:
@@ -325,7 +484,8 @@ class PartitionTree(Ordered):
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         """Pickle facets on the lattice and cuts, of which the tree is made again."""
         corners, offsets = self.core.lattice()
-        parts = corners, offsets, self.pitch, self.arrays["cut"], self.lenience
+        own = [list(row) for row in self.own_hyperplanes]
+        parts = corners, offsets, self.pitch, self.arrays["cut"], self.lenience, own
         return _restored, (type(self), parts, self._margin)
 
     def __repr__(self) -> str:
@@ -336,7 +496,7 @@ class PartitionTree(Ordered):
 
 def _restored(kind: type[PartitionTree], parts: Any, margin: float | None) -> PartitionTree:
     with core_errors():
-        return kind.from_core(FragmentTree.rebuild(*parts), parts[-1], margin)
+        return kind.from_core(FragmentTree.rebuild(*parts), parts[4], margin)
 
 
 def _place(of: Node | Leaf | None) -> tuple[int | None, int]:
@@ -346,3 +506,8 @@ def _place(of: Node | Leaf | None) -> tuple[int | None, int]:
         return of.index, 0
     sides: dict[Side, int] = {"minus": -1, "plus": 1}
     return (None, 0) if of.parent is None else (of.parent.index, sides[of.side])
+
+
+def _filled(values: FloatArray) -> list[float]:
+    """Return one to three coordinates as three."""
+    return [*values.tolist(), 0.0, 0.0][:3]

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...bsp import Region
-from ...bsp.sets.boundary import chosen_pitch
+from ...bsp.trees.facets import chosen_pitch
 from ...errors import InvalidMeshError, invalid_parameter
 from ...geometry.arrays import doubles
 

@@ -6,8 +6,10 @@ use num_bigint::{BigInt, Sign};
 
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::dim1::Point1;
-use crate::geometry::dim2::Line2;
+use crate::geometry::affine::Affine;
+use crate::geometry::dim1::{Dim1, Point1};
+use crate::geometry::dim2::{Dim2, Line2};
+use crate::geometry::dim3::Dim3;
 use crate::geometry::plane::Plane;
 use crate::mesh::half_space::out_of_reach;
 use crate::query::region::hyperplane::{line, plane, point};
@@ -68,4 +70,39 @@ pub fn in_plane(row: &[BigInt]) -> Result<Line2> {
 pub fn in_space(row: &[BigInt]) -> Result<Arc<Plane>> {
     let (normal, offset) = coefficients(row)?;
     plane(normal, &offset)
+}
+
+/// A space whose hyperplanes come as rows.
+pub trait FromRow: Affine {
+    /// A row as a hyperplane.
+    ///
+    /// # Errors
+    /// `Shape`, `BadNormal`, `TooLarge`.
+    fn from_row(row: &[BigInt]) -> Result<Self::Hyperplane>;
+}
+
+impl FromRow for Dim1 {
+    fn from_row(row: &[BigInt]) -> Result<Point1> {
+        on_line(row)
+    }
+}
+
+impl FromRow for Dim2 {
+    fn from_row(row: &[BigInt]) -> Result<Line2> {
+        in_plane(row)
+    }
+}
+
+impl FromRow for Dim3 {
+    fn from_row(row: &[BigInt]) -> Result<Arc<Plane>> {
+        in_space(row)
+    }
+}
+
+/// A hyperplane as a row: the normal and the offset.
+pub fn row_of<S: Affine>(cut: &S::Hyperplane) -> Row {
+    let [a, b, c, d] = S::exact(cut);
+    let mut row: Row = [a, b, c].into_iter().take(S::DIM).collect();
+    row.push(-d);
+    row
 }

@@ -28,6 +28,7 @@ mod run;
 mod set_input;
 mod set_queries;
 mod set_store;
+mod set_traces;
 mod sets;
 mod surfaces;
 mod tree;

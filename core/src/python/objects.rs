@@ -17,6 +17,7 @@ use super::run::{here, run};
 use super::set_input::{self, Input};
 use super::set_queries::{exact_corners, outline_pieces};
 use super::set_store::Nodes;
+use super::set_traces::{step_row, StepRow};
 use crate::error::Result;
 use crate::merge::SetOp;
 use crate::mesh::grid::Pitch;
@@ -157,6 +158,27 @@ impl ObjectTree {
         let set = run(py, 0, a.size() + b.size(), || a.merge(b, op))
             .map_err(|e| self.blamed(py, e, &[self, &other]))?;
         Ok(self.with(set))
+    }
+
+    /// The result of an operation, and the steps of merging the trees: kind, two roots or a node,
+    /// what is done, and why. Roots are nodes in preorder, −1 an Out leaf, −2 an In leaf.
+    fn merge_steps(
+        &self,
+        py: Python<'_>,
+        other: PyRef<'_, Self>,
+        op: &str,
+    ) -> PyResult<(Self, Vec<StepRow>)> {
+        let op = set_input::operation(op).map_err(|e| to_python(py, &e))?;
+        let (a, b) = (&self.set, &other.set);
+        set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
+        let (set, steps) = run(py, 0, a.size() + b.size(), || a.merge_steps(b, op))
+            .map_err(|e| self.blamed(py, e, &[self, &other]))?;
+        Ok((self.with(set), steps.iter().map(step_row).collect()))
+    }
+
+    /// The rows of the inner nodes' hyperplanes in preorder: normal and offset in lattice steps.
+    fn hyperplanes(&self) -> Vec<Row> {
+        self.set.hyperplanes()
     }
 
     fn equals(&self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<bool> {

@@ -2,26 +2,30 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use num_bigint::BigInt;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use super::errors::to_python;
+use super::hyperplanes::Row;
 use super::in_use::InUse;
 use super::ray_store;
 use super::rays::{facets, Columns, HitArrays, WEIGHT};
 use super::run::run;
+use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::dim1::Dim1;
 use crate::geometry::dim2::Dim2;
 use crate::geometry::dim3::Dim3;
 use crate::mesh::grid::Pitch;
 use crate::query::ray::Scene;
-use crate::query::stab::batch::test_rays;
+use crate::query::stab::batch::{test_rays, test_rays_watched};
 use crate::query::stab::node::Growth;
 use crate::query::stab::record::Record;
 use crate::query::stab::tree::Shape;
-use crate::query::stab::{Cast, StabTree, Trace};
+use crate::query::stab::view::View;
+use crate::query::stab::{Cast, StabEvent, StabTree, Trace};
 
 enum Stabbed {
     Points(StabTree<Dim1, 1>),
@@ -121,6 +125,51 @@ impl RayTree {
         Ok((columns.arrays(py), PyArray1::from_vec(py, counts)))
     }
 
+    /// The first hit of a ray, what it cost, and each step: kind, node, facet, a count or flag,
+    /// and the lists of a division (in the cut, minus, plus).
+    fn test_watched<'py>(
+        &self,
+        py: Python<'py>,
+        origin: PyReadonlyArray1<'py, f64>,
+        direction: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<(HitArrays<'py>, Counts<'py>, Vec<StabRow>)> {
+        let _call = self.calls.enter(py)?;
+        let (origin, head) = (origin.as_slice()?, direction.as_slice()?);
+        let (columns, counts, events) = run(py, 0, WEIGHT, || {
+            let mut tree = self.tree.lock().unwrap_or_else(PoisonError::into_inner);
+            with_tree!(&mut *tree, tree => {
+                let mut events: Vec<StabEvent> = Vec::new();
+                let (hits, traces) = test_rays_watched(tree, origin, head, &mut events)?;
+                Ok((Columns::of_first(&hits), counts(&traces), events))
+            })
+        })?;
+        let rows = events.into_iter().map(stab_row).collect();
+        Ok((columns.arrays(py), PyArray1::from_vec(py, counts), rows))
+    }
+
+    /// The nodes in the order in which they were made, as columns; each leaf with its list and
+    /// each inner node with what lies in its cut.
+    fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let columns = self.read(
+            py,
+            |tree| with_tree!(tree, tree => NodeColumns::of(&tree.views())),
+        )?;
+        let dict = PyDict::new(py);
+        for (name, column) in [
+            ("visits", columns.visits),
+            ("depth", columns.depth),
+            ("minus", columns.minus),
+            ("plus", columns.plus),
+            ("offsets", columns.offsets),
+            ("facets", columns.facets),
+            ("hits", columns.hits),
+        ] {
+            dict.set_item(name, PyArray1::from_vec(py, column))?;
+        }
+        dict.set_item("hyperplanes", columns.rows)?;
+        Ok(dict)
+    }
+
     /// The cuts and counters as bytes; facets and threshold are not kept.
     fn dump<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let record = self.read(py, |tree| with_tree!(tree, tree => tree.record()))?;
@@ -152,6 +201,76 @@ impl RayTree {
             ))
         })
     }
+}
+
+/// Kind, node, facet, count; the lists of a division.
+type StabRow = (&'static str, u32, i64, u64, Option<[Vec<u32>; 3]>);
+
+fn stab_row(event: StabEvent) -> StabRow {
+    match event {
+        StabEvent::Visit { node, visits, leaf } => {
+            let kind = if leaf { "leaf" } else { "visit" };
+            (kind, node, -1, visits, None)
+        }
+        StabEvent::Test { node, facet, met } => ("test", node, facet.into(), met.into(), None),
+        StabEvent::Count { node, facet, hits } => ("count", node, facet.into(), hits, None),
+        StabEvent::Divide {
+            node,
+            facet,
+            coplanar,
+            children,
+            lists: [minus, plus],
+        } => {
+            let lists = Some([coplanar, minus, plus]);
+            ("divide", node, facet.into(), children[0].into(), lists)
+        }
+    }
+}
+
+#[derive(Default)]
+struct NodeColumns {
+    visits: Vec<i64>,
+    depth: Vec<i64>,
+    minus: Vec<i64>,
+    plus: Vec<i64>,
+    offsets: Vec<i64>,
+    facets: Vec<i64>,
+    hits: Vec<i64>,
+    /// Normal and offset of each inner node's hyperplane, in lattice steps; empty for leaves.
+    rows: Vec<Row>,
+}
+
+impl NodeColumns {
+    fn of<const D: usize>(views: &[View<D>]) -> Self {
+        let mut columns = Self::default();
+        columns.offsets.push(0);
+        for view in views {
+            columns.visits.push(view.visits as i64);
+            columns.depth.push(view.depth.into());
+            let children = view.cut.map(|(_, _, children)| children.map(i64::from));
+            let [minus, plus] = children.unwrap_or([-1; 2]);
+            columns.minus.push(minus);
+            columns.plus.push(plus);
+            columns
+                .facets
+                .extend(view.facets.iter().map(|f| i64::from(*f)));
+            columns.hits.extend(view.hits.iter().map(|h| *h as i64));
+            columns.offsets.push(columns.facets.len() as i64);
+            columns
+                .rows
+                .push(view.cut.map_or_else(Row::new, |(normal, offset, _)| {
+                    let mut row: Row = normal.iter().map(|c| BigInt::from(*c)).collect();
+                    row.push(-wide(&offset));
+                    row
+                }));
+        }
+        columns
+    }
+}
+
+fn wide(value: &Int<3>) -> BigInt {
+    let bytes: Vec<u8> = value.limbs().iter().flat_map(|l| l.to_le_bytes()).collect();
+    BigInt::from_signed_bytes_le(&bytes)
 }
 
 struct Plan<'a> {

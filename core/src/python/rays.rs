@@ -12,6 +12,7 @@ use crate::merge::kernels::leaf::Rule;
 use crate::mesh::grid::Pitch;
 use crate::query::ray::answer::{Hit, Kind};
 use crate::query::ray::batch::{Inside, Rays};
+use crate::query::ray::node::Known;
 use crate::query::ray::Scene;
 
 /// Casting a ray costs about as much as a hundred elements of other work.
@@ -111,6 +112,45 @@ pub struct RayScene {
     calls: InUse,
 }
 
+fn known_nodes<'py, const D: usize>(
+    py: Python<'py>,
+    scene: &Scene<D>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let known = run(py, 0, 0, || Ok(scene.root().known(*scene.cell())))?;
+    let dict = PyDict::new(py);
+    let steps = |of: fn(&Known<D>) -> [f64; D]| {
+        let step = scene.pitch().coordinate(1);
+        PyArray1::from_vec(py, known.iter().flat_map(of).map(|k| k * step).collect())
+    };
+    dict.set_item("low", steps(|node| node.cell.low))?;
+    dict.set_item("high", steps(|node| node.cell.high))?;
+    let axis = |node: &Known<D>| match (node.cut, &node.facets) {
+        (Some((axis, _)), _) => i64::from(axis),
+        (None, Some(_)) => -1,
+        (None, None) => -2,
+    };
+    dict.set_item(
+        "axis",
+        PyArray1::from_vec(py, known.iter().map(axis).collect()),
+    )?;
+    for (side, name) in ["minus", "plus"].into_iter().enumerate() {
+        let child = |node: &Known<D>| node.children[side].map_or(-1, i64::from);
+        dict.set_item(
+            name,
+            PyArray1::from_vec(py, known.iter().map(child).collect()),
+        )?;
+    }
+    let (mut offsets, mut facets) = (vec![0i64], Vec::new());
+    for node in &known {
+        let list = node.facets.iter().flatten();
+        facets.extend(list.map(|facet| i64::from(scene.number(*facet))));
+        offsets.push(facets.len() as i64);
+    }
+    dict.set_item("offsets", PyArray1::from_vec(py, offsets))?;
+    dict.set_item("facets", PyArray1::from_vec(py, facets))?;
+    Ok(dict)
+}
+
 #[pymethods]
 impl RayScene {
     #[new]
@@ -146,6 +186,13 @@ impl RayScene {
             with_scene!(&self.facets, scene => scene.complete());
             Ok(())
         })
+    }
+
+    /// The nodes that rays have reached, in preorder: boxes, axis (−1 for a leaf, −2 for what is
+    /// deferred), place of the cut, children, and the facets of leaves.
+    fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let _call = self.calls.enter(py)?;
+        with_scene!(&self.facets, scene => known_nodes(py, scene))
     }
 
     #[pyo3(signature = (origins, directions, threads=0))]

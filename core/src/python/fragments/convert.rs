@@ -6,13 +6,22 @@ use pyo3::prelude::*;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::facets::Lenience;
 use crate::python::arrays::array;
+use crate::python::hyperplanes::Row;
 use crate::tree::fragments::{NodeCut, Policy, Sample};
 
 /// What a caller says about how to build, before the dimension is known.
 #[derive(Clone, Debug)]
 pub enum Wish {
     Policy(Policy, Option<usize>, i64),
+    Lines(Sample),
     Given(Vec<NodeCut>),
+}
+
+/// A wish, and hyperplanes of the caller's own that come first.
+#[derive(Clone, Debug)]
+pub struct Recipe {
+    pub wish: Wish,
+    pub own: Vec<Row>,
 }
 
 pub fn lenience_of((triangulate_bent, drop_flat): (bool, bool)) -> Lenience {
@@ -57,22 +66,31 @@ pub fn rows<T: numpy::Element + Copy>(
     PyArray1::from_vec(py, flat.collect()).reshape([count, dimension])
 }
 
-/// Cuts as rows: (-1, piece) for a pivot, (axis, coordinate) for an axis-parallel cut.
+/// What stands for an axis in the row of a hyperplane that is the tree's own.
+const OWN: i64 = -2;
+
+/// Cuts as rows: (-1, piece) for a pivot, (axis, coordinate) for an axis-parallel cut, (-2, place)
+/// for a hyperplane of the tree's own list.
 pub fn cut_rows(
     py: Python<'_>,
     cuts: impl Iterator<Item = NodeCut>,
 ) -> PyResult<Bound<'_, PyArray2<i64>>> {
-    let row = |cut| match cut {
+    array(py, cuts.map(cut_row).collect())
+}
+
+pub fn cut_row(cut: NodeCut) -> [i64; 2] {
+    match cut {
         NodeCut::Pivot(piece) => [-1, i64::from(piece)],
         NodeCut::Axis { axis, at } => [axis as i64, at],
-    };
-    array(py, cuts.map(row).collect())
+        NodeCut::Own(number) => [OWN, i64::from(number)],
+    }
 }
 
 pub fn node_cuts(array: &PyReadonlyArray2<'_, i64>) -> Result<Vec<NodeCut>> {
     let wrong = |_| Error::new(ErrorKind::BadSnapshot, "a stored cut is not one");
     let cut = |row: [i64; 3]| match row {
         [-1, piece, _] => u32::try_from(piece).map(NodeCut::Pivot).map_err(wrong),
+        [OWN, number, _] => u32::try_from(number).map(NodeCut::Own).map_err(wrong),
         [axis, at, _] => {
             let axis = usize::try_from(axis).map_err(wrong)?;
             Ok(NodeCut::Axis { axis, at })

@@ -2,16 +2,25 @@
 
 use num_bigint::BigInt;
 
-use super::convert::Wish;
+use super::convert::{Recipe, Wish};
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::affine::{Affine, Polytope};
+use crate::geometry::affine::{Affine, Polytope, Viewpoint};
 use crate::geometry::dim1::Dim1;
 use crate::geometry::dim2::Dim2;
 use crate::geometry::dim3::Dim3;
-use crate::geometry::side::Half;
+use crate::geometry::side::{Half, Side};
+use crate::interrupt::poll;
 use crate::mesh::facets::Facet;
 use crate::mesh::grid::Pitch;
-use crate::tree::fragments::{build, perfect, FragmentTree, NodeCut, Piece, Plan};
+use crate::python::hyperplanes::{row_of, FromRow, Row};
+use crate::query::path::{cast_ray, locate, RayEvent, RayPath};
+use crate::query::ray::scene::snap;
+use crate::query::ray::Ray;
+use crate::query::stab::Cast;
+use crate::tree::fragments::{
+    build, build_watched, perfect, Ask, Division, FragmentTree, Lines, NodeCut, Piece, Plan,
+};
+use crate::tree::trace::Watcher;
 
 /// A tree of one of the three dimensions.
 pub enum Inner {
@@ -21,11 +30,11 @@ pub enum Inner {
 }
 
 /// The tree over facets in a space of `dimension`.
-pub fn built(dimension: usize, facets: Vec<Facet>, pitch: Pitch, wish: Wish) -> Result<Inner> {
+pub fn built(dimension: usize, facets: Vec<Facet>, pitch: Pitch, recipe: &Recipe) -> Result<Inner> {
     Ok(match dimension {
-        1 => Inner::Line(held(facets, pitch, wish)?),
-        2 => Inner::Plane(held(facets, pitch, wish)?),
-        3 => Inner::Space(held(facets, pitch, wish)?),
+        1 => Inner::Line(held(facets, pitch, recipe)?),
+        2 => Inner::Plane(held(facets, pitch, recipe)?),
+        3 => Inner::Space(held(facets, pitch, recipe)?),
         _ => {
             let text = format!("corners must have 1, 2 or 3 coordinates, not {dimension}");
             return Err(Error::new(ErrorKind::Shape, text));
@@ -40,26 +49,56 @@ pub struct Held<S: Affine> {
     pub pitch: Pitch,
 }
 
-fn held<S: Affine>(facets: Vec<Facet>, pitch: Pitch, wish: Wish) -> Result<Held<S>> {
-    let pieces = pieces::<S>(&facets)?;
-    let plan = match wish {
-        Wish::Given(cuts) => Plan::Given(cuts),
-        Wish::Policy(policy, top, margin) => Plan::Policy {
-            policy,
-            top,
-            region: if policy.needs_region() {
-                Some(grown_box(&facets, margin)?)
-            } else {
-                None
-            },
-        },
-    };
-    let tree = build(pieces, plan)?;
+fn held<S: FromRow>(facets: Vec<Facet>, pitch: Pitch, recipe: &Recipe) -> Result<Held<S>> {
+    let tree = build(pieces::<S>(&facets)?, plan(&facets, recipe)?)?;
     Ok(Held {
         facets,
         tree,
         pitch,
     })
+}
+
+/// A tree whose cuts somebody is asked for.
+pub fn asked<S: FromRow>(
+    facets: Vec<Facet>,
+    pitch: Pitch,
+    own: &[Row],
+    ask: Ask<S>,
+) -> Result<Held<S>> {
+    let plan = Plan::Own(own_cuts::<S>(own)?, Box::new(Plan::Asked(ask)));
+    let tree = build(pieces::<S>(&facets)?, plan)?;
+    Ok(Held {
+        facets,
+        tree,
+        pitch,
+    })
+}
+
+fn own_cuts<S: FromRow>(own: &[Row]) -> Result<Vec<S::Hyperplane>> {
+    own.iter().map(|row| S::from_row(row)).collect()
+}
+
+fn plan<S: FromRow>(facets: &[Facet], recipe: &Recipe) -> Result<Plan<S>> {
+    let plan = match &recipe.wish {
+        Wish::Given(cuts) => Plan::Given(cuts.clone()),
+        Wish::Lines(sample) => Plan::Lines(Lines {
+            corners: facets.iter().map(|f| f.corners.clone()).collect(),
+            sample: *sample,
+        }),
+        Wish::Policy(policy, top, margin) => Plan::Policy {
+            policy: *policy,
+            top: *top,
+            region: if policy.needs_region() {
+                Some(grown_box(facets, *margin)?)
+            } else {
+                None
+            },
+        },
+    };
+    if recipe.own.is_empty() {
+        return Ok(plan);
+    }
+    Ok(Plan::Own(own_cuts::<S>(&recipe.own)?, Box::new(plan)))
 }
 
 /// All fragments as flat lists.
@@ -70,6 +109,88 @@ pub struct Export {
     pub node: Vec<i64>,
     pub original: Vec<bool>,
     pub flipped: Vec<bool>,
+}
+
+impl<S: FromRow> Held<S> {
+    /// How the tree came about: it is built once more.
+    pub fn construction(&self, recipe: &Recipe) -> Result<Vec<Division>> {
+        let mut divisions = Vec::new();
+        let plan = plan(&self.facets, recipe)?;
+        build_watched(pieces::<S>(&self.facets)?, plan, &mut divisions)?;
+        Ok(divisions)
+    }
+
+    /// The tree with more facets: where it ends it goes on by a recipe.
+    pub fn grown(&self, facets: Vec<Facet>, recipe: &Recipe) -> Result<Self> {
+        let rest = plan(&facets, recipe)?;
+        let plan = Plan::Grown(Box::new(self.tree.clone()), Box::new(rest));
+        let tree = build(pieces::<S>(&facets)?, plan)?;
+        let pitch = self.pitch;
+        Ok(Self {
+            facets,
+            tree,
+            pitch,
+        })
+    }
+
+    /// The recipe that makes the tree again.
+    pub fn recipe(&self) -> Recipe {
+        let own = self.tree.own().iter().map(row_of::<S>).collect();
+        let wish = Wish::Given(self.cuts());
+        Recipe { wish, own }
+    }
+
+    /// The nodes that a point passes, and its sides.
+    pub fn path(&self, point: &[f64; 3]) -> Vec<(u32, i8)> {
+        let point = Viewpoint::point(point, -self.pitch.exponent());
+        let steps = locate(&self.tree, &point).into_iter();
+        steps.map(|step| (step.node, sign(step.side))).collect()
+    }
+
+    /// The first hits of rays, and what each cost.
+    pub fn cast<const D: usize>(&self, rays: &[[f64; 6]]) -> Result<Vec<RayPath>>
+    where
+        S: Cast<D>,
+    {
+        let cast = |(number, ray): (usize, &[f64; 6])| {
+            poll();
+            self.cast_one(ray, &mut ()).map_err(|e| {
+                let text = format!("ray {number}: {}", e.message());
+                Error::at(e.kind(), vec![number as u64], text)
+            })
+        };
+        rays.iter().enumerate().map(cast).collect()
+    }
+
+    /// The first hit of a ray: the origin, then the direction.
+    pub fn cast_one<const D: usize>(
+        &self,
+        ray: &[f64; 6],
+        watcher: &mut impl Watcher<RayEvent>,
+    ) -> Result<RayPath>
+    where
+        S: Cast<D>,
+    {
+        let origin: [f64; D] = std::array::from_fn(|k| ray[k]);
+        let direction: [f64; D] = std::array::from_fn(|k| ray[3 + k]);
+        let ray = Ray::new(snap(self.pitch, &origin)?, &direction)?;
+        Ok(cast_ray(
+            &self.tree,
+            &self.facets,
+            self.pitch,
+            &ray,
+            watcher,
+        ))
+    }
+}
+
+/// −1, 0 or 1.
+pub fn sign(side: Side) -> i8 {
+    match side {
+        Side::Minus => -1,
+        Side::On => 0,
+        Side::Plus => 1,
+    }
 }
 
 impl<S: Affine> Held<S> {

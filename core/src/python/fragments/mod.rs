@@ -2,24 +2,29 @@
 
 mod convert;
 mod held;
+mod traces;
 
 use num_bigint::BigInt;
+use std::sync::{Arc, Mutex, PoisonError};
+
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 
-use self::convert::{cut_rows, lenience_of, named_policy, node_cuts, padded, rows, Wish};
-use self::held::{built, Inner};
+use self::convert::{cut_rows, lenience_of, named_policy, node_cuts, padded, rows, Recipe, Wish};
+use self::held::{asked, built, sign, Inner};
+use self::traces::{candidate_row, division_row, event_row, DivisionRow, EventRow};
 use super::arrays::array;
 use super::errors::{blamed, to_python};
+use super::hyperplanes::{FromRow, Row};
 use super::run::run;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::affine::Viewpoint;
 use crate::geometry::plane::Lattice;
-use crate::geometry::side::Side;
 use crate::mesh::facets::{check_reach, facets, snap_corners, suited_pitch};
 use crate::mesh::grid::Pitch;
-use crate::tree::fragments::{back_to_front, measures, sides, Sample};
+use crate::query::path::{RayEvent, RayPath};
+use crate::tree::fragments::{back_to_front, measures, sides, Answer, Ask, Sample};
 
 type Ints<'py> = Bound<'py, PyArray1<i64>>;
 type Floats<'py> = Bound<'py, PyArray1<f64>>;
@@ -51,12 +56,30 @@ pub struct PyFragmentTree {
     inner: Inner,
     corners: Vec<Lattice>,
     offsets: Vec<i64>,
+    recipe: Recipe,
 }
+
+/// The same on the tree of whichever dimension it is, for what needs the dimension as a constant.
+macro_rules! each_cast {
+    ($inner:expr, $held:ident, $method:ident, $($argument:expr),*) => {
+        match $inner {
+            Inner::Line($held) => $held.$method::<1>($($argument),*),
+            Inner::Plane($held) => $held.$method::<2>($($argument),*),
+            Inner::Space($held) => $held.$method::<3>($($argument),*),
+        }
+    };
+}
+
+/// A piece and where it is met.
+type FirstHit = Option<(u32, f64)>;
+
+/// Facets, t, and the numbers of nodes, leaves and tests of rays.
+type Paths<'py> = (Ints<'py>, Floats<'py>, Ints<'py>, Ints<'py>, Ints<'py>);
 
 #[pymethods]
 impl PyFragmentTree {
     #[classmethod]
-    #[pyo3(signature = (corners, offsets, policy, seed=0, sample=8, alpha=0.5, top=0, pitch=None, lenience=(false, false)))]
+    #[pyo3(signature = (corners, offsets, policy, seed=0, sample=8, alpha=0.5, top=0, pitch=None, lenience=(false, false), own=None))]
     #[allow(clippy::too_many_arguments)]
     fn build(
         _cls: &Bound<'_, PyType>,
@@ -70,14 +93,16 @@ impl PyFragmentTree {
         top: usize,
         pitch: Option<i64>,
         lenience: (bool, bool),
+        own: Option<Vec<Row>>,
     ) -> PyResult<Self> {
         let fail = |e: Error| to_python(py, &e);
-        let policy = named_policy(policy, seed, Sample(sample), alpha).map_err(fail)?;
+        let wish = wish_of(policy, seed, sample, alpha, top).map_err(fail)?;
+        let own = own.unwrap_or_default();
+        let recipe = Recipe { wish, own };
         let pitch = pitch.map(Pitch::new).transpose().map_err(fail)?;
         let dimension = corners.as_array().ncols();
         let rows: Vec<[f64; 3]> = padded(&corners, 0.0);
         let offsets = offsets.as_array().to_vec();
-        let wish = Wish::Policy(policy, (top > 0).then_some(top), 1);
         let (inner, corners) = run(py, 0, rows.len(), || {
             let pitch = match pitch {
                 Some(pitch) => pitch,
@@ -85,17 +110,170 @@ impl PyFragmentTree {
             };
             let lattice = snap_corners(dimension, &rows, pitch)?;
             let facets = facets(dimension, &lattice, &offsets, lenience_of(lenience))?;
-            let inner = built(dimension, facets, pitch, wish)?;
+            let inner = built(dimension, facets, pitch, &recipe)?;
             Ok((inner, lattice))
         })?;
         Ok(Self {
             inner,
             corners,
             offsets,
+            recipe,
         })
     }
 
+    /// A tree whose cuts `answer(depth, count, candidates)` chooses: it returns the place of a
+    /// candidate and None, or any number and a hyperplane's row.
     #[classmethod]
+    #[allow(clippy::too_many_arguments)]
+    fn asked(
+        _cls: &Bound<'_, PyType>,
+        py: Python<'_>,
+        corners: PyReadonlyArray2<'_, f64>,
+        offsets: PyReadonlyArray1<'_, i64>,
+        answer: Py<PyAny>,
+        sample: usize,
+        pitch: i64,
+        lenience: (bool, bool),
+        own: Vec<Row>,
+    ) -> PyResult<Self> {
+        let pitch = Pitch::new(pitch).map_err(|e| to_python(py, &e))?;
+        let dimension = corners.as_array().ncols();
+        let rows: Vec<[f64; 3]> = padded(&corners, 0.0);
+        let offsets = offsets.as_array().to_vec();
+        let raised = Raised::default();
+        let slot = Arc::clone(&raised);
+        let sample = Sample(sample);
+        let made = run(py, 0, rows.len(), || {
+            let lattice = snap_corners(dimension, &rows, pitch)?;
+            let facets = facets(dimension, &lattice, &offsets, lenience_of(lenience))?;
+            let inner = match dimension {
+                1 => Inner::Line(asked(facets, pitch, &own, ask(answer, slot, sample))?),
+                2 => Inner::Plane(asked(facets, pitch, &own, ask(answer, slot, sample))?),
+                _ => Inner::Space(asked(facets, pitch, &own, ask(answer, slot, sample))?),
+            };
+            Ok((inner, lattice))
+        });
+        if let Some(error) = raised.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            return Err(error);
+        }
+        let (inner, corners) = made?;
+        let recipe = each!(&inner, held => held.recipe());
+        Ok(Self {
+            inner,
+            corners,
+            offsets,
+            recipe,
+        })
+    }
+
+    /// The tree with more facets; regions that were empty are divided by a policy.
+    #[allow(clippy::too_many_arguments)]
+    fn grown(
+        &self,
+        py: Python<'_>,
+        corners: PyReadonlyArray2<'_, f64>,
+        offsets: PyReadonlyArray1<'_, i64>,
+        policy: &str,
+        seed: u64,
+        sample: usize,
+        alpha: f64,
+        lenience: (bool, bool),
+    ) -> PyResult<Self> {
+        let fail = |e: Error| to_python(py, &e);
+        let wish = wish_of(policy, seed, sample, alpha, 0).map_err(fail)?;
+        let own = Vec::new();
+        let recipe = Recipe { wish, own };
+        let dimension = self.dimension();
+        let rows: Vec<[f64; 3]> = padded(&corners, 0.0);
+        let pitch = Pitch::new(self.pitch()).map_err(fail)?;
+        let mut all_corners = self.corners.clone();
+        let mut all_offsets = self.offsets.clone();
+        let start = all_corners.len() as i64;
+        all_offsets.extend(offsets.as_array().iter().skip(1).map(|at| at + start));
+        let (inner, corners) = self.run(py, all_corners.len() + rows.len(), || {
+            all_corners.extend(snap_corners(dimension, &rows, pitch)?);
+            let facets = facets(dimension, &all_corners, &all_offsets, lenience_of(lenience))?;
+            let inner = match &self.inner {
+                Inner::Line(held) => Inner::Line(held.grown(facets, &recipe)?),
+                Inner::Plane(held) => Inner::Plane(held.grown(facets, &recipe)?),
+                Inner::Space(held) => Inner::Space(held.grown(facets, &recipe)?),
+            };
+            Ok((inner, all_corners))
+        })?;
+        let recipe = each!(&inner, held => held.recipe());
+        Ok(Self {
+            inner,
+            corners,
+            offsets: all_offsets,
+            recipe,
+        })
+    }
+
+    /// How the tree came about, node by node.
+    fn construction(&self, py: Python<'_>) -> PyResult<Vec<DivisionRow>> {
+        let recipe = &self.recipe;
+        let divisions = self.run(
+            py,
+            self.corners.len(),
+            || each!(&self.inner, held => held.construction(recipe)),
+        )?;
+        Ok(divisions.into_iter().map(division_row).collect())
+    }
+
+    /// The nodes that a point passes, with its side of each: −1, 0 or 1.
+    fn path(&self, py: Python<'_>, point: [f64; 3]) -> PyResult<Vec<(u32, i8)>> {
+        self.run(py, 0, || Ok(each!(&self.inner, held => held.path(&point))))
+    }
+
+    /// The first facet on each ray, and what it cost.
+    fn cast<'py>(
+        &self,
+        py: Python<'py>,
+        origins: PyReadonlyArray2<'py, f64>,
+        directions: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Paths<'py>> {
+        let rays = rays_of(&origins, &directions);
+        let paths = self.run(py, rays.len() * CAST, || {
+            each_cast!(&self.inner, held, cast, &rays)
+        })?;
+        let count = |of: fn(&RayPath) -> u64| {
+            PyArray1::from_vec(py, paths.iter().map(|p| of(p) as i64).collect())
+        };
+        let source = |path: &RayPath| path.hit.map_or(-1, |hit| self.source(hit.0));
+        let t = |path: &RayPath| path.hit.map_or(f64::INFINITY, |hit| hit.1);
+        Ok((
+            PyArray1::from_vec(py, paths.iter().map(source).collect()),
+            PyArray1::from_vec(py, paths.iter().map(t).collect()),
+            count(|p| p.nodes),
+            count(|p| p.leaves),
+            count(|p| p.tests),
+        ))
+    }
+
+    /// The way of one ray, step by step, and the piece and parameter of its first hit.
+    fn ray_events(
+        &self,
+        py: Python<'_>,
+        origin: [f64; 3],
+        direction: [f64; 3],
+    ) -> PyResult<(FirstHit, Vec<EventRow>)> {
+        let mut events: Vec<RayEvent> = Vec::new();
+        let [a, b, c] = origin;
+        let [d, e, f] = direction;
+        let ray = [a, b, c, d, e, f];
+        let path = self.run(py, CAST, || {
+            each_cast!(&self.inner, held, cast_one, &ray, &mut events)
+        })?;
+        Ok((path.hit, events.iter().map(event_row).collect()))
+    }
+
+    /// The hyperplanes that come from no facet: rows of normal and offset, in lattice steps.
+    fn own(&self) -> Vec<Row> {
+        each!(&self.inner, held => held.recipe()).own
+    }
+
+    #[classmethod]
+    #[pyo3(signature = (corners, offsets, pitch, cuts, lenience, own=None))]
     #[allow(clippy::too_many_arguments)]
     fn rebuild(
         _cls: &Bound<'_, PyType>,
@@ -105,22 +283,26 @@ impl PyFragmentTree {
         pitch: i64,
         cuts: PyReadonlyArray2<'_, i64>,
         lenience: (bool, bool),
+        own: Option<Vec<Row>>,
     ) -> PyResult<Self> {
         let fail = |e: Error| to_python(py, &e);
         let pitch = Pitch::new(pitch).map_err(fail)?;
         let dimension = corners.as_array().ncols();
         let rows: Vec<Lattice> = padded(&corners, 0);
         let offsets = offsets.as_array().to_vec();
-        let cuts = node_cuts(&cuts).map_err(fail)?;
+        let wish = Wish::Given(node_cuts(&cuts).map_err(fail)?);
+        let own = own.unwrap_or_default();
+        let recipe = Recipe { wish, own };
         let inner = run(py, 0, rows.len(), || {
             check_reach(&rows)?;
             let facets = facets(dimension, &rows, &offsets, lenience_of(lenience))?;
-            built(dimension, facets, pitch, Wish::Given(cuts))
+            built(dimension, facets, pitch, &recipe)
         })?;
         Ok(Self {
             inner,
             corners: rows,
             offsets,
+            recipe,
         })
     }
 
@@ -217,12 +399,10 @@ impl PyFragmentTree {
             let eye = self.viewpoint(eye, at_infinity)?;
             Ok(each!(&self.inner, held => sides(&held.tree, &eye)))
         })?;
-        let sign = |side: &Side| match side {
-            Side::Minus => -1,
-            Side::On => 0,
-            Side::Plus => 1,
-        };
-        Ok(PyArray1::from_vec(py, found.iter().map(sign).collect()))
+        Ok(PyArray1::from_vec(
+            py,
+            found.into_iter().map(sign).collect(),
+        ))
     }
 
     /// Volume and surface of the root's region and of all nodes' regions, in lattice steps.
@@ -296,7 +476,58 @@ impl PyFragmentTree {
     }
 }
 
+/// Casting a ray costs about as much as a thousand elements of other work.
+const CAST: usize = 1000;
+
+/// What a callable raised.
+type Raised = Arc<Mutex<Option<PyErr>>>;
+
+fn wish_of(policy: &str, seed: u64, sample: usize, alpha: f64, top: usize) -> Result<Wish> {
+    if policy == "end-points" {
+        return Ok(Wish::Lines(Sample(sample)));
+    }
+    let policy = named_policy(policy, seed, Sample(sample), alpha)?;
+    Ok(Wish::Policy(policy, (top > 0).then_some(top), 1))
+}
+
+/// Asks a Python callable; what it raises is kept.
+fn ask<S: FromRow>(answer: Py<PyAny>, raised: Raised, sample: Sample) -> Ask<S> {
+    let refused = move |error: PyErr| {
+        *raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+        Error::new(ErrorKind::Cancelled, "the policy raised an exception")
+    };
+    Ask {
+        sample,
+        answer: Box::new(move |depth, count, candidates| {
+            let rows: Vec<_> = candidates.iter().map(candidate_row).collect();
+            let found = Python::attach(|py| {
+                let found = answer.call1(py, (depth, count, rows))?;
+                found.extract::<(usize, Option<Row>)>(py)
+            });
+            match found.map_err(&refused)? {
+                (place, None) => Ok(Answer::Candidate(place)),
+                (_, Some(row)) => S::from_row(&row).map(Answer::Hyperplane),
+            }
+        }),
+    }
+}
+
+fn rays_of(
+    origins: &PyReadonlyArray2<'_, f64>,
+    directions: &PyReadonlyArray2<'_, f64>,
+) -> Vec<[f64; 6]> {
+    let (origins, heads) = (padded(origins, 0.0), padded(directions, 0.0));
+    let pairs = origins.into_iter().zip(heads);
+    pairs
+        .map(|([a, b, c], [d, e, f])| [a, b, c, d, e, f])
+        .collect()
+}
+
 impl PyFragmentTree {
+    fn source(&self, piece: u32) -> i64 {
+        each!(&self.inner, held => held.source(piece))
+    }
+
     /// Runs a method's work; the report of a defect holds the facets.
     fn run<T: Send>(
         &self,

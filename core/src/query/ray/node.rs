@@ -85,6 +85,19 @@ pub struct Node<const D: usize> {
     pending: Mutex<Option<Box<Pending<D>>>>,
 }
 
+/// What is known of a node.
+#[derive(Clone, Debug)]
+pub struct Known<const D: usize> {
+    /// Its box, in lattice steps.
+    pub cell: Cell<D>,
+    /// The axis and the place of its cut.
+    pub cut: Option<(u8, f64)>,
+    /// The numbers of its children.
+    pub children: [Option<u32>; 2],
+    /// The facets of a leaf; `None` for a cut, and for what no ray has reached yet.
+    pub facets: Option<Vec<u32>>,
+}
+
 /// What a node is.
 #[derive(Debug)]
 pub enum Content<const D: usize> {
@@ -153,6 +166,39 @@ impl<const D: usize> Node<D> {
                 None => Content::Leaf(Box::default()),
             }
         })
+    }
+
+    /// The nodes that are known by now, in preorder, the root's box being `cell`.
+    pub fn known(&self, cell: Cell<D>) -> Vec<Known<D>> {
+        let mut found: Vec<Known<D>> = Vec::new();
+        let mut open = vec![(self, cell, None)];
+        while let Some((node, cell, place)) = open.pop() {
+            poll();
+            let number = found.len() as u32;
+            if let Some((parent, side)) = place {
+                let above: &mut Known<D> = &mut found[parent];
+                above.children[side] = Some(number);
+            }
+            let mut known = Known {
+                cell,
+                cut: None,
+                children: [None; 2],
+                facets: None,
+            };
+            match node.content.get() {
+                None => {}
+                Some(Content::Leaf(facets)) => known.facets = Some(facets.to_vec()),
+                Some(Content::Cut { axis, at, children }) => {
+                    known.cut = Some((*axis, *at));
+                    let halves = cell.halves(usize::from(*axis), *at);
+                    for side in [1, 0] {
+                        open.push((&children[side], halves[side], Some((found.len(), side))));
+                    }
+                }
+            }
+            found.push(known);
+        }
+        found
     }
 
     /// Divides everything below.

@@ -1,12 +1,13 @@
 //! Rays tested one after the other, because each may change the tree for the next.
 
 use super::cast::Cast;
-use super::trace::Trace;
+use super::trace::{StabEvent, Trace};
 use super::tree::StabTree;
 use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt::poll;
 use crate::query::ray::answer::{hit, Hit};
 use crate::query::ray::Ray;
+use crate::tree::trace::Watcher;
 
 /// The hits of rays and what they cost, in the order of the rays.
 pub type Tested<const D: usize> = (Vec<Option<Hit<D>>>, Vec<Trace>);
@@ -20,12 +21,25 @@ pub fn test_rays<S: Cast<D>, const D: usize>(
     origins: &[f64],
     directions: &[f64],
 ) -> Result<Tested<D>> {
+    test_rays_watched(tree, origins, directions, &mut ())
+}
+
+/// Tests rays as [`test_rays`] does, and tells of each step.
+///
+/// # Errors
+/// As for [`test_rays`].
+pub fn test_rays_watched<S: Cast<D>, const D: usize>(
+    tree: &mut StabTree<S, D>,
+    origins: &[f64],
+    directions: &[f64],
+    watcher: &mut impl Watcher<StabEvent>,
+) -> Result<Tested<D>> {
     let rays = rays(tree, origins, directions)?;
     let mut hits = Vec::with_capacity(rays.len());
     let mut traces = Vec::with_capacity(rays.len());
     for ray in rays {
         poll();
-        let (found, trace) = tree.test_ray(&ray);
+        let (found, trace) = tree.test_ray_watched(&ray, watcher);
         hits.push(found.map(|f| hit(tree.scene(), &ray, &f)));
         traces.push(trace);
     }

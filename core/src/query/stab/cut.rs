@@ -43,6 +43,11 @@ impl<const D: usize> Cut<D> {
         }
     }
 
+    /// Normal n and offset c of n·x + c = 0.
+    pub fn coefficients(&self) -> ([i128; D], Int<3>) {
+        (self.normal, self.offset)
+    }
+
     /// Where a ray crosses.
     #[inline]
     pub fn stab(&self, ray: &Ray<D>) -> Stab {

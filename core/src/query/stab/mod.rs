@@ -30,6 +30,7 @@ pub mod cast;
 pub mod heap;
 pub mod record;
 pub mod tree;
+pub mod view;
 
 mod cut;
 pub mod node;

@@ -1,32 +1,15 @@
 //! Pieces → tree, one node at a time from the root down.
 
-use super::axis::median_cut;
-use super::choice::Policy;
-use super::node::{Crossing, Fragment, FragmentTree, Node, NodeCut, Piece};
-use super::trace::{Candidate, Division, Reason};
+use super::choosing::Chooser;
+use super::node::{Crossing, Fragment, FragmentTree, Node, Piece};
+use super::plan::{Open, Plan};
+use super::trace::Division;
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::affine::{Affine, Polytope};
+use crate::geometry::affine::Affine;
 use crate::geometry::side::{Half, Orientation, Split};
 use crate::interrupt::poll;
 use crate::tree::partition::SplitMix;
 use crate::tree::trace::Watcher;
-
-/// How a tree is to be built.
-#[derive(Clone, Debug)]
-pub enum Plan<S: Affine> {
-    /// By a policy.
-    Policy {
-        /// Who becomes the pivot.
-        policy: Policy,
-        /// Regions with more pieces than this are divided by axis-parallel cuts where that helps;
-        /// `None` for autopartition alone.
-        top: Option<usize>,
-        /// The root's region, for policies that ask for it.
-        region: Option<Polytope<S>>,
-    },
-    /// By these cuts, one for each node in preorder.
-    Given(Vec<NodeCut>),
-}
 
 /// Builds a tree.
 ///
@@ -51,22 +34,14 @@ pub fn build_watched<S: Affine, W: Watcher<Division>>(
     plan: Plan<S>,
     watcher: &mut W,
 ) -> Result<FragmentTree<S>> {
-    let (chooser, region) = match plan {
-        Plan::Policy {
-            policy,
-            top,
-            region,
-        } => {
-            if let Policy::Random(seed) = policy {
-                shuffle(&mut pieces, seed);
-            }
-            let region = region.filter(|_| policy.needs_region());
-            (Chooser::Policy { policy, top }, region)
-        }
-        Plan::Given(cuts) => (Chooser::Given(cuts.into_iter()), None),
-    };
+    if let Some(seed) = plan.seed() {
+        shuffle(&mut pieces, seed);
+    }
+    let region = plan.region();
+    let (chooser, own) = Chooser::of(plan);
+    let root = chooser.root();
     let mut builder = Builder {
-        tree: FragmentTree::empty(),
+        tree: FragmentTree::empty(own),
         open: Vec::new(),
         chooser,
         watcher,
@@ -76,6 +51,7 @@ pub fn build_watched<S: Affine, W: Watcher<Division>>(
         place: None,
         depth: 0,
         region,
+        old: root,
     });
     while let Some(open) = builder.open.pop() {
         builder.divide(open)?;
@@ -92,75 +68,10 @@ fn shuffle<T>(list: &mut [T], seed: u64) {
     }
 }
 
-enum Chooser {
-    Policy { policy: Policy, top: Option<usize> },
-    Given(std::vec::IntoIter<NodeCut>),
-}
-
-impl Chooser {
-    fn choose<S: Affine>(
-        &mut self,
-        open: &Open<S>,
-        watcher: &mut impl Watcher<Candidate>,
-    ) -> Result<(NodeCut, S::Hyperplane, Reason)> {
-        let pieces = &open.pieces;
-        let (policy, top) = match self {
-            Self::Given(cuts) => return given(cuts.next(), pieces),
-            Self::Policy { policy, top } => (policy, *top),
-        };
-        if top.is_some_and(|leaf| pieces.len() > leaf)
-            && let Some((cut, hyperplane)) = median_cut(pieces)
-        {
-            return Ok((cut, hyperplane, Reason::Median));
-        }
-        let pivot = &pieces[policy.pivot(pieces, open.region.as_ref(), watcher)];
-        let cut = S::hyperplane(&pivot.fragment).clone();
-        Ok((NodeCut::Pivot(pivot.number), cut, policy.reason()))
-    }
-
-    fn finish(self) -> Result<()> {
-        match self {
-            Self::Given(rest) if rest.len() > 0 => {
-                Err(unsuited("there are more cuts than regions with facets"))
-            }
-            _ => Ok(()),
-        }
-    }
-}
-
-fn given<S: Affine>(
-    cut: Option<NodeCut>,
-    pieces: &[Piece<S>],
-) -> Result<(NodeCut, S::Hyperplane, Reason)> {
-    let cut = cut.ok_or_else(|| unsuited("there are fewer cuts than regions with facets"))?;
-    let hyperplane = match cut {
-        NodeCut::Pivot(number) => pieces
-            .iter()
-            .find(|p| p.number == number)
-            .map(|p| S::hyperplane(&p.fragment).clone()),
-        NodeCut::Axis { axis, at } => S::axis_cut(axis, at),
-    };
-    let hyperplane = hyperplane.ok_or_else(|| unsuited("a cut's facet is not in its region"))?;
-    Ok((cut, hyperplane, Reason::Given))
-}
-
-fn unsuited(why: &str) -> Error {
-    let text = format!("the stored cuts do not suit the facets: {why}");
-    Error::new(ErrorKind::BadSnapshot, text)
-}
-
-/// A region that is still to be divided, if there are pieces in it.
-struct Open<S: Affine> {
-    pieces: Vec<Piece<S>>,
-    place: Option<(u32, Half)>,
-    depth: u32,
-    region: Option<Polytope<S>>,
-}
-
 struct Builder<'a, S: Affine, W> {
     tree: FragmentTree<S>,
     open: Vec<Open<S>>,
-    chooser: Chooser,
+    chooser: Chooser<S>,
     watcher: &'a mut W,
 }
 
@@ -175,9 +86,10 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
         let node = self.next_number()?;
         let mut candidates = Vec::new();
         let (cut, hyperplane, reason) = if W::LISTENS {
-            self.chooser.choose(&open, &mut candidates)?
+            self.chooser
+                .choose(&open, &mut self.tree.own, &mut candidates)?
         } else {
-            self.chooser.choose(&open, &mut ())?
+            self.chooser.choose(&open, &mut self.tree.own, &mut ())?
         };
         let [minus_region, plus_region] = match &open.region {
             Some(region) => region.divided(&hyperplane),
@@ -213,14 +125,20 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
             parent: open.place,
             depth: open.depth,
         });
+        let chooser = &self.chooser;
         let side = |half, pieces, region| Open {
             pieces,
             place: Some((node, half)),
             depth: open.depth + 1,
             region,
+            old: chooser.below(open.old, half),
         };
-        self.push(side(Half::Plus, plus, plus_region));
-        self.push(side(Half::Minus, minus, minus_region));
+        let [below, above] = [
+            side(Half::Minus, minus, minus_region),
+            side(Half::Plus, plus, plus_region),
+        ];
+        self.push(above);
+        self.push(below);
         Ok(())
     }
 

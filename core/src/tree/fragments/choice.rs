@@ -62,7 +62,7 @@ impl Tally {
         tally
     }
 
-    fn candidate(&self, piece: u32, score: f64) -> Candidate {
+    pub fn candidate(&self, piece: u32, score: f64) -> Candidate {
         Candidate {
             piece,
             minus: self.minus as u32,
@@ -70,6 +70,12 @@ impl Tally {
             splits: self.splits as u32,
             score,
         }
+    }
+
+    /// Whether `count` pieces do not all lie on one side.
+    pub fn divides(&self, count: usize) -> bool {
+        let one_sided = |all: usize, none: usize| all == count && none == 0;
+        !one_sided(self.minus, self.plus) && !one_sided(self.plus, self.minus)
     }
 
     /// By how many fragments the sides differ.

@@ -36,16 +36,19 @@
 mod axis;
 mod build;
 mod choice;
+mod choosing;
 mod measure;
 mod node;
 mod order;
 mod perfect;
+mod plan;
 mod trace;
 
-pub use build::{build, build_watched, Plan};
+pub use build::{build, build_watched};
 pub use choice::{Policy, Sample};
 pub use measure::{measures, Measure};
 pub use node::{Crossing, Fragment, FragmentTree, Node, NodeCut, Piece};
 pub use order::{back_to_front, sides};
 pub use perfect::{perfect, PERFECT_LIMIT};
+pub use plan::{Answer, Answering, Ask, Lines, Plan};
 pub use trace::{Candidate, Division, Reason};

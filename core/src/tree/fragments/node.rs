@@ -37,6 +37,8 @@ pub enum NodeCut {
         /// Where.
         at: i64,
     },
+    /// The hyperplane of the tree's own list with this place, see [`FragmentTree::own`].
+    Own(u32),
 }
 
 /// A region that is divided.
@@ -73,15 +75,17 @@ pub struct FragmentTree<S: Affine> {
     pub(super) nodes: Vec<Node<S>>,
     pub(super) fragments: Vec<Fragment<S>>,
     pub(super) crossings: Vec<Crossing>,
+    pub(super) own: Vec<S::Hyperplane>,
 }
 
 impl<S: Affine> FragmentTree<S> {
     /// The tree without facets: one empty region.
-    pub(super) fn empty() -> Self {
+    pub(super) fn empty(own: Vec<S::Hyperplane>) -> Self {
         Self {
             nodes: Vec::new(),
             fragments: Vec::new(),
             crossings: Vec::new(),
+            own,
         }
     }
 
@@ -98,6 +102,20 @@ impl<S: Affine> FragmentTree<S> {
     /// Every cut of a fragment, node by node.
     pub fn crossings(&self) -> &[Crossing] {
         &self.crossings
+    }
+
+    /// Hyperplanes that come from no facet and need not be parallel to an axis.
+    pub fn own(&self) -> &[S::Hyperplane] {
+        &self.own
+    }
+
+    /// The subtree on one side of a node.
+    pub fn child(&self, node: u32, half: Half) -> Option<u32> {
+        let node = self.nodes.get(node as usize)?;
+        match half {
+            Half::Minus => node.minus,
+            Half::Plus => node.plus,
+        }
     }
 
     /// R(v): the part of `whole` on a node's sides of all cuts above it.

@@ -53,6 +53,10 @@ pub enum Reason {
     Median,
     /// It was given.
     Given,
+    /// Whoever was asked said so.
+    Asked,
+    /// It goes through corners of pieces, or supports one, and its larger side has fewest pieces.
+    Ends,
 }
 
 /// A hyperplane that might have been chosen.

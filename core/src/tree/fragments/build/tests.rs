@@ -1,8 +1,9 @@
 use super::*;
+use crate::geometry::affine::Polytope;
 use crate::geometry::dim1::Dim1;
 use crate::geometry::dim2::Dim2;
 use crate::geometry::plane::Lattice;
-use crate::tree::fragments::choice::Sample;
+use crate::tree::fragments::{NodeCut, Policy, Sample};
 
 fn pieces<S: Affine>(facets: &[&[Lattice]]) -> Vec<Piece<S>> {
     let piece = |(number, corners): (usize, &&[Lattice])| Piece {

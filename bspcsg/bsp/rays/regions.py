@@ -1,0 +1,47 @@
+"""The regions of trees that rays stab."""
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...errors import invalid_parameter
+from ...geometry.polytope import Polytope
+from ..trees.node import RegionShape
+from .trace import StabNodes
+
+
+def region_of(
+    nodes: StabNodes, node: int, corners: FloatArray, pitch: int, margin: float
+) -> RegionShape:
+    """Return R(v) within the box of the facets, grown by a margin in model units.
+
+    Raises
+    ------
+    InvalidParameterError
+        If there is no such node.
+    """
+    step = 10.0**pitch
+    points = corners.reshape(-1, corners.shape[-1])
+    low = np.floor((points.min(axis=0) - margin) / step).astype(np.int64) - 1
+    high = np.ceil((points.max(axis=0) + margin) / step).astype(np.int64) + 1
+    region: Polytope | None = Polytope.box(low.tolist(), high.tolist())
+    for above, side in _way(nodes, node):
+        region = region and region.clipped(nodes.coefficients[above], side)
+    dimension = corners.shape[-1]
+    if region is None:
+        return [] if dimension == 3 else np.zeros((0, 2) if dimension == 2 else 0)
+    return region.shape(step)
+
+
+def _way(nodes: StabNodes, node: int) -> list[tuple[int, int]]:
+    """Return the nodes above, from the root down, with the side of each that leads on."""
+    if not 0 <= node < len(nodes):
+        raise invalid_parameter(f"There are {len(nodes)} nodes, none is number {node}.")
+    parents = {}
+    for side, children in ((-1, nodes.minus), (1, nodes.plus)):
+        for parent in np.flatnonzero(children >= 0):
+            parents[int(children[parent])] = int(parent), side
+    way = []
+    while node in parents:
+        node, side = parents[node]
+        way.append((node, side))
+    return way[::-1]

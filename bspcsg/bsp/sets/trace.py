@@ -1,0 +1,164 @@
+"""How two sets are merged: the steps of the core, node by node."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+from ..._types import SetOp
+from .pieces import SplitCase
+
+if TYPE_CHECKING:
+    from ..._core import _MergeRow
+    from .objects import ObjectTree
+
+#: A root: a node of an operand in preorder, or a leaf, -1 outside and -2 inside, as in `NodeTable`.
+Root: TypeAlias = int
+
+#: What becomes of a pair of trees: the second is split by the root of the first; a leaf; one of
+#: them as it is, with all its nodes shared, or its complement.
+Decision: TypeAlias = Literal[
+    "divide",
+    "leaf-in",
+    "leaf-out",
+    "first",
+    "first-complement",
+    "second",
+    "second-complement",
+]
+
+#: What decides a pair: one is a leaf, both are the same nodes, or the complement of each other.
+Because: TypeAlias = Literal["", "first-is-leaf", "second-is-leaf", "same", "complement"]
+
+#: What a node of the first operand has become: itself; a new node with the same cut; a leaf,
+#: because both its sides had become equal ones.
+Joined: TypeAlias = Literal["shared", "rebuilt", "collapsed-in", "collapsed-out"]
+
+
+@dataclass(frozen=True)
+class MergePair:
+    """Two trees of one region are to be combined.
+
+    Parameters
+    ----------
+    a, b : int
+        Their roots, in the first and in the second operand.
+    decision, because : str
+        What becomes of them, and why.
+    """
+
+    a: Root
+    b: Root
+    decision: Decision
+    because: Because
+
+
+@dataclass(frozen=True)
+class MergeSplit:
+    """A part of the second operand is split by the cut that divided the last pair.
+
+    Parameters
+    ----------
+    root : int
+        Its root.
+    case : str
+        How the cut lies to it, see `ObjectTree.split_case`. In the cases of two sides the subtree
+        on the first side is split, and the root lives on in the second half.
+    """
+
+    root: Root
+    case: SplitCase
+
+
+@dataclass(frozen=True)
+class MergeHalves:
+    """A part of the second operand has been split.
+
+    Parameters
+    ----------
+    minus, plus : int
+        The roots of its halves.
+    """
+
+    minus: Root
+    plus: Root
+
+
+@dataclass(frozen=True)
+class MergeJoin:
+    """What was made of the two sides of a node of the first operand has been joined.
+
+    Parameters
+    ----------
+    node : int
+        The node.
+    joined : str
+        What it has become.
+    """
+
+    node: Root
+    joined: Joined
+
+
+#: A step of merging.
+MergeStep: TypeAlias = MergePair | MergeSplit | MergeHalves | MergeJoin
+
+
+@dataclass(frozen=True, eq=False)
+class MergeTrace:
+    """A set operation, step by step.
+
+    After a pair that is divided come the splits of the second tree, each followed by its subtrees'
+    and its halves; then the pair on the minus side, that on the plus side, and the join.
+
+    Parameters
+    ----------
+    first, second, result : ObjectTree
+    op : str
+    steps : tuple of MergePair, MergeSplit, MergeHalves or MergeJoin
+        In the order of the work.
+    """
+
+    first: "ObjectTree"
+    second: "ObjectTree"
+    result: "ObjectTree"
+    op: SetOp
+    steps: tuple[MergeStep, ...]
+
+    def __len__(self) -> int:
+        """Return the number of steps."""
+        return len(self.steps)
+
+    def __iter__(self) -> Iterator[MergeStep]:
+        """Yield the steps."""
+        return iter(self.steps)
+
+    @property
+    def cases(self) -> tuple[SplitCase, ...]:
+        """The cases of all splits in their order."""
+        return tuple(step.case for step in self.steps if isinstance(step, MergeSplit))
+
+
+def merge_trace(
+    first: "ObjectTree",
+    second: "ObjectTree",
+    result: "ObjectTree",
+    op: SetOp,
+    rows: "list[_MergeRow]",
+) -> MergeTrace:
+    """Return the trace of the core's rows."""
+    return MergeTrace(first, second, result, op, tuple(map(_step, rows)))
+
+
+def _step(row: "_MergeRow") -> MergeStep:
+    kind, a, b, what, why = row
+    made: MergeStep
+    match kind:
+        case "pair":
+            made = MergePair(a, b, what, why)  # type: ignore[arg-type]
+        case "split":
+            made = MergeSplit(a, what)  # type: ignore[arg-type]
+        case "halves":
+            made = MergeHalves(a, b)
+        case "join":
+            made = MergeJoin(a, what)  # type: ignore[arg-type]
+    return made

@@ -1,0 +1,97 @@
+"""Policies that are callables, and hyperplanes of the caller's own."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from ..._core import FragmentTree
+from ..._types import IndexArray
+from ...errors import invalid_parameter
+from ...geometry.hyperplane import Hyperplane
+from .facets import Corners
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """What a callable policy is shown to choose the hyperplane that divides a region.
+
+    Parameters
+    ----------
+    depth : int
+        Hyperplanes above the region.
+    count : int
+        Pieces in the region.
+    pieces : (k,) int64
+        The candidates: convex pieces whose hyperplanes can be chosen, at most `sample` of them.
+    minus, plus, splits : (k,) int64
+        For each, how many pieces have parts on the minus side, on the plus side, on both.
+    """
+
+    depth: int
+    count: int
+    pieces: IndexArray
+    minus: IndexArray
+    plus: IndexArray
+    splits: IndexArray
+
+    def __len__(self) -> int:
+        """Return the number of candidates."""
+        return len(self.pieces)
+
+
+#: A policy of the caller's own: it returns the place of a candidate, or a hyperplane (normal,
+#: offset) that has at least one piece, or a part of one, less on either side than the region has.
+Chooser: TypeAlias = Callable[[Choice], Any]
+
+
+def lattice_rows(cuts: Sequence[tuple[Any, Any]], dimension: int, pitch: int) -> list[list[int]]:
+    """Return hyperplanes (normal, offset) as rows of whole numbers, in lattice steps."""
+    return [_row(normal, offset, dimension, pitch) for normal, offset in cuts]
+
+
+def _row(normal: Any, offset: Any, dimension: int, pitch: int) -> list[int]:
+    entries = np.atleast_1d(np.asarray(normal, dtype=object)).tolist()
+    if len(entries) != dimension:
+        message = f"The hyperplane's normal must have {dimension} numbers, not {len(entries)}."
+        raise invalid_parameter(message)
+    return Hyperplane.from_numbers(entries, offset).on_lattice(pitch).row
+
+
+def asked_tree(
+    facets: Corners,
+    policy: Chooser,
+    sample: int,
+    pitch: int,
+    lenience: tuple[bool, bool],
+    own: list[list[int]],
+) -> FragmentTree:
+    """Return the core's tree whose cuts a callable chooses."""
+    corners, offsets = facets
+    dimension = corners.shape[1]
+
+    def answer(
+        depth: int, count: int, rows: list[tuple[int, int, int, int, float]]
+    ) -> tuple[int, list[int] | None]:
+        columns = np.array([row[:4] for row in rows], dtype=np.int64).T
+        chosen = policy(Choice(depth, count, *columns))
+        if isinstance(chosen, tuple):
+            return 0, _row(*_pair(chosen), dimension, pitch)
+        try:
+            place = range(len(rows))[chosen]
+        except (TypeError, IndexError) as error:
+            message = (
+                f"A policy returns the place of one of its {len(rows)} candidates, or a pair"
+                f" (normal, offset); not {chosen!r}."
+            )
+            raise invalid_parameter(message) from error
+        return place, None
+
+    return FragmentTree.asked(corners, offsets, answer, sample, pitch, lenience, own)
+
+
+def _pair(chosen: tuple[Any, ...]) -> tuple[Any, Any]:
+    if len(chosen) != 2:
+        raise invalid_parameter(f"A hyperplane is a pair (normal, offset), not {chosen!r}.")
+    return chosen

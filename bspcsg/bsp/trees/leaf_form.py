@@ -1,0 +1,78 @@
+"""A tree as the lecture notes draw it: leaves store at most one fragment.
+
+A `PartitionTree` divides until no region has a facet, so that every leaf is empty and every
+fragment lies in the hyperplane of an inner node. In the notes a region with one fragment is a leaf
+that stores it. The one is the other with these leaves divided once more by their own fragment.
+"""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..._types import IndexArray
+
+if TYPE_CHECKING:
+    from .tree import PartitionTree
+
+#: What `LeafForm.minus` and `LeafForm.plus` hold for an empty leaf; fragment k is EMPTY - 1 - k.
+EMPTY = -1
+
+
+@dataclass(frozen=True, eq=False)
+class LeafForm:
+    """A tree whose leaves store |S| ≤ 1 fragments.
+
+    The number of nodes is 2 · leaves - 1, as of any tree whose inner nodes have two children. It is
+    at most 2 n̄ - 1, with n̄ = Σ |S(v)| the number of fragments, if every cut supports a fragment;
+    it is exactly that if, moreover, one leaf alone stores a fragment and no two share a hyperplane;
+    and also if no cut supports one, and no leaf is empty.
+
+    Parameters
+    ----------
+    inner : (m,) int64
+        The nodes of the `PartitionTree` that are inner nodes here, in preorder.
+    minus, plus : (m,) int64
+        Their children: places in `inner`; -1 for an empty leaf, -2 - k for a leaf that stores
+        fragment k of `PartitionTree.fragments`. Without inner nodes the tree is one leaf.
+    fragments : int
+        n̄.
+    stored : int
+        How many of them leaves store.
+    """
+
+    inner: IndexArray
+    minus: IndexArray
+    plus: IndexArray
+    fragments: int
+    stored: int
+
+    @property
+    def leaves(self) -> int:
+        """The number of leaves."""
+        return len(self.inner) + 1
+
+    @property
+    def nodes(self) -> int:
+        """The number of nodes, leaves among them."""
+        return len(self.inner) + self.leaves
+
+
+def leaf_form(tree: "PartitionTree") -> LeafForm:
+    """Return a tree with its last single fragments in leaves."""
+    arrays = tree.arrays
+    single = arrays["end"] - arrays["start"] == 1
+    stores = single & (arrays["minus"] < 0) & (arrays["plus"] < 0) & (arrays["cut"][:, 0] == -1)
+    inner = np.flatnonzero(~stores)
+    # What a link to each node becomes, and at the end what a link to no node does.
+    links = np.full(len(tree) + 1, EMPTY, dtype=np.int64)
+    links[inner] = np.arange(len(inner))
+    kept = np.flatnonzero(stores)
+    links[kept] = EMPTY - 1 - arrays["start"][kept]
+    return LeafForm(
+        inner,
+        links[arrays["minus"][inner]],
+        links[arrays["plus"][inner]],
+        len(tree.fragments),
+        len(kept),
+    )

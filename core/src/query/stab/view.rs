@@ -1,0 +1,52 @@
+//! A tree that counts, laid open: what each node holds.
+
+use super::cast::Cast;
+use super::node::Content;
+use super::tree::StabTree;
+use crate::arith::Int;
+
+/// A node as it is now; facets by their places in the input.
+#[derive(Clone, Debug)]
+pub struct View<const D: usize> {
+    /// T(v).
+    pub visits: u64,
+    /// The number of cuts above.
+    pub depth: u32,
+    /// Normal and offset of n·x + c = 0, and the children on the minus and the plus side; `None`
+    /// for a leaf.
+    pub cut: Option<([i128; D], Int<3>, [u32; 2])>,
+    /// L(v) of a leaf in the order of its heap, or the facets in the cut, its pivot first.
+    pub facets: Vec<u32>,
+    /// T(p) of each of them; 0 for those in a cut.
+    pub hits: Vec<u64>,
+}
+
+impl<S: Cast<D>, const D: usize> StabTree<S, D> {
+    /// All nodes in the order in which they were made.
+    pub fn views(&self) -> Vec<View<D>> {
+        let number = |facet: u32| self.scene().number(facet);
+        let view = |node: &super::node::Node<S, D>| {
+            let (visits, depth) = (node.visits, node.depth);
+            match &node.content {
+                Content::Leaf(list) => View {
+                    visits,
+                    depth,
+                    cut: None,
+                    facets: list.entries().iter().map(|e| number(e.facet)).collect(),
+                    hits: list.entries().iter().map(|e| e.hits).collect(),
+                },
+                Content::Inner(inner) => {
+                    let (normal, offset) = inner.cut.coefficients();
+                    View {
+                        visits,
+                        depth,
+                        cut: Some((normal, offset, inner.children)),
+                        facets: inner.coplanar.iter().map(|f| number(*f)).collect(),
+                        hits: vec![0; inner.coplanar.len()],
+                    }
+                }
+            }
+        };
+        self.nodes.iter().map(view).collect()
+    }
+}
