@@ -70,6 +70,11 @@ class Job(ABC):
         self.inputs.refuse_early(self.paths())
         self.inputs.tell_units((path, self.target) for path in self.paths())
 
+    @property
+    def name(self) -> str:
+        """What to call the result."""
+        return shown(self.target.path)
+
     def run(self) -> int:
         """Do it, and return the exit code."""
         from ..parameters import set_threads
@@ -78,7 +83,7 @@ class Job(ABC):
         self.target.refuse_early(self.out.as_json)
         self.refuse_inputs()
         status.tell(f"{self.op}: evaluating")
-        result = self.combined()
+        result = self.made = self.combined()
         mesh = self._mesh_of(result)
         self.lap("combine")
         is_checked = self.settings["check"] != "off"
@@ -127,7 +132,7 @@ class Job(ABC):
     def _tell(
         self, result: "Solid", mesh: "Mesh", report: "CheckReport | None", written: bool
     ) -> None:
-        name = shown(self.target.path)
+        name = self.name
         for finding in self._findings(result):
             if finding not in self.inputs.noticed:
                 self.out.finding(name, finding)

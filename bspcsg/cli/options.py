@@ -142,6 +142,16 @@ _DRAWING = [
 
 OUTPUT = _DRAWING[0]
 
+_MAYBE_OUTPUT = click.option(
+    "-o",
+    "--output",
+    "target",
+    metavar="FILE",
+    type=PATH,
+    help="File to write, its format by its suffix; - for standard output. Needed unless --view"
+    " shows the result.",
+)
+
 OVERWRITE = _WRITING[-1]
 
 ALLOW_EMPTY = click.option(
@@ -261,6 +271,11 @@ def drawing(command: _Command) -> _Command:
 def making(command: _Command) -> _Command:
     """Add the options of verbs that make one solid and write it."""
     return _with([OUTPUT, writing, SIMPLIFY, ALLOW_EMPTY, check_depth], command)
+
+
+def making_or_showing(command: _Command) -> _Command:
+    """Add the options of verbs that make one solid and write it, or only show it."""
+    return _with([_MAYBE_OUTPUT, writing, SIMPLIFY, ALLOW_EMPTY, check_depth], command)
 
 
 def from_files(command: _Command) -> _Command:

@@ -6,17 +6,21 @@ import os
 import signal
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
+import bspcsg as b
 from bspcsg.cli.live import LiveServer, Site, stamp
 from support.cli import Capture, process, put, ran
 from support.shapes import cuboid
 
 _SCRIPT = "import bspcsg as b\nresult = b.cube({side})\n"
+
+
+_SAID = Path("log/said.txt")
 
 
 @contextmanager
@@ -46,7 +50,7 @@ def asked(port: int, path: str, **headers: str) -> tuple[int, str]:
 
 def changed(port: int, before: str) -> str:
     """Wait until the state is another."""
-    for _ in range(100):
+    for _ in range(300):
         now = asked(port, "/changes")[1]
         if now != before:
             return now
@@ -112,6 +116,62 @@ def test_only_this_machine_is_answered() -> None:
         server.server_close()
 
 
+@contextmanager
+def watching(*arguments: str) -> Iterator["subprocess.Popen[bytes]"]:
+    """Run a script again and again until Ctrl-C."""
+    # Not beside the script, where what is said would be a change.
+    _SAID.parent.mkdir()
+    with _SAID.open("w") as said:
+        running = process("run", *arguments, "--no-open", stdout=said, stderr=said)
+    try:
+        yield running
+    finally:
+        running.send_signal(signal.SIGINT)
+        running.wait(timeout=20)
+    assert "Traceback" not in _SAID.read_text()
+
+
+def until(found: Callable[[], object]) -> None:
+    for _ in range(300):
+        if found():
+            return
+        time.sleep(0.05)
+    raise AssertionError(_SAID.read_text())
+
+
+def test_a_script_runs_again_when_it_changes(folder: Path) -> None:
+    Path("part.py").write_text(_SCRIPT.format(side=2))
+    with watching("part.py", "--watch", "-o", "part.stl") as running:
+        said = _SAID
+        until(lambda: "volume 8 " in said.read_text() and "watching" in said.read_text())
+        Path("part.py").write_text("result = 1 +\n")
+        until(lambda: "SyntaxError" in said.read_text())
+        Path("part.py").write_text(_SCRIPT.format(side=3))
+        until(lambda: "volume 27 " in said.read_text())
+        assert said.read_text().count("volume") == 2
+    assert running.returncode == 0 and b.io.load("part.stl").volume == 27
+
+
+def test_a_result_is_shown_without_a_file(folder: Path) -> None:
+    Path("part.py").write_text(_SCRIPT.format(side=2))
+    before = sorted(os.listdir())
+    with watching("part.py", "--watch", "--view") as running:
+        said = _SAID
+        until(lambda: "shows the result" in said.read_text())
+        port = int(said.read_text().partition("http://127.0.0.1:")[2].partition("/")[0])
+        state = asked(port, "/changes")[1]
+        assert "2 × 2 × 2" in asked(port, "/")[1] and asked(port, "/x")[0] == 404
+        Path("part.py").write_text("result = 1 +\n")
+        state = changed(port, state)
+        assert "SyntaxError" in asked(port, "/")[1]
+        Path("part.py").write_text(_SCRIPT.format(side=5))
+        changed(port, state)
+        assert "5 × 5 × 5" in asked(port, "/")[1]
+        assert said.read_text().startswith("part.py  12 triangles")
+    assert running.returncode == 0
+    assert set(os.listdir()) == {*before, "log"}
+
+
 def test_the_stamp_sees_every_change(tmp_path: Path) -> None:
     inside = tmp_path / "a.txt"
     seen = [stamp([tmp_path])]
@@ -130,6 +190,9 @@ def test_the_stamp_sees_every_change(tmp_path: Path) -> None:
         (["view", ".", "-o", "x.html"], "leave out -o"),
         (["view", "a.off", "--live", "-o", "x.html"], "leave out -o"),
         (["view", "-", "--live", "--from", "stl"], "not for standard input"),
+        (["run", "part.py"], "-o part.stl"),
+        (["run", "part.py", "--watch"], "-o part.stl"),
+        (["run", "-", "--view"], "not for standard input"),
     ],
 )
 def test_refusals(folder: Path, capsys: Capture, arguments: list[str], words: str) -> None:

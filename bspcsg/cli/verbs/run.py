@@ -13,9 +13,11 @@ from click.core import ParameterSource
 from ...errors import FormatError, InvalidMeshError
 from ..files import ON_INVALID, STREAM, shown, stream_text
 from ..job import Job
-from ..options import TIMEOUT, common, making
+from ..options import PORT, TIMEOUT, common, making_or_showing
+from ..output import Output
 from ..patterns import file_argument
 from ..scripts import SUFFIXES, made_by
+from ..watching import NOWHERE, Watching
 
 if TYPE_CHECKING:
     from ...csg import Polish
@@ -74,6 +76,7 @@ _EPILOG = """\b
 Examples:
   bspcsg run bracket.scad -o bracket.3mf --polish -D width=12.5
   bspcsg run part.py -o part.stl
+  bspcsg run part.py --watch --view
 """
 
 #: Options that make sense for some scripts only, by their names, with those that they are not for.
@@ -138,10 +141,31 @@ _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
     help="A folder beside the script's own whose files it may read; can be repeated; not for"
     " Python.",
 )
+@click.option(
+    "--watch", "watches", is_flag=True, help="Run again whenever the script changes, until Ctrl-C."
+)
+@click.option(
+    "--view",
+    "shows",
+    is_flag=True,
+    help="Show the result in a browser, in a page that follows it, until Ctrl-C.",
+)
+@click.option(
+    "--open/--no-open", "opens", default=True, help="Open that page in a browser (default)."
+)
+@PORT
 @TIMEOUT
-@making
+@making_or_showing
 @common
-def run(script: Path, **given: Any) -> int:
+def run(
+    script: Path,
+    target: Path | None,
+    watches: bool,
+    shows: bool,
+    opens: bool,
+    port: int,
+    **given: Any,
+) -> int:
     """Evaluate a script and write the solid it makes.
 
     A .csg file is read as OpenSCAD writes it, and so is standard input, for which - stands. A
@@ -149,7 +173,17 @@ def run(script: Path, **given: Any) -> int:
     file leaves its solid in the variable result, or calls bspcsg.show; it runs with all your
     rights, and what it prints goes to standard error.
     """
-    return _Run(script, **given).run()
+    if target is None and not shows:
+        raise click.UsageError("say where the solid goes: -o part.stl; or look at it: --view.")
+
+    def job() -> Job:
+        return _Run(script, target=NOWHERE if target is None else target, **given)
+
+    if not watches and not shows:
+        return job().run()
+    if str(script) == STREAM:
+        raise click.UsageError("--watch and --view are for files, not for standard input.")
+    return Watching(script, job, Output.of(given), watches).run(port if shows else None, opens)
 
 
 class _Run(Job):
@@ -163,6 +197,10 @@ class _Run(Job):
 
     def paths(self) -> Sequence[Path]:
         return [self._script]
+
+    @property
+    def name(self) -> str:
+        return super().name if self.target.path != NOWHERE else shown(self._script)
 
     def refuse_inputs(self) -> None:
         if self._suffix not in SUFFIXES:

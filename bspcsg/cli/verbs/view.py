@@ -1,6 +1,5 @@
 """The verb that shows files in a browser: view."""
 
-import os
 import sys
 import tempfile
 import webbrowser
@@ -16,6 +15,7 @@ from ..options import PORT, common, reading
 from ..output import Output, counted
 from ..pages import refuse_page, write_page
 from ..patterns import files_argument
+from ..screen import has_screen
 from ..seen import layers_of
 
 if TYPE_CHECKING:
@@ -143,7 +143,7 @@ class _Viewing:
 
     def _opened(self, address: str) -> bool:
         """Open the page, or say why not."""
-        if not _has_screen():
+        if not has_screen():
             self._out.note("there is no screen here; open the page in a browser yourself.")
             return False
         if webbrowser.open(address):
@@ -167,12 +167,3 @@ class _Viewing:
 def _temporary(name: str) -> Path:
     """Return a name for a page in a folder of its own, which stays."""
     return Path(tempfile.mkdtemp(prefix="bspcsg-")) / f"{Path(name).stem or 'view'}.html"
-
-
-def _has_screen() -> bool:
-    """Say whether a browser that is started here can be seen."""
-    if os.environ.get("SSH_CONNECTION") or os.environ.get("SSH_TTY"):
-        return False
-    if sys.platform in ("win32", "darwin"):
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -1,0 +1,121 @@
+"""A script that is run again whenever it changes, and the page of what it makes."""
+
+import os
+import threading
+import time
+import webbrowser
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import BspcsgError
+from . import clock, output
+from .job import Job
+from .live import LiveServer, Site, stamp
+from .output import Output
+from .screen import has_screen
+from .showing import folders_of, page_of
+
+if TYPE_CHECKING:
+    from ..report.viewer.layer import Layer
+    from ..solid.solid import Solid
+
+#: Seconds between two looks at the files.
+_LOOK = 0.2
+
+
+class Watching:
+    """A script, and a job for it each time.
+
+    Parameters
+    ----------
+    script : Path
+    job : callable
+        Makes the job of one run.
+    out : Output
+    goes_on : bool
+        Whether to run again when the script, or a file beside it, has changed.
+    """
+
+    def __init__(
+        self, script: Path, job: Callable[[], Job], out: Output, goes_on: bool = True
+    ) -> None:
+        self._script = script
+        self._job = job
+        self._out = out
+        self._goes_on = goes_on
+        self._runs = 0
+        self._made: Solid | BspcsgError | None = None
+        self._code = output.DONE
+
+    def run(self, port: int | None = None, opens: bool = True) -> int:
+        """Run until Ctrl-C, and return the exit code of the last run.
+
+        Parameters
+        ----------
+        port : int, optional
+            Where a page of the result is served; none by default.
+        opens : bool
+            Whether to open that in a browser.
+        """
+        server = None
+        try:
+            self._once()
+            if port is not None:
+                server = self._serve(port, opens)
+            if self._goes_on:
+                self._out.note(f"watching {self._script} until Ctrl-C")
+            self._go_on()
+        except KeyboardInterrupt:
+            pass
+        finally:
+            if server is not None:
+                server.shutdown()
+                server.server_close()
+        return self._code
+
+    def _once(self) -> None:
+        clock.start()
+        self._before = stamp([self._script])
+        job = self._job()
+        try:
+            self._code = job.run()
+            self._made = job.made
+        except BspcsgError as error:
+            self._code = output.tell_error(error, self._out.as_json)
+            self._made = error
+        # What the script itself writes beside it is no reason to run again.
+        self._around = stamp(folders_of([self._script]))
+        self._runs += 1
+
+    def _go_on(self) -> None:
+        while True:
+            time.sleep(_LOOK)
+            now = stamp([self._script]), stamp(folders_of([self._script]))
+            if self._goes_on and now != (self._before, self._around):
+                self._once()
+
+    def _serve(self, port: int, opens: bool) -> LiveServer:
+        site = Site(self._page, lambda: str(self._runs))
+        server = LiveServer(site, port)
+        threading.Thread(target=server.serve_forever, args=(_LOOK,), daemon=True).start()
+        self._out.note(f"{server.address} shows the result until Ctrl-C")
+        if opens and has_screen():
+            webbrowser.open(server.address)
+        return server
+
+    def _page(self, path: str) -> str | None:
+        return page_of([self._script], self._scene) if path == "/" else None
+
+    def _scene(self, files: Sequence[Path]) -> "tuple[list[Layer], str]":
+        from ..report.viewer.parts import layers_of_solid, told_apart
+
+        if isinstance(self._made, BspcsgError):
+            raise self._made
+        if self._made is None:
+            return [], ""
+        return told_apart(layers_of_solid(self._made, self._script.name)), ""
+
+
+#: Where a result goes that is only looked at.
+NOWHERE = Path(os.devnull)
