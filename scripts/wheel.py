@@ -71,30 +71,29 @@ def committed(folder: Path) -> Path:
     return folder
 
 
-def built(kind: str) -> Path:
-    """Build one kind of wheel and return where it is."""
+def built(kind: str, tree: Path) -> Path:
+    """Build one kind of wheel of a tree and return where it is."""
     target, tag = TARGETS[kind]
     run("rustup", "target", "add", target, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     binaries = tools()
     known = {"CARGO_TARGET_DIR": str(REPOSITORY / "core" / "target")} | dict(os.environ)
     environment = known | {"PATH": f"{binaries}:{os.environ['PATH']}"}
-    with tempfile.TemporaryDirectory() as name:
-        options = ["--zig", "--compatibility", tag, "--target", target, "--profile", "dist"]
-        command = [binaries / "maturin", "build", "--quiet", *options, "--out", name + "/dist"]
-        run(*command, cwd=committed(Path(name)), env=environment)
-        found = next(Path(name, "dist").glob("*.whl"))
-        DIST.mkdir(exist_ok=True)
-        return Path(shutil.move(found, DIST / found.name))
+    options = ["--zig", "--compatibility", tag, "--target", target, "--profile", "dist"]
+    command = [binaries / "maturin", "build", "--quiet", *options, "--out", tree / "dist"]
+    run(*command, cwd=tree, env=environment)
+    return kept(next((tree / "dist").glob("*.whl")))
 
 
-def source() -> Path:
-    """Build the source distribution and return where it is."""
-    with tempfile.TemporaryDirectory() as name:
-        command = [tools() / "maturin", "sdist", "--out", name + "/dist"]
-        run(*command, cwd=committed(Path(name)))
-        found = next(Path(name, "dist").glob("*.tar.gz"))
-        DIST.mkdir(exist_ok=True)
-        return Path(shutil.move(found, DIST / found.name))
+def source(tree: Path) -> Path:
+    """Build the source distribution of a tree and return where it is."""
+    run(tools() / "maturin", "sdist", "--out", tree / "dist", cwd=tree)
+    return kept(next((tree / "dist").glob("*.tar.gz")))
+
+
+def kept(found: Path) -> Path:
+    """Move a distribution to where it stays."""
+    DIST.mkdir(exist_ok=True)
+    return Path(shutil.move(found, DIST / found.name))
 
 
 @dataclass
@@ -116,7 +115,7 @@ class Trial:
     megabytes: float
 
 
-def tried(wheel: Path) -> Trial:
+def tried(wheel: Path, tree: Path) -> Trial:
     """Install a wheel where no Rust is, combine two meshes, then run the smoke test and the demo.
 
     Downloads come from the index; what pip has kept is left aside.
@@ -132,11 +131,11 @@ def tried(wheel: Path) -> Trial:
         pip = [python, "-m", "pip", "install", "--quiet", "--no-cache-dir"]
         run(*pip, "--disable-pip-version-check", wheel, env=plain, cwd=home)
         program = home / "venv/bin/bspcsg"
-        run(program, "difference", *_BOOLEAN, "-o", home / "half.stl", env=plain, cwd=REPOSITORY)
+        run(program, "difference", *_BOOLEAN, "-o", home / "half.stl", env=plain, cwd=tree)
         trial = Trial(time.monotonic() - start, _used() - before, *_sizes(home / "venv"))
-        run(python, REPOSITORY / "scripts" / "smoke.py", env=plain, cwd=home)
+        run(python, tree / "scripts" / "smoke.py", env=plain, cwd=home)
         demo = plain | {"BSPCSG": str(program)}
-        run(REPOSITORY / "scripts" / "demo", env=demo, stdout=subprocess.DEVNULL, cwd=home)
+        run(tree / "scripts" / "demo", env=demo, stdout=subprocess.DEVNULL, cwd=home)
         return trial
 
 
@@ -161,7 +160,11 @@ def runs_here(kind: str) -> bool:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("kinds", nargs="*", metavar="kind", help=f"of {', '.join(TARGETS)}, sdist")
-    parser.add_argument("--wheel", type=Path, help="a built wheel, to be looked at and tried only")
+    parser.add_argument(
+        "--wheel",
+        type=lambda name: Path(name).resolve(),
+        help="a built wheel, to be looked at and tried only",
+    )
     parser.add_argument("--record", action="store_true", help="keep the figures")
     options = parser.parse_args()
     kinds = options.kinds or ["manylinux"]
@@ -169,26 +172,35 @@ def main() -> int:
     if unknown:
         parser.error(f"no such kind: {', '.join(unknown)}")
     found = {}
-    for kind in kinds:
-        path = options.wheel or (source() if kind == "sdist" else built(kind))
-        megabytes, problems = path.stat().st_size / 1e6, problems_of(path)
-        print(f"{path.name}: {megabytes:.2f} MB", *problems, sep="\n  ", flush=True)
-        if problems:
-            return 1
-        found[kind] = {"file": path.name, "megabytes": round(megabytes, 2)}
-        if kind != "sdist" and runs_here(kind):
-            trial = tried(path)
-            found[kind] |= {name: round(value, 1) for name, value in vars(trial).items()}
-            print(
-                f"  {trial.packages} packages of {trial.megabytes:.0f} MB; first checked boolean"
-                f" after {trial.seconds:.1f} s, {trial.processor_seconds:.1f} s of them on a"
-                f" processor (at most {PATIENCE} s)"
-            )
-            if trial.seconds > PATIENCE:
-                return 1
+    with tempfile.TemporaryDirectory() as name:
+        tree = committed(Path(name))
+        for kind in kinds:
+            path = options.wheel or (source(tree) if kind == "sdist" else built(kind, tree))
+            found[kind] = examined(kind, path, tree)
     if options.record:
         print(f"kept in {keep('wheel', {'wheels': found})}")
     return 0
+
+
+def examined(kind: str, path: Path, tree: Path) -> dict[str, str | float]:
+    """Look into a distribution, try it if it runs here, and return the figures."""
+    megabytes, problems = path.stat().st_size / 1e6, problems_of(path, tree)
+    print(f"{path.name}: {megabytes:.2f} MB", *problems, sep="\n  ", flush=True)
+    if problems:
+        raise SystemExit(1)
+    figures: dict[str, str | float] = {"file": path.name, "megabytes": round(megabytes, 2)}
+    if kind == "sdist" or not runs_here(kind):
+        return figures
+    trial = tried(path, tree)
+    print(
+        f"  {trial.packages} packages of {trial.megabytes:.0f} MB; first checked boolean after"
+        f" {trial.seconds:.1f} s, {trial.processor_seconds:.1f} s of them on a processor"
+        f" (at most {PATIENCE} s)",
+        flush=True,
+    )
+    if trial.seconds > PATIENCE:
+        raise SystemExit("that is too long")
+    return figures | {name: round(value, 1) for name, value in vars(trial).items()}
 
 
 if __name__ == "__main__":

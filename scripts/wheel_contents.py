@@ -27,14 +27,14 @@ _SOURCES = ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md", "core/Carg
 _SYMBOLS = (b".symtab\0", b".debug_info\0")
 
 
-def package() -> set[str]:
-    """Return the files of the package as they stand here, without what is built."""
-    found = (path for path in (ROOT / "bspcsg").rglob("*") if path.is_file())
-    names = {path.relative_to(ROOT).as_posix() for path in found}
+def package(root: Path = ROOT) -> set[str]:
+    """Return the files of the package as they stand in a folder, without what is built."""
+    found = (path for path in (root / "bspcsg").rglob("*") if path.is_file())
+    names = {path.relative_to(root).as_posix() for path in found}
     return {name for name in names if not _FOREIGN.search(name)}
 
 
-def problems_of_wheel(path: Path) -> list[str]:
+def problems_of_wheel(path: Path, root: Path) -> list[str]:
     """Return what is wrong with a wheel."""
     with zipfile.ZipFile(path) as archive:
         names = {name for name in archive.namelist() if not name.endswith("/")}
@@ -44,8 +44,8 @@ def problems_of_wheel(path: Path) -> list[str]:
         cores = [name for name in names if re.fullmatch(r"bspcsg/_core\.(abi3\.so|pyd)", name)]
         bare = all(mark not in archive.read(name) for name in cores for mark in _SYMBOLS)
     own = {name for name in names if not name.startswith(f"{info}/")} - set(cores)
-    problems = [f"{name} is missing" for name in sorted(package() - own)]
-    problems += [f"{name} should not be there" for name in sorted(own - package())]
+    problems = [f"{name} is missing" for name in sorted(package(root) - own)]
+    problems += [f"{name} should not be there" for name in sorted(own - package(root))]
     problems += _problems_of_metadata(Parser().parsestr(about))
     if len(cores) != 1:
         problems.append(f"it has {len(cores)} native cores")
@@ -56,12 +56,12 @@ def problems_of_wheel(path: Path) -> list[str]:
     return problems + _problems_of_size(path)
 
 
-def problems_of_source(path: Path) -> list[str]:
+def problems_of_source(path: Path, root: Path) -> list[str]:
     """Return what is wrong with a source distribution."""
     with tarfile.open(path) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
-    core = {f.relative_to(ROOT).as_posix() for f in (ROOT / "core/src").rglob("*.rs")}
-    wanted = package() | core | {*_SOURCES, "core/Cargo.lock", "PKG-INFO"}
+    core = {f.relative_to(root).as_posix() for f in (root / "core/src").rglob("*.rs")}
+    wanted = package(root) | core | {*_SOURCES, "core/Cargo.lock", "PKG-INFO"}
     problems = [f"{name} is missing" for name in sorted(wanted - names)]
     foreign = [name for name in sorted(names) if _FOREIGN.search(name)]
     return problems + [f"{name} should not be there" for name in foreign] + _problems_of_size(path)
@@ -89,9 +89,10 @@ def _problems_of_metadata(about: Message) -> list[str]:
     return problems + [f"its page links to {name}, which an index has not" for name in relative]
 
 
-def problems_of(path: Path) -> list[str]:
-    """Return what is wrong with a distribution."""
-    return problems_of_wheel(path) if path.suffix == ".whl" else problems_of_source(path)
+def problems_of(path: Path, root: Path = ROOT) -> list[str]:
+    """Return what is wrong with a distribution of the tree in a folder."""
+    found = problems_of_wheel if path.suffix == ".whl" else problems_of_source
+    return found(path, root)
 
 
 def main() -> int:
