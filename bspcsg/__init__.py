@@ -15,6 +15,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from .conveniences import attach as _attach
+from .tracebacks import shortened as _shortened
 
 if TYPE_CHECKING:
     from ._core import __version__
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
     from .modelling.planar.lettering.text import text
     from .operations.setops import boolean, difference, intersection, union, xor
     from .parameters import set_threads
+    from .progress import progress
     from .script.run import run_script, show
     from .shapes.primitives import (
         box,
@@ -105,6 +107,7 @@ __all__ = [
     "pipe",
     "polar_pattern",
     "prism",
+    "progress",
     "revolve",
     "rounded_box",
     "run_script",
@@ -149,6 +152,7 @@ _MODULES = {
     "modelling.planar.curves": "arc bezier",
     "modelling.planar.lettering.text": "text",
     "parameters": "set_threads",
+    "progress": "progress",
     "shapes.primitives": "box cone cube cylinder extrude half_space prism revolve sphere torus",
     "script.run": "run_script show",
     "operations.setops": "boolean difference intersection union xor",
@@ -165,11 +169,14 @@ def __getattr__(name: str) -> "Any":
         return import_module(f".{name}", __name__)
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(f".{_HOMES[name]}", __name__), name)
+    module = import_module(f".{_HOMES[name]}", __name__)
+    value = _shortened(getattr(module, name))
+    # One object, whoever asks for it: pickles name functions by their modules.
+    setattr(module, name, value)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
     """Return the public names, imported or not."""
-    return sorted({*globals(), *__all__, *_PARTS})
+    return sorted({*__all__, *_PARTS})

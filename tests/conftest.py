@@ -20,6 +20,8 @@ for _name, _count in (("fast", 15), ("ci", 40), ("deep", 2000)):
         suppress_health_check=_QUIET,
         print_blob=True,
     )
+# Whoever reads why a test failed wants to see the frames inside the package.
+os.environ.setdefault("BSPCSG_TRACEBACKS", "full")
 hypothesis.settings.load_profile(os.environ.get("BSPCSG_HYPOTHESIS", "ci"))
 
 

@@ -18,6 +18,7 @@ from ..operations.setops import union
 from ..parameters import not_negative
 from ..solid.counting import uncounted
 from ..solid.solid import Solid
+from ..tracebacks import shortened
 from .bill import Bill, bill_of
 from .clashes import Clash, are_apart, clashes_of
 
@@ -60,6 +61,7 @@ class Part:
         return moved(self.shape, self.factors)
 
 
+@shortened
 class Assembly:
     """A tree of named, coloured, placed solids.
 

@@ -12,6 +12,7 @@ import click
 
 from ..errors import Finding, FormatError, InvalidMeshError
 from .lengths import MILLIMETRES
+from .objects import ObjectNames
 from .output import Output, counted, discard_output
 from .scripts import STREAMED, SUFFIXES, made_by
 
@@ -48,6 +49,8 @@ class Inputs:
         What to do about a file that is not closed.
     noticed : list of Finding
         What was told about the solids so far, which results repeat.
+    objects : ObjectNames
+        What the solids' triangles belong to.
     """
 
     out: Output
@@ -57,6 +60,7 @@ class Inputs:
     pitch: int | None = None
     on_invalid: str = "error"
     noticed: list[Finding] = field(default_factory=list)
+    objects: ObjectNames = field(default_factory=ObjectNames)
 
     @classmethod
     def of(cls, out: Output, settings: dict[str, Any]) -> "Inputs":
@@ -160,6 +164,7 @@ class Inputs:
         solid = self.as_solid(raw, path)
         noticed = [Finding.from_core(found) for found in solid.tree.findings]
         self.noticed.extend(noticed)
+        self.objects.note(solid, raw, path.stem)
         self.tell(path, (*raw.findings, *noticed))
         self.out.detail(f"{shown(path)}: {counted(len(raw.faces), 'triangle')}")
         return solid
@@ -271,6 +276,20 @@ class Target:
         named = self.path.suffix == self.suffix
         form_of(self.path if named else f"{self.path}{self.suffix}", self.text)
         refuse_unwritable(self.path, self.overwrite)
+
+    @property
+    def names_objects(self) -> bool:
+        """Whether files of this form tell objects apart by names."""
+        from ..formats.files import form_of
+
+        return form_of(f"mesh{self.suffix}", self.text).called is not None
+
+    @property
+    def is_single(self) -> bool:
+        """Whether files of this form hold single precision only."""
+        from ..formats.files import form_of
+
+        return form_of(f"mesh{self.suffix}", self.text).is_single
 
     def rounded(self, mesh: "Mesh | RawMesh") -> "tuple[Mesh | RawMesh, tuple[Finding, ...]]":
         """Return the mesh with the digits asked for, and what that did."""

@@ -100,6 +100,21 @@ def files_of(formula: Formula) -> list[File]:
     return list(found.values())
 
 
+def subtracted(formula: Formula) -> set[str]:
+    """Return the names of files that are only ever taken away, or whose outside is taken."""
+    signs: dict[str, set[bool]] = {}
+    waiting = [(formula, True)]
+    while waiting:
+        node, added = waiting.pop()
+        if isinstance(node, File):
+            signs.setdefault(node.name, set()).add(added)
+            continue
+        for number, operand in enumerate(node.operands):
+            turned = node.name == "complement" or (node.name == "difference" and number > 0)
+            waiting.append((operand, added != turned))
+    return {name for name, found in signs.items() if found == {False}}
+
+
 def evaluated(
     formula: Formula,
     leaf: Callable[[File], _Value],

@@ -96,12 +96,25 @@ class Job(ABC):
         if self.settings["tolerance"]:
             result, mesh = self._simplified(result, mesh)
         status.tell(f"{self.op}: writing {shown(self.target.path)}")
-        self._lost = self.target.write(mesh)
+        self._lost = self._write(result, mesh)
         for finding in self._lost:
             self.out.finding(shown(self.target.path), finding)
         self.lap("write")
         self._tell(result, mesh, report, written=True)
         return output.DONE if report is None or report.ok else output.FOUND
+
+    def cutters(self) -> "Sequence[Solid]":
+        """Return what was taken away, and lends the result no names."""
+        return ()
+
+    def _write(self, result: "Solid", mesh: "Mesh") -> "tuple[Finding, ...]":
+        """Write a result, by parts if objects of the files have names, and say what was lost."""
+        if self.target.names_objects and len(mesh.faces):
+            target = self.target
+            parted = self.inputs.objects.parted(result, self.cutters(), target.is_single)
+            if parted is not None:
+                return (*parted[1], *self.target.write(parted[0]))
+        return self.target.write(mesh)
 
     def _simplified(self, result: "Solid", mesh: "Mesh") -> "tuple[Solid, Mesh]":
         """Return what is left of a result without short edges and slivers."""

@@ -155,9 +155,10 @@ def _glb() -> Format:
 
 def _vtk(suffix: str) -> Format:
     from . import vtk
-    from .held.vtk import grid
+    from .held.vtk import legacy, xml
 
-    return Format(vtk.reader(suffix), None, Form(vtk.writer(suffix), partial(grid, suffix)))
+    scan = legacy if suffix == ".vtk" else xml
+    return Format(vtk.reader(suffix), None, Form(vtk.writer(suffix), scan))
 
 
 #: What makes each format.

@@ -127,3 +127,8 @@ class Convertible(Measured):
         """Return a picture, for notebooks that show no HTML."""
         picture: str = above("solid_svg")(self)
         return picture
+
+    def _repr_png_(self) -> bytes | None:
+        """Return a picture, for notebooks that show pixels only; None without Pillow."""
+        picture: bytes | None = above("solid_png")(self)
+        return picture

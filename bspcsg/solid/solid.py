@@ -23,6 +23,7 @@ from ..geometry.transform import Factors, common_prefix
 from ..mesh import interop, visuals
 from ..mesh.mesh import Mesh
 from ..parameters import not_negative, optional_pitch, winding_rule
+from ..tracebacks import shortened
 from .convertible import Convertible
 from .counting import count, counted, uncounted
 from .describe import describe
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
     pass
 
 
+@shortened
 class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     """A closed triangle mesh as a set of points.
 

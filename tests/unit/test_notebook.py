@@ -1,10 +1,14 @@
 """What notebooks show for a solid."""
 
 import html
+import io
 import re
+import sys
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
+from PIL import Image
 
 import bspcsg as b
 from bspcsg.report.viewer import notebook
@@ -50,3 +54,39 @@ def test_too_large_a_solid_is_a_picture_and_a_sentence(monkeypatch: pytest.Monke
     shown = str(b.sphere(r=1, segments=24)._repr_html_())
     assert shown.startswith("<svg") and "528 triangles are too many for a notebook" in shown
     assert "iframe" not in shown
+
+
+def pixels_of(data: bytes | None) -> "np.ndarray[tuple[int, ...], np.dtype[np.uint8]]":
+    assert data is not None and data.startswith(b"\x89PNG")
+    with Image.open(io.BytesIO(data)) as image:
+        return np.asarray(image.convert("RGBA"))
+
+
+@pytest.mark.parametrize(
+    "shown", [b.cube(2) - b.sphere(r=1.2, segments=16), b.Region([(0, 0), (4, 0), (0, 3)])]
+)
+def test_pictures_as_pixels(shown: b.Solid | b.Region) -> None:
+    data = shown._repr_png_()
+    pixels = pixels_of(data)
+    covered = (pixels[..., 3] > 0).mean()
+    assert pixels.shape == (360, 480, 4) and 0.1 < covered < 0.9
+    assert data is not None and len(data) < 60_000
+
+
+def test_the_picture_of_a_region_has_its_holes() -> None:
+    ring = b.Region([(0, 0), (4, 0), (4, 4), (0, 4)]) - b.Region([(1, 1), (3, 1), (3, 3), (1, 3)])
+    pixels = pixels_of(ring._repr_png_())
+    assert pixels[180, 240, 3] == 0 and pixels[180, 120, 3] == 255
+    assert ElementTree.fromstring(ring._repr_svg_() or "").tag.endswith("svg")
+
+
+@pytest.mark.parametrize(
+    "shown", [b.Solid.empty(), ~b.cube(1), b.Region.empty(), ~b.Region([(0, 0), (1, 0), (0, 1)])]
+)
+def test_nothing_to_be_seen_has_no_pixels(shown: b.Solid | b.Region) -> None:
+    assert shown._repr_png_() is None
+
+
+def test_without_pillow_there_are_no_pixels(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "PIL", None)
+    assert b.cube(1)._repr_png_() is None and "<svg" in b.cube(1)._repr_svg_()

@@ -19,6 +19,7 @@ from ...parameters import number, positive, sides_around, winding_rule
 from ...shapes.primitives import extrude, revolve
 from ...shapes.sweep import unit_circle
 from ...solid.solid import Solid
+from ...tracebacks import shortened
 from ..trees.facets import chosen_pitch
 from .boundary import segment_rows
 from .loops import closed_loops, loop_segments, moved_points
@@ -28,6 +29,7 @@ from .plane_queries import PlaneQueries, vector2
 FillRule: TypeAlias = WindingRule | Literal["negative"]
 
 
+@shortened
 class Region(PlaneQueries):
     """A polygonal set of the plane.
 
@@ -427,6 +429,16 @@ class Region(PlaneQueries):
         ]
         pairs = zip(shells, holes, strict=True)
         return shapely.MultiPolygon([(self.outlines[k].points, inner) for k, inner in pairs])
+
+    def _repr_svg_(self) -> str | None:
+        """Return a picture for notebooks; None if there is no outline to show."""
+        picture: str | None = above("region_svg")(self)
+        return picture
+
+    def _repr_png_(self) -> bytes | None:
+        """Return a picture, for notebooks that show pixels only; None without Pillow, too."""
+        picture: bytes | None = above("region_png")(self)
+        return picture
 
     def __repr__(self) -> str:
         """Say how large it is, as far as that is cheap."""

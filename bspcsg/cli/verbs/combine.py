@@ -62,6 +62,9 @@ class _Named(Job):
         self.lap("read")
         return OPERATIONS[self.op](*self._solids)
 
+    def cutters(self) -> "Sequence[Solid]":
+        return self._solids[1:] if self.op == "difference" else ()
+
     def compared(self, result: "Solid") -> "CheckReport | None":
         from ...verify.check import check_result
 

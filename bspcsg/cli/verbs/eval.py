@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import BspcsgError
-from ..formula import File, Formula, FormulaError, evaluated, files_of, parse
+from ..formula import File, Formula, FormulaError, evaluated, files_of, parse, subtracted
 from ..job import Job
 from ..options import from_files
 from ..patterns import matches
@@ -51,12 +51,18 @@ class _Evaluation(Job):
         except FormulaError as error:
             raise click.UsageError(_pointed(formula, error.message, error.column)) from None
         super().__init__("eval", **settings)
+        self._cutters: list[Solid] = []
 
     def paths(self) -> Sequence[Path]:
         return [path for file in files_of(self._formula) for path in self._paths(file)]
 
+    def cutters(self) -> "Sequence[Solid]":
+        return self._cutters
+
     def combined(self) -> "Solid":
         solids = {file.name: self._loaded(file) for file in files_of(self._formula)}
+        taken = subtracted(self._formula)
+        self._cutters = [solid for name, solid in solids.items() if name in taken]
         self.lap("read")
         return evaluated(self._formula, lambda file: solids[file.name], _combined)
 

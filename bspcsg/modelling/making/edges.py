@@ -9,6 +9,7 @@ from ..._types import BoolArray, FloatArray, IndexArray, Vector
 from ...errors import invalid_parameter
 from ...geometry.transform import axis_vector
 from ...solid.solid import Solid
+from ...tracebacks import shortened
 from .skeleton import Skeleton, skeleton_of
 
 #: The sine of the largest angle between parallel lines: the lattice turns an edge of a thousand
@@ -16,6 +17,7 @@ from .skeleton import Skeleton, skeleton_of
 _PARALLEL = 1e-3
 
 
+@shortened
 class EdgeSelection:
     """Edges of a solid, each between two plane faces, from corner to corner.
 

@@ -3,12 +3,13 @@
 from html import escape
 from typing import TYPE_CHECKING
 
-from ...errors import MissingPartError
+from ...errors import BspcsgError, MissingPartError, held
 from .layer import Layer
-from .still import drawing
+from .still import rough_picture
 from .view import view_page
 
 if TYPE_CHECKING:
+    from ...bsp import Picture, Region
     from ...solid.solid import Solid
 
 #: Triangles above which a cell gets a picture alone; the view of so many has about two megabytes.
@@ -16,6 +17,9 @@ _MOST_IN_VIEW = 200_000
 
 #: Triangles above which a picture shows the shape roughly.
 _MOST_IN_PICTURE = 2_000
+
+#: Triangles above which a picture of a region shows it roughly: flat ones are painted sooner.
+_MOST_IN_FIGURE = 20_000
 
 #: Of the view in a cell, in pixels.
 _HEIGHT = 440
@@ -51,7 +55,42 @@ def solid_svg(solid: "Solid") -> str:
     sentence = _obstacle(solid)
     if sentence:
         return _words(sentence)
-    return drawing(_layer(solid), _SIZE, _MOST_IN_PICTURE)
+    return _picture(solid).svg
+
+
+def solid_png(solid: "Solid") -> bytes | None:
+    """Return the same picture as PNG; None where there is nothing to be seen, or no Pillow."""
+    return None if _obstacle(solid) else _png(_picture(solid))
+
+
+def region_svg(region: "Region") -> str | None:
+    """Return a picture of a region as SVG, or None if it is empty or reaches to infinity."""
+    return None if region.is_empty or not region.is_bounded else _figure(region).svg
+
+
+def region_png(region: "Region") -> bytes | None:
+    """Return the same picture as PNG; None without Pillow, too."""
+    return None if region.is_empty or not region.is_bounded else _png(_figure(region))
+
+
+def _picture(solid: "Solid") -> "Picture":
+    return rough_picture(_layer(solid), _SIZE, _MOST_IN_PICTURE)
+
+
+def _figure(region: "Region") -> "Picture":
+    """Return a region as what one sees from above of a slab of it."""
+    low, high = held(region.bounds, "the bounds of a region")
+    mesh = region.extrude(float((high - low).max())).to_mesh()
+    return rough_picture(Layer("region", mesh.vertices, mesh.faces), _SIZE, _MOST_IN_FIGURE, "top")
+
+
+def _png(picture: "Picture") -> bytes | None:
+    try:
+        return picture.png
+    except BspcsgError as error:
+        if error.code != "missing_dependency":
+            raise
+        return None
 
 
 def _obstacle(solid: "Solid") -> str:

@@ -8,6 +8,7 @@ from urllib.parse import quote
 import numpy as np
 
 from ...bsp import Camera, Picture
+from ...bsp.painting.camera import View
 from ...bsp.painting.picture import picture
 from .faces import face_colours, joined
 from .layer import DIFFERENCE, Layer, bounds_of
@@ -30,11 +31,11 @@ _MOST_CHARACTERS = 150_000
 _QUALITY, _EFFORT = 66, 3
 
 
-def camera_for(layers: Sequence[Layer], size: tuple[int, int]) -> Camera:
-    """Return a camera that sees all layers, from the right front top."""
+def camera_for(layers: Sequence[Layer], size: tuple[int, int], view: View = "iso") -> Camera:
+    """Return a camera that sees all layers, by default from the right front top."""
     low, high = bounds_of(layers)
     corners = np.array([[low, high][k >> a & 1][a] for k in range(8) for a in range(3)])
-    return Camera.named("iso", corners.reshape(8, 3), size[0] / size[1])
+    return Camera.named(view, corners.reshape(8, 3), size[0] / size[1])
 
 
 def still(
@@ -67,8 +68,8 @@ def still(
     return _vector(painted.svg) if len(painted.svg) <= _MOST_CHARACTERS else ""
 
 
-def drawing(layer: Layer, size: tuple[int, int], most: int) -> str:
-    """Return the text of an SVG picture; of more than so many triangles it shows the rough shape.
+def rough_picture(layer: Layer, size: tuple[int, int], most: int, view: View = "iso") -> Picture:
+    """Return a picture; of more than so many triangles it shows the rough shape.
 
     Parameters
     ----------
@@ -76,12 +77,14 @@ def drawing(layer: Layer, size: tuple[int, int], most: int) -> str:
     size : (int, int)
         Width and height in pixels.
     most : int
+    view : str
+        From where.
     """
     shape, cells = layer, _CELLS
     while len(shape.faces) > most and cells > 1:
         cells = cells * 2 // 3
         shape = layer.simplified(cells)
-    return _painted([shape], camera_for([layer], size), size, edges=shape is layer).svg
+    return _painted([shape], camera_for([layer], size, view), size, edges=shape is layer)
 
 
 def ring(place: Sequence[float], camera: Camera, size: tuple[int, int] = (320, 240)) -> str:

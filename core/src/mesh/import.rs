@@ -15,6 +15,9 @@ use crate::geometry::cell::Cell;
 use crate::geometry::plane::{normal, Lattice};
 use crate::interrupt::poll;
 
+/// Sizes of numbers that a message shows without an exponent.
+const PLAIN: std::ops::Range<f64> = 1e-4..1e6;
+
 /// Reads a closed triangle mesh onto the lattice.
 ///
 /// `vertices` are in model units, `faces` index them, counterclockwise as seen from outside.
@@ -322,7 +325,18 @@ fn not_closed(mesh: &TriangleMesh, open: &[u64]) -> Error {
 
 /// A point as a message shows it.
 fn place([x, y, z]: &[f64; 3]) -> String {
-    format!("({x}, {y}, {z})")
+    format!("({}, {}, {})", rounded(*x), rounded(*y), rounded(*z))
+}
+
+/// A number to six digits, as a message shows it.
+fn rounded(number: f64) -> String {
+    let digits = format!("{number:.5e}");
+    let short: f64 = digits.parse().unwrap_or(number);
+    if short == 0.0 || PLAIN.contains(&short.abs()) {
+        format!("{short}")
+    } else {
+        format!("{short:e}")
+    }
 }
 
 /// The faces with vertices at one lattice point made one; `None` if there are no such vertices.

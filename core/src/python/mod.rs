@@ -87,6 +87,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(embedding::mesh_in_single, module)?)?;
     module.add_function(wrap_pyfunction!(hulls::hull_faces, module)?)?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
+    module.add_function(wrap_pyfunction!(run::watch, module)?)?;
     module.add_function(wrap_pyfunction!(normal_bits, module)?)?;
     module.add_function(wrap_pyfunction!(fail_on_purpose, module)?)?;
     module.add_function(wrap_pyfunction!(suited_pitch, module)?)?;

@@ -1,6 +1,6 @@
 //! Calls into the core: the GIL released, signals polled, panics caught.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::sync::mpsc;
 use std::time::Duration;
 
@@ -21,6 +21,21 @@ const POLL: Duration = Duration::from_millis(50);
 thread_local! {
     /// What a signal handler raised while this thread waited or worked.
     static RAISED: Cell<Option<PyErr>> = const { Cell::new(None) };
+
+    /// What is called while this thread's calls run.
+    static WATCHER: RefCell<Option<Py<PyAny>>> = const { RefCell::new(None) };
+}
+
+/// Has a function called about twenty times a second while calls of this thread run, or none; what
+/// it raises ends the call. Returns the one before.
+#[pyfunction]
+pub fn watch(watcher: Option<Py<PyAny>>) -> Option<Py<PyAny>> {
+    WATCHER.replace(watcher)
+}
+
+fn tell_watcher(py: Python<'_>) -> PyResult<()> {
+    let watcher = WATCHER.with_borrow(|w| w.as_ref().map(|found| found.clone_ref(py)));
+    watcher.map_or(Ok(()), |found| found.call0(py).map(drop))
 }
 
 /// Runs work with the GIL released; an interrupt ends it at its next poll.
@@ -84,13 +99,13 @@ fn shared<T: Send>(
 }
 
 /// Whether a signal has arrived of which the handler raised an exception, such as
-/// `KeyboardInterrupt`.
+/// `KeyboardInterrupt`, or the watcher raised one.
 ///
 /// A handler may fork. The child has the threads of the pool no more, and the work borrows from
 /// this stack, so that there is no way on and none back: the child ends with a word, not by waiting.
 fn signal_raised() -> bool {
     let process = std::process::id();
-    let raised = Python::attach(|py| py.check_signals().err());
+    let raised = Python::attach(|py| py.check_signals().and_then(|()| tell_watcher(py)).err());
     if std::process::id() != process {
         eprintln!(
             "bspcsg: a signal handler forked this process in the middle of an operation, which \
