@@ -126,6 +126,14 @@ def test_examples_of_docstrings(
     assert tried and not failed
 
 
+def test_every_kept_picture_is_shown_and_small() -> None:
+    shown = {
+        path.parent / "pictures" / name for path in PAGES for name in pictures(path.read_text())
+    }
+    assert shown == set(DOCS.glob("**/pictures/*")) and len(shown) >= 4
+    assert all(path.stat().st_size < 100_000 for path in shown)
+
+
 def test_the_install_page_has_every_extra() -> None:
     page = (DOCS / "install.md").read_text()
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
