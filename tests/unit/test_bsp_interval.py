@@ -78,7 +78,7 @@ def test_many_intervals() -> None:
     ends = np.arange(40_000, dtype=float).reshape(-1, 2)
     s = bsp.Intervals(ends)
     assert s.measure == 20_000
-    assert s.stats()["depth"] < 40
+    assert s.tree.stats()["depth"] < 40
     assert (bsp.Intervals.full() - s).pairs[1:-1].tolist() == ends.ravel()[1:-1].reshape(
         -1, 2
     ).tolist()

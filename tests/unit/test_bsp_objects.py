@@ -2,7 +2,6 @@
 
 import itertools
 import pickle
-from collections.abc import Callable
 from fractions import Fraction
 from typing import Any, get_args
 
@@ -279,39 +278,27 @@ def test_bad_hyperplanes_and_operands() -> None:
         tree.classify([[1, 2]])
 
 
-SETS: list[tuple[type[bsp.ObjectTree], int]] = [(bsp.Intervals, 1), (bsp.Region, 2)]
-
-MAKERS: dict[str, Callable[[type[bsp.ObjectTree], int], bsp.ObjectTree]] = {
-    "half_space": lambda kind, dimension: kind.half_space(np.eye(dimension)[0], 2),
-    "uniform": lambda kind, dimension: kind.uniform(dimension, full=True),
-}
+SETS: list[bsp.Intervals | bsp.Region] = [bsp.Intervals([(0, 2)]), bsp.Region.rectangle(2)]
 
 
-@pytest.mark.parametrize("make", MAKERS.values(), ids=MAKERS)
-@pytest.mark.parametrize(("kind", "own"), SETS)
-def test_inherited_constructors_keep_the_dimension(
-    kind: type[bsp.ObjectTree],
-    own: int,
-    make: Callable[[type[bsp.ObjectTree], int], bsp.ObjectTree],
+@pytest.mark.parametrize("made", SETS, ids=["line", "plane"])
+def test_sets_of_one_dimension_have_a_tree(made: bsp.Intervals | bsp.Region) -> None:
+    assert type(made.tree) is bsp.ObjectTree
+    assert made.tree.dimension == made.dimension
+    assert made.tree.measure == made.measure == 2**made.dimension
+    assert (~made).tree == ~made.tree
+    assert made == made.tree and made.tree == made and made.tree <= made <= made.tree
+    assert type(made | made.tree) is type(made) and type(made.tree | made) is bsp.ObjectTree
+
+
+@pytest.mark.parametrize("made", SETS, ids=["line", "plane"])
+def test_trees_of_other_dimensions_cannot_become_such_a_set(
+    made: bsp.Intervals | bsp.Region,
 ) -> None:
-    made = make(kind, own)
-    assert type(made) is kind
-    assert made.dimension == own
-    for dimension in {1, 2, 3} - {own}:
-        with pytest.raises(b.InvalidMeshError, match=f"has dimension {own}") as caught:
-            make(kind, dimension)
-        assert caught.value.code == "invalid_parameter"
-
-
-@pytest.mark.parametrize(("kind", "own"), SETS)
-def test_meshes_make_sets_of_space_only(kind: type[bsp.ObjectTree], own: int) -> None:
-    with pytest.raises(b.InvalidMeshError, match=f"has dimension {own}, not 3"):
-        kind.from_mesh(b.cube(1))
-    assert type(bsp.ObjectTree.from_mesh(b.cube(1))) is bsp.ObjectTree
-
-
-def test_no_constructor_is_forgotten() -> None:
-    inherited = {
-        name for name, value in vars(bsp.ObjectTree).items() if isinstance(value, classmethod)
-    }
-    assert {name for name in inherited if not name.startswith("_")} == {*MAKERS, "from_mesh"}
+    makers = [name for name, value in vars(bsp.ObjectTree).items() if type(value) is classmethod]
+    assert {"half_space", "uniform", "from_mesh"} < set(makers)
+    assert [name for name in makers if hasattr(made, name) and not name.startswith("_")] == []
+    other = SETS[made.dimension % 2]
+    with pytest.raises(b.InvalidMeshError, match="cannot be combined") as caught:
+        made | other
+    assert caught.value.code == "invalid_parameter"

@@ -191,7 +191,7 @@ def test_long_convex_outlines_stay_fast(count: int) -> None:
     start = time.perf_counter()
     circle = R.circle(10, count)
     lens = circle & circle.translate(5, 0)
-    assert lens.stats()["depth"] < 60
+    assert lens.tree.stats()["depth"] < 60
     assert len(lens.outlines) == 1
     exact = 2 * 100 * math.acos(0.25) - 2.5 * math.sqrt(400 - 25)
     assert lens.area == pytest.approx(exact, rel=1e-6)
@@ -206,7 +206,7 @@ def test_long_chains_of_operations_keep_trees_small() -> None:
         hole = square.translate(1 + 2 * (k % 14), 1 + 2 * (k // 14 % 14))
         region = region - hole if k % 2 else (region - hole) | hole
     assert region.area_exact == 900 - 98
-    assert region.stats()["nodes"] < 3000
+    assert region.tree.stats()["nodes"] < 3000
 
 
 @pytest.mark.parametrize(

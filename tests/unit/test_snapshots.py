@@ -93,7 +93,7 @@ def test_a_snapshot_of_another_kind_is_refused() -> None:
 
 @pytest.mark.parametrize("dimension", [1, 2, 3])
 def test_sets_are_refused_or_make_a_set(dimension: int) -> None:
-    sets: dict[int, bsp.ObjectTree] = {
+    sets: dict[int, bsp.Intervals | bsp.Region | bsp.ObjectTree] = {
         1: bsp.Intervals([(0, 2), (3, 5.5)]),
         2: bsp.Region.circle(2, 9) - bsp.Region.rectangle(1),
         3: bsp.ObjectTree.from_mesh(b.box((1, 2, 3)) - b.box((1, 1, 1)).rotate(30)),

@@ -14,10 +14,10 @@ from ...geometry.transform import whole_steps
 from ...parameters import number
 from ..trees.facets import chosen_pitch
 from .boundary import interval_rows
-from .objects import ObjectTree
+from .flat_set import FlatSet
 
 
-class Intervals(ObjectTree):
+class Intervals(FlatSet):
     """A union of intervals on the line.
 
     Ends belong to the boundary, so that intervals that touch are one and single points are nothing
@@ -48,9 +48,6 @@ class Intervals(ObjectTree):
 
     __slots__ = ()
 
-    _DIMENSION = 1
-    _CONDENSES = True
-
     def __init__(self, pairs: Any = (), *, pitch: int | None = None) -> None:
         ends = _pairs(pairs)
         finite = ends[np.isfinite(ends)]
@@ -80,7 +77,7 @@ class Intervals(ObjectTree):
         """Lower and upper ends of the intervals, (n, 2) float64 in order; infinite if unbounded."""
         if self.is_empty or self.is_full:
             return np.array([[-np.inf, np.inf]]) if self.is_full else np.zeros((0, 2))
-        ends = np.sort(self.boundary().vertices[:, 0])
+        ends = np.sort(self.tree.boundary().vertices[:, 0])
         if self._holds_lowest():
             ends = np.concatenate([[-np.inf], ends])
         if len(ends) % 2:
@@ -89,7 +86,7 @@ class Intervals(ObjectTree):
 
     def _holds_lowest(self) -> bool:
         """Say whether the set reaches to minus infinity."""
-        nodes = self.nodes
+        nodes = self.tree.nodes
         at = 0
         while at >= 0:
             below = nodes.minus if nodes.hyperplanes[at, 0] > 0 else nodes.plus
@@ -133,8 +130,7 @@ class Intervals(ObjectTree):
         steps = whole_steps(shift, self.pitch)
         if steps is None:
             return type(self)(self.pairs + shift)
-        with core_errors():
-            return self._of(self._moved([1], [steps], 1, self.pitch))
+        return self._moved([1], [steps])
 
     def scale(self, factor: Scalar) -> "Intervals":
         """Return the set scaled about 0; a negative factor mirrors it."""

@@ -8,27 +8,23 @@ Sources: Thibault, Naylor 1987; Naylor, Amanatides, Thibault 1990.
 """
 
 from collections.abc import Sequence
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
 from ..._core import ObjectTree as CoreTree
 from ..._types import Scalar, SetOp, WindingRule
 from ...errors import core_errors, invalid_parameter
 from ...mesh import interop
 from ...parameters import at_least, pitch_exponent, seed_number, winding_rule
-from ...solid.point_set import PointSet
 from ..trees.facets import chosen_pitch
 from .boundary import boundary_arrays
 from .pieces import BuildPolicy, NormalAndOffset, SplitCase
 from .rows import hyperplane, hyperplane_row, hyperplane_rows
 from .trace import MergeTrace, merge_trace
 from .tree_queries import TreeQueries
-
-#: A result is built anew when its tree is this many times larger than its operands' were.
-_GROWTH = 4
-_SMALL = 64
+from .tree_set import TreeSet
 
 
-class ObjectTree(TreeQueries, PointSet):
+class ObjectTree(TreeQueries, TreeSet):
     """A set of points as a partition tree; an immutable value.
 
     ``==``, ``<=``, ``<``, ``in`` and the like are those of Python's sets, for the points: two trees
@@ -68,13 +64,7 @@ class ObjectTree(TreeQueries, PointSet):
     (Fraction(4, 1), Fraction(1, 1), Fraction(2, 1))
     """
 
-    __slots__ = ("_built_size",)
-
-    #: The dimension of all sets of a class, if they have one.
-    _DIMENSION: ClassVar[int | None] = None
-
-    #: Whether results are built anew from their boundary once merging has let them grow too far.
-    _CONDENSES: ClassVar[bool] = False
+    __slots__ = ()
 
     def __init__(
         self,
@@ -90,28 +80,27 @@ class ObjectTree(TreeQueries, PointSet):
         rule, order = winding_rule(winding), seed_number(seed)
         chosen = chosen_pitch(pitch, rows[:, :dimension])
         with core_errors():
-            self._set(
-                CoreTree.build(
-                    dimension,
-                    rows,
-                    chosen,
-                    faces=faces,
-                    winding=rule,
-                    policy=policy,
-                    seed=order,
-                    cuts=hyperplane_rows(cuts, dimension, chosen),
-                )
+            self._tree = CoreTree.build(
+                dimension,
+                rows,
+                chosen,
+                faces=faces,
+                winding=rule,
+                policy=policy,
+                seed=order,
+                cuts=hyperplane_rows(cuts, dimension, chosen),
             )
-
-    def _set(self, tree: CoreTree) -> None:
-        self._tree = tree
-        self._built_size = 0
 
     @classmethod
     def _of(cls, tree: CoreTree) -> Self:
         made = cls.__new__(cls)
-        made._set(tree)
+        made._tree = tree
         return made
+
+    @property
+    def tree(self) -> "ObjectTree":
+        """The tree itself."""
+        return self
 
     # Making
 
@@ -124,9 +113,8 @@ class ObjectTree(TreeQueries, PointSet):
         Raises
         ------
         InvalidMeshError
-            If the class has another dimension, or as for `Solid.from_mesh`.
+            As for `Solid.from_mesh`.
         """
-        cls._check_dimension(3)
         vertices, faces = interop.own_arrays(*interop.arrays_from(mesh))
         return cls._of(ObjectTree(vertices[faces], **options)._tree)
 
@@ -142,13 +130,12 @@ class ObjectTree(TreeQueries, PointSet):
         Parameters
         ----------
         normal : (1,), (2,) or (3,) float, or one number
-            As many as the class has dimensions.
+            As many as the set has dimensions.
         offset : float
         pitch : int, optional
             By default -9, or down to -12 if the hyperplane needs it.
         """
         wanted = hyperplane(normal, offset)
-        cls._check_dimension(len(wanted.normal))
         chosen = wanted.pitch if pitch is None else pitch_exponent(pitch)
         with core_errors():
             return cls._of(CoreTree.half_space(wanted.on_lattice(chosen).row, chosen))
@@ -157,63 +144,21 @@ class ObjectTree(TreeQueries, PointSet):
     def uniform(cls, dimension: int, *, full: bool, pitch: int = -9) -> Self:
         """Return the empty set, or everything, in 1, 2 or 3 dimensions."""
         count, step = at_least(1, dimension, "dimension"), pitch_exponent(pitch)
-        cls._check_dimension(count)
         with core_errors():
             return cls._of(CoreTree.uniform(count, full, step))
 
-    @classmethod
-    def _check_dimension(cls, dimension: int) -> None:
-        """Refuse to make a set of another dimension than the class has."""
-        if cls._DIMENSION not in (None, dimension):
-            raise invalid_parameter(
-                f"{cls.__name__} has dimension {cls._DIMENSION}, not {dimension}; use ObjectTree"
-                " for sets of any dimension."
-            )
-
     # Set operations
-
-    def __or__(self, other: object) -> Self:
-        """Union."""
-        return self._merged(other, "union")
-
-    def __and__(self, other: object) -> Self:
-        """Intersection."""
-        return self._merged(other, "intersection")
-
-    def __sub__(self, other: object) -> Self:
-        """Difference."""
-        return self._merged(other, "difference")
-
-    def __xor__(self, other: object) -> Self:
-        """Symmetric difference."""
-        return self._merged(other, "xor")
 
     def __invert__(self) -> Self:
         """Complement; all nodes are shared."""
         return self._of(self._tree.complement())
 
-    def _merged(self, other: object, op: SetOp) -> Self:
-        if not isinstance(other, ObjectTree):
-            refused: Any = NotImplemented
-            return refused  # type: ignore[no-any-return]
+    def _merged(self, other: TreeSet, op: SetOp) -> Self:
         a, b = self._aligned(other)
         with core_errors():
-            merged = self._of(a.merge(b, op))
-        return self._kept_small(merged, other) if self._CONDENSES else merged
+            return self._of(a.merge(b, op))
 
-    def _kept_small(self, merged: Self, other: "ObjectTree") -> Self:
-        """Return a result, or the same set as a smaller tree.
-
-        Each doubling is paid for once, so that a chain of n operations stays near-linear in what it
-        makes.
-        """
-        base = max(self._built_nodes(), other._built_nodes())
-        if merged.stats()["nodes"] <= _GROWTH * base + _SMALL:
-            merged._built_size = base
-            return merged
-        return merged.condensed()
-
-    def _aligned(self, other: "ObjectTree") -> tuple[CoreTree, CoreTree]:
+    def _aligned(self, other: TreeSet) -> tuple[CoreTree, CoreTree]:
         """Return both trees on the finer lattice."""
         if self.dimension != other.dimension:
             raise invalid_parameter(
@@ -221,13 +166,9 @@ class ObjectTree(TreeQueries, PointSet):
                 f" {other.dimension}."
             )
         # Nothing and everything live on any lattice.
-        pitches = [s.pitch for s in (self, other) if not (s.is_empty or s.is_full)]
+        pitches = [s.pitch for s in (self, other.tree) if not (s.is_empty or s.is_full)]
         pitch = min(pitches, default=self.pitch)
-        return self._refined(pitch), other._refined(pitch)
-
-    def _built_nodes(self) -> int:
-        """Return how many nodes the tree had when it was last built from a boundary."""
-        return self._built_size or self.stats()["nodes"]
+        return self._refined(pitch), other.tree._refined(pitch)
 
     def _refined(self, pitch: int) -> CoreTree:
         if pitch == self.pitch:
@@ -237,17 +178,14 @@ class ObjectTree(TreeQueries, PointSet):
         axes = list(range(1, self.dimension + 1))
         scale = 10 ** (self.pitch - pitch)
         with core_errors():
-            return self._moved(axes, [0] * self.dimension, scale, pitch)
+            return self._tree.moved(axes, [0] * self.dimension, scale, pitch)
 
-    def _moved(self, axes: list[int], shift: list[int], scale: int, pitch: int) -> CoreTree:
-        return self._tree.moved(axes, shift, scale, pitch)
-
-    def trace_merge(self, other: "ObjectTree", op: SetOp) -> MergeTrace:
+    def trace_merge(self, other: TreeSet, op: SetOp) -> MergeTrace:
         """Return a set operation step by step: pairs of nodes, cases, what was shared or dropped.
 
         Parameters
         ----------
-        other : ObjectTree
+        other : ObjectTree, Region or Intervals
             Of the same dimension.
         op : {"union", "intersection", "difference", "xor"}
 
@@ -264,7 +202,7 @@ class ObjectTree(TreeQueries, PointSet):
             result, rows = a.merge_steps(b, op)
         return merge_trace(self._of(a), self._of(b), self._of(result), op, rows)
 
-    def equals(self, other: "ObjectTree") -> bool:
+    def equals(self, other: TreeSet) -> bool:
         """Say whether both are the same set of points, exactly; so says ``==``, too.
 
         Raises
@@ -276,19 +214,12 @@ class ObjectTree(TreeQueries, PointSet):
         with core_errors():
             return a.equals(b)
 
-    def _is_alike(self, other: object) -> bool:
-        return isinstance(other, ObjectTree) and self.dimension == other.dimension
-
     def _size_key(self) -> object:
         if self.is_bounded:
             return self.dimension, self.measure
         outside = ~self
         # Where both are unbounded, nothing that is cheap tells sets apart.
         return self.dimension, -outside.measure - 1 if outside.is_bounded else None
-
-    def isdisjoint(self, other: "ObjectTree") -> bool:
-        """Say whether the two have no interior point in common; contact is allowed."""
-        return (self & other).is_empty
 
     # Division by a hyperplane
 
@@ -349,14 +280,6 @@ class ObjectTree(TreeQueries, PointSet):
             stats = self.stats()
             what = f"{stats['nodes']} nodes, depth {stats['depth']}"
         return f"{type(self).__name__}({self.dimension}D, {what})"
-
-    def __copy__(self) -> Self:
-        """Return the tree itself, which never changes."""
-        return self
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
-        """Return the tree itself, which never changes."""
-        return self
 
     def __reduce__(self) -> tuple[Any, tuple[type["ObjectTree"], bytes]]:
         """Pickle the nodes, exactly; which input facets lie in them is not kept."""

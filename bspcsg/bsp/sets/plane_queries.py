@@ -11,16 +11,14 @@ from ..._types import FloatArray, Vector
 from ...errors import core_errors, invalid_parameter
 from ...geometry.polygon import convex_corners
 from ...parameters import number
+from .flat_set import FlatSet
 from .loops import Outline
-from .objects import ObjectTree
 
 
-class PlaneQueries(ObjectTree):
+class PlaneQueries(FlatSet):
     """A set of the plane, as its questions see it."""
 
     __slots__ = ("_outlines",)
-
-    _DIMENSION = 2
 
     def _set(self, tree: CoreTree) -> None:
         super()._set(tree)
@@ -156,7 +154,7 @@ class PlaneQueries(ObjectTree):
         list of (n, 2) float64
             Counterclockwise, in the order of the leaves, rounded.
         """
-        cells = self.cells()
+        cells = self.tree.cells()
         parts: list[list[FloatArray]] = []
         for face, owner in enumerate(cells.owner.tolist()):
             if owner == len(parts):

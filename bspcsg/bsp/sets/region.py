@@ -23,6 +23,7 @@ from ...tracebacks import shortened
 from ..trees.facets import chosen_pitch
 from .boundary import segment_rows
 from .loops import closed_loops, loop_segments, moved_points
+from .objects import ObjectTree
 from .plane_queries import PlaneQueries, vector2
 
 #: Which winding numbers count as inside, in the plane.
@@ -68,8 +69,6 @@ class Region(PlaneQueries):
     """
 
     __slots__ = ()
-
-    _CONDENSES = True
 
     def __init__(
         self, outlines: Any = (), *, winding: FillRule = "positive", pitch: int | None = None
@@ -129,7 +128,8 @@ class Region(PlaneQueries):
     @classmethod
     def half_plane(cls, normal: Vector, offset: Scalar = 0.0, *, pitch: int | None = None) -> Self:
         """Return all points x with ``normal . x <= offset`` (see `ObjectTree.half_space`)."""
-        return cls.half_space(vector2(normal, "normal"), offset, pitch=pitch)
+        half = ObjectTree.half_space(vector2(normal, "normal"), offset, pitch=pitch)
+        return cls._of(half._tree)
 
     @classmethod
     def from_svg(cls, path: str | os.PathLike[str], **options: Any) -> "Region":
@@ -224,9 +224,8 @@ class Region(PlaneQueries):
         motion = transform.lattice_motion((factor,), self.pitch)
         if motion is not None:
             # What leaves this lattice goes by its coordinates to a coarser one.
-            with suppress(LimitError), core_errors():
-                axes, shift = list(motion.axes[:2]), list(motion.shift[:2])
-                return self._of(self._moved(axes, shift, 1, self.pitch))
+            with suppress(LimitError):
+                return self._moved(list(motion.axes[:2]), list(motion.shift[:2]))
         if self.is_bounded:
             loops = [moved_points(factor, loop) for loop in self.to_polygons()]
             return Region(loops, pitch=self._pitch_for(loops))

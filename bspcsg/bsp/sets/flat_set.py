@@ -1,0 +1,157 @@
+"""`FlatSet`: a set of points of the line or of the plane, which has a partition tree."""
+
+from fractions import Fraction
+from typing import Any, Self
+
+from ..._core import ObjectTree as CoreTree
+from ..._types import FloatArray, Scalar, SetOp, SideArray
+from ...errors import core_errors
+from .objects import ObjectTree, merge
+from .tree_set import TreeSet
+
+#: A result is built anew when its tree is this many times larger than its operands' were.
+_GROWTH = 4
+_SMALL = 64
+
+
+class FlatSet(TreeSet):
+    """A set of points of the line or of the plane; an immutable value that has a tree."""
+
+    __slots__ = ("_built_size", "_object")
+
+    _built_size: int
+    _object: ObjectTree
+
+    def _set(self, tree: CoreTree) -> None:
+        self._object = ObjectTree._of(tree)
+        self._built_size = 0
+
+    @classmethod
+    def _of(cls, tree: CoreTree) -> Self:
+        made = cls.__new__(cls)
+        made._set(tree)
+        return made
+
+    @property
+    def tree(self) -> ObjectTree:
+        """The partition tree, which shows its nodes, cells and pieces of boundary."""
+        return self._object
+
+    @property
+    def _tree(self) -> CoreTree:
+        return self._object._tree
+
+    # Set operations
+
+    def __invert__(self) -> Self:
+        """Complement; all nodes are shared."""
+        return self._of((~self.tree)._tree)
+
+    def _merged(self, other: TreeSet, op: SetOp) -> Self:
+        """Return a result, its tree built anew once merging has let it grow too far.
+
+        Each doubling is paid for once, so that a chain of n operations stays near-linear in what it
+        makes.
+        """
+        merged = merge(self.tree, other.tree, op)
+        base = max(_built_nodes(self), _built_nodes(other))
+        if merged.stats()["nodes"] > _GROWTH * base + _SMALL:
+            return self._of(merged.condensed()._tree)
+        made = self._of(merged._tree)
+        made._built_size = base
+        return made
+
+    def equals(self, other: "TreeSet") -> bool:
+        """Say whether both are the same set of points, exactly; so says ``==``, too.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the other set has another dimension; for ``==`` the two are different then.
+        """
+        return self.tree.equals(other.tree)
+
+    def _size_key(self) -> object:
+        return self.tree._size_key()
+
+    def split(self, normal: Any, offset: Scalar = 0.0) -> tuple[Self, Self]:
+        """Return the parts on the minus and on the plus side of a hyperplane, as sets."""
+        minus, plus = self.tree.split(normal, offset)
+        return self._of(minus._tree), self._of(plus._tree)
+
+    # Questions
+
+    def classify(self, points: Any) -> SideArray:
+        """Say of each point whether it is inside, exactly (see `ObjectTree.classify`).
+
+        Returns
+        -------
+        (k,) int8
+            +1 inside, 0 on the boundary, -1 outside.
+        """
+        return self.tree.classify(points)
+
+    def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
+        """Return the boundary point nearest to each point, and how far it is.
+
+        See `ObjectTree.project`.
+        """
+        return self.tree.project(points)
+
+    @property
+    def measure(self) -> Fraction:
+        """Length or area in model units, exactly.
+
+        Raises
+        ------
+        UnboundedError
+            If the set reaches to infinity.
+        """
+        return self.tree.measure
+
+    @property
+    def dimension(self) -> int:
+        """1 or 2."""
+        return self.tree.dimension
+
+    @property
+    def pitch(self) -> int:
+        """Exponent of the lattice step: it is ``10**pitch`` model units."""
+        return self.tree.pitch
+
+    @property
+    def is_empty(self) -> bool:
+        """True if nothing is inside."""
+        return self.tree.is_empty
+
+    @property
+    def is_full(self) -> bool:
+        """True if everything is inside."""
+        return self.tree.is_full
+
+    @property
+    def is_bounded(self) -> bool:
+        """True if the set fits into some box."""
+        return self.tree.is_bounded
+
+    # As a value
+
+    def _moved(self, axes: list[int], shift: list[int]) -> Self:
+        """Return the set moved by whole lattice steps."""
+        with core_errors():
+            return self._of(self._tree.moved(axes, shift, 1, self.pitch))
+
+    def __reduce__(self) -> tuple[Any, tuple[type["FlatSet"], bytes]]:
+        """Pickle the nodes, exactly."""
+        return _restored, (type(self), self._tree.dump())
+
+
+def _built_nodes(operand: TreeSet) -> int:
+    """Return how many nodes a tree had when it was last built from a boundary."""
+    known = operand._built_size if isinstance(operand, FlatSet) else 0
+    return known or operand.tree.stats()["nodes"]
+
+
+def _restored(kind: type[FlatSet], data: bytes) -> FlatSet:
+    with core_errors():
+        return kind._of(CoreTree.load(data))

@@ -1,0 +1,64 @@
+"""`TreeSet`: a set of points that is a partition tree, or has one."""
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Any, Self
+
+from ..._types import SetOp
+from ...solid.point_set import PointSet
+
+if TYPE_CHECKING:
+    from .objects import ObjectTree
+
+
+class TreeSet(PointSet):
+    """A set of points with a partition tree; an immutable value.
+
+    All such sets of one dimension compare and combine; a result is of the first operand's kind.
+    """
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def tree(self) -> "ObjectTree":
+        """The partition tree, which shows its nodes, cells and pieces of boundary."""
+
+    @property
+    @abstractmethod
+    def dimension(self) -> int:
+        """1, 2 or 3."""
+
+    @abstractmethod
+    def _merged(self, other: "TreeSet", op: SetOp) -> Self:
+        """Return the set operation on this set and another one."""
+
+    def __or__(self, other: object) -> Self:
+        """Union."""
+        return self._merged(other, "union") if isinstance(other, TreeSet) else NotImplemented
+
+    def __and__(self, other: object) -> Self:
+        """Intersection."""
+        return self._merged(other, "intersection") if isinstance(other, TreeSet) else NotImplemented
+
+    def __sub__(self, other: object) -> Self:
+        """Difference."""
+        return self._merged(other, "difference") if isinstance(other, TreeSet) else NotImplemented
+
+    def __xor__(self, other: object) -> Self:
+        """Symmetric difference."""
+        return self._merged(other, "xor") if isinstance(other, TreeSet) else NotImplemented
+
+    def isdisjoint(self, other: "TreeSet") -> bool:
+        """Say whether the two have no interior point in common; contact is allowed."""
+        return (self & other).is_empty
+
+    def _is_alike(self, other: object) -> bool:
+        return isinstance(other, TreeSet) and self.dimension == other.dimension
+
+    def __copy__(self) -> Self:
+        """Return the set itself, which never changes."""
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        """Return the set itself, which never changes."""
+        return self
