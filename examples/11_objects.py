@@ -27,13 +27,13 @@ b = bsp.Intervals([(2, 7)])
 for op in ("union", "intersection", "difference", "xor"):
     merged = bsp.merge(a, b, op)
     print(f"1D {op}: {merged}, length {merged.measure}")
-show(bsp.merge(a, b, "intersection"))
+show(bsp.merge(a, b, "intersection").tree)
 
 square = bsp.Region.rectangle(4, 4)
 triangle = bsp.Region([(2, 1), (7, 1), (2, 6)])
 for op in ("union", "intersection", "difference", "xor"):
     merged = bsp.merge(square, triangle, op)
-    print(f"2D {op}: area {merged.measure}, {merged.stats()['nodes']} nodes")
+    print(f"2D {op}: area {merged.measure}, {merged.tree.stats()['nodes']} nodes")
     merged.to_svg(out / f"merge_{op}.svg")
 
 print("\nHow a line can lie to the root of a tree:")

@@ -72,7 +72,7 @@ class Job(ABC):
 
     @property
     def name(self) -> str:
-        """What to call the result."""
+        """The name of the result."""
         return shown(self.target.path)
 
     def run(self) -> int:

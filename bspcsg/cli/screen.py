@@ -5,7 +5,7 @@ import sys
 
 
 def has_screen() -> bool:
-    """Whether a browser that is started here can be seen."""
+    """Say whether a browser that is started here can be seen."""
     if os.environ.get("SSH_CONNECTION") or os.environ.get("SSH_TTY"):
         return False
     if sys.platform in ("win32", "darwin"):

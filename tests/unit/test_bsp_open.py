@@ -156,7 +156,7 @@ class TestSets:
     def test_hyperplanes_are_exact_and_the_rounded_ones_theirs(self) -> None:
         for tree in (
             bsp.ObjectTree([[0, 2], [5, 6]]),
-            bsp.Region([[0, 0], [7, 1], [3, 8]]),
+            bsp.Region([[0, 0], [7, 1], [3, 8]]).tree,
             bsp.ObjectTree(
                 np.array(
                     [

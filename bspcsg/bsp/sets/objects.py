@@ -8,7 +8,7 @@ Sources: Thibault, Naylor 1987; Naylor, Amanatides, Thibault 1990.
 """
 
 from collections.abc import Sequence
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 from ..._core import ObjectTree as CoreTree
 from ..._types import Scalar, SetOp, WindingRule
@@ -22,6 +22,8 @@ from .rows import hyperplane, hyperplane_row, hyperplane_rows
 from .trace import MergeTrace, merge_trace
 from .tree_queries import TreeQueries
 from .tree_set import TreeSet
+
+Set = TypeVar("Set", bound=TreeSet)
 
 
 class ObjectTree(TreeQueries, TreeSet):
@@ -286,12 +288,12 @@ class ObjectTree(TreeQueries, TreeSet):
         return _restored, (type(self), self._tree.dump())
 
 
-def merge(a: ObjectTree, b: ObjectTree, op: SetOp) -> ObjectTree:
+def merge(a: Set, b: TreeSet, op: SetOp) -> Set:
     """Return the set operation on two trees of one dimension, by merging them.
 
     Parameters
     ----------
-    a, b : ObjectTree
+    a, b : ObjectTree, Region or Intervals
     op : {"union", "intersection", "difference", "xor"}
 
     Notes
@@ -306,7 +308,7 @@ def partition_tree(tree: ObjectTree, hyperplane: NormalAndOffset) -> ObjectTree:
     return tree.partitioned(*hyperplane)
 
 
-def split_tree(tree: ObjectTree, hyperplane: NormalAndOffset) -> tuple[ObjectTree, ObjectTree]:
+def split_tree(tree: Set, hyperplane: NormalAndOffset) -> tuple[Set, Set]:
     """Return a tree's parts on the minus and the plus side (see `ObjectTree.split`).
 
     The paper's third argument, the part of the hyperplane inside the root's region, follows from

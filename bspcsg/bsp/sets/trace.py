@@ -85,7 +85,7 @@ class MergeHalves:
 
 @dataclass(frozen=True)
 class MergeJoin:
-    """What was made of the two sides of a node of the first operand has been joined.
+    """The results on the two sides of a node of the first operand have been joined.
 
     Parameters
     ----------

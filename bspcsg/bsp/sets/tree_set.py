@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Any, Self
 
-from ..._types import SetOp
+from ..._types import Scalar, SetOp
 from ...solid.point_set import PointSet
 
 if TYPE_CHECKING:
@@ -47,6 +47,10 @@ class TreeSet(PointSet):
     def __xor__(self, other: object) -> Self:
         """Symmetric difference."""
         return self._merged(other, "xor") if isinstance(other, TreeSet) else NotImplemented
+
+    @abstractmethod
+    def split(self, normal: Any, offset: Scalar = 0.0) -> tuple[Self, Self]:
+        """Return the parts on the minus and on the plus side of a hyperplane, as sets."""
 
     def isdisjoint(self, other: "TreeSet") -> bool:
         """Say whether the two have no interior point in common; contact is allowed."""

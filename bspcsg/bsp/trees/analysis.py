@@ -152,7 +152,7 @@ def _cell(value: Any) -> str:
 
 @dataclass(frozen=True, eq=False)
 class VisitBound:
-    """What rays cost beside the bound of the notes: C(T) ≤ depth(T) · stabbed leaves.
+    """The cost of rays beside the bound of the notes: C(T) ≤ depth(T) · stabbed leaves.
 
     A leaf and the nodes above it are as many as its level, and every node that a ray visits is
     above a leaf that it stabs.

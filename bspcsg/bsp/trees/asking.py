@@ -15,7 +15,7 @@ from .facets import Corners
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """What a callable policy is shown to choose the hyperplane that divides a region.
+    """The facts by which a callable policy chooses the hyperplane that divides a region.
 
     Parameters
     ----------

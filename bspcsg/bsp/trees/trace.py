@@ -109,7 +109,7 @@ class Division:
 
 @dataclass(frozen=True, eq=False)
 class Construction:
-    """How a tree came about: its divisions in the order in which they were made.
+    """The making of a tree: its divisions in the order in which they were made.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def point_trace(tree: "PartitionTree", path: list[tuple[int, int]]) -> PointTrac
 
 @dataclass(frozen=True)
 class RayStep:
-    """What happens to a ray on its way; parameters count lengths of its direction.
+    """The steps of a ray on its way; parameters count lengths of its direction.
 
     Parameters
     ----------
@@ -249,12 +249,12 @@ class RayTrace:
 
     @property
     def leaves(self) -> int:
-        """How many leaves are stabbed."""
+        """The number of leaves that are stabbed."""
         return sum(step.kind == "leaf" for step in self.steps)
 
     @property
     def tests(self) -> int:
-        """How many pieces are tested."""
+        """The number of pieces that are tested."""
         return sum(step.kind == "test" for step in self.steps)
 
     @property
