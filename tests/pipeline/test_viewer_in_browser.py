@@ -56,6 +56,8 @@ def _change(before: "np.ndarray[Any, Any]", after: "np.ndarray[Any, Any]") -> fl
 def _point(browser: Browser, *place: float) -> list[float]:
     """Return where a point of the model is on the canvas."""
     script = """
+        // A picture that is still to come would move the camera.
+        view.render();
         const { low, high, longest } = view.model;
         const at = arguments[0].map((x, i) => ((x - (low[i] + high[i]) / 2) * 2) / longest);
         return view.measure.onCanvas(view.eye.controls.target.clone().set(...at)).slice(0, 2);
