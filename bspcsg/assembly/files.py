@@ -114,8 +114,7 @@ def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...
         raise FormatError(message, "too_large") from None
     if scene is None:
         raise FormatError(f"{os.fspath(path)}: no part of the assembly has volume.", "empty")
-    if suffix == ".3mf":
-        scene = _in_bytes(scene)
+    scene = _in_bytes(scene) if suffix == ".3mf" else glb.as_written(scene)
 
     def prove(data: bytes) -> None:
         if not are_alike(scene, _decoded(os.fspath(path), data, suffix)):

@@ -34,7 +34,7 @@ TO_MILLIMETRES = np.array(
 
 #: Numbers of glTF: types of components, and what a view of the data is for.
 _FLOAT, _UNSIGNED, _VERTICES, _INDICES = 5126, 5125, 34962, 34963
-_BYTE = 5121
+_WORD = 5123
 
 
 def read(source: Source) -> RawMesh:
@@ -225,8 +225,8 @@ class Description:
         """Add values of vertices, and return the number of their accessor."""
         little = np.ascontiguousarray(values, values.dtype.newbyteorder("<"))
         width = 1 if values.ndim == 1 else values.shape[1]
-        whole = {"componentType": _BYTE, "normalized": True}
-        kind = whole if values.dtype == np.uint8 else {"componentType": _FLOAT}
+        whole = {"componentType": _WORD, "normalized": True}
+        kind = whole if values.dtype == np.uint16 else {"componentType": _FLOAT}
         accessor: dict[str, Any] = {"bufferView": self.append(little.tobytes()), **kind}
         self._views[-1]["target"] = _VERTICES
         accessor["count"] = len(values)

@@ -1,6 +1,7 @@
 """Attributes and materials of GLB.
 
-Colours and other numbers go into the file as they are. glTF counts texture coordinates from the
+Colours become light and light becomes colours (see `light`), other numbers go into the file as they
+are. glTF counts texture coordinates from the
 upper left corner of a picture, attributes count from the lower left, so they are turned over.
 """
 
@@ -16,6 +17,7 @@ from ...attributes.material import Material
 from ...errors import InvalidMeshError
 from ..said import as_bytes, chosen, is_color
 from .container import Container
+from .light import as_read, color_of, shown, to_light, words_of
 
 #: Names and materials of a file, in its order.
 Named: TypeAlias = list[tuple[str, Material]]
@@ -25,6 +27,9 @@ _KNOWN = {"NORMAL": "normal", "TEXCOORD_0": "uv", "COLOR_0": "color"}
 
 #: What other attributes are called in files: their names behind this.
 _OWN = "_"
+
+#: glTF's number of floats.
+_FLOATS = 5126
 
 #: Kinds of components by glTF's numbers, and what whole ones are divided by if they are fractions.
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
@@ -42,7 +47,8 @@ def kept(said: Attributes, vertices: FloatArray) -> Attributes:
     if names is None:
         return Attributes(held.faces, held.vertex, held.corner, held.face)
     used = [name for name in np.unique(names).tolist() if name]
-    materials = {name: said.materials.get(name, Material()) for name in used}
+    given = {name: said.materials.get(name, Material()) for name in used}
+    materials = {name: replace(one, color=as_read(one.color)) for name, one in given.items()}
     return Attributes(held.faces, held.vertex, held.corner, held.face, materials)
 
 
@@ -103,8 +109,14 @@ def columns_of(said: Attributes, rows: IndexArray) -> dict[str, Values]:
     for name in said.names:
         if name != "material":
             values = said.at_corners(name, rows)
-            found[called.get(name, _OWN + name)] = _upright(values) if name == "uv" else values
+            found[called.get(name, _OWN + name)] = _in_file(name, values)
     return found
+
+
+def _in_file(name: str, values: Values) -> Values:
+    if name == "uv":
+        return _upright(values)
+    return words_of(values) if is_color(name, values, 2) else values
 
 
 def read_columns(
@@ -128,7 +140,11 @@ def read_columns(
         if values is None or len(values) != count or not _fits(name, values):
             continue
         chosen_rows = values if used is None else values[used]
-        found[name] = _upright(chosen_rows) if name == "uv" else chosen_rows
+        if name == "color":
+            component = container.tree["accessors"][number]["componentType"]
+            found[name] = shown(chosen_rows, is_whole=component != _FLOATS)
+        else:
+            found[name] = _upright(chosen_rows) if name == "uv" else chosen_rows
     return found
 
 
@@ -165,8 +181,8 @@ def materials_of(tree: Mapping[str, Any], data: bytes) -> Named:
         taken.add(name)
         surface = told.get("pbrMetallicRoughness", {})
         texture = _texture(tree, data, surface.get("baseColorTexture"))
-        color = tuple(surface.get("baseColorFactor", (1.0, 1.0, 1.0, 1.0)))
         try:
+            color = color_of(surface.get("baseColorFactor", (1.0, 1.0, 1.0, 1.0)))
             found.append((name, Material(color, texture)))
         except (InvalidMeshError, TypeError, ValueError):
             found.append((name, Material()))
@@ -207,7 +223,8 @@ class Pictures:
         images: list[dict[str, Any]] = []
         found = []
         for name, material in self._materials.items():
-            surface: dict[str, Any] = {"metallicFactor": 0.0, "baseColorFactor": [*material.color]}
+            light = to_light(material.color).tolist()
+            surface: dict[str, Any] = {"metallicFactor": 0.0, "baseColorFactor": light}
             if material.texture is not None:
                 images.append(
                     {"bufferView": self._append(material.texture), "mimeType": material.media}

@@ -14,6 +14,7 @@ from ..scene import SceneNode
 from ..source import Source
 from .container import Container, container_of
 from .file import TO_METRES, TO_MILLIMETRES, SceneDescription, called, container
+from .light import as_read
 from .nodes import local_matrix, triangles_of
 from .said import Pictures, kept, materials_of
 
@@ -87,6 +88,13 @@ class _Reading:
             name = str(told.get("name") or "")
             self._meshes[number] = RawMesh(points, faces, name, unit="mm", attributes=said)
         return self._meshes[number]
+
+
+def as_written(node: SceneNode) -> SceneNode:
+    """Return a tree with the colours that are read after it was written."""
+    color = node.color and as_read(node.color)
+    children = tuple(map(as_written, node.children))
+    return SceneNode(node.name, node.matrix, node.mesh, color, children)
 
 
 def _painted(mesh: RawMesh | None) -> tuple[RawMesh | None, tuple[float, ...] | None]:

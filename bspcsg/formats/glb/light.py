@@ -1,0 +1,66 @@
+"""Colours of glTF are amounts of light; attributes and materials have them as a screen shows them.
+
+# Source
+IEC 61966-2-1 (sRGB); glTF 2.0, sections 3.7.2.1 and 3.9.2.
+"""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..._types import FloatArray
+
+#: Where the straight part of the curve ends, on the screen and in light, and its slope.
+_DARK, _DARK_LIGHT, _SLOPE = 0.04045, 0.0031308, 12.92
+
+#: Of the curve above.
+_SHIFT, _POWER = 0.055, 2.4
+
+#: Digits of a colour that reads back as it was: the curve and its inverse err by some 1e-15.
+_DIGITS = 12
+
+_BYTE, _WORD = 255, 65535
+
+
+def to_light(colors: npt.ArrayLike) -> FloatArray:
+    """Return amounts of light of colours from 0 to 1; a fourth number, opacity, stays."""
+    values = np.array(colors, dtype=np.float64)
+    shown = values[..., :3]
+    curve = ((shown + _SHIFT) / (1 + _SHIFT)) ** _POWER
+    values[..., :3] = np.where(shown <= _DARK, shown / _SLOPE, curve)
+    return values
+
+
+def to_screen(colors: npt.ArrayLike) -> FloatArray:
+    """Return the colours of amounts of light from 0 to 1."""
+    values = np.array(colors, dtype=np.float64)
+    light = np.clip(values[..., :3], 0, 1)
+    curve = (1 + _SHIFT) * light ** (1 / _POWER) - _SHIFT
+    values[..., :3] = np.where(light <= _DARK_LIGHT, light * _SLOPE, curve)
+    return values
+
+
+def color_of(light: npt.ArrayLike) -> tuple[float, ...]:
+    """Return the colour of one amount of light, as it is read."""
+    return tuple(round(value, _DIGITS) for value in to_screen(light).tolist())
+
+
+def as_read(color: tuple[float, ...]) -> tuple[float, ...]:
+    """Return a colour as it is read after it was written."""
+    return color_of(to_light(color))
+
+
+def words_of(colors: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint16]:
+    """Return colours in bytes as light in words, which tell all bytes apart."""
+    found: npt.NDArray[np.uint16] = np.rint(to_light(colors / _BYTE) * _WORD).astype(np.uint16)
+    return found
+
+
+def shown(values: npt.NDArray[Any], is_whole: bool) -> npt.NDArray[Any]:
+    """Return light of a file as colours: bytes if the file has whole numbers, else floats."""
+    light = values / _BYTE if values.dtype == np.uint8 else values
+    colors = to_screen(light)
+    if is_whole:
+        return np.rint(np.clip(colors, 0, 1) * _BYTE).astype(np.uint8)
+    return colors.astype(np.float32)
