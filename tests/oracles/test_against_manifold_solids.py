@@ -176,6 +176,11 @@ ROWS: dict[str, tuple[Verb, Verb, list[tuple[Any, ...]]]] = {
         lambda s: s.mirror((1, 1, 0)) ^ Manifold.cube((2, 2, 2)),
         [(s,) for s in bodies()],
     ),
+    "simplify": (
+        lambda s: s.simplify(1e-6),
+        lambda s: s.simplify(1e-6),
+        [(s,) for s in bodies()],
+    ),
     "refine": (
         lambda s: s.refine(3),
         lambda s: s.refine(3),
@@ -228,6 +233,28 @@ def test_measures_are_those_of_manifold(verb: str, number: int) -> None:
 
 def test_each_verb_has_ten_inputs() -> None:
     assert all(len(inputs) == 10 for _, _, inputs in ROWS.values())
+
+
+def test_genus_is_that_of_manifold_where_there_is_one_surface() -> None:
+    single = [s for s in bodies() if len(s.faces) and s.normalized().to_mesh().components == 1]
+    assert len(single) >= 5
+    for body in single:
+        assert body.genus == body.to_manifold().genus() == 1 - body.euler_number // 2
+
+
+def test_shadows_are_those_of_manifold() -> None:
+    for body in bodies():
+        turned = body.rotate((20, 30, 40))
+        for one in (body, turned):
+            wanted = one.to_manifold().project()
+            assert one.project().area == pytest.approx(wanted.area(), rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize("sides", [3, 4, 7, 32])
+def test_straight_pipes_are_cylinders_of_manifold(sides: int) -> None:
+    pipe = b.pipe([(0, 0, 0), (0, 0, 3)], 2, segments=sides)
+    wanted = Manifold.cylinder(3, 2, 2, sides)
+    assert measures(pipe) == pytest.approx(measures(wanted), rel=1e-7)
 
 
 def test_gaps_are_those_of_manifold() -> None:

@@ -237,6 +237,15 @@ def test_one_error_of_many_has_a_code(folder: Path, capsys: Capture) -> None:
     assert set(error) == {"code", "message", "where"} and error["message"].startswith("bad.off:")
 
 
+def test_repair_tells_what_was_noticed(folder: Path, capsys: Capture) -> None:
+    b.box(0.1, 0.2, 0.3).save("x.glb")
+    b.box(0.1, 0.2, 0.3).save("x.ply")
+    for name, said in (("x.glb", "unit"), ("x.ply", "single_precision")):
+        code, out, err = ran(capsys, "repair", name, "-o", "y.stl", "--json")
+        (finding,) = json.loads(out)["findings"]
+        assert code == 0 and finding["code"] == said and finding["message"] in err
+
+
 def test_seconds_are_all_of_them(folder: Path, capsys: Capture) -> None:
     put("ball.ply", icosphere(5))
     began = time.perf_counter()

@@ -13,6 +13,7 @@ from ..patterns import file_argument
 from ..tables import table_text
 
 if TYPE_CHECKING:
+    from ...errors import Finding
     from ...repair.diagnosis import Diagnosis
     from ...repair.repair import Repair
 
@@ -91,12 +92,14 @@ class _Repairing:
         self._inputs.refuse_early([self._file])
         raw = self._inputs.raw(self._file)
         limits = {name: self._settings[name] for name in ("weld", "max_hole", "timeout")}
+        self._inputs.tell(self._file, raw.findings)
         before = diagnose(raw)
         made = repaired(raw, steps, **limits)
         after = diagnose(made.mesh)
-        for finding in self._target.write(made.mesh):
+        lost = self._target.write(made.mesh)
+        for finding in lost:
             self._out.finding(shown(self._target.path), finding)
-        self._tell(before, after, made)
+        self._tell(before, after, made, (*raw.findings, *lost))
         return output.DONE if after.is_solid else output.FOUND
 
     def _steps(self) -> list[str]:
@@ -111,7 +114,13 @@ class _Repairing:
             raise click.UsageError(f"--steps needs at least one of {', '.join(STEPS)}.")
         return steps
 
-    def _tell(self, before: "Diagnosis", after: "Diagnosis", made: "Repair") -> None:
+    def _tell(
+        self,
+        before: "Diagnosis",
+        after: "Diagnosis",
+        made: "Repair",
+        findings: "tuple[Finding, ...]",
+    ) -> None:
         for step, reason in made.failed.items():
             self._out.warning(f"the step {step} could not be taken: {reason}")
         document = {
@@ -121,6 +130,7 @@ class _Repairing:
             "after": after.to_dict(),
             "steps_failed": made.failed,
             "turned": made.turned,
+            "findings": output.finding_values(findings),
         }
         self._out.result(self._text(before, after, made), document)
 
