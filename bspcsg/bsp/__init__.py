@@ -31,9 +31,12 @@ from .sets.objects import ObjectTree, merge, partition_tree, split_tree
 from .sets.pieces import NodeTable, Pieces
 from .sets.region import Region
 from .sets.slicing import plane_frame, slice_solid
+from .sets.spherical import SphericalRegion, visible_sky
 from .sets.trace import MergeHalves, MergeJoin, MergePair, MergeSplit, MergeTrace
+from .sets.visibility import visibility_polygon, visibility_volume
 from .trees import analysis as analysis
 from .trees.asking import Choice
+from .trees.attributes import AttributeTree, LabelledRegion
 from .trees.cost import Query, Stats
 from .trees.fragments import Fragments
 from .trees.leaf_form import LeafForm
@@ -58,6 +61,7 @@ __all__ = [
     "POLICIES",
     "VERTEX",
     "AdaptiveTree",
+    "AttributeTree",
     "Camera",
     "Candidate",
     "CasterNodes",
@@ -70,6 +74,7 @@ __all__ = [
     "Hits",
     "InsideSpans",
     "Intervals",
+    "LabelledRegion",
     "Leaf",
     "LeafDivision",
     "LeafForm",
@@ -94,6 +99,7 @@ __all__ = [
     "RayStep",
     "RayTrace",
     "Region",
+    "SphericalRegion",
     "StabNodes",
     "StabStats",
     "StabStep",
@@ -117,4 +123,7 @@ __all__ = [
     "scores",
     "slice_solid",
     "split_tree",
+    "visibility_polygon",
+    "visibility_volume",
+    "visible_sky",
 ]

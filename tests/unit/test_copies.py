@@ -25,6 +25,7 @@ ORIGINS, UP = [[0.5, 0.5, -1.0], [1.5, 0.25, -1.0]], [0.0, 0.0, 1.0]
 SCRIPT = csg.parse("union() { cube(size = [1, 2, 3], center = true); }")
 OBJECT = bsp.ObjectTree([[0, 2], [5, 6]])
 OTHER = bsp.ObjectTree([[1, 3]])
+LABELLED: bsp.AttributeTree[str] = bsp.AttributeTree(1, "all").insert(3.0, ("low", "high"))
 TREE_BY_COUNT = bsp.PartitionTree(SEGMENTS, "least-splits")
 
 
@@ -68,6 +69,9 @@ EXAMPLES: dict[type, Callable[[], Any]] = {
     b.Solid: lambda: SHAPE.rotate(30),
     b.Verdict: lambda: next(iter(b.Verdict)),
     bsp.AdaptiveTree: grown,
+    bsp.AttributeTree: lambda: LABELLED,
+    bsp.LabelledRegion: lambda: next(iter(LABELLED)),
+    bsp.SphericalRegion: lambda: bsp.SphericalRegion.arc([1, 0], [1, 2]),
     bsp.Candidate: lambda: TREE_BY_COUNT.trace()[0].candidates[0],
     bsp.CasterNodes: lambda: CASTER.nodes,
     bsp.Choice: choice,

@@ -12,13 +12,14 @@ from ..._core import FragmentTree
 from ..._types import FloatArray, IndexArray
 from ...errors import core_errors, invalid_parameter
 from ...geometry.polygon import convex_corners
-from ...parameters import not_negative
+from ...parameters import at_least, not_negative
 from .asking import Chooser, asked_tree, lattice_rows
 from .cost import Query, Stats, cost, stats
 from .dump import parsed, to_dot, to_json, to_svg
 from .facets import chosen_pitch, corners_of, mesh_triangles, vector_rows
 from .fragments import Fragments
 from .leaf_form import LeafForm, leaf_form
+from .moving import moved_core
 from .node import Leaf, Node, RegionShape, Side
 from .order import Ordered
 from .policy import Policy, checked_policy, core_options
@@ -408,6 +409,32 @@ class PartitionTree(Ordered):
     def leaf_form(self) -> LeafForm:
         """Return the tree as the lecture notes draw it: leaves store at most one fragment."""
         return leaf_form(self)
+
+    def moved(
+        self, axes: Sequence[int] | None = None, offset: Any = None, scale: int = 1
+    ) -> "PartitionTree":
+        """Return the image of the tree under a motion of the lattice, divided as the tree is.
+
+        Parameters
+        ----------
+        axes : sequence of int, optional
+            For each new axis the old one that it is, counted from 1, in the plane (2, -1) is a
+            quarter turn clockwise. Motions only: a mirror image has its minus sides elsewhere.
+        offset : (d,) array_like of float, optional
+            What is added after that, in model units; snapped to the lattice.
+        scale : int
+            A positive factor about the origin, which comes first.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the axes are no rotation, or the factor is not positive.
+        LimitError
+            If the image does not fit the lattice.
+        """
+        factor = at_least(1, scale, "scale")
+        core = moved_core(self.core, self.lenience, axes, offset, factor)
+        return self.from_core(core, self.lenience, self._margin)
 
     # Quality
 

@@ -1,0 +1,338 @@
+"""Sets of directions: regions of the circle (1S) and of the sphere (2S), exactly.
+
+A great circle is where a plane through the origin cuts the sphere. So a region of the sphere is a
+set of space cut by such planes alone, and set operations are those of `ObjectTree`: in the plane
+for directions of the plane, in space for those of space.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
+from functools import reduce
+from itertools import pairwise
+from typing import Any, Self
+
+import numpy as np
+
+from ..._types import FloatArray, SideArray
+from ...errors import invalid_parameter
+from ...geometry.hyperplane import exact_number
+from ...geometry.polytope import Corner, Polytope, cut_polygon, height
+from .objects import ObjectTree
+
+#: The lattice of cones: directions are whole numbers.
+_WHOLE = 0
+
+
+class SphericalRegion:
+    """A set of directions of the plane or of space; an immutable value.
+
+    Make one with `hemisphere`, `polygon`, `arc`, `empty` or `full`, and combine them with
+    ``| & - ^ ~``. Directions are points seen from the origin; they need no unit length, and their
+    numbers count as the decimals they are written as. All decisions are exact; only sizes are
+    rounded.
+
+    Examples
+    --------
+    >>> from bspcsg import bsp
+    >>> east = bsp.SphericalRegion.hemisphere([1, 0, 0])
+    >>> up = bsp.SphericalRegion.hemisphere([0, 0, 1])
+    >>> round((east & up).share, 12), (east | ~east).is_full
+    (0.25, True)
+    """
+
+    __slots__ = ("_cone",)
+
+    def __init__(self, cone: ObjectTree) -> None:
+        rows = cone.nodes.coefficients
+        if cone.dimension not in (2, 3) or any(row[-1] for row in rows):
+            raise invalid_parameter("All hyperplanes of a cone go through the origin.")
+        self._cone = cone
+
+    # Making
+
+    @classmethod
+    def empty(cls, dimension: int = 3) -> Self:
+        """Return no direction, of the plane (2) or of space (3)."""
+        return cls(ObjectTree.uniform(dimension, full=False, pitch=_WHOLE))
+
+    @classmethod
+    def full(cls, dimension: int = 3) -> Self:
+        """Return all directions, of the plane (2) or of space (3)."""
+        return cls(ObjectTree.uniform(dimension, full=True, pitch=_WHOLE))
+
+    @classmethod
+    def hemisphere(cls, axis: Any) -> Self:
+        """Return the directions at most a quarter turn away from an axis, (2,) or (3,)."""
+        whole = _whole(axis)
+        return cls(ObjectTree.half_space([-x for x in whole], 0, pitch=_WHOLE))
+
+    @classmethod
+    def polygon(cls, corners: Any) -> Self:
+        """Return the convex polygon with these corners, joined by arcs of great circles.
+
+        Parameters
+        ----------
+        corners : (k, 3) array_like of float
+            At least three directions, within a hemisphere, counterclockwise seen from outside.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the polygon is not convex, or runs clockwise.
+        """
+        whole = [_whole(corner) for corner in corners]
+        if len(whole) < 3 or any(len(corner) != 3 for corner in whole):
+            raise invalid_parameter("A polygon has at least three corners in space.")
+        sides = [_cross(a, b) for a, b in pairwise([*whole, whole[0]])]
+        if any(_dot(side, corner) < 0 for side in sides for corner in whole):
+            raise invalid_parameter("The corners are not convex and counterclockwise.")
+        return cls._inside(side for side in sides if any(side))
+
+    @classmethod
+    def arc(cls, start: Any, end: Any) -> Self:
+        """Return the directions of the plane from one counterclockwise to another, (2,) each."""
+        a, b = _whole(start), _whole(end)
+        if len(a) != 2 or len(b) != 2:
+            raise invalid_parameter("An arc goes from one direction of the plane to another.")
+        sides = [[-a[1], a[0]], [b[1], -b[0]]]
+        turn = a[0] * b[1] - a[1] * b[0]
+        if turn > 0 or (turn == 0 and a[0] * b[0] + a[1] * b[1] < 0):
+            return cls._inside(sides)
+        return ~cls._inside([[-x for x in side] for side in sides]) if turn else cls.empty(2)
+
+    @classmethod
+    def _inside(cls, normals: Iterable[Sequence[int]]) -> Self:
+        halves = (cls.hemisphere(normal) for normal in normals)
+        return reduce(lambda a, b: a & b, halves)
+
+    # Set operations
+
+    def __or__(self, other: "SphericalRegion") -> Self:
+        """Union."""
+        return type(self)(self._cone | other._cone)
+
+    def __and__(self, other: "SphericalRegion") -> Self:
+        """Intersection."""
+        return type(self)(self._cone & other._cone)
+
+    def __sub__(self, other: "SphericalRegion") -> Self:
+        """Difference."""
+        return type(self)(self._cone - other._cone)
+
+    def __xor__(self, other: "SphericalRegion") -> Self:
+        """Symmetric difference."""
+        return type(self)(self._cone ^ other._cone)
+
+    def __invert__(self) -> Self:
+        """Complement."""
+        return type(self)(~self._cone)
+
+    def __eq__(self, other: object) -> bool:
+        """Return true if both hold the same directions, exactly."""
+        if not isinstance(other, SphericalRegion):
+            return NotImplemented
+        return self.dimension == other.dimension and (self ^ other).is_empty
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[Any, tuple[ObjectTree]]:
+        """Pickle the cone."""
+        return type(self), (self._cone,)
+
+    def __repr__(self) -> str:
+        """Say how much of the circle or sphere it is."""
+        return f"SphericalRegion({self.dimension - 1}S, {100 * self.share:.1f} %)"
+
+    # Questions
+
+    @property
+    def cone(self) -> ObjectTree:
+        """The points in these directions, as a set of the plane or of space."""
+        return self._cone
+
+    @property
+    def dimension(self) -> int:
+        """2 for directions of the plane, 3 for those of space."""
+        return self._cone.dimension
+
+    @property
+    def is_empty(self) -> bool:
+        """True if there is no direction."""
+        return self._cone.is_empty
+
+    @property
+    def is_full(self) -> bool:
+        """True if all directions are there."""
+        return self._cone.is_full
+
+    def classify(self, directions: Any) -> SideArray:
+        """Say of each direction whether it is inside, exactly.
+
+        Parameters
+        ----------
+        directions : (k, d) array_like of float
+
+        Returns
+        -------
+        (k,) int8
+            +1 inside, 0 on the boundary, -1 outside.
+        """
+        nodes = self._cone.nodes
+        start = 0 if len(nodes) else (nodes.IN if self.is_full else nodes.OUT)
+
+        def side(direction: Any) -> int:
+            place = tuple(map(Fraction, _whole(direction)))
+            seen, pending = set(), [start]
+            while pending:
+                row = pending.pop()
+                if row < 0:
+                    seen.add(row)
+                    continue
+                value = height(place, nodes.coefficients[row])
+                pending += [int(nodes.minus[row])] * (value <= 0)
+                pending += [int(nodes.plus[row])] * (value >= 0)
+            return 0 if len(seen) == 2 else (1 if nodes.IN in seen else -1)
+
+        return np.array([side(direction) for direction in directions], dtype=np.int8)
+
+    def pieces(self) -> list[FloatArray]:
+        """Return the region in convex pieces: the corners of each as unit vectors, (k, d).
+
+        In the plane each has two ends; in space corners run counterclockwise seen from outside.
+        They are also cut where the edges of a cube about the origin are seen.
+        """
+        return [_units(piece) for piece in self._cut_cube()]
+
+    @property
+    def measure(self) -> float:
+        """The angle (1S) or solid angle (2S), in radians or steradians."""
+        if self.dimension == 2:
+            return math.fsum(_angle(piece) for piece in self.pieces())
+        return math.fsum(
+            _solid_angle(piece[0], b, c) for piece in self.pieces() for b, c in pairwise(piece[1:])
+        )
+
+    @property
+    def share(self) -> float:
+        """The measure as a share of the whole circle or sphere."""
+        return self.measure / (2 * math.pi if self.dimension == 2 else 4 * math.pi)
+
+    def _cut_cube(self) -> Iterator[tuple[Corner, ...]]:
+        """Yield the parts of a cube's faces, or of a square's sides, in the In leaves."""
+        nodes = self._cone.nodes
+        if not len(nodes):
+            yield from _cube(self.dimension) if self.is_full else ()
+            return
+        pending = [(0, part) for part in _cube(self.dimension)]
+        while pending:
+            row, part = pending.pop()
+            for child, side in ((int(nodes.minus[row]), -1), (int(nodes.plus[row]), 1)):
+                piece = cut_polygon(part, nodes.coefficients[row], side)
+                if not piece or child == nodes.OUT:
+                    continue
+                if child == nodes.IN:
+                    yield piece
+                else:
+                    pending.append((child, piece))
+
+
+def visible_sky(facets: Any, eye: Any) -> SphericalRegion:
+    """Return the directions in which an eye sees none of the facets.
+
+    Parameters
+    ----------
+    facets : (n, 2, 2) or (n, 3, 3) array_like of float
+        Segments of the plane, or triangles of space; from both sides they hide what is behind.
+    eye : (2,) or (3,) array_like of float
+        It must not lie in a facet. One whose hyperplane it lies in hides nothing.
+
+    Examples
+    --------
+    >>> from bspcsg import bsp
+    >>> wall = [[[1, -1], [1, 1]]]
+    >>> bsp.visible_sky(wall, [0, 0]).share
+    0.75
+    """
+    shapes = np.asarray(facets, dtype=np.float64)
+    if shapes.ndim != 3 or shapes.shape[1:] not in ((2, 2), (3, 3)):
+        raise invalid_parameter(f"Facets must be segments or triangles, not {shapes.shape}.")
+    place = [exact_number(x) for x in np.asarray(eye, dtype=object).tolist()]
+    if len(place) != shapes.shape[2]:
+        raise invalid_parameter(f"The eye must have {shapes.shape[2]} coordinates.")
+    hidden = [SphericalRegion.empty(len(place))]
+    for shape in shapes.tolist():
+        arms = [[exact_number(x) - y for x, y in zip(p, place, strict=True)] for p in shape]
+        cone = _cone_of(arms)
+        if cone is not None:
+            hidden.append(cone)
+    # Pairs of neighbours first: so each direction is in few merges.
+    while len(hidden) > 1:
+        hidden = [
+            hidden[k] | hidden[k + 1] if k + 1 < len(hidden) else hidden[k]
+            for k in range(0, len(hidden), 2)
+        ]
+    return ~hidden[0]
+
+
+def _cone_of(arms: list[list[Fraction]]) -> SphericalRegion | None:
+    """Return the directions of a facet seen from the origin, None if it is seen edge-on."""
+    if len(arms) == 2:
+        (a, b), (c, d) = arms
+        turn = a * d - b * c
+        if not turn:
+            return None
+        return SphericalRegion.arc(*(arms if turn > 0 else arms[::-1]))
+    whole = [_whole(arm) for arm in arms]
+    volume = _dot(_cross(whole[0], whole[1]), whole[2])
+    if not volume:
+        return None
+    return SphericalRegion.polygon(whole if volume > 0 else whole[::-1])
+
+
+def _whole(direction: Any) -> list[int]:
+    """Return whole numbers without a common divisor in the same direction."""
+    entries = direction if isinstance(direction, list) else np.asarray(direction, object).tolist()
+    try:
+        exact = [exact_number(entry) for entry in entries]
+    except (TypeError, ValueError, OverflowError) as error:
+        raise invalid_parameter("A direction is two or three finite numbers.") from error
+    if len(exact) not in (2, 3) or not any(exact):
+        raise invalid_parameter("A direction is two or three numbers, not all of them zero.")
+    denominator = math.lcm(*(x.denominator for x in exact))
+    whole = [int(x * denominator) for x in exact]
+    divisor = math.gcd(*whole)
+    return [x // divisor for x in whole]
+
+
+def _cross(a: Sequence[int], b: Sequence[int]) -> list[int]:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def _dot(a: Sequence[int], b: Sequence[int]) -> int:
+    return sum(x * y for x, y in zip(a, b, strict=True))
+
+
+def _cube(dimension: int) -> list[tuple[Corner, ...]]:
+    """Return the faces of a cube about the origin, or the sides of a square, counterclockwise."""
+    body = Polytope.box([-1] * dimension, [1] * dimension)
+    if dimension == 3:
+        return list(body.faces)
+    ring = body.faces[0]
+    return list(pairwise([*ring, ring[0]]))
+
+
+def _units(piece: Sequence[Corner]) -> FloatArray:
+    points = np.array([[float(x) for x in corner] for corner in piece])
+    return np.asarray(points / np.linalg.norm(points, axis=1, keepdims=True))
+
+
+def _angle(piece: FloatArray) -> float:
+    (a, b), (c, d) = piece
+    return math.atan2(a * d - b * c, a * c + b * d)
+
+
+def _solid_angle(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
+    """Return that of a triangle of unit vectors (Van Oosterom, Strackee 1983)."""
+    top = float(np.dot(a, np.cross(b, c)))
+    return 2 * math.atan2(top, 1 + float(a @ b) + float(b @ c) + float(c @ a))

@@ -1,0 +1,161 @@
+"""What an eye sees: visibility polygons in the plane, visibility volumes in space, exactly.
+
+A facet hides what is behind it: the part beyond its hyperplane of the cone under which it is seen.
+What is left of a box without these shadows is what the eye sees.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from ..._types import Scalar
+from ...errors import invalid_parameter
+from ...geometry.hyperplane import exact_number
+from ...shapes.primitives import box as box_solid
+from ...shapes.primitives import half_space
+from ...solid.solid import Solid
+from .objects import ObjectTree
+from .region import Region
+
+#: A corner, exactly.
+_Point = list[Fraction]
+
+
+def visibility_polygon(
+    segments: Any, eye: Any, low: Sequence[Scalar], high: Sequence[Scalar]
+) -> Region:
+    """Return the part of a rectangle that an eye sees between segments.
+
+    Parameters
+    ----------
+    segments : (n, 2, 2) array_like of float
+        They may cross, touch and overlap. One that points at the eye hides nothing.
+    eye : (2,) array_like of float
+        Anywhere but on a segment.
+    low, high : (2,) array_like of float
+        The corners of the rectangle.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the eye lies on a segment, or a shape is wrong.
+
+    Examples
+    --------
+    >>> from bspcsg import bsp
+    >>> bsp.visibility_polygon([[[1, -1], [1, 1]]], (0, 0), (-2, -2), (2, 2)).area
+    13.0
+    """
+    walls, place = _exact(segments, eye, 2)
+    ends = [[float(low[0]), float(low[1])], [float(high[0]), float(high[1])]]
+    (x, y), (u, v) = ends
+    shadows = []
+    for a, b in walls:
+        turn = _turn(place, a, b)
+        if not turn:
+            if _between(place, a, b):
+                raise invalid_parameter("The eye lies on a segment.")
+            continue
+        first, last = (a, b) if turn > 0 else (b, a)
+        # Left of the way to the first end, right of that to the last, and beyond the wall.
+        halves = [_left_of(place, first), _left_of(last, place), _left_of(last, first)]
+        shadow = halves[0] & halves[1] & halves[2]
+        shadows.append(Region._of(shadow._tree))
+    return Region([(x, y), (u, y), (u, v), (x, v)]) - _united(shadows)
+
+
+def visibility_volume(
+    triangles: Any, eye: Any, low: Sequence[Scalar], high: Sequence[Scalar]
+) -> Solid:
+    """Return the part of a box that an eye sees between triangles.
+
+    Parameters
+    ----------
+    triangles : (n, 3, 3) array_like of float
+        As of `visibility_polygon`.
+    eye : (3,) array_like of float
+    low, high : (3,) array_like of float
+        The corners of the box.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a shape is wrong.
+
+    Notes
+    -----
+    A triangle whose plane holds the eye hides nothing.
+
+    Examples
+    --------
+    >>> from bspcsg import bsp
+    >>> wall = [[[-1, -1, 1], [1, -1, 1], [1, 1, 1]], [[-1, -1, 1], [1, 1, 1], [-1, 1, 1]]]
+    >>> bsp.visibility_volume(wall, (0, 0, 0), (-2, -2, -2), (2, 2, 2)).volume
+    54.666666666666664
+    """
+    walls, place = _exact(triangles, eye, 3)
+    sizes = [float(end) - float(start) for start, end in zip(low, high, strict=True)]
+    seen = box_solid(sizes).translate([float(x) for x in low])
+    for corners in walls:
+        normal = _normal(*corners)
+        depth = _offset(normal, corners[0]) - _offset(normal, place)
+        if not depth:
+            continue
+        ring = corners if depth > 0 else corners[::-1]
+        beyond = [-n if depth > 0 else n for n in normal]
+        shadow = half_space(beyond, _offset(beyond, corners[0]))
+        for a, b in pairwise([*ring, ring[0]]):
+            side = _normal(place, b, a)
+            shadow &= half_space(side, _offset(side, place))
+        seen -= shadow
+    return seen
+
+
+def _exact(facets: Any, eye: Any, dimension: int) -> tuple[list[list[_Point]], _Point]:
+    shapes = np.asarray(facets, dtype=np.float64)
+    if shapes.ndim != 3 or shapes.shape[1:] != (dimension, dimension):
+        expected = f"(n, {dimension}, {dimension})"
+        raise invalid_parameter(f"The facets must have shape {expected}, not {shapes.shape}.")
+    place = [exact_number(x) for x in np.asarray(eye, dtype=object).tolist()]
+    if len(place) != dimension:
+        raise invalid_parameter(f"The eye must have {dimension} coordinates.")
+    walls = [[[exact_number(x) for x in corner] for corner in shape] for shape in shapes.tolist()]
+    return walls, place
+
+
+def _turn(a: _Point, b: _Point, c: _Point) -> Fraction:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _between(place: _Point, a: _Point, b: _Point) -> bool:
+    """Return true if a point of the line through two others lies on the segment between them."""
+    return all(min(p, q) <= x <= max(p, q) for x, p, q in zip(place, a, b, strict=True))
+
+
+def _left_of(start: _Point, end: _Point) -> ObjectTree:
+    """Return all points to the left of the way from one point to another."""
+    normal = [end[1] - start[1], start[0] - end[0]]
+    return ObjectTree.half_space(normal, _offset(normal, start))
+
+
+def _normal(a: _Point, b: _Point, c: _Point) -> Any:
+    u, v = ([x - y for x, y in zip(p, a, strict=True)] for p in (b, c))
+    return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+
+
+def _offset(normal: Sequence[Fraction], point: _Point) -> Any:
+    """Return the product of a normal and a point, a number that half-spaces take."""
+    return sum((n * x for n, x in zip(normal, point, strict=True)), Fraction(0))
+
+
+def _united(regions: list[Region]) -> Region:
+    """Return the union, pairs of neighbours first, so that each corner is in few merges."""
+    while len(regions) > 1:
+        regions = [
+            regions[k] | regions[k + 1] if k + 1 < len(regions) else regions[k]
+            for k in range(0, len(regions), 2)
+        ]
+    return regions[0] if regions else Region.empty()

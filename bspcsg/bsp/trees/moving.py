@@ -1,0 +1,82 @@
+"""Images of trees over facets under motions of the lattice: turns, shifts, whole factors."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from ..._core import FragmentTree
+from ..._types import IndexArray
+from ...errors import LimitError, core_errors, invalid_parameter
+from ...geometry.arrays import doubles
+from ...geometry.hyperplane import exact_number
+
+#: What the rows of cuts have for an axis if the cut is a hyperplane of the tree's own.
+_OWN = -2
+
+#: Lattice coordinates are below this many steps.
+_REACH = 2**53
+
+
+def moved_core(
+    core: FragmentTree,
+    lenience: tuple[bool, bool],
+    axes: Sequence[int] | None,
+    offset: Any,
+    scale: int,
+) -> FragmentTree:
+    """Return the core's tree with facets and cuts moved, and made again by these cuts."""
+    corners, offsets = core.lattice()
+    matrix = _rotation(axes, core.dimension)
+    shift = _steps(offset, core.dimension, core.pitch)
+    largest = int(np.abs(corners).max(initial=0)) * scale + int(np.abs(shift).max())
+    if largest >= _REACH:
+        raise LimitError("The moved tree does not fit the lattice.", "too_large")
+    own = [_moved_row(row, matrix, shift, scale) for row in core.own()]
+    cuts = core.nodes()["cut"].copy()
+    for cut in cuts:
+        if cut[0] >= 0:
+            row = [0] * core.dimension + [int(cut[1])]
+            row[cut[0]] = 1
+            # As one of the tree's own, since the minus side may be where coordinates are larger.
+            cut[:] = _OWN, len(own)
+            own.append(_moved_row(row, matrix, shift, scale))
+    moved = np.ascontiguousarray(scale * corners @ matrix.T + shift)
+    with core_errors():
+        return FragmentTree.rebuild(moved, offsets, core.pitch, cuts, lenience, own)
+
+
+def _rotation(axes: Sequence[int] | None, dimension: int) -> IndexArray:
+    """Return the matrix of a signed permutation of the axes that is no mirror image."""
+    given = list(range(1, dimension + 1)) if axes is None else list(axes)
+    if sorted(abs(axis) for axis in given) != list(range(1, dimension + 1)):
+        message = f"The axes must be those from 1 to {dimension}, each once, with a sign."
+        raise invalid_parameter(message)
+    matrix = np.zeros((dimension, dimension), dtype=np.int64)
+    for row, axis in enumerate(given):
+        matrix[row, abs(axis) - 1] = 1 if axis > 0 else -1
+    if round(float(np.linalg.det(matrix))) != 1:
+        raise invalid_parameter(f"The axes {tuple(given)} are a mirror image, no rotation.")
+    return matrix
+
+
+def _steps(offset: Any, dimension: int, pitch: int) -> IndexArray:
+    if offset is None:
+        return np.zeros(dimension, dtype=np.int64)
+    refusal = invalid_parameter(f"The offset must be {dimension} finite numbers.")
+    given = np.atleast_1d(doubles(offset, refusal))
+    if given.shape != (dimension,) or not np.isfinite(given).all():
+        raise refusal
+    steps = [round(exact_number(x) / Fraction(10) ** pitch) for x in given.tolist()]
+    if max(map(abs, steps)) >= _REACH:
+        raise LimitError("The moved tree does not fit the lattice.", "too_large")
+    return np.array(steps, dtype=np.int64)
+
+
+def _moved_row(row: Sequence[int], matrix: IndexArray, shift: IndexArray, scale: int) -> list[int]:
+    """Return the image of n·x = c: the normal turned, the product for a moved point."""
+    *normal, product = row
+    turned = [sum(int(m) * n for m, n in zip(line, normal, strict=True)) for line in matrix]
+    moved = sum(n * int(s) for n, s in zip(turned, shift, strict=True))
+    return [*turned, product * scale + moved]
