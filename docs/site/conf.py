@@ -155,8 +155,9 @@ def _with_navigation(_: Sphinx, name: str, source: list[str]) -> None:
             source[0] += (
                 f"\n```{{toctree}}\n:hidden:\n:titlesonly:\n:caption: {head}\n\n{names}\n```\n"
             )
-    if name == "docs/verbs/lecture":
-        source[0] += '\n<p><a href="../../lecture.html">The lecture that it writes.</a></p>\n'
+    if name in ("docs/lecture", "docs/verbs/lecture"):
+        up = "../" * name.count("/")
+        source[0] += f'\n<p><a href="{up}lecture.html">The lecture that it writes.</a></p>\n'
 
 
 class PathsOfTheRepository(SphinxTransform):

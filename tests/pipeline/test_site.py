@@ -119,6 +119,16 @@ def test_pages_speak_to_screen_readers_and_keyboards(site: Path, browser: Browse
     assert browser.run(f"return {wide}.every(e => e.tabIndex == 0)")
 
 
+def test_the_lecture_is_led_to(site: Path, pages: dict[Path, _Page]) -> None:
+    page = site / "lecture.html"
+    leading = {
+        path.relative_to(site).as_posix()
+        for path, read in pages.items()
+        if any((path.parent / link).resolve() == page for link in read.led)
+    }
+    assert leading == {"docs/lecture.html", "docs/verbs/lecture.html"}
+
+
 def test_options_keep_their_hyphens(site: Path) -> None:
     assert "--check=off" in (site / "docs/verbs/union.html").read_text(encoding="utf-8")
 
