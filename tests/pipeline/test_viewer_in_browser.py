@@ -237,7 +237,7 @@ def _checkered() -> bytes:
 
 
 def _textured_ball() -> b.Solid:
-    vertices, faces = icosphere(3)
+    vertices, faces = icosphere(2)
     x, y, z = vertices[faces].transpose(2, 0, 1)
     around = np.arctan2(y, x) / (2 * np.pi) + 0.5
     # Where a face reaches over the seam, some of its corners are a turn further.
