@@ -1,19 +1,12 @@
-"""Autopartition: a tree over segments as a picture, and the bounds of the lecture measured."""
-
-import sys
-from pathlib import Path
+"""Autopartition: a tree over segments, and the bounds of the lecture measured."""
 
 import bspcsg as b
 from bspcsg import bsp
 from bspcsg.bsp import analysis
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(parents=True, exist_ok=True)
-
 segments = analysis.disjoint_segments(24, seed=3)
 tree = bsp.PartitionTree(segments, "random", seed=1)
 print(tree, "cuts", len(tree.splits), "times")
-(out / "autopartition.svg").write_text(tree.to_svg())
 
 print("\nFragments and time, against n + 2 n ln n (segments), n² (grid), n (surfaces):")
 balls = [b.sphere(1, segments=count) for count in (16, 32, 64)]

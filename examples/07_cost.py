@@ -1,14 +1,8 @@
 """What a partition tree costs: pivot policies compared, in the plane and for a surface."""
 
-import sys
-from pathlib import Path
-
 import bspcsg as b
 from bspcsg import bsp
 from bspcsg.bsp import analysis
-
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(parents=True, exist_ok=True)
 
 print("100 disjoint segments; cost is the expected number of nodes that a query visits:")
 segments = analysis.disjoint_segments(100, seed=5)
@@ -30,6 +24,3 @@ plate = b.cube(1).scale((4, 3, 1)) - b.cylinder(4, 0.6, segments=24).translate(2
 mesh = plate.to_mesh()
 print(f"\nA drilled plate of {len(mesh.faces)} triangles:")
 print(bsp.compare_policies(mesh.vertices[mesh.faces], top=8))
-
-best = bsp.PartitionTree(segments, "least-cost", top=4)
-(out / "least_cost.svg").write_text(best.to_svg())

@@ -2,16 +2,12 @@
 
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageDraw
 
 from bspcsg import bsp
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
 count = int(sys.argv[2]) if len(sys.argv) > 2 else 1500
-out.mkdir(exist_ok=True)
 rng = np.random.default_rng(1)
 
 
@@ -22,7 +18,6 @@ def cloud(spread):
 
 
 batch, rounds = 1000, 12
-colours = ["#999999", "#d08770", "#5e81ac", "#2e7d32"]
 
 
 def skewed(n):
@@ -48,12 +43,8 @@ panels = [
     ("skewed rays, like sizes", skewed, cloud(0)),
     ("uniform rays, many sizes", uniform, cloud(1)),
 ]
-plot = Image.new("RGB", (1260, 460), "white")
-draw = ImageDraw.Draw(plot)
-title = f"triangles tested per ray (logarithmic), {rounds} batches of {batch} rays"
-draw.text((30, 430), title, "black")
 heading = "build s  rays s    tree   per ray: visited  stabbed  tested"
-for panel, (name_of_panel, rays, facets) in enumerate(panels):
+for name_of_panel, rays, facets in panels:
     sample = rays(2000)
     trees = {
         "one leaf": grown(lambda facets=facets: bsp.AdaptiveTree(facets, threshold=10**9)),
@@ -63,9 +54,8 @@ for panel, (name_of_panel, rays, facets) in enumerate(panels):
     }
     batches = [rays(batch) for _ in range(rounds)]
     print(f"{name_of_panel:24} {heading}")
-    left, answers = 60 + 415 * panel, []
-    draw.text((left, 12), name_of_panel, "black")
-    for row, (name, (tree, build)) in enumerate(trees.items()):
+    answers = []
+    for name, (tree, build) in trees.items():
         begun = time.perf_counter()
         tests = [tree.test_ray(*given) for given in batches]
         took = time.perf_counter() - begun
@@ -75,12 +65,5 @@ for panel, (name_of_panel, rays, facets) in enumerate(panels):
             f" {last[0]:18.1f} {last[1]:8.1f} {last[2]:7.1f}"
         )
         answers.append(np.concatenate([t.hits.facet for t in tests]))
-        heights = [400 - 100 * np.log10(max(t.tests.mean(), 1)) for t in tests]
-        draw.line([(left + 28 * k, y) for k, y in enumerate(heights)], colours[row], 3)
-        draw.text((left + 220, 12 + 14 * row), f"{name}: {last[2]:.0f}", colours[row])
     assert all((answer == answers[0]).all() for answer in answers)
-    for power in range(4):
-        draw.text((left - 40, 394 - 100 * power), f"{10**power}", "black")
-    draw.line([(left - 8, 70), (left - 8, 400), (left + 28 * rounds, 400)], "black")
 print("All trees gave the same answer to every ray.")
-plot.save(out / "self_organising.png")

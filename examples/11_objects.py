@@ -1,12 +1,6 @@
-"""Two sets as partition trees, on the line and in the plane: split, merged, printed and drawn."""
-
-import sys
-from pathlib import Path
+"""Two sets as partition trees, on the line and in the plane: split, merged and printed."""
 
 from bspcsg import bsp
-
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
-out.mkdir(exist_ok=True)
 
 
 def show(tree: bsp.ObjectTree, node: int = 0, depth: int = 0) -> None:
@@ -34,7 +28,6 @@ triangle = bsp.Region([(2, 1), (7, 1), (2, 6)])
 for op in ("union", "intersection", "difference", "xor"):
     merged = bsp.merge(square, triangle, op)
     print(f"2D {op}: area {merged.measure}, {merged.tree.stats()['nodes']} nodes")
-    merged.to_svg(out / f"merge_{op}.svg")
 
 print("\nHow a line can lie to the root of a tree:")
 half = bsp.ObjectTree.half_space((1, 0), 0)

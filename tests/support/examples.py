@@ -1,7 +1,6 @@
 """What each example writes."""
 
 _PAINTED = ("cycle.svg", "lines.svg", "part.svg", "plane.svg", "scan.png")
-_OPERATIONS = ("union", "intersection", "difference", "xor")
 _SECTIONS = ("low", "high", "side", "slanted")
 
 #: The models, whose pictures have their names.
@@ -25,13 +24,8 @@ WRITES = {
     "01_drilled_plate": {"plate.stl"},
     "04_two_meshes": {"goat_and_ball.png"},
     "05_checked": {"rest.stl"},
-    "06_autopartition": {"autopartition.svg"},
-    "07_cost": {"least_cost.svg"},
     "08_painter": {f"painter_{name}" for name in _PAINTED},
     "09_rays": {"rays.png"},
-    "10_self_organising": {"self_organising.png"},
-    "11_objects": {f"merge_{name}.svg" for name in _OPERATIONS},
-    "13_growth": {"growth.png"},
     "12_region": {"profile.svg", *(f"section_{name}.svg" for name in _SECTIONS)},
     **{stem: {f"{stem[3:]}.png"} for stem in MODELS},
 }

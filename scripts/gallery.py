@@ -1,0 +1,57 @@
+"""Runs the code on the page of the gallery, which writes the pictures below it.
+
+    scripts/gallery [FOLDER]
+
+Each block runs by itself, beside `examples/drawing.py`, in a folder that has `gallery/`; by default
+that is `examples`.
+"""
+
+import os
+import re
+import sys
+from contextlib import chdir
+from pathlib import Path
+
+os.environ.setdefault("MPLBACKEND", "agg")
+
+EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
+
+#: A block may have this many lines, beside imports and empty ones.
+LONGEST = 10
+
+
+def blocks() -> list[str]:
+    """Return the code of the page, block by block."""
+    page = (EXAMPLES / "GALLERY.md").read_text(encoding="utf-8")
+    return re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+
+
+def pictures(block: str) -> list[str]:
+    """Return the names of the files that a block writes."""
+    return re.findall(r'"gallery/([\w.]+)"', block)
+
+
+def run(block: str, folder: Path) -> None:
+    """Run a block in a folder."""
+    folder.joinpath("gallery").mkdir(parents=True, exist_ok=True)
+    sys.path.insert(0, str(EXAMPLES))
+    try:
+        with chdir(folder):
+            exec(compile(block, "GALLERY.md", "exec"), {"__name__": "gallery"})
+        from matplotlib import pyplot
+
+        pyplot.close("all")
+    finally:
+        sys.path.remove(str(EXAMPLES))
+
+
+def main() -> int:
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else EXAMPLES
+    for block in blocks():
+        run(block, folder)
+        print(*pictures(block))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
