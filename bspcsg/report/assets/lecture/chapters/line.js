@@ -101,7 +101,7 @@ function searchFigure(figure) {
   }, "eye");
   const buttons = figure.querySelector(".buttons");
   const byPlace = (order) => order.sort((i, j) => state.points[i] - state.points[j]);
-  button(buttons, "halves", () => {
+  button(buttons, "middle first", () => {
     const sorted = byPlace(state.order.slice());
     const halving = (list) => (list.length ? [list[list.length >> 1], ...halving(list.slice(0, list.length >> 1)), ...halving(list.slice((list.length >> 1) + 1))] : []);
     state.order = halving(sorted);
