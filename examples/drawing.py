@@ -99,7 +99,7 @@ def _place(node: Any, depth: int, state: dict[str, Any]) -> float:
 
 def region(axes: Axes, part: bsp.Region, colour: str = "#57b894", cuts: bool = True) -> None:
     """Draw a region with the convex cells that its tree cuts it into."""
-    cells = part.cells()
+    cells = part.tree.cells()
     outlines = []
     for cell in np.unique(cells.owner):
         walls = [cells[int(k)] for k in np.flatnonzero(cells.owner == cell)]

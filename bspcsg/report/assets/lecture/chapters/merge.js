@@ -178,6 +178,9 @@ function mergeFigure(figure) {
     }
     plane.polygon(shapes.a.corners, { class: "shape a" });
     plane.polygon(shapes.b.corners, { class: "shape b" });
+    for (const [name, { corners }] of Object.entries(shapes)) {
+      corners.forEach((corner, i) => plane.badge(between(corner, corners[(i + 1) % corners.length]), `${name}${i + 1}`, { class: `of-${name}` }));
+    }
     const place = step ? places[step - 1] : null;
     if (place && place.length && !done) plane.region(place, { class: "focus" });
     if (done) result.inner.forEach((number) => plane.span(result.nodes[number].span, { class: "cut plain" }));
