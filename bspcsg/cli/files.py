@@ -279,14 +279,14 @@ class Target:
 
     @property
     def names_objects(self) -> bool:
-        """Whether files of this form tell objects apart by names."""
+        """True if files of this form tell objects apart by names."""
         from ..formats.files import form_of
 
         return form_of(f"mesh{self.suffix}", self.text).called is not None
 
     @property
     def is_single(self) -> bool:
-        """Whether files of this form hold single precision only."""
+        """True if files of this form hold single precision only."""
         from ..formats.files import form_of
 
         return form_of(f"mesh{self.suffix}", self.text).is_single

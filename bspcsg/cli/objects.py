@@ -18,7 +18,7 @@ _AND, _FEW = " + ", 3
 
 
 class ObjectNames:
-    """What the triangles of input meshes belong to."""
+    """The objects that the triangles of input meshes belong to."""
 
     def __init__(self) -> None:
         #: By the identity of a mesh: names, and the first triangle behind each object.

@@ -1,10 +1,9 @@
 """`FlatSet`: a set of points of the line or of the plane, which has a partition tree."""
 
-from fractions import Fraction
 from typing import Any, Self
 
 from ..._core import ObjectTree as CoreTree
-from ..._types import FloatArray, Scalar, SetOp, SideArray
+from ..._types import FloatArray, Scalar, SetOp
 from ...errors import core_errors
 from .objects import ObjectTree, merge
 from .tree_set import TreeSet
@@ -17,13 +16,12 @@ _SMALL = 64
 class FlatSet(TreeSet):
     """A set of points of the line or of the plane; an immutable value that has a tree."""
 
-    __slots__ = ("_built_size", "_object")
+    __slots__ = ("_built_size",)
 
     _built_size: int
-    _object: ObjectTree
 
     def _set(self, tree: CoreTree) -> None:
-        self._object = ObjectTree._of(tree)
+        self._tree = tree
         self._built_size = 0
 
     @classmethod
@@ -35,11 +33,7 @@ class FlatSet(TreeSet):
     @property
     def tree(self) -> ObjectTree:
         """The partition tree, which shows its nodes, cells and pieces of boundary."""
-        return self._object
-
-    @property
-    def _tree(self) -> CoreTree:
-        return self._object._tree
+        return ObjectTree._of(self._tree)
 
     # Set operations
 
@@ -81,58 +75,12 @@ class FlatSet(TreeSet):
 
     # Questions
 
-    def classify(self, points: Any) -> SideArray:
-        """Say of each point whether it is inside, exactly (see `ObjectTree.classify`).
-
-        Returns
-        -------
-        (k,) int8
-            +1 inside, 0 on the boundary, -1 outside.
-        """
-        return self.tree.classify(points)
-
     def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
         """Return the boundary point nearest to each point, and how far it is.
 
         See `ObjectTree.project`.
         """
         return self.tree.project(points)
-
-    @property
-    def measure(self) -> Fraction:
-        """Length or area in model units, exactly.
-
-        Raises
-        ------
-        UnboundedError
-            If the set reaches to infinity.
-        """
-        return self.tree.measure
-
-    @property
-    def dimension(self) -> int:
-        """1 or 2."""
-        return self.tree.dimension
-
-    @property
-    def pitch(self) -> int:
-        """Exponent of the lattice step: it is ``10**pitch`` model units."""
-        return self.tree.pitch
-
-    @property
-    def is_empty(self) -> bool:
-        """True if nothing is inside."""
-        return self.tree.is_empty
-
-    @property
-    def is_full(self) -> bool:
-        """True if everything is inside."""
-        return self.tree.is_full
-
-    @property
-    def is_bounded(self) -> bool:
-        """True if the set fits into some box."""
-        return self.tree.is_bounded
 
     # As a value
 

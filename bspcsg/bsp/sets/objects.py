@@ -26,7 +26,7 @@ from .tree_set import TreeSet
 Set = TypeVar("Set", bound=TreeSet)
 
 
-class ObjectTree(TreeQueries, TreeSet):
+class ObjectTree(TreeQueries):
     """A set of points as a partition tree; an immutable value.
 
     ``==``, ``<=``, ``<``, ``in`` and the like are those of Python's sets, for the points: two trees

@@ -1,54 +1,22 @@
 """What can be asked of a set in any dimension."""
 
 from collections.abc import Callable
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from ..._core import ObjectTree as CoreTree
-from ..._types import FloatArray, SideArray
+from ..._types import FloatArray
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
 from .nearest import nearest_on_polygons, nearest_on_segments
 from .pieces import NodeTable, PieceArrays, Pieces
 from .rows import point_rows
+from .tree_set import TreeSet
 
 
-class TreeQueries:
+class TreeQueries(TreeSet):
     """A partition tree with in and out leaves, as its questions see it."""
 
-    __slots__ = ("_tree",)
-
-    _tree: CoreTree
-
-    def classify(self, points: Any) -> SideArray:
-        """Say of each point whether it is inside, exactly.
-
-        Parameters
-        ----------
-        points : (k, d) array_like of float
-            In model units, snapped to the lattice; on the line (k,) will do.
-
-        Returns
-        -------
-        (k,) int8
-            +1 inside, 0 on the boundary, -1 outside.
-        """
-        array = point_rows(points, self.dimension)
-        with core_errors():
-            return self._tree.classify(array)
-
-    @property
-    def measure(self) -> Fraction:
-        """Length, area or volume in model units, exactly.
-
-        Raises
-        ------
-        UnboundedError
-            If the set reaches to infinity.
-        """
-        with core_errors():
-            return Fraction(*self._tree.measure())
+    __slots__ = ()
 
     def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
         """Return the boundary point nearest to each point, and how far it is.
@@ -117,28 +85,3 @@ class TreeQueries:
     def stats(self) -> dict[str, int]:
         """Return the numbers of inner nodes, leaves and coplanar fragments, and the depth."""
         return self._tree.stats()
-
-    @property
-    def dimension(self) -> int:
-        """1, 2 or 3."""
-        return self._tree.dimension
-
-    @property
-    def pitch(self) -> int:
-        """Exponent of the lattice step: it is ``10**pitch`` model units."""
-        return self._tree.pitch
-
-    @property
-    def is_empty(self) -> bool:
-        """True if nothing is inside."""
-        return self._tree.is_empty
-
-    @property
-    def is_full(self) -> bool:
-        """True if everything is inside."""
-        return self._tree.is_full
-
-    @property
-    def is_bounded(self) -> bool:
-        """True if the set fits into some box."""
-        return self._tree.is_bounded

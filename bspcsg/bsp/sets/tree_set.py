@@ -1,10 +1,14 @@
 """`TreeSet`: a set of points that is a partition tree, or has one."""
 
 from abc import abstractmethod
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Self
 
-from ..._types import Scalar, SetOp
+from ..._core import ObjectTree as CoreTree
+from ..._types import Scalar, SetOp, SideArray
+from ...errors import core_errors
 from ...solid.point_set import PointSet
+from .rows import point_rows
 
 if TYPE_CHECKING:
     from .objects import ObjectTree
@@ -16,17 +20,14 @@ class TreeSet(PointSet):
     All such sets of one dimension compare and combine; a result is of the first operand's kind.
     """
 
-    __slots__ = ()
+    __slots__ = ("_tree",)
+
+    _tree: CoreTree
 
     @property
     @abstractmethod
     def tree(self) -> "ObjectTree":
         """The partition tree, which shows its nodes, cells and pieces of boundary."""
-
-    @property
-    @abstractmethod
-    def dimension(self) -> int:
-        """1, 2 or 3."""
 
     @abstractmethod
     def _merged(self, other: "TreeSet", op: SetOp) -> Self:
@@ -66,3 +67,59 @@ class TreeSet(PointSet):
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         """Return the set itself, which never changes."""
         return self
+
+    # Questions
+
+    def classify(self, points: Any) -> SideArray:
+        """Say of each point whether it is inside, exactly.
+
+        Parameters
+        ----------
+        points : (k, d) array_like of float
+            In model units, snapped to the lattice; on the line (k,) will do.
+
+        Returns
+        -------
+        (k,) int8
+            +1 inside, 0 on the boundary, -1 outside.
+        """
+        array = point_rows(points, self.dimension)
+        with core_errors():
+            return self._tree.classify(array)
+
+    @property
+    def measure(self) -> Fraction:
+        """Length, area or volume in model units, exactly.
+
+        Raises
+        ------
+        UnboundedError
+            If the set reaches to infinity.
+        """
+        with core_errors():
+            return Fraction(*self._tree.measure())
+
+    @property
+    def dimension(self) -> int:
+        """1, 2 or 3."""
+        return self._tree.dimension
+
+    @property
+    def pitch(self) -> int:
+        """Exponent of the lattice step: it is ``10**pitch`` model units."""
+        return self._tree.pitch
+
+    @property
+    def is_empty(self) -> bool:
+        """True if nothing is inside."""
+        return self._tree.is_empty
+
+    @property
+    def is_full(self) -> bool:
+        """True if everything is inside."""
+        return self._tree.is_full
+
+    @property
+    def is_bounded(self) -> bool:
+        """True if the set fits into some box."""
+        return self._tree.is_bounded
