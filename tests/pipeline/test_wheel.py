@@ -126,7 +126,7 @@ def test_all_is_what_users_want() -> None:
     """All extras but those that measure, document and test."""
     extras = PROJECT["optional-dependencies"]
     named = re.findall(r"[\w-]+", extras["all"][0].partition("[")[2])
-    assert set(named) == set(extras) - {"all", "bench", "docs", "test"}
+    assert set(named) == set(extras) - {"all", "bench", "docs", "examples", "test"}
 
 
 def test_what_a_plain_install_brings_is_what_doctor_asks_for() -> None:

@@ -47,7 +47,7 @@ def lecture(target: Path, **given: Any) -> int:
     refuse_folder(target)
     page = lecture_page().encode("utf-8")
     write_file(target, [page])
-    line = f"{shown(target)}  {len(CHAPTERS)} chapters  {len(page) / 1e6:.1f} MB"
+    line = f"{shown(target)}  {len(CHAPTERS)} chapters"
     document = {"output": str(target), "chapters": len(CHAPTERS), "bytes": len(page)}
     Output.of(given).result(line, document)
     return output.DONE
