@@ -275,6 +275,13 @@ class TestVisibility:
         wall = [[[1, -1], [1, 1]]]
         assert bsp.visibility_polygon(wall, (0, 0), (-2, -2), (2, 2)).area == 13
 
+    def test_large_scenes_choose_a_coarser_lattice(self) -> None:
+        scene, eye = bsp.analysis.disjoint_segments(8), np.array([8000000.5, 8000000.5])
+        region = bsp.visibility_polygon(scene, eye, (0, 0), (2**24, 2**24))
+        points = np.random.default_rng(1).uniform(0, 2**24, (100, 2)).round(1)
+        hidden = bsp.RayCaster(scene).occluded(eye, points)
+        assert (region.classify(points) == np.where(hidden, -1, 1)).all()
+
     def test_an_eye_on_a_segment_is_refused(self) -> None:
         with pytest.raises(InvalidParameterError, match="lies on"):
             bsp.visibility_polygon([[[-1, 0], [1, 0]]], (0, 0), (-2, -2), (2, 2))

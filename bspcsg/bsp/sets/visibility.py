@@ -17,6 +17,7 @@ from ...geometry.hyperplane import exact_number
 from ...shapes.primitives import box as box_solid
 from ...shapes.primitives import half_space
 from ...solid.solid import Solid
+from ..trees.facets import chosen_pitch
 from .objects import ObjectTree
 from .region import Region
 
@@ -32,7 +33,8 @@ def visibility_polygon(
     Parameters
     ----------
     segments : (n, 2, 2) array_like of float
-        They may cross, touch and overlap. One that points at the eye hides nothing.
+        They may cross, touch and overlap. One that points at the eye hides nothing. All points are
+        snapped to the lattice that suits them.
     eye : (2,) array_like of float
         Anywhere but on a segment.
     low, high : (2,) array_like of float
@@ -50,6 +52,10 @@ def visibility_polygon(
     13.0
     """
     walls, place = _exact(segments, eye, 2)
+    points = [*walls, [place, list(map(exact_number, low)), list(map(exact_number, high))]]
+    pitch = chosen_pitch(None, np.array([[float(x) for x in p] for ps in points for p in ps]))
+    place = _snapped(place, pitch)
+    walls = [[_snapped(corner, pitch) for corner in wall] for wall in walls]
     ends = [[float(low[0]), float(low[1])], [float(high[0]), float(high[1])]]
     (x, y), (u, v) = ends
     shadows = []
@@ -61,10 +67,11 @@ def visibility_polygon(
             continue
         first, last = (a, b) if turn > 0 else (b, a)
         # Left of the way to the first end, right of that to the last, and beyond the wall.
-        halves = [_left_of(place, first), _left_of(last, place), _left_of(last, first)]
+        ways = (place, first), (last, place), (last, first)
+        halves = [_left_of(start, end, pitch) for start, end in ways]
         shadow = halves[0] & halves[1] & halves[2]
         shadows.append(Region._of(shadow._tree))
-    return Region([(x, y), (u, y), (u, v), (x, v)]) - _united(shadows)
+    return Region([(x, y), (u, y), (u, v), (x, v)], pitch=pitch) - _united(shadows)
 
 
 def visibility_volume(
@@ -135,10 +142,16 @@ def _between(place: _Point, a: _Point, b: _Point) -> bool:
     return all(min(p, q) <= x <= max(p, q) for x, p, q in zip(place, a, b, strict=True))
 
 
-def _left_of(start: _Point, end: _Point) -> ObjectTree:
+def _snapped(point: _Point, pitch: int) -> _Point:
+    """Return the nearest point of the lattice, in model units."""
+    step = Fraction(10) ** pitch
+    return [round(x / step) * step for x in point]
+
+
+def _left_of(start: _Point, end: _Point, pitch: int) -> ObjectTree:
     """Return all points to the left of the way from one point to another."""
     normal = [end[1] - start[1], start[0] - end[0]]
-    return ObjectTree.half_space(normal, _offset(normal, start))
+    return ObjectTree.half_space(normal, _offset(normal, start), pitch=pitch)
 
 
 def _normal(a: _Point, b: _Point, c: _Point) -> Any:
