@@ -1,7 +1,8 @@
 """Writes what can be generated of the manual: options of the verbs, the API, the shown examples.
 
 Pages under docs/ are written by hand but for docs/api, and what stands between two marks: options
-on the pages of verbs, scripts on that of parts side by side. With --examples, the commands on the
+on the pages of verbs, scripts on that of parts side by side, what other engines answered on that
+of trust. With --examples, the commands on the
 pages are run, what they print is written below them and the pictures they make beside the page;
 look at the difference before you commit it.
 """
@@ -13,6 +14,7 @@ from pathlib import Path
 from manual_api import api_pages
 from manual_options import with_options
 from manual_side import with_parts
+from peers import with_answers
 from support.documents import DOCS, page_files, rewritten
 
 #: Pages that grow beyond this are split by hand, in bytes.
@@ -26,6 +28,8 @@ def generated() -> dict[Path, str]:
         pages[DOCS / "api" / f"{name}.md"] = text
     side = DOCS / "side_by_side.md"
     pages[side] = with_parts(side.read_text())
+    trust = DOCS / "trust.md"
+    pages[trust] = with_answers(trust.read_text())
     return pages
 
 
