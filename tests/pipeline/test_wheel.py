@@ -1,5 +1,6 @@
 """What packages hold, and that a fault in one is named; wheels are built by scripts/wheel."""
 
+import json
 import re
 import subprocess
 import sys
@@ -141,3 +142,9 @@ def test_the_smoke_test_passes(tmp_path: Path) -> None:
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("ok: ") == 5
+
+
+def test_the_recorded_wheels_are_small_and_quick() -> None:
+    wheels = json.loads((ROOT / "scripts/records/wheel.json").read_text())["wheels"]
+    assert all(wheel["megabytes"] < 8 for wheel in wheels.values())
+    assert wheels["manylinux"]["seconds"] < 60
