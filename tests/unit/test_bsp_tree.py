@@ -315,6 +315,7 @@ class TestDumps:
         [
             {"format": "other"},
             {"version": 3},
+            {"version": 4},
             {"cuts": []},
             {"cuts": [[-1, 0], [-1, 1], [-1, 1], [-1, 1]]},
             {"cuts": [[-1, 9], [-1, 1], [-1, 1]]},

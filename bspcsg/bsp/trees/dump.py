@@ -79,6 +79,7 @@ def _checksum(content: dict[str, Any]) -> int:
 
 def _rebuilt(content: dict[str, Any]) -> Parts:
     lenience = content["non_planar"] == "triangulate", content["degenerate"] == "drop"
+    own = content["own"] if content["version"] == _VERSION else ()
     with core_errors():
         core = FragmentTree.rebuild(
             _whole(content["corners"], int(content["dimension"])),
@@ -86,7 +87,7 @@ def _rebuilt(content: dict[str, Any]) -> Parts:
             int(content["pitch"]),
             _whole(content["cuts"], 2),
             lenience,
-            [[int(entry) for entry in row] for row in content.get("own", ())],
+            [[int(entry) for entry in row] for row in own],
         )
     return core, lenience, float(content["margin"])
 
