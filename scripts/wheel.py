@@ -105,14 +105,14 @@ class Trial:
     seconds, processor_seconds : float
     packages : int
         How many packages were installed.
-    megabytes : float
+    installed_megabytes : float
         What the environment holds then.
     """
 
     seconds: float
     processor_seconds: float
     packages: int
-    megabytes: float
+    installed_megabytes: float
 
 
 def tried(wheel: Path, tree: Path) -> Trial:
@@ -193,8 +193,8 @@ def examined(kind: str, path: Path, tree: Path) -> dict[str, str | float]:
         return figures
     trial = tried(path, tree)
     print(
-        f"  {trial.packages} packages of {trial.megabytes:.0f} MB; first checked boolean after"
-        f" {trial.seconds:.1f} s, {trial.processor_seconds:.1f} s of them on a processor"
+        f"  {trial.packages} packages of {trial.installed_megabytes:.0f} MB; first checked boolean"
+        f" after {trial.seconds:.1f} s, {trial.processor_seconds:.1f} s of them on a processor"
         f" (at most {PATIENCE} s)",
         flush=True,
     )
