@@ -5,6 +5,7 @@ import json
 import re
 import tomllib
 from importlib import import_module
+from inspect import isfunction, ismodule
 from pathlib import Path
 
 import pytest
@@ -86,11 +87,16 @@ def test_every_public_name_is_in_the_api() -> None:
     top = import_module("bspcsg")
     for package in ("bspcsg", "bspcsg.bsp", "bspcsg.csg"):
         module = import_module(package)
-        public = set(module.__all__) - values
+        public = {name for name in module.__all__ if not ismodule(getattr(module, name))} - values
         # What the top has too stands there.
         at_top = {n for n in public & set(top.__all__) if getattr(module, n) is getattr(top, n)}
         assert {f"bspcsg.{name}" for name in at_top} <= documented
         assert {f"{package}.{name}" for name in public - at_top} <= documented
+    analysis = import_module("bspcsg.bsp").analysis
+    own = {name for name, f in vars(analysis).items() if isfunction(f) and name[0] != "_"}
+    own = {name for name in own if getattr(analysis, name).__module__ == analysis.__name__}
+    assert {"visit_bound", "growth_table"} < own
+    assert {f"bspcsg.bsp.analysis.{name}" for name in own} <= documented
 
 
 @pytest.mark.parametrize("path", ALL, ids=name)
