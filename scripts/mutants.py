@@ -53,7 +53,7 @@ MUTANTS = [
     ),
     Mutant(
         "even-odd is nonzero",
-        "merge/kernels/leaf.rs",
+        "merge/rule.rs",
         "Self::EvenOdd => w % 2 != 0",
         "Self::EvenOdd => w != 0",
         ("voxels",),
@@ -81,7 +81,7 @@ MUTANTS = [
     ),
     Mutant(
         "coplanar faces that face each other add up",
-        "merge/kernels/overlay.rs",
+        "merge/kernels/trees/overlay.rs",
         "both.weight += if same { new.weight } else { -new.weight };",
         "both.weight += new.weight;",
         ("voxels",),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use bspcsg::arith::Int;
 use bspcsg::merge::expression::{Expression, Term};
-use bspcsg::merge::kernels::leaf::Rule;
+use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::half_space::half_space;

@@ -5,7 +5,7 @@ mod support;
 use std::sync::Arc;
 
 use bspcsg::arith::Int;
-use bspcsg::merge::kernels::leaf::Rule;
+use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::half_space::half_space;

@@ -12,7 +12,7 @@ use bspcsg::extract::rounding::round;
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::evaluate::{evaluate, explained, normalize};
 use bspcsg::merge::expression::{Expression, Term};
-use bspcsg::merge::kernels::leaf::Rule;
+use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::half_space::half_space;

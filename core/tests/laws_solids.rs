@@ -10,7 +10,7 @@ use bspcsg::error::ErrorKind;
 use bspcsg::geometry::plane::{Lattice, Plane};
 use bspcsg::merge::descent::choice::LEAF;
 use bspcsg::merge::expression::Term;
-use bspcsg::merge::kernels::leaf::Rule;
+use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::half_space::half_space;

@@ -1,11 +1,12 @@
 //! The leaf kernel, which labels pieces of boundary, against the merging of whole trees.
 //!
-//! Two ways to one set: `merge::leaf` pushes each operand's fragments through the other operands'
+//! Two ways to one set: `merge::kernels::trees` pushes each operand's fragments through the other operands'
 //! local trees; `merge::merge` splits one tree by the other's cuts and reads the boundary off the
 //! result. They share predicates and polygons, and nothing else.
 
 mod support;
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -16,8 +17,11 @@ use bspcsg::geometry::polygon::Polygon;
 use bspcsg::geometry::side::Half;
 use bspcsg::geometry::vertex::Vertex;
 use bspcsg::merge::expression::{Expression, Term};
-use bspcsg::merge::kernels::leaf::{self, LeafTree, Rule};
+use bspcsg::merge::kernels::general::GeneralPosition;
+use bspcsg::merge::kernels::problem::{CellProblem, Kernel, Listed};
+use bspcsg::merge::kernels::trees::{LeafTree, LocalTrees};
 use bspcsg::merge::lists::list::{List, Sources};
+use bspcsg::merge::rule::Rule;
 use bspcsg::merge::{merge, SetOp};
 use bspcsg::mesh::source::Source;
 use bspcsg::query::classify::Location;
@@ -248,17 +252,22 @@ impl Pair {
     }
 
     fn compare(&self, op: SetOp) -> bool {
-        let lists: Vec<(u32, List)> = (0..).zip(self.lists.iter().cloned()).collect();
-        let rule = Rule::Positive;
-        let expression = expression(op);
-        let named: Vec<(u32, &List)> = lists.iter().map(|(k, list)| (*k, list)).collect();
-        let general =
-            leaf::in_general_position(&self.cell, &expression, rule, &named, &self.sources);
-        let node = leaf::by_trees(&self.cell, &expression, rule, lists, &self.sources, |_| ());
-        self.check(op, "trees", node);
-        match general.filter(|_| self.is_simple()) {
-            Some(node) => {
-                self.check(op, "general position", node);
+        let listed = |(number, list)| {
+            let list = Cow::Borrowed(list);
+            Listed { number, list }
+        };
+        let problem = CellProblem {
+            cell: &self.cell,
+            expression: &expression(op),
+            rule: Rule::Positive,
+            operands: (0..).zip(&self.lists).map(listed).collect(),
+            sources: &self.sources,
+        };
+        let answer = LocalTrees.solve(&problem).expect("trees take every cell");
+        self.check(op, "trees", answer.node);
+        match GeneralPosition.solve(&problem).filter(|_| self.is_simple()) {
+            Some(answer) => {
+                self.check(op, "general position", answer.node);
                 true
             }
             None => false,

@@ -6,7 +6,7 @@ mod support;
 use bspcsg::error::ErrorKind;
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::expression::Term;
-use bspcsg::merge::kernels::leaf::Rule;
+use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::query::measure;
 use bspcsg::tree::solid::Solid;

@@ -12,6 +12,7 @@ use super::edge::{LatticeEdge, Ring};
 use super::line::{Line, PlaneResidues};
 use super::plane::{Lattice, Plane};
 use super::vertex::Vertex;
+use crate::interrupt::poll;
 
 /// What an edge lies on, beside the supporting plane.
 #[derive(Clone, Debug)]
@@ -373,6 +374,19 @@ impl Polygon {
             support: Arc::new(self.support.flipped()),
             corners,
         }
+    }
+
+    /// Whether an edge of one polygon has the other entirely beyond it; both lie in one plane.
+    pub fn lies_beside(&self, other: &Self) -> bool {
+        poll();
+        self.has_beyond_an_edge(other) || other.has_beyond_an_edge(self)
+    }
+
+    fn has_beyond_an_edge(&self, other: &Self) -> bool {
+        self.corners.iter().any(|corner| {
+            let plane = corner.edge.plane(&self.support);
+            other.corners.iter().all(|c| c.at.side_of(&plane) >= 0)
+        })
     }
 
     /// A box of doubles around the polygon, widened by the rounding of its corners.

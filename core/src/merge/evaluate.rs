@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::descent::descend::{Counters, Descent};
 use super::expression::{Expression, Term};
-use super::kernels::leaf::Rule;
 use super::lists::list::Sources;
+use super::rule::Rule;
 use super::simple::{is_simple, simple_shells};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grid::Pitch;

@@ -9,6 +9,7 @@ pub mod kernels;
 pub mod lists;
 pub mod op;
 pub mod pairs;
+pub mod rule;
 pub mod simple;
 
 pub use generic::case::SplitCase;

@@ -8,7 +8,7 @@ use super::errors::{blamed, to_python};
 use super::in_use::InUse;
 use super::run::{run, SMALL};
 use crate::error::{Error, ErrorKind, Result};
-use crate::merge::kernels::leaf::Rule;
+use crate::merge::rule::Rule;
 use crate::mesh::grid::Pitch;
 use crate::query::ray::answer::{Hit, Kind};
 use crate::query::ray::batch::{Inside, Rays};

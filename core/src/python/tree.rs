@@ -23,7 +23,7 @@ use crate::interrupt::poll;
 use crate::merge::descent::descend::Counters;
 use crate::merge::evaluate::{evaluate, explained, normalize, settled};
 use crate::merge::expression::{Expression, Term};
-use crate::merge::kernels::leaf::Rule;
+use crate::merge::rule::Rule;
 use crate::mesh::finding::Finding;
 use crate::mesh::grid::{snap_point, Pitch};
 use crate::mesh::half_space::{bounding_plane, half_space};

@@ -5,7 +5,7 @@ use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
 use crate::interrupt::poll;
-use crate::merge::kernels::leaf::LeafTree;
+use crate::merge::kernels::trees::LeafTree;
 use crate::merge::lists::list::{List, Sources};
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;

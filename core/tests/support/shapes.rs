@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use bspcsg::geometry::plane::{Lattice, Plane};
-use bspcsg::merge::kernels::leaf::Rule;
+use bspcsg::merge::rule::Rule;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::import::import;
 use bspcsg::mesh::source::Source;

@@ -4,7 +4,7 @@ use bspcsg::extract::boundary::collect::has_no_boundary;
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::evaluate::{evaluate, normalize};
 use bspcsg::merge::expression::{Expression, Term};
-use bspcsg::merge::kernels::leaf::Rule;
+use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::query::classify::{classify, Location};
 use bspcsg::tree::solid::Solid;

@@ -2,7 +2,7 @@
 
 use bspcsg::error::ErrorKind;
 use bspcsg::extract::rounding::round;
-use bspcsg::merge::kernels::leaf::Rule;
+use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::store::snapshot::Snapshot;
 use bspcsg::tree::solid::Solid;

@@ -1,7 +1,7 @@
 //! Scenes, evaluated.
 
 use arbitrary::{Arbitrary, Unstructured};
-use bspcsg::merge::kernels::leaf::Rule;
+use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::query::measure;
 use bspcsg::tree::solid::Solid;

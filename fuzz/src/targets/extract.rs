@@ -2,7 +2,7 @@
 
 use arbitrary::{Arbitrary, Unstructured};
 use bspcsg::geometry::plane::Lattice;
-use bspcsg::merge::kernels::leaf::Rule;
+use bspcsg::merge::rule::Rule;
 use bspcsg::store::snapshot::Motion;
 use bspcsg::store::snapshot::Snapshot;
 

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use arbitrary::Unstructured;
 use bspcsg::error::ErrorKind;
 use bspcsg::geometry::plane::Lattice;
-use bspcsg::merge::kernels::leaf::Rule;
+use bspcsg::merge::rule::Rule;
 use bspcsg::mesh::import as importing;
 use bspcsg::query::classify::Location;
 use bspcsg::tree::solid::Solid;

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use arbitrary::{Arbitrary, Unstructured};
 use bspcsg::error::ErrorKind;
 use bspcsg::geometry::plane::Lattice;
-use bspcsg::merge::kernels::leaf::Rule;
+use bspcsg::merge::rule::Rule;
 use bspcsg::query::region::hyperplane::plane;
 use bspcsg::query::region::section as sections;
 

@@ -6,7 +6,7 @@ use super::rounds::{simplify, Simplified};
 use crate::error::Result;
 use crate::extract::rounding::round::mesh;
 use crate::merge::evaluate::normalize;
-use crate::merge::kernels::leaf::Rule;
+use crate::merge::rule::Rule;
 use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::grid::Pitch;
 use crate::mesh::import::import;

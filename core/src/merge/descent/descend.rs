@@ -4,7 +4,6 @@
 //! Naylor, Amanatides, Thibault 1990 (merging: a leaf decides, a common cut is descended). The
 //! page `docs/design/descent.md` tells the whole way.
 
-use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::Arc;
 
@@ -17,8 +16,12 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
 use crate::interrupt::{carried, poll};
 use crate::merge::expression::{Expression, Parted, Residual};
-use crate::merge::kernels::leaf::{self, Rule};
-use crate::merge::lists::list::{List, Sources};
+use crate::merge::kernels::general::GeneralPosition;
+use crate::merge::kernels::orthogonal::Orthogonal;
+use crate::merge::kernels::problem::{CellProblem, Kernel, Listed};
+use crate::merge::kernels::ALL;
+use crate::merge::lists::list::Sources;
+use crate::merge::rule::Rule;
 use crate::mesh::tasks::{both, in_pool};
 use crate::tree::node::Branch;
 
@@ -212,10 +215,13 @@ impl<'a> Descent<'a> {
         let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
         let small = total <= LEAF || stuck && total <= STUCK;
         let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
-            return Ok(self.leaf(cell, &expression, states, total));
+            let solved = self.solved(cell, &expression, &states, total, &ALL);
+            return solved.ok_or_else(|| Error::internal("a small cell that no kernel takes"));
         };
+        let flat = || states.iter().all(|s| s.1.is_orthogonal(self.sources));
         if total <= (ORTHOGONAL * states.len()).min(CROWD)
-            && let Some(branch) = self.among_orthogonal(cell, &expression, &states, total)
+            && flat()
+            && let Some(branch) = self.solved(cell, &expression, &states, total, &[&Orthogonal])
         {
             return Ok(branch);
         }
@@ -227,7 +233,8 @@ impl<'a> Descent<'a> {
         // No level of bins suited these faces, so halving will not separate them either.
         let long = listed && opening >= MANY;
         if long || listed && stuck || round.suits_general_position(&cell, &states, total) {
-            if let Some(branch) = self.in_general_position(cell, &expression, &states, total) {
+            let kernel = &[&GeneralPosition as &dyn Kernel];
+            if let Some(branch) = self.solved(cell, &expression, &states, total, kernel) {
                 return Ok(branch);
             }
             round.refused(total);
@@ -349,56 +356,36 @@ impl<'a> Descent<'a> {
     }
 
     /// All operands' elements as lists of the cell, if they can be.
-    fn lists_in<'s>(&self, cell: &Cell, states: &'s States) -> Option<Vec<(u32, Cow<'s, List>)>> {
-        let list = |(k, state): &'s (u32, State)| Some((*k, state.list_in(cell, self.sources)?));
-        states.iter().map(list).collect()
+    fn listed<'s>(&self, cell: &Cell, states: &'s States) -> Option<Vec<Listed<'s>>> {
+        let listed = |(number, state): &'s (u32, State)| {
+            let (number, list) = (*number, state.list_in(cell, self.sources)?);
+            Some(Listed { number, list })
+        };
+        states.iter().map(listed).collect()
     }
 
-    /// The result in a cell of more elements, if nothing there is special.
-    fn in_general_position(
+    /// What the first of some kernels that takes the cell leaves there; `None` if none does, or an
+    /// operand's elements cannot be listed.
+    fn solved(
         &self,
         cell: Cell,
         expression: &Expression,
         states: &States,
         total: usize,
+        kernels: &[&dyn Kernel],
     ) -> Option<Branch> {
-        let lists = self.lists_in(&cell, states)?;
-        let lists: Vec<(u32, &List)> = lists.iter().map(|(k, list)| (*k, &**list)).collect();
-        let node = leaf::in_general_position(&cell, expression, self.rule, &lists, self.sources)?;
+        let problem = CellProblem {
+            cell: &cell,
+            expression,
+            rule: self.rule,
+            operands: self.listed(&cell, states)?,
+            sources: self.sources,
+        };
+        let solution = problem.solve_by(kernels)?;
         self.count_leaf(total);
-        Some(Branch::of_node(cell, node))
-    }
-
-    /// The result in a cell of which all faces are perpendicular to axes.
-    fn among_orthogonal(
-        &self,
-        cell: Cell,
-        expression: &Expression,
-        states: &States,
-        total: usize,
-    ) -> Option<Branch> {
-        if !states.iter().all(|s| s.1.is_orthogonal(self.sources)) {
-            return None;
+        for operand in solution.overlapping {
+            self.note_overlap(operand);
         }
-        let lists = self.lists_in(&cell, states)?;
-        let lists: Vec<(u32, &List)> = lists.iter().map(|(k, list)| (*k, &**list)).collect();
-        let node = leaf::among_orthogonal(&cell, expression, &lists, self.sources)?;
-        self.count_leaf(total);
-        Some(Branch::of_node(cell, node))
-    }
-
-    fn leaf(&self, cell: Cell, expression: &Expression, states: States, total: usize) -> Branch {
-        self.count_leaf(total);
-        let lists = states
-            .into_iter()
-            .filter_map(|(k, s)| match s {
-                State::List(list) => Some((k, list)),
-                State::Constant(_) | State::Tree(_) | State::Bins(_) => None,
-            })
-            .collect();
-        let node = leaf::evaluate(&cell, expression, self.rule, lists, self.sources, |k| {
-            self.note_overlap(k);
-        });
-        Branch::of_node(cell, node)
+        Some(Branch::of_node(cell, solution.node))
     }
 }

@@ -1,10 +1,20 @@
 //! Leaf kernels: what an expression leaves of its operands in a cell that is not halved any more.
+//!
+//! A kernel is a folder with a type that implements [`problem::Kernel`], and a place in [`ALL`].
+//! Which cells are asked about before they are small is decided in `merge/descent/choice.rs`.
 
-pub(super) mod cutting;
-pub(super) mod general;
+pub mod general;
 pub(super) mod kept;
-pub mod leaf;
-pub mod local_tree;
-pub(super) mod orthogonal;
-pub(super) mod overlay;
+pub mod orthogonal;
+pub mod problem;
 pub(super) mod stays;
+pub mod trees;
+
+use problem::Kernel;
+
+/// All kernels in the order in which small cells are offered to them. The last one takes every cell.
+pub const ALL: [&dyn Kernel; 3] = [
+    &orthogonal::Orthogonal,
+    &general::GeneralPosition,
+    &trees::LocalTrees,
+];

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
 use super::descent::choice::LEAF;
-use super::kernels::leaf::LeafTree;
+use super::kernels::trees::LeafTree;
 use super::lists::list::{List, Sources};
 use super::simple::star::is_star_shaped;
 use crate::arith::Int;

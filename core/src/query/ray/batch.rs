@@ -10,7 +10,7 @@ use super::ratio::Ratio;
 use super::scene::Scene;
 use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt::{carried, poll};
-use crate::merge::kernels::leaf::Rule;
+use crate::merge::rule::Rule;
 use crate::mesh::tasks::in_pool;
 
 /// Rays that one thread takes at a time.

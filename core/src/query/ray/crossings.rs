@@ -6,7 +6,7 @@ use super::first::Query;
 use super::line::Ray;
 use super::ratio::Ratio;
 use super::scene::Scene;
-use crate::merge::kernels::leaf::Rule;
+use crate::merge::rule::Rule;
 
 /// A stretch of a ray with constant answer "inside".
 #[derive(Clone, Debug)]

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use super::anchors::Anchor;
+use super::cutting::{contact, cut_up, Contact, Cutter, Cutting};
 use super::points::Points;
 use super::scene::{Element, Place, Scene};
 use super::segment::{Crossed, Crosser};
@@ -13,7 +14,6 @@ use crate::geometry::apart::are_apart;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
-use crate::merge::kernels::cutting::{contact, cut_up, Contact, Cutter, Cutting};
 use crate::merge::pairs::{pairs, shift_of, Boxed};
 
 /// Elements that may meet another one, by number: rarely more than six.

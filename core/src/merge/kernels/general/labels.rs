@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use super::anchors::Spot;
+use super::cutting::{Cutting, Tie};
 use super::fates::{Cut, Fate, Parts};
 use super::known::Known;
 use super::scene::{Element, Place, Scene};
@@ -14,7 +15,6 @@ use crate::geometry::path::{triangle_on_path, Way};
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
-use crate::merge::kernels::cutting::{Cutting, Tie};
 
 impl Scene<'_> {
     /// For each element the labels of the other operands on its pieces.

@@ -1,12 +1,13 @@
-//! The leaf kernel for operands in general position.
+//! The kernel for operands in general position.
 //!
 //! Only faces that truly cross are divided, by each other. Everything else keeps its winding numbers
 //! over the whole cell: they are counted once along a path from the cell's corner, for all faces
 //! that hang together at vertices. Whatever is special — faces in one plane, edges in faces,
-//! contacts, operands that overlap themselves — is left to the local trees of `leaf`.
+//! contacts, operands that overlap themselves — is left to the local trees.
 
 mod anchors;
 mod curves;
+mod cutting;
 mod fates;
 mod keep;
 mod known;
@@ -18,10 +19,10 @@ mod trace;
 
 use smallvec::SmallVec;
 
-use super::kept::Kept;
-use crate::geometry::cell::Cell;
-use crate::merge::expression::Expression;
-use crate::merge::lists::list::{List, Sources};
+use super::kept::{assemble, Kept};
+use super::problem::{CellProblem, Kernel, Solution};
+use crate::merge::rule::Rule;
+use crate::tree::node::Work;
 use scene::Scene;
 
 /// More operands than this do not meet in one small cell, or are left to the local trees.
@@ -33,23 +34,37 @@ type Labels = u64;
 /// The labels of an element's pieces: of one that nothing cuts, or of a few.
 type OnPieces = SmallVec<[Labels; 2]>;
 
-/// What stays of the operands' boundaries in a cell, and the winding number at its corner; `None`
-/// if their position is special.
-pub fn evaluate(
-    cell: &Cell,
-    expression: &Expression,
-    lists: &[(u32, &List)],
-    sources: &Sources,
-) -> Option<(Vec<Kept>, i32)> {
-    let simple = lists.iter().all(|(_, list)| (0..=1).contains(&list.corner));
-    if !simple || lists.len() < 2 || lists.len() > MOST {
+/// Divides only faces that truly cross, and needs no trees.
+///
+/// Refuses cells in which anything is special, and rules other than w > 0.
+#[derive(Debug)]
+pub struct GeneralPosition;
+
+impl Kernel for GeneralPosition {
+    fn solve(&self, problem: &CellProblem) -> Option<Solution> {
+        if problem.rule != Rule::Positive {
+            return None;
+        }
+        let (kept, corner) = kept_and_corner(problem)?;
+        let before = problem.operands.iter().map(|l| l.list.work()).max();
+        let work = before.unwrap_or_default().max(Work::General);
+        Some(assemble(kept, corner, work, problem.cell, problem.sources).into())
+    }
+}
+
+/// What stays of the operands' boundaries, and the value at the cell's corner.
+fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
+    let operands = &problem.operands;
+    let simple = operands.iter().all(|l| (0..=1).contains(&l.list.corner));
+    if !simple || operands.len() < 2 || operands.len() > MOST {
         return None;
     }
-    let scene = Scene::new(cell, lists, sources);
+    let scene = Scene::new(problem.cell, operands, problem.sources);
     let fates = scene.fates()?;
     let labels = scene.labels(&fates)?;
-    let place = |number: u32| lists.partition_point(|l| l.0 < number);
+    let place = |number: u32| operands.partition_point(|l| l.number < number);
     let scratch = &mut Vec::new();
+    let expression = problem.expression;
     let mut value = |bits: Labels| expression.value(|k| bits >> place(k) & 1 == 1, scratch);
     let corner = i32::from(value(scene.at_corner()));
     let kept = scene.keep(fates, &labels, &mut value);

@@ -4,12 +4,13 @@ use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::sync::Arc;
 
+use super::cutting::Face;
 use super::Labels;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
 use crate::interrupt::poll;
-use crate::merge::kernels::cutting::Face;
+use crate::merge::kernels::problem::Listed;
 use crate::merge::lists::list::{List, Record, Sources};
 use crate::merge::pairs::Swept;
 use crate::mesh::source::{Shape, Source};
@@ -64,17 +65,18 @@ pub(super) struct Triangle<'a> {
 }
 
 impl<'a> Scene<'a> {
-    pub(super) fn new(cell: &'a Cell, lists: &[(u32, &'a List)], sources: &'a Sources) -> Self {
+    pub(super) fn new(cell: &'a Cell, operands: &'a [Listed], sources: &'a Sources) -> Self {
         let mut scene = Self {
             cell,
             corner: cell.corner(),
-            corners: lists.iter().map(|l| l.1.corner).collect(),
-            elements: Vec::with_capacity(lists.iter().map(|l| l.1.len()).sum()),
-            ends: Vec::with_capacity(lists.len()),
-            boxes: Vec::with_capacity(lists.len()),
+            corners: operands.iter().map(|l| l.list.corner).collect(),
+            elements: Vec::with_capacity(operands.iter().map(|l| l.list.len()).sum()),
+            ends: Vec::with_capacity(operands.len()),
+            boxes: Vec::with_capacity(operands.len()),
             parts: Vec::new(),
         };
-        for (operand, (_, list)) in lists.iter().enumerate() {
+        for (operand, listed) in operands.iter().enumerate() {
+            let list = &*listed.list;
             let faces = list.records.iter();
             let faces = faces.filter_map(|r| Element::of_record(operand, r, cell, sources));
             scene.elements.extend(faces);

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
+use super::cutting::{Cutter, Face};
 use super::points::Points;
 use crate::geometry::path::determinant;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon, Sides};
 use crate::geometry::vertex::Vertex;
-use crate::merge::kernels::cutting::{Cutter, Face};
 
 /// A directed segment on an element, with the inside of another operand on its left.
 pub(super) struct Segment {

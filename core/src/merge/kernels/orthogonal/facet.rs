@@ -8,8 +8,9 @@ use crate::geometry::cell::Cell;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
 use crate::interrupt::poll;
+use crate::merge::kernels::problem::Listed;
 use crate::merge::kernels::stays::Owner;
-use crate::merge::lists::list::{List, PartRecord, Record, Sources};
+use crate::merge::lists::list::{PartRecord, Record, Sources};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
 
@@ -57,22 +58,18 @@ pub(super) struct Facets<'a> {
 impl<'a> Facets<'a> {
     /// The facets of lists; `None` if an element is not perpendicular to an axis, or has a slanted
     /// edge that is not its face's own.
-    pub(super) fn new(
-        cell: &Cell,
-        lists: &[(u32, &'a List)],
-        sources: &'a Sources,
-    ) -> Option<Self> {
+    pub(super) fn new(cell: &Cell, operands: &'a [Listed], sources: &'a Sources) -> Option<Self> {
         let mut facets = Self {
-            all: Vec::with_capacity(lists.iter().map(|(_, list)| list.len()).sum()),
+            all: Vec::with_capacity(operands.iter().map(|l| l.list.len()).sum()),
             parts: Vec::new(),
         };
-        for (operand, (_, list)) in lists.iter().enumerate() {
-            for record in &list.records {
+        for (operand, listed) in operands.iter().enumerate() {
+            for record in &listed.list.records {
                 poll();
                 let facet = Facet::of_record(operand, record, sources)?;
                 facets.all.extend(Some(facet).filter(|f| f.may_meet(cell)));
             }
-            for part in &list.parts {
+            for part in &listed.list.parts {
                 poll();
                 facets.add_part(operand, part, cell, sources)?;
             }

@@ -9,7 +9,6 @@ use super::pieces::pieces;
 use crate::geometry::cell::Cell;
 use crate::interrupt::poll;
 use crate::merge::kernels::kept::Kept;
-use crate::merge::kernels::overlay::separated;
 use crate::merge::kernels::stays::{kept, Settled, Stays};
 
 /// A cell with all that is known of it.
@@ -95,7 +94,7 @@ impl Scene<'_> {
         }
         let polygon = |i: usize| self.facets.all[i].polygon_in(self.cell);
         match (polygon(a), polygon(b)) {
-            (Some(a), Some(b)) => !separated(&a, &b),
+            (Some(a), Some(b)) => !a.lies_beside(&b),
             _ => false,
         }
     }

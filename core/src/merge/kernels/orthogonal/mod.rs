@@ -1,4 +1,4 @@
-//! The leaf kernel for cells in which every face is perpendicular to an axis.
+//! The kernel for cells in which every face is perpendicular to an axis.
 //!
 //! The planes of the faces make a grid of the cell. An operand is inside in whole regions of it, so
 //! that sets of regions are bits, expressions are evaluated a word at a time, and faces in one plane
@@ -11,10 +11,10 @@ mod keep;
 mod labels;
 mod pieces;
 
-use super::kept::Kept;
-use crate::geometry::cell::Cell;
+use super::kept::{assemble, Kept};
+use super::problem::{CellProblem, Kernel, Listed, Solution};
 use crate::merge::expression::Expression;
-use crate::merge::lists::list::{List, Sources};
+use crate::tree::node::Work;
 use extent::Extent;
 use facet::Facets;
 use grid::Grid;
@@ -23,24 +23,34 @@ use keep::Scene;
 /// Words of all operands' columns, at most: two megabytes, which stay in a cache.
 const MOST: usize = 1 << 18;
 
-/// What stays of the operands' boundaries in a cell, and the winding number at its corner; `None`
-/// if a face is not perpendicular to an axis, an operand overlaps itself, or the grid is too fine.
-pub fn evaluate(
-    cell: &Cell,
-    expression: &Expression,
-    lists: &[(u32, &List)],
-    sources: &Sources,
-) -> Option<(Vec<Kept>, i32)> {
-    let facets = Facets::new(cell, lists, sources)?;
-    let grid = Grid::new(cell, &facets)?;
-    if lists.len() * grid.columns() > MOST {
+/// Works in the grid of the faces' planes.
+///
+/// Refuses cells with a face that is not perpendicular to an axis or an operand that overlaps
+/// itself, and too fine grids.
+#[derive(Debug)]
+pub struct Orthogonal;
+
+impl Kernel for Orthogonal {
+    fn solve(&self, problem: &CellProblem) -> Option<Solution> {
+        let CellProblem { cell, sources, .. } = *problem;
+        let (kept, corner) = kept_and_corner(problem)?;
+        Some(assemble(kept, corner, Work::Trees, cell, sources).into())
+    }
+}
+
+/// What stays of the operands' boundaries, and the value at the cell's corner.
+fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
+    let operands = &problem.operands;
+    let facets = Facets::new(problem.cell, operands, problem.sources)?;
+    let grid = Grid::new(problem.cell, &facets)?;
+    if operands.len() * grid.columns() > MOST {
         return None;
     }
     let extents: Vec<Extent> = facets.all.iter().map(|f| f.extent(&grid)).collect();
-    let fields = fields(&grid, &facets, &extents, lists)?;
-    let value = value(expression, lists, &fields, grid.columns());
+    let fields = fields(&grid, &facets, &extents, operands)?;
+    let value = value(problem.expression, operands, &fields, grid.columns());
     let scene = Scene {
-        cell,
+        cell: problem.cell,
         grid: &grid,
         facets: &facets,
         extents: &extents,
@@ -56,29 +66,29 @@ fn fields(
     grid: &Grid,
     facets: &Facets,
     extents: &[Extent],
-    lists: &[(u32, &List)],
+    operands: &[Listed],
 ) -> Option<Vec<Vec<u64>>> {
     let mut start = 0;
-    let field = |(operand, (_, list)): (usize, &(u32, &List))| {
+    let field = |(operand, listed): (usize, &Listed)| {
         let end = facets.all.partition_point(|f| f.operand <= operand);
         let own = std::mem::replace(&mut start, end)..end;
         let facets = facets.all[own.clone()].iter().zip(&extents[own]);
-        labels::field(grid, facets, list.corner)
+        labels::field(grid, facets, listed.list.corner)
     };
-    lists.iter().enumerate().map(field).collect()
+    operands.iter().enumerate().map(field).collect()
 }
 
 /// Where an expression is true.
 fn value(
     expression: &Expression,
-    lists: &[(u32, &List)],
+    operands: &[Listed],
     fields: &[Vec<u64>],
     columns: usize,
 ) -> Vec<u64> {
-    let last = lists.last().map_or(0, |l| l.0 as usize);
+    let last = operands.last().map_or(0, |l| l.number as usize);
     let mut places = vec![0; last + 1];
-    for (place, (number, _)) in lists.iter().enumerate() {
-        places[*number as usize] = place;
+    for (place, listed) in operands.iter().enumerate() {
+        places[listed.number as usize] = place;
     }
     let scratch = &mut Vec::new();
     let word = |i: usize, scratch: &mut _| {

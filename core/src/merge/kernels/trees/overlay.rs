@@ -57,7 +57,7 @@ fn add(placed: &mut Vec<Fragment>, new: Fragment) -> bool {
         poll();
         let touched = rest
             .iter()
-            .any(|r| !separated(&placed[i].polygon, &r.polygon));
+            .any(|r| !placed[i].polygon.lies_beside(&r.polygon));
         if touched {
             let old = placed.remove(i);
             let (remaining, met) = combine(&old, rest, &mut carved);
@@ -121,19 +121,6 @@ fn part_of(fragment: &Fragment, polygon: Polygon) -> Fragment {
         weight: fragment.weight,
         face: fragment.face,
     }
-}
-
-/// Whether an edge of one polygon has the other entirely beyond it; both lie in one plane.
-pub fn separated(a: &Polygon, b: &Polygon) -> bool {
-    poll();
-    beyond_an_edge(a, b) || beyond_an_edge(b, a)
-}
-
-fn beyond_an_edge(a: &Polygon, b: &Polygon) -> bool {
-    a.corners().iter().any(|corner| {
-        let plane = corner.edge.plane(a.support());
-        b.corners().iter().all(|c| c.at.side_of(&plane) >= 0)
-    })
 }
 
 /// The part of a polygon inside a coplanar convex one, and the pieces outside it.

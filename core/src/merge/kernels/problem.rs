@@ -1,0 +1,68 @@
+//! What a kernel is asked, what it answers, and who is asked first.
+
+use std::borrow::Cow;
+
+use crate::geometry::cell::Cell;
+use crate::merge::expression::Expression;
+use crate::merge::lists::list::{List, Sources};
+use crate::merge::rule::Rule;
+use crate::tree::node::Node;
+
+/// A cell in which an expression is to be evaluated.
+#[derive(Debug)]
+pub struct CellProblem<'a> {
+    /// The cell.
+    pub cell: &'a Cell,
+    /// What is left of the expression there.
+    pub expression: &'a Expression,
+    /// Which winding numbers of an operand are inside.
+    pub rule: Rule,
+    /// The operands, by ascending numbers.
+    pub operands: Vec<Listed<'a>>,
+    /// The sources of all operands.
+    pub sources: &'a Sources,
+}
+
+/// An operand with boundary in a cell.
+#[derive(Debug)]
+pub struct Listed<'a> {
+    /// Its number in the expression.
+    pub number: u32,
+    /// Its boundary in the cell.
+    pub list: Cow<'a, List>,
+}
+
+/// What an expression leaves in a cell.
+#[derive(Debug)]
+pub struct Solution {
+    /// The boundary that stays.
+    pub node: Node,
+    /// The operands that were seen to overlap themselves.
+    pub overlapping: Vec<u32>,
+}
+
+/// A way to evaluate an expression in a cell.
+///
+/// All kernels leave the same set. Each has positions that it does not know; a cell that one
+/// refuses is for the next one, or is halved.
+pub trait Kernel {
+    /// What the expression leaves in the cell; `None` if the cell is not for this kernel.
+    fn solve(&self, problem: &CellProblem) -> Option<Solution>;
+}
+
+impl CellProblem<'_> {
+    /// The answer of the first of some kernels that has one.
+    pub fn solve_by(&self, kernels: &[&dyn Kernel]) -> Option<Solution> {
+        kernels.iter().find_map(|kernel| kernel.solve(self))
+    }
+}
+
+impl From<Node> for Solution {
+    /// The answer of a kernel that saw no operand overlap itself.
+    fn from(node: Node) -> Self {
+        Self {
+            node,
+            overlapping: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! The kernel that takes every cell: local trees.
+//!
+//! Each operand gets its local autopartition; each operand's fragments are pushed through the
+//! others' trees, and a piece stays if the expression differs on its two sides. This is the dual of
+//! merging the trees (which `merge::merge` does, and tests compare): it labels the same regions,
+//! but cuts only fragments, never regions.
+
+mod local_tree;
+mod operand;
+mod overlay;
+
+use super::kept::{assemble, Kept};
+use super::problem::{CellProblem, Kernel, Listed, Solution};
+use crate::geometry::polygon::Polygon;
+use crate::interrupt::poll;
+use crate::merge::expression::Expression;
+use crate::merge::rule::Rule;
+use crate::tree::node::Work;
+use local_tree::LocalTree;
+pub use operand::LeafTree;
+use operand::Operand;
+use overlay::Fragment;
+
+/// Pushes fragments through local trees.
+///
+/// The result is the reduced boundary, whatever the operands are.
+#[derive(Debug)]
+pub struct LocalTrees;
+
+/// A piece of a fragment, with what is known of the operands on its two sides.
+struct Piece {
+    polygon: Polygon,
+    minus: Vec<bool>,
+    plus: Vec<bool>,
+}
+
+impl Kernel for LocalTrees {
+    fn solve(&self, problem: &CellProblem) -> Option<Solution> {
+        let CellProblem { cell, sources, .. } = *problem;
+        let operand = |l: &Listed| Operand::new(l.number, &l.list, cell, sources);
+        let operands: Vec<Operand> = problem.operands.iter().map(operand).collect();
+        let overlaps = |o: &&Operand| !o.simple;
+        let overlapping = operands.iter().filter(overlaps).map(|o| o.number).collect();
+        let (kept, corner) = keep_all(&operands, problem.expression, problem.rule);
+        let node = assemble(kept, corner, Work::Trees, cell, sources);
+        Some(Solution { node, overlapping })
+    }
+}
+
+/// What stays of all operands, and the value at the cell's corner.
+fn keep_all(operands: &[Operand], expression: &Expression, rule: Rule) -> (Vec<Kept>, i32) {
+    let place = |number: u32| {
+        operands
+            .iter()
+            .position(|o| o.number == number)
+            .unwrap_or(0)
+    };
+    let scratch = &mut Vec::new();
+    let mut value = |labels: &[bool]| expression.value(|k| labels[place(k)], scratch);
+    let at_corner: Vec<bool> = operands.iter().map(|o| rule.inside(o.corner)).collect();
+    let corner = i32::from(value(&at_corner));
+    let mut kept = Vec::new();
+    for (i, operand) in operands.iter().enumerate() {
+        for fragment in &operand.fragments {
+            poll();
+            let pieces = sides(fragment, i, operands, rule);
+            kept.extend(keep(fragment, i, pieces, &mut value));
+        }
+    }
+    (kept, corner)
+}
+
+/// Cuts a fragment into pieces that have one label of each operand on either side.
+fn sides(fragment: &Fragment, own: usize, operands: &[Operand], rule: Rule) -> Vec<Piece> {
+    let first = Piece {
+        polygon: fragment.polygon.clone(),
+        minus: Vec::with_capacity(operands.len()),
+        plus: Vec::with_capacity(operands.len()),
+    };
+    let mut pieces = vec![first];
+    for (j, operand) in operands.iter().enumerate() {
+        if j == own && operand.simple {
+            let (minus, plus) = if fragment.weight > 0 { (1, 0) } else { (0, 1) };
+            for piece in &mut pieces {
+                piece.minus.push(rule.inside(minus));
+                piece.plus.push(rule.inside(plus));
+            }
+        } else {
+            pieces = pieces
+                .into_iter()
+                .flat_map(|p| p.pushed(&operand.tree, rule))
+                .collect();
+        }
+    }
+    pieces
+}
+
+impl Piece {
+    fn pushed(self, tree: &LocalTree, rule: Rule) -> Vec<Self> {
+        poll();
+        let (minus, plus) = (self.minus, self.plus);
+        let with = |labels: &Vec<bool>, w: i32| {
+            let mut labels = labels.clone();
+            labels.push(rule.inside(w));
+            labels
+        };
+        tree.sides(self.polygon)
+            .into_iter()
+            .map(|s| Self {
+                polygon: s.polygon,
+                minus: with(&minus, s.minus),
+                plus: with(&plus, s.plus),
+            })
+            .collect()
+    }
+
+    /// Whether this operand is the first whose label differs on the two sides: it owns the piece.
+    fn is_owned_by(&self, operand: usize) -> bool {
+        let differs = |k: usize| self.minus[k] != self.plus[k];
+        differs(operand) && !(0..operand).any(differs)
+    }
+}
+
+/// The pieces across which the expression changes, by orientation.
+fn keep(
+    fragment: &Fragment,
+    own: usize,
+    pieces: Vec<Piece>,
+    value: &mut impl FnMut(&[bool]) -> bool,
+) -> Vec<Kept> {
+    let total = pieces.len();
+    let mut same = Vec::new();
+    let mut turned = Vec::new();
+    for piece in pieces.into_iter().filter(|p| p.is_owned_by(own)) {
+        match (value(&piece.minus), value(&piece.plus)) {
+            (true, false) => same.push(piece.polygon),
+            (false, true) => turned.push(piece.polygon),
+            _ => {}
+        }
+    }
+    [(same, false), (turned, true)]
+        .into_iter()
+        .filter(|(polygons, _)| !polygons.is_empty())
+        .map(|(polygons, flip)| {
+            if fragment.intact && polygons.len() == total {
+                Kept::whole(fragment.face, flip)
+            } else {
+                Kept::pieces(fragment.face, flip, polygons)
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,114 @@
+//! One operand in a small cell: its fragments and its local tree.
+
+use super::local_tree::{LocalTree, Weighted};
+use super::overlay::{disjoint, Fragment};
+use crate::geometry::cell::Cell;
+use crate::geometry::plane::Lattice;
+use crate::geometry::polygon::Polygon;
+use crate::interrupt::poll;
+use crate::merge::lists::list::{List, Sources};
+
+/// One operand inside the cell.
+pub(super) struct Operand {
+    /// Its number in the expression.
+    pub(super) number: u32,
+    /// The winding number at the cell's low corner.
+    pub(super) corner: i32,
+    pub(super) fragments: Vec<Fragment>,
+    pub(super) tree: LocalTree,
+    /// Whether nothing overlaps in the cell and all winding numbers are 0 or 1.
+    pub(super) simple: bool,
+}
+
+impl Operand {
+    pub(super) fn new(number: u32, list: &List, cell: &Cell, sources: &Sources) -> Self {
+        let corner = list.corner;
+        let (fragments, overlap) = disjoint(fragments(list, cell, sources));
+        let weighted = fragments
+            .iter()
+            .map(|f| Weighted {
+                polygon: f.polygon.clone(),
+                weight: f.weight,
+            })
+            .collect();
+        let tree = if fragments.is_empty() {
+            LocalTree::uniform(corner)
+        } else {
+            LocalTree::build(weighted, &cell.corner(), corner)
+        };
+        let simple = !overlap
+            && fragments.iter().all(|f| f.weight.abs() == 1)
+            && tree.labels().iter().all(|w| (0..=1).contains(w));
+        Self {
+            number,
+            corner,
+            fragments,
+            tree,
+            simple,
+        }
+    }
+}
+
+/// The fragments of a list's elements, clipped to the cell.
+fn fragments(list: &List, cell: &Cell, sources: &Sources) -> Vec<Fragment> {
+    let mut found = Vec::with_capacity(list.len());
+    for r in &list.records {
+        poll();
+        if let Some(polygon) = sources.get(r.slot()).clip(r.face, cell) {
+            let weight = if r.flip() { -1 } else { 1 };
+            let face = (r.slot() as u32, r.face);
+            found.push(Fragment {
+                polygon,
+                weight,
+                face,
+                intact: true,
+            });
+        }
+    }
+    for p in &list.parts {
+        poll();
+        let weight = if p.element.flip { -1 } else { 1 };
+        let face = (
+            sources.slot(&p.element.part.source) as u32,
+            p.element.part.face,
+        );
+        let clipped = p.pieces().iter().filter_map(|q| q.clone().clipped(cell));
+        found.extend(clipped.map(|polygon| Fragment {
+            polygon,
+            weight,
+            face,
+            intact: false,
+        }));
+    }
+    found
+}
+
+/// One operand's local tree in a small cell, for queries.
+pub struct LeafTree(Operand);
+
+impl LeafTree {
+    /// The local tree of a list.
+    pub fn new(list: &List, cell: &Cell, sources: &Sources) -> Self {
+        Self(Operand::new(0, list, cell, sources))
+    }
+
+    /// The pieces of boundary in the cell.
+    pub fn polygons(&self) -> impl Iterator<Item = &Polygon> {
+        self.0.fragments.iter().map(|f| &f.polygon)
+    }
+
+    /// Whether nothing overlaps in the cell and all winding numbers are 0 or 1.
+    pub fn is_simple(&self) -> bool {
+        self.0.simple
+    }
+
+    /// The faces that truly meet the cell.
+    pub fn faces(&self) -> impl Iterator<Item = u32> + '_ {
+        self.0.fragments.iter().map(|f| f.face.1)
+    }
+
+    /// The winding number at a lattice point that lies on none of the pieces.
+    pub fn label_at(&self, point: &Lattice) -> i32 {
+        self.0.tree.label_at(point)
+    }
+}
