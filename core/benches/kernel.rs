@@ -121,12 +121,11 @@ fn splits(c: &mut Criterion) {
     let cell = source.mesh().and_then(TriangleMesh::bounds);
     let (low, high) = cell.expect("a sphere has bounds");
     let frame = bspcsg::geometry::cell::Cell::around(&low, &high);
-    let faces = u32::try_from(source.face_count()).expect("few");
-    let facets = (0..faces).filter_map(|face| {
+    let facets = source.face_ids().filter_map(|face| {
         let fragment = source.clip(face, &frame)?;
         Some(Facet {
             fragment,
-            source: u64::from(face),
+            source: u64::from(face.0),
         })
     });
     let policy = PivotPolicy::Random(1);

@@ -7,6 +7,7 @@ use bspcsg::extract::joining::patches::Patches;
 use bspcsg::extract::rounding::round;
 use bspcsg::merge::evaluate::evaluate;
 use bspcsg::merge::expression::{Expression, Term};
+use bspcsg::mesh::handle::Slot;
 use bspcsg::mesh::import::import;
 use bspcsg::query::measure::volume;
 use bspcsg::tree::solid::Solid;
@@ -97,7 +98,7 @@ fn faces_of_different_patches_are_not_joined() {
     let cut = difference(&a, &cuboid([-1.0, 0.25, 0.25], [2.0, 0.75, 0.75]));
     let mesh = round::mesh_of_patches(&cut, &one_each).expect("mesh");
     for (triangle, [slot, face]) in mesh.triangles.iter().zip(&mesh.origins) {
-        let source = cut.sources().get(*slot as usize).mesh().expect("a mesh");
+        let source = cut.sources().get(Slot(*slot)).mesh().expect("a mesh");
         let corners = source.faces[*face as usize].map(|v| source.doubles[v as usize]);
         for v in triangle {
             let p = mesh.vertices[*v as usize];

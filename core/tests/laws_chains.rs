@@ -9,6 +9,7 @@ use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::half_space::half_space;
+use bspcsg::mesh::handle::Slot;
 use bspcsg::query::measure::volume_rounded;
 use bspcsg::tree::solid::Solid;
 use bspcsg::tree::table::Table;
@@ -153,7 +154,7 @@ fn tables_keep_the_order_of_the_expression() {
     assert_eq!(order(&third.joined(&second)), expected(&[0, 1, 2, 3, 5, 4]));
     assert_eq!(order(&base), expected(&[0, 1, 2]));
     assert_eq!(base.slot(&sources[3]), None);
-    assert_eq!(second.slot(&sources[3]), Some(4));
+    assert_eq!(second.slot(&sources[3]), Some(Slot(4)));
 }
 
 /// What a chain has cut away leaves its table.

@@ -14,7 +14,7 @@ use bspcsg::geometry::cell::Cell;
 use bspcsg::geometry::dim3::Dim3;
 use bspcsg::geometry::plane::{Lattice, Plane};
 use bspcsg::geometry::polygon::Polygon;
-use bspcsg::geometry::side::Half;
+use bspcsg::geometry::side::{Half, Orientation};
 use bspcsg::geometry::vertex::Vertex;
 use bspcsg::merge::expression::{Expression, Term};
 use bspcsg::merge::kernels::general::GeneralPosition;
@@ -23,6 +23,7 @@ use bspcsg::merge::kernels::trees::{LeafTree, LocalTrees};
 use bspcsg::merge::lists::list::{List, Sources};
 use bspcsg::merge::rule::Rule;
 use bspcsg::merge::{merge, SetOp};
+use bspcsg::mesh::handle::{FaceId, Slot};
 use bspcsg::mesh::source::Source;
 use bspcsg::query::classify::Location;
 use bspcsg::tree::node::{Branch, Node};
@@ -68,10 +69,9 @@ fn reference(cell: &Cell) -> impl Fn(&Arc<Plane>) -> Half {
 /// The tree of a source inside a cell, its facets numbered from `first`; `number` is the winding
 /// number at the cell's low corner.
 fn tree_in(source: &Source, cell: &Cell, number: i32, first: u64, seed: u64) -> Tree {
-    let face_count = u32::try_from(source.face_count()).expect("small");
-    let facets = (0..face_count).filter_map(|face| {
+    let facets = source.face_ids().filter_map(|face| {
         let fragment = source.clip(face, cell)?;
-        let source = first + u64::from(face);
+        let source = first + u64::from(face.0);
         Some(Facet { fragment, source })
     });
     let policy = PivotPolicy::Random(seed);
@@ -118,9 +118,9 @@ fn flux_of_node(node: &Node, cell: &Cell, first: impl Fn(&Source) -> u64) -> Flu
     let Node::Deferred(leaf) = node else {
         return flux;
     };
-    let mut add = |source: &Source, face: u32, flip: bool, polygon: &Polygon| {
-        let key = (first(source) + u64::from(face), flip);
-        if flip {
+    let mut add = |source: &Source, face: FaceId, turned: Orientation, polygon: &Polygon| {
+        let key = (first(source) + u64::from(face.0), turned.is_opposite());
+        if turned.is_opposite() {
             add_flux(&mut flux, key, &polygon.flipped());
         } else {
             add_flux(&mut flux, key, polygon);
@@ -129,13 +129,13 @@ fn flux_of_node(node: &Node, cell: &Cell, first: impl Fn(&Source) -> u64) -> Flu
     for group in &leaf.groups {
         for face in &group.faces {
             let whole = group.source.clip(*face, cell).expect("a face in its cell");
-            add(&group.source, *face, group.flip, &whole);
+            add(&group.source, *face, group.orientation, &whole);
         }
     }
     for element in &leaf.parts {
         let part = &element.part;
         for piece in &part.pieces() {
-            add(&part.source, part.face, element.flip, piece);
+            add(&part.source, part.face, element.orientation, piece);
         }
     }
     without_zeros(flux)
@@ -217,10 +217,16 @@ impl Pair {
         let sources = Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect());
         let [a, b] = solids.each_ref().map(|s| list_in(s, &cell, &sources));
         let lists = [a?, b?];
-        let count = sources.get(0).face_count() as u64;
+        let count = sources.get(Slot(0)).face_count() as u64;
         let tree = |i: usize| {
             let first = if i == 0 { 0 } else { count };
-            tree_in(sources.get(i), &cell, lists[i].corner, first, seed)
+            tree_in(
+                sources.get(Slot::of(i)),
+                &cell,
+                lists[i].corner,
+                first,
+                seed,
+            )
         };
         let trees = [tree(0), tree(1)];
         Some(Self {
@@ -234,21 +240,22 @@ impl Pair {
 
     fn first_of(&self, source: &Source) -> u64 {
         let slot = self.sources.slot(source);
-        (0..slot)
-            .map(|i| self.sources.get(i).face_count() as u64)
+        Slot::all()
+            .take_while(|before| *before < slot)
+            .map(|before| self.sources.get(before).face_count() as u64)
             .sum()
     }
 
     fn plane_of(&self, number: u64) -> Arc<Plane> {
-        let count = self.sources.get(0).face_count() as u64;
+        let count = self.sources.get(Slot(0)).face_count() as u64;
         let (slot, face) = if number < count {
-            (0, number)
+            (Slot(0), number)
         } else {
-            (1, number - count)
+            (Slot(1), number - count)
         };
         self.sources
             .get(slot)
-            .plane(u32::try_from(face).expect("small"))
+            .plane(FaceId(u32::try_from(face).expect("small")))
     }
 
     fn compare(&self, op: SetOp) -> bool {
@@ -310,7 +317,7 @@ impl Pair {
             node: Arc::new(node),
         };
         let sources = self.sources.table().clone();
-        Solid::new(root, self.sources.get(0).pitch(), sources, true)
+        Solid::new(root, self.sources.get(Slot(0)).pitch(), sources, true)
     }
 }
 
@@ -351,7 +358,7 @@ fn the_kernel_agrees_with_merged_trees_in_small_cells() {
 
 /// The tree of a whole solid that has not been operated on.
 fn whole_tree(solid: &Solid, seed: u64) -> Tree {
-    tree_in(solid.sources().get(0), &everything(), 0, 0, seed)
+    tree_in(solid.sources().get(Slot(0)), &everything(), 0, 0, seed)
 }
 
 fn assert_same_solid(tree: &Tree, solid: &Solid, context: &str) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap as HashMap;
 
 use super::boundary::collect::collect;
-use super::boundary::leaves::Fate;
+use super::boundary::leaves::{Fate, Fates};
 use super::boundary::rim::{half_edge_ends, FrontierEdge, Rims};
 use super::contacts;
 use super::emission::assembly::{Assembly, NONE};
@@ -17,10 +17,15 @@ use super::joining::seams::{find_touching, subdivisions, Edge, InnerPoints, Line
 use super::mesh::{Corner, ExactMesh};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::outline::BareEdge;
+use crate::geometry::side::Orientation;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
+use crate::mesh::handle::{Slot, SourceFace};
 use crate::tree::solid::Solid;
+
+/// The points inserted on the three edges of faces.
+type SplitFaces = HashMap<SourceFace, [Vec<u32>; 3]>;
 
 /// Groups of as many edges are looked through faster than a table of their points is made.
 const SMALL: usize = 16;
@@ -83,17 +88,17 @@ fn unbounded() -> Error {
 /// Whether an outline runs on the border of the universe, where only half-spaces reach.
 fn reaches_infinity(group: &PlaneGroup, sources: &Sources) -> bool {
     let mut faces = group.faces.iter();
-    faces.any(|f| sources.get(f.slot as usize).mesh().is_none())
+    faces.any(|f| sources.get(f.slot()).mesh().is_none())
         && group.edges().iter().any(|e| e.carrier.is_border())
 }
 
 impl Assembly<'_> {
     fn run(
         &mut self,
-        fates: &[Vec<Fate>],
+        fates: &Fates,
         mut groups: Vec<PlaneGroup>,
         rims: &Rims,
-        near: &[(u32, u32)],
+        near: &[SourceFace],
     ) -> Result<(), Failure> {
         self.mark_irregular(fates);
         self.identify_near(near, fates);
@@ -122,9 +127,13 @@ impl Assembly<'_> {
         let split = split_faces(&frontier, offset, &inner);
         self.identify_corners(&split);
         self.emit_whole(fates, rims, &order_of(&split));
-        for (slot, face) in order_of(&split) {
+        for face in order_of(&split) {
             poll();
-            self.emit_split(slot, face, fates, &split)?;
+            let orientation = match fates[face] {
+                Fate::Whole(orientation) => orientation,
+                Fate::Cut | Fate::Gone => Orientation::Same,
+            };
+            self.emit_split(face.oriented(orientation), &split[&face])?;
         }
         edges.truncate(offset);
         Ok(self.emit_groups(groups, &edges, &inner)?)
@@ -166,31 +175,37 @@ impl Assembly<'_> {
     }
 
     /// Identifies by place the corners of faces that lay near another operand: contacts.
-    fn identify_near(&mut self, near: &[(u32, u32)], fates: &[Vec<Fate>]) {
-        for &(slot, face) in near {
-            let whole = matches!(fates[slot as usize][face as usize], Fate::Whole(_));
-            let source = Arc::clone(self.sources.get(slot as usize));
-            if let (Some(mesh), true) = (source.mesh(), whole) {
-                for vertex in mesh.faces[face as usize] {
-                    self.point_of(slot, mesh, vertex);
-                }
+    fn identify_near(&mut self, near: &[SourceFace], fates: &Fates) {
+        for face in near {
+            if matches!(fates[*face], Fate::Whole(_)) {
+                self.identify(*face);
             }
         }
     }
 
-    fn frontier_edge(&mut self, e: FrontierEdge, fates: &[Vec<Fate>]) -> Option<Edge> {
-        let mesh = self.sources.get(e.slot as usize).mesh()?;
+    /// Makes points of the corners of a face.
+    fn identify(&mut self, face: SourceFace) {
+        let source = Arc::clone(self.sources.get(face.slot));
+        if let Some(mesh) = source.mesh() {
+            for vertex in mesh.vertices_of(face.id) {
+                self.point_of(face.slot, mesh, vertex);
+            }
+        }
+    }
+
+    fn frontier_edge(&mut self, e: FrontierEdge, fates: &Fates) -> Option<Edge> {
+        let mesh = self.sources.get(e.slot).mesh()?;
         let ends = half_edge_ends(mesh, e.half);
         let [p, q] = ends.map(|v| self.point_of(e.slot, mesh, v));
-        let turned = fates[e.slot as usize][e.half as usize / 3] == Fate::Whole(true);
+        let turned = fates[e.face()] == Fate::Whole(Orientation::Opposite);
         let (from, to) = if turned { (q, p) } else { (p, q) };
         Some(Edge { from, to })
     }
 
     /// Remembers which source vertices the corners of cut faces are, for their original doubles.
-    fn name_cut_corners(&mut self, fates: &[Vec<Fate>]) {
-        for (slot, fates) in (0u32..).zip(fates) {
-            let Some(mesh) = self.sources.get(slot as usize).mesh() else {
+    fn name_cut_corners(&mut self, fates: &Fates) {
+        for (slot, fates) in fates.by_slot() {
+            let Some(mesh) = self.sources.get(slot).mesh() else {
                 continue;
             };
             for (face, _) in fates.iter().enumerate().filter(|(_, f)| **f == Fate::Cut) {
@@ -206,9 +221,9 @@ impl Assembly<'_> {
     }
 
     /// Vertices on edges that more than two faces of a source share are identified by place.
-    fn mark_irregular(&mut self, fates: &[Vec<Fate>]) {
-        for (slot, fates) in (0u32..).zip(fates) {
-            let source = Arc::clone(self.sources.get(slot as usize));
+    fn mark_irregular(&mut self, fates: &Fates) {
+        for (slot, fates) in fates.by_slot() {
+            let source = Arc::clone(self.sources.get(slot));
             let (Some(mesh), false) = (source.mesh(), fates.is_empty()) else {
                 continue;
             };
@@ -220,21 +235,16 @@ impl Assembly<'_> {
     }
 
     /// Makes points of all corners of split faces before any face names them.
-    fn identify_corners(&mut self, split: &HashMap<(u32, u32), [Vec<u32>; 3]>) {
-        for (slot, face) in order_of(split) {
-            let source = Arc::clone(self.sources.get(slot as usize));
-            if let Some(mesh) = source.mesh() {
-                for vertex in mesh.faces[face as usize] {
-                    self.point_of(slot, mesh, vertex);
-                }
-            }
+    fn identify_corners(&mut self, split: &SplitFaces) {
+        for face in order_of(split) {
+            self.identify(face);
         }
     }
 
     /// Emits the whole faces that are not split, and the vertices that only they have.
-    fn emit_whole(&mut self, fates: &[Vec<Fate>], rims: &Rims, split: &[(u32, u32)]) {
+    fn emit_whole(&mut self, fates: &Fates, rims: &Rims, split: &[SourceFace]) {
         let first = self.vertices.len() as u32;
-        for (slot, images) in (0u32..).zip(&mut self.images) {
+        for (slot, images) in Slot::all().zip(&mut self.images) {
             let rim = rims.get(slot);
             for (vertex, image) in (0u32..).zip(images) {
                 poll();
@@ -245,13 +255,14 @@ impl Assembly<'_> {
             }
         }
         self.untouched = Untouched::new(first..self.vertices.len() as u32);
-        for (slot, fates) in (0u32..).zip(fates) {
-            let source = self.sources.get(slot as usize);
-            let (Some(mesh), images) = (source.mesh(), &self.images[slot as usize]) else {
+        for (slot, fates) in fates.by_slot() {
+            let source = self.sources.get(slot);
+            let (Some(mesh), images) = (source.mesh(), &self.images[slot.place()]) else {
                 continue;
             };
-            let range = |key: u32| split.partition_point(|s| s.0 < key);
-            let split = &split[range(slot)..range(slot + 1)];
+            let start = split.partition_point(|s| s.slot < slot);
+            let end = split.partition_point(|s| s.slot <= slot);
+            let split = &split[start..end];
             let whole = WholeFaces { slot, fates, split };
             let (triangles, faces) = (&mut self.triangles, &mut self.faces);
             self.untouched.emit(mesh, images, &whole, triangles, faces);
@@ -275,23 +286,19 @@ fn known_end<'e>(
 
 /// The points inserted on the three edges of each whole face that received any; the frontier's
 /// edges are numbered from `offset` on.
-fn split_faces(
-    frontier: &[FrontierEdge],
-    offset: usize,
-    inner: &InnerPoints,
-) -> HashMap<(u32, u32), [Vec<u32>; 3]> {
-    let mut split: HashMap<(u32, u32), [Vec<u32>; 3]> = HashMap::default();
+fn split_faces(frontier: &[FrontierEdge], offset: usize, inner: &InnerPoints) -> SplitFaces {
+    let mut split = SplitFaces::default();
     for (edge, i) in frontier.iter().zip(offset..) {
         if let Some(points) = inner.get(&i) {
-            let face = split.entry((edge.slot, edge.half / 3)).or_default();
+            let face = split.entry(edge.face()).or_default();
             face[edge.half as usize % 3].clone_from(points);
         }
     }
     split
 }
 
-fn order_of(split: &HashMap<(u32, u32), [Vec<u32>; 3]>) -> Vec<(u32, u32)> {
-    let mut order: Vec<(u32, u32)> = split.keys().copied().collect();
+fn order_of(split: &SplitFaces) -> Vec<SourceFace> {
+    let mut order: Vec<SourceFace> = split.keys().copied().collect();
     order.sort_unstable();
     order
 }

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::mesh::TriangleFace;
 use crate::error::{Error, ErrorKind, Result};
 use crate::merge::evaluate::overlaps_itself;
+use crate::mesh::handle::{OrientedFace, Slot};
 use crate::mesh::source::Source;
 use crate::tree::solid::Solid;
 
@@ -21,7 +21,7 @@ pub(super) struct Overlap {
     /// What shows it.
     pub(super) sign: String,
     /// The faces where it shows.
-    pub(super) faces: Vec<TriangleFace>,
+    pub(super) faces: Vec<OrientedFace>,
 }
 
 impl From<Overlap> for Failure {
@@ -56,8 +56,8 @@ impl Overlap {
             Ok(None) => return Error::internal(self.sign),
             Err(error) => return error,
         };
-        let own = self.faces.iter().filter(|f| f.slot == slot);
-        let mut faces: Vec<u64> = own.map(|f| u64::from(f.face)).collect();
+        let own = self.faces.iter().filter(|f| f.slot() == slot);
+        let mut faces: Vec<u64> = own.map(|f| u64::from(f.id().0)).collect();
         faces.sort_unstable();
         faces.dedup();
         let told = if solid.is_reduced() {
@@ -66,7 +66,8 @@ impl Overlap {
             ""
         };
         let text = format!(
-            "mesh {slot} of those that the solid was made of (source {}) overlaps itself{told}: {}",
+            "mesh {} of those that the solid was made of (source {}) overlaps itself{told}: {}",
+            slot.0,
             source.id(),
             self.sign
         );
@@ -75,8 +76,8 @@ impl Overlap {
 }
 
 /// The first mesh that overlaps itself, and its slot.
-fn culprit(solid: &Solid) -> Result<Option<(u32, &Arc<Source>)>> {
-    for (slot, source) in (0u32..).zip(solid.sources().iter()) {
+fn culprit(solid: &Solid) -> Result<Option<(Slot, &Arc<Source>)>> {
+    for (slot, source) in Slot::all().zip(solid.sources().iter()) {
         if overlaps_itself(source)? {
             return Ok(Some((slot, source)));
         }

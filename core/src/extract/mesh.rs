@@ -4,6 +4,7 @@ use super::vertices::VertexTable;
 use crate::geometry::plane::normal;
 use crate::merge::lists::list::Sources;
 use crate::mesh::finding::Finding;
+use crate::mesh::handle::{OrientedFace, Slot};
 use crate::mesh::source::Shape;
 
 /// A closed triangle mesh with exact vertices.
@@ -14,7 +15,7 @@ pub struct ExactMesh {
     /// Triangles, counterclockwise as seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// For each triangle the face it lies in.
-    pub faces: Vec<TriangleFace>,
+    pub faces: Vec<OrientedFace>,
     /// How many triangles at the start are faces of sources as they came.
     pub untouched: usize,
     /// The constructed points that [`Corner::Point`] names.
@@ -26,39 +27,22 @@ pub struct ExactMesh {
 /// Where a vertex of an [`ExactMesh`] is.
 #[derive(Clone, Copy, Debug)]
 pub enum Corner {
-    /// A vertex of a source: slot and index.
-    Source(u32, u32),
+    /// A vertex of a source.
+    Source(Slot, u32),
     /// A point of the table.
     Point(u32),
 }
 
-/// The face a triangle lies in, as the source has it, and whether it is turned around.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct TriangleFace {
-    /// The source's slot.
-    pub slot: u32,
-    /// The face.
-    pub face: u32,
-    /// Whether the triangle faces the other way.
-    pub flip: bool,
-}
-
-impl TriangleFace {
-    /// The outward normal of the face, up to a positive factor.
-    pub fn normal(&self, sources: &Sources) -> [i128; 3] {
-        let n = match sources.get(self.slot as usize).shape() {
-            Shape::Mesh(mesh) => {
-                let [a, b, c] = mesh.corners(self.face);
-                normal(&a, &b, &c)
-            }
-            Shape::HalfSpace(plane) => *plane.normal(),
-        };
-        if self.flip {
-            n.map(|c| -c)
-        } else {
-            n
+/// The outward normal of a face, up to a positive factor.
+pub fn outward_normal(face: OrientedFace, sources: &Sources) -> [i128; 3] {
+    let normal = match sources.get(face.slot()).shape() {
+        Shape::Mesh(mesh) => {
+            let [a, b, c] = mesh.corners(face.id());
+            normal(&a, &b, &c)
         }
-    }
+        Shape::HalfSpace(plane) => *plane.normal(),
+    };
+    normal.map(|c| face.orientation.signed(c))
 }
 
 /// A triangle mesh in doubles.

@@ -7,6 +7,7 @@ use smallvec::SmallVec;
 
 use super::cell::Cell;
 use super::plane::Lattice;
+use super::side::Orientation;
 use super::vertex::Vertex;
 use crate::arith::Int;
 
@@ -54,12 +55,11 @@ impl Flux {
         Some([self.value - error, self.value + error])
     }
 
-    /// Adds another flux, or takes it away.
-    pub fn add(&mut self, other: &Self, negative: bool) {
-        if negative {
-            self.value -= other.value;
-        } else {
-            self.value += other.value;
+    /// Adds the flux through something in the same direction, or takes it away.
+    pub fn add(&mut self, other: &Self, orientation: Orientation) {
+        match orientation {
+            Orientation::Same => self.value += other.value,
+            Orientation::Opposite => self.value -= other.value,
         }
         self.error += other.error;
     }

@@ -56,13 +56,55 @@ impl Half {
     }
 }
 
-/// How two hyperplanes that are the same set of points are oriented to each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// How two hyperplanes that are the same set of points are oriented to each other, or a face of a
+/// solid to the face it came from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Orientation {
     /// Their minus sides agree.
+    #[default]
     Same,
     /// The minus side of one is the plus side of the other.
     Opposite,
+}
+
+impl Orientation {
+    /// Both orientations.
+    pub const BOTH: [Self; 2] = [Self::Same, Self::Opposite];
+
+    /// Opposite if the flag is set.
+    pub fn turned_around(turned: bool) -> Self {
+        Self::Same.turned_if(turned)
+    }
+
+    /// This orientation, or the other one if the flag is set.
+    #[must_use]
+    pub fn turned_if(self, turned: bool) -> Self {
+        match (self, turned) {
+            (Self::Same, false) | (Self::Opposite, true) => Self::Same,
+            (Self::Same, true) | (Self::Opposite, false) => Self::Opposite,
+        }
+    }
+
+    /// Whether the sides are exchanged.
+    pub fn is_opposite(self) -> bool {
+        self == Self::Opposite
+    }
+
+    /// What has a sign: itself, or its negative if the sides are exchanged.
+    ///
+    /// ```
+    /// use bspcsg::geometry::side::Orientation;
+    ///
+    /// assert_eq!(Orientation::Same.signed(2), 2);
+    /// assert_eq!(Orientation::Opposite.signed(2), -2);
+    /// ```
+    #[must_use]
+    pub fn signed<T: std::ops::Neg<Output = T>>(self, value: T) -> T {
+        match self {
+            Self::Same => value,
+            Self::Opposite => -value,
+        }
+    }
 }
 
 /// Where a convex piece lies relative to a hyperplane; touching it does not count as crossing.

@@ -6,6 +6,7 @@
 
 use super::fixed::{of_cubic_steps, over_limb, sixfold_flux, Flux, Walls, PLACES};
 use super::plane::Lattice;
+use super::side::Orientation;
 use crate::arith::Int;
 
 /// What the walls of a cell leave of a triangle.
@@ -50,7 +51,8 @@ fn less<'a>(corners: &[Lattice; 3], area: i128, cuts: impl Iterator<Item = &'a [
     for beyond in cuts {
         let lone = alone(beyond);
         let inside = beyond[lone] < 0;
-        rest.add(&at_corner(corners, area, beyond, lone), !inside);
+        let corner = at_corner(corners, area, beyond, lone);
+        rest.add(&corner, Orientation::turned_around(!inside));
         if inside {
             rest.value -= all;
         }

@@ -13,6 +13,7 @@ pub mod facets;
 pub mod finding;
 pub mod grid;
 pub mod half_space;
+pub mod handle;
 pub mod import;
 pub mod joints;
 mod links;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::cached::Cached;
 use super::finding::Finding;
 use super::grid::Pitch;
+use super::handle::FaceId;
 use super::joints::Joints;
 use super::topology::{open_edges, Topology};
 use super::triangles::TriangleMesh;
@@ -109,6 +110,11 @@ impl Source {
         self.mesh().map_or(1, |m| m.faces.len())
     }
 
+    /// All faces, ascending.
+    pub fn face_ids(&self) -> impl Iterator<Item = FaceId> {
+        FaceId::all().take(self.face_count())
+    }
+
     /// How the faces meet, found on first use; `None` for a half-space.
     pub fn joints(&self) -> Option<&Joints> {
         let mesh = self.mesh()?;
@@ -147,7 +153,7 @@ impl Source {
     ///
     /// # Panics
     /// Never for faces of this source: those without area were left out at import.
-    pub fn plane(&self, face: u32) -> Arc<Plane> {
+    pub fn plane(&self, face: FaceId) -> Arc<Plane> {
         match &self.shape {
             Shape::Mesh(mesh) => {
                 let [a, b, c] = mesh.corners(face);
@@ -159,7 +165,7 @@ impl Source {
     }
 
     /// The coefficients of a face's plane up to a common factor, for the keys of lines in it.
-    pub fn plane_residues(&self, face: u32) -> PlaneResidues {
+    pub fn plane_residues(&self, face: FaceId) -> PlaneResidues {
         match &self.shape {
             Shape::Mesh(mesh) => PlaneResidues::through(&mesh.corners(face)),
             Shape::HalfSpace(plane) => PlaneResidues::of(plane),
@@ -167,7 +173,7 @@ impl Source {
     }
 
     /// Whether a face is perpendicular to an axis.
-    pub fn is_orthogonal(&self, face: u32) -> bool {
+    pub fn is_orthogonal(&self, face: FaceId) -> bool {
         match &self.shape {
             Shape::Mesh(mesh) => {
                 let [a, b, c] = mesh.corners(face);
@@ -178,7 +184,7 @@ impl Source {
     }
 
     /// The part of a face inside a cell, if it has an area.
-    pub fn clip(&self, face: u32, cell: &Cell) -> Option<Polygon> {
+    pub fn clip(&self, face: FaceId, cell: &Cell) -> Option<Polygon> {
         match &self.shape {
             Shape::Mesh(mesh) => {
                 let corners = mesh.corners(face);
@@ -189,7 +195,7 @@ impl Source {
     }
 
     /// The lattice box around some faces; `None` without any.
-    pub fn box_around(&self, faces: &[u32]) -> Option<(Lattice, Lattice)> {
+    pub fn box_around(&self, faces: &[FaceId]) -> Option<(Lattice, Lattice)> {
         let boxes = faces.iter().map(|face| self.face_box(*face));
         boxes.reduce(|(low, high), (l, h)| {
             let low = [0, 1, 2].map(|i| low[i].min(l[i]));
@@ -198,7 +204,7 @@ impl Source {
     }
 
     /// The lattice box around a face.
-    pub fn face_box(&self, face: u32) -> (Lattice, Lattice) {
+    pub fn face_box(&self, face: FaceId) -> (Lattice, Lattice) {
         match &self.shape {
             Shape::Mesh(mesh) => mesh.face_box(face),
             Shape::HalfSpace(_) => (*Cell::UNIVERSE.low(), Cell::UNIVERSE.high()),
@@ -206,10 +212,10 @@ impl Source {
     }
 
     /// The number a face had in its input.
-    pub fn number(&self, face: u32) -> u32 {
+    pub fn number(&self, face: FaceId) -> u32 {
         self.mesh()
             .and_then(|m| m.numbers.as_ref())
-            .map_or(face, |n| n[face as usize])
+            .map_or(face.0, |n| n[face.place()])
     }
 
     /// The smallest cell around everything; `None` if there is nothing.

@@ -1,6 +1,7 @@
 //! Triangles on the lattice.
 
 use super::grid::Pitch;
+use super::handle::FaceId;
 use crate::geometry::plane::Lattice;
 
 /// Lattice triangles, and the doubles they came from.
@@ -17,13 +18,23 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
+    /// All faces, ascending.
+    pub fn face_ids(&self) -> impl Iterator<Item = FaceId> {
+        FaceId::all().take(self.faces.len())
+    }
+
     /// The corners of a face.
-    pub fn corners(&self, face: u32) -> [Lattice; 3] {
-        self.faces[face as usize].map(|v| self.vertices[v as usize])
+    pub fn corners(&self, face: FaceId) -> [Lattice; 3] {
+        self.vertices_of(face).map(|v| self.vertices[v as usize])
+    }
+
+    /// The numbers of a face's corners.
+    pub fn vertices_of(&self, face: FaceId) -> [u32; 3] {
+        self.faces[face.place()]
     }
 
     /// The lattice box around a face.
-    pub fn face_box(&self, face: u32) -> (Lattice, Lattice) {
+    pub fn face_box(&self, face: FaceId) -> (Lattice, Lattice) {
         let [a, b, c] = self.corners(face);
         let low = [0, 1, 2].map(|i| a[i].min(b[i]).min(c[i]));
         (low, [0, 1, 2].map(|i| a[i].max(b[i]).max(c[i])))

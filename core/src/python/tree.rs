@@ -325,7 +325,8 @@ impl Tree {
         };
         let pitch = source.pitch();
         let place = |p: &Lattice| p.map(|k| pitch.coordinate(k));
-        let numbers: Vec<i64> = (0..source.face_count() as u32)
+        let numbers: Vec<i64> = source
+            .face_ids()
             .map(|face| i64::from(source.number(face)))
             .collect();
         Ok(Some((

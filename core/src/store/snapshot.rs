@@ -17,10 +17,12 @@ use crate::geometry::line::{LineKey, PlaneResidues};
 use crate::geometry::outline::{settled, BareEdge, OutlineEdge};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
+use crate::geometry::side::Orientation;
 use crate::geometry::vertex::{cross, Vertex};
 use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::grid::Pitch;
+use crate::mesh::handle::{FaceId, Slot};
 use crate::mesh::import::is_flat;
 use crate::mesh::source::{Shape, Source};
 use crate::mesh::triangles::TriangleMesh;
@@ -70,15 +72,17 @@ enum SourceData {
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct WholeFaces {
-    slot: u32,
+    slot: Slot,
+    /// Whether they are turned around.
     flip: bool,
-    faces: Vec<u32>,
+    faces: Vec<FaceId>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct PartData {
-    slot: u32,
-    face: u32,
+    slot: Slot,
+    face: FaceId,
+    /// Whether it is turned around.
     flip: bool,
     edges: Vec<EdgeData>,
 }
@@ -194,11 +198,13 @@ impl Snapshot {
         let sources = Sources::new(solid.sources().clone());
         let boundary = collect(solid, &sources);
         let mut wholes = Vec::new();
-        for (slot, fates) in (0u32..).zip(&boundary.fates) {
-            for flip in [false, true] {
-                let like = |(_, f): &(u32, &Fate)| **f == Fate::Whole(flip);
-                let faces: Vec<u32> = (0u32..).zip(fates).filter(like).map(|(i, _)| i).collect();
+        for (slot, fates) in boundary.fates.by_slot() {
+            for orientation in Orientation::BOTH {
+                let like = |(_, f): &(FaceId, &Fate)| **f == Fate::Whole(orientation);
+                let alike = FaceId::all().zip(fates).filter(like);
+                let faces: Vec<FaceId> = alike.map(|(face, _)| face).collect();
                 if !faces.is_empty() {
+                    let flip = orientation.is_opposite();
                     wholes.push(WholeFaces { slot, flip, faces });
                 }
             }
@@ -206,9 +212,9 @@ impl Snapshot {
         let (planes, cut): (Vec<_>, Vec<_>) = boundary.cut.iter().partition(|c| is_full_plane(c));
         wholes.extend(planes.into_iter().map(WholeFaces::plane));
         let parts = cut.into_iter().map(|c| PartData {
-            slot: c.slot,
-            face: c.face,
-            flip: c.flip,
+            slot: c.face.slot(),
+            face: c.face.id(),
+            flip: c.face.orientation.is_opposite(),
             edges: c.outline.edges().iter().map(EdgeData::of).collect(),
         });
         Self {
@@ -245,15 +251,15 @@ impl Snapshot {
         };
         for w in &self.wholes {
             poll();
-            let source = sources.get(w.slot as usize).ok_or_else(bad_snapshot)?;
-            let known = w.faces.iter().all(|f| (*f as usize) < source.face_count());
+            let source = sources.get(w.slot.place()).ok_or_else(bad_snapshot)?;
+            let known = w.faces.iter().all(|f| f.place() < source.face_count());
             if !known || !w.faces.is_sorted_by(|a, b| a < b) {
                 return Err(bad_snapshot());
             }
             let source = Arc::clone(source);
             leaf.groups.push(Group {
                 source,
-                flip: w.flip,
+                orientation: Orientation::turned_around(w.flip),
                 faces: w.faces.clone(),
             });
         }
@@ -299,9 +305,9 @@ impl Snapshot {
 
     /// Whether an unbounded face is boundary beside others, or cut at the border of the universe.
     fn reaches_infinity(&self) -> bool {
-        let unbounded = |slot: u32| {
+        let unbounded = |slot: Slot| {
             matches!(
-                self.sources.get(slot as usize),
+                self.sources.get(slot.place()),
                 Some(SourceData::HalfSpace(_))
             )
         };
@@ -320,7 +326,7 @@ impl Snapshot {
     /// The label at the low corner of the universe: a lone plane decides it by its side there.
     fn label_at_infinity(&self) -> Result<i32> {
         if let [only] = self.wholes.as_slice()
-            && let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot as usize)
+            && let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot.place())
         {
             let side = plane.plane()?.side_of_corner(&Cell::UNIVERSE.corner());
             return Ok(i32::from((side < 0) != only.flip));
@@ -362,9 +368,9 @@ fn is_full_plane(cut: &CutFace) -> bool {
 impl WholeFaces {
     fn plane(cut: &CutFace) -> Self {
         Self {
-            slot: cut.slot,
-            flip: cut.flip,
-            faces: vec![cut.face],
+            slot: cut.face.slot(),
+            flip: cut.face.orientation.is_opposite(),
+            faces: vec![cut.face.id()],
         }
     }
 }
@@ -440,8 +446,8 @@ impl SourceData {
 
 impl PartData {
     fn element(&self, sources: &[Arc<Source>], home: Cell) -> Result<PartElement> {
-        let source = sources.get(self.slot as usize).ok_or_else(bad_snapshot)?;
-        if self.face as usize >= source.face_count() {
+        let source = sources.get(self.slot.place()).ok_or_else(bad_snapshot)?;
+        if self.face.place() >= source.face_count() {
             return Err(bad_snapshot());
         }
         let support = source.plane(self.face);
@@ -456,7 +462,7 @@ impl PartData {
         let part = Part::new(Arc::clone(source), self.face, home, settled(edges));
         Ok(PartElement {
             part: Arc::new(part),
-            flip: self.flip,
+            orientation: Orientation::turned_around(self.flip),
         })
     }
 }

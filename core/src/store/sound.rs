@@ -5,15 +5,17 @@
 
 use std::sync::Arc;
 
-use crate::extract::boundary::leaves::Fate;
+use crate::extract::boundary::leaves::{Fate, Fates};
 use crate::extract::boundary::rim::{half_edge_ends, FrontierEdge, Rims};
 use crate::geometry::edge::LatticeEdge;
 use crate::geometry::outline::{cancel, OutlineEdge};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
+use crate::geometry::side::Orientation;
 use crate::geometry::vertex::Vertex;
 use crate::merge::lists::list::Sources;
 use crate::mesh::grid::Pitch;
+use crate::mesh::handle::{OrientedFace, SourceFace};
 use crate::mesh::source::Source;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Deferred, Node, Part, PartElement};
@@ -103,26 +105,29 @@ fn is_within(part: &Part, face: &Polygon) -> bool {
 }
 
 /// What is listed of each face; `None` if something is listed twice.
-fn fates(leaf: &Deferred, sources: &Sources) -> Option<Vec<Vec<Fate>>> {
+fn fates(leaf: &Deferred, sources: &Sources) -> Option<Fates> {
     let gone = |s: &Arc<Source>| vec![Fate::Gone; s.face_count()];
-    let mut fates: Vec<Vec<Fate>> = sources.table().iter().map(gone).collect();
+    let mut fates = Fates::new(sources.table().iter().map(gone).collect());
     for group in &leaf.groups {
-        let fates = &mut fates[sources.slot(&group.source)];
+        let slot = sources.slot(&group.source);
         for face in &group.faces {
-            let fate = &mut fates[*face as usize];
+            let fate = &mut fates[SourceFace::new(slot, *face)];
             if *fate != Fate::Gone {
                 return None;
             }
-            *fate = Fate::Whole(group.flip);
+            *fate = Fate::Whole(group.orientation);
         }
     }
-    let place = |p: &PartElement| (sources.slot(&p.part.source), p.part.face, p.flip);
-    let mut parts: Vec<(usize, u32, bool)> = leaf.parts.iter().map(place).collect();
+    let face = |p: &PartElement| {
+        let face = SourceFace::new(sources.slot(&p.part.source), p.part.face);
+        face.oriented(p.orientation)
+    };
+    let mut parts: Vec<OrientedFace> = leaf.parts.iter().map(face).collect();
     parts.sort_unstable();
-    for (slot, face, flip) in &parts {
-        let fate = &mut fates[*slot][*face as usize];
+    for part in &parts {
+        let fate = &mut fates[part.face];
         match fate {
-            Fate::Whole(whole) if whole == flip => return None,
+            Fate::Whole(whole) if *whole == part.orientation => return None,
             Fate::Whole(_) => {}
             Fate::Cut | Fate::Gone => *fate = Fate::Cut,
         }
@@ -132,21 +137,24 @@ fn fates(leaf: &Deferred, sources: &Sources) -> Option<Vec<Vec<Fate>>> {
 }
 
 /// Whether the edges of all that is listed cancel, but at the border of the universe.
-fn is_closed(leaf: &Deferred, fates: &[Vec<Fate>], sources: &Sources) -> bool {
+fn is_closed(leaf: &Deferred, fates: &Fates, sources: &Sources) -> bool {
     let rims = Rims::of(fates, sources);
     let frontier = rims.frontier(fates, sources).into_iter();
     let rim = frontier.filter_map(|edge| rim_edge(edge, fates, sources));
     let parts = leaf.parts.iter().flat_map(|p| {
         let edges = p.part.outline().into_iter();
         let inner = edges.filter(|e| !e.carrier.is_border());
-        inner.map(|e| if p.flip { e.reversed() } else { e })
+        inner.map(|e| match p.orientation {
+            Orientation::Same => e,
+            Orientation::Opposite => e.reversed(),
+        })
     });
     cancel(rim.chain(parts).collect()).is_empty()
 }
 
 /// An edge of a whole face, run as the face is turned.
-fn rim_edge(edge: FrontierEdge, fates: &[Vec<Fate>], sources: &Sources) -> Option<OutlineEdge> {
-    let mesh = sources.get(edge.slot as usize).mesh()?;
+fn rim_edge(edge: FrontierEdge, fates: &Fates, sources: &Sources) -> Option<OutlineEdge> {
+    let mesh = sources.get(edge.slot).mesh()?;
     let [from, to] = half_edge_ends(mesh, edge.half).map(|v| mesh.vertices[v as usize]);
     let forward = OutlineEdge {
         from: Arc::new(Vertex::lattice(from)),
@@ -154,6 +162,6 @@ fn rim_edge(edge: FrontierEdge, fates: &[Vec<Fate>], sources: &Sources) -> Optio
         carrier: Carrier::Edge(LatticeEdge::new(from, to)),
         line: edge.line(sources),
     };
-    let turned = fates[edge.slot as usize][edge.half as usize / 3] == Fate::Whole(true);
+    let turned = fates[edge.face()] == Fate::Whole(Orientation::Opposite);
     Some(if turned { forward.reversed() } else { forward })
 }

@@ -17,9 +17,11 @@ use crate::geometry::fixed::{
     Ring, Triangle, Walls,
 };
 use crate::geometry::plane::Lattice;
+use crate::geometry::side::Orientation;
 use crate::geometry::trim::{trimmed, Rest};
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
+use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
 
 /// What a branch contributes; computed where no operation before has left it.
@@ -93,15 +95,15 @@ fn leaf_share(leaf: &Deferred, cell: &Cell) -> Share {
             Shape::Mesh(mesh) => {
                 for face in &group.faces {
                     poll();
-                    sum.add_face(&mesh.corners(*face), group.flip);
+                    sum.add_face(&mesh.corners(*face), group.orientation);
                 }
             }
-            Shape::HalfSpace(_) => sum.add_plane(&group.source, group.flip),
+            Shape::HalfSpace(_) => sum.add_plane(&group.source, group.orientation),
         }
     }
     for element in &leaf.parts {
         poll();
-        sum.add_part(&element.part, element.flip);
+        sum.add_part(&element.part, element.orientation);
     }
     sum.rest.flux.value += of_cubic_steps(&sum.inside);
     sum.rest
@@ -109,7 +111,7 @@ fn leaf_share(leaf: &Deferred, cell: &Cell) -> Share {
 
 impl Sum {
     /// The part of a whole face in the cell.
-    fn add_face(&mut self, corners: &[Lattice; 3], flip: bool) {
+    fn add_face(&mut self, corners: &[Lattice; 3], orientation: Orientation) {
         let area = minor(corners, 0, 1);
         if area == 0 {
             return;
@@ -117,46 +119,46 @@ impl Sum {
         match trimmed(corners, area, &self.walls) {
             Rest::All => {
                 let flux = sixfold_flux(corners);
-                self.inside += if flip { -flux } else { flux };
+                self.inside += orientation.signed(flux);
             }
-            Rest::Some(flux) => self.rest.flux.add(&flux, flip),
+            Rest::Some(flux) => self.rest.flux.add(&flux, orientation),
             Rest::Nothing => {}
-            Rest::Open => self.add_clipped(corners, area, flip),
+            Rest::Open => self.add_clipped(corners, area, orientation),
         }
     }
 
     /// The part of a whole face in the cell, cut by walls across several axes.
-    fn add_clipped(&mut self, corners: &[Lattice; 3], area: i128, flip: bool) {
+    fn add_clipped(&mut self, corners: &[Lattice; 3], area: i128, orientation: Orientation) {
         let normal = [minor(corners, 1, 2), minor(corners, 2, 0), area];
         if let Some(ring) = Triangle::new(corners, normal).clipped(&self.walls) {
             let error = Reach::of_triangle(corners).error(ring.len(), 1, slope(&normal));
             let value = through_ring(&ring);
-            self.rest.flux.add(&Flux { value, error }, flip);
+            self.rest.flux.add(&Flux { value, error }, orientation);
         }
     }
 
     /// The part of a half-space's border in the cell.
-    fn add_plane(&mut self, source: &Source, flip: bool) {
-        let Some(polygon) = source.clip(0, &self.cell) else {
+    fn add_plane(&mut self, source: &Source, orientation: Orientation) {
+        let Some(polygon) = source.clip(FaceId::ONLY, &self.cell) else {
             return;
         };
         self.rest.open |= polygon.edges().any(|(_, _, carrier)| carrier.is_border());
         let ring: Ring = polygon.corners().iter().map(|c| of_vertex(&c.at)).collect();
         let error = Reach::of(&ring).error(ring.len(), 1, 0.0);
         let value = through_ring(&ring);
-        self.rest.flux.add(&Flux { value, error }, flip);
+        self.rest.flux.add(&Flux { value, error }, orientation);
     }
 
     /// The part of a part in the cell.
-    fn add_part(&mut self, part: &Part, flip: bool) {
+    fn add_part(&mut self, part: &Part, orientation: Orientation) {
         let bounded = part.source.mesh().is_some();
         self.rest.open |= !bounded && part.edges.iter().any(|e| e.carrier.is_border());
         if self.surely_holds(part) {
             let flux = part.flux.get_or_make(|| part_flux(part));
-            self.rest.flux.add(flux, flip);
+            self.rest.flux.add(flux, orientation);
         } else if let Some(slope) = part_slope(part) {
             let flux = fan_flux(&fixed_ends(part), Some(&self.walls), slope);
-            self.rest.flux.add(&flux, flip);
+            self.rest.flux.add(&flux, orientation);
         }
     }
 

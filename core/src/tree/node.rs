@@ -8,7 +8,9 @@ use crate::geometry::fixed::Flux;
 use crate::geometry::outline;
 use crate::geometry::outline::{BareEdge, OutlineEdge};
 use crate::geometry::polygon::{bounds, Polygon};
+use crate::geometry::side::Orientation;
 use crate::mesh::cached::Cached;
+use crate::mesh::handle::FaceId;
 use crate::mesh::source::Source;
 
 /// A node of the tree. Immutable and shared.
@@ -158,10 +160,10 @@ pub enum Work {
 pub struct Group {
     /// Where the faces live.
     pub source: Arc<Source>,
-    /// Whether inside and outside are exchanged.
-    pub flip: bool,
-    /// Ascending face indices.
-    pub faces: Vec<u32>,
+    /// How the faces are turned, seen from the source.
+    pub orientation: Orientation,
+    /// The faces, ascending.
+    pub faces: Vec<FaceId>,
 }
 
 /// A part of a face, perhaps turned around.
@@ -169,8 +171,8 @@ pub struct Group {
 pub struct PartElement {
     /// The part.
     pub part: Arc<Part>,
-    /// Whether inside and outside are exchanged.
-    pub flip: bool,
+    /// How it is turned, seen from the source.
+    pub orientation: Orientation,
 }
 
 /// The part of a face that is boundary inside its home cell.
@@ -181,7 +183,7 @@ pub struct Part {
     /// Where the face lives.
     pub source: Arc<Source>,
     /// The face.
-    pub face: u32,
+    pub face: FaceId,
     /// The cell the outline describes.
     pub home: Cell,
     /// The outline, counterclockwise on the face; no two edges overlap or continue each other.
@@ -190,13 +192,24 @@ pub struct Part {
     pub flux: Cached<Flux>,
 }
 
+impl PartElement {
+    /// The element, or its other side if the flag is set.
+    #[must_use]
+    pub fn turned_if(&self, turned: bool) -> Self {
+        Self {
+            part: Arc::clone(&self.part),
+            orientation: self.orientation.turned_if(turned),
+        }
+    }
+}
+
 impl Part {
     /// The part of a face that an outline bounds in a cell.
     ///
     /// No two of the edges may overlap or continue each other on one line.
     pub fn new(
         source: Arc<Source>,
-        face: u32,
+        face: FaceId,
         home: Cell,
         edges: Vec<impl Into<BareEdge>>,
     ) -> Self {

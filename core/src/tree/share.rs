@@ -1,6 +1,7 @@
 //! What a part of a boundary contributes to the volume.
 
 use crate::geometry::fixed::Flux;
+use crate::geometry::side::Orientation;
 
 /// What a node's boundary contributes to the volume.
 #[derive(Clone, Copy, Debug)]
@@ -18,9 +19,10 @@ impl Share {
         open: false,
     };
 
-    /// Adds what another part contributes, or takes it away.
-    pub fn add(&mut self, other: &Self, negative: bool) {
-        self.flux.add(&other.flux, negative);
+    /// Adds what another part contributes, perhaps turned inside out.
+    pub fn add(&mut self, other: &Self, complement: bool) {
+        self.flux
+            .add(&other.flux, Orientation::turned_around(complement));
         self.open |= other.open;
     }
 }

@@ -8,8 +8,10 @@ use rustc_hash::FxHashSet as HashSet;
 use super::node::{Branch, Deferred, Group, Node};
 use super::table::Table;
 use crate::geometry::cell::Cell;
+use crate::geometry::side::Orientation;
 use crate::mesh::cached::Cached;
 use crate::mesh::grid::Pitch;
+use crate::mesh::handle::Slot;
 use crate::mesh::source::{Shape, Source};
 
 /// Sources a table may hold beyond twice those that are named, so that operands of short
@@ -110,8 +112,8 @@ impl Solid {
     /// Whether this is a mesh as it was given.
     fn is_whole_mesh(&self) -> bool {
         self.sources.len() == 1
-            && self.sources.get(0).mesh().is_some()
-            && matches!(&*self.root.node, Node::Deferred(leaf) if leaf.parts.is_empty() && leaf.len() == self.sources.get(0).face_count())
+            && self.sources.get(Slot(0)).mesh().is_some()
+            && matches!(&*self.root.node, Node::Deferred(leaf) if leaf.parts.is_empty() && leaf.len() == self.sources.get(Slot(0)).face_count())
     }
 
     /// A solid made of operands of which none named more than `named` sources.
@@ -154,10 +156,10 @@ impl Solid {
             Shape::HalfSpace(plane) => (i32::from(plane.side_of_corner(&cell.corner()) < 0), true),
         };
         let sources = [&source].into_iter().collect();
-        let faces = (0..source.face_count() as u32).collect();
+        let faces = source.face_ids().collect();
         let group = Group {
             source,
-            flip: false,
+            orientation: Orientation::Same,
             faces,
         };
         let leaf = Deferred {

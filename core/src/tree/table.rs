@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock, RwLock, TryLockError};
 
 use rustc_hash::FxHashMap as HashMap;
 
+use crate::mesh::handle::Slot;
 use crate::mesh::source::Source;
 
 /// The sources of a solid or an evaluation, in the order of the expression.
@@ -105,27 +106,27 @@ impl Table {
     ///
     /// # Panics
     /// If there is none.
-    pub fn get(&self, slot: usize) -> &Arc<Source> {
+    pub fn get(&self, slot: Slot) -> &Arc<Source> {
         let found = match &self.0 {
-            Entries::One(only) if slot == 0 => Some(only),
+            Entries::One(only) if slot.0 == 0 => Some(only),
             Entries::None | Entries::One(_) => None,
-            Entries::Many(beginning) => beginning.log.get(slot),
+            Entries::Many(beginning) => beginning.log.get(slot.place()),
         };
         found.expect("a slot of the table")
     }
 
     /// The slot of a source.
-    pub fn slot(&self, source: &Source) -> Option<usize> {
+    pub fn slot(&self, source: &Source) -> Option<Slot> {
         match &self.0 {
             Entries::None => None,
-            Entries::One(only) => (only.id() == source.id()).then_some(0),
-            Entries::Many(beginning) => beginning.slot(source),
+            Entries::One(only) => (only.id() == source.id()).then_some(Slot(0)),
+            Entries::Many(beginning) => beginning.slot(source).map(Slot::of),
         }
     }
 
     /// The sources in order.
     pub fn iter(&self) -> impl Iterator<Item = &Arc<Source>> {
-        (0..self.len()).map(|slot| self.get(slot))
+        Slot::all().take(self.len()).map(|slot| self.get(slot))
     }
 
     /// This table and after it the sources of another that it does not have.

@@ -3,6 +3,7 @@
 use super::node::{Branch, Node};
 use super::solid::Solid;
 use crate::geometry::plane::Lattice;
+use crate::mesh::handle::Slot;
 use crate::mesh::triangles::TriangleMesh;
 
 /// Cuts and elements that an operation on solids may have to look at, counted up to a limit.
@@ -33,7 +34,7 @@ pub fn work_to_settle(solid: &Solid) -> usize {
 /// A box around a solid's boundary: that of a small mesh, or else the root's cell.
 fn extent(solid: &Solid, limit: usize) -> (Lattice, Lattice) {
     let cell = solid.root().cell;
-    let only = (solid.sources().len() == 1).then(|| solid.sources().get(0));
+    let only = (solid.sources().len() == 1).then(|| solid.sources().get(Slot(0)));
     let mesh = only.and_then(|source| source.mesh());
     mesh.filter(|m| m.faces.len() < limit)
         .and_then(TriangleMesh::bounds)

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use smallvec::{smallvec, SmallVec};
 
-use super::leaves::{fill, listed, Fate, Listed, Piece, Spanning};
+use super::leaves::{fill, listed, Fate, Fates, Listed, Piece, Spanning};
 use crate::geometry::cell::Cell;
 use crate::geometry::line::{LineKey, PlaneResidues};
 use crate::geometry::outline::{BareEdge, Outline};
@@ -11,6 +11,7 @@ use crate::geometry::plane::Lattice;
 use crate::interrupt::{carried, poll};
 use crate::merge::lists::list::Sources;
 use crate::merge::lists::separation::misses;
+use crate::mesh::handle::{FaceId, OrientedFace, SourceFace};
 use crate::mesh::source::{Shape, Source};
 use crate::mesh::tasks::in_pool;
 use crate::tree::node::{Branch, Deferred, Node};
@@ -19,12 +20,8 @@ use crate::tree::solid::Solid;
 /// A face of which a part is boundary.
 #[derive(Debug)]
 pub struct CutFace {
-    /// The source's slot.
-    pub slot: u32,
     /// The face.
-    pub face: u32,
-    /// Whether inside and outside are exchanged.
-    pub flip: bool,
+    pub face: OrientedFace,
     /// The outline, counterclockwise on the face as the source has it.
     pub outline: Outline,
 }
@@ -32,12 +29,12 @@ pub struct CutFace {
 /// A solid's boundary by faces.
 #[derive(Debug)]
 pub struct Boundary {
-    /// The fates of the faces, by slot.
-    pub fates: Vec<Vec<Fate>>,
-    /// The cut faces, by slot, face and orientation.
+    /// The fates of the faces.
+    pub fates: Fates,
+    /// The cut faces, ascending.
     pub cut: Vec<CutFace>,
-    /// Faces in cells where several operands met, by slot: they may touch others.
-    pub near: Vec<(u32, u32)>,
+    /// Faces in cells where several operands met, ascending: they may touch others.
+    pub near: Vec<SourceFace>,
 }
 
 /// Fewer faces than this are looked at on one thread.
@@ -67,7 +64,7 @@ impl Collector<'_> {
     fn settle(mut self) -> Boundary {
         let spanning = by_face(&self.listed.spanning, &self.listed.fates);
         let runs: Vec<&[Spanning]> = spanning
-            .chunk_by(|a, b| (a.slot, a.face) == (b.slot, b.face))
+            .chunk_by(|a, b| a.face.face == b.face.face)
             .collect();
         let whole = carried(|run: &&[Spanning]| self.is_whole(run));
         let whole: Vec<bool> = if in_pool() && runs.len() > MANY {
@@ -77,9 +74,10 @@ impl Collector<'_> {
         };
         let mut open: Vec<&[Spanning]> = Vec::new();
         for (run, whole) in runs.into_iter().zip(whole) {
-            let fate = &mut self.listed.fates[run[0].slot as usize][run[0].face as usize];
+            let OrientedFace { face, orientation } = run[0].face;
+            let fate = &mut self.listed.fates[face];
             if whole {
-                *fate = Fate::Whole(run[0].flip);
+                *fate = Fate::Whole(orientation);
             } else {
                 *fate = Fate::Cut;
                 open.push(run);
@@ -96,19 +94,22 @@ impl Collector<'_> {
 
     /// Whether all of a face that spans leaves is boundary, and turned one way.
     fn is_whole(&self, run: &[Spanning]) -> bool {
-        let first = &run[0];
-        let source = self.sources.get(first.slot as usize);
-        let fate = self.listed.fates[first.slot as usize][first.face as usize];
-        fate == Fate::Gone
+        let first = run[0].face;
+        let source = self.sources.get(first.slot());
+        self.listed.fates[first.face] == Fate::Gone
             && source.mesh().is_some()
-            && run.iter().all(|s| s.flip == first.flip)
-            && (self.fill_box(run, source) || covers(self.root, source, first.face, first.flip))
+            && run.iter().all(|s| s.face.orientation == first.orientation)
+            && (self.fill_box(run, source) || covers(self.root, source, first))
     }
 
     /// Whether the cells of the leaves that list a face make up its box; errs on no.
     fn fill_box(&self, run: &[Spanning], source: &Source) -> bool {
         let leaves = run.chunk_by(|a, b| a.leaf == b.leaf).map(|s| s[0].leaf);
-        fill(source.face_box(run[0].face), leaves, &self.listed.cells)
+        fill(
+            source.face_box(run[0].face.id()),
+            leaves,
+            &self.listed.cells,
+        )
     }
 
     /// The outlines of the faces that are not whole, or gone.
@@ -116,8 +117,8 @@ impl Collector<'_> {
         let spans = open.iter().flat_map(|run| run.iter()).map(Piece::from);
         let mut pieces: Vec<Piece> = spans.collect();
         pieces.append(&mut self.listed.parts);
-        pieces.sort_by_key(|p| (p.slot, p.face, p.flip));
-        let same = |a: &Piece, b: &Piece| (a.slot, a.face, a.flip) == (b.slot, b.face, b.flip);
+        pieces.sort_by_key(|p| p.face);
+        let same = |a: &Piece, b: &Piece| a.face == b.face;
         let runs: Vec<&mut [Piece]> = pieces.chunk_by_mut(same).collect();
         let joined = carried(|run: &mut [Piece]| self.joined(run));
         let found: Vec<CutFace> = if in_pool() && runs.len() > MANY {
@@ -128,9 +129,9 @@ impl Collector<'_> {
         let mut cut = Vec::new();
         for mut c in found {
             poll();
-            let source = self.sources.get(c.slot as usize);
+            let source = self.sources.get(c.face.slot());
             if is_full_face(&mut c, source) {
-                self.listed.fates[c.slot as usize][c.face as usize] = Fate::Whole(c.flip);
+                self.listed.fates[c.face.face] = Fate::Whole(c.face.orientation);
             } else if !c.outline.edges().is_empty() {
                 cut.push(c);
             }
@@ -141,38 +142,33 @@ impl Collector<'_> {
     /// One face of its pieces.
     fn joined(&self, run: &mut [Piece]) -> CutFace {
         let cells = &self.listed.cells;
-        let (slot, face, flip) = (run[0].slot, run[0].face, run[0].flip);
+        let face = run[0].face;
         let outline = if let [piece] = run {
             piece.outline(self.sources, cells)
         } else {
             let edges = run.iter_mut().map(|p| p.take_edges(self.sources, cells));
             Outline::of(edges.flatten().collect())
         };
-        CutFace {
-            slot,
-            face,
-            flip,
-            outline,
-        }
+        CutFace { face, outline }
     }
 }
 
-/// What leaves list, sorted by slot and face; the leaves of a face keep their order.
-fn by_face(spanning: &[Spanning], fates: &[Vec<Fate>]) -> Vec<Spanning> {
-    let faces: usize = fates.iter().map(Vec::len).sum();
+/// What leaves list, sorted by face; the leaves of a face keep their order.
+fn by_face(spanning: &[Spanning], fates: &Fates) -> Vec<Spanning> {
+    let faces = fates.faces();
     let mut sorted = spanning.to_vec();
     if spanning.len() < faces / SPARSE {
-        sorted.sort_by_key(|s| (s.slot, s.face));
+        sorted.sort_by_key(|s| s.face.face);
         return sorted;
     }
     let firsts: Vec<usize> = fates
-        .iter()
-        .scan(0, |sum, fates| {
+        .by_slot()
+        .scan(0, |sum, (_, fates)| {
             *sum += fates.len();
             Some(*sum - fates.len())
         })
         .collect();
-    let place = |s: &Spanning| firsts[s.slot as usize] + s.face as usize;
+    let place = |s: &Spanning| firsts[s.face.slot().place()] + s.face.id().place();
     let mut ends = vec![0u32; faces];
     for s in spanning {
         ends[place(s)] += 1;
@@ -195,7 +191,7 @@ fn is_full_face(cut: &mut CutFace, source: &Source) -> bool {
     let Shape::Mesh(mesh) = source.shape() else {
         return false;
     };
-    let c = mesh.corners(cut.face);
+    let c = mesh.corners(cut.face.id());
     let near = |edge: &BareEdge| c.iter().any(|corner| edge.from.may_be(corner));
     if cut.outline.edges().len() != 3 || !cut.outline.edges().iter().all(near) {
         return false;
@@ -226,17 +222,17 @@ impl<'a> Place<'a> {
     }
 
     /// Whether this is a leaf that lists the face.
-    fn is_listed(&self, source: &Source, face: u32, flip: bool) -> bool {
+    fn is_listed(&self, source: &Source, face: OrientedFace) -> bool {
         match &*self.branch.node {
-            Node::Deferred(leaf) => lists(leaf, source, face, flip ^ self.complement),
+            Node::Deferred(leaf) => lists(leaf, source, face, self.complement),
             Node::Leaf(_) | Node::Cut(_) => false,
         }
     }
 }
 
 /// Whether every leaf that a face meets lists it; errs on no.
-fn covers(root: &Branch, source: &Source, face: u32, flip: bool) -> bool {
-    let (low, high) = source.face_box(face);
+fn covers(root: &Branch, source: &Source, face: OrientedFace) -> bool {
+    let (low, high) = source.face_box(face.id());
     if !root.cell.holds_box(&low, &high) {
         return false;
     }
@@ -273,7 +269,7 @@ fn covers(root: &Branch, source: &Source, face: u32, flip: bool) -> bool {
                 return false;
             }
         }
-        if !place.is_listed(source, face, flip) && enters(source, face, &place.branch.cell) {
+        if !place.is_listed(source, face) && enters(source, face.id(), &place.branch.cell) {
             return false;
         }
     }
@@ -281,13 +277,16 @@ fn covers(root: &Branch, source: &Source, face: u32, flip: bool) -> bool {
 }
 
 /// Whether a face has area in a cell.
-fn enters(source: &Source, face: u32, cell: &Cell) -> bool {
+fn enters(source: &Source, face: FaceId, cell: &Cell) -> bool {
     !misses(source, face, cell) && source.clip(face, cell).is_some()
 }
 
-fn lists(leaf: &Deferred, source: &Source, face: u32, flip: bool) -> bool {
+/// Whether a leaf, perhaps turned inside out, lists a face.
+fn lists(leaf: &Deferred, source: &Source, face: OrientedFace, complement: bool) -> bool {
+    let orientation = face.orientation.turned_if(complement);
     leaf.groups.iter().any(|g| {
-        g.source.id() == source.id() && g.flip == flip && g.faces.binary_search(&face).is_ok()
+        let alike = g.source.id() == source.id() && g.orientation == orientation;
+        alike && g.faces.binary_search(&face.id()).is_ok()
     })
 }
 
@@ -300,6 +299,6 @@ pub fn has_no_boundary(solid: &Solid) -> bool {
     }
     let sources = Sources::new(solid.sources().clone());
     let boundary = collect(solid, &sources);
-    let gone = |fates: &Vec<Fate>| fates.iter().all(|f| !matches!(f, Fate::Whole(_)));
-    boundary.cut.is_empty() && boundary.fates.iter().all(gone)
+    let gone = |(_, fates): (_, &[Fate])| fates.iter().all(|f| !matches!(f, Fate::Whole(_)));
+    boundary.cut.is_empty() && boundary.fates.by_slot().all(gone)
 }

@@ -1,5 +1,6 @@
 //! What each leaf of a tree says of the faces it lists, for all leaves at once.
 
+use std::ops::{Index, IndexMut};
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use rayon::prelude::*;
@@ -9,8 +10,10 @@ use smallvec::{smallvec, SmallVec};
 use crate::geometry::cell::Cell;
 use crate::geometry::outline::{cancel, Outline, OutlineEdge};
 use crate::geometry::plane::Lattice;
+use crate::geometry::side::Orientation;
 use crate::interrupt::{carried, poll};
 use crate::merge::lists::list::Sources;
+use crate::mesh::handle::{FaceId, OrientedFace, Slot, SourceFace};
 use crate::mesh::source::Source;
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
@@ -19,24 +22,16 @@ use crate::tree::node::{Branch, Deferred, Group, Node, Part, Work};
 /// A face that reaches out of a leaf that lists it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Spanning {
-    /// The source's slot.
-    pub slot: u32,
     /// The face.
-    pub face: u32,
-    /// Whether inside and outside are exchanged.
-    pub flip: bool,
+    pub face: OrientedFace,
     /// The number of the leaf.
     pub leaf: u32,
 }
 
 /// What of a face one leaf lists.
 pub struct Piece<'a> {
-    /// The source's slot.
-    pub slot: u32,
     /// The face.
-    pub face: u32,
-    /// Whether inside and outside are exchanged.
-    pub flip: bool,
+    pub face: OrientedFace,
     extent: Extent<'a>,
 }
 
@@ -53,9 +48,7 @@ enum Extent<'a> {
 impl From<&Spanning> for Piece<'_> {
     fn from(s: &Spanning) -> Self {
         Self {
-            slot: s.slot,
             face: s.face,
-            flip: s.flip,
             extent: Extent::Face(s.leaf),
         }
     }
@@ -74,8 +67,8 @@ impl Piece<'_> {
     pub fn take_edges(&mut self, sources: &Sources, cells: &[Cell]) -> Vec<OutlineEdge> {
         match &mut self.extent {
             Extent::Face(leaf) => {
-                let source = sources.get(self.slot as usize);
-                let polygon = source.clip(self.face, &cells[*leaf as usize]);
+                let source = sources.get(self.face.slot());
+                let polygon = source.clip(self.face.id(), &cells[*leaf as usize]);
                 polygon.map_or_else(Vec::new, |p| OutlineEdge::all_of(&p).collect())
             }
             Extent::Part(part) => part.outline(),
@@ -87,14 +80,14 @@ impl Piece<'_> {
 /// What the leaves say, in their order.
 #[derive(Default)]
 pub struct Listed<'a> {
-    /// Faces inside a leaf's cell are whole, those with a part in one are cut; by slot.
-    pub fates: Vec<Vec<Fate>>,
+    /// Faces inside a leaf's cell are whole, those with a part in one are cut.
+    pub fates: Fates,
     /// The faces that reach out of leaves.
     pub spanning: Vec<Spanning>,
-    /// The pieces that the parts are in the leaves, by slot, face and orientation.
+    /// The pieces that the parts are in the leaves, by face.
     pub parts: Vec<Piece<'a>>,
-    /// Faces in cells where several operands met, by slot.
-    pub near: Vec<(u32, u32)>,
+    /// Faces in cells where several operands met.
+    pub near: Vec<SourceFace>,
     /// The leaves' cells.
     pub cells: Vec<Cell>,
 }
@@ -104,21 +97,14 @@ pub struct Listed<'a> {
 struct Found<'a> {
     spanning: Vec<Spanning>,
     parts: Vec<Listing<'a>>,
-    near: Vec<(u32, u32)>,
+    near: Vec<SourceFace>,
 }
 
 /// A part that a leaf lists.
 struct Listing<'a> {
-    slot: u32,
-    flip: bool,
+    face: OrientedFace,
     leaf: u32,
     part: &'a Part,
-}
-
-impl Listing<'_> {
-    fn key(&self) -> (u32, u32, bool) {
-        (self.slot, self.part.face, self.flip)
-    }
 }
 
 /// A leaf, its number and its element groups' slots.
@@ -132,7 +118,7 @@ struct Leaf<'a> {
 /// Asks all leaves.
 pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
     let leaves = leaves_of(root);
-    let fates = Fates::of(&leaves, sources);
+    let fates = Marks::of(&leaves, sources);
     let visit = carried(|leaf: &Leaf<'a>| leaf.visit(sources, &fates));
     let size: usize = leaves.iter().map(|l| l.content.len()).sum();
     let found: Vec<Found> = if in_pool() && size > CHUNK {
@@ -151,10 +137,10 @@ pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
         parts.extend(leaf.parts);
         all.near.extend(leaf.near);
     }
-    parts.sort_by_key(Listing::key);
+    parts.sort_by_key(|listing| listing.face);
     all.parts = pieces(&parts, &all.cells);
     for piece in &all.parts {
-        fates.0[piece.slot as usize][piece.face as usize].store(CUT, Ordering::Relaxed);
+        fates.0[piece.face.slot().place()][piece.face.id().place()].store(CUT, Ordering::Relaxed);
     }
     all.fates = fates.into_plain();
     all
@@ -165,9 +151,9 @@ type Pieces<'a> = SmallVec<[Piece<'a>; 1]>;
 
 type Extents<'a> = SmallVec<[Extent<'a>; 1]>;
 
-/// What listed parts, by their keys, are in their leaves.
+/// What listed parts, by their faces, are in their leaves.
 fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
-    let runs: Vec<&[Listing]> = parts.chunk_by(|a, b| a.key() == b.key()).collect();
+    let runs: Vec<&[Listing]> = parts.chunk_by(|a, b| a.face == b.face).collect();
     let face = carried(|run: &&[Listing<'a>]| pieces_of_face(run, cells));
     let pieces: Vec<Pieces> = if in_pool() && parts.len() > CHUNK {
         runs.par_iter().map(face).collect()
@@ -183,13 +169,8 @@ fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Pieces<'a> {
         [single] => extents(single.part, &[single.leaf], cells),
         _ => extents_by_part(run, cells),
     };
-    let (slot, face, flip) = run[0].key();
-    let piece = |extent| Piece {
-        slot,
-        face,
-        flip,
-        extent,
-    };
+    let face = run[0].face;
+    let piece = |extent| Piece { face, extent };
     extents.into_iter().map(piece).collect()
 }
 
@@ -301,28 +282,74 @@ fn leaves_of(root: &Branch) -> Vec<Leaf<'_>> {
 pub enum Fate {
     /// No part of it is boundary.
     Gone,
-    /// All of it is boundary; turned around if the flag is set. Never said of a half-space's face,
-    /// which only the border of the universe ends.
-    Whole(bool),
+    /// All of it is boundary, turned like this. Never said of a half-space's face, which only the
+    /// border of the universe ends.
+    Whole(Orientation),
     /// Some of it is boundary, or it joins a polygon of its plane.
     Cut,
 }
 
+/// The fates of all sources' faces; none for sources that no leaf names.
+#[derive(Debug, Default)]
+pub struct Fates(Vec<Vec<Fate>>);
+
+impl Fates {
+    /// The fates of each source's faces.
+    pub fn new(by_slot: Vec<Vec<Fate>>) -> Self {
+        Self(by_slot)
+    }
+
+    /// The fates of a source's faces.
+    pub fn of(&self, slot: Slot) -> &[Fate] {
+        &self.0[slot.place()]
+    }
+
+    /// The sources with their faces' fates.
+    pub fn by_slot(&self) -> impl Iterator<Item = (Slot, &[Fate])> {
+        Slot::all().zip(self.0.iter().map(Vec::as_slice))
+    }
+
+    /// The number of sources.
+    pub fn sources(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The number of faces.
+    pub fn faces(&self) -> usize {
+        self.0.iter().map(Vec::len).sum()
+    }
+}
+
+impl Index<SourceFace> for Fates {
+    type Output = Fate;
+
+    fn index(&self, face: SourceFace) -> &Fate {
+        &self.0[face.slot.place()][face.id.place()]
+    }
+}
+
+impl IndexMut<SourceFace> for Fates {
+    fn index_mut(&mut self, face: SourceFace) -> &mut Fate {
+        &mut self.0[face.slot.place()][face.id.place()]
+    }
+}
+
 /// Fates that several threads mark, by slot; empty for sources that no leaf names.
-struct Fates(Vec<Vec<AtomicU8>>);
+struct Marks(Vec<Vec<AtomicU8>>);
 
 const GONE: u8 = 0;
 const WHOLE: u8 = 1;
 const TURNED: u8 = 2;
 const CUT: u8 = 3;
 
-impl Fates {
+impl Marks {
     fn of(leaves: &[Leaf], sources: &Sources) -> Self {
         let mut fates: Vec<Vec<AtomicU8>> = Vec::new();
         fates.resize_with(sources.table().len(), Vec::new);
-        let mut enter = |source: &Source, slot: usize| {
-            if fates[slot].is_empty() {
-                fates[slot].resize_with(source.face_count(), || AtomicU8::new(GONE));
+        let mut enter = |source: &Source, slot: Slot| {
+            let fates = &mut fates[slot.place()];
+            if fates.is_empty() {
+                fates.resize_with(source.face_count(), || AtomicU8::new(GONE));
             }
         };
         for leaf in leaves {
@@ -337,34 +364,34 @@ impl Fates {
         Self(fates)
     }
 
-    fn into_plain(self) -> Vec<Vec<Fate>> {
+    fn into_plain(self) -> Fates {
         let plain = |mark: AtomicU8| match mark.into_inner() {
             GONE => Fate::Gone,
-            WHOLE => Fate::Whole(false),
-            TURNED => Fate::Whole(true),
+            WHOLE => Fate::Whole(Orientation::Same),
+            TURNED => Fate::Whole(Orientation::Opposite),
             _ => Fate::Cut,
         };
         let slots = self.0.into_iter();
-        slots.map(|s| s.into_iter().map(plain).collect()).collect()
+        Fates(slots.map(|s| s.into_iter().map(plain).collect()).collect())
     }
 }
 
 impl<'a> Leaf<'a> {
-    fn visit(&self, sources: &Sources, fates: &Fates) -> Found<'a> {
+    fn visit(&self, sources: &Sources, fates: &Marks) -> Found<'a> {
         let mut found = Found::default();
         for group in &self.content.groups {
             let slot = sources.slot(&group.source);
             if self.content.work == Work::Trees {
                 let faces = group.faces.iter();
-                found.near.extend(faces.map(|f| (slot as u32, *f)));
+                found.near.extend(faces.map(|f| SourceFace::new(slot, *f)));
             }
-            self.visit_group(group, slot as u32, &fates.0[slot], &mut found);
+            self.visit_group(group, slot, &fates.0[slot.place()], &mut found);
         }
         for element in &self.content.parts {
             let part = &*element.part;
+            let face = SourceFace::new(sources.slot(&part.source), part.face);
             found.parts.push(Listing {
-                slot: sources.slot(&part.source) as u32,
-                flip: element.flip ^ self.complement,
+                face: face.oriented(element.orientation.turned_if(self.complement)),
                 leaf: self.number,
                 part,
             });
@@ -372,20 +399,21 @@ impl<'a> Leaf<'a> {
         found
     }
 
-    fn visit_group(&self, group: &Group, slot: u32, fates: &[AtomicU8], found: &mut Found<'a>) {
-        let flip = group.flip ^ self.complement;
+    fn visit_group(&self, group: &Group, slot: Slot, fates: &[AtomicU8], found: &mut Found<'a>) {
+        let orientation = group.orientation.turned_if(self.complement);
+        let mark = match orientation {
+            Orientation::Same => WHOLE,
+            Orientation::Opposite => TURNED,
+        };
         let mesh = group.source.mesh();
         let holds_all = mesh.is_some() && group.source.cell().is_some_and(|c| self.cell.holds(&c));
         let holds = mesh.map(|mesh| holder(mesh, &self.cell));
         for &face in &group.faces {
             if holds_all || holds.as_ref().is_some_and(|holds| holds(face)) {
-                let mark = if flip { TURNED } else { WHOLE };
-                fates[face as usize].store(mark, Ordering::Relaxed);
+                fates[face.place()].store(mark, Ordering::Relaxed);
             } else {
                 found.spanning.push(Spanning {
-                    slot,
-                    face,
-                    flip,
+                    face: SourceFace::new(slot, face).oriented(orientation),
                     leaf: self.number,
                 });
             }
@@ -394,10 +422,10 @@ impl<'a> Leaf<'a> {
 }
 
 /// Whether a face's corners lie in a cell.
-fn holder<'a>(mesh: &'a TriangleMesh, cell: &Cell) -> impl Fn(u32) -> bool + 'a {
+fn holder<'a>(mesh: &'a TriangleMesh, cell: &Cell) -> impl Fn(FaceId) -> bool + 'a {
     let (low, high) = (*cell.low(), cell.high());
     move |face| {
-        mesh.faces[face as usize].iter().all(|v| {
+        mesh.vertices_of(face).iter().all(|v| {
             let p = &mesh.vertices[*v as usize];
             (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i])
         })

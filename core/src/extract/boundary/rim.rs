@@ -9,10 +9,12 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 
-use super::leaves::Fate;
+use super::leaves::{Fate, Fates};
 use crate::geometry::line::LineKey;
+use crate::geometry::side::Orientation;
 use crate::interrupt::{carried, poll};
 use crate::merge::lists::list::Sources;
+use crate::mesh::handle::{FaceId, Slot, SourceFace};
 use crate::mesh::source::Source;
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
@@ -33,22 +35,27 @@ pub struct Rims {
     /// The faces around each vertex of a source, found on first use.
     around: Vec<OnceLock<Around>>,
     /// Slots of which fates have changed.
-    outdated: BTreeSet<u32>,
+    outdated: BTreeSet<Slot>,
 }
 
 /// An edge of a whole face whose mate is not a whole face of the same orientation.
 #[derive(Clone, Copy, Debug)]
 pub struct FrontierEdge {
-    /// The source's slot.
-    pub slot: u32,
+    /// The source.
+    pub slot: Slot,
     /// The half-edge.
     pub half: u32,
 }
 
 impl FrontierEdge {
+    /// The face it bounds.
+    pub fn face(&self) -> SourceFace {
+        SourceFace::new(self.slot, FaceId::beside(self.half))
+    }
+
     /// The line it lies on.
     pub fn line(&self, sources: &Sources) -> LineKey {
-        let mesh = sources.get(self.slot as usize).mesh();
+        let mesh = sources.get(self.slot).mesh();
         let ends = mesh.map(|m| half_edge_ends(m, self.half).map(|v| m.vertices[v as usize]));
         let [a, b] = ends.unwrap_or([[0; 3], [1, 0, 0]]);
         LineKey::of_edge(&a, &b)
@@ -57,46 +64,45 @@ impl FrontierEdge {
 
 impl Rims {
     /// The rims of these fates.
-    pub fn of(fates: &[Vec<Fate>], sources: &Sources) -> Self {
-        let slots: Vec<usize> = (0..fates.len()).collect();
-        let rim = carried(|slot: &usize| Rim::of(sources.get(*slot), &fates[*slot]));
-        let large = in_pool() && fates.iter().map(Vec::len).sum::<usize>() > CHUNK;
+    pub fn of(fates: &Fates, sources: &Sources) -> Self {
+        let slots: Vec<Slot> = Slot::all().take(fates.sources()).collect();
+        let rim = carried(|slot: &Slot| Rim::of(sources.get(*slot), fates.of(*slot)));
+        let large = in_pool() && fates.faces() > CHUNK;
         Self {
             by_slot: if large {
                 slots.par_iter().map(rim).collect()
             } else {
                 slots.iter().map(rim).collect()
             },
-            by_ends: vec![OnceLock::new(); fates.len()],
-            around: vec![OnceLock::new(); fates.len()],
+            by_ends: vec![OnceLock::new(); fates.sources()],
+            around: vec![OnceLock::new(); fates.sources()],
             outdated: BTreeSet::new(),
         }
     }
 
     /// Remembers that the fates of a source have changed.
-    pub fn outdated(&mut self, slot: u32) {
+    pub fn outdated(&mut self, slot: Slot) {
         self.outdated.insert(slot);
     }
 
     /// Finds the rims again whose fates have changed.
-    pub fn renew(&mut self, fates: &[Vec<Fate>], sources: &Sources) {
+    pub fn renew(&mut self, fates: &Fates, sources: &Sources) {
         for slot in std::mem::take(&mut self.outdated) {
-            let slot = slot as usize;
-            self.by_slot[slot] = Rim::of(sources.get(slot), &fates[slot]);
-            self.by_ends[slot] = OnceLock::new();
+            self.by_slot[slot.place()] = Rim::of(sources.get(slot), fates.of(slot));
+            self.by_ends[slot.place()] = OnceLock::new();
         }
     }
 
     /// The rim of a source.
-    pub fn get(&self, slot: u32) -> &Rim {
-        &self.by_slot[slot as usize]
+    pub fn get(&self, slot: Slot) -> &Rim {
+        &self.by_slot[slot.place()]
     }
 
     /// The frontier: half-edges of whole faces whose mates are not whole and turned alike.
-    pub fn frontier(&self, fates: &[Vec<Fate>], sources: &Sources) -> Vec<FrontierEdge> {
+    pub fn frontier(&self, fates: &Fates, sources: &Sources) -> Vec<FrontierEdge> {
         let mut found = Vec::new();
-        for ((slot, rim), fates) in (0u32..).zip(&self.by_slot).zip(fates) {
-            if let Some(mesh) = sources.get(slot as usize).mesh() {
+        for (rim, (slot, fates)) in self.by_slot.iter().zip(fates.by_slot()) {
+            if let Some(mesh) = sources.get(slot).mesh() {
                 let halves = rim.half_edges(mesh, fates).into_iter();
                 found.extend(halves.map(|half| FrontierEdge { slot, half }));
             }
@@ -107,21 +113,21 @@ impl Rims {
     /// The face across a half-edge, if that may be whole.
     ///
     /// Near the rim the faces are known by their edges; far from it by their corners.
-    pub fn across(&self, slot: u32, half: u32, sources: &Sources) -> Option<u32> {
-        let mesh = sources.get(slot as usize).mesh()?;
-        let rim = &self.by_slot[slot as usize];
+    pub fn across(&self, slot: Slot, half: u32, sources: &Sources) -> Option<FaceId> {
+        let mesh = sources.get(slot).mesh()?;
+        let rim = self.get(slot);
         let [a, b] = half_edge_ends(mesh, half);
         if !rim.is_used(a) || !rim.is_used(b) {
             return None;
         }
         if rim.is_mixed(a) || rim.is_mixed(b) {
-            let by_ends = self.by_ends[slot as usize].get_or_init(|| rim.by_ends(mesh));
-            return by_ends.get(&[b, a]).map(|mate| mate / 3);
+            let by_ends = self.by_ends[slot.place()].get_or_init(|| rim.by_ends(mesh));
+            return by_ends.get(&[b, a]).map(|mate| FaceId::beside(*mate));
         }
-        let around = self.around[slot as usize].get_or_init(|| Around::of(mesh));
+        let around = self.around[slot.place()].get_or_init(|| Around::of(mesh));
         let mut faces = around.faces(a).iter();
-        let has_mate = |face: &&u32| {
-            let mut halves = 3 * **face..3 * **face + 3;
+        let has_mate = |face: &&FaceId| {
+            let mut halves = face.half_edges();
             halves.any(|h| half_edge_ends(mesh, h) == [b, a])
         };
         faces.find(has_mate).copied()
@@ -133,7 +139,7 @@ impl Rims {
 struct Around {
     /// By vertex, where its faces start; ends with where the last one's end.
     starts: Vec<u32>,
-    faces: Vec<u32>,
+    faces: Vec<FaceId>,
 }
 
 impl Around {
@@ -147,20 +153,20 @@ impl Around {
             sum += *start;
             *start = sum;
         }
-        let mut faces = vec![0; sum as usize];
+        let mut faces = vec![FaceId(0); sum as usize];
         for (face, corners) in mesh.faces.iter().enumerate().rev() {
             poll();
             for vertex in corners {
                 let start = &mut starts[*vertex as usize];
                 *start -= 1;
-                faces[*start as usize] = face as u32;
+                faces[*start as usize] = FaceId(face as u32);
             }
         }
         Self { starts, faces }
     }
 
     /// The faces around a vertex, ascending.
-    fn faces(&self, vertex: u32) -> &[u32] {
+    fn faces(&self, vertex: u32) -> &[FaceId] {
         let [start, end] = [0, 1].map(|i| self.starts[vertex as usize + i] as usize);
         &self.faces[start..end]
     }
@@ -172,7 +178,7 @@ pub struct Rim {
     /// By vertex, which of the above meet there.
     touch: Vec<u8>,
     /// The whole faces with a mixed corner, ascending.
-    near: Vec<u32>,
+    near: Vec<FaceId>,
 }
 
 impl Rim {
@@ -189,10 +195,10 @@ impl Rim {
             rim.touch[*vertex as usize] |= OPEN;
         }
         if (0..mesh.vertices.len() as u32).any(|v| rim.is_mixed(v)) {
-            let near = |(_, (corners, fate)): &(u32, (&[u32; 3], &Fate))| {
+            let near = |(_, (corners, fate)): &(FaceId, (&[u32; 3], &Fate))| {
                 matches!(fate, Fate::Whole(_)) && corners.iter().any(|v| rim.is_mixed(*v))
             };
-            let faces = (0u32..).zip(mesh.faces.iter().zip(fates));
+            let faces = FaceId::all().zip(mesh.faces.iter().zip(fates));
             rim.near = faces.filter(near).map(|f| f.0).collect();
         }
         rim
@@ -213,10 +219,10 @@ impl Rim {
         let mut halves: Vec<Half> = Vec::new();
         for &face in &self.near {
             poll();
-            for number in 3 * face..3 * face + 3 {
+            for number in face.half_edges() {
                 let ends = half_edge_ends(mesh, number);
                 if ends.iter().all(|v| self.is_mixed(*v)) {
-                    halves.push(Half::new(number, ends, fates[face as usize]));
+                    halves.push(Half::new(number, ends, fates[face.place()]));
                 }
             }
         }
@@ -235,7 +241,7 @@ impl Rim {
 
     /// The half-edges of the whole faces with a mixed corner by their ends.
     fn by_ends(&self, mesh: &TriangleMesh) -> HashMap<[u32; 2], u32> {
-        let halves = self.near.iter().flat_map(|face| 3 * face..3 * face + 3);
+        let halves = self.near.iter().flat_map(|face| face.half_edges());
         let mut by_ends = HashMap::default();
         for half in halves {
             by_ends.entry(half_edge_ends(mesh, half)).or_insert(half);
@@ -256,7 +262,7 @@ impl Half {
     fn new(number: u32, [a, b]: [u32; 2], fate: Fate) -> Self {
         Self {
             edge: [a.min(b), a.max(b)],
-            turned: fate == Fate::Whole(true),
+            turned: fate == Fate::Whole(Orientation::Opposite),
             backward: a > b,
             number,
         }
@@ -268,8 +274,8 @@ fn touch(mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u8> {
     for (corners, fate) in mesh.faces.iter().zip(fates) {
         poll();
         let kind = match fate {
-            Fate::Whole(false) => KEPT,
-            Fate::Whole(true) => TURNED,
+            Fate::Whole(Orientation::Same) => KEPT,
+            Fate::Whole(Orientation::Opposite) => TURNED,
             Fate::Cut | Fate::Gone => OTHER,
         };
         for corner in corners {
@@ -281,7 +287,7 @@ fn touch(mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u8> {
 
 /// The end vertices of a half-edge.
 pub fn half_edge_ends(mesh: &TriangleMesh, half: u32) -> [u32; 2] {
-    let face = &mesh.faces[half as usize / 3];
+    let face = mesh.vertices_of(FaceId::beside(half));
     let corner = half as usize % 3;
     [face[corner], face[(corner + 1) % 3]]
 }

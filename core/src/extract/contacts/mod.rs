@@ -7,6 +7,7 @@ use rustc_hash::FxHashSet as HashSet;
 use self::fans::{split_fans, Radial};
 use super::emission::assembly::Assembly;
 use super::failure::{Failure, Overlap};
+use super::mesh::outward_normal;
 use super::vertices::direction;
 use crate::error::Error;
 use crate::interrupt::poll;
@@ -164,7 +165,7 @@ struct Geometry<'a, 'b>(&'a Assembly<'b>);
 
 impl Radial for Geometry<'_, '_> {
     fn normal(&self, triangle: u32) -> [i128; 3] {
-        self.0.faces[triangle as usize].normal(self.0.sources)
+        outward_normal(self.0.faces[triangle as usize], self.0.sources)
     }
 
     fn direction(&self, a: u32, b: u32) -> [i32; 3] {

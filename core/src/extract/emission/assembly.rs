@@ -5,13 +5,14 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap as HashMap;
 
 use super::untouched::Untouched;
-use crate::extract::boundary::leaves::Fate;
-use crate::extract::mesh::{Corner, ExactMesh, TriangleFace};
+use crate::extract::boundary::leaves::{Fate, Fates};
+use crate::extract::mesh::{Corner, ExactMesh};
 use crate::extract::vertices::VertexTable;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::finding::Finding;
+use crate::mesh::handle::{OrientedFace, Slot};
 use crate::mesh::triangles::TriangleMesh;
 
 /// The mesh in the making.
@@ -23,10 +24,10 @@ pub(in crate::extract) struct Assembly<'a> {
     /// For each table point its output vertex.
     pub(in crate::extract) point_images: Vec<u32>,
     /// For each table point the first source vertex there.
-    pub(in crate::extract) names: HashMap<u32, (u32, u32)>,
+    pub(in crate::extract) names: HashMap<u32, (Slot, u32)>,
     pub(in crate::extract) vertices: Vec<Corner>,
     pub(in crate::extract) triangles: Vec<[u32; 3]>,
-    pub(in crate::extract) faces: Vec<TriangleFace>,
+    pub(in crate::extract) faces: Vec<OrientedFace>,
     /// The triangles, at the start, that are faces of sources as they came.
     pub(in crate::extract) untouched: Untouched,
     /// Whether to compare areas, because faces of one plane might overlap.
@@ -37,15 +38,15 @@ pub(in crate::extract) struct Assembly<'a> {
 pub(in crate::extract) const NONE: u32 = u32::MAX;
 
 impl<'a> Assembly<'a> {
-    pub(in crate::extract) fn new(sources: &'a Sources, fates: &[Vec<Fate>]) -> Self {
-        let image = |(slot, fates): (usize, &Vec<Fate>)| {
+    pub(in crate::extract) fn new(sources: &'a Sources, fates: &Fates) -> Self {
+        let image = |(slot, fates): (Slot, &[Fate])| {
             let count = sources.get(slot).mesh().map_or(0, |m| m.vertices.len());
             vec![NONE; if fates.is_empty() { 0 } else { count }]
         };
         Self {
             sources,
             table: VertexTable::default(),
-            images: fates.iter().enumerate().map(image).collect(),
+            images: fates.by_slot().map(image).collect(),
             point_images: Vec::new(),
             names: HashMap::default(),
             vertices: Vec::new(),
@@ -59,18 +60,18 @@ impl<'a> Assembly<'a> {
     /// The table number of a source's vertex; from now on the vertex is that point.
     pub(in crate::extract) fn point_of(
         &mut self,
-        slot: u32,
+        slot: Slot,
         mesh: &TriangleMesh,
         vertex: u32,
     ) -> u32 {
-        let image = self.images[slot as usize][vertex as usize];
+        let image = self.images[slot.place()][vertex as usize];
         if let Some(Corner::Point(point)) = self.vertices.get(image as usize) {
             return *point;
         }
         let point = self.table.number_at(mesh.vertices[vertex as usize]);
         self.names.entry(point).or_insert((slot, vertex));
         let image = self.image_of_point(point);
-        self.images[slot as usize][vertex as usize] = image;
+        self.images[slot.place()][vertex as usize] = image;
         point
     }
 
@@ -123,14 +124,14 @@ impl<'a> Assembly<'a> {
     }
 
     /// The faces of the triangles at a vertex.
-    pub(in crate::extract) fn faces_at(&self, vertex: u32) -> Vec<TriangleFace> {
+    pub(in crate::extract) fn faces_at(&self, vertex: u32) -> Vec<OrientedFace> {
         let around = self.triangles.iter().zip(&self.faces);
         let around = around.filter(|(triangle, _)| triangle.contains(&vertex));
         around.map(|(_, face)| *face).collect()
     }
 
     /// Emits a triangle of table points.
-    pub(in crate::extract) fn push(&mut self, triangle: [u32; 3], face: TriangleFace) {
+    pub(in crate::extract) fn push(&mut self, triangle: [u32; 3], face: OrientedFace) {
         let triangle = triangle.map(|p| self.image_of_point(p));
         self.triangles.push(triangle);
         self.faces.push(face);
@@ -190,7 +191,7 @@ impl<'a> Assembly<'a> {
         match self.vertices[vertex as usize] {
             Corner::Point(point) => Arc::clone(self.table.point(point)),
             Corner::Source(slot, index) => {
-                let mesh = self.sources.get(slot as usize).mesh();
+                let mesh = self.sources.get(slot).mesh();
                 let place = mesh.map_or([0; 3], |m| m.vertices[index as usize]);
                 Arc::new(Vertex::lattice(place))
             }

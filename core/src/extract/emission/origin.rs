@@ -1,10 +1,10 @@
 //! Which source face a new triangle of a joined polygon comes from.
 
 use crate::extract::joining::planes::PlaneGroup;
-use crate::extract::mesh::TriangleFace;
 use crate::extract::triangulate::Planar;
 use crate::extract::vertices::Projection;
 use crate::merge::lists::list::Sources;
+use crate::mesh::handle::OrientedFace;
 use crate::mesh::source::Shape;
 
 /// The faces of one plane in a projection, to be asked for the one at a point.
@@ -17,7 +17,7 @@ pub struct Owners {
 }
 
 struct Owner {
-    face: TriangleFace,
+    face: OrientedFace,
     rank: usize,
     corners: Option<[[f64; 2]; 3]>,
     low: f64,
@@ -38,7 +38,7 @@ impl Owners {
     }
 
     /// The face at the centre of a triangle, or the first face if rounding finds none.
-    pub fn at_centre(&self, triangle: [u32; 3], view: &Projection) -> TriangleFace {
+    pub fn at_centre(&self, triangle: [u32; 3], view: &Projection) -> OrientedFace {
         let corners = triangle.map(|p| view.approx(p));
         let centre = [0, 1].map(|i| corners.iter().map(|c| c[i]).sum::<f64>() / 3.0);
         let end = self.faces.partition_point(|f| f.low <= centre[0]);
@@ -48,14 +48,14 @@ impl Owners {
             .filter(|f| f.holds(centre))
             .min_by_key(|f| f.rank)
             .or_else(|| self.faces.iter().min_by_key(|f| f.rank))
-            .map_or_else(TriangleFace::default, |f| f.face)
+            .map_or_else(OrientedFace::default, |f| f.face)
     }
 }
 
 impl Owner {
-    fn new(face: TriangleFace, rank: usize, view: &Projection, sources: &Sources) -> Self {
-        let corners = match sources.get(face.slot as usize).shape() {
-            Shape::Mesh(mesh) => Some(mesh.corners(face.face).map(|p| view.flat(&p))),
+    fn new(face: OrientedFace, rank: usize, view: &Projection, sources: &Sources) -> Self {
+        let corners = match sources.get(face.slot()).shape() {
+            Shape::Mesh(mesh) => Some(mesh.corners(face.id()).map(|p| view.flat(&p))),
             Shape::HalfSpace(_) => None,
         };
         let low = corners.map_or(f64::NEG_INFINITY, |c| c[0][0].min(c[1][0]).min(c[2][0]));

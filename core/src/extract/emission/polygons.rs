@@ -3,43 +3,40 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use rustc_hash::FxHashMap as HashMap;
 
 use super::assembly::Assembly;
 use super::origin::Owners;
-use crate::extract::boundary::leaves::Fate;
 use crate::extract::failure::Overlap;
 use crate::extract::joining::planes::PlaneGroup;
 use crate::extract::joining::seams::{Edge, InnerPoints};
-use crate::extract::mesh::TriangleFace;
 use crate::extract::triangulate::{triangulate, Planar};
 use crate::extract::vertices::Projection;
 use crate::geometry::plane::Plane;
 use crate::interrupt::{carried, poll};
+use crate::mesh::handle::OrientedFace;
 use crate::mesh::tasks::{in_pool, CHUNK};
 
 /// Triangles, and the face that each lies in.
-type Triangles = Vec<([u32; 3], TriangleFace)>;
+type Triangles = Vec<([u32; 3], OrientedFace)>;
 
 impl Assembly<'_> {
     /// Triangulates a whole face that received vertices on its edges.
     pub(in crate::extract) fn emit_split(
         &mut self,
-        slot: u32,
-        face: u32,
-        fates: &[Vec<Fate>],
-        split: &HashMap<(u32, u32), [Vec<u32>; 3]>,
+        face: OrientedFace,
+        inner: &[Vec<u32>; 3],
     ) -> Result<(), Overlap> {
-        let source = Arc::clone(self.sources.get(slot as usize));
+        let (slot, id) = (face.slot(), face.id());
+        let source = Arc::clone(self.sources.get(slot));
         let Some(mesh) = source.mesh() else {
             return Ok(());
         };
-        let flip = fates[slot as usize][face as usize] == Fate::Whole(true);
-        let corners = mesh.faces[face as usize].map(|v| self.point_of(slot, mesh, v));
+        let flip = face.orientation.is_opposite();
+        let corners = mesh.vertices_of(id).map(|v| self.point_of(slot, mesh, v));
         let mut ring = Vec::new();
         for i in 0..3 {
             ring.push(corners[i]);
-            let inner = split[&(slot, face)][i].iter();
+            let inner = inner[i].iter();
             if flip {
                 ring.extend(inner.rev());
             } else {
@@ -52,15 +49,14 @@ impl Assembly<'_> {
         let edges: Vec<(u32, u32)> = (0..ring.len())
             .map(|i| (ring[i], ring[(i + 1) % ring.len()]))
             .collect();
-        let plane = source.plane(face);
+        let plane = source.plane(id);
         let plane = if flip {
             plane.flipped()
         } else {
             (*plane).clone()
         };
-        let own = TriangleFace { slot, face, flip };
-        for triangle in self.triangulated(&plane, &edges, &[own])? {
-            self.push(triangle, own);
+        for triangle in self.triangulated(&plane, &edges, &[face])? {
+            self.push(triangle, face);
         }
         Ok(())
     }
@@ -123,7 +119,7 @@ impl Assembly<'_> {
         &self,
         plane: &Plane,
         edges: &[(u32, u32)],
-        faces: &[TriangleFace],
+        faces: &[OrientedFace],
     ) -> Result<Vec<[u32; 3]>, Overlap> {
         let view = Projection::onto(plane, &self.table);
         let overlap = |sign: String| Overlap {

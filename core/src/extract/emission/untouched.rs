@@ -5,8 +5,9 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::extract::boundary::leaves::Fate;
-use crate::extract::mesh::TriangleFace;
+use crate::geometry::side::Orientation;
 use crate::interrupt::{carried, spend};
+use crate::mesh::handle::{FaceId, OrientedFace, Slot, SourceFace};
 use crate::mesh::tasks::{each_chunk, in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
 
@@ -23,12 +24,12 @@ pub struct Untouched {
 
 /// The faces of a source, of which the whole ones are to be emitted.
 pub struct WholeFaces<'a> {
-    /// The source's slot.
-    pub slot: u32,
+    /// The source.
+    pub slot: Slot,
     /// The fates of its faces.
     pub fates: &'a [Fate],
-    /// Slot and number of the whole faces that are left out, ascending.
-    pub split: &'a [(u32, u32)],
+    /// The whole faces that are left out, ascending.
+    pub split: &'a [SourceFace],
 }
 
 /// A chunk of faces and the places of its triangles.
@@ -37,7 +38,7 @@ struct Task<'a> {
     first_triangle: u32,
     fates: &'a [Fate],
     triangles: &'a mut [[u32; 3]],
-    faces: &'a mut [TriangleFace],
+    faces: &'a mut [OrientedFace],
 }
 
 impl Untouched {
@@ -56,13 +57,13 @@ impl Untouched {
         images: &[u32],
         whole: &WholeFaces,
         triangles: &mut Vec<[u32; 3]>,
-        faces: &mut Vec<TriangleFace>,
+        faces: &mut Vec<OrientedFace>,
     ) {
         let counts = each_chunk(whole.fates, |first, fates| whole.kept(first, fates).count());
         let start = triangles.len();
         self.count = start + counts.iter().sum::<usize>();
         triangles.resize(self.count, [0; 3]);
-        faces.resize(self.count, TriangleFace::default());
+        faces.resize(self.count, OrientedFace::default());
         let mut tasks = Vec::with_capacity(counts.len());
         let mut rest = (&mut triangles[start..], &mut faces[start..]);
         let mut first_triangle = start as u32;
@@ -99,14 +100,16 @@ impl WholeFaces<'_> {
         &'a self,
         first: usize,
         fates: &'a [Fate],
-    ) -> impl Iterator<Item = (u32, bool)> + 'a {
-        let start = self.split.partition_point(|s| (s.1 as usize) < first);
-        let mut split = self.split[start..].iter().map(|s| s.1).peekable();
-        (first as u32..).zip(fates).filter_map(move |(face, fate)| {
-            let Fate::Whole(flip) = *fate else {
+    ) -> impl Iterator<Item = OrientedFace> + 'a {
+        let start = self.split.partition_point(|s| s.id.place() < first);
+        let mut split = self.split[start..].iter().peekable();
+        (first as u32..).zip(fates).filter_map(move |(id, fate)| {
+            let Fate::Whole(orientation) = *fate else {
                 return None;
             };
-            split.next_if_eq(&face).is_none().then_some((face, flip))
+            let face = SourceFace::new(self.slot, FaceId(id));
+            let is_left_out = split.next_if_eq(&&face).is_some();
+            (!is_left_out).then_some(face.oriented(orientation))
         })
     }
 }
@@ -123,15 +126,13 @@ impl Task<'_> {
         let mut special = Vec::new();
         let out = self.triangles.iter_mut().zip(self.faces.iter_mut());
         let kept = whole.kept(self.first_face, self.fates);
-        for (((face, flip), (triangle, origin)), number) in kept.zip(out).zip(self.first_triangle..)
-        {
-            let [a, b, c] = mesh.faces[face as usize].map(|v| images[v as usize]);
-            *triangle = if flip { [a, c, b] } else { [a, b, c] };
-            *origin = TriangleFace {
-                slot: whole.slot,
-                face,
-                flip,
+        for ((face, (triangle, origin)), number) in kept.zip(out).zip(self.first_triangle..) {
+            let [a, b, c] = mesh.vertices_of(face.id()).map(|v| images[v as usize]);
+            *triangle = match face.orientation {
+                Orientation::Same => [a, b, c],
+                Orientation::Opposite => [a, c, b],
             };
+            *origin = face;
             if [a, b, c].iter().any(|v| !own.contains(v)) {
                 special.push(number);
             }

@@ -1,5 +1,6 @@
 //! Which faces of one plane may become one polygon.
 
+use crate::mesh::handle::SourceFace;
 use crate::mesh::source::Source;
 
 /// What each face belongs to, by its source's slot and the number it had in its input.
@@ -19,9 +20,9 @@ impl Patches {
     }
 
     /// What a face belongs to.
-    pub fn of(&self, slot: u32, source: &Source, face: u32) -> u32 {
-        let own = self.0.get(slot as usize).and_then(Option::as_ref);
-        let found = own.and_then(|own| own.get(source.number(face) as usize));
+    pub fn of(&self, face: SourceFace, source: &Source) -> u32 {
+        let own = self.0.get(face.slot.place()).and_then(Option::as_ref);
+        let found = own.and_then(|own| own.get(source.number(face.id) as usize));
         found.copied().unwrap_or(COMMON)
     }
 }

@@ -6,16 +6,17 @@ use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use smallvec::SmallVec;
 
 use crate::extract::boundary::collect::{Boundary, CutFace};
-use crate::extract::boundary::leaves::Fate;
+use crate::extract::boundary::leaves::{Fate, Fates};
 use crate::extract::boundary::rim::{FrontierEdge, Rims};
 use crate::extract::joining::patches::Patches;
-use crate::extract::mesh::TriangleFace;
 use crate::geometry::line::{LineKey, PlaneResidues};
 use crate::geometry::outline::{BareEdge, Outline, OutlineEdge};
 use crate::geometry::plane::{normal, Plane};
 use crate::geometry::polygon::Polygon;
+use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
+use crate::mesh::handle::{OrientedFace, SourceFace};
 
 /// All boundary in one oriented plane that is not left as it came.
 #[derive(Debug)]
@@ -23,7 +24,7 @@ pub struct PlaneGroup {
     /// The plane, inside on its minus side.
     pub plane: Arc<Plane>,
     /// The faces that lie in it, ascending.
-    pub faces: Vec<TriangleFace>,
+    pub faces: Vec<OrientedFace>,
     /// The outline, counterclockwise as seen from outside.
     pub outline: Outline,
 }
@@ -44,7 +45,7 @@ impl PlaneGroup {
 struct Gathered {
     plane: Arc<Plane>,
     patch: u32,
-    faces: Vec<TriangleFace>,
+    faces: Vec<OrientedFace>,
     /// The outlines of cut faces.
     cut: SmallVec<[Outline; 1]>,
     /// The edges of whole faces.
@@ -74,10 +75,10 @@ struct Grouping<'a> {
     sources: &'a Sources,
     patches: &'a Patches,
     join: bool,
-    fates: Vec<Vec<Fate>>,
+    fates: Fates,
     groups: Vec<Gathered>,
     by_plane: HashMap<(Arc<Plane>, u32), usize>,
-    open: Vec<(u32, u32, bool, usize)>,
+    open: Vec<(OrientedFace, usize)>,
     rims: Rims,
 }
 
@@ -90,7 +91,7 @@ pub fn group(
     sources: &Sources,
     patches: &Patches,
     join: bool,
-) -> (Vec<Vec<Fate>>, Vec<PlaneGroup>, Rims) {
+) -> (Fates, Vec<PlaneGroup>, Rims) {
     let mut grouping = Grouping {
         sources,
         patches,
@@ -118,9 +119,9 @@ pub fn group(
 
 impl Grouping<'_> {
     /// The group of a face's plane and patch.
-    fn group_of(&mut self, slot: u32, face: u32, flip: bool) -> usize {
-        let plane = self.oriented_plane(slot, face, flip);
-        let patch = self.patch(slot, face);
+    fn group_of(&mut self, face: OrientedFace) -> usize {
+        let plane = self.oriented_plane(face);
+        let patch = self.patch(face);
         let next = self.groups.len();
         let at = if self.join {
             let key = (Arc::clone(&plane), patch);
@@ -141,81 +142,79 @@ impl Grouping<'_> {
     }
 
     fn add_cut(&mut self, cut: CutFace) {
-        let (slot, face, flip) = (cut.slot, cut.face, cut.flip);
-        let at = self.group_of(slot, face, flip);
-        let outline = if flip {
-            cut.outline.flipped()
-        } else {
-            cut.outline
+        let face = cut.face;
+        let at = self.group_of(face);
+        let outline = match face.orientation {
+            Orientation::Same => cut.outline,
+            Orientation::Opposite => cut.outline.flipped(),
         };
         let group = &mut self.groups[at];
-        group.faces.push(TriangleFace { slot, face, flip });
+        group.faces.push(face);
         group.cut.push(outline);
-        self.open.push((slot, face, flip, at));
+        self.open.push((face, at));
     }
 
-    fn oriented_plane(&self, slot: u32, face: u32, flip: bool) -> Arc<Plane> {
-        let plane = self.sources.get(slot as usize).plane(face);
-        if flip {
-            Arc::new(plane.flipped())
-        } else {
-            plane
+    fn oriented_plane(&self, face: OrientedFace) -> Arc<Plane> {
+        let plane = self.sources.get(face.slot()).plane(face.id());
+        match face.orientation {
+            Orientation::Same => plane,
+            Orientation::Opposite => Arc::new(plane.flipped()),
         }
     }
 
-    fn patch(&self, slot: u32, face: u32) -> u32 {
-        let source = self.sources.get(slot as usize);
-        self.patches.of(slot, source, face)
+    fn patch(&self, face: OrientedFace) -> u32 {
+        self.patches.of(face.face, self.sources.get(face.slot()))
     }
 
     /// Whether a face lies in the plane of a group, is turned as the group is, and of its patch.
-    fn lies_in(&self, slot: u32, face: u32, flip: bool, group: usize) -> bool {
-        let Some(mesh) = self.sources.get(slot as usize).mesh() else {
+    fn lies_in(&self, face: OrientedFace, group: usize) -> bool {
+        let Some(mesh) = self.sources.get(face.slot()).mesh() else {
             return false;
         };
-        if self.patch(slot, face) != self.groups[group].patch {
+        if self.patch(face) != self.groups[group].patch {
             return false;
         }
-        let (plane, [a, b, c]) = (&self.groups[group].plane, mesh.corners(face));
+        let (plane, [a, b, c]) = (&self.groups[group].plane, mesh.corners(face.id()));
         if [a, b, c].iter().any(|p| plane.side_of_lattice(p) != 0) {
             return false;
         }
         let axis = plane.main_axis();
-        (normal(&a, &b, &c)[axis] < 0) ^ (plane.normal()[axis] < 0) == flip
+        let opposite = (normal(&a, &b, &c)[axis] < 0) != (plane.normal()[axis] < 0);
+        Orientation::turned_around(opposite) == face.orientation
     }
 
     /// Moves a whole face into the group of its plane.
-    fn absorb(&mut self, slot: u32, face: u32, flip: bool, group: usize) {
-        let source = self.sources.get(slot as usize);
+    fn absorb(&mut self, face: OrientedFace, group: usize) {
+        let source = self.sources.get(face.slot());
         let Some(mesh) = source.mesh() else {
             return;
         };
-        self.fates[slot as usize][face as usize] = Fate::Cut;
-        self.rims.outdated(slot);
-        let polygon = Polygon::triangle(&mesh.corners(face), source.plane(face));
+        self.fates[face.face] = Fate::Cut;
+        self.rims.outdated(face.slot());
+        let polygon = Polygon::triangle(&mesh.corners(face.id()), source.plane(face.id()));
         let edges = OutlineEdge::all_of(&polygon);
         let faces = &mut self.groups[group].faces;
-        faces.push(TriangleFace { slot, face, flip });
+        faces.push(face);
         let target = &mut self.groups[group].whole;
-        if flip {
-            target.extend(edges.map(|e| e.reversed()));
-        } else {
-            target.extend(edges);
+        match face.orientation {
+            Orientation::Same => target.extend(edges),
+            Orientation::Opposite => target.extend(edges.map(|e| e.reversed())),
         }
-        self.open.push((slot, face, flip, group));
+        self.open.push((face, group));
     }
 
     /// Absorbs the whole faces that continue a group's faces across an edge in the same plane.
     fn spread(&mut self) {
-        while let Some((slot, face, flip, group)) = self.open.pop() {
+        while let Some((face, group)) = self.open.pop() {
             poll();
-            for half in 3 * face..3 * face + 3 {
-                let Some(next) = self.rims.across(slot, half, self.sources) else {
+            for half in face.id().half_edges() {
+                let Some(next) = self.rims.across(face.slot(), half, self.sources) else {
                     continue;
                 };
-                let whole = self.fates[slot as usize][next as usize] == Fate::Whole(flip);
-                if whole && self.lies_in(slot, next, flip, group) {
-                    self.absorb(slot, next, flip, group);
+                let next = SourceFace::new(face.slot(), next).oriented(face.orientation);
+                let whole = self.fates[next.face] == Fate::Whole(next.orientation);
+                if whole && self.lies_in(next, group) {
+                    self.absorb(next, group);
                 }
             }
         }
@@ -228,10 +227,10 @@ impl Grouping<'_> {
         // Faces that are alone in their plane share no line there.
         let mut alone: Vec<bool> = self.groups.iter().map(|g| g.faces.is_empty()).collect();
         for pair in candidates.windows(2).filter(|p| p[0].group == p[1].group) {
-            let [p, q] = [&pair[0], &pair[1]].map(|c| (c.edge.slot, c.edge.half / 3));
+            let [p, q] = [&pair[0], &pair[1]].map(|c| c.face.face);
             alone[pair[0].group] &= p == q;
         }
-        let mut lines: HashMap<(usize, LineKey), Option<(u32, u32)>> = HashMap::default();
+        let mut lines: HashMap<(usize, LineKey), Option<SourceFace>> = HashMap::default();
         let near = candidates.iter().filter(|c| !alone[c.group]);
         let keyed: Vec<(&Candidate, LineKey)> =
             near.map(|c| (c, c.edge.line(self.sources))).collect();
@@ -247,7 +246,7 @@ impl Grouping<'_> {
             lines.extend(own.map(|line| ((*at, line), None)));
         }
         for (c, line) in &keyed {
-            let face = (c.edge.slot, c.edge.half / 3);
+            let face = c.face.face;
             let first = lines.entry((c.group, *line)).or_insert(Some(face));
             if *first != Some(face) {
                 *first = None;
@@ -260,9 +259,8 @@ impl Grouping<'_> {
         shared.sort_unstable_by_key(|c| c.number);
         for c in shared {
             poll();
-            let (slot, face) = (c.edge.slot, c.edge.half / 3);
-            if self.fates[slot as usize][face as usize] == Fate::Whole(c.flip) {
-                self.absorb(slot, face, c.flip, c.group);
+            if self.fates[c.face.face] == Fate::Whole(c.face.orientation) {
+                self.absorb(c.face, c.group);
             }
         }
     }
@@ -272,21 +270,22 @@ impl Grouping<'_> {
         let frontier = self.rims.frontier(&self.fates, self.sources);
         let mut candidates: Vec<Candidate> = Vec::with_capacity(frontier.len());
         for (number, edge) in (0..).zip(frontier) {
-            let (slot, face) = (edge.slot, edge.half / 3);
-            let Fate::Whole(flip) = self.fates[slot as usize][face as usize] else {
+            let face = edge.face();
+            let Fate::Whole(orientation) = self.fates[face] else {
                 continue;
             };
+            let face = face.oriented(orientation);
             let last = candidates.last();
-            let known = last.filter(|c| (c.edge.slot, c.edge.half / 3) == (slot, face));
+            let known = last.filter(|c| c.face == face);
             let group = match known {
                 Some(c) => c.group,
-                None => self.group_of(slot, face, flip),
+                None => self.group_of(face),
             };
             candidates.push(Candidate {
                 group,
                 number,
                 edge,
-                flip,
+                face,
             });
         }
         candidates.sort_unstable_by_key(|c| (c.group, c.number));
@@ -301,5 +300,5 @@ struct Candidate {
     /// The place in the frontier.
     number: u32,
     edge: FrontierEdge,
-    flip: bool,
+    face: OrientedFace,
 }

@@ -6,10 +6,11 @@ use super::unfold::{turned, unfold};
 use crate::error::Result;
 use crate::extract::assemble::assemble_patches;
 use crate::extract::joining::patches::Patches;
-use crate::extract::mesh::{Corner, ExactMesh, Mesh, TriangleFace};
+use crate::extract::mesh::{Corner, ExactMesh, Mesh};
 use crate::geometry::vertex::Vertex;
 use crate::merge::lists::list::Sources;
 use crate::mesh::finding::{Finding, Severity};
+use crate::mesh::handle::OrientedFace;
 use crate::mesh::tasks::fill_chunks;
 use crate::tree::solid::Solid;
 
@@ -68,9 +69,13 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
     } else {
         turned(&mesh, &exact, &sources)
     };
-    let origin = |f: TriangleFace| [f.slot, sources.get(f.slot as usize).number(f.face)];
+    let origin = |f: OrientedFace| [f.slot().0, sources.get(f.slot()).number(f.id())];
     mesh.origins = exact.faces.iter().copied().map(origin).collect();
-    mesh.flips = exact.faces.iter().map(|f| f.flip).collect();
+    mesh.flips = exact
+        .faces
+        .iter()
+        .map(|f| f.orientation.is_opposite())
+        .collect();
     let renumbered = drop_removed(&mut mesh);
     report(&mut mesh, &unfolded.repaired, &left, &settled, &renumbered);
     mesh.compared = settled.compared as u64;
@@ -83,11 +88,11 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
 /// inputs with each other: on the lattice they do not cross, but their given doubles may.
 fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Settled {
     let changed: Vec<u32> = (exact.untouched as u32..mesh.triangles.len() as u32).collect();
-    let party = |t: u32| exact.faces[t as usize].slot;
+    let party = |t: u32| exact.faces[t as usize].slot().0;
     let corner = |v: u32| exact.vertices.get(v as usize);
     let on_lattice = |v: u32| match corner(v) {
         Some(Corner::Source(slot, vertex)) => {
-            let mesh = solid.sources().get(*slot as usize).mesh()?;
+            let mesh = solid.sources().get(*slot).mesh()?;
             let place = Vertex::lattice(mesh.vertices[*vertex as usize]);
             Some(solid.pitch().position(&place))
         }
@@ -152,7 +157,7 @@ fn position(solid: &Solid, exact: &ExactMesh, corner: Corner) -> [f64; 3] {
     match corner {
         Corner::Point(point) => solid.pitch().position(exact.table.point(point)),
         Corner::Source(slot, vertex) => {
-            let mesh = solid.sources().get(slot as usize).mesh();
+            let mesh = solid.sources().get(slot).mesh();
             mesh.map_or([0.0; 3], |m| m.doubles[vertex as usize])
         }
     }

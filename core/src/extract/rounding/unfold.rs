@@ -6,9 +6,10 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
-use crate::extract::mesh::{Corner, ExactMesh, Mesh};
+use crate::extract::mesh::{outward_normal, Corner, ExactMesh, Mesh};
 use crate::geometry::doubles::{seen_along, turn};
 use crate::geometry::plane::Plane;
+use crate::geometry::side::Orientation;
 use crate::merge::lists::list::Sources;
 
 /// Swaps tried per triangle found turned over; each lowers the number of such triangles.
@@ -74,17 +75,16 @@ struct Planes<'a> {
 
 impl Planes<'_> {
     fn of(&self, triangle: usize) -> Plane {
-        let face = &self.exact.faces[triangle];
-        let plane = self.sources.get(face.slot as usize).plane(face.face);
-        if face.flip {
-            plane.flipped()
-        } else {
-            (*plane).clone()
+        let face = self.exact.faces[triangle];
+        let plane = self.sources.get(face.slot()).plane(face.id());
+        match face.orientation {
+            Orientation::Same => (*plane).clone(),
+            Orientation::Opposite => plane.flipped(),
         }
     }
 
     fn is_turned(&self, mesh: &Mesh, triangle: usize) -> bool {
-        let normal = self.exact.faces[triangle].normal(self.sources);
+        let normal = outward_normal(self.exact.faces[triangle], self.sources);
         is_turned(mesh, &mesh.triangles[triangle], &normal)
     }
 }

@@ -5,10 +5,12 @@ use std::sync::Arc;
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, triangle_change, Segment};
 use crate::geometry::outline::{cancel, OutlineEdge};
+use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 use crate::merge::kernels::kept::is_whole;
 use crate::merge::lists::list::Sources;
 use crate::mesh::cached::Cached;
+use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Branch, Deferred, Group, Node};
 
@@ -73,7 +75,7 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
         }
     }
     let mut faces = held;
-    faces.sort_by_key(|f| (sources.slot(&f.source), f.flip, f.face));
+    faces.sort_by_key(|f| (sources.slot(&f.source), f.orientation, f.face));
     let corner = corner_of(minus, a, cell);
     let plus_corner = corner_of(plus, b, &halves[1].2);
     if plus_corner != corner + change_along_edge(&faces, cell, cut) {
@@ -111,10 +113,7 @@ fn change_along_edge(faces: &[Listed], cell: &Cell, cut: Cut) -> i32 {
         Shape::Mesh(mesh) => triangle_change(&mesh.corners(f.face), &segment),
         Shape::HalfSpace(plane) => plane_change(plane, &segment),
     };
-    faces
-        .iter()
-        .map(|f| if f.flip { -across(f) } else { across(f) })
-        .sum()
+    faces.iter().map(|f| f.orientation.signed(across(f))).sum()
 }
 
 fn small_leaf(branch: &Branch) -> Option<&Deferred> {
@@ -126,14 +125,14 @@ fn small_leaf(branch: &Branch) -> Option<&Deferred> {
 
 struct Listed {
     source: Arc<Source>,
-    flip: bool,
-    face: u32,
+    orientation: Orientation,
+    face: FaceId,
 }
 
 fn listed(branch: &Branch, leaf: &Deferred) -> Vec<Listed> {
-    let entry = |g: &Group, face: &u32| Listed {
+    let entry = |g: &Group, face: &FaceId| Listed {
         source: Arc::clone(&g.source),
-        flip: g.flip ^ branch.complement,
+        orientation: g.orientation.turned_if(branch.complement),
         face: *face,
     };
     leaf.groups
@@ -145,13 +144,13 @@ fn listed(branch: &Branch, leaf: &Deferred) -> Vec<Listed> {
 impl Listed {
     fn same_as(&self, other: &Self) -> bool {
         self.face == other.face
-            && self.flip == other.flip
+            && self.orientation == other.orientation
             && Arc::ptr_eq(&self.source, &other.source)
     }
 
     fn is_in(&self, branch: &Branch, leaf: &Deferred) -> bool {
         leaf.groups.iter().any(|g| {
-            g.flip ^ branch.complement == self.flip
+            g.orientation.turned_if(branch.complement) == self.orientation
                 && Arc::ptr_eq(&g.source, &self.source)
                 && g.faces.binary_search(&self.face).is_ok()
         })
@@ -196,12 +195,12 @@ fn grouped(faces: Vec<Listed>) -> Vec<Group> {
     for f in faces {
         poll();
         match groups.last_mut() {
-            Some(g) if Arc::ptr_eq(&g.source, &f.source) && g.flip == f.flip => {
+            Some(g) if Arc::ptr_eq(&g.source, &f.source) && g.orientation == f.orientation => {
                 g.faces.push(f.face);
             }
             _ => groups.push(Group {
                 source: f.source,
-                flip: f.flip,
+                orientation: f.orientation,
                 faces: vec![f.face],
             }),
         }

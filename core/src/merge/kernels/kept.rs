@@ -8,17 +8,19 @@ use crate::geometry::line::LineKey;
 use crate::geometry::outline::{cancel, BareEdge, OutlineEdge};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
+use crate::geometry::side::Orientation;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
+use crate::mesh::handle::{FaceId, SourceFace};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Deferred, Group, Node, Part, PartElement, Work};
 
 /// What stays of one element with one orientation.
 #[derive(Debug)]
 pub struct Kept {
-    face: (u32, u32),
-    flip: bool,
+    face: SourceFace,
+    orientation: Orientation,
     what: What,
 }
 
@@ -35,39 +37,55 @@ enum What {
 }
 
 impl Kept {
-    /// All of a face in the cell: of a slot and a number.
-    pub fn whole(face: (u32, u32), flip: bool) -> Self {
+    /// All of a face in the cell.
+    pub fn whole(face: SourceFace, orientation: Orientation) -> Self {
         let what = What::Whole;
-        Self { face, flip, what }
+        Self {
+            face,
+            orientation,
+            what,
+        }
     }
 
     /// All of a part in the cell.
-    pub fn part(face: (u32, u32), flip: bool, part: Arc<Part>) -> Self {
+    pub fn part(face: SourceFace, orientation: Orientation, part: Arc<Part>) -> Self {
         let what = What::Part(part);
-        Self { face, flip, what }
+        Self {
+            face,
+            orientation,
+            what,
+        }
     }
 
     /// Convex pieces of a face.
-    pub fn pieces(face: (u32, u32), flip: bool, pieces: Vec<Polygon>) -> Self {
-        Self::joined(face, flip, pieces, Vec::new())
+    pub fn pieces(face: SourceFace, orientation: Orientation, pieces: Vec<Polygon>) -> Self {
+        Self::joined(face, orientation, pieces, Vec::new())
     }
 
     /// Convex pieces of a face, and what some edges on it bound.
     pub fn joined(
-        face: (u32, u32),
-        flip: bool,
+        face: SourceFace,
+        orientation: Orientation,
         pieces: Vec<Polygon>,
         edges: Vec<BareEdge>,
     ) -> Self {
         let what = What::Pieces(pieces, edges);
-        Self { face, flip, what }
+        Self {
+            face,
+            orientation,
+            what,
+        }
     }
 
     /// What an outline bounds: some, but not all of a face in the cell; no two of its edges that
     /// follow each other lie on one line.
-    pub fn outlined(face: (u32, u32), flip: bool, edges: Vec<BareEdge>) -> Self {
+    pub fn outlined(face: SourceFace, orientation: Orientation, edges: Vec<BareEdge>) -> Self {
         let what = What::Outline(edges);
-        Self { face, flip, what }
+        Self {
+            face,
+            orientation,
+            what,
+        }
     }
 
     /// Edges that bound some of it, beside the convex pieces.
@@ -81,7 +99,7 @@ impl Kept {
     /// The convex pieces inside the cell.
     fn polygons(&self, source: &Source, cell: &Cell) -> Cow<'_, [Polygon]> {
         match &self.what {
-            What::Whole => source.clip(self.face.1, cell).into_iter().collect(),
+            What::Whole => source.clip(self.face.id, cell).into_iter().collect(),
             What::Part(part) => {
                 let clipped = part.pieces().into_iter().filter_map(|p| p.clipped(cell));
                 clipped.collect()
@@ -103,22 +121,22 @@ pub fn assemble(
     if kept.is_empty() {
         return Node::Leaf(corner);
     }
-    kept.sort_by_key(|k| (k.face.0, k.flip, k.face.1));
+    kept.sort_by_key(|k| (k.face.slot, k.orientation, k.face.id));
     let mut leaf = Deferred {
         corner,
         work,
         ..Deferred::default()
     };
-    for run in kept.chunk_by_mut(|a, b| a.face == b.face && a.flip == b.flip) {
+    for run in kept.chunk_by_mut(|a, b| a.face == b.face && a.orientation == b.orientation) {
         poll();
-        let (slot, face) = run[0].face;
-        let source = sources.get(slot as usize);
-        let flip = run[0].flip;
+        let SourceFace { slot, id: face } = run[0].face;
+        let source = sources.get(slot);
+        let orientation = run[0].orientation;
         match run {
             [Kept {
                 what: What::Whole, ..
             }] => {
-                list_whole(&mut leaf.groups, source, face, flip);
+                list_whole(&mut leaf.groups, source, face, orientation);
                 continue;
             }
             [Kept {
@@ -126,7 +144,7 @@ pub fn assemble(
                 ..
             }] => {
                 let part = Arc::clone(part);
-                leaf.parts.push(PartElement { part, flip });
+                leaf.parts.push(PartElement { part, orientation });
                 continue;
             }
             [Kept {
@@ -135,23 +153,23 @@ pub fn assemble(
             }] => {
                 let edges = std::mem::take(edges);
                 let part = Arc::new(Part::new(Arc::clone(source), face, *cell, edges));
-                leaf.parts.push(PartElement { part, flip });
+                leaf.parts.push(PartElement { part, orientation });
                 continue;
             }
             _ => {}
         }
         if let Some(edges) = outline(run, source, face, cell) {
             let part = Arc::new(Part::new(Arc::clone(source), face, *cell, edges));
-            leaf.parts.push(PartElement { part, flip });
+            leaf.parts.push(PartElement { part, orientation });
         } else {
-            list_whole(&mut leaf.groups, source, face, flip);
+            list_whole(&mut leaf.groups, source, face, orientation);
         }
     }
     Node::Deferred(leaf)
 }
 
 /// The outline of what stays of a face with one orientation; `None` if that is all of it.
-fn outline(run: &[Kept], source: &Source, face: u32, cell: &Cell) -> Option<Vec<BareEdge>> {
+fn outline(run: &[Kept], source: &Source, face: FaceId, cell: &Cell) -> Option<Vec<BareEdge>> {
     let polygons: Vec<Cow<[Polygon]>> = run.iter().map(|k| k.polygons(source, cell)).collect();
     let polygons: Vec<&Polygon> = polygons.iter().flat_map(|p| p.iter()).collect();
     let mut edges: Vec<BareEdge> = run.iter().flat_map(Kept::edges).cloned().collect();
@@ -167,12 +185,19 @@ fn outline(run: &[Kept], source: &Source, face: u32, cell: &Cell) -> Option<Vec<
     (!whole).then(|| edges.into_iter().map(BareEdge::from).collect())
 }
 
-fn list_whole(groups: &mut Vec<Group>, source: &Arc<Source>, face: u32, flip: bool) {
+fn list_whole(
+    groups: &mut Vec<Group>,
+    source: &Arc<Source>,
+    face: FaceId,
+    orientation: Orientation,
+) {
     match groups.last_mut() {
-        Some(g) if Arc::ptr_eq(&g.source, source) && g.flip == flip => g.faces.push(face),
+        Some(g) if Arc::ptr_eq(&g.source, source) && g.orientation == orientation => {
+            g.faces.push(face);
+        }
         _ => groups.push(Group {
             source: Arc::clone(source),
-            flip,
+            orientation,
             faces: vec![face],
         }),
     }
@@ -181,7 +206,7 @@ fn list_whole(groups: &mut Vec<Group>, source: &Arc<Source>, face: u32, flip: bo
 /// Whether an outline runs only on the face's own edges and the cell's border: then it is the
 /// border of the whole face inside the cell, for a part of a connected set with no border of its
 /// own is all of it.
-pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: u32, cell: &Cell) -> bool {
+pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: FaceId, cell: &Cell) -> bool {
     let ends = edges.iter().map(|e| (&e.from, &e.to, &e.carrier));
     if has_inner(ends, source, face, cell) {
         return false;
@@ -217,7 +242,7 @@ pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: u32, cell: &Cell) 
 fn has_inner<'a>(
     mut edges: impl Iterator<Item = (&'a Arc<Vertex>, &'a Arc<Vertex>, &'a Carrier)>,
     source: &Source,
-    face: u32,
+    face: FaceId,
     cell: &Cell,
 ) -> bool {
     let corners = source.mesh().map(|mesh| mesh.corners(face));

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use super::kept::Kept;
 use crate::geometry::outline::BareEdge;
 use crate::geometry::polygon::Polygon;
+use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
+use crate::mesh::handle::{Slot, SourceFace};
 use crate::tree::node::Part;
 
 /// What stays of an element on one side.
@@ -22,8 +24,8 @@ pub enum Stays {
 
 /// Whose an element is.
 pub enum Owner {
-    /// All of a face: its slot and number.
-    Face((u32, u32)),
+    /// All of a face.
+    Face(SourceFace),
     /// A piece of the part with this number.
     Part(usize),
 }
@@ -42,12 +44,12 @@ impl Stays {
         }
     }
 
-    fn kept(self, face: (u32, u32), flip: bool) -> Option<Kept> {
+    fn kept(self, face: SourceFace, orientation: Orientation) -> Option<Kept> {
         match self {
             Self::Nothing => None,
-            Self::All => Some(Kept::whole(face, flip)),
-            Self::Pieces(polygons) => Some(Kept::pieces(face, flip, polygons)),
-            Self::Outline(edges) => Some(Kept::outlined(face, flip, edges)),
+            Self::All => Some(Kept::whole(face, orientation)),
+            Self::Pieces(polygons) => Some(Kept::pieces(face, orientation, polygons)),
+            Self::Outline(edges) => Some(Kept::outlined(face, orientation, edges)),
         }
     }
 }
@@ -55,7 +57,7 @@ impl Stays {
 /// What stays of all elements, given the parts with their slots, and the polygon of an element.
 pub fn kept(
     settled: impl Iterator<Item = Settled>,
-    parts: &[(&Arc<Part>, u32)],
+    parts: &[(&Arc<Part>, Slot)],
     polygon: impl Fn(usize) -> Option<Polygon>,
 ) -> Vec<Kept> {
     let mut kept = Vec::with_capacity(settled.size_hint().0);
@@ -63,34 +65,40 @@ pub fn kept(
     pieces.resize_with(parts.len(), Default::default);
     for (i, owner, stays) in settled {
         poll();
-        let sides = stays.into_iter().zip([false, true]);
+        let sides = stays.into_iter().zip(Orientation::BOTH);
         match owner {
             Owner::Face(face) => {
-                kept.extend(sides.filter_map(|(stays, flip)| stays.kept(face, flip)));
+                kept.extend(sides.filter_map(|(stays, orientation)| stays.kept(face, orientation)));
             }
             Owner::Part(part) => {
-                sides.for_each(|(stays, flip)| pieces[part][usize::from(flip)].push((i, stays)));
+                sides.for_each(|(stays, orientation)| {
+                    pieces[part][usize::from(orientation.is_opposite())].push((i, stays));
+                });
             }
         }
     }
     for (part, sides) in parts.iter().zip(pieces) {
         poll();
-        let sides = sides.into_iter().zip([false, true]);
-        kept.extend(sides.filter_map(|(pieces, flip)| kept_part(*part, pieces, flip, &polygon)));
+        let sides = sides.into_iter().zip(Orientation::BOTH);
+        kept.extend(
+            sides.filter_map(|(pieces, orientation)| {
+                kept_part(*part, pieces, orientation, &polygon)
+            }),
+        );
     }
     kept
 }
 
 /// A part as it is if all its pieces stay, else what stays of its pieces.
 fn kept_part(
-    (part, slot): (&Arc<Part>, u32),
+    (part, slot): (&Arc<Part>, Slot),
     pieces: Vec<(usize, Stays)>,
-    flip: bool,
+    orientation: Orientation,
     polygon: impl Fn(usize) -> Option<Polygon>,
 ) -> Option<Kept> {
-    let face = (slot, part.face);
+    let face = SourceFace::new(slot, part.face);
     if !pieces.is_empty() && pieces.iter().all(|p| matches!(p.1, Stays::All)) {
-        return Some(Kept::part(face, flip, Arc::clone(part)));
+        return Some(Kept::part(face, orientation, Arc::clone(part)));
     }
     let (mut polygons, mut edges) = (Vec::new(), Vec::new());
     for (i, stays) in pieces {
@@ -102,5 +110,5 @@ fn kept_part(
         }
     }
     let some = !(polygons.is_empty() && edges.is_empty());
-    some.then(|| Kept::joined(face, flip, polygons, edges))
+    some.then(|| Kept::joined(face, orientation, polygons, edges))
 }

@@ -15,7 +15,9 @@ use super::separation::triangle_misses;
 use super::window::{Span, Window};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
+use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
+use crate::mesh::handle::FaceId;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node, Work};
 
@@ -50,8 +52,8 @@ pub struct Bins {
 /// The faces of a group.
 struct Run<'a> {
     mesh: &'a TriangleMesh,
-    faces: &'a [u32],
-    flip: bool,
+    faces: &'a [FaceId],
+    orientation: Orientation,
     first: u32,
 }
 
@@ -90,7 +92,7 @@ impl Bins {
         let (starts, entries) = distribute(&window, &sorted.cells, &rows);
         let corners = |element: u32| {
             let (run, face) = find(runs, element);
-            (run.mesh.corners(face), run.flip)
+            (run.mesh.corners(face), run.orientation)
         };
         Some(Self {
             home: home.clone(),
@@ -165,7 +167,7 @@ impl Bins {
                 let face = |e: &u32| group.faces[(e - first) as usize];
                 groups.push(Group {
                     source: Arc::clone(&group.source),
-                    flip: group.flip ^ self.home.complement,
+                    orientation: group.orientation.turned_if(self.home.complement),
                     faces: own.iter().map(face).collect(),
                 });
             }
@@ -219,7 +221,7 @@ fn runs(leaf: &Deferred) -> Option<Vec<Run<'_>>> {
         runs.push(Run {
             mesh: group.source.mesh()?,
             faces: &group.faces,
-            flip: group.flip,
+            orientation: group.orientation,
             first,
         });
         first += group.faces.len() as u32;
@@ -228,7 +230,7 @@ fn runs(leaf: &Deferred) -> Option<Vec<Run<'_>>> {
 }
 
 /// The run and the face of an element.
-fn find<'a, 'b>(runs: &'a [Run<'b>], element: u32) -> (&'a Run<'b>, u32) {
+fn find<'a, 'b>(runs: &'a [Run<'b>], element: u32) -> (&'a Run<'b>, FaceId) {
     let run = &runs[runs.partition_point(|r| r.first <= element) - 1];
     (run, run.faces[(element - run.first) as usize])
 }
@@ -307,7 +309,7 @@ impl Sorted {
             let mesh = run.mesh;
             if run.is_most() {
                 let codes: Vec<u32> = mesh.vertices.iter().map(|p| window.code(p)).collect();
-                let code = |f: u32| mesh.faces[f as usize].map(|v| codes[v as usize]);
+                let code = |f: FaceId| mesh.vertices_of(f).map(|v| codes[v as usize]);
                 sorted.add(window, run, code);
             } else {
                 sorted.add(window, run, |f| mesh.corners(f).map(|p| window.code(&p)));
@@ -316,7 +318,7 @@ impl Sorted {
         sorted
     }
 
-    fn add(&mut self, window: &Window, run: &Run, codes: impl Fn(u32) -> [u32; 3]) {
+    fn add(&mut self, window: &Window, run: &Run, codes: impl Fn(FaceId) -> [u32; 3]) {
         for (element, face) in (run.first..).zip(run.faces) {
             let [a, b, c] = codes(*face);
             let cell = if a == b && b == c {

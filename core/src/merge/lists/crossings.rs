@@ -8,6 +8,7 @@
 use super::window::{Span, Window};
 use crate::geometry::crossing::{triangle_change, Segment};
 use crate::geometry::plane::Lattice;
+use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 
 /// A line along an axis and a place on it in one word, ordered by line.
@@ -56,23 +57,22 @@ impl Along {
 }
 
 impl Crossings {
-    /// The crossings of spanning faces; `corners` tells a face's corners and whether it is turned
-    /// around.
+    /// The crossings of spanning faces; `corners` tells a face's corners and how it is turned.
     pub fn new(
         window: Window,
         spans: &[Span],
-        corners: impl Fn(u32) -> ([Lattice; 3], bool),
+        corners: impl Fn(u32) -> ([Lattice; 3], Orientation),
     ) -> Self {
         let mut found = [Vec::new(), Vec::new(), Vec::new()];
         for span in spans.iter().filter(|s| crosses_two(s)) {
             poll();
-            let (corners, flip) = corners(span.element);
+            let (corners, orientation) = corners(span.element);
             let mut add = |axis: usize, x: i32, y: i32| {
                 let Some((place, change)) = crossing(&window, span, &corners, axis, [x, y]) else {
                     return;
                 };
                 let line = number(&window, axis, x, y);
-                found[axis].push((key(line, place), if flip { -change } else { change }));
+                found[axis].push((key(line, place), orientation.signed(change)));
             };
             visit_lines(span, &mut add);
         }

@@ -7,8 +7,10 @@ use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, polygon_change, triangle_change, Segment};
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
+use crate::geometry::side::Orientation;
 use crate::interrupt::spend;
 use crate::mesh::cached::Cached;
+use crate::mesh::handle::{FaceId, Slot};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Branch, Deferred, Group, Node, PartElement, Work};
 use crate::tree::table::Table;
@@ -45,21 +47,43 @@ pub struct Record {
     low: [i32; 3],
     high: [i32; 3],
     /// The face.
-    pub face: u32,
-    slot_and_flip: u32,
+    pub face: FaceId,
+    run: Run,
 }
 
-const FLIP: u32 = 1 << 31;
+/// A slot and an orientation in one word: what the faces of a group have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Run(u32);
 
-impl Record {
-    /// The source's place in the evaluation's table.
-    pub fn slot(&self) -> usize {
-        (self.slot_and_flip & !FLIP) as usize
+impl Run {
+    /// The bit of the orientation: there are less than 2³¹ sources.
+    const OPPOSITE: u32 = 1 << 31;
+
+    fn new(slot: Slot, orientation: Orientation) -> Self {
+        match orientation {
+            Orientation::Same => Self(slot.0),
+            Orientation::Opposite => Self(slot.0 | Self::OPPOSITE),
+        }
     }
 
-    /// Whether inside and outside are exchanged.
-    pub fn flip(&self) -> bool {
-        self.slot_and_flip & FLIP != 0
+    fn slot(self) -> Slot {
+        Slot(self.0 & !Self::OPPOSITE)
+    }
+
+    fn orientation(self) -> Orientation {
+        Orientation::turned_around(self.0 & Self::OPPOSITE != 0)
+    }
+}
+
+impl Record {
+    /// The source in the evaluation's table.
+    pub fn slot(&self) -> Slot {
+        self.run.slot()
+    }
+
+    /// How the face is turned, seen from the source.
+    pub fn orientation(&self) -> Orientation {
+        self.run.orientation()
     }
 }
 
@@ -110,13 +134,16 @@ impl Sources {
     }
 
     /// The source in a slot.
-    pub fn get(&self, slot: usize) -> &Arc<Source> {
+    pub fn get(&self, slot: Slot) -> &Arc<Source> {
         self.0.get(slot)
     }
 
     /// The slot of a source.
-    pub fn slot(&self, source: &Source) -> usize {
-        self.0.slot(source).unwrap_or(usize::MAX)
+    ///
+    /// # Panics
+    /// If it is none of these.
+    pub fn slot(&self, source: &Source) -> Slot {
+        self.0.slot(source).expect("a source of the table")
     }
 }
 
@@ -149,20 +176,14 @@ impl List {
             work: leaf.work,
         };
         for group in &leaf.groups {
-            let slot = sources.slot(&group.source) as u32;
-            let flip = if group.flip ^ branch.complement {
-                FLIP
-            } else {
-                0
-            };
-            let record = |face: &u32| frame.record(&group.source, *face, slot | flip);
+            let orientation = group.orientation.turned_if(branch.complement);
+            let run = Run::new(sources.slot(&group.source), orientation);
+            let record = |face: &FaceId| frame.record(&group.source, *face, run);
             list.records.extend(group.faces.iter().map(record));
         }
         for element in &leaf.parts {
-            let flip = element.flip ^ branch.complement;
-            let part = Arc::clone(&element.part);
-            list.parts
-                .push(frame.part_record(PartElement { part, flip }, OnceLock::new()));
+            let turned = element.turned_if(branch.complement);
+            list.parts.push(frame.part_record(turned, OnceLock::new()));
         }
         list
     }
@@ -173,7 +194,7 @@ impl List {
         let Node::Deferred(leaf) = &*branch.node else {
             return None;
         };
-        let held = |source: &Source, face: &u32| {
+        let held = |source: &Source, face: &FaceId| {
             let (low, high) = source.face_box(*face);
             branch.cell.holds_box(&low, &high)
         };
@@ -256,7 +277,7 @@ impl List {
     fn reframe(&mut self, cell: &Cell, sources: &Sources) {
         let frame = Frame::of(cell);
         for r in &mut self.records {
-            *r = frame.record(sources.get(r.slot()), r.face, r.slot_and_flip);
+            *r = frame.record(sources.get(r.slot()), r.face, r.run);
         }
         for p in &mut self.parts {
             *p = frame.part_record(p.element.clone(), p.pieces.clone());
@@ -284,7 +305,7 @@ impl List {
                 Shape::Mesh(mesh) => triangle_change(&mesh.corners(r.face), &segment),
                 Shape::HalfSpace(plane) => plane_change(plane, &segment),
             };
-            change += if r.flip() { -across } else { across };
+            change += r.orientation().signed(across);
         }
         let widened = |p: &&PartRecord| {
             (0..3).all(|i| {
@@ -294,7 +315,7 @@ impl List {
         for p in self.parts.iter().filter(widened) {
             spend(p.pieces().len());
             let across: i32 = p.pieces().iter().map(|q| polygon_change(q, &segment)).sum();
-            change += if p.element.flip { -across } else { across };
+            change += p.element.orientation.signed(across);
         }
         change
     }
@@ -312,12 +333,12 @@ impl List {
         let mut groups: Vec<Group> = Vec::new();
         let mut open = None;
         for r in &self.records {
-            if open != Some(r.slot_and_flip) {
-                open = Some(r.slot_and_flip);
+            if open != Some(r.run) {
+                open = Some(r.run);
                 let source = Arc::clone(sources.get(r.slot()));
                 groups.push(Group {
                     source,
-                    flip: r.flip() ^ complement,
+                    orientation: r.orientation().turned_if(complement),
                     faces: Vec::new(),
                 });
             }
@@ -325,10 +346,7 @@ impl List {
                 group.faces.push(r.face);
             }
         }
-        let turned = |p: PartRecord| PartElement {
-            flip: p.element.flip ^ complement,
-            ..p.element
-        };
+        let turned = |p: PartRecord| p.element.turned_if(complement);
         let parts = self.parts.into_iter().map(turned).collect();
         Node::Deferred(Deferred {
             groups,
@@ -349,7 +367,7 @@ fn above(parts: &[PartRecord], axis: usize, at: i32) -> Vec<PartRecord> {
 }
 
 impl Frame {
-    fn record(&self, source: &Source, face: u32, slot_and_flip: u32) -> Record {
+    fn record(&self, source: &Source, face: FaceId, run: Run) -> Record {
         let (low, high) = match source.shape() {
             Shape::Mesh(mesh) => {
                 let (low, high) = mesh.face_box(face);
@@ -362,7 +380,7 @@ impl Frame {
             low,
             high,
             face,
-            slot_and_flip,
+            run,
         }
     }
 

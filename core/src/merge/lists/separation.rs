@@ -2,13 +2,14 @@
 
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::{Lattice, Plane};
+use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
 
 /// Relative slack of the separating axis tests in doubles: far above their rounding.
 const SLACK: f64 = 1e-13;
 
 /// Whether a face certainly misses a closed cell; errs on no.
-pub fn misses(source: &Source, face: u32, cell: &Cell) -> bool {
+pub fn misses(source: &Source, face: FaceId, cell: &Cell) -> bool {
     let (low, high) = (cell.low(), cell.high());
     match source.shape() {
         Shape::HalfSpace(plane) => plane_misses(plane, low, &high),

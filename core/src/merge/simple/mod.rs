@@ -17,7 +17,9 @@ use crate::error::Result;
 use crate::geometry::cell::Cell;
 use crate::geometry::fixed::sixfold_flux;
 use crate::geometry::plane::Lattice;
+use crate::geometry::side::Orientation;
 use crate::interrupt::{poll, spend};
+use crate::mesh::handle::{FaceId, Slot};
 use crate::mesh::source::Source;
 use crate::mesh::tasks::both;
 use crate::mesh::topology::NONE;
@@ -49,11 +51,7 @@ pub fn is_simple(solid: &Solid, sources: &Sources) -> Result<Option<bool>> {
     let Some((leaf, source, mesh)) = only_mesh(solid) else {
         return Ok(None);
     };
-    let all = leaf.groups[0]
-        .faces
-        .iter()
-        .copied()
-        .eq(0..mesh.faces.len() as u32);
+    let all = leaf.groups[0].faces.iter().copied().eq(mesh.face_ids());
     let closed = || source.joints().is_some_and(|j| j.open.is_empty());
     if all && closed() && is_star_shaped(mesh) {
         return Ok(Some(true));
@@ -62,7 +60,7 @@ pub fn is_simple(solid: &Solid, sources: &Sources) -> Result<Option<bool>> {
     if let [alone] = check.seen.as_mut_slice() {
         // A single shell whose faces keep clear of each other has one number on either side of all
         // of them, and which is 0 is plain from the sign of its volume.
-        *alone.get_mut() = is_outward(mesh, 0..mesh.faces.len() as u32);
+        *alone.get_mut() = is_outward(mesh, mesh.face_ids());
     }
     check.cell(solid.root().cell, List::open(leaf, solid.root(), sources));
     Ok(Some(!check.overlap.load(Ordering::Relaxed)))
@@ -73,7 +71,7 @@ fn only_mesh(solid: &Solid) -> Option<(&Deferred, &Source, &TriangleMesh)> {
     let (Node::Deferred(leaf), 1) = (&*solid.root().node, solid.sources().len()) else {
         return None;
     };
-    let source = solid.sources().get(0);
+    let source = solid.sources().get(Slot(0));
     let alone = leaf.parts.is_empty() && leaf.groups.len() == 1;
     Some((leaf, source, source.mesh().filter(|_| alone)?))
 }
@@ -86,14 +84,15 @@ fn only_mesh(solid: &Solid) -> Option<(&Deferred, &Source, &TriangleMesh)> {
 /// As [`is_simple`]; shells that overlap are not compared with each other.
 pub fn simple_shells(solid: &Solid, sources: &Sources) -> Option<Vec<Branch>> {
     let (leaf, source, mesh) = only_mesh(solid)?;
-    let whole = leaf.corner == 0 && !solid.root().complement && !leaf.groups[0].flip;
+    let whole =
+        leaf.corner == 0 && !solid.root().complement && !leaf.groups[0].orientation.is_opposite();
     let closed = source.joints().is_some_and(|j| j.open.is_empty());
     if !whole || !closed || leaf.len() != mesh.faces.len() {
         return None;
     }
     let mut check = Check::new(source, mesh, sources);
     let mut faces = vec![Vec::new(); check.seen.len()];
-    for (face, shell) in (0u32..).zip(&check.shells) {
+    for (face, shell) in FaceId::all().zip(&check.shells) {
         faces[*shell as usize].push(face);
     }
     if faces.len() < 2 {
@@ -116,12 +115,12 @@ pub fn simple_shells(solid: &Solid, sources: &Sources) -> Option<Vec<Branch>> {
 }
 
 /// A branch of some faces of a mesh.
-fn shell_of(source: &Arc<Source>, faces: Vec<u32>) -> Branch {
+fn shell_of(source: &Arc<Source>, faces: Vec<FaceId>) -> Branch {
     let around = source.box_around(&faces);
     let cell = around.map_or(Cell::UNIVERSE, |(low, high)| Cell::around(&low, &high));
     let group = Group {
         source: Arc::clone(source),
-        flip: false,
+        orientation: Orientation::Same,
         faces,
     };
     let leaf = Deferred {
@@ -132,7 +131,7 @@ fn shell_of(source: &Arc<Source>, faces: Vec<u32>) -> Branch {
 }
 
 /// Whether faces enclose more inside than outside.
-fn is_outward(mesh: &TriangleMesh, faces: impl Iterator<Item = u32>) -> bool {
+fn is_outward(mesh: &TriangleMesh, faces: impl Iterator<Item = FaceId>) -> bool {
     let mut volume = Int::<4>::ZERO;
     for face in faces {
         volume += sixfold_flux(&mesh.corners(face));
@@ -209,11 +208,11 @@ impl<'a> Check<'a> {
     }
 
     fn leaf(&self, cell: &Cell, list: &List) {
-        let faces: Vec<u32> = list.records.iter().map(|r| r.face).collect();
+        let faces: Vec<FaceId> = list.records.iter().map(|r| r.face).collect();
         let shells = || {
             faces
                 .iter()
-                .map(|f| &self.seen[self.shells[*f as usize] as usize])
+                .map(|f| &self.seen[self.shells[f.place()] as usize])
         };
         let known = shells().all(|s| s.load(Ordering::Relaxed));
         if faces.is_empty() || (known && self.is_clean(&faces)) {
@@ -224,14 +223,14 @@ impl<'a> Check<'a> {
             self.overlap.store(true, Ordering::Relaxed);
         }
         for face in leaf.faces() {
-            self.seen[self.shells[face as usize] as usize].store(true, Ordering::Relaxed);
+            self.seen[self.shells[face.place()] as usize].store(true, Ordering::Relaxed);
         }
     }
 
     /// Whether no two of the faces overlap, as far as a quick look can tell; errs on no.
-    fn is_clean(&self, faces: &[u32]) -> bool {
+    fn is_clean(&self, faces: &[FaceId]) -> bool {
         spend(faces.len());
-        let look = |f: &u32| Looked::at(self.mesh, *f, &self.irregular);
+        let look = |f: &FaceId| Looked::at(self.mesh, *f, &self.irregular);
         let looked: Vec<Looked> = faces.iter().map(look).collect();
         (1..looked.len()).all(|i| looked[..i].iter().all(|other| looked[i].is_clear_of(other)))
     }
@@ -251,7 +250,7 @@ struct Looked {
 }
 
 impl Looked {
-    fn at(mesh: &TriangleMesh, face: u32, irregular: &[bool]) -> Self {
+    fn at(mesh: &TriangleMesh, face: FaceId, irregular: &[bool]) -> Self {
         let corners = mesh.corners(face);
         let (low, high) = mesh.face_box(face);
         let u = difference(&corners[1], &corners[0]);
@@ -266,7 +265,7 @@ impl Looked {
             corners,
             low,
             high,
-            irregular: mesh.faces[face as usize].map(|v| irregular[v as usize]),
+            irregular: mesh.vertices_of(face).map(|v| irregular[v as usize]),
             normal,
             size: longest(&u) * longest(&v),
         }

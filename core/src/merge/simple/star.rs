@@ -23,7 +23,7 @@ pub fn is_star_shaped(mesh: &TriangleMesh) -> bool {
     let Some(eye) = mean(&mesh.vertices) else {
         return false;
     };
-    let mut corners = (0..mesh.faces.len() as u32).map(|f| mesh.corners(f));
+    let mut corners = mesh.face_ids().map(|f| mesh.corners(f));
     corners.all(|c| is_behind(&eye, &c)) && faces_ahead(mesh, &eye) == Some(1)
 }
 
@@ -51,7 +51,7 @@ fn faces_ahead(mesh: &TriangleMesh, eye: &Lattice) -> Option<i32> {
         to: 2 * high[0] + 1,
     };
     let change = |face| triangle_change(&mesh.corners(face), &ray);
-    Some(-(0..mesh.faces.len() as u32).map(change).sum::<i32>())
+    Some(-mesh.face_ids().map(change).sum::<i32>())
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::geometry::dim3::Dim3;
 use crate::geometry::polygon::Polygon;
+use crate::mesh::handle::FaceId;
 use crate::mesh::source::Source;
 use crate::tree::partition::Facet;
 
@@ -14,10 +15,9 @@ pub fn facets(source: &Source) -> Result<Vec<Facet<Dim3>>> {
     let Some(mesh) = source.mesh() else {
         return Ok(Vec::new());
     };
-    let count = u32::try_from(mesh.faces.len()).unwrap_or(u32::MAX);
-    let facet = |face: u32| Facet {
+    let facet = |face: FaceId| Facet {
         fragment: Polygon::triangle(&mesh.corners(face), source.plane(face)),
         source: u64::from(source.number(face)),
     };
-    Ok((0..count).map(facet).collect())
+    Ok(mesh.face_ids().map(facet).collect())
 }

@@ -82,7 +82,7 @@ impl Anchor {
         let wall = 2 * axis as u8 + u8::from(wall.normal()[axis] > 0);
         let [a, b] = triangle.ends_of([edge.0, edge.1])?;
         Some(Self {
-            name: Name::Crossing(triangle.slot, [a.min(b), a.max(b)], wall),
+            name: Name::Crossing(triangle.face.slot, [a.min(b), a.max(b)], wall),
             place: Spot::Exact(Arc::clone(&corner.at)),
         })
     }

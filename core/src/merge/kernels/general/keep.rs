@@ -9,6 +9,7 @@ use super::{Labels, OnPieces};
 use crate::interrupt::poll;
 use crate::merge::kernels::kept::Kept;
 use crate::merge::kernels::stays::{kept, Owner, Stays};
+use crate::mesh::handle::{FaceId, SourceFace};
 
 impl Scene<'_> {
     /// What stays of all elements, given their labels and the expression's value for labels.
@@ -24,8 +25,8 @@ impl Scene<'_> {
         let settled = present.map(|(i, fate)| {
             let element = &self.elements[i];
             let owner = match &element.place {
-                Place::Face(t) => Owner::Face((t.slot, t.face)),
-                Place::Plane(slot, _) => Owner::Face((*slot, 0)),
+                Place::Face(t) => Owner::Face(t.face),
+                Place::Plane(slot, _) => Owner::Face(SourceFace::new(*slot, FaceId::ONLY)),
                 Place::Piece(part, _) => Owner::Part(*part),
             };
             (i, owner, element.stays(fate, &labels[i], &mut values))

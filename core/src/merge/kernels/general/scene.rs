@@ -13,6 +13,7 @@ use crate::interrupt::poll;
 use crate::merge::kernels::problem::Listed;
 use crate::merge::lists::list::{List, Record, Sources};
 use crate::merge::pairs::Swept;
+use crate::mesh::handle::{Slot, SourceFace};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
 
@@ -30,7 +31,7 @@ pub(super) struct Scene<'a> {
     /// For each operand a box around its elements.
     pub(super) boxes: Vec<[Lattice; 2]>,
     /// The parts that pieces belong to, and the slots of their sources.
-    pub(super) parts: Vec<(&'a Arc<Part>, u32)>,
+    pub(super) parts: Vec<(&'a Arc<Part>, Slot)>,
 }
 
 /// A whole face or a convex piece of a part.
@@ -49,7 +50,7 @@ pub(super) struct Element<'a> {
 pub(super) enum Place<'a> {
     Face(Triangle<'a>),
     /// The face of a half-space: its slot, and its part in the cell.
-    Plane(u32, Box<Face<'a>>),
+    Plane(Slot, Box<Face<'a>>),
     /// A piece of a part: the part's number in the scene.
     Piece(usize, Box<Face<'a>>),
 }
@@ -57,8 +58,7 @@ pub(super) enum Place<'a> {
 /// A whole face.
 pub(super) struct Triangle<'a> {
     source: &'a Source,
-    pub(super) slot: u32,
-    pub(super) face: u32,
+    pub(super) face: SourceFace,
     pub(super) vertices: [u32; 3],
     pub(super) corners: [Lattice; 3],
     shape: OnceCell<Box<Face<'a>>>,
@@ -91,7 +91,7 @@ impl<'a> Scene<'a> {
         for p in &list.parts {
             poll();
             let part = self.parts.len();
-            let slot = sources.slot(&p.element.part.source) as u32;
+            let slot = sources.slot(&p.element.part.source);
             self.parts.push((&p.element.part, slot));
             let inside = self.cell.holds(&p.element.part.home);
             for piece in p.pieces() {
@@ -99,7 +99,7 @@ impl<'a> Scene<'a> {
                 let (low, high) = piece.bounds();
                 self.elements.push(Element {
                     operand,
-                    weight: if p.element.flip { -1 } else { 1 },
+                    weight: p.element.orientation.signed(1),
                     place: Place::Piece(part, Box::new(Face::new(Cow::Borrowed(piece)))),
                     inside,
                     low: low.map(|x| x.floor() as i64),
@@ -128,12 +128,12 @@ impl<'a> Scene<'a> {
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Name {
     /// A vertex of a source.
-    Vertex(u32, u32),
+    Vertex(Slot, u32),
     /// A corner of a part: pieces that share the corner share the object at this address.
     Corner(usize),
     /// The point in which an edge of a source leaves the cell: the edge's ends, and twice the axis
     /// of the wall, with one more for the upper one.
-    Crossing(u32, [u32; 2], u8),
+    Crossing(Slot, [u32; 2], u8),
 }
 
 /// A box around elements; one that holds nothing if there are none.
@@ -150,7 +150,7 @@ fn box_around(elements: &[Element]) -> [Lattice; 2] {
 impl Triangle<'_> {
     /// The name of a vertex.
     pub(super) fn name(&self, corner: usize) -> Name {
-        Name::Vertex(self.slot, self.vertices[corner])
+        Name::Vertex(self.face.slot, self.vertices[corner])
     }
 
     /// The vertices at the ends of an edge that is given by its places.
@@ -172,24 +172,20 @@ impl<'a> Element<'a> {
         let place = match source.shape() {
             Shape::Mesh(mesh) => Place::Face(Triangle {
                 source,
-                slot: record.slot() as u32,
-                face: record.face,
-                vertices: mesh.faces[record.face as usize],
+                face: SourceFace::new(record.slot(), record.face),
+                vertices: mesh.vertices_of(record.face),
                 corners: mesh.corners(record.face),
                 shape: OnceCell::new(),
             }),
             Shape::HalfSpace(plane) => {
                 let polygon = Polygon::span(plane, cell)?;
-                Place::Plane(
-                    record.slot() as u32,
-                    Box::new(Face::new(Cow::Owned(polygon))),
-                )
+                Place::Plane(record.slot(), Box::new(Face::new(Cow::Owned(polygon))))
             }
         };
         let (low, high) = source.face_box(record.face);
         Some(Self {
             operand,
-            weight: if record.flip() { -1 } else { 1 },
+            weight: record.orientation().signed(1),
             place,
             inside: cell.holds_box(&low, &high),
             low,
@@ -234,7 +230,7 @@ impl<'a> Element<'a> {
     pub(super) fn shape(&self) -> &Face<'a> {
         match &self.place {
             Place::Face(t) => t.shape.get_or_init(|| {
-                let plane = t.source.plane(t.face);
+                let plane = t.source.plane(t.face.id);
                 Box::new(Face::new(Cow::Owned(Polygon::triangle(&t.corners, plane))))
             }),
             Place::Plane(_, shape) | Place::Piece(_, shape) => shape,

@@ -17,7 +17,7 @@ impl Facet<'_> {
     /// Where the facet's bounds lie on an axis.
     fn reach(&self, grid: &Grid, axis: usize) -> Reach {
         match &self.place {
-            Place::Face(_, _, _, corners) => {
+            Place::Face(_, _, corners) => {
                 let along = corners.map(|p| 2 * p[axis]);
                 let [a, b, c] = along;
                 grid.between(axis, a.min(b).min(c), a.max(b).max(c))

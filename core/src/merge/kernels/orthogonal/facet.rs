@@ -11,6 +11,7 @@ use crate::interrupt::poll;
 use crate::merge::kernels::problem::Listed;
 use crate::merge::kernels::stays::Owner;
 use crate::merge::lists::list::{PartRecord, Record, Sources};
+use crate::mesh::handle::{FaceId, Slot, SourceFace};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
 
@@ -33,10 +34,10 @@ pub(super) struct Facet<'a> {
 
 /// Where a facet comes from.
 pub(super) enum Place<'a> {
-    /// A triangle: its source and slot, and its number.
-    Face(&'a Source, u32, u32, [Lattice; 3]),
+    /// A triangle of a source.
+    Face(&'a Source, SourceFace, [Lattice; 3]),
     /// The face of a half-space.
-    Plane(&'a Source, u32),
+    Plane(&'a Source, Slot),
     /// A convex piece of a part: the part's number in the scene.
     Piece(usize, &'a Polygon),
 }
@@ -52,7 +53,7 @@ struct Slant {
 /// sources.
 pub(super) struct Facets<'a> {
     pub(super) all: Vec<Facet<'a>>,
-    pub(super) parts: Vec<(&'a Arc<Part>, u32)>,
+    pub(super) parts: Vec<(&'a Arc<Part>, Slot)>,
 }
 
 impl<'a> Facets<'a> {
@@ -84,10 +85,10 @@ impl<'a> Facets<'a> {
         cell: &Cell,
         sources: &Sources,
     ) -> Option<()> {
-        let slot = sources.slot(&record.element.part.source) as u32;
+        let slot = sources.slot(&record.element.part.source);
         let part = self.parts.len();
         self.parts.push((&record.element.part, slot));
-        let weight = if record.element.flip { -1 } else { 1 };
+        let weight = record.element.orientation.signed(1);
         for piece in record.pieces() {
             let facet = Facet::of_piece(operand, weight, part, piece)?;
             self.all.extend(Some(facet).filter(|f| f.may_meet(cell)));
@@ -98,12 +99,12 @@ impl<'a> Facets<'a> {
 
 impl<'a> Facet<'a> {
     fn of_record(operand: usize, record: &Record, sources: &'a Sources) -> Option<Self> {
-        let weight = if record.flip() { -1 } else { 1 };
-        let (slot, source) = (record.slot() as u32, &**sources.get(record.slot()));
+        let weight = record.orientation().signed(1);
+        let (slot, source) = (record.slot(), &**sources.get(record.slot()));
         match source.shape() {
             Shape::Mesh(mesh) => {
                 let corners = mesh.corners(record.face);
-                let place = Place::Face(source, slot, record.face, corners);
+                let place = Place::Face(source, SourceFace::new(slot, record.face), corners);
                 Self::of_triangle(operand, weight, &corners, place)
             }
             Shape::HalfSpace(plane) => {
@@ -178,7 +179,7 @@ impl<'a> Facet<'a> {
         let within = |i: usize, p: &Lattice| p[i] >= low[i];
         let below = |i: usize, p: &Lattice| p[i] <= high[i];
         let bounded = match &self.place {
-            Place::Face(_, _, _, corners) => (0..3).all(|i| {
+            Place::Face(_, _, corners) => (0..3).all(|i| {
                 corners.iter().any(|p| within(i, p)) && corners.iter().any(|p| below(i, p))
             }),
             Place::Plane(..) | Place::Piece(..) => true,
@@ -188,8 +189,8 @@ impl<'a> Facet<'a> {
 
     pub(super) fn owner(&self) -> Owner {
         match &self.place {
-            Place::Face(_, slot, face, _) => Owner::Face((*slot, *face)),
-            Place::Plane(_, slot) => Owner::Face((*slot, 0)),
+            Place::Face(_, face, _) => Owner::Face(*face),
+            Place::Plane(_, slot) => Owner::Face(SourceFace::new(*slot, FaceId::ONLY)),
             Place::Piece(part, _) => Owner::Part(*part),
         }
     }
@@ -222,8 +223,8 @@ impl<'a> Facet<'a> {
     /// The facet inside the cell.
     pub(super) fn polygon_in(&self, cell: &Cell) -> Option<Polygon> {
         match &self.place {
-            Place::Face(source, _, face, _) => source.clip(*face, cell),
-            Place::Plane(source, _) => source.clip(0, cell),
+            Place::Face(source, face, _) => source.clip(face.id, cell),
+            Place::Plane(source, _) => source.clip(FaceId::ONLY, cell),
             Place::Piece(_, polygon) => (*polygon).clone().clipped(cell),
         }
     }

@@ -12,6 +12,7 @@ mod overlay;
 use super::kept::{assemble, Kept};
 use super::problem::{CellProblem, Kernel, Listed, Solution};
 use crate::geometry::polygon::Polygon;
+use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 use crate::merge::expression::Expression;
 use crate::merge::rule::Rule;
@@ -138,14 +139,14 @@ fn keep(
             _ => {}
         }
     }
-    [(same, false), (turned, true)]
+    [(same, Orientation::Same), (turned, Orientation::Opposite)]
         .into_iter()
         .filter(|(polygons, _)| !polygons.is_empty())
-        .map(|(polygons, flip)| {
+        .map(|(polygons, orientation)| {
             if fragment.intact && polygons.len() == total {
-                Kept::whole(fragment.face, flip)
+                Kept::whole(fragment.face, orientation)
             } else {
-                Kept::pieces(fragment.face, flip, polygons)
+                Kept::pieces(fragment.face, orientation, polygons)
             }
         })
         .collect()

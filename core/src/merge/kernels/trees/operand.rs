@@ -7,6 +7,7 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
 use crate::interrupt::poll;
 use crate::merge::lists::list::{List, Sources};
+use crate::mesh::handle::{FaceId, SourceFace};
 
 /// One operand inside the cell.
 pub(super) struct Operand {
@@ -55,8 +56,8 @@ fn fragments(list: &List, cell: &Cell, sources: &Sources) -> Vec<Fragment> {
     for r in &list.records {
         poll();
         if let Some(polygon) = sources.get(r.slot()).clip(r.face, cell) {
-            let weight = if r.flip() { -1 } else { 1 };
-            let face = (r.slot() as u32, r.face);
+            let weight = r.orientation().signed(1);
+            let face = SourceFace::new(r.slot(), r.face);
             found.push(Fragment {
                 polygon,
                 weight,
@@ -67,11 +68,9 @@ fn fragments(list: &List, cell: &Cell, sources: &Sources) -> Vec<Fragment> {
     }
     for p in &list.parts {
         poll();
-        let weight = if p.element.flip { -1 } else { 1 };
-        let face = (
-            sources.slot(&p.element.part.source) as u32,
-            p.element.part.face,
-        );
+        let weight = p.element.orientation.signed(1);
+        let part = &p.element.part;
+        let face = SourceFace::new(sources.slot(&part.source), part.face);
         let clipped = p.pieces().iter().filter_map(|q| q.clone().clipped(cell));
         found.extend(clipped.map(|polygon| Fragment {
             polygon,
@@ -103,8 +102,8 @@ impl LeafTree {
     }
 
     /// The faces that truly meet the cell.
-    pub fn faces(&self) -> impl Iterator<Item = u32> + '_ {
-        self.0.fragments.iter().map(|f| f.face.1)
+    pub fn faces(&self) -> impl Iterator<Item = FaceId> + '_ {
+        self.0.fragments.iter().map(|f| f.face.id)
     }
 
     /// The winding number at a lattice point that lies on none of the pieces.

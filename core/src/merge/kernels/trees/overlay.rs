@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::{Polygon, PolygonSplit};
 use crate::interrupt::poll;
+use crate::mesh::handle::SourceFace;
 
 /// A fragment of an operand's boundary in a cell.
 #[derive(Clone, Debug)]
@@ -13,8 +14,8 @@ pub struct Fragment {
     pub polygon: Polygon,
     /// The jump of the winding number from the support's plus to its minus side.
     pub weight: i32,
-    /// The source's slot and the face.
-    pub face: (u32, u32),
+    /// The face.
+    pub face: SourceFace,
     /// Whether the fragment is all of a whole face inside the cell.
     pub intact: bool,
 }

@@ -1,0 +1,128 @@
+//! Handles: numbers that say what they number.
+
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::side::Orientation;
+
+/// A source by its place in the table of a solid or an evaluation.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
+pub struct Slot(pub u32);
+
+impl Slot {
+    /// The first slot, and all after it.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..).map(Self)
+    }
+
+    /// The slot in this place of a table.
+    ///
+    /// # Panics
+    /// Never for tables: none has 2³² sources.
+    pub fn of(place: usize) -> Self {
+        Self(u32::try_from(place).expect("a table of less than 2^32 sources"))
+    }
+
+    /// The place in a table.
+    pub fn place(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A face by its number in its source.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
+pub struct FaceId(pub u32);
+
+impl FaceId {
+    /// The only face of a half-space.
+    pub const ONLY: Self = Self(0);
+
+    /// The first face, and all after it.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..).map(Self)
+    }
+
+    /// The place in a list of all faces.
+    pub fn place(self) -> usize {
+        self.0 as usize
+    }
+
+    /// The half-edges of a triangle: the first runs from its first corner to its second.
+    pub fn half_edges(self) -> std::ops::Range<u32> {
+        3 * self.0..3 * self.0 + 3
+    }
+
+    /// The triangle that a half-edge bounds.
+    pub fn beside(half_edge: u32) -> Self {
+        Self(half_edge / 3)
+    }
+}
+
+/// A face of one of several sources.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SourceFace {
+    /// The source.
+    pub slot: Slot,
+    /// The face.
+    pub id: FaceId,
+}
+
+impl SourceFace {
+    /// A face of a source.
+    pub fn new(slot: Slot, id: FaceId) -> Self {
+        Self { slot, id }
+    }
+
+    /// The face, turned like this.
+    pub fn oriented(self, orientation: Orientation) -> OrientedFace {
+        OrientedFace {
+            face: self,
+            orientation,
+        }
+    }
+}
+
+/// A face of one of several sources, as the source has it or turned around.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct OrientedFace {
+    /// The face.
+    pub face: SourceFace,
+    /// How it is turned.
+    pub orientation: Orientation,
+}
+
+impl OrientedFace {
+    /// The source.
+    pub fn slot(self) -> Slot {
+        self.face.slot
+    }
+
+    /// The number in the source.
+    pub fn id(self) -> FaceId {
+        self.face.id
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_edges_know_their_triangle() {
+        let faces: Vec<FaceId> = FaceId::all().take(3).collect();
+        assert_eq!(faces[2].half_edges().collect::<Vec<_>>(), [6, 7, 8]);
+        assert!(faces
+            .iter()
+            .all(|f| f.half_edges().all(|h| FaceId::beside(h) == *f)));
+    }
+
+    #[test]
+    fn faces_are_ordered_by_source_first() {
+        let face = |slot, id| SourceFace::new(Slot(slot), FaceId(id));
+        assert!(face(0, 9) < face(1, 0));
+        assert!(face(1, 0) < face(1, 1));
+    }
+}
