@@ -1,5 +1,7 @@
 //! Greatest common divisors.
 
+use super::convert::low_limb;
+
 /// The greatest common divisor; `gcd_u128(a, 0)` is `a`.
 #[inline]
 pub fn gcd_u128(a: u128, b: u128) -> u128 {
@@ -7,7 +9,7 @@ pub fn gcd_u128(a: u128, b: u128) -> u128 {
     match u64::try_from(small) {
         Ok(0) => large,
         Ok(1) => 1,
-        Ok(short) => u128::from(gcd_u64(short, (large % small) as u64)),
+        Ok(short) => u128::from(gcd_u64(short, low_limb(large % small))),
         Err(_) => gcd_long(small, large),
     }
 }
@@ -24,7 +26,7 @@ fn gcd_long(a: u128, b: u128) -> u128 {
         a = a.min(b);
         b = difference >> difference.trailing_zeros();
     }
-    u128::from(gcd_odd(a as u64, b as u64)) << twos
+    u128::from(gcd_odd(low_limb(a), low_limb(b))) << twos
 }
 
 /// The greatest common divisor of one-limb numbers; `a` is not zero.

@@ -1,5 +1,6 @@
 //! Signed integers of a fixed number of limbs.
 
+use super::convert::low_limb;
 use super::limbs::{
     bit_length, inverse_mod_limb, remainder_long, remainder_short, subtract_masked,
     subtract_multiple, unsigned_product, SPARE,
@@ -32,6 +33,7 @@ pub struct Int<const N: usize> {
 
 impl<const N: usize> Int<N> {
     /// The number of bits, the sign included.
+    #[allow(clippy::cast_possible_truncation, reason = "a small constant")]
     pub const BITS: u32 = 64 * N as u32;
 
     /// Zero.
@@ -56,8 +58,8 @@ impl<const N: usize> Int<N> {
     #[inline]
     pub const fn from_i64(value: i64) -> Self {
         const { assert!(N >= 1) };
-        let mut limbs = [(value >> 63) as u64; N];
-        limbs[0] = value as u64;
+        let mut limbs = [(value >> 63).cast_unsigned(); N];
+        limbs[0] = value.cast_unsigned();
         Self { limbs }
     }
 
@@ -65,9 +67,9 @@ impl<const N: usize> Int<N> {
     #[inline]
     pub const fn from_i128(value: i128) -> Self {
         const { assert!(N >= 2) };
-        let mut limbs = [(value >> 127) as u64; N];
-        limbs[0] = value as u64;
-        limbs[1] = (value >> 64) as u64;
+        let mut limbs = [low_limb((value >> 127).cast_unsigned()); N];
+        limbs[0] = low_limb(value.cast_unsigned());
+        limbs[1] = low_limb((value >> 64).cast_unsigned());
         Self { limbs }
     }
 
@@ -91,7 +93,7 @@ impl<const N: usize> Int<N> {
     pub fn to_i128(&self) -> Option<i128> {
         let low: Int<2> = self.resize();
         let fits = N <= 2 || low.resize::<N>() == *self;
-        fits.then_some((low.limbs[1] as i128) << 64 | low.limbs[0] as i128)
+        fits.then_some(i128::from(low.limbs[1]) << 64 | i128::from(low.limbs[0]))
     }
 
     /// Sign-extends to or truncates to `M` limbs.
@@ -109,7 +111,7 @@ impl<const N: usize> Int<N> {
     /// All ones if the value is negative, else zero.
     #[inline]
     const fn sign_limb(&self) -> u64 {
-        ((self.limbs[N - 1] as i64) >> 63) as u64
+        (self.limbs[N - 1].cast_signed() >> 63).cast_unsigned()
     }
 
     /// −1, 0 or 1.
@@ -131,7 +133,7 @@ impl<const N: usize> Int<N> {
     /// Whether the value is below zero.
     #[inline]
     pub const fn is_negative(&self) -> bool {
-        (self.limbs[N - 1] as i64) < 0
+        self.limbs[N - 1].cast_signed() < 0
     }
 
     /// The absolute value.
@@ -202,7 +204,7 @@ impl<const N: usize> Int<N> {
         subtract_masked(&mut product, &mut top, N, &other.limbs, self.sign_limb());
         subtract_masked(&mut product, &mut top, B, &self.limbs, other.sign_limb());
         if R > N + B {
-            let sign = ((product[N + B - 1] as i64) >> 63) as u64;
+            let sign = (product[N + B - 1].cast_signed() >> 63).cast_unsigned();
             product[N + B..].fill(sign);
         }
         let product = Int { limbs: product };
@@ -230,7 +232,7 @@ impl<const N: usize> Int<N> {
     /// The residue in `[0, p)`, for `p` one of [`P1`](super::P1) and [`P2`](super::P2).
     #[inline]
     pub fn rem_u61(&self, p: u64) -> u64 {
-        let top = self.limbs[N - 1] as i64;
+        let top = self.limbs[N - 1].cast_signed();
         let lead = modular::reduce(u128::from(top.unsigned_abs()), p);
         let mut residue = if top < 0 && lead != 0 { p - lead } else { lead };
         for &limb in self.limbs[..N - 1].iter().rev() {
@@ -260,7 +262,7 @@ impl<const N: usize> Int<N> {
         let twos = divisor.trailing_zeros();
         let odd = divisor >> twos;
         let mut rest = self.shift_right(twos).limbs;
-        let inverse = inverse_mod_limb(odd as u64);
+        let inverse = inverse_mod_limb(low_limb(odd));
         for i in 0..N {
             let digit = rest[i].wrapping_mul(inverse);
             subtract_multiple(&mut rest[i..], odd, digit);
@@ -276,7 +278,7 @@ impl<const N: usize> Int<N> {
         let limb = |i: usize| self.limbs.get(i).copied().unwrap_or(self.sign_limb());
         let limbs = std::array::from_fn(|i| {
             let pair = u128::from(limb(i + whole + 1)) << 64 | u128::from(limb(i + whole));
-            (pair >> part) as u64
+            low_limb(pair >> part)
         });
         Self { limbs }
     }

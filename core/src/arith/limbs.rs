@@ -3,6 +3,8 @@
 //! The loops under [`Int`](super::Int) and the rounding. All of them wrap on purpose, so they
 //! spell it out instead of relying on the build's overflow checks being off.
 
+use super::convert::{as_number, low_limb};
+
 /// The most limbs by which a product may be cut short; they are computed to see that they are empty.
 pub(super) const SPARE: usize = 2;
 
@@ -50,7 +52,7 @@ pub(super) const fn multiply_add(a: u64, b: u64, c: u64, d: u64) -> (u64, u64) {
         .wrapping_mul(b as u128)
         .wrapping_add(c as u128)
         .wrapping_add(d as u128);
-    (wide as u64, (wide >> 64) as u64)
+    (low_limb(wide), (wide >> 64) as u64)
 }
 
 /// Subtracts `subtrahend & mask` from the limbs of `number` from `start` on, of which those above
@@ -92,7 +94,7 @@ pub(super) const fn borrowing_sub(a: u64, b: u64, borrow: bool) -> (u64, bool) {
 #[inline]
 pub(super) fn remainder_short<const N: usize>(limbs: &[u64; N], divisor: u64) -> u64 {
     limbs.iter().rev().fold(0, |rest, &limb| {
-        ((u128::from(rest) << 64 | u128::from(limb)) % u128::from(divisor)) as u64
+        low_limb((u128::from(rest) << 64 | u128::from(limb)) % u128::from(divisor))
     })
 }
 
@@ -114,12 +116,12 @@ pub(super) fn remainder_long<const N: usize>(limbs: &[u64; N], divisor: u128) ->
 /// The remainder of `rest * 2^64 + limb` by a divisor with its top bit set; `rest < divisor`.
 #[inline]
 pub(super) fn remainder_step(rest: u128, limb: u64, divisor: u128) -> u128 {
-    let (lead, low) = ((divisor >> 64) as u64, divisor as u64);
-    let guess = (rest / u128::from(lead)).min(u128::from(u64::MAX)) as u64;
+    let (lead, low) = ((divisor >> 64) as u64, low_limb(divisor));
+    let guess = low_limb((rest / u128::from(lead)).min(u128::from(u64::MAX)));
     let (product_low, carry) = multiply_add(guess, low, 0, 0);
     let (product_mid, product_high) = multiply_add(guess, lead, carry, 0);
     let (low, borrow) = borrowing_sub(limb, product_low, false);
-    let (mid, borrow) = borrowing_sub(rest as u64, product_mid, borrow);
+    let (mid, borrow) = borrowing_sub(low_limb(rest), product_mid, borrow);
     let (mut high, _) = borrowing_sub((rest >> 64) as u64, product_high, borrow);
     let mut rest = u128::from(mid) << 64 | u128::from(low);
     // The guess is at most two too large, which leaves a negative remainder.
@@ -147,7 +149,7 @@ pub(super) const fn inverse_mod_limb(odd: u64) -> u64 {
 /// Subtracts `factor * digit` from a number, modulo its width.
 #[inline]
 pub(super) fn subtract_multiple(number: &mut [u64], factor: u128, digit: u64) {
-    let factor = [factor as u64, (factor >> 64) as u64];
+    let factor = [low_limb(factor), (factor >> 64) as u64];
     let (mut carry, mut borrow) = (0, false);
     for (i, limb) in number.iter_mut().enumerate() {
         let (low, high) = multiply_add(factor.get(i).copied().unwrap_or(0), digit, carry, 0);
@@ -162,7 +164,7 @@ pub(super) fn bit_length<const N: usize>(limbs: &[u64; N]) -> u32 {
     limbs
         .iter()
         .rposition(|&limb| limb != 0)
-        .map_or(0, |i| 64 * (i as u32 + 1) - limbs[i].leading_zeros())
+        .map_or(0, |i| 64 * (as_number(i) + 1) - limbs[i].leading_zeros())
 }
 
 /// The 64 bits from bit `start` on; bits outside the number are zero.
@@ -177,7 +179,7 @@ pub(super) fn limb_at<const N: usize>(limbs: &[u64; N], start: i32) -> u64 {
     };
     let (index, offset) = (start.div_euclid(64), start.rem_euclid(64));
     let pair = u128::from(limb(index + 1)) << 64 | u128::from(limb(index));
-    (pair >> offset) as u64
+    low_limb(pair >> offset)
 }
 
 /// Whether a bit below bit `end` is set.

@@ -2,15 +2,9 @@
 //!
 //! Nothing here knows geometry except [`bounds`], which derives how wide the
 //! integers of the exact predicates have to be. Nothing allocates.
-#![allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_possible_wrap,
-    clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
-    clippy::cast_lossless
-)]
 
 pub mod bounds;
+pub mod convert;
 mod gcd;
 mod int;
 mod limbs;

@@ -3,6 +3,8 @@
 //! Two residues make a 122-bit signature of an exact number. Both primes have the form
 //! 2^61 − c with a small c, so that reduction is a fold and needs no division.
 
+use super::convert::low_limb;
+
 /// The Mersenne prime 2^61 − 1.
 pub const P1: u64 = (1 << 61) - 1;
 
@@ -30,7 +32,7 @@ pub fn inv_mod(a: u64, p: u64) -> u64 {
     while small > 1 {
         let quotient = large / small;
         (large, small) = (small, large - quotient * small);
-        let next = large_coefficient - quotient as i64 * coefficient;
+        let next = large_coefficient - quotient.cast_signed() * coefficient;
         (large_coefficient, coefficient) = (coefficient, next);
     }
     if small == 0 {
@@ -38,7 +40,7 @@ pub fn inv_mod(a: u64, p: u64) -> u64 {
     } else if coefficient < 0 {
         p - coefficient.unsigned_abs()
     } else {
-        coefficient as u64
+        coefficient.cast_unsigned()
     }
 }
 
@@ -54,7 +56,7 @@ pub(super) const fn push_limb(residue: u64, limb: u64, p: u64) -> u64 {
 #[inline]
 pub(super) const fn reduce(number: u128, p: u64) -> u64 {
     let once = fold(number, excess(p));
-    let twice = fold(once, excess(p)) as u64;
+    let twice = low_limb(fold(once, excess(p)));
     if twice >= p {
         twice - p
     } else {

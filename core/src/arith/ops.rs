@@ -21,7 +21,7 @@ impl<const N: usize> Add for Int<N> {
         let sum = Self::from_limbs(limbs);
         // The signs of both terms differ from the sum's.
         let [a, b, c] = [self, other, sum].map(|x| x.limbs()[N - 1]);
-        if (((a ^ c) & (b ^ c)) as i64) < 0 {
+        if ((a ^ c) & (b ^ c)).cast_signed() < 0 {
             exceeds("a sum", N);
         }
         sum
@@ -41,7 +41,7 @@ impl<const N: usize> Sub for Int<N> {
         let difference = Self::from_limbs(limbs);
         // The terms differ in sign, and the difference is on the wrong side.
         let [a, b, c] = [self, other, difference].map(|x| x.limbs()[N - 1]);
-        if (((a ^ b) & (a ^ c)) as i64) < 0 {
+        if ((a ^ b) & (a ^ c)).cast_signed() < 0 {
             exceeds("a difference", N);
         }
         difference
@@ -80,7 +80,9 @@ impl<const N: usize> Default for Int<N> {
 impl<const N: usize> Ord for Int<N> {
     #[inline]
     fn cmp(&self, other: &Self) -> Ordering {
-        let lead = (self.limbs()[N - 1] as i64).cmp(&(other.limbs()[N - 1] as i64));
+        let lead = self.limbs()[N - 1]
+            .cast_signed()
+            .cmp(&other.limbs()[N - 1].cast_signed());
         lead.then_with(|| self.limbs().iter().rev().cmp(other.limbs().iter().rev()))
     }
 }

@@ -1,5 +1,6 @@
 //! Correctly rounded conversion of integers and ratios to doubles.
 
+use super::convert::{as_double, as_number, low_limb};
 use super::limbs::{any_bit_below, bit_length, limb_at};
 use super::Int;
 
@@ -13,7 +14,7 @@ const LEAST_NORMAL_EXPONENT: i32 = -1022;
 pub fn mantissa_and_exponent(x: f64) -> (i64, i32) {
     const FRACTION: u64 = (1 << 52) - 1;
     let bits = x.abs().to_bits();
-    let (fraction, exponent) = ((bits & FRACTION) as i64, (bits >> 52) as i32);
+    let (fraction, exponent) = ((bits & FRACTION).cast_signed(), (bits >> 52) as i32);
     let (size, exponent) = match (exponent, fraction) {
         (0, 0) => return (0, 0),
         (0, _) => (fraction, LEAST_EXPONENT),
@@ -56,12 +57,14 @@ pub fn ratio_to_f64<const A: usize, const B: usize>(
 /// One step of long division is enough. With the denominator shifted to fill its `B` limbs
 /// and the numerator shifted to `64 * B + 63` bits, the quotient has 63 or 64 bits.
 fn magnitudes_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]) -> f64 {
-    let (num_bits, den_bits) = (bit_length(num) as i32, bit_length(den) as i32);
-    let den_start = den_bits - 64 * B as i32;
-    let divisor: [u64; B] = std::array::from_fn(|i| limb_at(den, den_start + 64 * i as i32));
-    let num_start = num_bits - 63 - 64 * B as i32;
-    let low: [u64; B] = std::array::from_fn(|i| limb_at(num, num_start + 64 * i as i32));
-    let lead = limb_at(num, num_start + 64 * B as i32);
+    let (num_bits, den_bits) = (bit_length(num).cast_signed(), bit_length(den).cast_signed());
+    let den_start = den_bits - 64 * as_number(B).cast_signed();
+    let divisor: [u64; B] =
+        std::array::from_fn(|i| limb_at(den, den_start + 64 * as_number(i).cast_signed()));
+    let num_start = num_bits - 63 - 64 * as_number(B).cast_signed();
+    let low: [u64; B] =
+        std::array::from_fn(|i| limb_at(num, num_start + 64 * as_number(i).cast_signed()));
+    let lead = limb_at(num, num_start + 64 * as_number(B).cast_signed());
     let (quotient, exact) = divide_step(lead, low, &divisor);
     let sticky = !exact || any_bit_below(num, num_start);
     scaled_to_f64(quotient, sticky, num_bits - den_bits - 63)
@@ -72,7 +75,7 @@ fn magnitudes_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64;
 #[inline]
 fn divide_step<const B: usize>(lead: u64, low: [u64; B], divisor: &[u64; B]) -> (u64, bool) {
     let head = u128::from(lead) << 64 | u128::from(low[B - 1]);
-    let mut quotient = (head / u128::from(divisor[B - 1])) as u64;
+    let mut quotient = low_limb(head / u128::from(divisor[B - 1]));
     let (mut high, mut rest) = subtract_multiple(lead, low, divisor, quotient);
     // The guess from the leading limbs is at most two too large.
     while high != 0 {
@@ -95,7 +98,7 @@ fn subtract_multiple<const B: usize>(
         let product = u128::from(part)
             .wrapping_mul(u128::from(quotient))
             .wrapping_add(u128::from(carry));
-        let (difference, borrow) = limb.overflowing_sub(product as u64);
+        let (difference, borrow) = limb.overflowing_sub(low_limb(product));
         *limb = difference;
         carry = ((product >> 64) as u64).wrapping_add(u64::from(borrow));
     }
@@ -110,18 +113,18 @@ fn add_to<const B: usize>(number: &mut [u64; B], addend: &[u64; B]) -> u64 {
         let sum = u128::from(*limb)
             .wrapping_add(u128::from(other))
             .wrapping_add(carry);
-        *limb = sum as u64;
+        *limb = low_limb(sum);
         carry = sum >> 64;
     }
-    carry as u64
+    low_limb(carry)
 }
 
 /// The double nearest to an unsigned number, ties to even.
 #[inline]
 pub(super) fn limbs_to_f64<const N: usize>(limbs: &[u64; N]) -> f64 {
-    let start = bit_length(limbs) as i32 - 64;
+    let start = bit_length(limbs).cast_signed() - 64;
     if start <= 0 {
-        return limbs[0] as f64;
+        return as_double(limbs[0]);
     }
     scaled_to_f64(limb_at(limbs, start), any_bit_below(limbs, start), start)
 }
@@ -130,12 +133,12 @@ pub(super) fn limbs_to_f64<const N: usize>(limbs: &[u64; N]) -> f64 {
 /// 0 and 1 if `sticky`, else is 0; `number` has at least 63 bits.
 #[inline]
 fn scaled_to_f64(number: u64, sticky: bool, exponent: i32) -> f64 {
-    let lead = exponent + 63 - number.leading_zeros() as i32;
+    let lead = exponent + 63 - number.leading_zeros().cast_signed();
     if lead < LEAST_NORMAL_EXPONENT {
         return subnormal(number, sticky, LEAST_EXPONENT - exponent);
     }
     // Below the last bit kept, so that it decides ties and nothing else.
-    let rounded = (number | u64::from(sticky)) as f64;
+    let rounded = as_double(number | u64::from(sticky));
     // Two steps, because the scale alone can leave the range of doubles.
     let half = exponent / 2;
     rounded * power_of_two(half) * power_of_two(exponent - half)
@@ -148,7 +151,7 @@ fn subnormal(number: u64, sticky: bool, shift: i32) -> f64 {
         return 0.0;
     }
     let wide = u128::from(number) << 64 >> shift;
-    let (whole, part) = ((wide >> 64) as u64, wide as u64);
+    let (whole, part) = ((wide >> 64) as u64, low_limb(wide));
     let half = 1 << 63;
     let up = part > half || part == half && (sticky || whole % 2 == 1);
     f64::from_bits(whole + u64::from(up))
@@ -158,5 +161,5 @@ fn subnormal(number: u64, sticky: bool, shift: i32) -> f64 {
 #[inline]
 fn power_of_two(exponent: i32) -> f64 {
     debug_assert!(exponent >= LEAST_NORMAL_EXPONENT);
-    f64::from_bits(((exponent.min(1024) + 1023) as u64) << 52)
+    f64::from_bits(u64::from((exponent.min(1024) + 1023).cast_unsigned()) << 52)
 }

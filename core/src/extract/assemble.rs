@@ -15,6 +15,7 @@ use super::joining::patches::Patches;
 use super::joining::planes::{group, PlaneGroup};
 use super::joining::seams::{find_touching, subdivisions, Edge, InnerPoints, LinePoints};
 use super::mesh::{Corner, ExactMesh};
+use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::outline::BareEdge;
 use crate::geometry::side::Orientation;
@@ -243,18 +244,18 @@ impl Assembly<'_> {
 
     /// Emits the whole faces that are not split, and the vertices that only they have.
     fn emit_whole(&mut self, fates: &Fates, rims: &Rims, split: &[SourceFace]) {
-        let first = self.vertices.len() as u32;
+        let first = as_number(self.vertices.len());
         for (slot, images) in Slot::all().zip(&mut self.images) {
             let rim = rims.get(slot);
             for (vertex, image) in (0u32..).zip(images) {
                 poll();
                 if *image == NONE && rim.is_used(vertex) {
-                    *image = self.vertices.len() as u32;
+                    *image = as_number(self.vertices.len());
                     self.vertices.push(Corner::Source(slot, vertex));
                 }
             }
         }
-        self.untouched = Untouched::new(first..self.vertices.len() as u32);
+        self.untouched = Untouched::new(first..as_number(self.vertices.len()));
         for (slot, fates) in fates.by_slot() {
             let source = self.sources.get(slot);
             let (Some(mesh), images) = (source.mesh(), &self.images[slot.place()]) else {

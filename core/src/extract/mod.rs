@@ -1,5 +1,4 @@
 //! From a tree back to a mesh: collecting, joining, pairing, triangulating, splitting, rounding.
-#![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
 pub mod assemble;
 pub mod boundary;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
 use super::triangulate::Planar;
+use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::arith::Int;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::vertex::Vertex;
@@ -60,7 +61,7 @@ impl VertexTable {
 
     fn add(&mut self, vertex: Arc<Vertex>) -> u32 {
         let place = vertex.approx();
-        let next = self.points.len() as u32;
+        let next = as_number(self.points.len());
         let before = self.last.insert(Blur::of(&place).fingerprint(), next);
         self.previous.push(before.unwrap_or(NONE));
         self.points.push(vertex);
@@ -101,8 +102,8 @@ fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
     if vertex.as_lattice().is_some() {
         return None;
     }
-    let nearest = place.map(|c| c.round() as i64);
-    let near = |i: usize| (place[i] - nearest[i] as f64).abs() <= place[i].abs() * NEAR;
+    let nearest = place.map(|c| as_whole(c.round()));
+    let near = |i: usize| (place[i] - as_double(nearest[i])).abs() <= place[i].abs() * NEAR;
     ((0..3).all(near) && vertex.is_at(&nearest)).then_some(nearest)
 }
 
@@ -187,7 +188,7 @@ impl<'a> Projection<'a> {
 impl Projection<'_> {
     /// A lattice point in the view.
     pub fn flat(&self, p: &Lattice) -> [f64; 2] {
-        [p[self.u] as f64, p[self.v] as f64]
+        [as_double(p[self.u]), as_double(p[self.v])]
     }
 
     /// Whether a point lies strictly between two others, on their line.

@@ -10,6 +10,7 @@ use super::plane::Plane;
 use super::polygon::Polygon;
 use super::side::{Half, Side};
 use super::space::Space;
+use crate::arith::convert::as_whole;
 
 /// A space with axes.
 pub trait AxisSpace: Space {
@@ -58,7 +59,7 @@ impl AxisSpace for Dim1 {
 
 impl AxisSpace for Dim2 {
     fn corner(piece: &super::dim2::Segment2, axis: usize) -> i64 {
-        piece.points()[0].approx()[axis].round() as i64
+        as_whole(piece.points()[0].approx()[axis].round())
     }
 
     fn axis_cut(axis: usize, at: i64) -> Line2 {
@@ -87,7 +88,7 @@ impl AxisSpace for Dim2 {
 
 impl AxisSpace for Dim3 {
     fn corner(piece: &Polygon, axis: usize) -> i64 {
-        piece.corners()[0].at.approx()[axis].round() as i64
+        as_whole(piece.corners()[0].at.approx()[axis].round())
     }
 
     fn axis_cut(axis: usize, at: i64) -> Arc<Plane> {

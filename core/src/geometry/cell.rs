@@ -36,6 +36,7 @@ pub struct Cut {
 
 impl Cell {
     /// The cell of all lattice points.
+    #[allow(clippy::cast_possible_truncation, reason = "a small constant")]
     pub const UNIVERSE: Self = Self {
         low: [-(1 << COORDINATE_BITS); 3],
         size: [COORDINATE_BITS as u8 + 1; 3],
@@ -125,6 +126,10 @@ impl Cell {
     ///
     /// The binary places from which on coordinates differ say how often an axis can be cut; the
     /// first axis of those with the most is the one that the next cut would be across.
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "an exponent of coordinates"
+    )]
     pub fn around(low: &Lattice, high: &Lattice) -> Self {
         let origin = Self::UNIVERSE.low;
         let place = |p: &Lattice, i: usize| (p[i] - origin[i]).cast_unsigned();

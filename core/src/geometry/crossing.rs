@@ -5,6 +5,7 @@
 
 use super::plane::{first_sign, normal, Lattice, Plane};
 use super::polygon::{Carrier, Polygon};
+use crate::arith::convert::as_double;
 use crate::arith::Int;
 
 /// A segment from one cell corner to another along an axis, in half steps.
@@ -75,10 +76,11 @@ fn side_of_corner(n: &[i128; 3], a: &Lattice, q: &Lattice) -> i32 {
 
 /// Sign of the turn a → b → q + δ in the projection along the third axis; zero only if a and b
 /// coincide there.
+#[allow(clippy::cast_possible_truncation, reason = "a sign")]
 fn turn_at_corner(a: &Lattice, b: &Lattice, q: &Lattice, u: usize, v: usize) -> i32 {
     let (du, dv) = (b[u] - a[u], b[v] - a[v]);
     let (eu, ev) = (q[u] - 2 * a[u], q[v] - 2 * a[v]);
-    let (p, r) = (du as f64 * ev as f64, dv as f64 * eu as f64);
+    let (p, r) = (as_double(du) * as_double(ev), as_double(dv) * as_double(eu));
     let rough = p - r;
     if rough.abs() > 4.0 * f64::EPSILON * (p.abs() + r.abs()) {
         return if rough > 0.0 { 1 } else { -1 };

@@ -13,6 +13,7 @@ use crate::arith::bounds::{
     COORDINATE_BITS, LINE_AT_MEET_LIMBS, LINE_CROSS_LIMBS, LINE_MEET_LIMBS, LINE_NORMAL_BITS,
     LINE_OFFSET_BITS,
 };
+use crate::arith::convert::as_double;
 use crate::arith::{gcd_u128, Int};
 
 /// Lattice coordinates are at most this large in magnitude.
@@ -143,7 +144,7 @@ impl Line2 {
     }
 
     fn side_of(&self, p: &Point2) -> Side {
-        let [a, b, c] = [self.a as f64, self.b as f64, self.c as f64];
+        let [a, b, c] = [as_double(self.a), as_double(self.b), as_double(self.c)];
         let t = [a * p.approx[0], b * p.approx[1], c * p.approx[2]];
         let sum = t[0] + t[1] + t[2];
         if sum.abs() > (t[0].abs() + t[1].abs() + t[2].abs()) * FILTER {

@@ -9,6 +9,7 @@ use super::cell::Cell;
 use super::plane::Lattice;
 use super::side::Orientation;
 use super::vertex::Vertex;
+use crate::arith::convert::{as_double, as_wide, low_limb};
 use crate::arith::Int;
 
 /// Binary places of a step. Coordinates below 2^54 steps leave a bit for sums of three.
@@ -46,10 +47,10 @@ impl Flux {
     pub fn ends(&self) -> Option<[Int<6>; 2]> {
         let in_limbs = |k: u8| self.error * 2f64.powi(-64 * i32::from(k));
         let limbs = (0..4).find(|k| in_limbs(*k) < 2f64.powi(100))?;
-        let rounded = (in_limbs(limbs) as i128 + 1).cast_unsigned();
+        let rounded = (as_wide(in_limbs(limbs)) + 1).cast_unsigned();
         let limbs = usize::from(limbs);
         let mut error = [0; 6];
-        error[limbs] = rounded as u64;
+        error[limbs] = low_limb(rounded);
         error[limbs + 1] = (rounded >> 64) as u64;
         let error = Int::from_limbs(error);
         Some([self.value - error, self.value + error])
@@ -87,9 +88,9 @@ fn place(x: &Int<6>, w: &Int<6>, near: f64) -> i128 {
     let shift = w.bit_length().saturating_sub(120).cast_signed();
     let divisor: Int<2> = window(w, shift);
     let dividend: Int<4> = window(x, shift - PLACES.cast_signed());
-    let first = (near * UNIT) as i128;
+    let first = as_wide(near * UNIT);
     let rest = dividend - divisor.mul_i128(first);
-    first + (rest.to_f64() / divisor.to_f64()) as i128
+    first + as_wide(rest.to_f64() / divisor.to_f64())
 }
 
 /// The floor of a number over 2^shift, in limbs that hold it.
@@ -103,11 +104,12 @@ fn window<const N: usize>(number: &Int<6>, shift: i32) -> Int<N> {
     Int::from_limbs(std::array::from_fn(|_| {
         let pair = u128::from(limb(at + 1)) << 64 | u128::from(limb(at));
         at += 1;
-        (pair >> offset) as u64
+        low_limb(pair >> offset)
     }))
 }
 
 /// A step in units.
+#[allow(clippy::cast_precision_loss, reason = "a small constant")]
 const UNIT: f64 = (1u128 << PLACES) as f64;
 
 /// A fraction in units of 2^-`PLACES`, by two steps of long division in doubles.
@@ -115,10 +117,10 @@ fn fraction(n: i128, d: i128) -> i128 {
     if n.unsigned_abs() >= 1 << 104 || d.unsigned_abs() >= 1 << 120 {
         return long_fraction(&Int::from_i128(n), d);
     }
-    let first = (n as f64 / d as f64 * UNIT) as i128;
+    let first = as_wide(as_double(n) / as_double(d) * UNIT);
     // The remainder fits, being 2^-50 of the numerator; what overflows cancels.
     let rest = (n << PLACES).wrapping_sub(first.wrapping_mul(d));
-    first.saturating_add((rest as f64 / d as f64) as i128)
+    first.saturating_add(as_wide(as_double(rest) / as_double(d)))
 }
 
 fn long_fraction(n: &Int<3>, d: i128) -> i128 {
@@ -136,9 +138,9 @@ fn quotient<const N: usize, const M: usize>(
     times: impl Fn(i128) -> Int<N>,
 ) -> i128 {
     let reciprocal = 1.0 / d.to_f64();
-    let first = (n.to_f64() * reciprocal) as i128;
+    let first = as_wide(n.to_f64() * reciprocal);
     let rest = *n - times(first);
-    first.saturating_add((rest.to_f64() * reciprocal) as i128)
+    first.saturating_add(as_wide(rest.to_f64() * reciprocal))
 }
 
 /// How far a coordinate can be from the true one after a quotient, if none exceeds `size`.
@@ -199,7 +201,7 @@ impl Walls {
     /// Whether a point lies inside, of which each coordinate is off by some units in its last place.
     pub fn surely_hold(&self, near: &[f64; 3]) -> bool {
         (0..3).all(|i| {
-            let [low, high] = [2 * i, 2 * i + 1].map(|wall| self.doubled[wall] as f64 / 2.0);
+            let [low, high] = [2 * i, 2 * i + 1].map(|wall| as_double(self.doubled[wall]) / 2.0);
             let doubt = 2f64.powi(-48) * (near[i].abs() + low.abs() + high.abs());
             low + doubt <= near[i] && near[i] <= high - doubt
         })
@@ -420,8 +422,8 @@ impl Reach {
         let size = (0..3).map(|i| low[i].unsigned_abs().max(high[i].unsigned_abs()));
         let extent = (0..3).map(|i| high[i].abs_diff(low[i]));
         Self {
-            size: size.max().unwrap_or(0) as f64,
-            extent: extent.max().unwrap_or(0) as f64,
+            size: as_double(size.max().unwrap_or(0)),
+            extent: as_double(extent.max().unwrap_or(0)),
         }
     }
 
@@ -433,8 +435,8 @@ impl Reach {
             c.iter().max().unwrap_or(&0) - c.iter().min().unwrap_or(&0)
         };
         Self {
-            size: size.unwrap_or(0) as f64 * UNIT,
-            extent: spread(0).max(spread(1)).max(spread(2)) as f64 * UNIT,
+            size: as_double(size.unwrap_or(0)) * UNIT,
+            extent: as_double(spread(0).max(spread(1)).max(spread(2))) * UNIT,
         }
     }
 
@@ -447,7 +449,7 @@ impl Reach {
     pub fn error(&self, corners: usize, rounds: u32, slope: f64) -> f64 {
         let s = slack(self.size);
         let product = (self.extent + 8.0 * s) * (self.size + self.extent) * (1.0 + slope);
-        let count = corners as f64 * f64::from(rounds);
+        let count = as_double(corners) * f64::from(rounds);
         1.0 + 64.0 * count * s * product * 2f64.powi(-64)
     }
 }

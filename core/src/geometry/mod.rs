@@ -1,5 +1,4 @@
 //! Exact predicates, planes, points and convex pieces.
-#![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
 pub mod affine;
 pub mod apart;

@@ -6,6 +6,7 @@
 
 use super::plane::{Lattice, Plane};
 use super::vertex::Vertex;
+use crate::arith::convert::as_double;
 use crate::arith::Int;
 
 /// Relative error bound of a determinant of three rows of rounded differences of integers.
@@ -44,8 +45,8 @@ impl Way {
     pub fn may_meet(&self, low: &Lattice, high: &Lattice) -> bool {
         let (mut first, mut last) = (0.0f64, 1.0f64);
         for i in 0..3 {
-            let before = low[i] as f64 - self.slack - self.from[i];
-            let after = high[i] as f64 + self.slack - self.from[i];
+            let before = as_double(low[i]) - self.slack - self.from[i];
+            let after = as_double(high[i]) + self.slack - self.from[i];
             if self.inverse[i].is_infinite() {
                 if before > 0.0 || after < 0.0 {
                     return false;
@@ -100,7 +101,7 @@ impl NearCross {
     /// The cross product of two rows.
     #[inline]
     pub fn of(b: &Lattice, c: &Lattice) -> Self {
-        let [q, r] = [b, c].map(|row| row.map(|x| x as f64));
+        let [q, r] = [b, c].map(|row| row.map(as_double));
         let minor = |i: usize, j: usize| (q[i] * r[j], q[j] * r[i]);
         let minors = [minor(1, 2), minor(2, 0), minor(0, 1)];
         Self {
@@ -112,7 +113,7 @@ impl NearCross {
     /// The sign of its product with a row; 0 if doubles leave it in doubt.
     #[inline]
     pub fn side_of(&self, a: &Lattice) -> i32 {
-        let p = a.map(|x| x as f64);
+        let p = a.map(as_double);
         let value = p[0] * self.value[0] + p[1] * self.value[1] + p[2] * self.value[2];
         let size =
             p[0].abs() * self.size[0] + p[1].abs() * self.size[1] + p[2].abs() * self.size[2];

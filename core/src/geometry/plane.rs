@@ -3,6 +3,7 @@
 use crate::arith::bounds::{
     self, COORDINATE_BITS, HALF_SPACE_NORMAL_BITS, SHORT_NORMAL_BITS, SHORT_OFFSET_BITS,
 };
+use crate::arith::convert::{as_double, as_whole};
 use crate::arith::{gcd_u128, Int};
 
 /// A lattice point, in steps of the pitch; each coordinate below 2^53 in magnitude.
@@ -171,6 +172,10 @@ impl Plane {
     }
 
     /// The coefficients in machine words, if they are short.
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "only used if they are short"
+    )]
     pub fn short(&self) -> Option<ShortPlane> {
         let fits = |c: &i128, bits: u32| c.unsigned_abs() < 1 << bits;
         let d = self.d.to_i128().filter(|d| fits(d, SHORT_OFFSET_BITS))?;
@@ -223,10 +228,10 @@ impl Plane {
     pub fn lattice_coordinate(&self, axis: usize) -> Option<i64> {
         let at = -self.d.to_f64();
         // Below 2^53 in magnitude the double is exact.
-        let exact = at.abs() < (1u64 << COORDINATE_BITS) as f64;
+        let exact = at.abs() < as_double(1u64 << COORDINATE_BITS);
         match self.n[axis] {
-            1 if exact => Some(at as i64),
-            -1 if exact => Some(-at as i64),
+            1 if exact => Some(as_whole(at)),
+            -1 if exact => Some(as_whole(-at)),
             _ => None,
         }
     }
@@ -257,7 +262,11 @@ impl Plane {
     /// -1 on the minus side (inside), 0 on the plane, +1 on the plus side.
     pub fn side_of_lattice(&self, p: &Lattice) -> i32 {
         let a = &self.approx;
-        let t = [a[0] * p[0] as f64, a[1] * p[1] as f64, a[2] * p[2] as f64];
+        let t = [
+            a[0] * as_double(p[0]),
+            a[1] * as_double(p[1]),
+            a[2] * as_double(p[2]),
+        ];
         let sum = t[0] + t[1] + t[2] + self.approx[3];
         let size = t[0].abs() + t[1].abs() + t[2].abs() + self.approx[3].abs();
         if sum.abs() > size * FILTER {
@@ -277,7 +286,11 @@ impl Plane {
     /// Twice the plane's value at half the given coordinates, in doubles, and a bound of its error.
     pub fn near_value_at_doubled(&self, doubled: &Lattice) -> (f64, f64) {
         let (a, p) = (&self.approx, doubled);
-        let t = [a[0] * p[0] as f64, a[1] * p[1] as f64, a[2] * p[2] as f64];
+        let t = [
+            a[0] * as_double(p[0]),
+            a[1] * as_double(p[1]),
+            a[2] * as_double(p[2]),
+        ];
         let twice = 2.0 * self.approx[3];
         let size = t[0].abs() + t[1].abs() + t[2].abs() + twice.abs();
         (t[0] + t[1] + t[2] + twice, size * FILTER)
@@ -360,7 +373,7 @@ fn edge_normal(a: &Lattice, b: &Lattice, axis: usize) -> [i128; 3] {
 
 /// The nearest double, by one machine instruction for short numbers.
 fn near(value: i128) -> f64 {
-    i64::try_from(value).map_or_else(|_| value as f64, |short| short as f64)
+    i64::try_from(value).map_or_else(|_| as_double(value), as_double)
 }
 
 fn dot_lattice(n: &[i128; 3], p: &Lattice) -> Int<3> {

@@ -12,6 +12,7 @@ use super::edge::{LatticeEdge, Ring};
 use super::line::{Line, PlaneResidues};
 use super::plane::{Lattice, Plane};
 use super::vertex::Vertex;
+use crate::arith::convert::as_double;
 use crate::interrupt::poll;
 
 /// What an edge lies on, beside the supporting plane.
@@ -353,8 +354,8 @@ impl Polygon {
                 above |= p[axis] > high;
             } else {
                 let (least, most) = corner.at.bounds();
-                below |= least[axis] < low as f64;
-                above |= most[axis] > high as f64;
+                below |= least[axis] < as_double(low);
+                above |= most[axis] > as_double(high);
             }
         }
         (below, above)

@@ -7,6 +7,7 @@
 use super::fixed::{of_cubic_steps, over_limb, sixfold_flux, Flux, Walls, PLACES};
 use super::plane::Lattice;
 use super::side::Orientation;
+use crate::arith::convert::as_double;
 use crate::arith::Int;
 
 /// What the walls of a cell leave of a triangle.
@@ -92,10 +93,10 @@ fn at_corner(corners: &[Lattice; 3], area: i128, beyond: &[i64; 3], lone: usize)
     let cut: Int<4> = Int::<2>::from_i128(area).mul(&product);
     let z = corners.map(|p| p[2]);
     let height = height(3 * z[a], [(s, z[b] - z[a]), (t, z[c] - z[a])]);
-    let size = z.iter().map(|z| z.unsigned_abs()).max().unwrap_or(0) as f64;
+    let size = as_double(z.iter().map(|z| z.unsigned_abs()).max().unwrap_or(0));
     Flux {
         value: over_limb(&cut.mul_i128(height)),
-        error: 1.0 + area.unsigned_abs() as f64 * (size * 2f64.powi(52) + 2f64.powi(81)),
+        error: 1.0 + as_double(area.unsigned_abs()) * (size * 2f64.powi(52) + 2f64.powi(81)),
     }
 }
 
@@ -159,7 +160,7 @@ mod tests {
             };
             let gap = (flux.value - expected).to_f64().abs();
             // The clipped ring's corners are rounded to 2^-72 steps.
-            let rounding = 2f64.powi(FLUX_PLACES.cast_signed() - 60) * (1.0 + shift as f64);
+            let rounding = 2f64.powi(FLUX_PLACES.cast_signed() - 60) * (1.0 + as_double(shift));
             prop_assert!(gap <= flux.error + rounding, "{} apart, {}", gap, flux.error);
         }
     }

@@ -8,6 +8,7 @@ pub use super::coordinates::{cross, Homogeneous};
 use super::edge::LatticeEdge;
 use super::plane::{Lattice, Plane, FILTER};
 use super::residue::residue;
+use crate::arith::convert::as_double;
 use crate::arith::Int;
 
 /// An exact point (x/w, y/w, z/w) with w > 0.
@@ -59,7 +60,7 @@ impl Vertex {
     /// The vertex at a lattice point.
     pub fn lattice(p: Lattice) -> Self {
         Self {
-            approx: [p[0] as f64, p[1] as f64, p[2] as f64, 1.0],
+            approx: [as_double(p[0]), as_double(p[1]), as_double(p[2]), 1.0],
             place: Place::Lattice(p),
         }
     }
@@ -136,7 +137,7 @@ impl Vertex {
     /// Whether this may be a lattice point; errs on yes.
     pub fn may_be(&self, place: &Lattice) -> bool {
         let (low, high) = self.bounds();
-        (0..3).all(|i| low[i] <= place[i] as f64 && place[i] as f64 <= high[i])
+        (0..3).all(|i| low[i] <= as_double(place[i]) && as_double(place[i]) <= high[i])
     }
 
     /// Sign of the plane's value here: -1 minus side, 0 on, +1 plus side.

@@ -7,6 +7,7 @@ use super::expression::{Expression, Term};
 use super::lists::list::Sources;
 use super::rule::Rule;
 use super::simple::{is_simple, simple_shells};
+use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::Source;
@@ -209,7 +210,7 @@ fn union_of_shells(solid: &Solid, sources: &Sources) -> Result<Option<Solid>> {
     let Some(shells) = simple_shells(solid, sources) else {
         return Ok(None);
     };
-    let count = shells.len() as u32;
+    let count = as_number(shells.len());
     let mut terms: Vec<Term> = (0..count).map(Term::Operand).collect();
     terms.push(Term::Or((0..count).collect()));
     let descent = Descent::new(sources, Rule::Positive, true, shells.len());

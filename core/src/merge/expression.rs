@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt::poll;
 
@@ -174,7 +175,7 @@ impl Expression {
             *line
         } else {
             terms.push(self.terms[top].with(arguments.to_vec()));
-            top as u32
+            as_number(top)
         };
         terms.truncate(last as usize + 1);
         Self {
@@ -244,7 +245,7 @@ fn fold(
 
 fn append(terms: &mut Vec<Term>, term: Term) -> Known {
     terms.push(term);
-    Known::Line(terms.len() as u32 - 1, false)
+    Known::Line(as_number(terms.len()) - 1, false)
 }
 
 /// Lists up to this length are searched for equal and opposite lines; longer ones would cost n².
@@ -316,7 +317,7 @@ fn positive(open: &[(u32, bool)], terms: &mut Vec<Term>) -> Vec<u32> {
         .map(|(line, negate)| {
             if *negate {
                 terms.push(Term::Not(*line));
-                terms.len() as u32 - 1
+                as_number(terms.len()) - 1
             } else {
                 *line
             }
@@ -352,7 +353,7 @@ fn only_needed(terms: Vec<Term>) -> Vec<Term> {
     let mut image = vec![0u32; terms.len()];
     let mut kept = Vec::new();
     for (i, term) in terms.into_iter().enumerate().filter(|(i, _)| needed[*i]) {
-        image[i] = kept.len() as u32;
+        image[i] = as_number(kept.len());
         kept.push(renumbered(term, &image));
     }
     kept

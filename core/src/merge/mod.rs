@@ -1,5 +1,4 @@
 //! Set operations: one descent over trees and deferred leaves, and generic tree merging.
-#![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
 pub mod descent;
 pub mod evaluate;

@@ -1,6 +1,7 @@
 //! Whether the boundary of a surface vanishes, without looking for pairs.
 
 use super::tasks::each_chunk;
+use crate::arith::convert::low_limb;
 
 /// Whether every directed edge occurs as often as its opposite.
 ///
@@ -39,7 +40,7 @@ const SALT: [u64; 4] = [
 /// A number that depends on each bit of the key as if by chance: two rounds of multiply and fold.
 fn scattered(key: u64) -> u128 {
     let first = u128::from(key ^ SALT[0]) * u128::from(key.rotate_left(29) ^ SALT[1]);
-    let (low, high) = (first as u64, (first >> 64) as u64);
+    let (low, high) = (low_limb(first), (first >> 64) as u64);
     let second = u128::from(low ^ SALT[2]) * u128::from(high ^ SALT[3]);
     second ^ first.rotate_left(64)
 }

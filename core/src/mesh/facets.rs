@@ -97,6 +97,11 @@ pub struct Lenience {
 /// # Errors
 /// `Shape` if the offsets do not count up to the corners or a facet has too few or too many of
 /// them; `Degenerate`, `NonPlanar`, `NotSimple`; with the facet.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "offsets are checked first"
+)]
 pub fn facets(
     dimension: usize,
     corners: &[Lattice],

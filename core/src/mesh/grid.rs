@@ -1,6 +1,7 @@
 //! The lattice: the only door between doubles and integers.
 
 use crate::arith::bounds::COORDINATE_BITS;
+use crate::arith::convert::{as_double, as_whole};
 use crate::arith::{ratio_to_f64, Int};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::dim2::Point2;
@@ -107,16 +108,16 @@ impl Pitch {
         } else {
             snap_quotient(x, power_of_ten(self.0))
         };
-        Ok(rounded as i64)
+        Ok(as_whole(rounded))
     }
 
     /// The double nearest to a lattice coordinate.
     pub fn coordinate(self, k: i64) -> f64 {
         let power = power_of_ten(self.0.abs());
         if self.0 <= 0 {
-            k as f64 / power
+            as_double(k) / power
         } else {
-            k as f64 * power
+            as_double(k) * power
         }
     }
 
@@ -163,6 +164,7 @@ impl Pitch {
 }
 
 /// Lattice coordinates stay strictly below this magnitude.
+#[allow(clippy::cast_precision_loss, reason = "a small constant")]
 pub const LIMIT: f64 = (1u64 << COORDINATE_BITS) as f64;
 
 fn power_of_ten(exponent: i8) -> f64 {

@@ -10,6 +10,7 @@ use super::source::{Source, WELDED};
 use super::tasks::{each_chunk, fill_chunks};
 use super::topology::{open_edges, Topology};
 use super::triangles::TriangleMesh;
+use crate::arith::convert::{as_double, as_number, as_place};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::{normal, Lattice};
@@ -112,11 +113,16 @@ fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[u32; 3]>> {
 }
 
 /// Copies indices; says whether all are below the limit.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "what is cut off is noticed"
+)]
 fn narrow_all(faces: &[[i64; 3]], limit: u32, narrow: &mut [[u32; 3]]) -> bool {
     let mut good = true;
     for (wide, narrow) in faces.as_flattened().iter().zip(narrow.as_flattened_mut()) {
         *narrow = *wide as u32;
-        good &= (*wide as u64) < u64::from(limit);
+        good &= wide.cast_unsigned() < u64::from(limit);
     }
     good
 }
@@ -223,7 +229,7 @@ fn drop_faces(mesh: &mut TriangleMesh, faces: Vec<u32>, findings: &mut Vec<Findi
     }
     let mut dropped = faces.iter().peekable();
     let kept = |face: &u32| dropped.next_if_eq(&face).is_none();
-    let keep: Vec<u32> = (0..mesh.faces.len() as u32).filter(kept).collect();
+    let keep: Vec<u32> = (0..as_number(mesh.faces.len())).filter(kept).collect();
     mesh.faces = keep.iter().map(|i| mesh.faces[*i as usize]).collect();
     mesh.numbers = Some(keep);
     let places: Vec<u64> = faces.into_iter().map(u64::from).collect();
@@ -240,11 +246,11 @@ fn weigh_chunk(
 ) -> (f64, Vec<u32>) {
     let mut volume = 0.0;
     let mut flat = Vec::new();
-    for (number, face) in (first as u32..).zip(faces) {
+    for (number, face) in (as_number(first)..).zip(faces) {
         poll();
         let corners = face.map(|v| &vertices[v as usize]);
         let [u, v] = spokes(corners);
-        let arm = [0, 1, 2].map(|i| (corners[0][i] - origin[i]) as f64);
+        let arm = [0, 1, 2].map(|i| as_double(corners[0][i] - origin[i]));
         volume += arm[0] * (u[1] * v[2] - u[2] * v[1])
             + arm[1] * (u[2] * v[0] - u[0] * v[2])
             + arm[2] * (u[0] * v[1] - u[1] * v[0]);
@@ -264,7 +270,7 @@ pub fn is_flat(corners: &[Lattice; 3]) -> bool {
 
 /// The edges from the first corner to the others, in doubles.
 fn spokes([a, b, c]: [&Lattice; 3]) -> [[f64; 3]; 2] {
-    [b, c].map(|end| [0, 1, 2].map(|i| (end[i] - a[i]) as f64))
+    [b, c].map(|end| [0, 1, 2].map(|i| as_double(end[i] - a[i])))
 }
 
 /// Whether two edges are not parallel, beyond the rounding of their cross product.
@@ -304,12 +310,12 @@ fn close(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Joints>
 
 fn not_closed(mesh: &TriangleMesh, open: &[u64]) -> Error {
     let number = |half: &u64| {
-        let face = (*half / 3) as u32;
+        let face = as_number(as_place(*half / 3));
         u64::from(mesh.numbers.as_ref().map_or(face, |n| n[face as usize]))
     };
     let mut faces: Vec<u64> = open.iter().map(number).collect();
     faces.dedup();
-    let half = open[0] as usize;
+    let half = as_place(open[0]);
     let face = mesh.faces[half / 3];
     let (a, b) = (face[half % 3] as usize, face[(half % 3 + 1) % 3] as usize);
     let text = format!(

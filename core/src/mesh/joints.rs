@@ -5,6 +5,7 @@ use super::links;
 use super::tasks::{both, CHUNK};
 use super::topology::{ends, Topology};
 use super::triangles::TriangleMesh;
+use crate::arith::convert::as_number;
 
 /// Vertices where faces do not meet two at each edge and in one fan.
 #[derive(Debug, Default)]
@@ -37,7 +38,7 @@ impl Joints {
 
     /// The joints of a mesh of which some edges have no opposite by index.
     pub fn of_open(mesh: &TriangleMesh, topology: &Topology) -> Self {
-        let half_ends = |half: usize| <[u32; 2]>::from(ends(&mesh.faces, half as u32));
+        let half_ends = |half: usize| <[u32; 2]>::from(ends(&mesh.faces, as_number(half)));
         let mut open: Vec<u32> = topology.unpaired().flat_map(half_ends).collect();
         open.sort_unstable();
         open.dedup();

@@ -4,6 +4,7 @@
 //! vertex to the one before it. The faces make one fan if the link is one cycle.
 
 use super::tasks::each_chunk;
+use crate::arith::convert::as_number;
 use crate::interrupt::poll;
 
 /// Edges that a [`Short`] link holds; around most vertices of most meshes there are six.
@@ -44,7 +45,7 @@ fn doubtful(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
         }
     }
     let doubtful = |first: usize, links: &[Short]| {
-        let rows = (first as u32..).zip(links.iter().zip(&counts[first..]));
+        let rows = (as_number(first)..).zip(links.iter().zip(&counts[first..]));
         let doubt = |(vertex, (link, count)): (u32, (&Short, &u8))| {
             (*count > 0 && !is_cycle(link, usize::from(*count))).then_some(vertex)
         };
@@ -53,6 +54,7 @@ fn doubtful(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
     each_chunk(&links, doubtful).concat()
 }
 
+#[allow(clippy::cast_possible_truncation, reason = "fifteen bits are a label")]
 fn label(vertex: u32) -> u16 {
     vertex as u16 | 1 << 15
 }
@@ -158,6 +160,7 @@ fn is_sorted_cycle(link: &[[u32; 2]]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::irregular;
+    use crate::arith::convert::as_number;
     use crate::mesh::topology::Topology;
     use proptest::prelude::*;
 
@@ -168,7 +171,7 @@ mod tests {
         prop::collection::vec(corners, 1..6).prop_map(|all| {
             let tetrahedron = |(c, high, turned): &(Vec<u32>, u32, bool)| {
                 // Far numbers share their lower bits.
-                let [a, b, c, d] = [0, 1, 2, 3].map(|i| c[i] + (high << 15) * (i as u32 % 2));
+                let [a, b, c, d] = [0, 1, 2, 3].map(|i| c[i] + (high << 15) * (as_number(i) % 2));
                 let faces = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
                 faces.map(|[a, b, c]| if *turned { [a, c, b] } else { [a, b, c] })
             };

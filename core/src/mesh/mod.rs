@@ -1,10 +1,4 @@
 //! Triangle meshes on the lattice: import, topology and findings.
-#![allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_possible_wrap,
-    clippy::cast_precision_loss,
-    clippy::cast_sign_loss
-)]
 
 pub mod cached;
 mod chain;

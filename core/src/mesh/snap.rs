@@ -9,6 +9,7 @@ use crate::geometry::plane::Lattice;
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// Below this magnitude the sum with [`ROUNDER`] stays among them.
+#[allow(clippy::cast_precision_loss, reason = "a small constant")]
 const EXACT: f64 = (1u64 << 51) as f64;
 
 /// The lattice points nearest to points in model units.
@@ -60,7 +61,10 @@ fn snap_clear(points: &[[f64; 3]], power: f64, lattice: &mut [Lattice]) -> bool 
         let rest = product - (sum - ROUNDER);
         clear &= product.abs() < EXACT;
         clear &= rest.abs() + product.abs() * f64::EPSILON < 0.5;
-        *place = (sum.to_bits() as i64).wrapping_sub(ROUNDER.to_bits() as i64);
+        *place = sum
+            .to_bits()
+            .cast_signed()
+            .wrapping_sub(ROUNDER.to_bits().cast_signed());
     }
     clear
 }
@@ -68,14 +72,15 @@ fn snap_clear(points: &[[f64; 3]], power: f64, lattice: &mut [Lattice]) -> bool 
 #[cfg(test)]
 mod tests {
     use super::{snap_all, EXACT};
+    use crate::arith::convert::as_double;
     use crate::mesh::grid::{snap_point, Pitch};
     use proptest::prelude::*;
 
     /// Doubles at, and next to, the middle between two lattice points, and everywhere else.
     fn coordinate() -> impl Strategy<Value = f64> {
         let middle = |k: i64, ulps: i64| {
-            let x = (k as f64 + 0.5) / 1e9;
-            f64::from_bits((x.to_bits() as i64 + ulps) as u64)
+            let x = (as_double(k) + 0.5) / 1e9;
+            f64::from_bits((x.to_bits().cast_signed() + ulps).cast_unsigned())
         };
         prop_oneof![
             (-(1i64 << 40)..1 << 40, -2i64..3).prop_map(move |(k, u)| middle(k, u)),

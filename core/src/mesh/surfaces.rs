@@ -1,5 +1,6 @@
 //! The connected surfaces of a mesh, and what it has of each kind.
 
+use crate::arith::convert::as_number;
 use crate::interrupt::poll;
 
 /// How many different things of each kind make up a mesh.
@@ -63,7 +64,7 @@ fn used(faces: &[[u32; 3]], vertex_count: usize) -> usize {
 ///
 /// Surfaces are numbered in the order of their lowest vertices.
 pub fn surfaces(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
-    let mut lower: Vec<u32> = (0..vertex_count as u32).collect();
+    let mut lower: Vec<u32> = (0..as_number(vertex_count)).collect();
     for face in faces {
         poll();
         let roots = face.map(|vertex| root(&mut lower, vertex));
@@ -90,7 +91,7 @@ fn root(lower: &mut [u32], vertex: u32) -> u32 {
         lower[at] = lower[lower[at] as usize];
         at = lower[at] as usize;
     }
-    at as u32
+    as_number(at)
 }
 
 /// The edges at the lower of their vertices, in compressed rows.

@@ -1,5 +1,6 @@
 //! Which half-edge is whose mate.
 
+use crate::arith::convert::as_number;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 
@@ -47,7 +48,7 @@ impl Topology {
         irregular.extend((0..vertex_count).filter_map(|v| {
             let fan = outgoing.of(v);
             let several = fan.len() > 3 && turns(fan[0], mates_of) < fan.len();
-            several.then_some(v as u32)
+            several.then_some(as_number(v))
         }));
         irregular.sort_unstable();
         irregular.dedup();

@@ -2,6 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
+use crate::arith::convert::as_number;
 use crate::interrupt::poll;
 
 /// The different points among some, in the order in which they first occur.
@@ -34,7 +35,7 @@ pub fn welded(points: &[[f64; 3]]) -> Welded {
             let point = point.map(|x| x + 0.0);
             *numbers.entry(point.map(f64::to_bits)).or_insert_with(|| {
                 different.push(point);
-                different.len() as u32 - 1
+                as_number(different.len()) - 1
             })
         })
         .collect();

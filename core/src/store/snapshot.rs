@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::sealed::{seal, unseal, Kind};
 use super::sound::is_sound;
 use crate::arith::bounds::{self, COORDINATE_BITS};
+use crate::arith::convert::as_double;
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::boundary::collect::{collect, CutFace};
@@ -152,7 +153,7 @@ impl Motion {
         [0, 1, 2].map(|i| {
             let (axis, sign) = self.axes[i];
             if self.shift[i] == 0 {
-                p[axis] * sign as f64
+                p[axis] * as_double(sign)
             } else {
                 pitch.coordinate(image[i])
             }

@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use crate::arith::convert::as_double;
 use crate::extract::boundary::leaves::{Fate, Fates};
 use crate::extract::boundary::rim::{half_edge_ends, FrontierEdge, Rims};
 use crate::geometry::edge::LatticeEdge;
@@ -48,9 +49,9 @@ fn is_proper(source: &Source) -> bool {
 /// coordinates are its steps, on a coarser one.
 fn doubles_fit(mesh: &TriangleMesh, pitch: Pitch) -> bool {
     (0..3).all(|axis| {
-        let slack = coarsest_step(&mesh.vertices, axis) as f64 * 0.5;
+        let slack = as_double(coarsest_step(&mesh.vertices, axis)) * 0.5;
         let near = |(vertex, double): (&Lattice, &[f64; 3])| {
-            let (k, x) = (vertex[axis] as f64, pitch.steps(double[axis]));
+            let (k, x) = (as_double(vertex[axis]), pitch.steps(double[axis]));
             // Both are rounded to three units in the last place.
             (x - k).abs() <= slack + (k.abs() + slack) * 4.0 * f64::EPSILON
         };

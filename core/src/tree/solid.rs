@@ -1,5 +1,4 @@
 //! Solids: a tree, the winding number outside its root, and the sources it refers to.
-#![allow(clippy::cast_possible_truncation)]
 
 use std::sync::Arc;
 

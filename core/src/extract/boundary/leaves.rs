@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::{smallvec, SmallVec};
 
+use crate::arith::convert::{as_number, as_whole};
 use crate::geometry::cell::Cell;
 use crate::geometry::outline::{cancel, Outline, OutlineEdge};
 use crate::geometry::plane::Lattice;
@@ -216,8 +217,8 @@ fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
 fn part_box(part: &Part) -> (Lattice, Lattice) {
     let ((low, high), home) = (part.bounds(), (part.home.low(), part.home.high()));
     (
-        [0, 1, 2].map(|i| (low[i].floor() as i64).max(home.0[i])),
-        [0, 1, 2].map(|i| (high[i].ceil() as i64).min(home.1[i])),
+        [0, 1, 2].map(|i| as_whole(low[i].floor()).max(home.0[i])),
+        [0, 1, 2].map(|i| as_whole(high[i].ceil()).min(home.1[i])),
     )
 }
 
@@ -261,7 +262,7 @@ fn leaves_of(root: &Branch) -> Vec<Leaf<'_>> {
         match &*branch.node {
             Node::Leaf(_) => {}
             Node::Deferred(content) => leaves.push(Leaf {
-                number: leaves.len() as u32,
+                number: as_number(leaves.len()),
                 cell: branch.cell,
                 complement,
                 content,

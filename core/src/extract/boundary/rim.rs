@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 
 use super::leaves::{Fate, Fates};
+use crate::arith::convert::as_number;
 use crate::geometry::line::LineKey;
 use crate::geometry::side::Orientation;
 use crate::interrupt::{carried, poll};
@@ -159,7 +160,7 @@ impl Around {
             for vertex in corners {
                 let start = &mut starts[*vertex as usize];
                 *start -= 1;
-                faces[*start as usize] = FaceId(face as u32);
+                faces[*start as usize] = FaceId(as_number(face));
             }
         }
         Self { starts, faces }
@@ -194,7 +195,7 @@ impl Rim {
         for vertex in source.joints().map_or(&[][..], |j| &j.open) {
             rim.touch[*vertex as usize] |= OPEN;
         }
-        if (0..mesh.vertices.len() as u32).any(|v| rim.is_mixed(v)) {
+        if (0..as_number(mesh.vertices.len())).any(|v| rim.is_mixed(v)) {
             let near = |(_, (corners, fate)): &(FaceId, (&[u32; 3], &Fate))| {
                 matches!(fate, Fate::Whole(_)) && corners.iter().any(|v| rim.is_mixed(*v))
             };

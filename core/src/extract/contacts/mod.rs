@@ -9,6 +9,7 @@ use super::emission::assembly::Assembly;
 use super::failure::{Failure, Overlap};
 use super::mesh::outward_normal;
 use super::vertices::direction;
+use crate::arith::convert::as_number;
 use crate::error::Error;
 use crate::interrupt::poll;
 use crate::mesh::finding::{Finding, Severity};
@@ -20,7 +21,7 @@ pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>, Failure> {
     if is_manifold(assembly, &special)? {
         return Ok(Vec::new());
     }
-    let count = assembly.vertices.len() as u32;
+    let count = as_number(assembly.vertices.len());
     let split = split_fans(&assembly.triangles, count, &Geometry(assembly))
         .map_err(|e| Error::internal(format!("contacts could not be split: {e}")))?;
     let place = |ids: &[u32]| ids.iter().map(|v| u64::from(*v)).collect::<Vec<_>>();
@@ -73,7 +74,7 @@ fn is_manifold(assembly: &Assembly, triangles: &[u32]) -> Result<bool, Failure> 
         let fan = &mut fans.corners[fans.starts[place]..fans.starts[place + 1]];
         if !is_single_fan(fan) {
             if !is_balanced(fan) {
-                let vertex = assembly.special_vertex(place as u32);
+                let vertex = assembly.special_vertex(as_number(place));
                 return Err(Failure::Overlap(Overlap {
                     sign: format!("the assembled boundary is open at vertex {vertex}"),
                     faces: assembly.faces_at(vertex),

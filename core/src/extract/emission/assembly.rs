@@ -5,6 +5,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap as HashMap;
 
 use super::untouched::Untouched;
+use crate::arith::convert::as_number;
 use crate::extract::boundary::leaves::{Fate, Fates};
 use crate::extract::mesh::{Corner, ExactMesh};
 use crate::extract::vertices::VertexTable;
@@ -81,7 +82,7 @@ impl<'a> Assembly<'a> {
         }
         let image = &mut self.point_images[point as usize];
         if *image == NONE {
-            *image = self.vertices.len() as u32;
+            *image = as_number(self.vertices.len());
             self.vertices.push(Corner::Point(point));
         }
         *image
@@ -89,7 +90,7 @@ impl<'a> Assembly<'a> {
 
     /// The triangles with a special vertex.
     pub(in crate::extract) fn special_triangles(&self) -> impl Iterator<Item = u32> + '_ {
-        let last = self.untouched.count as u32..self.triangles.len() as u32;
+        let last = as_number(self.untouched.count)..as_number(self.triangles.len());
         self.untouched.special.iter().copied().chain(last)
     }
 
@@ -109,7 +110,7 @@ impl<'a> Assembly<'a> {
         if vertex < others.start {
             Some(vertex)
         } else {
-            (vertex >= others.end).then(|| vertex - others.len() as u32)
+            (vertex >= others.end).then(|| vertex - as_number(others.len()))
         }
     }
 
@@ -119,7 +120,7 @@ impl<'a> Assembly<'a> {
         if place < others.start {
             place
         } else {
-            place + others.len() as u32
+            place + as_number(others.len())
         }
     }
 
@@ -158,7 +159,7 @@ impl<'a> Assembly<'a> {
 
     /// Leaves out vertices that no triangle uses; the others keep their order.
     fn drop_unused(&mut self) {
-        let mut used: Vec<bool> = (0..self.vertices.len() as u32)
+        let mut used: Vec<bool> = (0..as_number(self.vertices.len()))
             .map(|v| !self.is_special(v))
             .collect();
         for triangle in self.special_triangles() {

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use crate::arith::convert::as_number;
 use crate::extract::boundary::leaves::Fate;
 use crate::geometry::side::Orientation;
 use crate::interrupt::{carried, spend};
@@ -66,7 +67,7 @@ impl Untouched {
         faces.resize(self.count, OrientedFace::default());
         let mut tasks = Vec::with_capacity(counts.len());
         let mut rest = (&mut triangles[start..], &mut faces[start..]);
-        let mut first_triangle = start as u32;
+        let mut first_triangle = as_number(start);
         let chunks = whole.fates.chunks(CHUNK).enumerate();
         for ((chunk, fates), count) in chunks.zip(counts) {
             let (triangles, later) = rest.0.split_at_mut(count);
@@ -79,7 +80,7 @@ impl Untouched {
                 triangles,
                 faces,
             });
-            first_triangle += count as u32;
+            first_triangle += as_number(count);
         }
         let emit = carried(|task: Task| {
             spend(task.fates.len());
@@ -103,14 +104,16 @@ impl WholeFaces<'_> {
     ) -> impl Iterator<Item = OrientedFace> + 'a {
         let start = self.split.partition_point(|s| s.id.place() < first);
         let mut split = self.split[start..].iter().peekable();
-        (first as u32..).zip(fates).filter_map(move |(id, fate)| {
-            let Fate::Whole(orientation) = *fate else {
-                return None;
-            };
-            let face = SourceFace::new(self.slot, FaceId(id));
-            let is_left_out = split.next_if_eq(&&face).is_some();
-            (!is_left_out).then_some(face.oriented(orientation))
-        })
+        (as_number(first)..)
+            .zip(fates)
+            .filter_map(move |(id, fate)| {
+                let Fate::Whole(orientation) = *fate else {
+                    return None;
+                };
+                let face = SourceFace::new(self.slot, FaceId(id));
+                let is_left_out = split.next_if_eq(&&face).is_some();
+                (!is_left_out).then_some(face.oriented(orientation))
+            })
     }
 }
 

@@ -1,5 +1,6 @@
 //! Which triangles of a mesh lie so near others that the two may meet, by a coarse grid.
 
+use crate::arith::convert::{as_double, as_number};
 use crate::geometry::doubles::{Point, Triangle};
 
 use crate::mesh::tasks::fill_chunks;
@@ -47,7 +48,9 @@ pub fn in_company(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32) -> Ve
     }
     let mut own = some.iter().copied().peekable();
     let is_other = move |t: &u32| own.next_if_eq(t).is_none();
-    let others: Vec<u32> = (0..faces.triangles.len() as u32).filter(is_other).collect();
+    let others: Vec<u32> = (0..as_number(faces.triangles.len()))
+        .filter(is_other)
+        .collect();
     for t in &others {
         grid.mark(block(*t), party(*t) + 1);
     }
@@ -92,7 +95,7 @@ impl Grid {
             (low, [0, 1, 2].map(|i| high[i].max(p[i])))
         });
         let size = (faces.triangles.len() / 24).isqrt().clamp(2, FINEST);
-        let factor = |i: usize| size as f64 / (high[i] - low[i]).max(f64::MIN_POSITIVE);
+        let factor = |i: usize| as_double(size) / (high[i] - low[i]).max(f64::MIN_POSITIVE);
         Some(Self {
             low,
             factor: [0, 1, 2].map(factor),
@@ -101,7 +104,11 @@ impl Grid {
         })
     }
 
-    #[allow(clippy::cast_sign_loss, reason = "no place is below the lowest")]
+    #[allow(
+        clippy::cast_sign_loss,
+        clippy::cast_possible_truncation,
+        reason = "no place is below the lowest, and none beyond the size"
+    )]
     fn cell(&self, p: &Point) -> Cell {
         [0, 1, 2].map(|i| {
             let place = (p[i] - self.low[i]) * self.factor[i];

@@ -6,6 +6,7 @@
 use rustc_hash::FxHashMap as HashMap;
 
 use super::company::{in_company, Faces};
+use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::doubles::{side, Point, Triangle};
 use crate::geometry::extent::Extent;
 use crate::geometry::meeting::{has_no_area, interleave, meeting, passes, Meeting};
@@ -67,7 +68,7 @@ pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32) -> Faults
 
 /// The faults of a mesh.
 pub fn all_faults(faces: &Faces) -> Faults {
-    let all: Vec<u32> = (0..faces.triangles.len() as u32).collect();
+    let all: Vec<u32> = (0..as_number(faces.triangles.len())).collect();
     faults(faces, &all, |_| 0)
 }
 
@@ -178,7 +179,7 @@ pub fn crosses_at(
 /// Calls `meet` for the pairs of different parties that may meet; triangles come by party.
 fn candidates(faces: &Faces, all: &[(u32, u32)], mut meet: impl FnMut(u32, u32)) {
     let corners = |k: u32| faces.corners(all[k as usize].1);
-    let numbers = || 0..all.len() as u32;
+    let numbers = || 0..as_number(all.len());
     let boxes = numbers().map(|k| Extent::of(&corners(k)));
     let Some(whole) = boxes.reduce(|a, b| a.joined(&b)) else {
         return;
@@ -216,7 +217,7 @@ impl Scale {
 
     fn of(all: &Extent) -> Self {
         let size = (0..3).fold(0.0f64, |m, i| m.max(all.high[i] - all.low[i]));
-        let factor = (1u64 << Self::BITS) as f64 / size;
+        let factor = as_double(1u64 << Self::BITS) / size;
         Self {
             low: all.low,
             // A mesh in one place, or too small to be told apart, has one image.
@@ -229,6 +230,6 @@ impl Scale {
     }
 
     fn ends(&self, extent: &Extent) -> [[i64; 3]; 2] {
-        [extent.low, extent.high].map(|p| self.image(&p).map(|x| x as i64))
+        [extent.low, extent.high].map(|p| self.image(&p).map(as_whole))
     }
 }

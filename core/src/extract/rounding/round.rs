@@ -3,6 +3,7 @@
 use super::mend::Precision;
 use super::settle::{settle, Rounded, Settled};
 use super::unfold::{turned, unfold};
+use crate::arith::convert::{as_number, as_place};
 use crate::error::Result;
 use crate::extract::assemble::assemble_patches;
 use crate::extract::joining::patches::Patches;
@@ -87,7 +88,7 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
 /// Triangles that are not as they came are compared with all near them, and faces of different
 /// inputs with each other: on the lattice they do not cross, but their given doubles may.
 fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Settled {
-    let changed: Vec<u32> = (exact.untouched as u32..mesh.triangles.len() as u32).collect();
+    let changed: Vec<u32> = (as_number(exact.untouched)..as_number(mesh.triangles.len())).collect();
     let party = |t: u32| exact.faces[t as usize].slot().0;
     let corner = |v: u32| exact.vertices.get(v as usize);
     let on_lattice = |v: u32| match corner(v) {
@@ -146,7 +147,7 @@ fn drop_unused(mesh: &mut Mesh) {
     }
     // So far findings name vertices only: those at which the solid touches itself.
     for place in mesh.findings.iter_mut().flat_map(|f| &mut f.place) {
-        *place = u64::from(numbers[*place as usize]);
+        *place = u64::from(numbers[as_place(*place)]);
     }
     let mut kept = used.iter();
     mesh.vertices
@@ -166,7 +167,7 @@ fn position(solid: &Solid, exact: &ExactMesh, corner: Corner) -> [f64; 3] {
 /// Reports the triangles that rounding changed, by what became of them; `numbers` are their new
 /// ones, if some were removed.
 fn report(mesh: &mut Mesh, swapped: &[u64], turned: &[u64], settled: &Settled, numbers: &[u64]) {
-    let number = |t: &u64| numbers.get(*t as usize).copied().unwrap_or(*t);
+    let number = |t: &u64| numbers.get(as_place(*t)).copied().unwrap_or(*t);
     let numbered = |ids: &[u64]| ids.iter().map(number).collect::<Vec<u64>>();
     let wide = |ids: &mut dyn Iterator<Item = &u32>| ids.map(|t| number(&u64::from(*t))).collect();
     let mut crossing: Vec<u64> = wide(&mut settled.left.crossings.iter().flatten());
@@ -209,6 +210,6 @@ const CROSSING: &str = "rounding to doubles makes these triangles cross or overl
 /// Whether two corners of a triangle were rounded to the same place.
 #[allow(clippy::float_cmp)]
 fn is_collapsed(mesh: &Mesh, triangle: u64) -> bool {
-    let [a, b, c] = mesh.triangles[triangle as usize].map(|v| mesh.vertices[v as usize]);
+    let [a, b, c] = mesh.triangles[as_place(triangle)].map(|v| mesh.vertices[v as usize]);
     a == b || b == c || c == a
 }

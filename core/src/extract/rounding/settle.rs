@@ -5,6 +5,7 @@ use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use super::company::{in_company, Faces};
 use super::crossings::{faults, Faults};
 use super::mend::{Mending, Precision};
+use crate::arith::convert::as_number;
 use crate::geometry::doubles::Point;
 
 /// Rounds of finding and mending: each mends what it found, and the next looks at what that moved.
@@ -90,7 +91,7 @@ pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
             .iter()
             .any(|v| moved[*v as usize])
     };
-    let changed = (0..mesh.triangles.len() as u32)
+    let changed = (0..as_number(mesh.triangles.len()))
         .filter(is_changed)
         .collect();
     settle(mesh, changed, single, |_| None, |_| false, |_| 0)
@@ -106,7 +107,7 @@ impl Rounded {
 
     /// Whether all triangles are of one party.
     fn is_of_one(&self, party: impl Fn(u32) -> u32) -> bool {
-        (1..self.triangles.len() as u32).all(|t| party(t) == party(0))
+        (1..as_number(self.triangles.len())).all(|t| party(t) == party(0))
     }
 
     /// Whether a triangle was removed.
@@ -140,7 +141,7 @@ impl Rounded {
                 .iter()
                 .any(|v| wanted.contains(v))
         };
-        let all = 0..self.triangles.len() as u32;
+        let all = 0..as_number(self.triangles.len());
         all.filter(has).filter(|t| !self.is_removed(*t)).collect()
     }
 
@@ -156,7 +157,7 @@ impl Rounded {
         let near = in_company(&self.faces(), &core, |_| 0);
         let some = merged(&core, &near.into_iter().map(|o| o.1).collect::<Vec<u32>>());
         let part = Part::of(self, &some);
-        let local = |t: &u32| some.binary_search(t).unwrap_or(0) as u32;
+        let local = |t: &u32| as_number(some.binary_search(t).unwrap_or(0));
         let faults = Faults {
             crossings: found
                 .crossings
@@ -184,7 +185,7 @@ impl Rounded {
             if let Some(global) = globals.get(v) {
                 self.vertices[*global as usize] = *place;
             } else {
-                globals.push((first + v) as u32);
+                globals.push(as_number(first + v));
                 self.vertices.push(*place);
             }
         }
@@ -218,7 +219,7 @@ impl Part {
             mesh.triangles[*t as usize].map(|v| {
                 *numbers.entry(v).or_insert_with(|| {
                     globals.push(v);
-                    globals.len() as u32 - 1
+                    as_number(globals.len()) - 1
                 })
             })
         });

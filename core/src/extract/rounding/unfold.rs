@@ -6,6 +6,7 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
+use crate::arith::convert::as_place;
 use crate::extract::mesh::{outward_normal, Corner, ExactMesh, Mesh};
 use crate::geometry::doubles::{seen_along, turn};
 use crate::geometry::plane::Plane;
@@ -36,7 +37,7 @@ pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded
     let mut surface = Surface::new(mesh, Planes { exact, sources });
     let mut tries = TRIES * turned.len();
     let mut found = Unfolded::default();
-    let mut open: Vec<usize> = turned.iter().rev().map(|t| *t as usize).collect();
+    let mut open: Vec<usize> = turned.iter().rev().map(|t| as_place(*t)).collect();
     while let Some(t) = open.pop() {
         if tries == 0 || !surface.is_turned(t) {
             continue;
@@ -51,7 +52,7 @@ pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded
     }
     found.repaired.sort_unstable();
     found.repaired.dedup();
-    found.left.retain(|&t| surface.is_turned(t as usize));
+    found.left.retain(|&t| surface.is_turned(as_place(t)));
     found
 }
 

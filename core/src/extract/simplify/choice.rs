@@ -3,6 +3,7 @@
 use super::edit::{Act, Edit, Limits, MOST_AROUND};
 use super::sizes::{height, lengths};
 use super::surface::Surface;
+use crate::arith::convert::as_number;
 use crate::interrupt::poll;
 use crate::mesh::tasks::each_chunk;
 
@@ -13,7 +14,7 @@ impl Surface<'_> {
     /// What there is to do where vertices are awake: collapses before flips, the smallest first.
     pub fn acts(&self, awake: &[bool], tolerance: f64) -> Vec<Act> {
         let of = |first: usize, triangles: &[[u32; 3]]| {
-            let some = (first as u32..).zip(triangles);
+            let some = (as_number(first)..).zip(triangles);
             let near = some.filter(|(_, t)| t.iter().any(|v| awake[*v as usize]));
             let all = near.flat_map(|(t, _)| self.acts_at(t, tolerance));
             all.collect::<Vec<Wanted>>()

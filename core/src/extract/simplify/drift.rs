@@ -10,6 +10,7 @@
 //! lies there is known as well as the ends of the edge are, and that is its slack.
 
 use super::sizes::distance_above;
+use crate::arith::convert::as_number;
 use crate::geometry::doubles::Point;
 
 /// What has come to each vertex.
@@ -88,7 +89,7 @@ impl Drift {
         let from = match coming {
             Coming::Vertex(v) => v as usize,
             Coming::Point(place, slack) => {
-                let next = self.witnesses.len() as u32;
+                let next = as_number(self.witnesses.len());
                 self.witnesses.push(Witness { place, slack, next });
                 next as usize
             }

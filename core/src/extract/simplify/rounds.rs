@@ -9,6 +9,7 @@ use super::proof::proved;
 use super::shells::Shells;
 use super::sizes::is_small;
 use super::surface::Surface;
+use crate::arith::convert::as_number;
 use crate::geometry::doubles::Point;
 use crate::mesh::tasks::each_chunk;
 
@@ -113,7 +114,9 @@ impl Simplifying {
         let corners = |t: &[u32; 3]| t.map(|v| self.vertices[v as usize]);
         let is_left = |t: &[u32; 3]| is_small(&corners(t), tolerance);
         let numbered = |first: usize, triangles: &[[u32; 3]]| {
-            let small = (first as u32..).zip(triangles).filter(|(_, t)| is_left(t));
+            let small = (as_number(first)..)
+                .zip(triangles)
+                .filter(|(_, t)| is_left(t));
             small.map(|(t, _)| t).collect::<Vec<u32>>()
         };
         let left = each_chunk(&self.triangles, numbered).concat();
@@ -137,7 +140,7 @@ fn without_unused(vertices: &[Point], triangles: &[[u32; 3]]) -> (Vec<Point>, Ve
     let mut kept = Vec::new();
     for (number, place) in numbers.iter_mut().zip(vertices) {
         if *number == 1 {
-            *number = kept.len() as u32;
+            *number = as_number(kept.len());
             kept.push(*place);
         }
     }

@@ -5,6 +5,7 @@
 
 use super::edit::Edit;
 use super::sizes::{dot, less, normal};
+use crate::arith::convert::as_number;
 use crate::geometry::doubles::{side, Point};
 use crate::interrupt::{poll, spend};
 
@@ -173,7 +174,7 @@ fn may_hold(body: &[&Point; 4], point: &Point) -> bool {
 /// For each vertex the number of the connected part that it belongs to.
 fn connected(count: usize, triangles: &[[u32; 3]]) -> Vec<u32> {
     spend(triangles.len());
-    let mut parents: Vec<u32> = (0..count as u32).collect();
+    let mut parents: Vec<u32> = (0..as_number(count)).collect();
     for [a, b, c] in triangles {
         join(&mut parents, *a, *b);
         join(&mut parents, *b, *c);

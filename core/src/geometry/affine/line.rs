@@ -4,6 +4,7 @@ use num_bigint::BigInt;
 
 use super::Affine;
 use crate::arith::bounds::COORDINATE_BITS;
+use crate::arith::convert::as_double;
 use crate::geometry::dim1::{Dim1, Direction, Point1};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Split;
@@ -25,8 +26,8 @@ impl Affine for Dim1 {
     }
 
     fn approx(cut: &Point1) -> [f64; 4] {
-        let s = sign(cut) as f64;
-        [s, 0.0, 0.0, -s * cut.at() as f64]
+        let s = as_double(sign(cut));
+        [s, 0.0, 0.0, -s * as_double(cut.at())]
     }
 
     fn exact(cut: &Point1) -> [BigInt; 4] {
@@ -39,7 +40,7 @@ impl Affine for Dim1 {
     }
 
     fn corners(piece: &Point1) -> Vec<[f64; 3]> {
-        vec![[piece.at() as f64, 0.0, 0.0]]
+        vec![[as_double(piece.at()), 0.0, 0.0]]
     }
 
     fn original(_: &Point1, _: &[Lattice], _: &[bool]) -> Vec<bool> {
@@ -59,6 +60,6 @@ impl Affine for Dim1 {
     }
 
     fn cone(piece: &Point1, apex: &[f64; 3]) -> f64 {
-        (piece.at() as f64 - apex[0]) * sign(piece) as f64
+        (as_double(piece.at()) - apex[0]) * as_double(sign(piece))
     }
 }

@@ -3,6 +3,7 @@
 use num_bigint::BigInt;
 
 use super::Affine;
+use crate::arith::convert::as_double;
 use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2, Square, REACH};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::{Side, Split};
@@ -35,7 +36,7 @@ impl Affine for Dim2 {
 
     fn approx(cut: &Line2) -> [f64; 4] {
         let ([a, b], c) = cut.coefficients();
-        [a as f64, b as f64, 0.0, c as f64]
+        [as_double(a), as_double(b), 0.0, as_double(c)]
     }
 
     fn exact(cut: &Line2) -> [BigInt; 4] {

@@ -77,6 +77,7 @@ impl Viewpoint {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arith::convert::as_double;
     use crate::geometry::dim1::{Dim1, Direction, Point1};
 
     #[test]
@@ -85,7 +86,7 @@ mod tests {
             let (m, e) = mantissa_and_exponent(x);
             // Two steps, since 2^-1074 alone is a double and 2^1074 none.
             let half = e / 2;
-            let back = m as f64 * 2f64.powi(half) * 2f64.powi(e - half);
+            let back = as_double(m) * 2f64.powi(half) * 2f64.powi(e - half);
             assert!((back - x).abs() <= 0.0, "{x:e} became {back:e}");
         }
     }

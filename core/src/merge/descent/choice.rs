@@ -1,6 +1,7 @@
 //! Which cells are for a kernel, and which are halved.
 
 use super::state::{State, States};
+use crate::arith::convert::as_double;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::merge::kernels::general::MOST;
@@ -157,5 +158,5 @@ fn mixed(cell: &Cell, states: &States, total: usize) -> f64 {
         all += sum;
         mixed += if present > 1 { sum } else { 0 };
     }
-    mixed as f64 / all.max(1) as f64
+    as_double(mixed) / as_double(all.max(1))
 }

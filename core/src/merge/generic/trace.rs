@@ -10,6 +10,7 @@ use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 
 use super::case::SplitCase;
+use crate::arith::convert::as_number;
 use crate::geometry::space::Space;
 use crate::tree::partition::{Label, PartitionTree, Sheet};
 use crate::tree::trace::Watcher;
@@ -243,7 +244,7 @@ fn numbered<S: Space>(tree: &PartitionTree<S>) -> Numbers<S> {
     while let Some(next) = pending.pop() {
         if let PartitionTree::Cut(cut) = next {
             let sheet = Arc::clone(cut.sheet());
-            let number = numbers.len() as u32;
+            let number = as_number(numbers.len());
             numbers.insert(Arc::as_ptr(&sheet), (number, sheet));
             pending.extend(cut.children());
         }

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use crate::arith::convert::as_double;
 use crate::geometry::cell::Cell;
 use crate::geometry::line::LineKey;
 use crate::geometry::outline::{cancel, BareEdge, OutlineEdge};
@@ -260,8 +261,8 @@ fn has_inner<'a>(
 fn may_share_wall(a: &Vertex, b: &Vertex, cell: &Cell) -> bool {
     let (ends, low, high) = ([a, b].map(Vertex::bounds), cell.low(), cell.high());
     (0..3).any(|i| {
-        let below = ends.iter().all(|(least, _)| least[i] < low[i] as f64);
-        below || ends.iter().all(|(_, most)| most[i] > high[i] as f64)
+        let below = ends.iter().all(|(least, _)| least[i] < as_double(low[i]));
+        below || ends.iter().all(|(_, most)| most[i] > as_double(high[i]))
     })
 }
 

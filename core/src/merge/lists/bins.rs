@@ -6,13 +6,13 @@
 //! # Source
 //! Counting sort; integral images (Crow 1984) for the counts in boxes of cells.
 // Places inside the window, and numbers of its cells, are never negative.
-#![allow(clippy::cast_sign_loss)]
 
 use std::sync::Arc;
 
 use super::crossings::{line_count, Crossings};
 use super::separation::triangle_misses;
 use super::window::{Span, Window};
+use crate::arith::convert::as_number;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Orientation;
@@ -114,7 +114,9 @@ impl Bins {
     pub fn len_in(&self, cell: &Cell) -> usize {
         let [x, y, z] = self.window.covered(cell);
         let [_, ny, nz] = self.window.count();
-        let at = |x: i32, y: i32, z: i32| self.below[((x * (ny + 1) + y) * (nz + 1) + z) as usize];
+        let at = |x: i32, y: i32, z: i32| {
+            self.below[((x * (ny + 1) + y) * (nz + 1) + z).cast_unsigned() as usize]
+        };
         let row = |x: i32, y: i32| at(x, y, z.end) - at(x, y, z.start);
         let slab = |x: i32| row(x, y.end) - row(x, y.start);
         (slab(x.end) - slab(x.start)) as usize
@@ -224,7 +226,7 @@ fn runs(leaf: &Deferred) -> Option<Vec<Run<'_>>> {
             orientation: group.orientation,
             first,
         });
-        first += group.faces.len() as u32;
+        first += as_number(group.faces.len());
     }
     Some(runs)
 }
@@ -272,7 +274,7 @@ fn bounds(runs: &[Run], home: &Cell) -> Option<(Lattice, Lattice)> {
 fn plan(runs: &[Run], home: &Cell, total: usize) -> Option<Window> {
     let (low, high) = bounds(runs, home)?;
     let step = total.div_ceil(SAMPLE);
-    let sample: Vec<(Lattice, Lattice)> = (0..total as u32)
+    let sample: Vec<(Lattice, Lattice)> = (0..as_number(total))
         .step_by(step)
         .map(|element| find(runs, element))
         .map(|(run, face)| run.mesh.face_box(face))
@@ -293,7 +295,9 @@ fn entry_count(window: &Window, (low, high): &(Lattice, Lattice)) -> usize {
 
 fn cell_count(window: &Window, span: &Span) -> usize {
     let product = |(low, high): ([i32; 3], [i32; 3])| {
-        (0..3).map(|i| (high[i] - low[i] + 1) as usize).product()
+        (0..3)
+            .map(|i| (high[i] - low[i] + 1).cast_unsigned() as usize)
+            .product()
     };
     window.within(span).map_or(0, product)
 }
@@ -365,7 +369,7 @@ fn each_cell(window: &Window, low: [i32; 3], high: [i32; 3], enter: &mut impl Fn
     for x in low[0]..=high[0] {
         for y in low[1]..=high[1] {
             for z in low[2]..=high[2] {
-                enter(window.index([x, y, z]) as u32);
+                enter(as_number(window.index([x, y, z])));
             }
         }
     }
@@ -388,7 +392,7 @@ fn spread(
         }
         let axis = (0..3).max_by_key(|i| high[*i] - low[*i]).unwrap_or(0);
         if low[axis] == high[axis] {
-            enter(window.index(low) as u32);
+            enter(as_number(window.index(low)));
             continue;
         }
         let (mut end, mut start) = (high, low);
@@ -429,7 +433,7 @@ fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>,
 
 /// For each corner of the window the number of entries in the cells below it on all axes.
 fn integral(window: &Window, starts: &[u32]) -> Vec<u32> {
-    let [nx, ny, nz] = window.count().map(|c| c as usize);
+    let [nx, ny, nz] = window.count().map(|c| c.cast_unsigned() as usize);
     let (row, slab) = (nz + 1, (ny + 1) * (nz + 1));
     let mut below = vec![0u32; (nx + 1) * slab];
     for x in 0..nx {

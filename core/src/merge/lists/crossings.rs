@@ -3,7 +3,6 @@
 //! From the low corner of the window the path to another corner runs along the first axis, then the
 //! second, then the third. Only faces that lie across lines of two axes can meet one of the third.
 // Lines, and places inside the window, are never negative.
-#![allow(clippy::cast_sign_loss)]
 
 use super::window::{Span, Window};
 use crate::geometry::crossing::{triangle_change, Segment};
@@ -29,7 +28,7 @@ pub struct Crossings {
 }
 
 fn key(line: u32, place: i32) -> Key {
-    u64::from(line) << 32 | u64::from(place as u32)
+    u64::from(line) << 32 | u64::from(place.cast_unsigned())
 }
 
 impl Along {
@@ -125,8 +124,8 @@ fn visit_lines(span: &Span, visit: &mut impl FnMut(usize, i32, i32)) {
 fn number(window: &Window, axis: usize, x: i32, y: i32) -> u32 {
     match axis {
         0 => 0,
-        1 => x as u32,
-        _ => (x * (window.count()[1] + 1) + y) as u32,
+        1 => x.cast_unsigned(),
+        _ => (x * (window.count()[1] + 1) + y).cast_unsigned(),
     }
 }
 

@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::separation::misses;
+use crate::arith::convert::as_whole;
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, polygon_change, triangle_change, Segment};
 use crate::geometry::plane::Lattice;
@@ -31,6 +32,7 @@ impl Frame {
         }
     }
 
+    #[allow(clippy::cast_possible_truncation, reason = "clamped before")]
     fn index(&self, axis: usize, k: i64) -> i32 {
         let index = (k - self.origin[axis]) >> self.shift;
         index.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
@@ -386,8 +388,8 @@ impl Frame {
 
     fn part_record(&self, element: PartElement, pieces: OnceLock<Arc<[Polygon]>>) -> PartRecord {
         let (low, high) = element.part.bounds();
-        let low = [0, 1, 2].map(|i| self.index(i, (low[i] - 0.5).ceil() as i64));
-        let high = [0, 1, 2].map(|i| self.index(i, (high[i] + 0.5).floor() as i64));
+        let low = [0, 1, 2].map(|i| self.index(i, as_whole((low[i] - 0.5).ceil())));
+        let high = [0, 1, 2].map(|i| self.index(i, as_whole((high[i] + 0.5).floor())));
         PartRecord {
             low,
             high,

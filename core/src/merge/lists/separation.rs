@@ -1,5 +1,6 @@
 //! Whether a face misses a box, by separating axes in doubles.
 
+use crate::arith::convert::as_double;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::mesh::handle::FaceId;
@@ -32,17 +33,21 @@ fn plane_misses(plane: &Plane, low: &Lattice, high: &Lattice) -> bool {
 /// Separating axes: the face's normal, and each of its edges projected along each axis.
 pub fn triangle_misses(corners: &[Lattice; 3], low: &Lattice, high: &Lattice) -> bool {
     let (center, half) = middle(low, high, &corners[0]);
-    let local = corners.map(|c| [0, 1, 2].map(|i| (c[i] - corners[0][i]) as f64 - center[i]));
+    let local = corners.map(|c| [0, 1, 2].map(|i| as_double(c[i] - corners[0][i]) - center[i]));
     separated(&local, &half)
 }
 
 /// Center relative to `origin`, and half extents, of a closed box.
 fn middle(low: &Lattice, high: &Lattice, origin: &Lattice) -> ([f64; 3], [f64; 3]) {
-    let center =
-        [0, 1, 2].map(|i| f64::midpoint((low[i] - origin[i]) as f64, (high[i] - origin[i]) as f64));
+    let center = [0, 1, 2].map(|i| {
+        f64::midpoint(
+            as_double(low[i] - origin[i]),
+            as_double(high[i] - origin[i]),
+        )
+    });
     (
         center,
-        [0, 1, 2].map(|i| (high[i] - low[i]) as f64 / 2.0 + 0.5),
+        [0, 1, 2].map(|i| as_double(high[i] - low[i]) / 2.0 + 0.5),
     )
 }
 

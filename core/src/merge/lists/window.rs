@@ -1,9 +1,9 @@
 //! A window on one level of the hierarchy of cells: a box of equal cells, and the places in it.
 // Counts and the places of cells are never negative, and places beyond the window exceed -2.
-#![allow(clippy::cast_sign_loss)]
 
 use std::ops::Range;
 
+use crate::arith::convert::as_number;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 
@@ -61,6 +61,7 @@ impl Span {
 
 impl Window {
     /// The cells of extent 2^size that a lattice box meets; `None` if they are too many on an axis.
+    #[allow(clippy::cast_possible_truncation, reason = "not above PLACES")]
     pub fn around(low: &Lattice, high: &Lattice, size: u32) -> Option<Self> {
         let first = low.map(|k| k >> size);
         let count = [0, 1, 2].map(|i| (high[i] >> size) - first[i] + 1);
@@ -86,30 +87,34 @@ impl Window {
 
     /// The number of cells.
     pub fn len(&self) -> usize {
-        self.count.iter().map(|c| *c as usize).product()
+        self.count
+            .iter()
+            .map(|c| c.cast_unsigned() as usize)
+            .product()
     }
 
+    #[allow(clippy::cast_possible_truncation, reason = "clamped before")]
     fn place(&self, axis: usize, k: i64) -> i32 {
         ((k >> self.size) - self.first[axis]).clamp(-1, i64::from(self.count[axis])) as i32
     }
 
     /// The places of a lattice point in one word; those of a cell's points are equal.
     pub fn code(&self, p: &Lattice) -> u32 {
-        let field = |i: usize| (self.place(i, p[i]) + 1) as u32;
+        let field = |i: usize| (self.place(i, p[i]) + 1).cast_unsigned();
         field(0) << 20 | field(1) << 10 | field(2)
     }
 
     /// The number of a cell among all, the last axis first.
     pub fn index(&self, at: [i32; 3]) -> usize {
         let count = self.count;
-        ((at[0] * count[1] + at[1]) * count[2] + at[2]) as usize
+        ((at[0] * count[1] + at[1]) * count[2] + at[2]).cast_unsigned() as usize
     }
 
     /// The number of the cell with this code; `None` beyond the window.
     pub fn index_of(&self, code: u32) -> Option<u32> {
         let at = [20, 10, 0].map(|shift| ((code >> shift) & 0x3ff).cast_signed() - 1);
         let inside = (0..3).all(|i| (0..self.count[i]).contains(&at[i]));
-        inside.then(|| self.index(at) as u32)
+        inside.then(|| as_number(self.index(at)))
     }
 
     /// The coordinate of a line in half steps.

@@ -1,5 +1,6 @@
 //! Pairs of boxes that overlap, found by halving the space around them.
 
+use crate::arith::convert::as_number;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::spend;
 
@@ -27,7 +28,7 @@ impl Boxed {
     pub fn new(operand: usize, number: u32, ends: [&Lattice; 2], shift: u32) -> Self {
         Self {
             extent: ShortBox::new(ends, shift),
-            operand: operand as u32,
+            operand: as_number(operand),
             number,
         }
     }
@@ -117,6 +118,7 @@ pub fn compare_groups(first: &[Boxed], second: &[Boxed], space: &Space, meet: im
 }
 
 impl ShortBox {
+    #[allow(clippy::cast_possible_truncation, reason = "the shift leaves 31 bits")]
     fn new([low, high]: [&Lattice; 2], shift: u32) -> Self {
         let short = |x: i64| (x >> shift) as i32;
         let [a, b, c] = low.map(short);

@@ -1,6 +1,7 @@
 //! Lines to sweep along, and how elements lie along them.
 
 use super::Swept;
+use crate::arith::convert::as_double;
 
 /// Among fewer elements than this other lines than the axes are not worth finding.
 pub const MANY: usize = 512;
@@ -33,7 +34,7 @@ impl Line {
     fn axis(elements: &[&Swept], axis: usize) -> Self {
         let mut direction = [0.0; 3];
         direction[axis] = 1.0;
-        let span = |e: &&Swept| [e.low[axis] as f64, e.high[axis] as f64];
+        let span = |e: &&Swept| [as_double(e.low[axis]), as_double(e.high[axis])];
         Self::new(direction, elements.iter().map(span).collect())
     }
 

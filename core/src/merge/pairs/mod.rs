@@ -119,6 +119,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::arith::convert::as_double;
     use crate::geometry::apart::pierces;
 
     /// More elements than this are swept along slanted lines, too.
@@ -143,7 +144,7 @@ mod tests {
             operand,
             low: [0, 1, 2].map(|i| end(i, i64::min).max(-REACH)),
             high: [0, 1, 2].map(|i| end(i, i64::max).min(REACH)),
-            corners: Some(corners.map(|p| p.map(|x| x as f64))),
+            corners: Some(corners.map(|p| p.map(as_double))),
         }
     }
 

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::line::{dot, longest_edge, Line, Span, MANY};
 use super::rim::{largest_coordinate, rims, HalfPlane};
 use super::Swept;
+use crate::arith::convert::as_double;
 use crate::interrupt::{carried, spend};
 use crate::mesh::tasks::in_pool;
 
@@ -132,7 +133,7 @@ impl Sweep {
 
     /// About how many pairs are compared.
     fn cost(&self) -> f64 {
-        self.crowding * self.size as f64
+        self.crowding * as_double(self.size)
     }
 
     /// The pairs of different operands that may meet, the lower index first.

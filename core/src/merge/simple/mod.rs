@@ -12,6 +12,7 @@ use super::descent::choice::LEAF;
 use super::kernels::trees::LeafTree;
 use super::lists::list::{List, Sources};
 use super::simple::star::is_star_shaped;
+use crate::arith::convert::as_double;
 use crate::arith::Int;
 use crate::error::Result;
 use crate::geometry::cell::Cell;
@@ -338,5 +339,5 @@ impl Looked {
 
 /// a − b, rounded once at most: the difference may have 54 bits.
 fn difference(a: &Lattice, b: &Lattice) -> [f64; 3] {
-    [0, 1, 2].map(|i| (a[i] - b[i]) as f64)
+    [0, 1, 2].map(|i| as_double(a[i] - b[i]))
 }

@@ -28,6 +28,7 @@ pub fn is_star_shaped(mesh: &TriangleMesh) -> bool {
 }
 
 /// The mean of points, each coordinate rounded down.
+#[allow(clippy::cast_possible_truncation, reason = "a mean of coordinates")]
 fn mean(points: &[Lattice]) -> Option<Lattice> {
     let sum = points.iter().fold([0; 3], |sum: [i128; 3], p| {
         [0, 1, 2].map(|i| sum[i] + i128::from(p[i]))
@@ -57,6 +58,7 @@ fn faces_ahead(mesh: &TriangleMesh, eye: &Lattice) -> Option<i32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arith::convert::as_whole;
 
     fn tetrahedron() -> TriangleMesh {
         TriangleMesh {
@@ -70,7 +72,7 @@ mod tests {
     fn cone(ring: u32, step: u32) -> TriangleMesh {
         let corner = |i: u32| {
             let turn = f64::from(i) * std::f64::consts::TAU / f64::from(ring);
-            [(1e6 * turn.cos()) as i64, (1e6 * turn.sin()) as i64, 0]
+            [as_whole(1e6 * turn.cos()), as_whole(1e6 * turn.sin()), 0]
         };
         let ends = |i: u32| (2 + i, 2 + (i + step) % ring);
         let faces = |i: u32| [[0, ends(i).0, ends(i).1], [1, ends(i).1, ends(i).0]];

@@ -1,5 +1,6 @@
 //! Triangles in blocks of neighbours, so that few are looked at for each question.
 
+use crate::arith::convert::as_number;
 use crate::geometry::extent::Extent;
 
 /// Triangles in one block: looking at a block costs about as much as at a triangle.
@@ -21,7 +22,7 @@ impl Blocks {
             owner: vec![0; extents.len()],
             ..Self::default()
         };
-        let mut open = vec![(0..extents.len() as u32).collect::<Vec<u32>>()];
+        let mut open = vec![(0..as_number(extents.len())).collect::<Vec<u32>>()];
         while let Some(mut some) = open.pop() {
             let Some(around) = joined(&some, extents) else {
                 continue;
@@ -42,7 +43,7 @@ impl Blocks {
 
     fn add(&mut self, some: Vec<u32>, around: Extent) {
         for t in &some {
-            self.owner[*t as usize] = self.members.len() as u32;
+            self.owner[*t as usize] = as_number(self.members.len());
         }
         self.members.push(some);
         self.extents.push(around);

@@ -1,6 +1,7 @@
 //! Small changes of a mesh that may take a fault out.
 
 use super::part::{distance, edges, Edit, Mending};
+use crate::arith::convert::as_number;
 use crate::geometry::doubles::{seen_along, turn, Point, Triangle};
 
 /// Directions in which a vertex is moved, in spacings of the largest coordinate.
@@ -120,7 +121,7 @@ impl Mending {
                 continue;
             }
             for fan in fans(v, around)?.into_iter().skip(1) {
-                let copy = (self.vertices.len() + edit.copies.len()) as u32;
+                let copy = as_number(self.vertices.len() + edit.copies.len());
                 edit.copies.push(v);
                 for (t, corners) in fan {
                     let renamed = corners.map(|c| if c == v { copy } else { c });

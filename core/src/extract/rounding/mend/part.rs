@@ -6,6 +6,7 @@ use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use smallvec::SmallVec;
 
 use super::blocks::Blocks;
+use crate::arith::convert::as_number;
 use crate::extract::rounding::crossings::Faults;
 use crate::geometry::doubles::{Point, Triangle};
 use crate::geometry::extent::Extent;
@@ -21,6 +22,10 @@ pub enum Precision {
 
 impl Precision {
     /// The nearest number.
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "rounding is what is asked for"
+    )]
     pub fn round(self, x: f64) -> f64 {
         match self {
             Self::Double => x,
@@ -29,6 +34,10 @@ impl Precision {
     }
 
     /// The distance of neighbouring numbers of this size.
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "rounding is what is asked for"
+    )]
     pub(super) fn spacing(self, x: f64) -> f64 {
         match self {
             Self::Double => x.abs().next_up() - x.abs(),
@@ -107,7 +116,7 @@ impl Mending {
         {
             stars[v as usize].push(t);
         }
-        let ends = |(t, c): (usize, &[u32; 3])| edges(c).map(|e| (e, t as u32));
+        let ends = |(t, c): (usize, &[u32; 3])| edges(c).map(|e| (e, as_number(t)));
         let drifts = vec![0.0; vertices.len()];
         let halves = triangles.iter().enumerate().flat_map(ends).collect();
         Self {

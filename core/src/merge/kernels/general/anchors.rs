@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use super::scene::{Element, Name, Place, Triangle};
+use crate::arith::convert::as_double;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::{Carrier, Corner, Polygon};
@@ -72,6 +73,7 @@ impl Anchor {
     }
 
     /// The corner of a clipped face at which one of its own edges and a wall of the cell meet.
+    #[allow(clippy::cast_possible_truncation, reason = "one of three axes")]
     fn at_wall(triangle: &Triangle, before: &Corner, corner: &Corner) -> Option<Self> {
         let (edge, wall) = match (&before.edge, &corner.edge) {
             (Carrier::Edge(edge), Carrier::Cut(wall, _))
@@ -99,5 +101,5 @@ impl Anchor {
 /// Whether a point certainly lies in a cell.
 fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
     let ((least, most), low, high) = (vertex.bounds(), cell.low(), cell.high());
-    (0..3).all(|i| least[i] >= low[i] as f64 && most[i] <= high[i] as f64)
+    (0..3).all(|i| least[i] >= as_double(low[i]) && most[i] <= as_double(high[i]))
 }

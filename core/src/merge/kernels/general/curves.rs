@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::segment::{Doubt, End, Segment};
+use crate::arith::convert::as_double;
 use crate::geometry::polygon::{bounds, Polygon};
 use crate::interrupt::poll;
 
@@ -181,7 +182,7 @@ pub(super) fn turns_left(polygon: &Polygon, segments: &[Segment]) -> Result<bool
     // Coordinates are off by less than 4 units in the last place of `size`, each of two products
     // by twice that times `reach`; sums of n terms are rounded n times, and `reach` is at most
     // twice `size`.
-    let n = segments.len() as f64;
+    let n = as_double(segments.len());
     let doubt = n * (n + 32.0) * 4.0 * f64::EPSILON * reach * size;
     if area.abs() <= doubt {
         return Err(Doubt);

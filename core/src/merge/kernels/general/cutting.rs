@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
+use crate::arith::convert::as_number;
 use crate::geometry::path::polygon_on_path;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{straddle, Chord, Corner, Polygon, Sides};
@@ -139,7 +140,7 @@ pub fn cut_up(polygon: Polygon, cutters: &[Cutter]) -> Option<Cutting> {
     };
     let mut open = vec![Task {
         polygon,
-        cutters: (0..cutters.len() as u32).collect(),
+        cutters: (0..as_number(cutters.len())).collect(),
         parent: None,
     }];
     while let Some(task) = open.pop() {
@@ -166,12 +167,12 @@ impl Partition<'_> {
         let found = self.first_crossing(&task.polygon, &mut rest, whole);
         let Some(found) = found.ok()? else {
             self.pieces.push(task.polygon);
-            return Some(Child::Piece(self.pieces.len() as u32 - 1));
+            return Some(Child::Piece(as_number(self.pieces.len()) - 1));
         };
         self.leave_coplanar(&found, &mut rest)?;
         let cut = self.plane(found.cutter);
         let (minus, plus) = task.polygon.divided(cut, &found.sides, &found.chord);
-        let knot = self.knots.len() as u32;
+        let knot = as_number(self.knots.len());
         self.knots.push(Knot {
             children: [Child::Piece(0); 2],
             chord: found.chord,

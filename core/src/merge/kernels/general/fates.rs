@@ -10,6 +10,7 @@ use super::points::Points;
 use super::scene::{Element, Place, Scene};
 use super::segment::{Crossed, Crosser};
 use super::trace::Trace;
+use crate::arith::convert::as_number;
 use crate::geometry::apart::are_apart;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
@@ -116,7 +117,7 @@ impl Scene<'_> {
         }
         let crossed = Crossed {
             polygon: &polygon,
-            number: i as u32,
+            number: as_number(i),
         };
         let parts = Parts::of(&crossed, &crossers, points)?;
         Some(Fate::Cut(Box::new(Cut {

@@ -6,6 +6,7 @@ use super::anchors::Anchor;
 use super::fates::Fate;
 use super::scene::{Element, Name, Place, Scene};
 use super::Labels;
+use crate::arith::convert::as_number;
 use crate::geometry::cell::Cell;
 use crate::interrupt::poll;
 
@@ -81,8 +82,11 @@ impl Known {
 
     /// The number of the anchor that stands for the one with this name.
     pub(super) fn root_of(&mut self, operand: usize, name: Name) -> u32 {
-        let next = self.parents.len() as u32;
-        let at = *self.numbers.entry((operand as u32, name)).or_insert(next);
+        let next = as_number(self.parents.len());
+        let at = *self
+            .numbers
+            .entry((as_number(operand), name))
+            .or_insert(next);
         if at == next {
             self.parents.push(next);
             self.labels.push(None);

@@ -11,6 +11,7 @@ use super::fates::{Cut, Fate, Parts};
 use super::known::Known;
 use super::scene::{Element, Place, Scene};
 use super::{Labels, OnPieces};
+use crate::arith::convert::as_double;
 use crate::geometry::path::{triangle_on_path, Way};
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
@@ -98,7 +99,7 @@ impl Scene<'_> {
             Place::Face(t) => triangle_on_path(&t.corners, &self.corner, point),
             _ => e.shape().on_path(&self.corner, &exact),
         };
-        self.count_by(own, point.map(|x| x as f64), across)
+        self.count_by(own, point.map(as_double), across)
     }
 
     /// The labels at a point close to one, given the change across an element on the way there.
@@ -108,7 +109,7 @@ impl Scene<'_> {
         point: [f64; 3],
         across: impl Fn(&Element) -> Option<i32>,
     ) -> Option<Labels> {
-        let way = Way::new(self.corner.map(|x| 0.5 * x as f64), point);
+        let way = Way::new(self.corner.map(|x| 0.5 * as_double(x)), point);
         let near = |e: &&Element| way.may_meet(&e.low, &e.high);
         let mut labels = 0;
         for operand in (0..self.corners.len()).filter(|k| *k != own) {

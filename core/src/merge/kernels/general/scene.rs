@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::cutting::Face;
 use super::Labels;
+use crate::arith::convert::{as_double, as_whole};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
@@ -102,8 +103,8 @@ impl<'a> Scene<'a> {
                     weight: p.element.orientation.signed(1),
                     place: Place::Piece(part, Box::new(Face::new(Cow::Borrowed(piece)))),
                     inside,
-                    low: low.map(|x| x.floor() as i64),
-                    high: high.map(|x| x.ceil() as i64),
+                    low: low.map(|x| as_whole(x.floor())),
+                    high: high.map(|x| as_whole(x.ceil())),
                 });
             }
         }
@@ -214,7 +215,7 @@ impl<'a> Element<'a> {
     /// The element as a sweep sees it.
     pub(super) fn swept(&self, cell: &Cell) -> Swept {
         let origin = cell.low();
-        let relative = |p: &Lattice| [0, 1, 2].map(|i| (p[i] - origin[i]) as f64);
+        let relative = |p: &Lattice| [0, 1, 2].map(|i| as_double(p[i] - origin[i]));
         let [low, high] = self.extent(cell);
         Swept {
             operand: self.operand,

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::facet::Facets;
+use crate::arith::convert::as_double;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::Polygon;
@@ -88,7 +89,7 @@ impl Grid {
             return lines.partition_point(|l| *l < at)..lines.partition_point(|l| *l <= at);
         }
         let least = 2.0 * point.bounds().0[axis];
-        let below = lines.partition_point(|l| (*l as f64) < least);
+        let below = lines.partition_point(|l| as_double(*l) < least);
         let side = |line: &Arc<Plane>| point.side_of(line);
         let start = below + count(&self.planes[axis][below..], |line| side(line) > 0);
         start..start + count(&self.planes[axis][start..], |line| side(line) == 0)

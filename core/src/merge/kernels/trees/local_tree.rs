@@ -9,6 +9,7 @@
 
 use std::sync::Arc;
 
+use crate::arith::convert::as_number;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Polygon, PolygonSplit};
 use crate::interrupt::poll;
@@ -85,7 +86,7 @@ impl LocalTree {
             poll();
             let child = if task.pieces.is_empty() {
                 tree.labels.push(0);
-                Child::Leaf(tree.labels.len() as u32 - 1)
+                Child::Leaf(as_number(tree.labels.len()) - 1)
             } else {
                 tree.grow(task.pieces, &mut links, &mut open)
             };
@@ -124,7 +125,7 @@ impl LocalTree {
         links: &mut Vec<Link>,
         open: &mut Vec<Task>,
     ) -> Child {
-        let node = self.nodes.len() as u32;
+        let node = as_number(self.nodes.len());
         let pivot = pieces.swap_remove(pieces.len() / 2);
         let cut = Arc::clone(pivot.polygon.support());
         let (mut minus, mut plus) = (Vec::new(), Vec::new());
