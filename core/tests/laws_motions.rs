@@ -9,6 +9,7 @@ use bspcsg::error::panics::caught;
 use bspcsg::error::{ErrorKind, Result};
 use bspcsg::extract::mesh::Mesh;
 use bspcsg::extract::rounding::round;
+use bspcsg::geometry::motion::Motion;
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::evaluate::{evaluate, explained, normalize};
 use bspcsg::merge::expression::{Expression, Term};
@@ -18,7 +19,7 @@ use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::half_space::half_space;
 use bspcsg::query::classify::classify;
 use bspcsg::query::measure;
-use bspcsg::store::snapshot::{Motion, Snapshot};
+use bspcsg::store::snapshot::Snapshot;
 use bspcsg::tree::solid::Solid;
 use rayon::ThreadPoolBuilder;
 

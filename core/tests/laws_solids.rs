@@ -7,6 +7,7 @@ use std::sync::Arc;
 use bspcsg::arith::bounds::{self, COORDINATE_BITS, HALF_SPACE_NORMAL_BITS};
 use bspcsg::arith::Int;
 use bspcsg::error::ErrorKind;
+use bspcsg::geometry::motion::Motion;
 use bspcsg::geometry::plane::{Lattice, Plane};
 use bspcsg::merge::descent::choice::LEAF;
 use bspcsg::merge::expression::Term;
@@ -15,7 +16,7 @@ use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::half_space::half_space;
 use bspcsg::query::classify::Location;
-use bspcsg::store::snapshot::{Motion, Snapshot};
+use bspcsg::store::snapshot::Snapshot;
 use bspcsg::tree::solid::Solid;
 
 use support::{

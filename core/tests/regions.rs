@@ -1,8 +1,9 @@
 //! Sets built from crossing outlines: invariants of their trees, and what is read off them.
 
+use bspcsg::arith::bounds::REACH;
 use bspcsg::geometry::axis::AxisSpace;
 use bspcsg::geometry::dim1::{Dim1, Direction, Point1};
-use bspcsg::geometry::dim2::{Dim2, Line2, Point2, Segment2, Square, REACH};
+use bspcsg::geometry::dim2::{Dim2, Line2, Point2, Segment2, Square};
 use bspcsg::geometry::dim3::Dim3;
 use bspcsg::geometry::side::{Half, Side};
 use bspcsg::geometry::space::Space;

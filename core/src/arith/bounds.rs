@@ -23,6 +23,14 @@
 /// A double holds every integer up to 2^53, so that a lattice coordinate is one.
 pub const COORDINATE_BITS: u32 = 53;
 
+/// No lattice coordinate is as large as this in magnitude; points and lines across axes may be.
+pub const REACH: i64 = 1 << COORDINATE_BITS;
+
+/// Whether this is the coordinate of a lattice point.
+pub const fn is_coordinate(k: i64) -> bool {
+    k.unsigned_abs() < REACH.unsigned_abs()
+}
+
 /// Normals of half-spaces are below 2^`HALF_SPACE_NORMAL_BITS`.
 ///
 /// A plane n·x = d that meets the lattice has |d| < 3·2^(bits + p), which is no wider than the offset

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use super::cell::Cell;
 use super::dim1::{Dim1, Direction, Point1};
-use super::dim2::{Dim2, Line2, Square, REACH};
+use super::dim2::{Dim2, Line2, Square};
 use super::dim3::Dim3;
 use super::plane::Plane;
 use super::polygon::Polygon;
 use super::side::{Half, Side};
 use super::space::Space;
+use crate::arith::bounds::REACH;
 use crate::arith::convert::as_whole;
 
 /// A space with axes.

@@ -104,11 +104,13 @@ impl Cell {
     }
 
     /// Whether the cells share lattice points.
+    #[inline]
     pub fn meets(&self, other: &Self) -> bool {
         self.meets_box(other.low(), &other.high())
     }
 
     /// Whether the cell shares lattice points with a box.
+    #[inline]
     pub fn meets_box(&self, low: &Lattice, high: &Lattice) -> bool {
         let top = self.high();
         (0..3).all(|i| self.low[i] <= high[i] && low[i] <= top[i])

@@ -11,13 +11,10 @@ use super::side::{Orientation, Side, Split};
 use super::space::Space;
 use crate::arith::bounds::{
     COORDINATE_BITS, LINE_AT_MEET_LIMBS, LINE_CROSS_LIMBS, LINE_MEET_LIMBS, LINE_NORMAL_BITS,
-    LINE_OFFSET_BITS,
+    LINE_OFFSET_BITS, REACH,
 };
 use crate::arith::convert::as_double;
 use crate::arith::{gcd_u128, Int};
-
-/// Lattice coordinates are at most this large in magnitude.
-pub const REACH: i64 = 1 << COORDINATE_BITS;
 
 /// The plane with integer lattice coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -16,6 +16,7 @@ pub mod fixed;
 pub mod hull;
 pub mod line;
 pub mod meeting;
+pub mod motion;
 pub mod outline;
 pub mod path;
 pub mod plane;

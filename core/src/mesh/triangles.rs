@@ -24,11 +24,13 @@ impl TriangleMesh {
     }
 
     /// The corners of a face.
+    #[inline]
     pub fn corners(&self, face: FaceId) -> [Lattice; 3] {
         self.vertices_of(face).map(|v| self.vertices[v as usize])
     }
 
     /// The numbers of a face's corners.
+    #[inline]
     pub fn vertices_of(&self, face: FaceId) -> [u32; 3] {
         self.faces[face.place()]
     }

@@ -223,7 +223,7 @@ impl ObjectTree {
     ) -> PyResult<Self> {
         let fail = |e| to_python(py, &e);
         let map =
-            set_input::lattice_map(self.set.dimension(), &axes, shift, scale).map_err(fail)?;
+            set_input::lattice_map(self.set.dimension(), &axes, &shift, scale).map_err(fail)?;
         let pitch = Pitch::new(pitch).map_err(fail)?;
         let set = self.work(py, |set, _| set.moved(&map))?;
         Ok(Self::of(set, pitch))

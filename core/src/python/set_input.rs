@@ -6,10 +6,10 @@ use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::{Dim1, Direction, Point1};
 use crate::geometry::dim2::{Dim2, Segment2};
 use crate::geometry::dim3::Dim3;
+use crate::geometry::motion::Motion;
 use crate::merge::SetOp;
 use crate::mesh::grid::Pitch;
 use crate::mesh::import::import;
-use crate::query::region::hyperplane::LatticeMap;
 use crate::query::region::solid;
 use crate::tree::partition::{enclosed, Facet, PartitionTree, PivotPolicy, Plan};
 
@@ -94,26 +94,9 @@ pub fn same_lattice(a: Pitch, b: Pitch) -> Result<()> {
 }
 
 /// The map of the lattice that signed axis numbers from 1, a shift and a scale describe.
-pub fn lattice_map(
-    dimension: usize,
-    axes: &[i64],
-    shift: Vec<i64>,
-    scale: i64,
-) -> Result<LatticeMap> {
-    let mut sorted: Vec<u64> = axes.iter().map(|a| a.unsigned_abs()).collect();
-    sorted.sort_unstable();
-    let permutes = (1..).zip(&sorted).all(|(i, a)| i == *a);
-    if axes.len() != dimension || shift.len() != dimension || !permutes || scale < 1 {
-        return Err(shape("the axes, shift and scale are no map of the lattice"));
-    }
-    let axes = axes
-        .iter()
-        .map(|a| (a.unsigned_abs() as usize - 1, a.signum()));
-    Ok(LatticeMap {
-        axes: axes.collect(),
-        shift,
-        scale,
-    })
+pub fn lattice_map(dimension: usize, axes: &[i64], shift: &[i64], scale: i64) -> Result<Motion> {
+    let found = Motion::of_axes(axes, shift, scale).filter(|_| axes.len() == dimension);
+    found.ok_or_else(|| shape("the axes, shift and scale are no map of the lattice"))
 }
 
 /// Rows made into something, the first failure if there is one.

@@ -13,11 +13,13 @@ use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::Dim1;
 use crate::geometry::dim2::Dim2;
 use crate::geometry::dim3::Dim3;
+use crate::geometry::motion::Motion;
+use crate::geometry::plane::Plane;
 use crate::merge::{merge, split_case, SetOp, SplitCase};
 use crate::merge::{partition_tree, split_tree};
 use crate::mesh::grid::Pitch;
 use crate::query::region::condense::{condensed_line, condensed_plane};
-use crate::query::region::hyperplane::LatticeMap;
+
 use crate::tree::partition::{
     from_preorder, is_bounded, preorder, stats, Entry, Label, PartitionTree, Sheet, TreeStats,
 };
@@ -150,13 +152,21 @@ impl Set {
     }
 
     /// The image under a map of the lattice.
-    pub fn moved(&self, map: &LatticeMap) -> Result<Self> {
+    pub fn moved(&self, motion: &Motion) -> Result<Self> {
+        let end = |h: &_| motion.end(h).ok_or_else(too_large);
+        let line = |h: &_| motion.line(h).ok_or_else(too_large);
+        let plane = |h: &Arc<Plane>| motion.plane(h).map(Arc::new).ok_or_else(too_large);
         Ok(match self {
-            Self::Line(tree) => Self::Line(mapped(tree, |h| map.point(h))?),
-            Self::Plane(tree) => Self::Plane(mapped(tree, |h| map.line(h))?),
-            Self::Space(tree) => Self::Space(mapped(tree, |h| map.plane(h))?),
+            Self::Line(tree) => Self::Line(mapped(tree, end)?),
+            Self::Plane(tree) => Self::Plane(mapped(tree, line)?),
+            Self::Space(tree) => Self::Space(mapped(tree, plane)?),
         })
     }
+}
+
+fn too_large() -> Error {
+    let text = "the moved or refined set does not fit the lattice of 2^53 steps";
+    Error::new(ErrorKind::TooLarge, text)
 }
 
 fn bad_dimension(dimension: usize) -> Error {

@@ -18,6 +18,7 @@ use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::Mesh;
 use crate::extract::rounding::round;
 use crate::extract::simplify::result::simplified;
+use crate::geometry::motion::Motion;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 use crate::merge::descent::descend::Counters;
@@ -32,7 +33,7 @@ use crate::mesh::triangles::TriangleMesh;
 use crate::query::classify::{classify, Location};
 use crate::query::measure::{volume_near, volume_residues, volume_rounded, volume_within};
 use crate::query::region::section::section;
-use crate::store::snapshot::{Motion, Snapshot};
+use crate::store::snapshot::Snapshot;
 use crate::tree::solid::Solid;
 use crate::tree::stats::{stats, Stats};
 use crate::tree::work::{work, work_to_settle};
@@ -583,17 +584,9 @@ fn term(name: &str, arguments: Vec<u32>) -> Result<Term> {
 }
 
 fn motion(axes: [i64; 3], shift: [i64; 3]) -> Result<Motion> {
-    let mut sorted = axes.map(i64::abs);
-    sorted.sort_unstable();
-    if sorted != [1, 2, 3] {
+    Motion::of_axes(&axes, &shift, 1).ok_or_else(|| {
         let text = format!("{axes:?} is not a signed permutation of [1, 2, 3]");
-        return Err(Error::new(ErrorKind::Shape, text));
-    }
-    let axes = axes.map(|a| (a.unsigned_abs() as usize - 1, a.signum()));
-    Ok(Motion {
-        axes,
-        shift,
-        scale: 1,
+        Error::new(ErrorKind::Shape, text)
     })
 }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::sealed::{seal, unseal, Kind};
 use super::sound::is_sound;
-use crate::arith::bounds::{self, COORDINATE_BITS};
+use crate::arith::bounds::{self, is_coordinate, COORDINATE_BITS};
 use crate::arith::convert::as_double;
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
@@ -15,6 +15,7 @@ use crate::extract::boundary::leaves::Fate;
 use crate::geometry::cell::Cell;
 use crate::geometry::edge::LatticeEdge;
 use crate::geometry::line::{LineKey, PlaneResidues};
+use crate::geometry::motion::Motion;
 use crate::geometry::outline::{settled, BareEdge, OutlineEdge};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
@@ -110,78 +111,16 @@ enum VertexData {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct PlaneData([i128; 3], [u64; 3]);
 
-/// A map of the lattice onto itself: a signed permutation of the axes, a scale and a shift.
-#[derive(Clone, Copy, Debug)]
-pub struct Motion {
-    /// For each new axis the old axis it takes and its sign.
-    pub axes: [(usize, i64); 3],
-    /// Steps added after the permutation.
-    pub shift: Lattice,
-    /// A positive factor applied first.
-    pub scale: i64,
-}
-
-impl Motion {
-    /// The motion that leaves everything where it is.
-    pub const IDENTITY: Self = Self {
-        axes: [(0, 1), (1, 1), (2, 1)],
-        shift: [0; 3],
-        scale: 1,
-    };
-
-    /// Whether the motion turns right hands into left ones.
-    pub fn mirrors(&self) -> bool {
-        let order = self.axes.map(|a| a.0);
-        let even = matches!(order, [0, 1, 2] | [1, 2, 0] | [2, 0, 1]);
-        let signs: i64 = self.axes.iter().map(|a| a.1).product();
-        even != (signs > 0)
-    }
-
-    fn point(&self, p: &Lattice) -> Result<Lattice> {
-        let mut image = [0; 3];
-        for (i, (axis, sign)) in self.axes.into_iter().enumerate() {
-            image[i] = p[axis]
-                .checked_mul(self.scale * sign)
-                .and_then(|k| k.checked_add(self.shift[i]))
-                .filter(|k| k.unsigned_abs() < 1 << COORDINATE_BITS)
-                .ok_or_else(too_large)?;
+/// The doubles of a vertex after a motion: those it had, unless it was shifted along an axis.
+fn moved_doubles(motion: &Motion, pitch: Pitch, p: &[f64; 3], image: &Lattice) -> [f64; 3] {
+    [0, 1, 2].map(|i| {
+        let (axis, sign) = motion.axes[i];
+        if motion.shift[i] == 0 {
+            p[axis] * as_double(sign)
+        } else {
+            pitch.coordinate(image[i])
         }
-        Ok(image)
-    }
-
-    fn double(&self, pitch: Pitch, p: &[f64; 3], image: &Lattice) -> [f64; 3] {
-        [0, 1, 2].map(|i| {
-            let (axis, sign) = self.axes[i];
-            if self.shift[i] == 0 {
-                p[axis] * as_double(sign)
-            } else {
-                pitch.coordinate(image[i])
-            }
-        })
-    }
-
-    fn plane(&self, data: &PlaneData) -> Result<PlaneData> {
-        let plane = data.plane()?.scaled(self.scale).ok_or_else(too_large)?;
-        let moved = plane.moved(&self.axes, &self.shift).ok_or_else(too_large)?;
-        Ok(PlaneData::of(&moved))
-    }
-
-    fn vertex(&self, data: &VertexData) -> Result<VertexData> {
-        match data {
-            VertexData::Lattice(p) => Ok(VertexData::Lattice(self.point(p)?)),
-            VertexData::Meet(x, w) => {
-                let w6 = Int::from_limbs(*w);
-                let mut image = [[0; 6]; 3];
-                for (i, (axis, sign)) in self.axes.into_iter().enumerate() {
-                    let turned: Int<8> = Int::from_limbs(x[axis]).mul_i64(sign * self.scale);
-                    let shifted: Int<8> = w6.mul_i64(self.shift[i]);
-                    let sum = (turned + shifted).narrow::<6>().ok_or_else(too_large)?;
-                    image[i] = *sum.limbs();
-                }
-                Ok(VertexData::Meet(image, *w))
-            }
-        }
-    }
+    })
 }
 
 fn too_large() -> Error {
@@ -400,10 +339,7 @@ impl SourceData {
             } => {
                 let count = vertices.len();
                 let named = faces.iter().flatten().all(|v| (*v as usize) < count);
-                let fits = vertices
-                    .iter()
-                    .flatten()
-                    .all(|k| k.unsigned_abs() < 1 << COORDINATE_BITS);
+                let fits = vertices.iter().flatten().all(|k| is_coordinate(*k));
                 let numbered = numbers.as_ref().is_none_or(|n| n.len() == faces.len());
                 let flat = |f: &[u32; 3]| is_flat(&f.map(|v| vertices[v as usize]));
                 let sound = named && fits && numbered && doubles.len() == count;
@@ -423,7 +359,7 @@ impl SourceData {
 
     fn apply(&mut self, motion: &Motion, pitch: Pitch) -> Result<()> {
         match self {
-            Self::HalfSpace(plane) => *plane = motion.plane(plane)?,
+            Self::HalfSpace(plane) => *plane = plane.moved(motion)?,
             Self::Mesh {
                 vertices,
                 doubles,
@@ -431,8 +367,8 @@ impl SourceData {
                 ..
             } => {
                 for (vertex, double) in vertices.iter_mut().zip(doubles) {
-                    *vertex = motion.point(vertex)?;
-                    *double = motion.double(pitch, double, vertex);
+                    *vertex = motion.point(vertex).ok_or_else(too_large)?;
+                    *double = moved_doubles(motion, pitch, double, vertex);
                 }
                 if motion.mirrors() {
                     for face in faces {
@@ -500,11 +436,12 @@ impl EdgeData {
     }
 
     fn apply(&mut self, motion: &Motion) -> Result<()> {
-        self.from = motion.vertex(&self.from)?;
-        self.to = motion.vertex(&self.to)?;
+        self.from = self.from.moved(motion)?;
+        self.to = self.to.moved(motion)?;
+        let point = |p: &Lattice| motion.point(p).ok_or_else(too_large);
         self.carrier = match &self.carrier {
-            CarrierData::Edge(a, b) => CarrierData::Edge(motion.point(a)?, motion.point(b)?),
-            CarrierData::Cut(plane, flip) => CarrierData::Cut(motion.plane(plane)?, *flip),
+            CarrierData::Edge(a, b) => CarrierData::Edge(point(a)?, point(b)?),
+            CarrierData::Cut(plane, flip) => CarrierData::Cut(plane.moved(motion)?, *flip),
         };
         if motion.mirrors() {
             std::mem::swap(&mut self.from, &mut self.to);
@@ -536,9 +473,7 @@ fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bo
     let carried = match carrier {
         Carrier::Edge(edge) => {
             let (a, b) = edge.ends();
-            let near = [a, b]
-                .iter()
-                .all(|p| p.iter().all(|k| k.unsigned_abs() < 1 << COORDINATE_BITS));
+            let near = [a, b].iter().all(|p| p.iter().all(|k| is_coordinate(*k)));
             near && a != b
                 && support.side_of_lattice(a) == 0
                 && support.side_of_lattice(b) == 0
@@ -567,11 +502,26 @@ impl VertexData {
         Self::Meet(h.x.map(|c| *c.limbs()), *h.w.limbs())
     }
 
+    fn moved(&self, motion: &Motion) -> Result<Self> {
+        match self {
+            Self::Lattice(p) => motion.point(p).map(Self::Lattice).ok_or_else(too_large),
+            Self::Meet(x, w) => {
+                let w6 = Int::from_limbs(*w);
+                let mut image = [[0; 6]; 3];
+                for (i, (axis, sign)) in motion.axes.into_iter().enumerate() {
+                    let turned: Int<8> = Int::from_limbs(x[axis]).mul_i64(sign * motion.scale);
+                    let shifted: Int<8> = w6.mul_i64(motion.shift[i]);
+                    let sum = (turned + shifted).narrow::<6>().ok_or_else(too_large)?;
+                    image[i] = *sum.limbs();
+                }
+                Ok(Self::Meet(image, *w))
+            }
+        }
+    }
+
     fn vertex(&self) -> Result<Vertex> {
         match self {
-            Self::Lattice(p) if p.iter().all(|k| k.unsigned_abs() < 1 << COORDINATE_BITS) => {
-                Ok(Vertex::lattice(*p))
-            }
+            Self::Lattice(p) if p.iter().all(|k| is_coordinate(*k)) => Ok(Vertex::lattice(*p)),
             Self::Lattice(_) => Err(bad_snapshot()),
             Self::Meet(x, w) => {
                 let (x, w) = (x.map(Int::from_limbs), Int::from_limbs(*w));
@@ -592,6 +542,11 @@ impl VertexData {
 impl PlaneData {
     fn of(plane: &Plane) -> Self {
         Self(*plane.normal(), *plane.offset().limbs())
+    }
+
+    fn moved(&self, motion: &Motion) -> Result<Self> {
+        let image = motion.plane(&self.plane()?).ok_or_else(too_large)?;
+        Ok(Self::of(&image))
     }
 
     fn plane(&self) -> Result<Plane> {

@@ -1,9 +1,9 @@
 //! Scenes, taken out of the tree, stored and moved.
 
 use arbitrary::{Arbitrary, Unstructured};
+use bspcsg::geometry::motion::Motion;
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::rule::Rule;
-use bspcsg::store::snapshot::Motion;
 use bspcsg::store::snapshot::Snapshot;
 
 use super::checks::{assert_same, kept, manifold_or_unbounded};

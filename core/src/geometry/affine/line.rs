@@ -3,7 +3,7 @@
 use num_bigint::BigInt;
 
 use super::Affine;
-use crate::arith::bounds::COORDINATE_BITS;
+use crate::arith::bounds::REACH;
 use crate::arith::convert::as_double;
 use crate::geometry::dim1::{Dim1, Direction, Point1};
 use crate::geometry::plane::Lattice;
@@ -19,7 +19,7 @@ fn sign(point: &Point1) -> i64 {
 
 impl Affine for Dim1 {
     const EVERYTHING: () = ();
-    const REACH: i64 = 1 << COORDINATE_BITS;
+    const REACH: i64 = REACH;
 
     fn fragment(corners: &[Lattice]) -> Option<Point1> {
         corners.first().map(|p| Point1::new(p[0], Direction::Below))

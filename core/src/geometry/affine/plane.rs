@@ -3,8 +3,9 @@
 use num_bigint::BigInt;
 
 use super::Affine;
+use crate::arith::bounds::REACH;
 use crate::arith::convert::as_double;
-use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2, Square, REACH};
+use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2, Square};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::{Side, Split};
 use crate::geometry::space::Space;

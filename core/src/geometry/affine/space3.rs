@@ -5,7 +5,7 @@ use std::sync::Arc;
 use num_bigint::BigInt;
 
 use super::{cross, difference, dot, Affine};
-use crate::arith::bounds::COORDINATE_BITS;
+use crate::arith::bounds::REACH;
 use crate::geometry::cell::Cell;
 use crate::geometry::dim3::Dim3;
 use crate::geometry::plane::{Lattice, Plane};
@@ -35,7 +35,7 @@ fn area_vector(corners: &[[f64; 3]]) -> [f64; 3] {
 
 impl Affine for Dim3 {
     const EVERYTHING: Cell = Cell::UNIVERSE;
-    const REACH: i64 = (1 << COORDINATE_BITS) - 1;
+    const REACH: i64 = REACH - 1;
 
     fn fragment(corners: &[Lattice]) -> Option<Polygon> {
         let support = Arc::new(plane_of(corners)?);

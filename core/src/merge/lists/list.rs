@@ -32,6 +32,7 @@ impl Frame {
         }
     }
 
+    #[inline]
     #[allow(clippy::cast_possible_truncation, reason = "clamped before")]
     fn index(&self, axis: usize, k: i64) -> i32 {
         let index = (k - self.origin[axis]) >> self.shift;

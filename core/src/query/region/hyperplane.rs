@@ -1,11 +1,12 @@
-//! Hyperplanes of lattice points, and maps of the lattice that act on them.
+//! Hyperplanes of lattice points.
 
 use std::sync::Arc;
 
+use crate::arith::bounds::is_coordinate;
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::dim1::{Direction, Point1};
-use crate::geometry::dim2::{Line2, REACH};
+use crate::geometry::dim2::Line2;
 use crate::geometry::plane::Plane;
 use crate::mesh::half_space::{bounding_plane, out_of_reach};
 
@@ -21,7 +22,7 @@ pub fn point(normal: i128, offset: &Int<3>) -> Result<Point1> {
     };
     let at = offset.to_i128().map(|offset| normal * offset);
     at.and_then(|at| i64::try_from(at).ok())
-        .filter(|at| at.unsigned_abs() < REACH.unsigned_abs())
+        .filter(|at| is_coordinate(*at))
         .map(|at| Point1::new(at, inside))
         .ok_or_else(out_of_reach)
 }
@@ -64,67 +65,4 @@ pub fn line_along(origin: [i64; 2], direction: [f64; 2]) -> Result<Line2> {
 
 fn bad_normal(text: &str) -> Error {
     Error::new(ErrorKind::BadNormal, text)
-}
-
-/// A signed permutation of the axes with a positive scale before it and a shift after it.
-#[derive(Clone, Debug)]
-pub struct LatticeMap {
-    /// For each new axis the old one it takes and its sign.
-    pub axes: Vec<(usize, i64)>,
-    /// Steps added at last.
-    pub shift: Vec<i64>,
-    /// The factor applied first.
-    pub scale: i64,
-}
-
-impl LatticeMap {
-    /// The image of a point.
-    ///
-    /// # Errors
-    /// `TooLarge`.
-    pub fn point(&self, p: &Point1) -> Result<Point1> {
-        let (_, sign) = self.axes[0];
-        let turned = match (p.inside(), sign < 0) {
-            (Direction::Below, false) | (Direction::Above, true) => Direction::Below,
-            _ => Direction::Above,
-        };
-        let at = p.at().checked_mul(self.scale * sign);
-        at.and_then(|at| at.checked_add(self.shift[0]))
-            .filter(|at| at.unsigned_abs() <= REACH.unsigned_abs())
-            .map(|at| Point1::new(at, turned))
-            .ok_or_else(too_large)
-    }
-
-    /// The image of a line.
-    ///
-    /// # Errors
-    /// `TooLarge`.
-    pub fn line(&self, line: &Line2) -> Result<Line2> {
-        let (old, c) = line.coefficients();
-        let normal = [0, 1].map(|i| old[self.axes[i].0] * self.axes[i].1);
-        let shifted = |i: usize| i128::from(normal[i]) * i128::from(self.shift[i]);
-        c.checked_mul(i128::from(self.scale))
-            .and_then(|c| c.checked_sub(shifted(0) + shifted(1)))
-            .and_then(|c| Line2::new(normal[0], normal[1], c))
-            .ok_or_else(too_large)
-    }
-
-    /// The image of a plane.
-    ///
-    /// # Errors
-    /// `TooLarge`.
-    pub fn plane(&self, plane: &Plane) -> Result<Arc<Plane>> {
-        let axes = [0, 1, 2].map(|i| self.axes[i]);
-        let shift = [0, 1, 2].map(|i| self.shift[i]);
-        plane
-            .scaled(self.scale)
-            .and_then(|p| p.moved(&axes, &shift))
-            .map(Arc::new)
-            .ok_or_else(too_large)
-    }
-}
-
-fn too_large() -> Error {
-    let text = "the moved or refined set does not fit the lattice of 2^53 steps";
-    Error::new(ErrorKind::TooLarge, text)
 }

@@ -1,10 +1,10 @@
 //! What a space must tell of its hyperplanes for rays to stab them.
 
-use crate::arith::bounds::COORDINATE_BITS;
+use crate::arith::bounds::REACH;
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::dim1::{Dim1, Direction, Point1};
-use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2, REACH};
+use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2};
 use crate::geometry::dim3::Dim3;
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::Polygon;
@@ -37,7 +37,7 @@ fn without_extent() -> Error {
 }
 
 impl Cast<1> for Dim1 {
-    const REACH: i64 = (1 << COORDINATE_BITS) - 1;
+    const REACH: i64 = REACH - 1;
 
     fn fragment(corners: &[[i64; 1]; 1]) -> Result<Point1> {
         Ok(Point1::new(corners[0][0], Direction::Below))
@@ -85,7 +85,7 @@ impl Cast<2> for Dim2 {
 }
 
 impl Cast<3> for Dim3 {
-    const REACH: i64 = (1 << COORDINATE_BITS) - 1;
+    const REACH: i64 = REACH - 1;
 
     fn fragment(corners: &[[i64; 3]; 3]) -> Result<Polygon> {
         let [a, b, c] = corners;
