@@ -43,20 +43,27 @@ def slice_solid(
 ) -> Region | list[Region]:
     """Return sections of a solid by planes, in coordinates of the planes (see `Solid.slice`)."""
     if np.ndim(offset) == 1:
-        return [_section(solid, one, normal, None) for one in offset]
-    return _section(solid, offset, normal, origin)
+        return _sections(solid, list(offset), normal, None)
+    return _sections(solid, [offset], normal, origin)[0]
 
 
-def _section(solid: Solid, offset: Scalar, normal: Vector, origin: Vector | None) -> Region:
+def _sections(
+    solid: Solid, offsets: list[Scalar], normal: Vector, origin: Vector | None
+) -> list[Region]:
     direction = vector3(normal, "normal")
-    plane = Hyperplane.from_numbers(direction.tolist(), _product(direction, offset, origin))
+    products = [_product(direction, offset, origin) for offset in offsets]
+    planes = [Hyperplane.from_numbers(direction.tolist(), product) for product in products]
     tree = solid.normalized().tree
     with core_errors():
-        edges = tree.section(plane.on_lattice(tree.pitch).row)
-    flat = _in_plane(edges.reshape(-1, 3), direction)
-    segments = flat.reshape(-1, 2, 2)
+        sections = tree.sections([plane.on_lattice(tree.pitch).row for plane in planes])
+    return [_region(edges, direction, tree.pitch) for edges in sections]
+
+
+def _region(edges: FloatArray, normal: FloatArray, pitch: int) -> Region:
+    """Return what (n, 6) edges in a plane surround."""
+    segments = _in_plane(edges.reshape(-1, 3), normal).reshape(-1, 2, 2)
     proper = (segments[:, 0] != segments[:, 1]).any(axis=1)
-    return Region.from_segments(segments[proper], pitch=tree.pitch)
+    return Region.from_segments(segments[proper], pitch=pitch)
 
 
 def _product(normal: FloatArray, offset: Scalar, origin: Vector | None) -> Fraction:

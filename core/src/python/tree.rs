@@ -32,7 +32,7 @@ use crate::mesh::import::import;
 use crate::mesh::triangles::TriangleMesh;
 use crate::query::classify::{classify, Location};
 use crate::query::measure::{volume_near, volume_residues, volume_rounded, volume_within};
-use crate::query::region::section::section;
+use crate::query::region::section::Sections;
 use crate::store::snapshot::Snapshot;
 use crate::tree::solid::Solid;
 use crate::tree::stats::{stats, Stats};
@@ -438,19 +438,24 @@ impl Tree {
         Ok(PyArray1::from_vec(py, found.iter().map(sign).collect()))
     }
 
-    fn section<'py>(
+    fn sections<'py>(
         &self,
         py: Python<'py>,
-        hyperplane: Row,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        hyperplanes: Vec<Row>,
+    ) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
         let pitch = self.solid.pitch();
-        let edges = self.run(py, "section", 0, self.size(), || {
-            let (normal, offset) = coefficients(&hyperplane)?;
-            section(&self.solid, &bounding_plane(normal, &offset)?)
+        let found = self.run(py, "sections", 0, self.size(), || {
+            let boundary = Sections::of(&self.solid)?;
+            let section = |row: &Row| {
+                let (normal, offset) = coefficients(row)?;
+                boundary.by(&bounding_plane(normal, &offset)?)
+            };
+            hyperplanes.iter().map(section).collect::<Result<Vec<_>>>()
         })?;
         let row =
             |[[a, b, c], [d, e, f]]: [[i64; 3]; 2]| [a, b, c, d, e, f].map(|k| pitch.coordinate(k));
-        array(py, edges.into_iter().map(row).collect())
+        let rows = |edges: Vec<_>| array(py, edges.into_iter().map(row).collect());
+        found.into_iter().map(rows).collect()
     }
 
     #[getter]

@@ -6,7 +6,7 @@ use num_integer::Integer;
 use crate::arith::Int;
 use crate::extract::mesh::{Corner, ExactMesh};
 use crate::geometry::plane::Lattice;
-use crate::geometry::vertex::Homogeneous;
+use crate::geometry::vertex::{Homogeneous, Vertex};
 use crate::tree::solid::Solid;
 
 /// The place of a vertex, if it is a lattice point.
@@ -19,21 +19,17 @@ pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Option<La
     }
 }
 
-/// The place of a vertex.
-pub(super) fn homogeneous(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Homogeneous {
-    if let Some(p) = lattice(solid, mesh, vertex) {
-        return Homogeneous {
-            x: p.map(Int::from_i64),
-            w: Int::ONE,
-        };
-    }
+/// A vertex as a point of space.
+pub(super) fn vertex(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Vertex {
     match mesh.vertices[vertex as usize] {
-        Corner::Point(point) => mesh.table.point(point).coordinates(),
-        Corner::Source(..) => Homogeneous {
-            x: [Int::ZERO; 3],
-            w: Int::ONE,
-        },
+        Corner::Point(point) => Vertex::clone(mesh.table.point(point)),
+        Corner::Source(..) => Vertex::lattice(lattice(solid, mesh, vertex).unwrap_or_default()),
     }
+}
+
+/// The place of a vertex.
+pub(super) fn homogeneous(solid: &Solid, mesh: &ExactMesh, number: u32) -> Homogeneous {
+    vertex(solid, mesh, number).coordinates()
 }
 
 /// A fraction in lowest terms.

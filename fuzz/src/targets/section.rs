@@ -7,7 +7,7 @@ use bspcsg::error::ErrorKind;
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::rule::Rule;
 use bspcsg::query::region::hyperplane::plane;
-use bspcsg::query::region::section as sections;
+use bspcsg::query::region::section::Sections;
 
 use crate::scene::plane_numbers;
 use crate::scene::Scene;
@@ -23,7 +23,8 @@ pub fn section(data: &[u8]) {
     let context = format!("{normal:?} at {offset} of {scene:?}");
     let result = normalized(&scene.result(), Rule::Positive);
     let (numbers, constant) = plane_numbers(normal, offset);
-    let edges = match plane(numbers, &constant).and_then(|cut| sections::section(&result, &cut)) {
+    let cut = plane(numbers, &constant);
+    let edges = match cut.and_then(|cut| Sections::of(&result)?.by(&cut)) {
         // Far out a plane, or where it cuts, may leave the lattice.
         Err(error) => {
             let known = matches!(error.kind(), ErrorKind::Unbounded | ErrorKind::TooLarge);

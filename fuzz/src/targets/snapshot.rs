@@ -9,7 +9,7 @@ use bspcsg::mesh::import as importing;
 use bspcsg::query::classify::classify;
 use bspcsg::query::measure;
 use bspcsg::query::region::hyperplane::plane;
-use bspcsg::query::region::section as sections;
+use bspcsg::query::region::section::Sections;
 use bspcsg::store::snapshot::Snapshot;
 use bspcsg::tree::solid::Solid;
 
@@ -28,7 +28,7 @@ pub fn snapshot(data: &[u8]) {
     );
     let _ = classify(&solid, &[[0; 3], [1, 2, 3], [20; 3]]);
     if let Ok(plane) = plane([1, 2, 3], &Int::from_i128(4)) {
-        let _ = sections::section(&solid, &plane);
+        let _ = Sections::of(&solid).and_then(|sections| sections.by(&plane));
     }
     let tool = importing::import(&BOX.0, &BOX.1, Some(solid.pitch()));
     let Ok(tool) = tool.map(|s| Solid::of_source(s.into(), true)) else {

@@ -7,41 +7,63 @@ use rustc_hash::FxHashMap as HashMap;
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::assemble::assemble;
 use crate::geometry::plane::{Lattice, Plane};
-use crate::geometry::vertex::{Homogeneous, Vertex};
+use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
-use crate::query::exact::{big, homogeneous};
+use crate::query::exact::{big, vertex};
 use crate::tree::solid::Solid;
 
-/// The directed edges in which a plane cuts a bounded solid's boundary.
-///
-/// Seen from the plane's plus side the solid lies on the left. Faces and edges in the plane count
-/// as lying above it, so that this is the section just below: the limit from the minus side. Each
-/// end is the lattice point nearest to the exact one, halves rounded up; edges that this shrinks to
-/// a point are left out.
-///
-/// # Errors
-/// `Unbounded`.
-pub fn section(solid: &Solid, plane: &Plane) -> Result<Vec<[Lattice; 2]>> {
-    let mesh = assemble(solid)?;
-    let points: Vec<Homogeneous> = (0u32..)
-        .zip(&mesh.vertices)
-        .map(|(i, _)| homogeneous(solid, &mesh, i))
-        .collect();
-    let below: Vec<bool> = points.iter().map(|p| is_below(p, plane)).collect();
-    let crossings: Vec<Crossing> = mesh
-        .triangles
-        .iter()
-        .filter_map(|triangle| Crossing::of(triangle.map(|v| v as usize), &below))
-        .collect();
-    let mut edges = Vec::new();
-    for [enter, leave] in straight(&points, &crossings) {
-        poll();
-        let ends = [meet(&points, enter, plane)?, meet(&points, leave, plane)?];
-        if ends[0] != ends[1] {
-            edges.push(ends);
-        }
+/// A bounded solid's boundary, read once for any number of sections.
+pub struct Sections {
+    points: Vec<Vertex>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Sections {
+    /// The boundary of a solid.
+    ///
+    /// # Errors
+    /// `Unbounded`.
+    pub fn of(solid: &Solid) -> Result<Self> {
+        let mesh = assemble(solid)?;
+        let numbered = (0u32..).zip(&mesh.vertices);
+        let points = numbered.map(|(i, _)| vertex(solid, &mesh, i));
+        Ok(Self {
+            points: points.collect(),
+            triangles: mesh.triangles,
+        })
     }
-    Ok(edges)
+
+    /// The directed edges in which a plane cuts the boundary.
+    ///
+    /// Seen from the plane's plus side the solid lies on the left. Faces and edges in the plane
+    /// count as lying above it, so that this is the section just below: the limit from the minus
+    /// side. Each end is the lattice point nearest to the exact one, halves rounded up; edges that
+    /// this shrinks to a point are left out.
+    ///
+    /// # Cost
+    /// One pass over vertices and triangles.
+    ///
+    /// # Errors
+    /// `TooLarge` if the section leaves the lattice.
+    pub fn by(&self, plane: &Plane) -> Result<Vec<[Lattice; 2]>> {
+        poll();
+        let below: Vec<bool> = self.points.iter().map(|p| p.side_of(plane) < 0).collect();
+        let crossings: Vec<Crossing> = self
+            .triangles
+            .iter()
+            .filter_map(|triangle| Crossing::of(triangle.map(|v| v as usize), &below))
+            .collect();
+        let mut edges = Vec::new();
+        for [enter, leave] in straight(&self.points, &crossings) {
+            poll();
+            let meet = |rung| meet(&self.points, rung, plane);
+            let ends = [meet(enter)?, meet(leave)?];
+            if ends[0] != ends[1] {
+                edges.push(ends);
+            }
+        }
+        Ok(edges)
+    }
 }
 
 /// An edge of the mesh that the plane crosses, its lower end first.
@@ -74,7 +96,7 @@ impl Crossing {
 }
 
 /// The first and last edges of runs of coplanar triangles: between them the section is straight.
-fn straight(points: &[Homogeneous], crossings: &[Crossing]) -> Vec<[Rung; 2]> {
+fn straight(points: &[Vertex], crossings: &[Crossing]) -> Vec<[Rung; 2]> {
     let next = successors(points, crossings);
     let mut follows = vec![false; crossings.len()];
     for &i in next.iter().flatten() {
@@ -89,7 +111,7 @@ fn straight(points: &[Homogeneous], crossings: &[Crossing]) -> Vec<[Rung; 2]> {
 }
 
 /// For each triangle the one beyond its last edge, if that lies in the same plane.
-fn successors(points: &[Homogeneous], crossings: &[Crossing]) -> Vec<Option<usize>> {
+fn successors(points: &[Vertex], crossings: &[Crossing]) -> Vec<Option<usize>> {
     let mut entered: HashMap<Rung, Vec<usize>> = HashMap::default();
     for (i, crossing) in crossings.iter().enumerate() {
         poll();
@@ -108,7 +130,7 @@ fn successors(points: &[Homogeneous], crossings: &[Crossing]) -> Vec<Option<usiz
 }
 
 /// Whether four points lie in one plane.
-fn coplanar(points: [&Homogeneous; 4]) -> bool {
+fn coplanar(points: [&Vertex; 4]) -> bool {
     let [p, q, r, s] = points.map(Wide::of);
     // Differences to p, times both denominators.
     let [u, v, w] = [&q, &r, &s]
@@ -118,12 +140,8 @@ fn coplanar(points: [&Homogeneous; 4]) -> bool {
     sum == BigInt::ZERO
 }
 
-fn is_below(point: &Homogeneous, plane: &Plane) -> bool {
-    Vertex::homogeneous(point.x, point.w).side_of(plane) < 0
-}
-
 /// The lattice point nearest to where an edge meets a plane.
-fn meet(points: &[Homogeneous], edge: Rung, plane: &Plane) -> Result<Lattice> {
+fn meet(points: &[Vertex], edge: Rung, plane: &Plane) -> Result<Lattice> {
     let [p, q] = edge.map(|i| Wide::of(&points[i]));
     let (s, t) = (p.value(plane), q.value(plane));
     // With the values s/v < 0 ≤ t/w at p and q: the point is (t·p − s·q) / (t·v − s·w).
@@ -145,7 +163,8 @@ struct Wide {
 }
 
 impl Wide {
-    fn of(point: &Homogeneous) -> Self {
+    fn of(point: &Vertex) -> Self {
+        let point = point.coordinates();
         let x = [0, 1, 2].map(|i| big(&point.x[i]));
         let w = big(&point.w);
         Self { x, w }
