@@ -26,7 +26,9 @@ impl TriangleMesh {
     /// The corners of a face.
     #[inline]
     pub fn corners(&self, face: FaceId) -> [Lattice; 3] {
-        self.vertices_of(face).map(|v| self.vertices[v as usize])
+        let [a, b, c] = self.vertices_of(face);
+        let at = |vertex: u32| self.vertices[vertex as usize];
+        [at(a), at(b), at(c)]
     }
 
     /// The numbers of a face's corners.
@@ -38,8 +40,9 @@ impl TriangleMesh {
     /// The lattice box around a face.
     pub fn face_box(&self, face: FaceId) -> (Lattice, Lattice) {
         let [a, b, c] = self.corners(face);
-        let low = [0, 1, 2].map(|i| a[i].min(b[i]).min(c[i]));
-        (low, [0, 1, 2].map(|i| a[i].max(b[i]).max(c[i])))
+        let least = |i: usize| a[i].min(b[i]).min(c[i]);
+        let most = |i: usize| a[i].max(b[i]).max(c[i]);
+        ([least(0), least(1), least(2)], [most(0), most(1), most(2)])
     }
 
     /// The farthest that a coordinate is from the double it came from, rounded.

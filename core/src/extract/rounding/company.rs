@@ -17,7 +17,9 @@ pub struct Faces<'a> {
 impl Faces<'_> {
     /// The corners of a triangle.
     pub fn corners(&self, triangle: u32) -> Triangle {
-        self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
+        let [a, b, c] = self.triangles[triangle as usize];
+        let at = |vertex: u32| self.vertices[vertex as usize];
+        [at(a), at(b), at(c)]
     }
 }
 

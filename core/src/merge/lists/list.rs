@@ -39,6 +39,15 @@ impl Frame {
         index.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
     }
 
+    #[inline]
+    fn indices(&self, p: &Lattice) -> [i32; 3] {
+        [
+            self.index(0, p[0]),
+            self.index(1, p[1]),
+            self.index(2, p[2]),
+        ]
+    }
+
     fn resolves(&self, cell: &Cell) -> bool {
         cell.size().into_iter().all(|s| u32::from(s) > self.shift)
     }
@@ -270,8 +279,7 @@ impl List {
     /// How many elements reach across the cell's border: these no halving can separate soon.
     pub fn reaching_out(&self, cell: &Cell) -> usize {
         let high = cell.high();
-        let low = [0, 1, 2].map(|i| self.frame.index(i, cell.low()[i]));
-        let high = [0, 1, 2].map(|i| self.frame.index(i, high[i]));
+        let (low, high) = (self.frame.indices(cell.low()), self.frame.indices(&high));
         let out = |a: &[i32; 3], b: &[i32; 3]| (0..3).any(|i| a[i] < low[i] || b[i] > high[i]);
         self.records.iter().filter(|r| out(&r.low, &r.high)).count()
             + self.parts.iter().filter(|p| out(&p.low, &p.high)).count()
@@ -297,7 +305,7 @@ impl List {
             to: 2 * cut.at - 1,
         };
         let low = *cell.low();
-        let at = [0, 1, 2].map(|i| self.frame.index(i, low[i]));
+        let at = self.frame.indices(&low);
         let end = self.frame.index(cut.axis, cut.at);
         let near = |low: &[i32; 3], high: &[i32; 3]| {
             (0..3).all(|i| high[i] >= at[i] && low[i] < if i == cut.axis { end } else { at[i] })
@@ -374,8 +382,7 @@ impl Frame {
         let (low, high) = match source.shape() {
             Shape::Mesh(mesh) => {
                 let (low, high) = mesh.face_box(face);
-                let index = |p: &Lattice| [0, 1, 2].map(|i| self.index(i, p[i]));
-                (index(&low), index(&high))
+                (self.indices(&low), self.indices(&high))
             }
             Shape::HalfSpace(_) => ([i32::MIN; 3], [i32::MAX; 3]),
         };
