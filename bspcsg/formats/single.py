@@ -124,7 +124,7 @@ def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
 def _either(some: IndexArray, others: IndexArray) -> IndexArray:
     """Return the numbers that are in one of two lists, rising."""
     # Not numpy.unique, which imports numpy.ma: a tenth of a small boolean's time.
-    return np.array(sorted({*some.tolist(), *others.tolist()}), dtype=np.int64)
+    return np.array(sorted({*some.ravel().tolist(), *others.tolist()}), dtype=np.int64)
 
 
 def _united(mesh: Mesh) -> Mesh:

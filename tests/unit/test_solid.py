@@ -436,3 +436,24 @@ def test_check_is_another_name_of_validate_until_the_next_version() -> None:
 def test_solids_show_what_users_need_and_no_more() -> None:
     inside = {"from_node", "from_leaf", "alias", "expression"}
     assert not inside & set(dir(b.Solid))
+
+
+def test_little_of_a_large_mesh_is_whole() -> None:
+    # Short lists are worked on outside of the pool, long meshes in chunks: both at once here.
+    ball = b.sphere(10, segments=200)
+    corner = b.box(1).translate(9.5, 0, 0)
+    parts = [corner & ball, corner - ball, (corner | ball) - ball]
+    volumes = [b.Solid(*part.to_mesh()).volume for part in parts]
+    assert volumes[0] + volumes[1] == pytest.approx(1, abs=1e-12)
+    assert volumes[1] == pytest.approx(volumes[2], abs=1e-12)
+
+
+def test_the_last_of_many_balls_is_not_lost() -> None:
+    ball = b.sphere(1, segments=32).to_mesh()
+    count = 2**15 // len(ball.faces) + 1
+    moved = [ball.vertices + (3 * k, 0, 0) for k in range(count)]
+    faces = [np.asarray(ball.faces) + k * len(ball.vertices) for k in range(count)]
+    many = b.Solid(np.concatenate(moved), np.concatenate(faces))
+    for k in (0, count // 2, count - 1):
+        alone = (many & b.box(3, center=True).translate(3 * k, 0, 0)).to_mesh()
+        assert len(alone.faces) == len(ball.faces)

@@ -24,8 +24,11 @@ pub fn each_chunk<T: Sync, R: Send>(
             value(i * CHUNK, chunk)
         })
     };
-    if items.len() <= CHUNK || !in_pool() {
+    if items.len() <= CHUNK {
         return vec![value((0, items))];
+    }
+    if !in_pool() {
+        return items.chunks(CHUNK).enumerate().map(value).collect();
     }
     items.par_chunks(CHUNK).enumerate().map(value).collect()
 }
@@ -43,8 +46,12 @@ pub fn fill_chunks<T: Sync, U: Send, R: Send>(
             value(i * CHUNK, chunk, out)
         })
     };
-    if items.len() <= CHUNK || !in_pool() {
+    if items.len() <= CHUNK {
         return vec![value((0, (items, out)))];
+    }
+    if !in_pool() {
+        let chunks = items.chunks(CHUNK).zip(out.chunks_mut(CHUNK));
+        return chunks.enumerate().map(value).collect();
     }
     let chunks = items.par_chunks(CHUNK).zip(out.par_chunks_mut(CHUNK));
     chunks.enumerate().map(value).collect()
@@ -61,5 +68,32 @@ pub fn both<A: Send, B: Send>(
         rayon::join(|| task.run(a), || task.run(b))
     } else {
         (a(), b())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chunks_are_the_same_in_a_pool_and_outside() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+        let pool = pool.expect("two threads");
+        for len in [0, 1, CHUNK, CHUNK + 1, 3 * CHUNK - 1] {
+            let items: Vec<usize> = (0..len).collect();
+            let ends = || each_chunk(&items, |first, chunk| (first, chunk.len()));
+            let copied = || {
+                let mut out = vec![0; len];
+                let firsts = fill_chunks(&items, &mut out, |first, chunk, out| {
+                    out.copy_from_slice(chunk);
+                    first
+                });
+                (firsts, out)
+            };
+            assert_eq!(ends(), pool.install(ends));
+            assert_eq!(copied(), pool.install(copied));
+            assert_eq!(ends().len(), len.div_ceil(CHUNK).max(1));
+            assert_eq!(copied().1, items);
+        }
     }
 }
