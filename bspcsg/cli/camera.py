@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from ..errors import BspcsgError
-from .options import numbers
+from .options import finite_numbers, numbers
 
 if TYPE_CHECKING:
     from .._types import FloatArray
@@ -30,11 +30,8 @@ def _as_point(
     """Return three finite numbers."""
     if value is None:
         return None
-    try:
-        found = tuple(float(word) for word in value.split(","))
-    except ValueError:
-        found = ()
-    if len(found) != 3 or not all(map(math.isfinite, found)):
+    found = finite_numbers(value, 3)
+    if found is None:
         message = f"{value!r} is no point; it takes three numbers x,y,z, as in 10,-20,15."
         raise click.BadParameter(message, context, option)
     return found

@@ -206,6 +206,15 @@ PORT = click.option(
 )
 
 
+def finite_numbers(text: str, count: int) -> tuple[float, ...] | None:
+    """Return so many finite numbers with commas between them; None for anything else."""
+    try:
+        found = tuple(float(word) for word in text.split(","))
+    except ValueError:
+        return None
+    return found if len(found) == count and all(map(math.isfinite, found)) else None
+
+
 def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, ...] | None]:
     """Return the callback of an option that takes a direction, and maybe more numbers after it.
 
@@ -226,11 +235,8 @@ def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, .
     ) -> tuple[float, ...] | None:
         if value is None:
             return None
-        try:
-            found = tuple(float(word) for word in value.split(","))
-        except ValueError:
-            found = ()
-        if len(found) != count or not all(map(math.isfinite, found)) or not any(found[:3]):
+        found = finite_numbers(value, count)
+        if found is None or not any(found[:3]):
             wanted = f"{spoken} numbers {names}, {zeros} all 0, as in {example}"
             raise click.BadParameter(f"{value!r} is no {what}; it takes {wanted}.", context, option)
         return found
