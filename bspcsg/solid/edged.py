@@ -39,7 +39,8 @@ class Edged:
         """Return the solid with flat surfaces instead of edges.
 
         Material is taken off along convex edges and filled in along concave ones. At corners the
-        new surfaces run into each other.
+        new surfaces run into each other. Where a concave edge ends between two convex ones, or the
+        other way around, it comes first, and the two run on along the end of its new surface.
 
         Parameters
         ----------
@@ -51,8 +52,8 @@ class Edged:
         Raises
         ------
         InvalidParameterError
-            If the faces leave no room, or convex and concave edges meet, or a corner is not convex
-            and of more than three faces; the message names the place.
+            If the faces leave no room, or convex and concave edges meet otherwise, or a corner is
+            not convex and of more than three faces; the message names the place.
         LimitError
             If more than 10 000 edges are chosen.
 
@@ -72,7 +73,7 @@ class Edged:
 
         Material is taken off along convex edges and filled in along concave ones, to a cylinder
         that touches both faces. Where three such edges meet and all are chosen, the corner is part
-        of a ball.
+        of a ball. Convex and concave edges that meet are taken in turn, as by `chamfer`.
 
         Parameters
         ----------

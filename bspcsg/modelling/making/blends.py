@@ -25,7 +25,8 @@ from .patches import arc_directions, patch_directions, patch_faces
 from .planes import Planes
 from .rings import walls
 from .rooms import no_room, refuse_no_room
-from .skeleton import Skeleton
+from .skeleton import Skeleton, flatness, skeleton_of
+from .stages import carried, ready, refused
 
 #: Edges of one call: each is a mesh and four half-spaces of one expression.
 _MOST_EDGES = 10_000
@@ -156,15 +157,15 @@ class _Blend:
             edges = self.skeleton.edges_at(vertex)
             chosen = [edge for edge in edges if edge in self.chosen]
             signs = {self.sign(edge) for edge in edges}
-            if len({self.sign(edge) for edge in chosen}) > 1:
-                raise self._refused(vertex, "convex and concave edges meet; take one kind first")
             faces = self.skeleton.faces_at(vertex)
             if len(faces) != len(edges) or len(faces) < 3:
-                raise self._refused(vertex, "the faces around a corner are not one fan")
+                raise refused(self.skeleton, vertex, "the faces around a corner are not one fan")
             if len(edges) > 3 and (len(signs) > 1 or not self._is_cone(vertex)):
-                raise self._refused(vertex, "more than three faces meet that are no convex corner")
+                raise refused(
+                    self.skeleton, vertex, "more than three faces meet that are no convex corner"
+                )
             if len(edges) > 3 and len(chosen) > 2 and self.profile.is_round:
-                raise self._refused(vertex, "more than three round edges would meet")
+                raise refused(self.skeleton, vertex, "more than three round edges would meet")
 
     def _is_cone(self, vertex: int) -> bool:
         """Say whether all edges at a vertex run behind all planes there, or all before them."""
@@ -174,10 +175,6 @@ class _Blend:
         signs = np.array([self.sign(edge) for edge in edges])[:, None]
         leans = (self.skeleton.directions[edges] * away) @ normals.T * signs
         return bool((leans < _FLATTEST).all())
-
-    def _refused(self, vertex: int, reason: str) -> Exception:
-        point = ", ".join(f"{value:.6g}" for value in self.skeleton.vertices[vertex])
-        return invalid_parameter(f"At ({point}) {reason}.", [vertex])
 
     def is_round_corner(self, vertex: int) -> bool:
         """Say whether three edges meet whose fillets leave a ball between them."""
@@ -338,13 +335,47 @@ def _blended(solid: Solid, edges: EdgeSelection, profile: _Profile) -> Solid:
         skeleton.vertices, mesh.vertices
     ):
         raise invalid_parameter("These are edges of another solid; ask this one for its edges().")
-    if not len(chosen):
-        return solid
-    blend = _Blend(skeleton, chosen, profile, solid.pitch)
+    while len(chosen):
+        blend = _Blend(skeleton, ready(skeleton, chosen), profile, solid.pitch)
+        solid = _once(solid, blend)
+        rest = chosen[~np.isin(chosen, list(blend.chosen))]
+        if not len(rest):
+            break
+        solid = _tidy(solid, blend)
+        after = skeleton_of(solid.normalized().to_mesh())
+        skeleton, chosen = after, carried(skeleton, rest, after, _new_ends(blend, rest))
+    return solid
+
+
+def _once(solid: Solid, blend: _Blend) -> Solid:
+    """Return the solid after all edges of one stage are blended."""
     blend.refuse_corners()
-    refuse_no_room(skeleton, blend.widths)
+    refuse_no_room(blend.skeleton, blend.widths)
     cutters, fillers = _parts(blend)
     return (solid | union(fillers)) - union(cutters) if fillers else solid - union(cutters)
+
+
+def _tidy(solid: Solid, blend: _Blend) -> Solid:
+    """Return a solid without the steps that rounded faces and new surfaces leave between them."""
+    ends = np.unique(blend.skeleton.ends[sorted(blend.chosen)])
+    around = {face for vertex in ends.tolist() for face in blend.skeleton.faces_at(vertex)}
+    if all(blend.planes.is_exact(face) for face in around):
+        return solid
+    return solid.simplify(flatness(blend.skeleton.vertices))
+
+
+def _new_ends(blend: _Blend, rest: IndexArray) -> dict[int, FloatArray]:
+    """Return where new surfaces end between two edges that are both still to be blended."""
+    skeleton, waiting = blend.skeleton, set(rest.tolist())
+    found: dict[int, FloatArray] = {}
+    for edge in sorted(blend.chosen):
+        for vertex in skeleton.ends[edge].tolist():
+            others = [other for other in skeleton.edges_at(vertex) if other != edge]
+            if len(others) == 2 and waiting.issuperset(others):
+                (face,) = skeleton.faces_at(vertex) - set(skeleton.sides[edge].tolist())
+                corners = blend.cutter(edge).vertices
+                found[face] = np.concatenate([found.get(face, corners[:0]), corners])
+    return found
 
 
 def _parts(blend: _Blend) -> tuple[Sequence[Solid], Sequence[Solid]]:

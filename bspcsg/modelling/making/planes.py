@@ -47,10 +47,17 @@ class Planes:
             self._made[key] = from_leaf(PlaneLeaf(self._plane(*key)))
         return self._made[key]
 
-    def _plane(self, face: int, sign: int, beyond: bool) -> Hyperplane:
+    def is_exact(self, face: int) -> bool:
+        """Say whether a face is a plane of the lattice."""
+        return self._known(face) is not None
+
+    def _known(self, face: int) -> Hyperplane | None:
         if face not in self._exact:
             self._exact[face] = self._lattice_plane(face)
-        exact = self._exact[face]
+        return self._exact[face]
+
+    def _plane(self, face: int, sign: int, beyond: bool) -> Hyperplane:
+        exact = self._known(face)
         if exact is not None:
             normal = [Fraction(sign * entry) for entry in exact.normal]
             return Hyperplane.of(normal, sign * exact.offset)

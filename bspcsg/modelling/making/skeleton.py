@@ -114,6 +114,11 @@ def skeleton_of(mesh: Mesh) -> Skeleton:
     return Skeleton(vertices, triangles, face, normals, ends, sides)
 
 
+def flatness(vertices: FloatArray) -> float:
+    """Return how far corners may be from the plane of a face that they belong to."""
+    return _FLAT * float(np.ptp(vertices, axis=0).max())
+
+
 def _segments(triangles: IndexArray, count: int) -> tuple[IndexArray, IndexArray]:
     """Return each edge of triangles once, and the triangles on its left and its right."""
     starts, ends = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
@@ -145,9 +150,8 @@ def _are_flat(
     tip = triangles[small].sum(axis=1) - segments.sum(axis=1)
     unit = areas[large] / np.where(size > 0, size, 1)[large][:, None]
     away = np.einsum("ij,ij->i", vertices[tip] - vertices[segments[:, 0]], unit)
-    extent = float(np.ptp(vertices, axis=0).max())
     ahead = np.einsum("ij,ij->i", areas[large], areas[small]) >= 0
-    return np.asarray((np.abs(away) <= _FLAT * extent) & ahead)
+    return np.asarray((np.abs(away) <= flatness(vertices)) & ahead)
 
 
 def _groups(pairs: IndexArray, count: int) -> IndexArray:
