@@ -11,14 +11,14 @@ kept and the expression let go. Two things are promised, and two kinds of query 
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .._core import Tree
 from .._types import ProgramLine, WindingRule
 from ..above import above
 from ..attributes.attributes import Attributes, Given
 from ..attributes.material import Material
-from ..errors import core_errors
+from ..errors import BspcsgError, core_errors
 from ..geometry.transform import Factors, common_prefix
 from ..mesh import interop, visuals
 from ..mesh.mesh import Mesh
@@ -48,8 +48,8 @@ from .movable import Movable
 from .point_set import PointSet
 from .program import Operator
 
-if TYPE_CHECKING:
-    pass
+#: Faces of results whose mesh is made for `repr`: that takes some hundredths of a second.
+_SMALL = 20_000
 
 
 @shortened
@@ -441,10 +441,24 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     # As a value
 
     def __repr__(self) -> str:
-        """Say what is known without evaluating anything."""
+        """Say what is known, or takes no time to know; nothing is evaluated."""
+        mesh = self._mesh_at_hand()
         if self._placed is None:
-            return f"Solid({describe(self._node, self._factors, self._mesh)})"
-        return f"Solid({describe(ExpressionNode(self._placed), (), self._mesh)})"
+            return f"Solid({describe(self._node, self._factors, mesh)})"
+        return f"Solid({describe(ExpressionNode(self._placed), (), mesh)})"
+
+    def _mesh_at_hand(self) -> Mesh | None:
+        """Return the mesh if it is known, or if a small result only has to be written out."""
+        leaf = self._node.content if self._placed is None and not self._factors else self._placed
+        if self._mesh is not None or not isinstance(leaf, TreeLeaf) or leaf.result.is_empty:
+            return self._mesh
+        stats = leaf.result.stats()
+        if stats["elements"] + stats["kernel_elements"] > _SMALL:
+            return None
+        try:
+            return self.to_mesh()
+        except BspcsgError:
+            return None
 
     def _alias(self) -> "Solid":
         other = from_node(self._node, self._factors)

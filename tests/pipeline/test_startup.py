@@ -1,5 +1,6 @@
 """What the command line imports before it works: only what the verb at hand needs."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -71,3 +72,15 @@ def test_importing_the_package_needs_no_numpy() -> None:
     program = "import sys, bspcsg; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
     assert b"numpy" not in done.stdout.split()
+
+
+def test_sources_that_are_not_compiled_say_so(tmp_path: Path) -> None:
+    (tmp_path / "bspcsg").mkdir()
+    shutil.copy(b.__file__, tmp_path / "bspcsg")
+    command = [sys.executable, "-c", "import bspcsg"]
+    done = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, timeout=100, check=False
+    )
+    last = done.stderr.splitlines()[-1]
+    assert last.startswith("ImportError: ") and "run Python in another folder" in last
+    assert str(tmp_path) in last

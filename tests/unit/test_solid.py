@@ -289,6 +289,13 @@ def test_arrays_in_arrays_out(op: Any) -> None:
     assert volume == {"union": 1.5, "intersection": 0.5, "difference": 0.5, "xor": 1}[op]
 
 
+def test_repr_of_large_results_makes_no_mesh() -> None:
+    large = b.sphere(1, segments=256) - b.cube(3)
+    assert large.volume > 0
+    assert repr(large) == "Solid(evaluated)"
+    assert large.faces is large.to_mesh().faces and "triangles" in repr(large)
+
+
 def test_repr_tells_what_is_known_and_evaluates_nothing() -> None:
     a = b.cube(1)
     assert repr(a) == "Solid(12 triangles, bounds (0, 0, 0) to (1, 1, 1))"
@@ -296,9 +303,12 @@ def test_repr_tells_what_is_known_and_evaluates_nothing() -> None:
     difference = b.cube(2) - a
     assert repr(difference) == "Solid(pending: 2 operands)"
     assert difference.volume == 7
-    assert repr(difference) == "Solid(evaluated)"
-    assert len(difference.faces) > 12
-    assert repr(difference).endswith("triangles, bounds (0, 0, 0) to (2, 2, 2))")
+    count = len((b.cube(2) - a).faces)
+    assert repr(difference) == f"Solid({count} triangles, bounds (0, 0, 0) to (2, 2, 2))"
+    assert repr(difference.rotate(30)) == "Solid(evaluated, transformed)"
+    endless = b.half_space((0, 0, 1)) - a
+    assert endless.classify([(0.5, 0.5, 0.5)])[0] == -1
+    assert repr(endless) == "Solid(evaluated)"
     assert repr(~a) == "Solid(pending: 1 operand)"
     assert repr(b.half_space((0, 0, 1))) == "Solid(half-space)"
     assert repr(b.Solid.empty()) == "Solid(empty)"
