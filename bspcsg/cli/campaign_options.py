@@ -48,12 +48,14 @@ def as_shard(
     return int(number), int(count)
 
 
-def as_pose(
-    context: click.Context, option: click.Parameter, value: str | None
-) -> tuple[str | None, int | None]:
-    """Return the name of a pose and the number of its draw."""
-    if value is None:
-        return None, None
+def as_poses(
+    context: click.Context, option: click.Parameter, values: tuple[str, ...]
+) -> tuple[tuple[str, int | None], ...]:
+    """Return the names of poses, each with the number of its draw; each pose once."""
+    return tuple(dict.fromkeys(_pose(context, option, value) for value in values))
+
+
+def _pose(context: click.Context, option: click.Parameter, value: str) -> tuple[str, int | None]:
     name, colon, number = value.partition(":")
     if name not in POSES or (colon and not number.isdecimal()):
         known = ", ".join(POSES)

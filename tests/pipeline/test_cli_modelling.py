@@ -82,6 +82,46 @@ def test_who_is_in_whose_way(folder: Path, capsys: Capture) -> None:
     assert (gap["volume"], gap["gap"], gap["place"][0]) == (0, 2, 4)
 
 
+def boxes() -> b.Assembly:
+    nut = b.box(2, 2, 2)
+    moved = b.Assembly("nut", nut).translate(1, 1, 1)
+    return b.Assembly(
+        "all", [b.Assembly("nut", nut), moved, b.Assembly("rod", nut.translate(9, 0, 0))]
+    )
+
+
+@pytest.mark.parametrize("name", ["all.3mf", "all.glb", "all.obj"])
+def test_objects_of_one_file_are_in_each_others_way(
+    name: str, folder: Path, capsys: Capture
+) -> None:
+    boxes().save(name)
+    code, out, err = ran(capsys, "clash", name, "--json")
+    (found,) = json.loads(out)["clashes"]
+    assert (code, err) == (1, "") and found["volume"] == pytest.approx(1)
+    assert sorted(Path(one).name for one in found["objects"]) == ["nut", "nut (2)"]
+    code, out, err = ran(capsys, "clash", name)
+    assert out.endswith("3 pairs of objects, 1 in each other's way.\n")
+    unit = ["--unit", "cm", "--clearance", "8cm"]
+    code, out, err = ran(capsys, "clash", name, *unit, "--json")
+    volumes = [one["volume"] for one in json.loads(out)["clashes"]]
+    assert len(volumes) == 3
+    assert max(volumes) == pytest.approx(1000 if name == "all.obj" else 1)
+
+
+def test_parts_of_one_script_are_in_each_others_way(folder: Path, capsys: Capture) -> None:
+    Path("two.csg").write_text("cube(2); multmatrix([[1,0,0,1],[0,1,0,0],[0,0,1,0]]) cube(2);")
+    code, out, _ = ran(capsys, "clash", "two.csg")
+    assert code == 1 and "1 pair of objects, 1 in each other's way" in out
+
+
+def test_one_object_cannot_clash(folder: Path, capsys: Capture) -> None:
+    code, _, err = ran(capsys, "clash", "a.off")
+    assert code == 2 and "a.off is one object" in err
+    boxes().save("all.3mf")
+    code, _, err = ran(capsys, "clash", "all.3mf", "--on-invalid", "repair")
+    assert code == 2 and "several objects, all of them closed" in err
+
+
 def test_nobody_is_in_the_way(folder: Path, capsys: Capture) -> None:
     put("far.off", cuboid((5, 0, 0), (6, 1, 1)))
     code, out, _ = ran(capsys, "clash", "a.off", "far.off")

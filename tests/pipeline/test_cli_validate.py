@@ -85,6 +85,19 @@ def test_reports_hold_every_case(folder: Path, capsys: Capture) -> None:
     assert "| refused | 2 | 2 |" in text and "open.off" in text
 
 
+def test_each_pose_that_is_named_counts(folder: Path, capsys: Capture) -> None:
+    given = ["validate", "a.off", "c.stl", "--op", "union", "-j", "1", "--pose", "copy"]
+    more = ["--pose", "random:3", "--pose", "random:4", "--pose", "copy", "--results", "r.jsonl"]
+    assert ran(capsys, *given, *more)[0] == 0
+    names = [case["case"] for case in lines()[1:]]
+    assert sorted(names) == ["0000-copy-union", "0003-random-union", "0004-random-union"]
+    more = ["--pose", "mirror", "--poses", "2", "--results", "s.jsonl"]
+    assert ran(capsys, *given, *more)[0] == 0
+    names = [case["case"] for case in lines("s.jsonl")[1:]]
+    wanted = {f"000{k}-{pose}-union" for k in (0, 1) for pose in ("copy", "mirror")}
+    assert set(names) == wanted and len(names) == 4
+
+
 def test_file_of_cases_names_operands_and_poses(folder: Path, capsys: Capture) -> None:
     vertices, faces = cuboid((0, 0, 0), (1, 1, 1))
     inline = {"vertices": vertices.tolist(), "faces": faces.tolist()}

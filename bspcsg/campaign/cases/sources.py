@@ -89,7 +89,7 @@ def _kind_of(path: Path, meshes: list[Path], scripts: list[Path], cases: list[Pa
     raise FormatError(f"{path}: the name must end in one of {known}.", "unknown_format")
 
 
-def cases_of(inputs: CaseInputs, operations: Sequence[str], draw: Draw) -> list[Case]:
+def cases_of(inputs: CaseInputs, operations: Sequence[str], *draws: Draw) -> list[Case]:
     """Return the cases, in the order in which they are to be asked.
 
     Parameters
@@ -97,14 +97,15 @@ def cases_of(inputs: CaseInputs, operations: Sequence[str], draw: Draw) -> list[
     inputs : CaseInputs
     operations : sequence of str
         For pairs; files of cases name their own.
-    draw : Draw
+    *draws : Draw
+        By each of them all pairs are placed.
 
     Raises
     ------
     FormatError
         If a file of cases is not understood.
     """
-    cases = [*_pairs(inputs.meshes, operations, draw)]
+    cases = [case for draw in draws for case in _pairs(inputs.meshes, operations, draw)]
     cases += [_script(path) for path in inputs.scripts]
     cases += [case for path in inputs.cases for case in _listed(path)]
     return cases

@@ -6,26 +6,33 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import output
-from ..files import Inputs, shown
-from ..lengths import as_length
+from ..files import STREAM, Inputs, shown
+from ..lengths import MILLIMETRES, as_length
 from ..options import common, reading, sets
 from ..output import Output, counted
 from ..patterns import files_argument
 from ..tables import table_text
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ..._types import FloatArray
     from ...assembly.clashes import Clash
+    from ...assembly.tree import Assembly
+
+#: What else it takes.
+_ONE = ", or the name of one mesh or .csg file with several objects, all of them closed."
 
 _EPILOG = """\b
 Examples:
   bspcsg clash housing.stl gear1.stl gear2.stl
   bspcsg clash *.stl --clearance 0.2mm
+  bspcsg clash machine.3mf
 """
 
 
-@click.command("clash", short_help="Say which files are in each other's way.", epilog=_EPILOG)
-@files_argument("A B [C ...]")
+@click.command("clash", short_help="Say which parts are in each other's way.", epilog=_EPILOG)
+@files_argument("A [B ...]")
 @click.option(
     "--clearance",
     metavar="LENGTH",
@@ -38,42 +45,64 @@ Examples:
 def clash(files: tuple[Path, ...], clearance: float | None, **given: Any) -> int:
     """Say which pairs of files have volume in common, how much and where.
 
-    It is decided exactly; files that only touch do not clash. Exits with 1 if a pair does, or if it
-    is nearer than the clearance.
+    Of one file alone, such as 3MF, GLB, OBJ or a script, its objects are the pairs. It is decided
+    exactly; what only touches does not clash. Exits with 1 if a pair does, or if it is nearer than
+    the clearance.
     """
-    from ...assembly.tree import Assembly
     from ...parameters import set_threads
 
-    if len(files) < 2:
-        raise click.UsageError("clash needs at least two files.")
     set_threads(given["threads"])
     out = Output.of(given)
     inputs = Inputs.of(out, given)
     inputs.refuse_early(files)
-    parts = [Assembly(shown(path), inputs.solid(path)) for path in files]
-    found = Assembly("", parts).clashes(clearance or 0.0)
-    values = [_values(one) for one in found]
+    whole = _objects(inputs, files[0]) if len(files) == 1 else _files(inputs, files)
+    found = whole.clashes(clearance or 0.0)
+    kind = "objects" if len(files) == 1 else "files"
+    values = [_values(one, kind) for one in found]
     named = {"files": [str(path) for path in files], "clearance": clearance or 0.0}
-    out.result(_text(found, len(files)), {**named, "clashes": values})
+    out.result(_text(found, len(whole), kind), {**named, "clashes": values})
     return output.FOUND if found else output.DONE
 
 
-def _values(one: "Clash") -> dict[str, Any]:
+def _files(inputs: Inputs, files: "Sequence[Path]") -> "Assembly":
+    """Return files as parts."""
+    from ...assembly.tree import Assembly
+
+    return Assembly("", [Assembly(shown(path), inputs.solid(path)) for path in files])
+
+
+def _objects(inputs: Inputs, path: Path) -> "Assembly":
+    """Return what is in one file."""
+    from ...assembly.tree import Assembly
+    from ...formats.registry import FORMATS
+
+    if str(path) == STREAM or path.suffix.lower() == ".py" or inputs.on_invalid != "error":
+        raise click.UsageError(f"clash needs at least two files{_ONE}")
+    is_script = inputs.is_script(path)
+    options = {} if is_script else {"winding": inputs.winding, "pitch": inputs.pitch}
+    whole = Assembly.load(path, **options)
+    if len(whole) < 2:
+        raise click.UsageError(f"{shown(path)} is one object; clash needs two files{_ONE}")
+    says_unit = not is_script and FORMATS[inputs.suffix_of(path)].unit
+    return whole if inputs.unit is None or says_unit else whole.scale(MILLIMETRES[inputs.unit])
+
+
+def _values(one: "Clash", kind: str) -> dict[str, Any]:
     """Return a part of the document."""
-    pair = {"files": [one.first, one.second], "volume": one.volume}
+    pair = {kind: [one.first, one.second], "volume": one.volume}
     return {**pair, "gap": one.gap, "place": one.place.tolist()}
 
 
-def _text(found: "list[Clash]", count: int) -> str:
+def _text(found: "list[Clash]", count: int, kind: str) -> str:
     pairs = counted(count * (count - 1) // 2, "pair")
     if not found:
-        return f"{pairs} of files, none clashes."
+        return f"{pairs} of {kind}, none clashes."
     rows = [
         (f"{one.first}, {one.second}", f"{one.volume:.6g}", f"{one.gap:.6g}", _spoken(one.place))
         for one in found
     ]
-    table = table_text(("files", "common volume", "gap", "near"), rows, ("common volume", "gap"))
-    return f"{table}\n{pairs} of files, {len(found)} in each other's way."
+    table = table_text((kind, "common volume", "gap", "near"), rows, ("common volume", "gap"))
+    return f"{table}\n{pairs} of {kind}, {len(found)} in each other's way."
 
 
 def _spoken(place: "FloatArray") -> str:

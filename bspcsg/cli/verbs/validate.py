@@ -18,7 +18,7 @@ from ..campaign_options import (
     as_bytes,
     as_engines,
     as_keep,
-    as_pose,
+    as_poses,
     as_shard,
 )
 from ..files import STREAM, is_among, refuse_folder, shown
@@ -66,9 +66,12 @@ _FILE = click.Path(path_type=Path, readable=False)
 )
 @click.option(
     "--pose",
+    "pose",
+    multiple=True,
     metavar="NAME[:NUMBER]",
-    callback=as_pose,
-    help=f"Place the second of each pair so ({', '.join(POSES)}); a number for one draw.",
+    callback=as_poses,
+    help=f"Place the second of each pair so ({', '.join(POSES)}); a number for one draw; may be"
+    " repeated.",
 )
 @click.option(
     "--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Of the random draws."
@@ -164,7 +167,7 @@ class _Validation:
         self._out = Output.of(settings)
         if settings["resume"] and settings["results"] is None:
             raise click.UsageError("--resume needs the file to go on with: --results r.jsonl.")
-        if settings["poses"] and settings["pose"][1] is not None:
+        if settings["poses"] and any(number is not None for _, number in settings["pose"]):
             raise click.UsageError("--poses draws many; --pose NAME:NUMBER is one draw.")
 
     def run(self) -> int:
@@ -224,11 +227,12 @@ class _Validation:
     def _cases(self, answering: "Answering") -> "list[Case]":
         from ...campaign.cases.sources import Draw, cases_of, inputs_in
 
-        pose, number = self._settings["pose"]
-        draw = Draw(self._settings["poses"] or 0, self._settings["seed"], pose, number)
+        count, seed = self._settings["poses"] or 0, self._settings["seed"]
+        asked = self._settings["pose"] or [(None, None)]
+        draws = [Draw(count, seed, pose, number) for pose, number in asked]
         inputs = self._usable(inputs_in(self._paths), answering)
         operations = self._settings["operations"] or OPERATIONS
-        cases = cases_of(inputs, tuple(dict.fromkeys(operations)), draw)
+        cases = cases_of(inputs, tuple(dict.fromkeys(operations)), *draws)
         if not cases:
             raise click.UsageError(
                 "there is nothing to validate; give at least two mesh files, a folder of them, a"
