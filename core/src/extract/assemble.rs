@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 
 use super::boundary::collect::collect;
@@ -20,9 +21,10 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::outline::BareEdge;
 use crate::geometry::side::Orientation;
 use crate::geometry::vertex::Vertex;
-use crate::interrupt::poll;
+use crate::interrupt::{carried, poll};
 use crate::merge::lists::list::Sources;
 use crate::mesh::handle::{Slot, SourceFace};
+use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::tree::solid::Solid;
 
 /// The points inserted on the three edges of faces.
@@ -101,7 +103,7 @@ impl Assembly<'_> {
         rims: &Rims,
         near: &[SourceFace],
     ) -> Result<(), Failure> {
-        self.mark_irregular(fates);
+        self.mark_irregular(fates, rims);
         self.identify_near(near, fates);
         let frontier = rims.frontier(fates, self.sources);
         let mut edges = Vec::new();
@@ -222,14 +224,27 @@ impl Assembly<'_> {
     }
 
     /// Vertices on edges that more than two faces of a source share are identified by place.
-    fn mark_irregular(&mut self, fates: &Fates) {
-        for (slot, fates) in fates.by_slot() {
+    fn mark_irregular(&mut self, fates: &Fates, rims: &Rims) {
+        let irregular = carried(|(slot, fates): (Slot, &[Fate])| {
+            let rim = rims.get(slot);
+            let source = self.sources.get(slot);
+            let found = || source.irregular_among(|v| rim.is_used(v), rim.used_count());
+            if fates.is_empty() {
+                Vec::new()
+            } else {
+                found()
+            }
+        });
+        let all: Vec<_> = fates.by_slot().collect();
+        let found: Vec<Vec<u32>> = if in_pool() && fates.faces() > CHUNK {
+            all.into_par_iter().map(irregular).collect()
+        } else {
+            all.into_iter().map(irregular).collect()
+        };
+        for (slot, vertices) in Slot::all().zip(found) {
             let source = Arc::clone(self.sources.get(slot));
-            let (Some(mesh), false) = (source.mesh(), fates.is_empty()) else {
-                continue;
-            };
-            let irregular = source.joints().map_or(&[][..], |j| &j.irregular);
-            for &vertex in irregular {
+            let Some(mesh) = source.mesh() else { continue };
+            for vertex in vertices {
                 self.point_of(slot, mesh, vertex);
             }
         }

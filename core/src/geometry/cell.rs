@@ -1,5 +1,6 @@
 //! Cells of the one dyadic hierarchy that all solids share.
 
+use super::axes::each_axis;
 use super::plane::{Lattice, Plane};
 use crate::arith::bounds::COORDINATE_BITS;
 
@@ -120,8 +121,8 @@ impl Cell {
     #[must_use]
     pub fn join(&self, other: &Self) -> Self {
         let (a, b) = (self.high(), other.high());
-        let low = [0, 1, 2].map(|i| self.low[i].min(other.low[i]));
-        Self::around(&low, &[0, 1, 2].map(|i| a[i].max(b[i])))
+        let low = each_axis(|i| self.low[i].min(other.low[i]));
+        Self::around(&low, &each_axis(|i| a[i].max(b[i])))
     }
 
     /// The smallest cell of the hierarchy that holds a lattice box.
@@ -139,9 +140,8 @@ impl Cell {
         let differing = [differing(0), differing(1), differing(2)];
         let most = differing.into_iter().max().unwrap_or(0);
         let next = differing.iter().position(|d| *d == most).unwrap_or(0);
-        let size = [0, 1, 2].map(|i| most - u32::from(i < next));
-        let low =
-            [0, 1, 2].map(|i| origin[i] + (place(low, i) >> size[i] << size[i]).cast_signed());
+        let size = each_axis(|i| most - u32::from(i < next));
+        let low = each_axis(|i| origin[i] + (place(low, i) >> size[i] << size[i]).cast_signed());
         let size = size.map(|s| s as u8);
         Self { low, size }
     }
@@ -166,6 +166,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::{Cell, Lattice, COORDINATE_BITS};
+    use crate::geometry::axes::each_axis;
 
     /// Coordinates near each other, near zero, and anywhere.
     fn point() -> impl Strategy<Value = Lattice> {
@@ -178,8 +179,8 @@ mod tests {
         /// Halving the universe until a cut has points on both sides ends in the same cell.
         #[test]
         fn around_is_where_halving_ends(a in point(), b in point()) {
-            let low = [0, 1, 2].map(|i| a[i].min(b[i]));
-            let high = [0, 1, 2].map(|i| a[i].max(b[i]));
+            let low = each_axis(|i| a[i].min(b[i]));
+            let high = each_axis(|i| a[i].max(b[i]));
             let mut cell = Cell::UNIVERSE;
             while let Some(cut) = cell.cut() {
                 let halves = [false, true].map(|plus| cell.half(cut, plus));

@@ -9,6 +9,7 @@
 
 use num_bigint::{BigInt, Sign};
 
+use super::axes::each_axis;
 use crate::arith::{mantissa_and_exponent, Int};
 
 /// A point of space in doubles; finite.
@@ -99,14 +100,14 @@ fn exact_side(points: [&Point; 4]) -> i32 {
     let parts = points.map(|p| p.map(mantissa_and_exponent));
     if let Some(grid) = on_common_grid(parts.as_flattened()) {
         let from = |p: usize, i: usize| Int::<2>::from_i128(grid[3 * p + i] - grid[i]);
-        let [u, v, w] = [1, 2, 3].map(|p| [0, 1, 2].map(|i| from(p, i)));
+        let [u, v, w] = [1, 2, 3].map(|p| each_axis(|i| from(p, i)));
         let minor = |j: usize, k: usize| u[j].mul::<2, 4>(&v[k]) - u[k].mul::<2, 4>(&v[j]);
         let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3).mul::<2, 6>(&w[i]);
         (term(0) + term(1) + term(2)).signum()
     } else {
         let grid = on_big_grid(parts.as_flattened());
         let from = |p: usize, i: usize| &grid[3 * p + i] - &grid[i];
-        let [u, v, w] = [1, 2, 3].map(|p| [0, 1, 2].map(|i| from(p, i)));
+        let [u, v, w] = [1, 2, 3].map(|p| each_axis(|i| from(p, i)));
         let minor = |j: usize, k: usize| &u[j] * &v[k] - &u[k] * &v[j];
         let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3) * &w[i];
         sign(&(term(0) + term(1) + term(2)))
@@ -273,7 +274,7 @@ mod tests {
         for seed in 0..2000u32 {
             let next = |k: u32| f64::from((seed * 12 + k).wrapping_mul(2_654_435_761)) / 4e9;
             let mut points = [0, 1, 2, 3].map(|p| [0, 1, 2].map(|i| next(3 * p + i) + 1.0));
-            points[3] = [0, 1, 2].map(|i| (points[0][i] + points[1][i]) * 0.5);
+            points[3] = each_axis(|i| (points[0][i] + points[1][i]) * 0.5);
             let parts = points.map(|p| p.map(mantissa_and_exponent));
             let grid = on_big_grid(parts.as_flattened());
             let from = |p: usize, i: usize| &grid[3 * p + i] - &grid[i];

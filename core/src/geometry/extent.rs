@@ -1,5 +1,6 @@
 //! Boxes around points in doubles.
 
+use super::axes::each_axis;
 use super::doubles::{Point, Triangle};
 
 /// A box in doubles.
@@ -16,8 +17,8 @@ impl Extent {
     pub fn of(triangle: &Triangle) -> Self {
         let [a, b, c] = triangle;
         Self {
-            low: [0, 1, 2].map(|i| a[i].min(b[i]).min(c[i])),
-            high: [0, 1, 2].map(|i| a[i].max(b[i]).max(c[i])),
+            low: each_axis(|i| a[i].min(b[i]).min(c[i])),
+            high: each_axis(|i| a[i].max(b[i]).max(c[i])),
         }
     }
 
@@ -25,8 +26,8 @@ impl Extent {
     #[must_use]
     pub fn joined(&self, other: &Self) -> Self {
         Self {
-            low: [0, 1, 2].map(|i| self.low[i].min(other.low[i])),
-            high: [0, 1, 2].map(|i| self.high[i].max(other.high[i])),
+            low: each_axis(|i| self.low[i].min(other.low[i])),
+            high: each_axis(|i| self.high[i].max(other.high[i])),
         }
     }
 

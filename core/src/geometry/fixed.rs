@@ -5,6 +5,7 @@
 
 use smallvec::SmallVec;
 
+use super::axes::each_axis;
 use super::cell::Cell;
 use super::plane::Lattice;
 use super::side::Orientation;
@@ -78,7 +79,7 @@ pub fn of_vertex(vertex: &Vertex) -> Fixed {
     }
     let h = vertex.coordinates();
     let near = vertex.approx();
-    [0, 1, 2].map(|i| place(&h.x[i], &h.w, near[i]))
+    each_axis(|i| place(&h.x[i], &h.w, near[i]))
 }
 
 /// x / w in units of 2^-`PLACES`, near a double that is off by a few units in its last place.
@@ -477,8 +478,8 @@ mod tests {
             corners in [point(9), point(9), point(9)],
             [p, q] in [point(9), point(9)],
         ) {
-            let low = [0, 1, 2].map(|i| i64::min(p[i], q[i]));
-            let high = [0, 1, 2].map(|i| i64::max(p[i], q[i]));
+            let low = each_axis(|i| i64::min(p[i], q[i]));
+            let high = each_axis(|i| i64::max(p[i], q[i]));
             let walls = Walls::of(&Cell::around(&low, &high));
             let normal = [(1, 2), (2, 0), (0, 1)].map(|(u, v)| minor(&corners, u, v));
             prop_assume!(normal[2] != 0);

@@ -2,6 +2,7 @@
 
 use smallvec::SmallVec;
 
+use super::axes::each_axis;
 use super::plane::{normal, Lattice, Plane};
 use super::residue::{mul_p1, reduce_p1, residue};
 use crate::arith::{inv_mod, P1};
@@ -161,7 +162,7 @@ impl LineKey {
 
 /// The direction of an edge parallel to an axis, of which the lead has a trivial inverse.
 fn unit_along(a: &Lattice, b: &Lattice) -> Option<[u64; 3]> {
-    let along = [0, 1, 2].map(|i| u64::from(a[i] != b[i]));
+    let along = each_axis(|i| u64::from(a[i] != b[i]));
     (along.iter().sum::<u64>() == 1).then_some(along)
 }
 

@@ -2,6 +2,7 @@
 
 pub mod affine;
 pub mod apart;
+pub mod axes;
 pub mod axis;
 pub mod cell;
 pub mod coordinates;

@@ -4,6 +4,7 @@
 //! segments between corners it is not made generic: where it runs through an edge, or ends on the
 //! surface it is counted against, the answer is `None`.
 
+use super::axes::each_axis;
 use super::plane::{Lattice, Plane};
 use super::vertex::Vertex;
 use crate::arith::convert::as_double;
@@ -36,7 +37,7 @@ impl Way {
         let sizes = from.iter().chain(&to).map(|x| x.abs());
         Self {
             from,
-            inverse: [0, 1, 2].map(|i| 1.0 / (to[i] - from[i])),
+            inverse: each_axis(|i| 1.0 / (to[i] - from[i])),
             slack: 2.0 + sizes.fold(0.0, f64::max) * WAY_SLACK,
         }
     }
@@ -64,7 +65,7 @@ impl Way {
 /// The change of the winding number across a lattice triangle, from a doubled corner to a lattice
 /// point; `None` if the path is not generic.
 pub fn triangle_on_path(corners: &[Lattice; 3], from: &Lattice, to: &Lattice) -> Option<i32> {
-    let doubled = |p: &Lattice| [0, 1, 2].map(|i| 2 * p[i] - from[i]);
+    let doubled = |p: &Lattice| each_axis(|i| 2 * p[i] - from[i]);
     let [a, b, c] = [&corners[0], &corners[1], &corners[2]].map(doubled);
     let end = doubled(to);
     let turns = [(&a, &b), (&b, &c), (&c, &a)].map(|(p, q)| determinant(&end, p, q));
@@ -75,7 +76,7 @@ pub fn triangle_on_path(corners: &[Lattice; 3], from: &Lattice, to: &Lattice) ->
     if !certain(1) && !certain(-1) {
         return Some(0);
     }
-    let less = |p: &Lattice, q: &Lattice| [0, 1, 2].map(|i| p[i] - q[i]);
+    let less = |p: &Lattice, q: &Lattice| each_axis(|i| p[i] - q[i]);
     let (u, v) = (less(&b, &a), less(&c, &a));
     let before = determinant(&less(&[0; 3], &a), &u, &v);
     let after = determinant(&less(&end, &a), &u, &v);

@@ -1,5 +1,6 @@
 //! Oriented planes with canonical integer coefficients.
 
+use super::axes::each_axis;
 use crate::arith::bounds::{
     self, COORDINATE_BITS, HALF_SPACE_NORMAL_BITS, SHORT_NORMAL_BITS, SHORT_OFFSET_BITS,
 };
@@ -326,7 +327,7 @@ impl Plane {
     ///
     /// Returns `None` if the coefficients leave their width.
     pub fn moved(&self, axes: &[(usize, i64); 3], shift: &Lattice) -> Option<Self> {
-        let n = [0, 1, 2].map(|i| self.n[axes[i].0] * i128::from(axes[i].1));
+        let n = each_axis(|i| self.n[axes[i].0] * i128::from(axes[i].1));
         Self::new(n, fitting(self.d - dot_lattice(&n, shift))?)
     }
 }

@@ -4,6 +4,7 @@
 //! other. A wall cuts off the corner that lies alone on its side, or all but that corner: the
 //! corner's share follows from where the wall divides two edges, and no new corners are needed.
 
+use super::axes::each_axis;
 use super::fixed::{of_cubic_steps, over_limb, sixfold_flux, Flux, Walls, PLACES};
 use super::plane::Lattice;
 use super::side::Orientation;
@@ -85,7 +86,7 @@ const SHARE: u32 = 104;
 /// # Bits
 /// Area and product of shares: 109 + 144. Heights: 55 + 72. Both: 380.
 fn at_corner(corners: &[Lattice; 3], area: i128, beyond: &[i64; 3], lone: usize) -> Flux {
-    let [a, b, c] = [0, 1, 2].map(|k| (lone + k) % 3);
+    let [a, b, c] = each_axis(|k| (lone + k) % 3);
     let [s, t] = [b, c].map(|end| share(beyond[a].unsigned_abs(), beyond[end].unsigned_abs()));
     let product: Int<4> = s.mul(&t);
     let [_, low, middle, high] = *product.limbs();
@@ -144,8 +145,8 @@ mod tests {
             [p, q] in [point(9), point(9)],
             shift in prop::sample::select(vec![0, 1i64 << 20, 1 << 50]),
         ) {
-            let low = [0, 1, 2].map(|i| p[i].min(q[i]) + shift);
-            let high = [0, 1, 2].map(|i| p[i].max(q[i]) + shift);
+            let low = each_axis(|i| p[i].min(q[i]) + shift);
+            let high = each_axis(|i| p[i].max(q[i]) + shift);
             let corners = corners.map(|c| c.map(|x| x + shift));
             let normal = [(1, 2), (2, 0), (0, 1)].map(|(u, v)| minor(&corners, u, v));
             prop_assume!(normal[2] != 0);

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
+use super::axes::each_axis;
 use super::coordinates::Coordinates;
 pub use super::coordinates::{cross, Homogeneous};
 use super::edge::LatticeEdge;
@@ -244,7 +245,7 @@ impl Vertex {
 
     fn has_coordinates_of(&self, other: &Self) -> bool {
         let doubled = |axis: usize| self.doubled(axis).zip(other.doubled(axis));
-        if let [Some(x), Some(y), Some(z)] = [0, 1, 2].map(doubled) {
+        if let [Some(x), Some(y), Some(z)] = each_axis(doubled) {
             return [x, y, z].iter().all(|(p, q)| p == q);
         }
         let (p, q) = (self.exact(), other.exact());

@@ -2,9 +2,9 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
+use super::chain::is_closed;
 use super::finding::{Finding, Severity};
 use super::grid::{snap_point, Pitch};
-use super::joints::Joints;
 use super::snap::snap_all;
 use super::source::{Source, WELDED};
 use super::tasks::{each_chunk, fill_chunks};
@@ -12,6 +12,7 @@ use super::topology::{open_edges, Topology};
 use super::triangles::TriangleMesh;
 use crate::arith::convert::{as_double, as_number, as_place};
 use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::{normal, Lattice};
 use crate::interrupt::poll;
@@ -58,8 +59,7 @@ pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -
         let text = "the mesh has no face of positive area";
         return Err(Error::new(ErrorKind::EmptyMesh, text));
     }
-    let joints = close(&mut mesh, &mut findings)?;
-    findings.extend(irregularity(&joints));
+    let open = close(&mut mesh, &mut findings)?;
     if volume < 0.0 {
         findings.push(Finding::about(
             "inside_out",
@@ -72,14 +72,7 @@ pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -
         &snap_point(pitch, &bounds.low)?,
         &snap_point(pitch, &bounds.high)?,
     );
-    Ok(Source::checked(mesh, pitch, joints, cell, findings))
-}
-
-fn irregularity(joints: &Joints) -> Option<Finding> {
-    let places: Vec<u64> = joints.irregular.iter().map(|v| u64::from(*v)).collect();
-    let text = "more than two faces share an edge, or several fans a vertex, at these vertices";
-    let finding = || Finding::about("non_manifold", Severity::Note, &places, text);
-    (!places.is_empty()).then(finding)
+    Ok(Source::checked(mesh, pitch, open, cell, findings))
 }
 
 /// The faces with indices of 32 bits, all of them below `count`.
@@ -175,8 +168,8 @@ impl Bounds {
 
     fn with(&self, other: &Self) -> Self {
         Self {
-            low: [0, 1, 2].map(|i| self.low[i].min(other.low[i])),
-            high: [0, 1, 2].map(|i| self.high[i].max(other.high[i])),
+            low: each_axis(|i| self.low[i].min(other.low[i])),
+            high: each_axis(|i| self.high[i].max(other.high[i])),
         }
     }
 
@@ -250,7 +243,7 @@ fn weigh_chunk(
         poll();
         let corners = face.map(|v| &vertices[v as usize]);
         let [u, v] = spokes(corners);
-        let arm = [0, 1, 2].map(|i| as_double(corners[0][i] - origin[i]));
+        let arm = each_axis(|i| as_double(corners[0][i] - origin[i]));
         volume += arm[0] * (u[1] * v[2] - u[2] * v[1])
             + arm[1] * (u[2] * v[0] - u[0] * v[2])
             + arm[2] * (u[0] * v[1] - u[1] * v[0]);
@@ -270,7 +263,7 @@ pub fn is_flat(corners: &[Lattice; 3]) -> bool {
 
 /// The edges from the first corner to the others, in doubles.
 fn spokes([a, b, c]: [&Lattice; 3]) -> [[f64; 3]; 2] {
-    [b, c].map(|end| [0, 1, 2].map(|i| as_double(end[i] - a[i])))
+    [b, c].map(|end| each_axis(|i| as_double(end[i] - a[i])))
 }
 
 /// Whether two edges are not parallel, beyond the rounding of their cross product.
@@ -282,11 +275,11 @@ fn surely_wide(u: &[f64; 3], v: &[f64; 3]) -> bool {
     certain(0, 1) || certain(1, 2) || certain(2, 0)
 }
 
-/// How the faces meet; vertices are welded by place, then edges cancelled along lines, if the
-/// faces do not close by index.
-fn close(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Joints> {
-    if let Some(joints) = Joints::of_closed(mesh) {
-        return Ok(joints);
+/// The ends of edges without an opposite by index; vertices are welded by place, then edges
+/// cancelled along lines, if the faces do not close by index.
+fn close(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Vec<u32>> {
+    if is_closed(&mesh.faces) {
+        return Ok(Vec::new());
     }
     if let Some(welded) = weld(mesh) {
         mesh.faces = welded;
@@ -296,14 +289,14 @@ fn close(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Joints>
             &[0],
             "vertices at the same place were welded to close the mesh",
         ));
-        if let Some(joints) = Joints::of_closed(mesh) {
-            return Ok(joints);
+        if is_closed(&mesh.faces) {
+            return Ok(Vec::new());
         }
     }
     let topology = Topology::new(&mesh.faces, mesh.vertices.len());
     let open = open_edges(&mesh.vertices, &mesh.faces, topology.unpaired());
     if open.is_empty() {
-        return Ok(Joints::of_open(mesh, &topology));
+        return Ok(topology.open_vertices(&mesh.faces));
     }
     Err(not_closed(mesh, &open))
 }

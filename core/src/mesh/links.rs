@@ -15,16 +15,36 @@ const ROOM: usize = 8;
 /// Fifteen bits of each corner stand for it, under a set top bit.
 type Short = [u16; 2 * ROOM];
 
-/// "Not looked at."
-const NONE: u32 = u32::MAX;
-
 /// The vertices of a closed surface whose link is not one cycle, sorted.
 pub fn irregular(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
-    let doubtful = doubtful(faces, vertex_count);
-    if doubtful.is_empty() {
-        return doubtful;
+    irregular_among(&doubtful(faces, vertex_count), faces, vertex_count)
+}
+
+/// Those of some vertices of a closed surface whose link is not one cycle, sorted.
+///
+/// One pass over the faces, and a sort of the corners at these vertices.
+pub fn irregular_among(vertices: &[u32], faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
+    let mut wanted = vec![0u64; vertex_count.div_ceil(64)];
+    for vertex in vertices {
+        wanted[*vertex as usize / 64] |= 1 << (vertex % 64);
     }
-    Links::around(&doubtful, faces, vertex_count).not_cycles()
+    let is_wanted = |v: u32| wanted[v as usize / 64] >> (v % 64) & 1 == 1;
+    let at_wanted = |_, faces: &[[u32; 3]]| {
+        let corners = faces
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, b, c], [b, c, a], [c, a, b]]);
+        corners.filter(|c| is_wanted(c[0])).collect::<Vec<_>>()
+    };
+    if vertices.is_empty() {
+        return Vec::new();
+    }
+    let mut corners = each_chunk(faces, at_wanted).concat();
+    corners.sort_unstable();
+    let links = corners.chunk_by(|a, b| a[0] == b[0]);
+    links
+        .filter(|link| !is_cycle(link))
+        .map(|link| link[0][0])
+        .collect()
 }
 
 /// Vertices whose short link does not show that they are regular.
@@ -47,7 +67,7 @@ fn doubtful(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
     let doubtful = |first: usize, links: &[Short]| {
         let rows = (as_number(first)..).zip(links.iter().zip(&counts[first..]));
         let doubt = |(vertex, (link, count)): (u32, (&Short, &u8))| {
-            (*count > 0 && !is_cycle(link, usize::from(*count))).then_some(vertex)
+            (*count > 0 && !is_short_cycle(link, usize::from(*count))).then_some(vertex)
         };
         rows.filter_map(doubt).collect::<Vec<u32>>()
     };
@@ -64,7 +84,7 @@ fn label(vertex: u32) -> u16 {
 /// The walk below maps label to label. If it first returns after `count` steps, it saw as many
 /// labels, all different; no label is seen that no start has, since the walk stays at zero from
 /// there on. So the starts' labels differ, and with them the corners: nothing was confused.
-fn is_cycle(link: &Short, count: usize) -> bool {
+fn is_short_cycle(link: &Short, count: usize) -> bool {
     if count > ROOM {
         return false;
     }
@@ -86,71 +106,15 @@ fn after(link: &Short, label: u16) -> u16 {
     })
 }
 
-/// The links of some vertices, in compressed rows.
-struct Links<'a> {
-    vertices: &'a [u32],
-    starts: Vec<u32>,
-    edges: Vec<[u32; 2]>,
-}
-
-impl<'a> Links<'a> {
-    fn around(vertices: &'a [u32], faces: &[[u32; 3]], vertex_count: usize) -> Self {
-        let mut row = vec![NONE; vertex_count];
-        for (i, vertex) in (0u32..).zip(vertices) {
-            row[*vertex as usize] = i;
-        }
-        let corners = || {
-            faces.iter().flat_map(|&[a, b, c]| {
-                [(a, [b, c]), (b, [c, a]), (c, [a, b])]
-                    .map(|(vertex, edge)| (row[vertex as usize], edge))
-            })
-        };
-        let mut starts = vec![0u32; vertices.len() + 1];
-        for (row, _) in corners().filter(|c| c.0 != NONE) {
-            starts[row as usize + 1] += 1;
-        }
-        for i in 0..vertices.len() {
-            starts[i + 1] += starts[i];
-        }
-        let mut next = starts.clone();
-        let mut edges = vec![[0; 2]; starts[vertices.len()] as usize];
-        for (row, edge) in corners().filter(|c| c.0 != NONE) {
-            poll();
-            let slot = &mut next[row as usize];
-            edges[*slot as usize] = edge;
-            *slot += 1;
-        }
-        Self {
-            vertices,
-            starts,
-            edges,
-        }
-    }
-
-    fn not_cycles(mut self) -> Vec<u32> {
-        let mut found = Vec::new();
-        for (i, vertex) in self.vertices.iter().enumerate() {
-            let row = self.starts[i] as usize..self.starts[i + 1] as usize;
-            let link = &mut self.edges[row];
-            link.sort_unstable();
-            if !is_sorted_cycle(link) {
-                found.push(*vertex);
-            }
-        }
-        found
-    }
-}
-
-/// Whether a link, sorted and not empty, is one cycle.
-fn is_sorted_cycle(link: &[[u32; 2]]) -> bool {
-    if link.windows(2).any(|pair| pair[0][0] == pair[1][0]) {
+/// Says if the link of a vertex is one cycle; its corners are sorted, and there are some.
+fn is_cycle(link: &[[u32; 3]]) -> bool {
+    if link.windows(2).any(|pair| pair[0][1] == pair[1][1]) {
         return false;
     }
-    let first = link[0][0];
-    let mut corner = link[0][1];
+    let [_, first, mut corner] = link[0];
     for _ in 1..link.len() {
-        match link.binary_search_by_key(&corner, |edge| edge[0]) {
-            Ok(at) if corner != first => corner = link[at][1],
+        match link.binary_search_by_key(&corner, |edge| edge[1]) {
+            Ok(at) if corner != first => corner = link[at][2],
             _ => return false,
         }
     }
@@ -159,7 +123,7 @@ fn is_sorted_cycle(link: &[[u32; 2]]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::irregular;
+    use super::{irregular, irregular_among};
     use crate::arith::convert::as_number;
     use crate::mesh::topology::Topology;
     use proptest::prelude::*;
@@ -192,6 +156,15 @@ mod tests {
             let count = 1 << 18;
             let topology = Topology::new(&faces, count);
             prop_assert_eq!(irregular(&faces, count), topology.irregular());
+        }
+
+        #[test]
+        fn some_vertices_are_looked_at_as_all(faces in tetrahedra(), third in 0u32..3) {
+            let count = 1 << 18;
+            let is_asked = |v: &u32| v % 3 == third;
+            let asked: Vec<u32> = (0..as_number(count)).filter(is_asked).collect();
+            let expected: Vec<u32> = irregular(&faces, count).into_iter().filter(is_asked).collect();
+            prop_assert_eq!(irregular_among(&asked, &faces, count), expected);
         }
     }
 

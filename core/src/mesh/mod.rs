@@ -9,7 +9,6 @@ pub mod grid;
 pub mod half_space;
 pub mod handle;
 pub mod import;
-pub mod joints;
 mod links;
 pub mod measures;
 pub mod snap;

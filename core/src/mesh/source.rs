@@ -4,12 +4,15 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::Arc;
 
 use super::cached::Cached;
-use super::finding::Finding;
+use super::chain::is_closed;
+use super::finding::{Finding, Severity};
 use super::grid::Pitch;
 use super::handle::FaceId;
-use super::joints::Joints;
+use super::links;
 use super::topology::{open_edges, Topology};
 use super::triangles::TriangleMesh;
+use crate::arith::convert::as_number;
+use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::line::PlaneResidues;
 use crate::geometry::plane::{Lattice, Plane};
@@ -21,7 +24,8 @@ pub struct Source {
     id: u64,
     pitch: Pitch,
     shape: Shape,
-    joints: Cached<Joints>,
+    open: Cached<Vec<u32>>,
+    irregular: Cached<Vec<u32>>,
     topology: Cached<Topology>,
     cell: Cached<Option<Cell>>,
     findings: Vec<Finding>,
@@ -36,6 +40,10 @@ pub enum Shape {
     HalfSpace(Arc<Plane>),
 }
 
+/// One vertex in so many, or fewer, is looked at alone: sorting the corners at a vertex costs some
+/// three times what the table of all short links does.
+const FEW: usize = 4;
+
 /// The code of the finding that vertices were welded.
 pub(super) const WELDED: &str = "welded";
 
@@ -48,23 +56,24 @@ impl Source {
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
             pitch,
             shape,
-            joints: Cached::new(),
+            open: Cached::new(),
+            irregular: Cached::new(),
             topology: Cached::new(),
             cell: Cached::new(),
             findings,
         }
     }
 
-    /// A source of a mesh of which the joints and the smallest cell are known already.
+    /// A source of a mesh of which the open vertices and the smallest cell are known already.
     pub fn checked(
         mesh: TriangleMesh,
         pitch: Pitch,
-        joints: Joints,
+        open: Vec<u32>,
         cell: Cell,
         findings: Vec<Finding>,
     ) -> Self {
         Self {
-            joints: Cached::of(joints),
+            open: Cached::of(open),
             cell: Cached::of(Some(cell)),
             ..Self::new(pitch, Shape::Mesh(mesh), findings)
         }
@@ -87,9 +96,19 @@ impl Source {
         self.pitch
     }
 
-    /// What was noticed at import.
-    pub fn findings(&self) -> &[Finding] {
-        &self.findings
+    /// What was noticed at import, and where the surface is no manifold.
+    pub fn findings(&self) -> Vec<Finding> {
+        let mut findings = self.findings.clone();
+        findings.extend(self.irregularity());
+        findings
+    }
+
+    fn irregularity(&self) -> Option<Finding> {
+        let irregular = self.irregular_vertices();
+        let places: Vec<u64> = irregular.iter().map(|v| u64::from(*v)).collect();
+        let text = "more than two faces share an edge, or several fans a vertex, at these vertices";
+        let finding = || Finding::about("non_manifold", Severity::Note, &places, text);
+        (!places.is_empty()).then(finding)
     }
 
     /// The shape.
@@ -115,10 +134,51 @@ impl Source {
         FaceId::all().take(self.face_count())
     }
 
-    /// How the faces meet, found on first use; `None` for a half-space.
-    pub fn joints(&self) -> Option<&Joints> {
-        let mesh = self.mesh()?;
-        Some(self.joints.get_or_make(|| Joints::of(mesh)))
+    /// The ends of edges that have no opposite by index, sorted: of edges that cancel along lines
+    /// only, as at T-junctions.
+    pub fn open_vertices(&self) -> &[u32] {
+        let Some(mesh) = self.mesh() else {
+            return &[];
+        };
+        self.open.get_or_make(|| {
+            if is_closed(&mesh.faces) {
+                return Vec::new();
+            }
+            self.topology()
+                .map_or_else(Vec::new, |t| t.open_vertices(&mesh.faces))
+        })
+    }
+
+    /// Vertices at the ends of edges that more than two faces use, or with several fans, sorted.
+    ///
+    /// They are looked for on first use.
+    pub fn irregular_vertices(&self) -> &[u32] {
+        let Some(mesh) = self.mesh() else {
+            return &[];
+        };
+        self.irregular.get_or_make(|| {
+            if self.open_vertices().is_empty() {
+                return links::irregular(&mesh.faces, mesh.vertices.len());
+            }
+            self.topology()
+                .map_or_else(Vec::new, |t| t.irregular().to_vec())
+        })
+    }
+
+    /// Those of [`Self::irregular_vertices`] for which `is_used` holds.
+    pub fn irregular_among(&self, is_used: impl Fn(u32) -> bool, used: usize) -> Vec<u32> {
+        let known = self.irregular.get().is_some() || !self.open_vertices().is_empty();
+        match self.mesh() {
+            Some(mesh) if !known && used < mesh.vertices.len() / FEW => {
+                let all = 0..as_number(mesh.vertices.len());
+                let used: Vec<u32> = all.filter(|v| is_used(*v)).collect();
+                links::irregular_among(&used, &mesh.faces, mesh.vertices.len())
+            }
+            _ => {
+                let all = self.irregular_vertices().iter().copied();
+                all.filter(|v| is_used(*v)).collect()
+            }
+        }
     }
 
     /// Whether the faces close, by index or along lines, as all do that were imported.
@@ -126,12 +186,8 @@ impl Source {
         let Some(mesh) = self.mesh() else {
             return true;
         };
-        if let Some(joints) = Joints::of_closed(mesh) {
-            self.joints.get_or_make(|| joints);
-            return true;
-        }
         let open = |t: &Topology| open_edges(&mesh.vertices, &mesh.faces, t.unpaired());
-        self.topology().is_none_or(|t| open(t).is_empty())
+        self.open_vertices().is_empty() || self.topology().is_none_or(|t| open(t).is_empty())
     }
 
     /// Whether no face was left out and no vertex welded at import.
@@ -198,8 +254,8 @@ impl Source {
     pub fn box_around(&self, faces: &[FaceId]) -> Option<(Lattice, Lattice)> {
         let boxes = faces.iter().map(|face| self.face_box(*face));
         boxes.reduce(|(low, high), (l, h)| {
-            let low = [0, 1, 2].map(|i| low[i].min(l[i]));
-            (low, [0, 1, 2].map(|i| high[i].max(h[i])))
+            let low = each_axis(|i| low[i].min(l[i]));
+            (low, each_axis(|i| high[i].max(h[i])))
         })
     }
 

@@ -1,6 +1,7 @@
 //! Which half-edge is whose mate.
 
 use crate::arith::convert::as_number;
+use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 
@@ -63,6 +64,15 @@ impl Topology {
     /// Vertices at the ends of edges that more than two faces use, or with several fans, sorted.
     pub fn irregular(&self) -> &[u32] {
         &self.irregular
+    }
+
+    /// The ends of half-edges without a mate, sorted.
+    pub fn open_vertices(&self, faces: &[[u32; 3]]) -> Vec<u32> {
+        let ends = |half: usize| <[u32; 2]>::from(ends(faces, as_number(half)));
+        let mut open: Vec<u32> = self.unpaired().flat_map(ends).collect();
+        open.sort_unstable();
+        open.dedup();
+        open
     }
 
     /// The half-edges without a mate.
@@ -177,7 +187,7 @@ impl LineEdge {
 
 /// The primitive direction from a to b with a positive lead, its lead axis and its sense.
 fn primitive_direction(a: &Lattice, b: &Lattice) -> Option<([i64; 3], usize, i32)> {
-    let d = [0, 1, 2].map(|i| b[i] - a[i]);
+    let d = each_axis(|i| b[i] - a[i]);
     let axis = d.iter().position(|c| *c != 0)?;
     let g = d.iter().fold(0u64, |g, c| gcd(g, c.unsigned_abs()));
     let g = i64::try_from(g).ok()? * d[axis].signum();

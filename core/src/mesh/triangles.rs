@@ -2,6 +2,7 @@
 
 use super::grid::Pitch;
 use super::handle::FaceId;
+use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 
 /// Lattice triangles, and the doubles they came from.
@@ -50,7 +51,7 @@ impl TriangleMesh {
     /// More than half a step if the lattice was refined since.
     pub fn snapped_by(&self, pitch: Pitch) -> f64 {
         let pairs = self.doubles.iter().zip(&self.vertices);
-        let distances = pairs.flat_map(|(p, v)| [0, 1, 2].map(|i| p[i] - pitch.coordinate(v[i])));
+        let distances = pairs.flat_map(|(p, v)| each_axis(|i| p[i] - pitch.coordinate(v[i])));
         distances.fold(0.0, |most, d| most.max(d.abs()))
     }
 
@@ -59,8 +60,8 @@ impl TriangleMesh {
         let first = *self.vertices.first()?;
         let grow = |(low, high): (Lattice, Lattice), p: &Lattice| {
             (
-                [0, 1, 2].map(|i| low[i].min(p[i])),
-                [0, 1, 2].map(|i| high[i].max(p[i])),
+                each_axis(|i| low[i].min(p[i])),
+                each_axis(|i| high[i].max(p[i])),
             )
         };
         Some(self.vertices.iter().fold((first, first), grow))

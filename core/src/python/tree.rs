@@ -378,8 +378,9 @@ impl Tree {
 
     #[getter]
     fn findings<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let all = self.solid.sources().iter().flat_map(|s| s.findings());
-        all.map(|f| finding(py, f)).collect()
+        let all = || self.solid.sources().iter().flat_map(|s| s.findings());
+        let all: Vec<Finding> = self.run(py, "findings", 0, self.size(), || Ok(all().collect()))?;
+        all.iter().map(|f| finding(py, f)).collect()
     }
 
     fn mesh_findings<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {

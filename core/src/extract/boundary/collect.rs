@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use smallvec::{smallvec, SmallVec};
 
 use super::leaves::{fill, listed, Fate, Fates, Listed, Piece, Spanning};
+use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::line::{LineKey, PlaneResidues};
 use crate::geometry::outline::{BareEdge, Outline};
@@ -199,7 +200,7 @@ fn is_full_face(cut: &mut CutFace, source: &Source) -> bool {
     let [p, q, r] = cut.outline.lines(&PlaneResidues::through(&c)) else {
         return false;
     };
-    let own = [0, 1, 2].map(|i| LineKey::of_edge(&c[i], &c[(i + 1) % 3]));
+    let own = each_axis(|i| LineKey::of_edge(&c[i], &c[(i + 1) % 3]));
     let distinct = p != q && q != r && r != p;
     distinct && own.iter().all(|k| [&*p, q, r].contains(&k))
 }

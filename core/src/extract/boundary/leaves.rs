@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap as HashMap;
 use smallvec::{smallvec, SmallVec};
 
 use crate::arith::convert::{as_number, as_whole};
+use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::outline::{cancel, Outline, OutlineEdge};
 use crate::geometry::plane::Lattice;
@@ -217,8 +218,8 @@ fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
 fn part_box(part: &Part) -> (Lattice, Lattice) {
     let ((low, high), home) = (part.bounds(), (part.home.low(), part.home.high()));
     (
-        [0, 1, 2].map(|i| as_whole(low[i].floor()).max(home.0[i])),
-        [0, 1, 2].map(|i| as_whole(high[i].ceil()).min(home.1[i])),
+        each_axis(|i| as_whole(low[i].floor()).max(home.0[i])),
+        each_axis(|i| as_whole(high[i].ceil()).min(home.1[i])),
     )
 }
 
@@ -237,8 +238,8 @@ pub fn fill(
         poll();
         let cell = &cells[leaf as usize];
         let (bottom, top) = (cell.low(), cell.high());
-        let a = [0, 1, 2].map(|i| low[i].max(bottom[i]));
-        let b = [0, 1, 2].map(|i| high[i].min(top[i]));
+        let a = each_axis(|i| low[i].max(bottom[i]));
+        let b = each_axis(|i| high[i].min(top[i]));
         let Some(less) = count(&a, &b).and_then(|part| rest.checked_sub(part)) else {
             return false;
         };

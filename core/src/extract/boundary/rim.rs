@@ -192,7 +192,7 @@ impl Rim {
             touch: touch(mesh, fates),
             near: Vec::new(),
         };
-        for vertex in source.joints().map_or(&[][..], |j| &j.open) {
+        for vertex in source.open_vertices() {
             rim.touch[*vertex as usize] |= OPEN;
         }
         if (0..as_number(mesh.vertices.len())).any(|v| rim.is_mixed(v)) {
@@ -208,6 +208,14 @@ impl Rim {
     /// Whether a whole face has this corner.
     pub fn is_used(&self, vertex: u32) -> bool {
         self.touch[vertex as usize] & (KEPT | TURNED) != 0
+    }
+
+    /// The number of vertices that are corners of whole faces.
+    pub fn used_count(&self) -> usize {
+        self.touch
+            .iter()
+            .filter(|t| **t & (KEPT | TURNED) != 0)
+            .count()
     }
 
     /// Whether faces of different fates meet at a vertex.

@@ -2,6 +2,7 @@
 
 use super::homogeneous::Homogeneous;
 use crate::arith::Int;
+use crate::geometry::axes::each_axis;
 use crate::geometry::plane::{Lattice, Plane};
 
 /// The meet of three planes; `None` if they have no single common point.
@@ -16,7 +17,7 @@ pub(super) fn meet(a: &Plane, b: &Plane, c: &Plane) -> Option<Homogeneous> {
     let ab = cross(a.normal(), b.normal());
     let term = |i: usize| -> Int<6> { Int::<2>::from_i128(a.normal()[i]).mul(&bc[i]) };
     let w = term(0) + term(1) + term(2);
-    let x = [0, 1, 2].map(|i| {
+    let x = each_axis(|i| {
         let p: Int<6> = a.offset().mul(&bc[i]);
         let q: Int<6> = b.offset().mul(&ca[i]);
         let r: Int<6> = c.offset().mul(&ab[i]);
@@ -32,7 +33,7 @@ pub(super) fn meet(a: &Plane, b: &Plane, c: &Plane) -> Option<Homogeneous> {
 /// planes.
 pub(super) fn on_edge(a: &Lattice, b: &Lattice, cut: &Plane) -> Option<Homogeneous> {
     let (va, vb) = (cut.value_at(a), cut.value_at(b));
-    let x = [0, 1, 2].map(|i| -> Int<6> {
+    let x = each_axis(|i| -> Int<6> {
         let difference: Int<4> = vb.mul_i64::<4>(a[i]) - va.mul_i64::<4>(b[i]);
         difference.widen()
     });

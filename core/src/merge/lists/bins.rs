@@ -13,6 +13,7 @@ use super::crossings::{line_count, Crossings};
 use super::separation::triangle_misses;
 use super::window::{Span, Window};
 use crate::arith::convert::as_number;
+use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Orientation;
@@ -256,8 +257,8 @@ impl Run<'_> {
 
 fn joint(a: (Lattice, Lattice), b: (Lattice, Lattice)) -> (Lattice, Lattice) {
     (
-        [0, 1, 2].map(|i| a.0[i].min(b.0[i])),
-        [0, 1, 2].map(|i| a.1[i].max(b.1[i])),
+        each_axis(|i| a.0[i].min(b.0[i])),
+        each_axis(|i| a.1[i].max(b.1[i])),
     )
 }
 
@@ -265,8 +266,8 @@ fn joint(a: (Lattice, Lattice), b: (Lattice, Lattice)) -> (Lattice, Lattice) {
 fn bounds(runs: &[Run], home: &Cell) -> Option<(Lattice, Lattice)> {
     let (low, high) = runs.iter().filter_map(Run::bounds).reduce(joint)?;
     let top = home.high();
-    let low = [0, 1, 2].map(|i| low[i].max(home.low()[i]));
-    let high = [0, 1, 2].map(|i| high[i].min(top[i]));
+    let low = each_axis(|i| low[i].max(home.low()[i]));
+    let high = each_axis(|i| high[i].min(top[i]));
     (0..3).all(|i| low[i] <= high[i]).then_some((low, high))
 }
 

@@ -5,6 +5,7 @@
 // Lines, and places inside the window, are never negative.
 
 use super::window::{Span, Window};
+use crate::geometry::axes::each_axis;
 use crate::geometry::crossing::{triangle_change, Segment};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Orientation;
@@ -107,7 +108,7 @@ fn crosses_two(span: &Span) -> bool {
 
 /// Calls a function with each axis and line on which the span may be crossed.
 fn visit_lines(span: &Span, visit: &mut impl FnMut(usize, i32, i32)) {
-    let [x, y, z] = [0, 1, 2].map(|axis| span.lines(axis));
+    let [x, y, z] = each_axis(|axis| span.lines(axis));
     let starts = |lines: &std::ops::Range<i32>| lines.contains(&0);
     if starts(&y) && starts(&z) {
         visit(0, 0, 0);
@@ -144,7 +145,7 @@ fn crossing(
     let change = |low: i32, high: i32| {
         let mut from = at;
         from[axis] = low;
-        let from = [0, 1, 2].map(|i| window.line(i, from[i]));
+        let from = each_axis(|i| window.line(i, from[i]));
         let to = window.line(axis, high + 1);
         triangle_change(corners, &Segment { from, axis, to })
     };

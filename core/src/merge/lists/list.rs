@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::separation::misses;
 use crate::arith::convert::as_whole;
+use crate::geometry::axes::each_axis;
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, polygon_change, triangle_change, Segment};
 use crate::geometry::plane::Lattice;
@@ -166,12 +167,11 @@ impl List {
         let parts = self.parts.iter().map(|p| (&p.low, &p.high));
         let nothing = ([i32::MAX; 3], [i32::MIN; 3]);
         let (low, high) = records.chain(parts).fold(nothing, |(low, high), (l, h)| {
-            let low = [0, 1, 2].map(|i| low[i].min(l[i]));
-            (low, [0, 1, 2].map(|i| high[i].max(h[i])))
+            let low = each_axis(|i| low[i].min(l[i]));
+            (low, each_axis(|i| high[i].max(h[i])))
         });
         let place = |at: [i32; 3], more: i64| {
-            [0, 1, 2]
-                .map(|i| ((i64::from(at[i]) + more) << self.frame.shift) + self.frame.origin[i])
+            each_axis(|i| ((i64::from(at[i]) + more) << self.frame.shift) + self.frame.origin[i])
         };
         [place(low, 0), place(high, 1)]
     }
@@ -396,8 +396,8 @@ impl Frame {
 
     fn part_record(&self, element: PartElement, pieces: OnceLock<Arc<[Polygon]>>) -> PartRecord {
         let (low, high) = element.part.bounds();
-        let low = [0, 1, 2].map(|i| self.index(i, as_whole((low[i] - 0.5).ceil())));
-        let high = [0, 1, 2].map(|i| self.index(i, as_whole((high[i] + 0.5).floor())));
+        let low = each_axis(|i| self.index(i, as_whole((low[i] - 0.5).ceil())));
+        let high = each_axis(|i| self.index(i, as_whole((high[i] + 0.5).floor())));
         PartRecord {
             low,
             high,

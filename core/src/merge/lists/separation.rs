@@ -1,6 +1,7 @@
 //! Whether a face misses a box, by separating axes in doubles.
 
 use crate::arith::convert::as_double;
+use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::mesh::handle::FaceId;
@@ -33,13 +34,13 @@ fn plane_misses(plane: &Plane, low: &Lattice, high: &Lattice) -> bool {
 /// Separating axes: the face's normal, and each of its edges projected along each axis.
 pub fn triangle_misses(corners: &[Lattice; 3], low: &Lattice, high: &Lattice) -> bool {
     let (center, half) = middle(low, high, &corners[0]);
-    let local = corners.map(|c| [0, 1, 2].map(|i| as_double(c[i] - corners[0][i]) - center[i]));
+    let local = corners.map(|c| each_axis(|i| as_double(c[i] - corners[0][i]) - center[i]));
     separated(&local, &half)
 }
 
 /// Center relative to `origin`, and half extents, of a closed box.
 fn middle(low: &Lattice, high: &Lattice, origin: &Lattice) -> ([f64; 3], [f64; 3]) {
-    let center = [0, 1, 2].map(|i| {
+    let center = each_axis(|i| {
         f64::midpoint(
             as_double(low[i] - origin[i]),
             as_double(high[i] - origin[i]),
@@ -47,12 +48,12 @@ fn middle(low: &Lattice, high: &Lattice, origin: &Lattice) -> ([f64; 3], [f64; 3
     });
     (
         center,
-        [0, 1, 2].map(|i| as_double(high[i] - low[i]) / 2.0 + 0.5),
+        each_axis(|i| as_double(high[i] - low[i]) / 2.0 + 0.5),
     )
 }
 
 fn separated(p: &[[f64; 3]; 3], half: &[f64; 3]) -> bool {
-    let e = [0, 1, 2].map(|i| {
+    let e = each_axis(|i| {
         let (a, b) = (p[i], p[(i + 1) % 3]);
         [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
     });

@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use crate::arith::convert::as_number;
+use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 
@@ -38,7 +39,7 @@ impl Span {
     pub fn new(element: u32, codes: [u32; 3]) -> Self {
         let field = |code: u32, i: usize| ((code >> (20 - 10 * i)) & 0x3ff) as i16 - 1;
         let ends = |pick: fn(i16, i16) -> i16| {
-            [0, 1, 2].map(|i| {
+            each_axis(|i| {
                 codes
                     .map(|c| field(c, i))
                     .into_iter()
@@ -64,7 +65,7 @@ impl Window {
     #[allow(clippy::cast_possible_truncation, reason = "not above PLACES")]
     pub fn around(low: &Lattice, high: &Lattice, size: u32) -> Option<Self> {
         let first = low.map(|k| k >> size);
-        let count = [0, 1, 2].map(|i| (high[i] >> size) - first[i] + 1);
+        let count = each_axis(|i| (high[i] >> size) - first[i] + 1);
         count
             .iter()
             .all(|c| (1..=PLACES).contains(c))
@@ -93,24 +94,28 @@ impl Window {
             .product()
     }
 
+    #[inline]
     #[allow(clippy::cast_possible_truncation, reason = "clamped before")]
     fn place(&self, axis: usize, k: i64) -> i32 {
         ((k >> self.size) - self.first[axis]).clamp(-1, i64::from(self.count[axis])) as i32
     }
 
     /// The places of a lattice point in one word; those of a cell's points are equal.
+    #[inline]
     pub fn code(&self, p: &Lattice) -> u32 {
         let field = |i: usize| (self.place(i, p[i]) + 1).cast_unsigned();
         field(0) << 20 | field(1) << 10 | field(2)
     }
 
     /// The number of a cell among all, the last axis first.
+    #[inline]
     pub fn index(&self, at: [i32; 3]) -> usize {
         let count = self.count;
         ((at[0] * count[1] + at[1]) * count[2] + at[2]).cast_unsigned() as usize
     }
 
     /// The number of the cell with this code; `None` beyond the window.
+    #[inline]
     pub fn index_of(&self, code: u32) -> Option<u32> {
         let at = [20, 10, 0].map(|shift| ((code >> shift) & 0x3ff).cast_signed() - 1);
         let inside = (0..3).all(|i| (0..self.count[i]).contains(&at[i]));
@@ -126,15 +131,16 @@ impl Window {
     pub fn extent(&self, low: &[i32; 3], high: &[i32; 3]) -> (Lattice, Lattice) {
         let start = |i: usize, place: i32| (self.first[i] + i64::from(place)) << self.size;
         (
-            [0, 1, 2].map(|i| start(i, low[i])),
-            [0, 1, 2].map(|i| start(i, high[i] + 1) - 1),
+            each_axis(|i| start(i, low[i])),
+            each_axis(|i| start(i, high[i] + 1) - 1),
         )
     }
 
     /// The places that a larger cell covers.
+    #[inline]
     pub fn covered(&self, cell: &Cell) -> [Range<i32>; 3] {
         let high = cell.high();
-        [0, 1, 2].map(|i| {
+        each_axis(|i| {
             let low = self.place(i, cell.low()[i]).max(0);
             low..(self.place(i, high[i]) + 1).clamp(low, self.count[i])
         })
@@ -142,7 +148,7 @@ impl Window {
 
     /// The lines through the low corner of a larger cell.
     pub fn corner(&self, cell: &Cell) -> [i32; 3] {
-        [0, 1, 2].map(|i| self.place(i, cell.low()[i]).max(0))
+        each_axis(|i| self.place(i, cell.low()[i]).max(0))
     }
 
     /// Whether a cell's cut lies between cells of the window.
@@ -153,7 +159,7 @@ impl Window {
     /// The cells of the window in a span: the lowest and the highest places; `None` without any.
     pub fn within(&self, span: &Span) -> Option<([i32; 3], [i32; 3])> {
         let low = span.low.map(|p| i32::from(p).max(0));
-        let high = [0, 1, 2].map(|i| i32::from(span.high[i]).min(self.count[i] - 1));
+        let high = each_axis(|i| i32::from(span.high[i]).min(self.count[i] - 1));
         (0..3).all(|i| low[i] <= high[i]).then_some((low, high))
     }
 }

@@ -1,6 +1,7 @@
 //! Pairs of boxes that overlap, found by halving the space around them.
 
 use crate::arith::convert::as_number;
+use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::spend;
 
@@ -151,8 +152,8 @@ impl Space {
         let low = |i: usize| elements.iter().map(|e| e.extent.low(i)).min();
         let high = |i: usize| elements.iter().map(|e| e.extent.high(i)).max();
         Self {
-            low: [0, 1, 2].map(|i| low(i).map_or(0, |x| x - 1)),
-            high: [0, 1, 2].map(|i| high(i).unwrap_or(0)),
+            low: each_axis(|i| low(i).map_or(0, |x| x - 1)),
+            high: each_axis(|i| high(i).unwrap_or(0)),
         }
     }
 

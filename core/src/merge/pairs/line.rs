@@ -2,6 +2,7 @@
 
 use super::Swept;
 use crate::arith::convert::as_double;
+use crate::geometry::axes::each_axis;
 
 /// Among fewer elements than this other lines than the axes are not worth finding.
 pub const MANY: usize = 512;
@@ -99,7 +100,7 @@ fn direction_along(elements: &[&Swept]) -> Option<[f64; 3]> {
 pub fn longest_edge(corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
     let edge = |i: usize| {
         let (a, b) = (&corners[i], &corners[(i + 1) % 3]);
-        [0, 1, 2].map(|k| b[k] - a[k])
+        each_axis(|k| b[k] - a[k])
     };
     let longer = |a: &[f64; 3], b: &[f64; 3]| dot(a, a).total_cmp(&dot(b, b));
     (0..3).map(edge).max_by(longer)

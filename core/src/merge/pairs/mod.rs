@@ -121,6 +121,7 @@ mod tests {
     use super::*;
     use crate::arith::convert::as_double;
     use crate::geometry::apart::pierces;
+    use crate::geometry::axes::each_axis;
 
     /// More elements than this are swept along slanted lines, too.
     const MANY: usize = 512;
@@ -131,7 +132,7 @@ mod tests {
     fn needle(along: Lattice) -> impl Strategy<Value = [Lattice; 3]> {
         let near = || [-99..=99i64, -99..=99i64, -99..=99i64];
         (near(), near(), near(), 0..=9i64).prop_map(move |(a, b, c, length)| {
-            let far = [0, 1, 2].map(|i| b[i] + length * along[i]);
+            let far = each_axis(|i| b[i] + length * along[i]);
             [a, far, c]
         })
     }
@@ -142,8 +143,8 @@ mod tests {
         };
         Swept {
             operand,
-            low: [0, 1, 2].map(|i| end(i, i64::min).max(-REACH)),
-            high: [0, 1, 2].map(|i| end(i, i64::max).min(REACH)),
+            low: each_axis(|i| end(i, i64::min).max(-REACH)),
+            high: each_axis(|i| end(i, i64::max).min(REACH)),
             corners: Some(corners.map(|p| p.map(as_double))),
         }
     }

@@ -15,6 +15,7 @@ use super::simple::star::is_star_shaped;
 use crate::arith::convert::as_double;
 use crate::arith::Int;
 use crate::error::Result;
+use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::fixed::sixfold_flux;
 use crate::geometry::plane::Lattice;
@@ -53,7 +54,7 @@ pub fn is_simple(solid: &Solid, sources: &Sources) -> Result<Option<bool>> {
         return Ok(None);
     };
     let all = leaf.groups[0].faces.iter().copied().eq(mesh.face_ids());
-    let closed = || source.joints().is_some_and(|j| j.open.is_empty());
+    let closed = || source.open_vertices().is_empty();
     if all && closed() && is_star_shaped(mesh) {
         return Ok(Some(true));
     }
@@ -87,7 +88,7 @@ pub fn simple_shells(solid: &Solid, sources: &Sources) -> Option<Vec<Branch>> {
     let (leaf, source, mesh) = only_mesh(solid)?;
     let whole =
         leaf.corner == 0 && !solid.root().complement && !leaf.groups[0].orientation.is_opposite();
-    let closed = source.joints().is_some_and(|j| j.open.is_empty());
+    let closed = source.open_vertices().is_empty();
     if !whole || !closed || leaf.len() != mesh.faces.len() {
         return None;
     }
@@ -169,7 +170,7 @@ fn shells(source: &Source, count: usize) -> Vec<u32> {
 
 fn irregular(source: &Source, mesh: &TriangleMesh) -> Vec<bool> {
     let mut marks = vec![false; mesh.vertices.len()];
-    for vertex in source.topology().map_or(&[][..], |t| t.irregular()) {
+    for vertex in source.irregular_vertices() {
         marks[*vertex as usize] = true;
     }
     marks
@@ -339,5 +340,5 @@ impl Looked {
 
 /// a − b, rounded once at most: the difference may have 54 bits.
 fn difference(a: &Lattice, b: &Lattice) -> [f64; 3] {
-    [0, 1, 2].map(|i| as_double(a[i] - b[i]))
+    each_axis(|i| as_double(a[i] - b[i]))
 }

@@ -13,6 +13,7 @@
 //! Mehlhorn, Näher, Seel, Seidel, Schilz, Schirra, Uhrig: *Checking geometric programs or
 //! verification of geometric structures*, 1999. The ray tells one covering from several.
 
+use crate::geometry::axes::each_axis;
 use crate::geometry::crossing::{triangle_change, Segment};
 use crate::geometry::path::near_determinant;
 use crate::geometry::plane::Lattice;
@@ -31,7 +32,7 @@ pub fn is_star_shaped(mesh: &TriangleMesh) -> bool {
 #[allow(clippy::cast_possible_truncation, reason = "a mean of coordinates")]
 fn mean(points: &[Lattice]) -> Option<Lattice> {
     let sum = points.iter().fold([0; 3], |sum: [i128; 3], p| {
-        [0, 1, 2].map(|i| sum[i] + i128::from(p[i]))
+        each_axis(|i| sum[i] + i128::from(p[i]))
     });
     let count = i128::try_from(points.len()).ok().filter(|n| *n > 0)?;
     Some(sum.map(|s| s.div_euclid(count) as i64))
@@ -39,7 +40,7 @@ fn mean(points: &[Lattice]) -> Option<Lattice> {
 
 /// Whether a point lies strictly behind a face's plane; errs on no.
 fn is_behind(point: &Lattice, corners: &[Lattice; 3]) -> bool {
-    let [a, b, c] = corners.map(|corner| [0, 1, 2].map(|i| corner[i] - point[i]));
+    let [a, b, c] = corners.map(|corner| each_axis(|i| corner[i] - point[i]));
     near_determinant(&a, &b, &c) > 0
 }
 

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::cutting::Face;
 use super::Labels;
 use crate::arith::convert::{as_double, as_whole};
+use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
@@ -142,8 +143,8 @@ fn box_around(elements: &[Element]) -> [Lattice; 2] {
     let nothing = [[i64::MAX; 3], [i64::MIN; 3]];
     elements.iter().fold(nothing, |[low, high], e| {
         [
-            [0, 1, 2].map(|i| low[i].min(e.low[i])),
-            [0, 1, 2].map(|i| high[i].max(e.high[i])),
+            each_axis(|i| low[i].min(e.low[i])),
+            each_axis(|i| high[i].max(e.high[i])),
         ]
     })
 }
@@ -209,20 +210,20 @@ impl<'a> Element<'a> {
     pub(super) fn extent(&self, cell: &Cell) -> [Lattice; 2] {
         let (low, high) = (cell.low(), cell.high());
         let within = |p: &Lattice, i: usize| p[i].clamp(low[i] - 1, high[i] + 1) - low[i];
-        [&self.low, &self.high].map(|p| [0, 1, 2].map(|i| within(p, i)))
+        [&self.low, &self.high].map(|p| each_axis(|i| within(p, i)))
     }
 
     /// The element as a sweep sees it.
     pub(super) fn swept(&self, cell: &Cell) -> Swept {
         let origin = cell.low();
-        let relative = |p: &Lattice| [0, 1, 2].map(|i| as_double(p[i] - origin[i]));
+        let relative = |p: &Lattice| each_axis(|i| as_double(p[i] - origin[i]));
         let [low, high] = self.extent(cell);
         Swept {
             operand: self.operand,
             low,
             high,
             corners: match &self.place {
-                Place::Face(t) => Some([0, 1, 2].map(|i| relative(&t.corners[i]))),
+                Place::Face(t) => Some(each_axis(|i| relative(&t.corners[i]))),
                 Place::Plane(..) | Place::Piece(..) => None,
             },
         }

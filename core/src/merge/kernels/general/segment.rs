@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::cutting::{Cutter, Face};
 use super::points::Points;
+use crate::geometry::axes::each_axis;
 use crate::geometry::path::determinant;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon, Sides};
@@ -148,6 +149,6 @@ fn change(sides: &[i32], rises: bool) -> Result<usize, Doubt> {
 
 /// On which side of a directed edge another one passes: 1 if it rises on its left.
 fn passes((a, b): (&Lattice, &Lattice), (c, d): (&Lattice, &Lattice)) -> i32 {
-    let from = |p: &Lattice| [0, 1, 2].map(|i| p[i] - c[i]);
+    let from = |p: &Lattice| each_axis(|i| p[i] - c[i]);
     determinant(&from(d), &from(a), &from(b))
 }
