@@ -1,5 +1,7 @@
 """Attributes in files: every format with every kind that it can hold, and what it cannot."""
 
+import re
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -46,7 +48,7 @@ HELD: dict[str, set[str]] = {
     },
     ".off": {"color"},
     ".obj": {"uv", "normal", "material"},
-    ".3mf": {"material"},
+    ".3mf": {"material", "uv"},
     ".glb": {"color", "weight", "pair", "uv", "normal", "heat", "material"},
     ".stl": set(),
     ".vtu": set(),
@@ -87,6 +89,11 @@ def test_what_a_format_holds_reads_back(tmp_path: Path, suffix: str, text: bool)
         meant, told = of(mesh, name), of(raw, name)
         if meant.dtype.kind == "f" and suffix == ".glb":
             assert np.allclose(told, meant, atol=1e-6)
+        elif (suffix, name) == (".3mf", "uv"):
+            # What has no picture has no place on it.
+            has_picture = FACE["material"] == "my glass"
+            assert np.array_equal(told[has_picture], meant[has_picture])
+            assert np.isnan(told[~has_picture]).all()
         elif meant.dtype.kind == "b":
             assert np.array_equal(told, meant.astype(np.uint8))
         else:
@@ -95,14 +102,17 @@ def test_what_a_format_holds_reads_back(tmp_path: Path, suffix: str, text: bool)
 
 @pytest.mark.parametrize("suffix", [".obj", ".glb", ".3mf"])
 def test_materials_read_back_with_their_pictures(tmp_path: Path, suffix: str) -> None:
-    write(part().to_mesh(), tmp_path / f"my part{suffix}")
+    findings = write(part().to_mesh(), tmp_path / f"my part{suffix}")
     raw = read(tmp_path / f"my part{suffix}")
     assert raw.attributes is not None
     told = raw.attributes.materials
     assert set(told) == {"red", "my glass"}
     assert list(told["red"].color) == [1, 0, 0, 1]
-    assert np.allclose(told["my glass"].color, (0.2, 0.4, 0.6, 0.8))
-    assert told["my glass"].texture == (None if suffix == ".3mf" else PIXEL)
+    assert told["my glass"].texture == PIXEL
+    behind = (1, 1, 1, 1) if suffix == ".3mf" else (0.2, 0.4, 0.6, 0.8)
+    assert np.allclose(told["my glass"].color, behind)
+    codes = [one.code for one in findings]
+    assert ("colors_left_out" in codes) == (suffix == ".3mf")
 
 
 @pytest.mark.parametrize(
@@ -257,9 +267,78 @@ def test_a_library_lies_beside_its_obj(tmp_path: Path, name: str) -> None:
     assert raw.attributes is not None and not raw.attributes.materials
 
 
-def test_a_wrong_property_of_3mf_is_refused(tmp_path: Path) -> None:
-    import zipfile
+#: Materials of a cube's sides, all but the last with a picture; the names are hard to write down.
+NAMES = ["a/b", "a_b", "ä 1%", "..", "A/B", "red"]
 
+
+def pictured() -> b.Solid:
+    mesh = b.cube(2).to_mesh()
+    return b.Solid(
+        mesh.vertices,
+        mesh.faces,
+        corner_attributes={"uv": CORNER["uv"].astype(np.float32)},
+        face_attributes={"material": np.repeat(NAMES, 2)},
+        materials={name: b.Material(texture=PIXEL) for name in NAMES[:-1]},
+    )
+
+
+def test_names_of_pictures_are_fit_for_parts(tmp_path: Path) -> None:
+    pictured().save(tmp_path / "x.3mf")
+    again = b.load(tmp_path / "x.3mf").to_mesh()
+    fit = ["a_b_", "a_b", "ä 1%", "__", "A_B", "red"]
+    assert again.face_attributes["material"].tolist() == np.repeat(fit, 2).tolist()
+    assert all(again.materials[name].texture == PIXEL for name in fit[:-1])
+    assert again.materials["red"].texture is None
+    assert np.array_equal(of(again, "uv")[:10], CORNER["uv"][:10].astype(np.float32))
+
+
+def test_pictures_stay_through_operations_and_assemblies(tmp_path: Path) -> None:
+    pictured().save(tmp_path / "x.3mf")
+    whole = b.Assembly.load(tmp_path / "x.3mf").to_solid()
+    made = whole - b.cube(1).translate(1.5, 1.5, 1.5)
+    made.save(tmp_path / "y.3mf")
+    mesh = b.load(tmp_path / "y.3mf").to_mesh()
+    flat = mesh.face_attributes["material"] == "ä 1%"
+    assert flat.any() and mesh.materials["ä 1%"].texture == PIXEL
+    assert not np.isnan(of(mesh, "uv")[flat]).any()
+
+
+def repacked(source: Path, target: Path, change: dict[str, tuple[bytes, bytes]]) -> Path:
+    """Write an archive again, with other words in some parts; a part may become nothing."""
+    with zipfile.ZipFile(source) as given, zipfile.ZipFile(target, "w") as made:
+        for name in given.namelist():
+            old, new = change.get(name, (b"", b""))
+            if old or name not in change:
+                made.writestr(name, given.read(name).replace(old, new, 1 if old else 0))
+    return target
+
+
+def test_packages_of_pictures_are_as_the_standard_has_them(tmp_path: Path) -> None:
+    pictured().save(tmp_path / "x.3mf")
+    with zipfile.ZipFile(tmp_path / "x.3mf") as archive:
+        parts = set(archive.namelist())
+        types = archive.read("[Content_Types].xml").decode()
+        relations = archive.read("3D/_rels/3dmodel.model.rels").decode()
+        model = archive.read("3D/3dmodel.model").decode()
+    paths = re.findall(r'<m:texture2d id="\d+" path="([^"]*)" contenttype="image/png"/>', model)
+    assert len(paths) == 5 and "/3D/Textures/5/%C3%A4%201%25.png" in paths
+    assert set(re.findall('Target="([^"]*)"', relations)) == set(paths)
+    assert {path[1:] for path in paths} < parts and 'Extension="png"' in types
+
+
+def test_pictures_that_are_missing_are_told(tmp_path: Path) -> None:
+    pictured().save(tmp_path / "x.3mf")
+    gone = {"3D/Textures/5/%C3%A4%201%25.png": (b"", b"")}
+    raw = read(repacked(tmp_path / "x.3mf", tmp_path / "y.3mf", gone))
+    assert raw.attributes is not None and raw.dropped == ("textures",)
+    assert raw.attributes.materials["ä 1%"] == b.Material()
+    for old, new in ((b'texid="', b'texid="9'), (b' u="', b' u="nan'), (b' u="', b' u="x')):
+        wrong = {"3D/3dmodel.model": (old, new)}
+        with pytest.raises(b.FormatError):
+            read(repacked(tmp_path / "x.3mf", tmp_path / "z.3mf", wrong))
+
+
+def test_a_wrong_property_of_3mf_is_refused(tmp_path: Path) -> None:
     mesh = b.cube(1).to_mesh()
     solid = b.Solid(
         mesh.vertices, mesh.faces, face_attributes={"color": np.zeros((12, 3), np.uint8)}

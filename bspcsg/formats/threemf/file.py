@@ -8,7 +8,7 @@ import io
 import posixpath
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TypeAlias
 
@@ -96,6 +96,7 @@ class Package:
         self._source = source
         self._archive = archive
         self._parts: dict[str, ModelPart] = {}
+        self._pictures: dict[str, bytes] = {}
         self._entries = {entry.filename.lower(): entry for entry in archive.infolist()}
         self._left = min(max(_MOST_GROWTH * len(source.data), _SMALL), _LARGEST)
 
@@ -134,7 +135,7 @@ class Package:
             triangles += len(model.objects[item].triangles)
             if triangles > _MOST_TRIANGLES:
                 raise self._source.error("the build has too many triangles.", "too_large")
-            pieces.append(_moved(model, item, transforms))
+            pieces.append(_moved(model, item, transforms, self.picture))
         findings += _ignored(beams, "beams")
         findings += _ignored(skipped, "objects that are support or surface")
         built = {(path, item) for path, item, _ in placed}
@@ -179,6 +180,14 @@ class Package:
             self._parts[name] = reader.read()
         return self._parts[name]
 
+    def picture(self, name: str) -> bytes:
+        """Return the bytes of a part, unpacked once; none if there is no such part."""
+        if name.lower() not in self._entries:
+            return b""
+        if name not in self._pictures:
+            self._pictures[name] = b"".join(self._opened(name)[1])
+        return self._pictures[name]
+
     def _opened(self, name: str) -> tuple[Source, Iterator[bytes]]:
         """Return what errors about a part name, and its bytes."""
         entry = self._entries.get(name.lower())
@@ -209,7 +218,12 @@ def _part_name(target: str) -> str:
     return posixpath.normpath(target).lstrip("/")
 
 
-def _moved(part: ModelPart, item: str, transforms: tuple[FloatArray, ...]) -> RawMesh:
+def _moved(
+    part: ModelPart,
+    item: str,
+    transforms: tuple[FloatArray, ...],
+    picture: Callable[[str], bytes],
+) -> RawMesh:
     """Return the mesh of an object under transforms; a mirrored one is turned right side out."""
     vertices, faces = part.objects[item].arrays()
     mirrored = False
@@ -224,7 +238,7 @@ def _moved(part: ModelPart, item: str, transforms: tuple[FloatArray, ...]) -> Ra
         if np.linalg.det(matrix[:3]) < 0:
             faces = faces[:, ::-1]
             mirrored = not mirrored
-    said = properties_of(part, part.objects[item], faces)
+    said = properties_of(part, part.objects[item], faces, picture)
     if said is not None and mirrored:
         said = said.reordered([2, 1, 0])
     return RawMesh(vertices, faces, part.objects[item].name, attributes=said)

@@ -24,8 +24,7 @@ MILLIMETRES = {
 #: Elements about what a mesh of triangles has no room for.
 _DROPPED = {
     "composite": "materials",
-    "tex2coord": "texture coordinates",
-    "texture2d": "textures",
+    "multi": "layers of properties",
     "metadata": "metadata",
 }
 
@@ -76,7 +75,10 @@ class Object:
 
 @dataclass(eq=False)
 class ModelPart:
-    """The content of one model part."""
+    """The content of one model part.
+
+    Textures are parts of the package by their numbers; groups of coordinates name one of them.
+    """
 
     unit: str = "millimeter"
     objects: dict[str, Object] = field(default_factory=dict)
@@ -84,6 +86,8 @@ class ModelPart:
     dropped: set[str] = field(default_factory=set)
     colors: dict[str, list[tuple[int, ...]]] = field(default_factory=dict)
     bases: dict[str, list[tuple[str, tuple[int, ...]]]] = field(default_factory=dict)
+    textures: dict[str, str] = field(default_factory=dict)
+    coordinates: dict[str, tuple[str, list[tuple[float, float]]]] = field(default_factory=dict)
 
 
 def parse_xml(source: Source, chunks: Iterable[bytes], start: Start) -> None:
@@ -199,6 +203,13 @@ class PartReader:
         elif tag == "base":
             base = attributes.get("name", ""), _color(attributes["displaycolor"])
             self._part.bases.setdefault(self._group, []).append(base)
+        elif tag == "texture2d":
+            self._part.textures[attributes["id"]] = self._part_name(attributes["path"])
+        elif tag == "texture2dgroup":
+            self._group = attributes["id"]
+            self._part.coordinates[self._group] = attributes["texid"], []
+        elif tag == "tex2coord":
+            self._part.coordinates[self._group][1].append(_place(attributes))
         elif tag in _DROPPED:
             self._part.dropped.add(_DROPPED[tag])
         self._current.beams += tag == "beam"
@@ -242,6 +253,16 @@ def _point(attributes: dict[str, str]) -> tuple[float, float, float]:
     if not all(abs(value) < float("inf") for value in point):
         raise ValueError("coordinates must be finite")
     return point
+
+
+def _place(attributes: dict[str, str]) -> tuple[float, float]:
+    """Return a pair of texture coordinates."""
+    words = attributes["u"], attributes["v"]
+    _refuse_underscores(words)
+    u, v = float(words[0]), float(words[1])
+    if not (abs(u) < float("inf") and abs(v) < float("inf")):
+        raise ValueError("texture coordinates must be finite")
+    return u, v
 
 
 def _refuse_underscores(words: tuple[str, ...]) -> None:

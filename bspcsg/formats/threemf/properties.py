@@ -1,5 +1,10 @@
-"""Properties of 3MF: colour groups are colours of corners, base materials are materials."""
+"""Properties of 3MF: colour groups are colours of corners, base materials are materials.
 
+Textures are materials, too, and their coordinates the attribute ``"uv"``.
+"""
+
+from collections import Counter
+from collections.abc import Callable
 from typing import TypeVar
 
 import numpy as np
@@ -7,8 +12,10 @@ import numpy as np
 from ..._types import IndexArray
 from ...attributes.attributes import Attributes, Kind, Values
 from ...attributes.material import Material
+from ...errors import InvalidMeshError
 from ..said import as_bytes, chosen, is_color
 from .part import ModelPart, Object
+from .textures import fit_for_parts, named_after
 
 _Entry = TypeVar("_Entry")
 
@@ -16,8 +23,19 @@ _Entry = TypeVar("_Entry")
 _WHITE = (255, 255, 255, 255)
 
 
-def properties_of(part: ModelPart, held: Object, faces: IndexArray) -> Attributes | None:
+def properties_of(
+    part: ModelPart, held: Object, faces: IndexArray, picture: Callable[[str], bytes]
+) -> Attributes | None:
     """Return what is said of the triangles of an object, in the order of the file.
+
+    Parameters
+    ----------
+    part : ModelPart
+    held : Object
+        One of its.
+    faces : (m, 3) int64
+    picture : callable
+        Returns the bytes of a part of the package.
 
     Raises
     ------
@@ -27,24 +45,67 @@ def properties_of(part: ModelPart, held: Object, faces: IndexArray) -> Attribute
     if held.usual is None and not held.properties:
         return None
     usual = None if held.usual is None else (held.usual[0], (held.usual[1],) * 3)
-    rows = [held.properties.get(k, usual) for k in range(len(held.triangles))]
-    colors = np.full((len(rows), 3, 4), _WHITE, dtype=np.uint8)
-    names: list[str] = []
-    materials: dict[str, Material] = {}
-    has_colors = False
-    for k, row in enumerate(rows):
-        names.append("")
-        if row is not None and row[0] in part.colors:
-            colors[k] = [_entry(part.colors[row[0]], number) for number in row[1]]
-            has_colors = True
-        elif row is not None and row[0] in part.bases:
-            names[-1], color = _entry(part.bases[row[0]], row[1][0])
-            materials[names[-1]] = Material(tuple(value / 255 for value in color))
-    corner = {"color": colors} if has_colors else {}
-    face = {"material": np.array(names)} if materials else {}
-    if not corner and not face:
-        return None
-    return Attributes(faces, {}, corner, face, materials)
+    reading = _Reading(part, len(held.triangles))
+    for k in range(len(held.triangles)):
+        row = held.properties.get(k, usual)
+        if row is not None:
+            reading.take(k, *row)
+    return reading.attributes(faces, picture)
+
+
+class _Reading:
+    """What the triangles of an object say, so far."""
+
+    def __init__(self, part: ModelPart, count: int) -> None:
+        self._part = part
+        self._colors = np.full((count, 3, 4), _WHITE, dtype=np.uint8)
+        self._places = np.full((count, 3, 2), np.nan)
+        self._names = [""] * count
+        self._materials: dict[str, Material] = {}
+        self._textures: dict[str, str] = {}
+        self._has_colors = False
+        bases = [name for group in part.bases.values() for name, _ in group]
+        self._taken = Counter([*bases, *map(named_after, part.textures.values())])
+
+    def take(self, k: int, group: str, numbers: tuple[int, ...]) -> None:
+        """Note what one triangle says."""
+        part = self._part
+        if group in part.colors:
+            self._colors[k] = [_entry(part.colors[group], number) for number in numbers]
+            self._has_colors = True
+        elif group in part.bases:
+            self._names[k], color = _entry(part.bases[group], numbers[0])
+            self._materials[self._names[k]] = Material(tuple(value / 255 for value in color))
+        elif group in part.coordinates:
+            texture, places = part.coordinates[group]
+            self._names[k] = self._textures.setdefault(texture, self._called(texture))
+            self._places[k] = [_entry(places, number) for number in numbers]
+
+    def _called(self, texture: str) -> str:
+        """Return the name of a texture, by which no other material goes."""
+        if texture not in self._part.textures:
+            raise ValueError(f"texture {texture} does not exist")
+        name = named_after(self._part.textures[texture])
+        return name if self._taken[name] == 1 else f"{name} ({texture})"
+
+    def attributes(self, faces: IndexArray, picture: Callable[[str], bytes]) -> Attributes | None:
+        """Return all that was said; None if that is nothing."""
+        materials = dict(self._materials)
+        for texture, name in self._textures.items():
+            materials[name] = _pictured(picture(self._part.textures[texture]))
+            if materials[name].texture is None:
+                self._part.dropped.add("textures")
+        corner = {"color": self._colors} if self._has_colors else {}
+        corner |= {"uv": self._places} if self._textures else {}
+        face = {"material": np.array(self._names)} if materials else {}
+        return Attributes(faces, {}, corner, face, materials) if corner or face else None
+
+
+def _pictured(data: bytes) -> Material:
+    try:
+        return Material(texture=data)
+    except InvalidMeshError:  # a kind of picture that is not known here
+        return Material()
 
 
 def _entry(group: list[_Entry], number: int) -> _Entry:
@@ -57,10 +118,7 @@ def kept(said: Attributes) -> Attributes:
     """Return what 3MF holds of attributes: materials of faces, or else colours, both in bytes."""
     names = said.face.get("material")
     if names is not None and names.dtype.kind == "U" and names.ndim == 1:
-        used = [name for name in np.unique(names).tolist() if name]
-        given = {name: said.materials.get(name, Material()) for name in used}
-        materials = {name: _in_bytes(material) for name, material in given.items()}
-        return Attributes(said.faces, {}, {}, {"material": names}, materials)
+        return _kept_materials(said, names)
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         if not is_color(name, values, 2 if kind == "corner" else 1):
@@ -71,6 +129,32 @@ def kept(said: Attributes) -> Attributes:
         return np.concatenate([colors, np.full_like(colors[..., :1], 255)], axis=-1)
 
     return Attributes(said.faces, *_kinds(chosen(said, keep)))
+
+
+def _kept_materials(said: Attributes, names: Values) -> Attributes:
+    used = [name for name in np.unique(names).tolist() if name]
+    given = {name: said.materials.get(name, Material()) for name in used}
+    is_pair = _has_places(said)
+    textured = [name for name, one in given.items() if one.texture is not None and is_pair]
+    called = fit_for_parts(textured)
+    materials = {
+        called.get(name, name): Material(texture=one.texture) if name in called else _in_bytes(one)
+        for name, one in given.items()
+    }
+    if not called:
+        return Attributes(said.faces, {}, {}, {"material": names}, materials)
+    renamed = np.array([called.get(name, name) for name in names.tolist()])
+    places = np.nan_to_num(said.at_corners("uv").astype(np.float64))
+    places[~np.isin(names, textured)] = np.nan
+    return Attributes(said.faces, {}, {"uv": places}, {"material": renamed}, materials)
+
+
+def _has_places(said: Attributes) -> bool:
+    """Say whether corners have texture coordinates."""
+    if said.kind_of("uv") not in ("vertex", "corner"):
+        return False
+    places = said.at_corners("uv")
+    return places.dtype.kind == "f" and places.shape[2:] == (2,)
 
 
 def _kinds(said: Attributes) -> tuple[dict[str, Values], dict[str, Values], dict[str, Values]]:

@@ -83,7 +83,8 @@ class _Reading:
             told = part.objects[item]
             vertices, faces = told.arrays()
             plain = _color(part, told) is not None
-            said = None if plain else properties_of(part, told, faces)
+            picture = self._package.picture
+            said = None if plain else properties_of(part, told, faces, picture)
             mesh = RawMesh(vertices, faces, told.name, unit="mm", attributes=said)
             self._meshes[path, item] = mesh
         return self._meshes[path, item]

@@ -8,17 +8,19 @@ import io
 import itertools
 import re
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes, Values
+from ...attributes.material import Material
 from ...errors import Finding
 from ...mesh.mesh import Mesh
 from ..raw import RawMesh, compacted, empty_set, parts_of, says_empty_set
 from ..said import said_of
+from .textures import Picture, content_types, pictures_of, relations
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _MATERIALS = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02"
@@ -30,12 +32,13 @@ _TYPES = (
     '<Default Extension="rels"'
     ' ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
     '<Default Extension="model"'
-    ' ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>\n'
+    ' ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>'
 )
 _RELATIONS = (
     _HEAD + '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
-    f'<Relationship Id="rel0" Target="/3D/3dmodel.model" Type="{_MODEL}"/></Relationships>\n'
 )
+_ROOT = f'<Relationship Id="rel0" Target="/3D/3dmodel.model" Type="{_MODEL}"/>'
+_END = "</Relationships>\n"
 
 #: The same bytes for the same mesh, whenever it is written.
 _EPOCH = (1980, 1, 1, 0, 0, 0)
@@ -43,32 +46,50 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the package; every coordinate reads back as the same double."""
-    yield packed(_model(mesh))
+    said = said_of(mesh)
+    yield packed(_model(mesh), {} if said is None else pictures_of(said.materials))
 
 
-def packed(model: Iterator[str]) -> bytes:
-    """Return the package of a model."""
+def packed(model: Iterator[str], pictures: Mapping[str, Picture] | None = None) -> bytes:
+    """Return the package of a model, with the pictures that it names."""
     stream = io.BytesIO()
+    held = pictures or {}
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, text in (
-            ("[Content_Types].xml", iter([_TYPES])),
-            ("_rels/.rels", iter([_RELATIONS])),
+            ("[Content_Types].xml", iter([_TYPES, content_types(held), "</Types>\n"])),
+            ("_rels/.rels", iter([_RELATIONS, _ROOT, _END])),
             ("3D/3dmodel.model", model),
         ):
-            entry = zipfile.ZipInfo(name, _EPOCH)
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            with archive.open(entry, "w", force_zip64=True) as part:
-                part.writelines(line.encode() for line in text)
+            _pack(archive, name, (line.encode() for line in text))
+        if held:
+            lines = [_RELATIONS, *relations(held), _END]
+            _pack(archive, "3D/_rels/3dmodel.model.rels", (line.encode() for line in lines))
+        for picture in held.values():
+            _pack(archive, picture.path[1:], iter([picture.data]))
     return stream.getvalue()
 
 
+def _pack(archive: zipfile.ZipFile, name: str, chunks: Iterator[bytes]) -> None:
+    entry = zipfile.ZipInfo(name, _EPOCH)
+    entry.compress_type = zipfile.ZIP_DEFLATED
+    with archive.open(entry, "w", force_zip64=True) as part:
+        part.writelines(chunks)
+
+
 def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
-    """Return what the format has no room for: triangles that name a vertex twice."""
+    """Return what the format has no room for: repeated corners, colours behind pictures."""
+    found = []
     count = int(_repeats_corner(mesh.faces).sum())
-    if not count:
-        return ()
-    message = f"3MF has no triangles with a repeated corner; {count} of them were left out."
-    return (Finding("degenerate", "warning", message, (), count),)
+    if count:
+        message = f"3MF has no triangles with a repeated corner; {count} of them were left out."
+        found.append(Finding("degenerate", "warning", message, (), count))
+    said = said_of(mesh)
+    materials = {} if said is None else said.materials
+    behind = [one for one in materials.values() if one.texture and one.color != Material().color]
+    if behind:
+        message = f"3MF has no colour behind a picture; {len(behind)} of them were left out."
+        found.append(Finding("colors_left_out", "warning", message, (), len(behind)))
+    return tuple(found)
 
 
 def _repeats_corner(faces: IndexArray) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
@@ -79,8 +100,8 @@ def _repeats_corner(faces: IndexArray) -> "np.ndarray[tuple[int], np.dtype[np.bo
 
 def _model(mesh: Mesh | RawMesh) -> Iterator[str]:
     said = said_of(mesh)
-    colored = said is not None and "color" in said.names
-    more = f' xmlns:m="{_MATERIALS}"' if colored else ""
+    has_more = said is not None and not {"color", "uv"}.isdisjoint(said.names)
+    more = f' xmlns:m="{_MATERIALS}"' if has_more else ""
     yield f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}"{more}>\n'
     if says_empty_set(mesh):
         yield "<!-- bspcsg: the empty set -->\n"
@@ -101,7 +122,7 @@ def _model(mesh: Mesh | RawMesh) -> Iterator[str]:
     yield "</build>\n</model>\n"
 
 
-#: The number of the only group of properties; objects have those from 1 on.
+#: The number of the first group of properties; objects have those from 1 on.
 _GROUP = 1 << 30
 
 
@@ -124,28 +145,52 @@ def hex_of(color: Sequence[float]) -> str:
 
 
 def _properties(said: Attributes) -> tuple[list[str], Values]:
-    """Return the group of properties, and what each triangle says of them."""
+    """Return the groups of properties, and what each triangle says of them."""
     if "material" in said.face:
-        names = said.face["material"]
-        order = list(said.materials)
-        lines = [
-            f'<base name={quoteattr(called(name))} displaycolor="{hex_of(material.color)}"/>\n'
-            for name, material in said.materials.items()
-        ]
-        told = {name: f' pid="{_GROUP}" p1="{k}"' for k, name in enumerate(order)}
-        words = np.array([told.get(name, "") for name in names.tolist()], dtype=object)
-        return [f'<basematerials id="{_GROUP}">\n', *lines, "</basematerials>\n"], words
+        return _materials(said)
     corners = said.at_corners("color").reshape(-1, 4)
     colors, numbers = np.unique(corners, axis=0, return_inverse=True)
     lines = [f'<m:color color="#{bytes(color).hex().upper()}"/>\n' for color in colors.tolist()]
-    told_rows = numbers.reshape(-1, 3).tolist()
-    words = np.array([_corner_words(*row) for row in told_rows], dtype=object)
+    words = _corner_words(_GROUP, numbers)
     return [f'<m:colorgroup id="{_GROUP}">\n', *lines, "</m:colorgroup>\n"], words
 
 
-def _corner_words(first: int, second: int, third: int) -> str:
-    same = first == second == third
-    return f' pid="{_GROUP}" p1="{first}"' + ("" if same else f' p2="{second}" p3="{third}"')
+def _materials(said: Attributes) -> tuple[list[str], Values]:
+    """Return base materials and groups of texture coordinates, and what triangles say of them."""
+    names, pictures = said.face["material"], pictures_of(said.materials)
+    plain = {name: one for name, one in said.materials.items() if name not in pictures}
+    lines = [
+        f'<base name={quoteattr(called(name))} displaycolor="{hex_of(material.color)}"/>\n'
+        for name, material in plain.items()
+    ]
+    if lines:
+        lines = [f'<basematerials id="{_GROUP}">\n', *lines, "</basematerials>\n"]
+    told = {name: f' pid="{_GROUP}" p1="{k}"' for k, name in enumerate(plain)}
+    words = np.array([told.get(name, "") for name in names.tolist()], dtype=object)
+    for number, (name, picture) in enumerate(pictures.items()):
+        texture = _GROUP + 1 + 2 * number
+        rows = np.flatnonzero(names == name)
+        corners = said.at_corners("uv", rows).reshape(-1, 2)
+        places, numbers = np.unique(corners, axis=0, return_inverse=True)
+        words[rows] = _corner_words(texture + 1, numbers)
+        lines.append(
+            f'<m:texture2d id="{texture}" path={quoteattr(picture.path)}'
+            f' contenttype="{picture.media}"/>\n<m:texture2dgroup id="{texture + 1}"'
+            f' texid="{texture}">\n'
+        )
+        lines += [f'<m:tex2coord u="{u!r}" v="{v!r}"/>\n' for u, v in places.tolist()]
+        lines.append("</m:texture2dgroup>\n")
+    return lines, words
+
+
+def _corner_words(group: int, numbers: IndexArray) -> Values:
+    """Return what triangles say that have these numbers of a group at their corners."""
+    words: list[str] = []
+    for first, second, third in numbers.reshape(-1, 3).tolist():
+        same = first == second == third
+        more = "" if same else f' p2="{second}" p3="{third}"'
+        words.append(f' pid="{group}" p1="{first}"{more}')
+    return np.array(words, dtype=object)
 
 
 def _object(
