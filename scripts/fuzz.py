@@ -3,8 +3,9 @@
     scripts/fuzz [--minutes N] [--seed S] [TARGET ...]
 
 Targets of the core (`fuzz/`) and of the readers are led by coverage, and their corpora are kept in
-`.fuzz`; scenes and files come by rounds. Both go on where they stopped. What was run is added to
-`scripts/records/fuzz.json`; a wrong scene is made small and put into `tests/corpus/cases`.
+`.fuzz`; scenes, scenes of sizes and files come by rounds. Both go on where they stopped. What was
+run is added to `scripts/records/fuzz.json`; a wrong scene is made small and put into
+`tests/corpus/cases`.
 """
 
 import argparse
@@ -22,7 +23,7 @@ from recording import REPOSITORY
 #: Where corpora, what was found, and the next rounds are kept.
 FOLDER = REPOSITORY / ".fuzz"
 
-TARGETS = [*CORE, "readers", "scenes", "files"]
+TARGETS = [*CORE, "readers", "scenes", "sizes", "files"]
 
 
 def main() -> int:

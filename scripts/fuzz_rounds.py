@@ -74,7 +74,7 @@ class Rounds:
 def rounds(name: str, seed: int, first: int, until: float) -> None:
     """Run rounds, and say so."""
     resource.setrlimit(resource.RLIMIT_AS, (MEGABYTES << 20, MEGABYTES << 20))
-    judge = {"scenes": one_scene, "files": one_file}[name]
+    judge = {"scenes": one_scene, "sizes": one_size, "files": one_file}[name]
     at = first
     while time.monotonic() < until:
         tell(at, [], "")
@@ -109,6 +109,14 @@ def one_scene(seed: int, at: int) -> tuple[list[str], str]:
     return wrong, str(keep_case(CASES, f"scene_{seed}_{at}", shrunk(scene, judge), why))
 
 
+def one_size(seed: int, at: int) -> tuple[list[str], str]:
+    """Judge a scene with large operands; cases of the corpus are small, so a round names it."""
+    from fuzzing.sizes import judge_sized, sized_scene
+
+    wrong = judge_sized(sized_scene(np.random.default_rng([seed, at])))
+    return wrong, f"round {at} of seed {seed}"
+
+
 def one_file(seed: int, at: int) -> tuple[list[str], str]:
     """Judge a file of the format whose turn it is."""
     from fuzzing.files import FORMATS, judge_file, random_file
@@ -121,7 +129,7 @@ def one_file(seed: int, at: int) -> tuple[list[str], str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("name", choices=["scenes", "files"])
+    parser.add_argument("name", choices=["scenes", "sizes", "files"])
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--first", type=int, required=True)
     parser.add_argument("--seconds", type=float, required=True)

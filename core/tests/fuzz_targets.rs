@@ -1,4 +1,8 @@
-//! Every target holds on its seeds and on damaged copies of them, without libFuzzer.
+//! Every target holds on its seeds and on damaged copies of them, and on what it once failed on,
+//! without libFuzzer.
+
+use std::fs;
+use std::path::Path;
 
 #[path = "../../fuzz/src/scene.rs"]
 mod scene;
@@ -22,6 +26,18 @@ fn holds_around_its_seeds(name: &str, target: fn(&[u8])) {
             damaged[place] = damaged[place].wrapping_mul(5).wrapping_add(71);
             damaged.truncate(seed.len() - round * seed.len() / 16);
             target(&damaged);
+        }
+    }
+}
+
+/// The targets' inputs that were once answered wrong, or judged wrong.
+#[test]
+fn kept() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/kept");
+    let targets: [(&str, fn(&[u8])); 1] = [("section", targets::section)];
+    for (name, target) in targets {
+        for entry in fs::read_dir(folder.join(name)).expect("a folder for each target") {
+            target(&fs::read(entry.expect("an entry").path()).expect("a file"));
         }
     }
 }

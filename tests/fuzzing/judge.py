@@ -11,12 +11,27 @@ import numpy as np
 import bspcsg as b
 from bspcsg.verify import oracle
 
-from .places import Point, Surface, UndecidedError, dot, less, location, normal, windings
-from .scenes import CALLS, PITCH, UNIT, Body, Scene
+from .places import (
+    Balls,
+    Point,
+    Surface,
+    Triangle,
+    UndecidedError,
+    cross,
+    dot,
+    less,
+    location,
+    normal,
+    windings,
+)
+from .scenes import CALLS, PITCH, UNIT, Body, Scene, text_of
 
 #: Points nearer to a face than this many units are not looked for in the rounded mesh: far more
 #: than rounding moves its vertices by, at coordinates below 1000.
 CLEAR = 1e-6
+
+#: Steps in a unit in which meshes are looked at: what that moves vertices by is far below a step.
+FINE = 2**40
 
 #: How much volume, of each unit of area, manifold3d may gain or lose where it merges what is near.
 MERGED = 1e-4
@@ -68,16 +83,19 @@ def judge(scene: Scene, kernel: Kernel | None = None) -> list[str]:
         return [f"error {error.code}: {type(error).__name__}: {error.message}"]
 
 
+def evaluated(scene: Scene, kernel: Kernel) -> tuple[list["b.Solid"], "b.Solid"]:
+    """Return the operands, moved, and what the expression makes of them."""
+    names = {chr(ord("a") + k): kernel.solid(body) for k, body in enumerate(scene.bodies)}
+    moved = (text_of(k, scene.bodies) for k in range(len(scene.bodies)))
+    operands = [kernel.evaluate(text, names) for text in moved]
+    return operands, kernel.evaluate(scene.text(), names)
+
+
 class _Trial:
     def __init__(self, scene: Scene, kernel: Kernel) -> None:
         self.scene, self.kernel = scene, kernel
         self.sets = scene.known()
-        names = {chr(ord("a") + k): kernel.solid(body) for k, body in enumerate(scene.bodies)}
-        self.operands = [
-            kernel.evaluate(Scene((body,), 0, ()).text().replace("a", name, 1), names)
-            for name, body in zip(names, scene.bodies, strict=True)
-        ]
-        self.result = kernel.evaluate(scene.text(), names)
+        self.operands, self.result = evaluated(scene, kernel)
 
     def complaints(self) -> Any:
         """Yield what is wrong."""
@@ -150,23 +168,18 @@ class _Trial:
         if _count_fans(after) != len(mesh.vertices):
             yield "mesh: a vertex is not used, or has several fans"
         exact = self.kernel.volume(self.result)
-        six = Fraction(0)
-        corners = [[Fraction(x) for x in p] for p in mesh.vertices.tolist()]
-        for p, q, r in faces:
-            six += _determinant(corners[p], corners[q], corners[r])
-        if abs(six / 6 - exact) > Fraction(mesh.area) / UNIT:
-            yield f"mesh: its volume is {float(six / 6)}, the set's {float(exact)}"
+        six = sum(dot(p, cross(q, r)) for p, q, r in _triangles(mesh))
+        volume = Fraction(six, 6 * FINE**3)
+        if abs(volume - exact) > Fraction(mesh.area) / UNIT:
+            yield f"mesh: its volume is {float(volume)}, the set's {float(exact)}"
 
     def _inside_mesh(self, mesh: "b.Mesh") -> Any:
         """Compare points well clear of all faces with the winding numbers of the mesh."""
-        scale = 2**40
-        corners = [tuple(round(x * scale) for x in p) for p in mesh.vertices.tolist()]
-        triangles: Any = [tuple(corners[k] for k in face) for face in mesh.faces.tolist()]
-        proper = [each for each in triangles if normal(each) != (0, 0, 0)]
+        proper = Balls([each for each in _triangles(mesh) if normal(each) != (0, 0, 0)])
         for point in self.scene.points:
             if not self._is_clear(point):
                 continue
-            x, y, z = (round(Fraction(k, UNIT) * scale) for k in point)
+            x, y, z = (round(Fraction(k, UNIT) * FINE) for k in point)
             try:
                 [found] = windings(proper, (x, y, z), [()])
                 expected = location(self.sets, self.scene.value, point) > 0
@@ -176,10 +189,11 @@ class _Trial:
                 yield f"inside: the mesh winds {found} times around {point}"
 
     def _is_clear(self, point: Point) -> bool:
-        """Whether no face's plane, nor the border of a face near it, is near the point."""
+        """Whether no face that comes near the point has a plane near it."""
         for known in self.sets:
-            faces = known.triangles if isinstance(known, Surface) else (known.corners,)
-            for face in faces:
+            reach = CLEAR * UNIT
+            faces = known.balls.around(point, reach) if isinstance(known, Surface) else ()
+            for face in faces if isinstance(known, Surface) else (known.corners,):
                 n = normal(face)
                 away = abs(dot(n, less(point, face[0]))) / dot(n, n) ** 0.5 / UNIT
                 if away < CLEAR:
@@ -226,12 +240,10 @@ def _count_fans(after: dict[tuple[int, int], int]) -> int:
     return sum(fans.values())
 
 
-def _determinant(p: Sequence[Fraction], q: Sequence[Fraction], r: Sequence[Fraction]) -> Fraction:
-    return (
-        p[0] * (q[1] * r[2] - q[2] * r[1])
-        + p[1] * (q[2] * r[0] - q[0] * r[2])
-        + p[2] * (q[0] * r[1] - q[1] * r[0])
-    )
+def _triangles(mesh: "b.Mesh") -> list[Triangle]:
+    """Return the triangles in steps of 1 / FINE units."""
+    corners = [(round(x * FINE), round(y * FINE), round(z * FINE)) for x, y, z in mesh.vertices]
+    return [(corners[p], corners[q], corners[r]) for p, q, r in mesh.faces.tolist()]
 
 
 Judge = Callable[[Scene], list[str]]

@@ -6,9 +6,13 @@ predicates are linear in the place, so each is decided by its first value that i
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations, product
 from math import gcd
 from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
 
 Point: TypeAlias = tuple[int, int, int]
 Triangle: TypeAlias = tuple[Point, Point, Point]
@@ -32,8 +36,41 @@ RAYS: list[Point] = [
 ]
 
 
+#: More planes than this at one point divide its neighbourhood into too many parts to look at.
+PLANES = 12
+
+
 class UndecidedError(Exception):
-    """Every ray from a place meets an edge, or the place lies on a face."""
+    """Every ray from a place meets an edge, the place lies on a face, or many planes meet there."""
+
+
+class Balls:
+    """Triangles with a ball around each, which says of most that they are far away.
+
+    Balls are doubles, and larger by a step than they must be; what they do not exclude is looked at
+    in whole numbers.
+    """
+
+    def __init__(self, triangles: Sequence[Triangle]) -> None:
+        self.triangles = triangles
+        corners = np.array(triangles, dtype=np.float64).reshape(-1, 3, 3)
+        self._centres = corners.mean(axis=1)
+        arms = np.linalg.norm(corners - self._centres[:, None], axis=2)
+        self._radii = arms.max(axis=1, initial=0.0) * (1 + 1e-9) + 1.0
+
+    def around(self, point: Point, reach: float = 0.0) -> list[Triangle]:
+        """Return triangles among which are all that are so near to a point."""
+        away = np.linalg.norm(self._centres - np.array(point, dtype=np.float64), axis=1)
+        return self._chosen(away <= self._radii + reach)
+
+    def along(self, point: Point, ray: Point) -> list[Triangle]:
+        """Return triangles among which are all that a line through a point meets."""
+        arms = self._centres - np.array(point, dtype=np.float64)
+        away = np.linalg.norm(np.cross(arms, np.array(ray, dtype=np.float64)), axis=1)
+        return self._chosen(away <= self._radii * (1 + 1e-9) * dot(ray, ray) ** 0.5)
+
+    def _chosen(self, flags: npt.NDArray[np.bool_]) -> list[Triangle]:
+        return [self.triangles[k] for k in np.flatnonzero(flags).tolist()]
 
 
 @dataclass(frozen=True)
@@ -43,13 +80,18 @@ class Surface:
     triangles: tuple[Triangle, ...]
     rule: str = "positive"
 
+    @cached_property
+    def balls(self) -> Balls:
+        """The triangles, with balls around them."""
+        return Balls(self.triangles)
+
     def normals_at(self, point: Point) -> list[Point]:
         """Return the normals of the triangles that hold the point."""
-        return [normal(each) for each in self.triangles if touches(each, point)]
+        return [normal(each) for each in self.balls.around(point) if touches(each, point)]
 
     def sides(self, point: Point, places: Sequence[Steps]) -> list[bool]:
         """Return of each place beside a point whether it is inside."""
-        return [RULES[self.rule](number) for number in windings(self.triangles, point, places)]
+        return [RULES[self.rule](number) for number in windings(self.balls, point, places)]
 
 
 @dataclass(frozen=True)
@@ -82,37 +124,40 @@ def location(sets: Sequence[Known], value: Callable[[Sequence[bool]], bool], poi
     expression holds in some of the parts and not in others.
     """
     normals = sorted({reduced(n) for each in sets for n in each.normals_at(point)})
+    if len(normals) > PLANES:
+        raise UndecidedError
     places = around(normals)
     columns = [each.sides(point, places) for each in sets]
     held = {value(inside) for inside in zip(*columns, strict=True)}
     return 0 if len(held) == 2 else 1 if True in held else -1
 
 
-def windings(triangles: Sequence[Triangle], point: Point, places: Sequence[Steps]) -> Iterator[int]:
+def windings(balls: Balls, point: Point, places: Sequence[Steps]) -> Iterator[int]:
     """Yield how often triangles wind around each of the places beside a point."""
-    near = [each for each in triangles if touches(each, point)]
-    away = [each for each in triangles if not touches(each, point)]
+    near = [each for each in balls.around(point) if touches(each, point)]
     # What the point does not lie on is the same for all places, unless a ray meets its edges.
     kept: dict[Point, int] = {}
     for place in places:
-        yield _winding(away, near, point, place, kept)
+        yield _winding(balls, near, point, place, kept)
 
 
 def _winding(
-    away: Sequence[Triangle],
-    near: Sequence[Triangle],
-    point: Point,
-    place: Steps,
-    kept: dict[Point, int],
+    balls: Balls, near: Sequence[Triangle], point: Point, place: Steps, kept: dict[Point, int]
 ) -> int:
     for ray in RAYS:
         try:
             if ray not in kept:
-                kept[ray] = sum(crossing(each, point, (), ray) for each in away)
+                kept[ray] = _windings_away(balls, near, point, ray)
             return kept[ray] + sum(crossing(each, point, place, ray) for each in near)
         except UndecidedError:
             continue
     raise UndecidedError
+
+
+def _windings_away(balls: Balls, near: Sequence[Triangle], point: Point, ray: Point) -> int:
+    there = set(near)
+    away = [each for each in balls.along(point, ray) if each not in there]
+    return sum(crossing(each, point, (), ray) for each in away)
 
 
 def crossing(triangle: Triangle, point: Point, place: Steps, ray: Point) -> int:

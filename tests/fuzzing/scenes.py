@@ -53,6 +53,22 @@ class Part:
         return [(v[p], v[q], v[r]) for p, q, r in self.faces]
 
 
+def cuboid_part(low: Point, high: Point) -> Part:
+    """Return a box between two corners."""
+    ends = (low, high)
+    return Part(tuple((ends[i][0], ends[j][1], ends[k][2]) for i, j, k in _CUBE), _CUBE_FACES, True)
+
+
+def tetrahedron_part(corners: Sequence[Point]) -> Part | None:
+    """Return the tetrahedron of four points in any order; None if they lie in a plane."""
+    p, q, r, s = corners
+    turn = dot(cross(less(q, p), less(r, p)), less(s, p))
+    if turn == 0:
+        return None
+    ordered = (p, q, r, s) if turn > 0 else (p, r, q, s)
+    return Part(ordered, _TETRAHEDRON_FACES, True)
+
+
 @dataclass(frozen=True)
 class Motion:
     """A map that keeps lattice points on the lattice, and how Python says it.
@@ -225,13 +241,13 @@ def random_scene(rng: Rng) -> Scene:
     bodies = tuple(
         _random_body(rng, grid, reach, parts) for _ in range(int(rng.integers(1, OPERANDS + 1)))
     )
-    expression = _random_expression(rng, len(bodies))
+    expression = random_expression(rng, len(bodies))
     scene = Scene(bodies, expression, ())
     return replace(scene, points=_random_points(rng, scene.known(), grid, reach))
 
 
 def _random_body(rng: Rng, grid: int, reach: int, earlier: list[Part]) -> Body:
-    motions = tuple(_random_motion(rng, grid) for _ in range(int(rng.choice([0, 0, 1, 2]))))
+    motions = tuple(random_motion(rng, grid) for _ in range(int(rng.choice([0, 0, 1, 2]))))
     if rng.random() < 0.15:
         plane = _random_corners(rng, max(grid, UNIT // 10), reach, 3)
         surfaces = [part for part in earlier if _is_coarse(part)]
@@ -259,17 +275,14 @@ def _random_part(rng: Rng, grid: int, reach: int, earlier: Sequence[Part]) -> Pa
     if earlier and rng.random() < 0.3:
         return _nearly(rng, earlier[int(rng.integers(len(earlier)))])
     if rng.random() < 0.45:
-        corners = _random_corners(rng, grid, reach, 4)
-        p, q, r, s = corners
-        turn = dot(cross(less(q, p), less(r, p)), less(s, p))
-        if turn != 0:
-            ordered = (p, q, r, s) if turn > 0 else (p, r, q, s)
-            return Part(ordered, _TETRAHEDRON_FACES, True)
+        part = tetrahedron_part(_random_corners(rng, grid, reach, 4))
+        if part is not None:
+            return part
     first, second = _random_corners(rng, grid, reach, 2)
     low = [min(h, k) for h, k in zip(first, second, strict=True)]
     size = [abs(h - k) or grid for h, k in zip(first, second, strict=True)]
-    x, y, z = ([low[i], low[i] + size[i]] for i in range(3))
-    return Part(tuple((x[i], y[j], z[k]) for i, j, k in _CUBE), _CUBE_FACES, True)
+    x, y, z = low
+    return cuboid_part((x, y, z), (x + size[0], y + size[1], z + size[2]))
 
 
 def _nearly(rng: Rng, part: Part) -> Part:
@@ -287,13 +300,19 @@ def _nearly(rng: Rng, part: Part) -> Part:
     return Part(tuple(vertices), part.faces, part.plain and kind == 1)
 
 
+def random_plane(rng: Rng, grid: int, reach: int) -> Triangle | None:
+    """Return three points; None if they lie on a line."""
+    p, q, r = _random_corners(rng, grid, reach, 3)
+    return None if cross(less(q, p), less(r, p)) == (0, 0, 0) else (p, q, r)
+
+
 def _random_corners(rng: Rng, grid: int, reach: int, count: int) -> list[Point]:
     scale = UNIT // grid if grid == 1 else 1
     drawn = rng.integers(0, reach * scale + 1, (count, 3)).tolist()
     return [(x * grid, y * grid, z * grid) for x, y, z in drawn]
 
 
-def _random_motion(rng: Rng, grid: int) -> Motion:
+def random_motion(rng: Rng, grid: int) -> Motion:
     kind, axis = int(rng.integers(4)), int(rng.integers(3))
     if kind == 0:
         x, y, z = (int(k) * grid for k in rng.integers(-2, 3, 3))
@@ -317,10 +336,10 @@ def _matrix(rows: list[list[int]]) -> list[list[int]]:
     return [*([*row, 0] for row in rows), [0, 0, 0, 1]]
 
 
-def _random_expression(rng: Rng, operands: int) -> Expression:
+def random_expression(rng: Rng, operands: int) -> Expression:
     """Return an expression that names every operand."""
     values: list[Expression] = list(range(operands))
-    extra = int(rng.integers(0, OPERATIONS - operands + 1))
+    extra = int(rng.integers(0, max(OPERATIONS - operands, 0) + 1))
     values += [int(k) for k in rng.integers(0, operands, extra)]
     while len(values) > 1:
         first = values.pop(int(rng.integers(len(values))))
@@ -339,7 +358,7 @@ def _random_points(rng: Rng, sets: Sequence[Known], grid: int, reach: int) -> tu
     triangles = [each for known in sets for each in _triangles(known)]
     points = _random_corners(rng, max(grid // 4, 1), reach * 4 if grid > 3 else reach, 6)
     for k in rng.integers(0, len(triangles), 14).tolist():
-        points.append(_point_of(rng, triangles[k]))
+        points.append(point_of(rng, triangles[k]))
     for k in rng.integers(0, len(points), 6).tolist():
         x, y, z = points[k]
         dx, dy, dz = rng.integers(-2, 3, 3).tolist()
@@ -351,7 +370,7 @@ def _triangles(known: Known) -> Sequence[Triangle]:
     return known.triangles if isinstance(known, Surface) else (known.corners,)
 
 
-def _point_of(rng: Rng, triangle: Triangle) -> Point:
+def point_of(rng: Rng, triangle: Triangle) -> Point:
     """Return a lattice point of a triangle: a corner, or one on an edge or inside, if there is."""
     order = rng.permutation(3).tolist()
     p, q, r = (triangle[k] for k in order)

@@ -1,10 +1,12 @@
 """The random scenes, files and scripts of `scripts/fuzz`: a few of each, and what judges them."""
 
+import dataclasses
 import json
 from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 import bspcsg as b
@@ -12,19 +14,25 @@ from corpus.test_corpus import compare, evaluate
 from fuzzing.files import FORMATS, File, judge_file, random_file, same_meaning
 from fuzzing.judge import Kernel, judge
 from fuzzing.models import random_model
-from fuzzing.places import Below, Point, Surface, Triangle, location, windings
-from fuzzing.scenes import UNIT, Body, Part, Scene, random_scene
+from fuzzing.places import Balls, Below, Point, Surface, Triangle, location, windings
+from fuzzing.scenes import UNIT, Body, Part, Scene, cuboid_part, random_scene
 from fuzzing.shrink import case_of, keep_case, shrunk
+from fuzzing.sizes import a_size, ball, far_and_wide, judge_sized, sized_scene, thresholds
 from support import DEEP
-from support.shapes import cuboid
+from support.shapes import cuboid, octahedron
 
 ROUNDS = 2000 if DEEP else 25
+SIZED = 500 if DEEP else 5
 
 
 def triangles(low: Point, high: Point) -> tuple[Triangle, ...]:
     vertices, faces = cuboid(low, high)
-    whole = [(int(x), int(y), int(z)) for x, y, z in vertices.tolist()]
-    return tuple((whole[p], whole[q], whole[r]) for p, q, r in faces.tolist())
+    corners = whole(vertices)
+    return tuple((corners[p], corners[q], corners[r]) for p, q, r in faces.tolist())
+
+
+def whole(vertices: npt.NDArray[np.float64]) -> list[Point]:
+    return [(int(x), int(y), int(z)) for x, y, z in vertices.tolist()]
 
 
 BOX = Surface(triangles((0, 0, 0), (2, 4, 6)))
@@ -58,7 +66,7 @@ def test_a_wedge_of_one_step_is_seen() -> None:
 
 def test_rules_count_windings() -> None:
     twice = BOX.triangles * 2
-    assert list(windings(twice, (1, 1, 1), [()])) == [2]
+    assert list(windings(Balls(twice), (1, 1, 1), [()])) == [2]
     found = {rule: Surface(twice, rule).sides((1, 1, 1), [()]) for rule in ("nonzero", "even-odd")}
     assert found == {"nonzero": [True], "even-odd": [False]}
 
@@ -67,6 +75,51 @@ def test_rules_count_windings() -> None:
 def test_random_scenes() -> None:
     wrong = {k: judge(random_scene(np.random.default_rng([0, k]))) for k in range(ROUNDS)}
     assert not {k: found for k, found in wrong.items() if found}
+
+
+@pytest.mark.timeout(3600 if DEEP else 240)
+def test_random_scenes_of_sizes() -> None:
+    wrong = {k: judge_sized(sized_scene(np.random.default_rng([7, k]))) for k in range(SIZED)}
+    assert not {k: found for k, found in wrong.items() if found}
+
+
+def test_sizes_lie_on_both_sides_of_each_threshold_of_the_core() -> None:
+    found = thresholds()
+    assert {16, 512, 2000, 1 << 14} <= set(found) and len(found) > 12
+    drawn = {a_size(np.random.default_rng([3, k])) for k in range(1000)}
+    assert drawn == {size + more for size in found for more in (-1, 0, 1)}
+    counts = {k: len(ball(np.random.default_rng(k)).faces) for k in range(60)}
+    assert set(counts.values()) <= {size + more for size in found for more in (-2, -1, 0, 1)}
+    assert max(counts.values()) > 8000
+
+
+class Forgetful(Kernel):
+    """Loses a face far from the tool, or makes another mesh on several threads."""
+
+    def __init__(self, threads: int = 0) -> None:
+        self.threads, self.calls = threads, 0
+
+    def mesh(self, solid: "b.Solid") -> "b.Mesh":
+        mesh = super().mesh(solid)
+        self.calls += 1
+        if self.threads and self.calls <= self.threads:
+            return mesh
+        far = np.argsort(mesh.vertices[mesh.faces].mean(axis=1)[:, 0])
+        faces = np.roll(mesh.faces, 1, axis=0) if self.threads else mesh.faces[far[1:]]
+        return dataclasses.replace(mesh, faces=faces)
+
+
+def test_the_judge_of_sizes_notices() -> None:
+    vertices, faces = octahedron()
+    corners = tuple((x * 64 * UNIT, y * 64 * UNIT, z * 64 * UNIT) for x, y, z in whole(vertices))
+    large = Part(corners, tuple((p, q, r) for p, q, r in faces.tolist()), True)
+    tiny = cuboid_part((64 * UNIT - 5, -1, -1), (64 * UNIT + 5, 1, 1))
+    scene = Scene((Body((large,)), Body((tiny,))), ("-", 0, 1), ())
+    assert judge_sized(scene) == []
+    assert next(far_and_wide(scene, Forgetful())).startswith("untouched: the face")
+    assert list(far_and_wide(scene, Forgetful(threads=2))) == ["threads: 2 different meshes"]
+    turned = dataclasses.replace(scene, expression=("-", 1, 0))
+    assert judge_sized(turned) == []
 
 
 def test_scenes_ask_about_the_boundary() -> None:
