@@ -16,7 +16,7 @@ import numpy as np
 import bspcsg as b
 
 from .judge import Kernel, evaluated, judge
-from .places import Balls, Point, Surface, Triangle, cross, dot, less, normal, reduced
+from .places import Balls, Point, Surface, Triangle, cross, dot, less, minus, normal, reduced
 from .scenes import (
     UNIT,
     Body,
@@ -143,20 +143,40 @@ def _turned(face: Triangle) -> Triangle:
 
 
 def _far(faces: Sequence[Triangle], others: Sequence[Sequence[Triangle]]) -> list[Triangle]:
-    """Return the faces outside of the others' boxes, and in no plane of a face that is not."""
+    """Return the faces that must stay as they are, or go.
+
+    They lie outside of the others' boxes, in no plane of a face that may be cut, and beside no face
+    of their plane: where that is cut, corners in the middle of edges may go.
+    """
     corners = np.array(faces, dtype=np.float64).reshape(-1, 3, 3)
     near = np.zeros(len(faces), dtype=bool)
     for other in others:
         box = np.array(other, dtype=np.float64).reshape(-1, 3)
         low, high = box.min(axis=0), box.max(axis=0)
         near |= ((corners.max(axis=1) >= low) & (corners.min(axis=1) <= high)).all(axis=1)
-    cut = {_plane(faces[k]) for k in np.flatnonzero(near).tolist()}
-    rest = (faces[k] for k in np.flatnonzero(~near).tolist())
-    return [face for face in rest if _plane(face) not in cut]
+    planes = [_plane(face) for face in faces]
+    cut = {planes[k] for k in np.flatnonzero(near).tolist()}
+    cut |= {_plane(face) for other in others for face in other}
+    beside = {
+        edge: plane for face, plane in zip(faces, planes, strict=True) for edge in _edges(face)
+    }
+    return [
+        faces[k]
+        for k in np.flatnonzero(~near).tolist()
+        if planes[k] not in cut
+        and all(beside.get((q, p)) != planes[k] for p, q in _edges(faces[k]))
+    ]
+
+
+def _edges(face: Triangle) -> list[tuple[Point, Point]]:
+    p, q, r = face
+    return [(p, q), (q, r), (r, p)]
 
 
 def _plane(face: Triangle) -> tuple[Point, int]:
+    """Return the same for faces of one plane, whichever way they look."""
     n = reduced(normal(face))
+    n = max(n, minus(n))
     return n, dot(n, face[0])
 
 
