@@ -9,6 +9,7 @@ from ..bsp import Region
 from ..errors import BspcsgError, FormatError
 from ..solid.counting import counted
 from ..solid.solid import Solid
+from .making.apart import COMBINING, moved_apart
 from .making.polish import Polish, corners_and_levels, pitch_of, polished_pitch, snapped
 from .nodes import files as nodes_file
 from .nodes import hulls as nodes_hull
@@ -30,10 +31,6 @@ MAKERS = (
     nodes_file, nodes_hull, nodes_letters, nodes_move, nodes_plane,
     nodes_project, nodes_set, nodes_solid, nodes_sweep,
 )  # fmt: skip
-
-
-#: Nodes that combine their children where they stand.
-_COMBINING = frozenset({"group", "union", "color", "render", "difference", "intersection"})
 
 
 def node_names() -> tuple[str, ...]:
@@ -114,17 +111,16 @@ def evaluate(
 
 def _polished(tree: CsgTree, run: Evaluation) -> tuple[Geometry, Polish]:
     """Evaluate a tree, once more if polishing wants another lattice."""
-    rough = _Cache(run)
-    result = rough.geometry(_whole(tree))
-    pitch = _wanted_pitch(rough.parts) if run.polish else None
+    root = Node("union", (), tree.roots())
+    if not run.polish:
+        return _Cache(run).geometry(root), Polish()
+    root, rough = moved_apart(root), _Cache(run)
+    result = rough.geometry(root)
+    pitch = _wanted_pitch(rough.parts)
     if pitch is None:
         return result, Polish()
     fine = _Cache(run, pitch)
-    return fine.geometry(_whole(tree)), Polish(pitch, fine.moved)
-
-
-def _whole(tree: CsgTree) -> Node:
-    return Node("union", (), tree.roots())
+    return fine.geometry(root), Polish(pitch, fine.moved)
 
 
 def _wanted_pitch(parts: list[Solid | Region]) -> int | None:
@@ -165,7 +161,7 @@ class _Cache:
         done: list[int] = []
         while waiting:
             node, scope, outer = waiting.pop()
-            combines = outer and node.name in _COMBINING
+            combines = outer and node.name in COMBINING
             children = [child for child in node.children if not child.is_ignored]
             if scope is not None:
                 inner = inherited(scope, node)

@@ -44,7 +44,7 @@ fn assert_same_in_pools(large: &Shape, tool: &Shape, context: &str) {
     };
     assert_eq!(rest.plus(common), *whole, "{context}");
     assert_eq!(joint.minus(common), *either, "{context}");
-    for threads in [1, 2, 4] {
+    for threads in [1, 4] {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
         let inside = pool
             .expect("a pool")
@@ -72,9 +72,9 @@ fn tool(numbers: &mut Numbers, large: &Shape) -> Shape {
 #[test]
 fn tiny_tools_on_balls() {
     let mut numbers = Numbers::new(21);
-    for levels in [2, 3, 4, 5] {
+    for levels in [2, 3, 5] {
         let ball = Shape::sphere([0; 3], RADIUS as f64, levels);
-        for round in 0..if levels == 5 { 2 } else { 5 } {
+        for round in 0..if levels == 5 { 1 } else { 3 } {
             let tool = tool(&mut numbers, &ball);
             assert_same_in_pools(&ball, &tool, &format!("ball {levels}, round {round}"));
         }
@@ -85,19 +85,17 @@ fn tiny_tools_on_balls() {
 fn few_of_many_parts() {
     let mut numbers = Numbers::new(22);
     // Parts of 12 faces: around 64, 512, 2000 and 2^14 of them.
-    for count in [5, 6, 42, 43, 166, 167, 1365, 1366] {
+    for count in [5, 6, 42, 43, 166, 167, 1366] {
         let parts = boxes(count);
-        for round in 0..if count > 1000 { 1 } else { 3 } {
-            let tool = tool(&mut numbers, &parts);
-            assert_same_in_pools(&parts, &tool, &format!("{count} boxes, round {round}"));
-        }
+        let tool = tool(&mut numbers, &parts);
+        assert_same_in_pools(&parts, &tool, &format!("{count} boxes"));
     }
 }
 
 #[test]
 fn plates_through_many_parts() {
-    // Around 16, 64, 256 and 512 boxes that are cut, all in one plane.
-    for count in [15, 16, 17, 63, 64, 65, 255, 256, 257, 511, 513] {
+    // 16, 64 and 256 boxes, and one more, that are cut, all in one plane.
+    for count in [16, 17, 64, 65, 256, 257] {
         let parts = boxes(count);
         let far = 64 * RADIUS;
         let plate = Shape::cuboid([-far, -far, RADIUS / 2], [far, far, RADIUS / 2 + 1]);

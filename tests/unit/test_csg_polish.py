@@ -1,6 +1,7 @@
 """Corners of scripts that meet but for their six digits."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -21,6 +22,46 @@ def test_polish_makes_turned_boxes_meet() -> None:
     assert len(polished.to_trimesh().vertices) == 12
     assert polished.volume == pytest.approx(4000, rel=2e-5)
     assert polished.tree.pitch == -4
+
+
+MOVES = {
+    "a translation": "[[1, 0, 0, 5], [0, 1, 0, -3], [0, 0, 1, 0.25], [0, 0, 0, 1]]",
+    "a mirror": "[[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]",
+    "a quarter turn": "[[0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]]",
+}
+
+
+@pytest.mark.parametrize("move", MOVES)
+@pytest.mark.parametrize("around", ["{}", "group() {{ {} }}", "render() {{ union() {{ {} }} }}"])
+def test_polish_reaches_parts_inside_of_moves(move: str, around: str) -> None:
+    turn = (
+        "multmatrix([[0.866025, -0.5, 0, {}], [0.5, 0.866025, 0, {}], [0, 0, 1, 0], [0, 0, 0, 1]])"
+    )
+    inner = turn.format(0, 0) + "cube([30, 10, 10]);" + turn.format("25.9808", 15) + "cube(10);"
+    inner = around.format(inner + " %sphere(50);")
+    text = f"multmatrix({MOVES[move]}) multmatrix({MOVES['a translation']}) {{ {inner} }}"
+    rough, polished = csg.loads(text), csg.loads(text, polish=True)
+    assert len(rough.to_mesh().vertices) == 16
+    assert len(polished.to_mesh().vertices) == 12
+    assert polished.volume == pytest.approx(4000, rel=2e-5)
+    assert polished.bounds == pytest.approx(rough.bounds, abs=1e-3)
+
+
+def test_polish_moves_differences_part_by_part() -> None:
+    turn = "multmatrix([[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]])"
+    flat = "multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 0], [0, 0, 0, 1]])"
+    inner = "difference() { cube(4); cube([2, 2, 4]); %cube(9); } intersection() { }"
+    for text, volume in [(f"{turn} {{ {inner} }}", 48), (f"cube(1); {flat} {{ {inner} }}", 1)]:
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            assert csg.loads(text, polish=True).volume == pytest.approx(volume)
+        assert len(said) == (1 if volume == 1 else 0)
+
+
+def test_polish_takes_moves_nested_to_any_depth() -> None:
+    step = "multmatrix([[1, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])"
+    solid = csg.loads(step * 300 + "{ cube(1); cube([2, 1, 1]); }", polish=True)
+    assert solid.volume == 2 and solid.bounds is not None and solid.bounds[0, 0] == 150
 
 
 @pytest.mark.parametrize("size", [0.03, 10, 700])
