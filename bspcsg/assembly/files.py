@@ -16,10 +16,11 @@ from ..formats.atomic import write_file
 from ..formats.files import form_of, read, write
 from ..formats.glb import scene as glb
 from ..formats.raw import RawMesh, joined, parts_of
-from ..formats.scene import SceneNode, are_alike
+from ..formats.scene import SceneNode, are_alike, say_alike
 from ..formats.solids import solid_of
 from ..formats.source import Source, content_of
 from ..formats.threemf import scene as threemf
+from ..formats.threemf.properties import kept
 from ..formats.threemf.write import called
 from ..geometry import transform
 from ..solid.solid import Solid
@@ -114,15 +115,17 @@ def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...
         raise FormatError(message, "too_large") from None
     if scene is None:
         raise FormatError(f"{os.fspath(path)}: no part of the assembly has volume.", "empty")
-    scene = _in_bytes(scene) if suffix == ".3mf" else glb.as_written(scene)
+    given = scene
+    scene = _Held().node(scene) if suffix == ".3mf" else glb.as_written(scene)
 
     def prove(data: bytes) -> None:
-        if not are_alike(scene, _decoded(os.fspath(path), data, suffix)):
+        found = _decoded(os.fspath(path), data, suffix)
+        if not are_alike(scene, found) or (suffix == ".3mf" and not say_alike(scene, found)):
             message = f"{os.fspath(path)}: the file that was written is not the assembly."
             raise FormatError(message, "write_mismatch")
 
     write_file(path, _TREES[suffix][1](scene), prove)
-    return (*_lost(scene, suffix), *_empty(describing.empty))
+    return (*_lost(given, scene), *_empty(describing.empty))
 
 
 def _empty(count: int) -> tuple[Finding, ...]:
@@ -174,26 +177,38 @@ def _raw(solid: Solid, name: str, in_single: bool) -> RawMesh:
     return RawMesh(vertices.astype(np.float64), mesh.faces, name, attributes=said)
 
 
-def _in_bytes(node: SceneNode) -> SceneNode:
-    """Return a tree with the colours that 3MF can hold."""
-    color = node.color and tuple(round(value * _BYTE) / _BYTE for value in node.color)
-    children = tuple(map(_in_bytes, node.children))
-    return SceneNode(node.name, node.matrix, node.mesh, color, children)
+class _Held:
+    """A tree with the colours and attributes that 3MF holds; what nodes share stays shared."""
+
+    def __init__(self) -> None:
+        self._meshes: dict[int, RawMesh] = {}
+
+    def node(self, node: SceneNode) -> SceneNode:
+        """Return a node as it is held."""
+        color = node.color and tuple(round(value * _BYTE) / _BYTE for value in node.color)
+        mesh = None if node.mesh is None else self._mesh(node.mesh)
+        return SceneNode(node.name, node.matrix, mesh, color, tuple(map(self.node, node.children)))
+
+    def _mesh(self, mesh: RawMesh) -> RawMesh:
+        if id(mesh) not in self._meshes:
+            held = None if mesh.attributes is None else kept(mesh.attributes)
+            said = None if held is None or held.is_empty else held
+            self._meshes[id(mesh)] = replace(mesh, attributes=said)
+        return self._meshes[id(mesh)]
 
 
-def _lost(scene: SceneNode, suffix: str) -> tuple[Finding, ...]:
-    """Return the finding about attributes of 3MF's components, which have colours only."""
-    said = {
-        name
-        for node in scene.walk()
-        if node.mesh is not None and node.mesh.attributes is not None
-        for name in node.mesh.attributes.names
-    }
-    if suffix != ".3mf" or not said:
+def _lost(given: SceneNode, written: SceneNode) -> tuple[Finding, ...]:
+    """Return the finding about attributes that 3MF has no room for."""
+    lost: set[str] = set()
+    for node, held in zip(given.walk(), written.walk(), strict=True):
+        if node.mesh is not None and held.mesh is not None and node.mesh.attributes is not None:
+            names = () if held.mesh.attributes is None else held.mesh.attributes.names
+            lost.update(set(node.mesh.attributes.names).difference(names))
+    if not lost:
         return ()
-    told = ", ".join(f"“{name}”" for name in sorted(said))
-    message = f"components of 3MF are written without attributes: {told} were left out."
-    return (Finding("attributes_left_out", "warning", message, (), len(said)),)
+    told = ", ".join(f"“{name}”" for name in sorted(lost))
+    message = f"3MF has no room for attributes: {told} were left out."
+    return (Finding("attributes_left_out", "warning", message, (), len(lost)),)
 
 
 def _in_place(assembly: Assembly) -> RawMesh:

@@ -280,8 +280,9 @@ class Assembly:
     def save(self, path: str | os.PathLike[str]) -> tuple[Finding, ...]:
         """Write the assembly; the suffix names the format.
 
-        3MF and GLB keep the tree, its names and colours, and that instances share geometry; OBJ
-        holds each part as an object in its place, ``.csg`` each part under its colour.
+        3MF and GLB keep the tree, its names and colours, that instances share geometry, and what
+        faces say as far as `bspcsg.save` does; OBJ holds each part as an object in its place,
+        ``.csg`` each part under its colour.
 
         Returns
         -------

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._types import FloatArray
+from ..attributes.attributes import Attributes
 from .raw import RawMesh
 
 
@@ -62,3 +63,24 @@ def are_alike(one: SceneNode, other: SceneNode) -> bool:
 
 def _same(one: RawMesh, other: RawMesh) -> bool:
     return np.array_equal(one.vertices[one.faces], other.vertices[other.faces])
+
+
+def say_alike(one: SceneNode, other: SceneNode) -> bool:
+    """Say whether the meshes of two trees that are alike say the same, colours of nodes apart."""
+    pairs = zip(one.walk(), other.walk(), strict=False)
+    return all(
+        _as_said(a.mesh.attributes, b.mesh.attributes)
+        for a, b in pairs
+        if a.mesh is not None and b.mesh is not None and a.color is None
+    )
+
+
+def _as_said(one: Attributes | None, other: Attributes | None) -> bool:
+    names = set() if one is None else set(one.names)
+    if names != (set() if other is None else set(other.names)):
+        return False
+    if one is None or other is None:
+        return True
+    values = ((one.at_corners(name), other.at_corners(name)) for name in names)
+    same = all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in values)
+    return same and all(other.materials.get(name) == it for name, it in one.materials.items())

@@ -77,11 +77,15 @@ def test_colours_are_as_given(tmp_path: Path, kind: str) -> None:
 
 def test_assemblies_are_built_of_components(tmp_path: Path) -> None:
     nut = b.Assembly("nut", b.cube(1), color=(1, 0, 0))
-    b.Assembly("all", [nut, nut.translate(3, 0, 0)]).save(tmp_path / "x.3mf")
+    given = {"face_attributes": {"material": np.full(12, "wood")}}
+    wood = shape(**given, corner_attributes={"uv": RNG.uniform(size=(12, 3, 2))})
+    parts = [nut, nut.translate(3, 0, 0), b.Assembly("plank", wood)]
+    b.Assembly("all", parts).save(tmp_path / "x.3mf")
     model = strict(tmp_path / "x.3mf")
     (whole,) = all_of(model.GetBuildItems(), "GetCurrent")
     assert whole.GetObjectResource().GetName() == "all"
-    assert len(all_of(model.GetMeshObjects(), "GetCurrentMeshObject")) == 1
+    assert len(all_of(model.GetMeshObjects(), "GetCurrentMeshObject")) == 2
+    assert len(all_of(model.GetTexture2Ds(), "GetCurrentTexture2D")) == 1
 
 
 def test_what_lib3mf_writes_is_read(tmp_path: Path) -> None:

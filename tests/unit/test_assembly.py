@@ -2,11 +2,13 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import bspcsg as b
+from support.pictures import PIXEL
 
 RED, GREY = (1.0, 0.0, 0.0, 1.0), (0.2, 0.2, 0.2, 1.0)
 
@@ -189,22 +191,50 @@ def test_instances_take_the_room_of_one(tmp_path: Path) -> None:
         assert sizes[0] < 1.5 * sizes[1]
 
 
-def test_textures_travel_in_glb_and_are_named_in_3mf(tmp_path: Path) -> None:
+@pytest.mark.parametrize("suffix", [".3mf", ".glb"])
+def test_textures_and_colours_travel_with_parts(tmp_path: Path, suffix: str) -> None:
     mesh = b.cube(1).to_mesh()
-    solid = b.Solid(
-        mesh.vertices,
-        mesh.faces,
-        face_attributes={"material": np.full(12, "wood")},
-        corner_attributes={"uv": np.zeros((12, 3, 2))},
-        materials={"wood": b.Material((0.5, 0.25, 0))},
+    uv = np.arange(72).reshape(12, 3, 2) / 64
+
+    def said(**given: Any) -> b.Solid:
+        return b.Solid(mesh.vertices, mesh.faces, **given)
+
+    wood = said(
+        face_attributes={"material": np.repeat(["wood", "paint", ""], 4)},
+        corner_attributes={"uv": uv},
+        materials={"wood": b.Material(texture=PIXEL), "paint": b.Material((0, 0.2, 1))},
     )
-    made = b.Assembly("desk", [b.Assembly("top", solid), b.Assembly("leg", b.cube(1))])
-    made.save(tmp_path / "x.glb")
-    told = b.Assembly.load(tmp_path / "x.glb")["top"].solid.to_mesh()
-    assert told.attributes.at_corners("uv").shape == (12, 3, 2)
-    assert told.materials == {"wood": b.Material((0.5, 0.25, 0))}
-    (finding,) = made.save(tmp_path / "x.3mf")
-    assert finding.code == "attributes_left_out"
+    other = said(
+        face_attributes={"material": np.full(12, "wood")},
+        corner_attributes={"uv": uv + 1},
+        materials={"wood": b.Material(texture=PIXEL)},
+    )
+    colors = np.arange(48, dtype=np.uint8).reshape(12, 4)
+    top = b.Assembly("top", wood)
+    parts = [top, top.translate(3, 0, 0), b.Assembly("side", other)]
+    parts += [b.Assembly("plate", said(face_attributes={"color": colors}))]
+    made = b.Assembly("desk", [*parts, b.Assembly("leg", b.cube(1), color=RED)])
+    assert made.save(tmp_path / f"x{suffix}") == ()
+    again = b.Assembly.load(tmp_path / f"x{suffix}")
+    assert again.parts[0].shape is again.parts[1].shape and again["desk/leg"].color == RED
+    found = again["desk/top"].solid.to_mesh()
+    assert found.attributes is not None and found.materials["wood"].texture == PIXEL
+    names = found.face_attributes["material"]
+    assert names.tolist() == ["wood"] * 4 + ["paint"] * 4 + [""] * 4
+    assert np.allclose(found.attributes.at_corners("uv")[:4], uv[:4])
+    side = again["desk/side"].solid.to_mesh()
+    assert side.attributes is not None and set(side.materials) == {"wood"}
+    assert np.allclose(side.attributes.at_corners("uv"), uv + 1)
+    plate = again["desk/plate"].solid.to_mesh()
+    assert plate.attributes is not None
+    assert (plate.attributes.at_corners("color")[:, 0] == colors).all()
+
+
+def test_what_parts_say_that_3mf_cannot_hold_is_named(tmp_path: Path) -> None:
+    mesh = b.cube(1).to_mesh()
+    warm = b.Solid(mesh.vertices, mesh.faces, vertex_attributes={"heat": np.arange(8.0)})
+    (finding,) = b.Assembly("stove", [b.Assembly("top", warm)]).save(tmp_path / "x.3mf")
+    assert finding.code == "attributes_left_out" and "“heat”" in finding.message
 
 
 def test_objects_of_obj_are_parts_in_their_places(tmp_path: Path) -> None:

@@ -18,7 +18,8 @@ from ..source import Source
 from .file import DAMAGES, Package
 from .part import MILLIMETRES, ModelPart, Object, PlacedObject
 from .properties import properties_of
-from .write import BEGIN, called, hex_of, mesh_object, packed
+from .textures import Resources
+from .write import beginning, called, hex_of, mesh_object, packed, properties
 
 #: The part number of an object that only gives its component another name.
 _INSTANCE = "bspcsg:instance"
@@ -102,13 +103,16 @@ def _color(part: ModelPart, told: Object) -> tuple[float, ...] | None:
 
 def encode(root: SceneNode) -> Iterator[bytes]:
     """Yield the package of a tree; what is at several nodes is there once."""
-    yield packed(iter([*_model(root)]))
+    resources = Resources(1)
+    lines = [*_model(root, resources)]
+    yield packed(iter(lines), resources.pictures)
 
 
-def _model(root: SceneNode) -> Iterator[str]:
-    writing = _Writing(root)
+def _model(root: SceneNode, resources: Resources) -> Iterator[str]:
+    writing = _Writing(root, resources)
     top = writing.object_of(root)
-    yield BEGIN
+    meshes = (node.mesh for node in root.walk() if node.mesh is not None)
+    yield beginning(mesh.attributes for mesh in meshes if mesh.attributes is not None)
     yield "<resources>\n"
     yield from writing.lines
     yield f'</resources>\n<build>\n<item objectid="{top}"{_transform(root.matrix)}/>\n</build>\n'
@@ -118,26 +122,22 @@ def _model(root: SceneNode) -> Iterator[str]:
 class _Writing:
     """The objects of a package, each after those that it names."""
 
-    def __init__(self, root: SceneNode) -> None:
+    def __init__(self, root: SceneNode, resources: Resources) -> None:
         self.lines: list[str] = []
+        self._resources = resources
         self._numbers: dict[tuple[int, tuple[float, ...] | None], tuple[int, str]] = {}
-        self._next = 1
         self._colors: dict[tuple[float, ...], int] = {}
         for node in root.walk():
             if node.color is not None:
                 self._colors.setdefault(node.color, len(self._colors))
         if self._colors:
-            self._group = self._free()
+            self._group = resources.free()
             self.lines.append(f'<basematerials id="{self._group}">\n')
             self.lines += [
                 f'<base name="{hex_of(color)}" displaycolor="{hex_of(color)}"/>\n'
                 for color in self._colors
             ]
             self.lines.append("</basematerials>\n")
-
-    def _free(self) -> int:
-        self._next += 1
-        return self._next - 1
 
     def object_of(self, node: SceneNode) -> int:
         """Write a node and all in it, and return the number of its object."""
@@ -149,19 +149,22 @@ class _Writing:
     def _leaf(self, node: SceneNode, mesh: RawMesh) -> int:
         key = (id(mesh), node.color)
         if key not in self._numbers:
-            number = self._free()
-            self._numbers[key] = (number, node.name)
-            painted = ""
+            painted, words = "", None
             if node.color is not None:
                 painted = f' pid="{self._group}" pindex="{self._colors[node.color]}"'
-            self.lines += mesh_object(number, node.name, mesh.vertices, mesh.faces, painted)
+            elif mesh.attributes is not None:
+                groups, words = properties(mesh.attributes, self._resources)
+                self.lines += groups
+            number = self._resources.free()
+            self._numbers[key] = (number, node.name)
+            self.lines += mesh_object(number, node.name, mesh, painted, words)
         number, name = self._numbers[key]
         if name == node.name:
             return number
         return self._components(node.name, [(number, _IDENTITY)], _INSTANCE)
 
     def _components(self, name: str, inner: list[tuple[int, FloatArray]], mark: str) -> int:
-        number = self._free()
+        number = self._resources.free()
         named = f" name={quoteattr(called(name))}" if name else ""
         marked = f' partnumber="{mark}"' if mark else ""
         self.lines.append(f'<object id="{number}" type="model"{named}{marked}><components>\n')

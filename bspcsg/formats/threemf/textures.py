@@ -4,9 +4,10 @@
 the lower left corner of the picture, as those of attributes do.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from urllib.parse import quote, unquote
+from xml.sax.saxutils import quoteattr
 
 from ...attributes.material import Material
 
@@ -38,13 +39,43 @@ class Picture:
     data: bytes
 
 
-def pictures_of(materials: Mapping[str, Material]) -> dict[str, Picture]:
-    """Return the pictures of those materials that have one, by names."""
-    textured = {name: one for name, one in materials.items() if one.texture is not None}
-    return {
-        name: Picture(_path(number, name, one.media or ""), one.media or "", one.texture or b"")
-        for number, (name, one) in enumerate(textured.items(), 1)
-    }
+class Resources:
+    """Numbers of a model's resources, and the pictures among them.
+
+    Parameters
+    ----------
+    first : int
+        The lowest number.
+    """
+
+    def __init__(self, first: int) -> None:
+        self._next = first
+        self._pictures: dict[tuple[str, bytes], Picture] = {}
+        self._textures: dict[str, int] = {}
+
+    def free(self) -> int:
+        """Return the next number."""
+        self._next += 1
+        return self._next - 1
+
+    @property
+    def pictures(self) -> list[Picture]:
+        """All pictures so far."""
+        return list(self._pictures.values())
+
+    def picture(self, name: str, material: Material) -> Picture:
+        """Return the picture of a material; the same of the same name is one part."""
+        data, media = material.texture or b"", material.media or ""
+        path = _path(len(self._pictures) + 1, name, media)
+        return self._pictures.setdefault((name, data), Picture(path, media, data))
+
+    def texture(self, picture: Picture) -> tuple[int, list[str]]:
+        """Return the number of a picture's texture, and what says so unless that was said."""
+        if picture.path in self._textures:
+            return self._textures[picture.path], []
+        number = self._textures[picture.path] = self.free()
+        path = quoteattr(picture.path)
+        return number, [f'<m:texture2d id="{number}" path={path} contenttype="{picture.media}"/>\n']
 
 
 def _path(number: int, name: str, media: str) -> str:
@@ -70,13 +101,13 @@ def fit_for_parts(names: list[str]) -> dict[str, str]:
     return found
 
 
-def content_types(pictures: Mapping[str, Picture]) -> str:
+def content_types(pictures: Iterable[Picture]) -> str:
     """Return what the types of a package say about its pictures."""
-    media = sorted({one.media for one in pictures.values()})
+    media = sorted({one.media for one in pictures})
     return "".join(f'<Default Extension="{_SUFFIXES[one]}" ContentType="{one}"/>' for one in media)
 
 
-def relations(pictures: Mapping[str, Picture]) -> Iterator[str]:
+def relations(pictures: Iterable[Picture]) -> Iterator[str]:
     """Yield what relates the model to its pictures."""
-    for number, one in enumerate(pictures.values()):
+    for number, one in enumerate(pictures):
         yield f'<Relationship Id="rel{number}" Target="{one.path}" Type="{_TEXTURE}"/>\n'

@@ -8,7 +8,7 @@ import io
 import itertools
 import re
 import zipfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -20,7 +20,7 @@ from ...errors import Finding
 from ...mesh.mesh import Mesh
 from ..raw import RawMesh, compacted, empty_set, parts_of, says_empty_set
 from ..said import said_of
-from .textures import Picture, content_types, pictures_of, relations
+from .textures import Picture, Resources, content_types, relations
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _MATERIALS = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02"
@@ -46,25 +46,27 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)
 
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the package; every coordinate reads back as the same double."""
-    said = said_of(mesh)
-    yield packed(_model(mesh), {} if said is None else pictures_of(said.materials))
+    said, resources = said_of(mesh), Resources(_GROUP)
+    for name, one in ({} if said is None else said.materials).items():
+        if one.texture is not None:
+            resources.picture(name, one)
+    yield packed(_model(mesh, resources), resources.pictures)
 
 
-def packed(model: Iterator[str], pictures: Mapping[str, Picture] | None = None) -> bytes:
+def packed(model: Iterator[str], pictures: Sequence[Picture]) -> bytes:
     """Return the package of a model, with the pictures that it names."""
     stream = io.BytesIO()
-    held = pictures or {}
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, text in (
-            ("[Content_Types].xml", iter([_TYPES, content_types(held), "</Types>\n"])),
+            ("[Content_Types].xml", iter([_TYPES, content_types(pictures), "</Types>\n"])),
             ("_rels/.rels", iter([_RELATIONS, _ROOT, _END])),
             ("3D/3dmodel.model", model),
         ):
             _pack(archive, name, (line.encode() for line in text))
-        if held:
-            lines = [_RELATIONS, *relations(held), _END]
+        if pictures:
+            lines = [_RELATIONS, *relations(pictures), _END]
             _pack(archive, "3D/_rels/3dmodel.model.rels", (line.encode() for line in lines))
-        for picture in held.values():
+        for picture in pictures:
             _pack(archive, picture.path[1:], iter([picture.data]))
     return stream.getvalue()
 
@@ -98,16 +100,14 @@ def _repeats_corner(faces: IndexArray) -> "np.ndarray[tuple[int], np.dtype[np.bo
     return repeats
 
 
-def _model(mesh: Mesh | RawMesh) -> Iterator[str]:
+def _model(mesh: Mesh | RawMesh, resources: Resources) -> Iterator[str]:
     said = said_of(mesh)
-    has_more = said is not None and not {"color", "uv"}.isdisjoint(said.names)
-    more = f' xmlns:m="{_MATERIALS}"' if has_more else ""
-    yield f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}"{more}>\n'
+    yield beginning([] if said is None else [said])
     if says_empty_set(mesh):
         yield "<!-- bspcsg: the empty set -->\n"
     yield "<resources>\n"
     count = start = 0
-    groups, words = ([], None) if said is None else _properties(said)
+    groups, words = ([], None) if said is None else properties(said, resources)
     yield from groups
     for name, faces in parts_of(mesh):
         is_proper = ~_repeats_corner(faces)
@@ -126,15 +126,20 @@ def _model(mesh: Mesh | RawMesh) -> Iterator[str]:
 _GROUP = 1 << 30
 
 
-#: How a model begins.
-BEGIN = f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}">\n'
+def beginning(said: Iterable[Attributes]) -> str:
+    """Return how a model begins in which things are said."""
+    needs_more = any(not {"color", "uv"}.isdisjoint(one.names) for one in said)
+    more = f' xmlns:m="{_MATERIALS}"' if needs_more else ""
+    return f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}"{more}>\n'
 
 
 def mesh_object(
-    number: int, name: str, vertices: FloatArray, faces: IndexArray, painted: str
+    number: int, name: str, mesh: RawMesh, painted: str, words: Values | None
 ) -> Iterator[str]:
-    """Yield an object that is a mesh; `painted` names its property."""
-    lines = _object(number, name, vertices, faces[~_repeats_corner(faces)])
+    """Yield an object that is a mesh; `painted` names its property, `words` those of triangles."""
+    is_proper = ~_repeats_corner(mesh.faces)
+    own = None if words is None else words[is_proper]
+    lines = _object(number, name, mesh.vertices, mesh.faces[is_proper], own)
     yield next(lines).replace("><mesh>", f"{painted}><mesh>", 1)
     yield from lines
 
@@ -144,43 +149,51 @@ def hex_of(color: Sequence[float]) -> str:
     return "#" + bytes(round(value * 255) for value in color).hex().upper()
 
 
-def _properties(said: Attributes) -> tuple[list[str], Values]:
+def properties(said: Attributes, resources: Resources) -> tuple[list[str], Values]:
     """Return the groups of properties, and what each triangle says of them."""
     if "material" in said.face:
-        return _materials(said)
+        return _materials(said, resources)
     corners = said.at_corners("color").reshape(-1, 4)
     colors, numbers = np.unique(corners, axis=0, return_inverse=True)
     lines = [f'<m:color color="#{bytes(color).hex().upper()}"/>\n' for color in colors.tolist()]
-    words = _corner_words(_GROUP, numbers)
-    return [f'<m:colorgroup id="{_GROUP}">\n', *lines, "</m:colorgroup>\n"], words
+    group = resources.free()
+    words = _corner_words(group, numbers)
+    return [f'<m:colorgroup id="{group}">\n', *lines, "</m:colorgroup>\n"], words
 
 
-def _materials(said: Attributes) -> tuple[list[str], Values]:
+def _materials(said: Attributes, resources: Resources) -> tuple[list[str], Values]:
     """Return base materials and groups of texture coordinates, and what triangles say of them."""
-    names, pictures = said.face["material"], pictures_of(said.materials)
-    plain = {name: one for name, one in said.materials.items() if name not in pictures}
+    names = said.face["material"]
+    plain = {name: one for name, one in said.materials.items() if one.texture is None}
+    lines, words = _bases(names, plain, resources)
+    for name, material in said.materials.items():
+        if name in plain:
+            continue
+        texture, told = resources.texture(resources.picture(name, material))
+        group, rows = resources.free(), np.flatnonzero(names == name)
+        corners = said.at_corners("uv", rows).reshape(-1, 2)
+        places, numbers = np.unique(corners, axis=0, return_inverse=True)
+        words[rows] = _corner_words(group, numbers)
+        lines += [*told, f'<m:texture2dgroup id="{group}" texid="{texture}">\n']
+        lines += [f'<m:tex2coord u="{u!r}" v="{v!r}"/>\n' for u, v in places.tolist()]
+        lines.append("</m:texture2dgroup>\n")
+    return lines, words
+
+
+def _bases(
+    names: Values, plain: Mapping[str, Material], resources: Resources
+) -> tuple[list[str], Values]:
+    """Return the group of materials without a picture, and what triangles say of them."""
+    if not plain:
+        return [], np.full(len(names), "", dtype=object)
+    group = resources.free()
     lines = [
         f'<base name={quoteattr(called(name))} displaycolor="{hex_of(material.color)}"/>\n'
         for name, material in plain.items()
     ]
-    if lines:
-        lines = [f'<basematerials id="{_GROUP}">\n', *lines, "</basematerials>\n"]
-    told = {name: f' pid="{_GROUP}" p1="{k}"' for k, name in enumerate(plain)}
+    told = {name: f' pid="{group}" p1="{k}"' for k, name in enumerate(plain)}
     words = np.array([told.get(name, "") for name in names.tolist()], dtype=object)
-    for number, (name, picture) in enumerate(pictures.items()):
-        texture = _GROUP + 1 + 2 * number
-        rows = np.flatnonzero(names == name)
-        corners = said.at_corners("uv", rows).reshape(-1, 2)
-        places, numbers = np.unique(corners, axis=0, return_inverse=True)
-        words[rows] = _corner_words(texture + 1, numbers)
-        lines.append(
-            f'<m:texture2d id="{texture}" path={quoteattr(picture.path)}'
-            f' contenttype="{picture.media}"/>\n<m:texture2dgroup id="{texture + 1}"'
-            f' texid="{texture}">\n'
-        )
-        lines += [f'<m:tex2coord u="{u!r}" v="{v!r}"/>\n' for u, v in places.tolist()]
-        lines.append("</m:texture2dgroup>\n")
-    return lines, words
+    return [f'<basematerials id="{group}">\n', *lines, "</basematerials>\n"], words
 
 
 def _corner_words(group: int, numbers: IndexArray) -> Values:
@@ -218,4 +231,4 @@ _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 #: The model part of the empty set; the archives around it differ by system.
-NOTHING = "".join(_model(empty_set())).encode()
+NOTHING = "".join(_model(empty_set(), Resources(_GROUP))).encode()
