@@ -200,7 +200,7 @@ class Assembly:
         """Return the assembly scaled about the origin."""
         return self._moved((transform.scaling(factor),))
 
-    def mirror(self, normal: Vector) -> "Assembly":
+    def mirror(self, normal: str | Vector) -> "Assembly":
         """Return the mirror image in the plane through the origin with this normal."""
         return self._moved((transform.mirroring(normal),))
 

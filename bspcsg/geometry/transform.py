@@ -85,9 +85,9 @@ def scaling(factor: Scalar | Vector) -> Factor:
     return matrix_factor(np.diag([*vector3(factor, "scale factor", spread=True), 1.0]))
 
 
-def mirroring(normal: Vector) -> Factor:
+def mirroring(normal: str | Vector) -> Factor:
     """Return the mirror image in the plane through the origin with this normal."""
-    unit = _unit(normal, "normal")
+    unit = _unit(along(normal), "normal")
     return _from_linear(_snapped(np.eye(3) - 2 * np.outer(unit, unit)))
 
 
@@ -356,10 +356,11 @@ def _snapped(linear: FloatArray) -> FloatArray:
 
 def axis_vector(axis: str | Vector) -> FloatArray:
     """Return the unit vector along "x", "y", "z" or a vector that is not zero."""
-    return _unit(_axis(axis), "axis")
+    return _unit(along(axis), "axis")
 
 
-def _axis(axis: str | Vector) -> Vector:
+def along(axis: str | Vector) -> Vector:
+    """Return the vector of "x", "y" or "z", or the vector that was given."""
     if not isinstance(axis, str):
         return axis
     if axis.lower() not in _AXES:

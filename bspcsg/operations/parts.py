@@ -39,7 +39,7 @@ def connected_parts(solid: Solid) -> list[Mesh]:
 
 
 @uncounted
-def sides_of_plane(solid: Solid, normal: Vector, offset: Scalar) -> tuple[Solid, Solid]:
+def sides_of_plane(solid: Solid, normal: str | Vector, offset: Scalar) -> tuple[Solid, Solid]:
     """Return what of a solid lies below and above the plane ``normal . x = offset``.
 
     Both sides have the cut as a face; together they are the solid again, exactly. The plane is that
@@ -48,7 +48,7 @@ def sides_of_plane(solid: Solid, normal: Vector, offset: Scalar) -> tuple[Solid,
     Parameters
     ----------
     solid : Solid
-    normal : (3,) float
+    normal : "x", "y", "z" or (3,) float
         Points to the side that is above.
     offset : float
 

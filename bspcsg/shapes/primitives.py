@@ -14,8 +14,8 @@ from .._types import Scalar, Vector
 from ..errors import InvalidMeshError, invalid_parameter
 from ..geometry.hyperplane import Hyperplane
 from ..geometry.polygon import triangulate
-from ..geometry.transform import vector3
-from ..parameters import number, positive, refuse_many_corners, sides_around
+from ..geometry.transform import along, vector3
+from ..parameters import not_negative, number, positive, refuse_many_corners, sides_around
 from ..solid.counting import counted
 from ..solid.leaf import PlaneLeaf
 from ..solid.solid import Solid, from_leaf
@@ -237,12 +237,12 @@ def prism(sides: int, h: Scalar, r: Scalar, *, center: bool = False) -> Solid:
 
 
 @counted
-def half_space(normal: Vector, offset: Scalar = 0.0) -> Solid:
+def half_space(normal: str | Vector, offset: Scalar = 0.0) -> Solid:
     """Return all points x with ``normal . x <= offset``.
 
     Parameters
     ----------
-    normal : (3,) float
+    normal : "x", "y", "z" or (3,) float
         Points outwards; need not have unit length.
     offset : float
 
@@ -272,9 +272,10 @@ def half_space(normal: Vector, offset: Scalar = 0.0) -> Solid:
     [0, 0]
     """
     try:
-        x, y, z = normal
+        x, y, z = along(normal)
     except (TypeError, ValueError) as error:
-        raise InvalidMeshError("A normal has three numbers.", "bad_normal") from error
+        message = "A normal has three numbers, or is 'x', 'y' or 'z'."
+        raise InvalidMeshError(message, "bad_normal") from error
     number(offset, "offset")
     return from_leaf(PlaneLeaf(Hyperplane.from_numbers((x, y, z), offset)))
 
@@ -285,7 +286,7 @@ def _radius(r: Scalar | None, d: Scalar | None, needed_by: str = "") -> Any:
         raise invalid_parameter("Give a radius or a diameter, not both.")
     if r is None and d is None and needed_by:
         raise invalid_parameter(f"{needed_by} needs r, or d.")
-    return r if d is None else number(d, "d") / 2
+    return r if d is None else not_negative(d, "d") / 2
 
 
 def _end_radius(r: Scalar | None, d: Scalar | None, default: Any) -> float:
@@ -293,7 +294,4 @@ def _end_radius(r: Scalar | None, d: Scalar | None, default: Any) -> float:
     value = default if given is None else given
     if value is None:
         raise invalid_parameter("A cylinder needs r, or both r1 and r2, or diameters.")
-    radius = number(value, "radius")
-    if radius < 0:
-        raise invalid_parameter(f"A radius must not be negative: {radius}.")
-    return radius
+    return not_negative(value, "r")

@@ -47,12 +47,16 @@ class Convertible(Measured):
 
     @overload
     def slice(
-        self, offset: Scalar = 0.0, normal: Vector = (0, 0, 1), *, origin: Vector | None = None
+        self,
+        offset: Scalar = 0.0,
+        normal: str | Vector = (0, 0, 1),
+        *,
+        origin: Vector | None = None,
     ) -> "Region": ...
     @overload
-    def slice(self, offset: Vector, normal: Vector = (0, 0, 1)) -> "list[Region]": ...
+    def slice(self, offset: Vector, normal: str | Vector = (0, 0, 1)) -> "list[Region]": ...
     def slice(
-        self, offset: Any = 0.0, normal: Vector = (0, 0, 1), *, origin: Vector | None = None
+        self, offset: Any = 0.0, normal: str | Vector = (0, 0, 1), *, origin: Vector | None = None
     ) -> "Region | list[Region]":
         """Return the section by a plane as a region of the plane (`bspcsg.Region`).
 
@@ -66,7 +70,7 @@ class Convertible(Measured):
         offset : float or (n,) float
             The plane holds the points x with ``normal . x == offset``: by default a height z. Of
             several planes the sections come as a list.
-        normal : (3,) float
+        normal : "x", "y", "z" or (3,) float
             Need not have unit length. The region is seen from where it points: z gives coordinates
             (x, y), x gives (y, z), y gives (z, x), negative axes exchange the two; for others see
             `bspcsg.bsp.plane_frame`, whose coordinates are rounded once more.

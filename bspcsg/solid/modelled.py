@@ -17,14 +17,14 @@ class Modelled:
 
     __slots__ = ()
 
-    def split(self, normal: "Vector | Solid", offset: Scalar = 0.0) -> "tuple[Solid, Solid]":
+    def split(self, normal: "str | Vector | Solid", offset: Scalar = 0.0) -> "tuple[Solid, Solid]":
         """Return the solid in two: what lies on either side of a plane, or of another's surface.
 
         Both have the cut as a face; together they are the solid again, exactly.
 
         Parameters
         ----------
-        normal : (3,) float or Solid
+        normal : "x", "y", "z", (3,) float, or Solid
             Of the plane; need not have unit length. Or the solid to cut with.
         offset : float
             The plane holds the points x with ``normal . x == offset``.
@@ -58,12 +58,12 @@ class Modelled:
         halves: tuple[Solid, Solid] = above("split")(self, normal, offset)
         return halves
 
-    def trim(self, normal: Vector, offset: Scalar = 0.0) -> "Solid":
+    def trim(self, normal: str | Vector, offset: Scalar = 0.0) -> "Solid":
         """Return what lies on the side of a plane where its normal points: the second of `split`.
 
         Parameters
         ----------
-        normal : (3,) float
+        normal : "x", "y", "z" or (3,) float
             Need not have unit length.
         offset : float
             What has ``normal . x >= offset`` stays.

@@ -73,8 +73,11 @@ class Movable(ABC):
         """Return the solid scaled by one factor, or by one per axis; the point `about` stays."""
         return self._moved(transform.about(about, (transform.scaling(factor),)))
 
-    def mirror(self, normal: Vector, *, about: Vector = (0, 0, 0)) -> "Solid":
-        """Return the mirror image in the plane with this normal through the point `about`."""
+    def mirror(self, normal: str | Vector, *, about: Vector = (0, 0, 0)) -> "Solid":
+        """Return the mirror image in the plane with this normal through the point `about`.
+
+        The normal is "x", "y", "z" or three numbers.
+        """
         return self._moved(transform.about(about, (transform.mirroring(normal),)))
 
     def transform(self, matrix: Any) -> "Solid":

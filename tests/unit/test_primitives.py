@@ -268,7 +268,7 @@ def test_sizes_as_people_type_them() -> None:
         (lambda: b.box(1, True, 3), "one edge length"),
         (b.sphere, "needs r"),
         (lambda: b.sphere(1, d=2), "not both"),
-        (lambda: b.sphere(d=-2), "above 0"),
+        (lambda: b.sphere(d=-2), "below 0"),
         (lambda: b.cylinder(5), "needs r"),
         (lambda: b.cylinder(5, 1, d=2), "not both"),
         (lambda: b.cylinder(5, d1=2), "needs r"),
@@ -280,3 +280,10 @@ def test_sizes_as_people_type_them() -> None:
 def test_sizes_that_do_not_fit_are_refused(call: Callable[[], Any], word: str) -> None:
     with pytest.raises(b.InvalidParameterError, match=word):
         call()
+
+
+def test_wrong_sizes_are_told_as_they_were_given() -> None:
+    with pytest.raises(b.InvalidParameterError, match=r"^d must not be below 0, but is -2"):
+        b.cylinder(h=1, d=-2)
+    with pytest.raises(b.InvalidParameterError, match=r"^r must not be below 0, but is -2"):
+        b.cylinder(h=1, r1=-2, r2=1)

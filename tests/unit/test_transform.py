@@ -188,3 +188,22 @@ def test_determinant_signs_are_exact() -> None:
     nearly_flat = np.diag([1e-200, 1e-200, 1e-200, 1.0])
     assert transform.determinant_sign(nearly_flat) == 1
     assert transform.determinant_sign(-nearly_flat) == -1
+
+
+def test_planes_are_named_by_the_axes_across_them() -> None:
+    part = b.box(1, 2, 3)
+    for axis, normal in (("x", (1, 0, 0)), ("y", (0, 1, 0)), ("Z", (0, 0, 1))):
+        assert part.split(axis, 0.5)[0] == part.split(normal, 0.5)[0]
+        assert part.trim(axis, 0.5) == part.trim(normal, 0.5)
+        assert part.mirror(axis, about=(5, 6, 7)) == part.mirror(normal, about=(5, 6, 7))
+        assert b.Assembly("a", part).mirror(axis).to_solid() == part.mirror(normal)
+        assert part.slice(0.5, axis).outlines[0].points.tolist() == (
+            part.slice(0.5, normal).outlines[0].points.tolist()
+        )
+        assert part & b.half_space(axis, 1) == part & b.half_space(normal, 1)
+    for call in (part.split, part.trim, b.half_space):
+        with pytest.raises(b.InvalidMeshError, match="or is 'x', 'y' or 'z'"):
+            call("up")
+    for other in (part.mirror, lambda axis: part.slice(0.5, axis)):
+        with pytest.raises(b.InvalidParameterError, match="An axis is 'x', 'y', 'z' or a vector"):
+            other("up")

@@ -8,7 +8,7 @@ import numpy as np
 from ..._types import FloatArray, Scalar, Vector
 from ...errors import core_errors
 from ...geometry.hyperplane import Hyperplane, exact_number
-from ...geometry.transform import vector3
+from ...geometry.transform import along, vector3
 from ...parameters import number
 from ...solid.solid import Solid
 from .region import Region
@@ -28,16 +28,16 @@ _AXES = {
 def slice_solid(
     solid: Solid,
     offset: Scalar = 0.0,
-    normal: Vector = (0, 0, 1),
+    normal: str | Vector = (0, 0, 1),
     *,
     origin: Vector | None = None,
 ) -> Region: ...
 @overload
-def slice_solid(solid: Solid, offset: Vector, normal: Vector = (0, 0, 1)) -> list[Region]: ...
+def slice_solid(solid: Solid, offset: Vector, normal: str | Vector = (0, 0, 1)) -> list[Region]: ...
 def slice_solid(
     solid: Solid,
     offset: Any = 0.0,
-    normal: Vector = (0, 0, 1),
+    normal: str | Vector = (0, 0, 1),
     *,
     origin: Vector | None = None,
 ) -> Region | list[Region]:
@@ -48,9 +48,9 @@ def slice_solid(
 
 
 def _sections(
-    solid: Solid, offsets: list[Scalar], normal: Vector, origin: Vector | None
+    solid: Solid, offsets: list[Scalar], normal: str | Vector, origin: Vector | None
 ) -> list[Region]:
-    direction = vector3(normal, "normal")
+    direction = vector3(along(normal), "normal")
     products = [_product(direction, offset, origin) for offset in offsets]
     planes = [Hyperplane.from_numbers(direction.tolist(), product) for product in products]
     tree = solid.normalized().tree

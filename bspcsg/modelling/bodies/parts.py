@@ -8,7 +8,7 @@ from ...solid.solid import Solid, solid_of_mesh
 
 
 @uncounted
-def split(solid: Solid, normal: Vector | Solid, offset: Scalar = 0.0) -> tuple[Solid, Solid]:
+def split(solid: Solid, normal: str | Vector | Solid, offset: Scalar = 0.0) -> tuple[Solid, Solid]:
     """Return both sides of a plane or of another solid's surface (see `Solid.split`)."""
     if isinstance(normal, Solid):
         return solid & normal, solid - normal
@@ -16,7 +16,7 @@ def split(solid: Solid, normal: Vector | Solid, offset: Scalar = 0.0) -> tuple[S
 
 
 @counted
-def trim(solid: Solid, normal: Vector, offset: Scalar = 0.0) -> Solid:
+def trim(solid: Solid, normal: str | Vector, offset: Scalar = 0.0) -> Solid:
     """Return what lies on the side of a plane where its normal points (see `Solid.trim`)."""
     return solid - half_space(normal, offset)
 
