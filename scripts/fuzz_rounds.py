@@ -22,6 +22,9 @@ from recording import REPOSITORY
 #: A round may take this long, and the process this much memory.
 SECONDS, MEGABYTES = 10, 4096
 
+#: A round of large operands: some twenty calls, each of which alone may take as long as other rounds.
+LARGE_SECONDS = 60
+
 #: Where cases are kept that must be answered.
 CASES = REPOSITORY / "tests" / "corpus" / "cases"
 
@@ -66,9 +69,13 @@ class Rounds:
             told.seek(0)
             place = f"round {at} of seed {self._seed}"
             hang = -code == signal.SIGXCPU
-            what = f"more than {SECONDS} s" if hang else told.read()[-300:] or f"ended by {-code}"
+            what = f"more than {_limit(self._name)} s" if hang else told.read()[-300:] or f"ended by {-code}"
             outcome.found.append(Found("hang" if hang else "crash", what, place))
             return at + 1, True
+
+
+def _limit(name: str) -> int:
+    return LARGE_SECONDS if name == "sizes" else SECONDS
 
 
 def rounds(name: str, seed: int, first: int, until: float) -> None:
@@ -79,7 +86,7 @@ def rounds(name: str, seed: int, first: int, until: float) -> None:
     while time.monotonic() < until:
         tell(at, [], "")
         used = resource.getrusage(resource.RUSAGE_SELF)
-        limit = int(used.ru_utime + used.ru_stime) + SECONDS + 1
+        limit = int(used.ru_utime + used.ru_stime) + _limit(name) + 1
         resource.setrlimit(resource.RLIMIT_CPU, (limit, resource.RLIM_INFINITY))
         wrong, place = judge(seed, at)
         if wrong:

@@ -16,6 +16,9 @@ use support::{applied, manifold_mesh, normalized, volume, Numbers, Ratio, Shape}
 /// Lattice steps of the radius of balls, and of the space between parts.
 const RADIUS: i64 = 1 << 20;
 
+/// The same, as balls take it.
+const BALL: f64 = (1u32 << 20) as f64;
+
 /// What must not depend on threads: the tree, and the doubles and triangles of the mesh.
 type Bytes = (Vec<u8>, Vec<[u64; 3]>, Vec<[u32; 3]>);
 
@@ -55,7 +58,7 @@ fn assert_same_in_pools(large: &Shape, tool: &Shape, context: &str) {
 
 /// Boxes in a grid, apart from each other.
 fn boxes(count: i64) -> Shape {
-    let side = (1..).find(|s| s * s >= count).expect("a square");
+    let side = (1..=count).find(|s| s * s >= count).expect("a square");
     let place = |k: i64| [k / side * 2 * RADIUS, k % side * 2 * RADIUS, 0];
     let part = |k| Shape::cuboid(place(k), place(k).map(|c| c + RADIUS));
     (0..count).map(part).fold(Shape::default(), Shape::with)
@@ -73,7 +76,7 @@ fn tool(numbers: &mut Numbers, large: &Shape) -> Shape {
 fn tiny_tools_on_balls() {
     let mut numbers = Numbers::new(21);
     for levels in [2, 3, 5] {
-        let ball = Shape::sphere([0; 3], RADIUS as f64, levels);
+        let ball = Shape::sphere([0; 3], BALL, levels);
         for round in 0..if levels == 5 { 1 } else { 3 } {
             let tool = tool(&mut numbers, &ball);
             assert_same_in_pools(&ball, &tool, &format!("ball {levels}, round {round}"));

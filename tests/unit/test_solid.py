@@ -3,6 +3,7 @@
 import copy
 import pickle
 import tempfile
+import time
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
@@ -467,3 +468,31 @@ def test_the_last_of_many_balls_is_not_lost() -> None:
     for k in (0, count // 2, count - 1):
         alone = (many & b.box(3, center=True).translate(3 * k, 0, 0)).to_mesh()
         assert len(alone.faces) == len(ball.faces)
+
+
+def bar_with_a_round_end(corners: int) -> tuple["b._types.FloatArray", "b._types.IndexArray"]:
+    """Return a turned bar in single precision whose caps are fans of needles from a corner."""
+    angles = np.linspace(-np.pi / 2, np.pi / 2, corners - 1)
+    arc = np.column_stack([9 + np.cos(angles) / 2, np.sin(angles) / 2])
+    outline = np.concatenate([[(0, -0.5)], arc, [(0, 0.5)]])
+    count = len(outline)
+    levels = [np.column_stack([outline, np.full(count, height)]) for height in (0.0, 1.0)]
+    vertices = np.concatenate(levels) @ np.linalg.qr(np.arange(9.0).reshape(3, 3) ** 2 + 1)[0]
+    fan = np.array([(0, k + 1, k) for k in range(1, count - 1)])
+    low, high = np.arange(count), np.roll(np.arange(count), -1)
+    walls = [(low, high, high + count), (low, high + count, low + count)]
+    sides = np.concatenate([np.column_stack(wall) for wall in walls])
+    faces = np.concatenate([fan, fan[:, ::-1] + count, sides])
+    return vertices.astype(np.float32).astype(np.float64), faces
+
+
+def test_needle_fans_in_single_precision_are_measured_at_once() -> None:
+    vertices, faces = bar_with_a_round_end(301)
+    began = time.process_time()
+    volume = abs(b.Solid(vertices, faces).volume)
+    # Before, 1 204 triangles took more than 90 seconds; now they take a hundredth of one.
+    assert len(faces) == 1204 and time.process_time() - began < 9
+    assert volume == pytest.approx(9 + np.pi / 8, rel=1e-4)
+    solids = [b.Solid(vertices + shift, faces, trusted=True) for shift in (0, 0.01)]
+    common, joint = solids[0] & solids[1], solids[0] | solids[1]
+    assert common.volume + joint.volume == pytest.approx(2 * volume, rel=1e-9)
