@@ -22,7 +22,7 @@ from recording import REPOSITORY
 #: A round may take this long, and the process this much memory.
 SECONDS, MEGABYTES = 10, 4096
 
-#: A round of large operands: some twenty calls, each of which alone may take as long as other rounds.
+#: A round of large operands: some twenty calls, each of which may take as long as another round.
 LARGE_SECONDS = 60
 
 #: Where cases are kept that must be answered.
@@ -69,7 +69,11 @@ class Rounds:
             told.seek(0)
             place = f"round {at} of seed {self._seed}"
             hang = -code == signal.SIGXCPU
-            what = f"more than {_limit(self._name)} s" if hang else told.read()[-300:] or f"ended by {-code}"
+            what = (
+                f"more than {_limit(self._name)} s"
+                if hang
+                else told.read()[-300:] or f"ended by {-code}"
+            )
             outcome.found.append(Found("hang" if hang else "crash", what, place))
             return at + 1, True
 

@@ -29,9 +29,12 @@ from .values import VALUES, compiled
 #: Longest time for a script, in seconds, unless the caller says otherwise.
 TIMEOUT = 600.0
 
+#: The exit code of what was stopped.
+_STOPPED = 130
+
 #: What the child runs: Ctrl-C, which reaches it as well, ends it without a word; its parent tells.
 _SERVE = (
-    "import os, signal; signal.signal(signal.SIGINT, lambda *_: os._exit(130));"
+    f"import os, signal; signal.signal(signal.SIGINT, lambda *_: os._exit({_STOPPED}));"
     " from bspcsg.script.run import serve; serve()"
 )
 
@@ -195,7 +198,11 @@ def serve() -> None:
 
     The answer goes into a file, complete or not at all.
     """
-    name, arguments, defines, answer = pickle.load(sys.stdin.buffer)
+    try:
+        name, arguments, defines, answer = pickle.load(sys.stdin.buffer)
+    except (EOFError, pickle.UnpicklingError):
+        # The parent was stopped before all of the task was written, and tells.
+        sys.exit(_STOPPED)
     pickled = pickle.dumps(_answer(name, arguments, defines))
     unfinished = Path(f"{answer}.part")
     unfinished.write_bytes(pickled)

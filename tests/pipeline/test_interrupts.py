@@ -1,6 +1,7 @@
 """Ctrl-C is quiet from the moment at which the command line's own code begins."""
 
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import bspcsg as b
+from bspcsg.script import run
 from support.cli import heed_interrupts
 
 #: As a console script, but that it tells when the package's entry has begun.
@@ -77,6 +79,20 @@ def test_scripts_are_interrupted_quietly(tmp_path: Path, delay: float) -> None:
     (tmp_path / "slow.py").write_text(SLOW)
     code, _, err = interrupted(delay, "run", str(tmp_path / "slow.py"), "-o", "x.stl")
     assert code == 130 and len(err.splitlines()) <= 1 and b"Traceback" not in err
+
+
+@pytest.mark.parametrize("written", [0, 1, 20])
+def test_scripts_whose_parent_was_stopped_are_quiet(written: int) -> None:
+    task = pickle.dumps(("slow.py", [], {}, "answer"))
+    done = subprocess.run(
+        [sys.executable, "-c", run._SERVE],
+        env={**os.environ, "PYTHONPATH": str(Path(b.__file__).parent.parent)},
+        input=task[:written],
+        capture_output=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"")
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
