@@ -215,6 +215,10 @@ def finite_numbers(text: str, count: int) -> tuple[float, ...] | None:
     return found if len(found) == count and all(map(math.isfinite, found)) else None
 
 
+#: The axes as directions.
+_DIRECTIONS = {"x": "1,0,0", "y": "0,1,0", "z": "0,0,1"}
+
+
 def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, ...] | None]:
     """Return the callback of an option that takes a direction, and maybe more numbers after it.
 
@@ -223,7 +227,7 @@ def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, .
     what : str
         What an error calls the value, such as ``"normal"``.
     names : str
-        Of the numbers, apart by commas; the first three must not all be 0.
+        Of the numbers, apart by commas; the first three must not all be 0, and may be an axis.
     example : str
     """
     count = names.count(",") + 1
@@ -235,9 +239,12 @@ def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, .
     ) -> tuple[float, ...] | None:
         if value is None:
             return None
-        found = finite_numbers(value, count)
+        first, comma, rest = value.partition(",")
+        found = finite_numbers(_DIRECTIONS.get(first.strip().lower(), first) + comma + rest, count)
         if found is None or not any(found[:3]):
-            wanted = f"{spoken} numbers {names}, {zeros} all 0, as in {example}"
+            wanted = (
+                f"{spoken} numbers {names}, {zeros} all 0, as in {example}; x, y and z are axes"
+            )
             raise click.BadParameter(f"{value!r} is no {what}; it takes {wanted}.", context, option)
         return found
 

@@ -25,7 +25,7 @@ _BREP = (
 )
 _NO_LIBRARY = "{} is not read, for want of a well-kept library; have {} written instead."
 
-#: What to say of formats that people try, and that are not for us.
+#: What to say of formats that people try to read, and that are not for us.
 _REFUSALS = {
     **dict.fromkeys((".step", ".stp"), _BREP.format("STEP")),
     **dict.fromkeys((".iges", ".igs"), _BREP.format("IGES")),
@@ -34,6 +34,18 @@ _REFUSALS = {
     ".vtp": "VTP is read by VTK's own package only, of some hundred megabytes, which is left out"
     " here; have VTU written instead, or pass what pyvista read to Solid.from_mesh.",
     ".gltf": "glTF with separate files is not read; pack it into one GLB file.",
+}
+
+_CURVED = "{} holds curved surfaces, which meshes have none of; write 3MF or STL."
+
+#: What to say of formats that people try to write.
+_UNWRITTEN = {
+    **dict.fromkeys((".step", ".stp"), _CURVED.format("STEP")),
+    **dict.fromkeys((".iges", ".igs"), _CURVED.format("IGES")),
+    ".brep": _CURVED.format("BREP"),
+    ".amf": "AMF is not written; 3MF holds the same.",
+    ".vtp": "VTP is not written; VTU holds the same.",
+    ".gltf": "glTF with separate files is not written; GLB is the same in one file.",
 }
 
 
@@ -45,6 +57,10 @@ def format_of(path: str | os.PathLike[str]) -> Format:
     FormatError
         If it names none; code ``"unknown_format"``.
     """
+    return _format_of(path, _REFUSALS)
+
+
+def _format_of(path: str | os.PathLike[str], refusals: Mapping[str, str]) -> Format:
     suffix = Path(path).suffix.lower()
     if suffix in FORMATS:
         return FORMATS[suffix]
@@ -52,7 +68,7 @@ def format_of(path: str | os.PathLike[str]) -> Format:
     message = f"“{suffix}” is no known mesh format; known are {known}."
     if not suffix:
         message = f"the name needs a suffix that says the format: {known}."
-    raise FormatError(f"{os.fspath(path)}: {_REFUSALS.get(suffix, message)}", "unknown_format")
+    raise FormatError(f"{os.fspath(path)}: {refusals.get(suffix, message)}", "unknown_format")
 
 
 def form_of(path: str | os.PathLike[str], text: bool = False) -> Form:
@@ -63,7 +79,7 @@ def form_of(path: str | os.PathLike[str], text: bool = False) -> Form:
     FormatError
         If the format is unknown or has no form as text; code ``"unknown_format"``.
     """
-    chosen = format_of(path)
+    chosen = _format_of(path, _UNWRITTEN)
     form = chosen.text if text else chosen.binary or chosen.text
     if form is None:
         textual = ", ".join(sorted(suffix for suffix, one in FORMATS.items() if one.text))

@@ -122,6 +122,12 @@ def test_components(folder: Path, capsys: Capture) -> None:
     assert Path("p-1.off").exists() and Path("p-2.off").exists()
 
 
+@pytest.mark.parametrize("plane", ["z,0.5", "Z, 0.5", "0,0,1,0.5"])
+def test_a_plane_across_an_axis(folder: Path, capsys: Capture, plane: str) -> None:
+    code, out, _ = ran(capsys, "split", "a.off", "--plane", plane, "-o", "s%.off", "--json")
+    assert code == 0 and [one["volume"] for one in json.loads(out)["parts"]] == [2, 6]
+
+
 def test_a_plane(folder: Path, capsys: Capture) -> None:
     code, out, _ = ran(capsys, "split", "a.off", "--plane", "0,0,1,0.5", "-o", "s%.off", "--json")
     parts = json.loads(out)["parts"]
@@ -140,6 +146,7 @@ def test_another_solid(folder: Path, capsys: Capture) -> None:
     [
         (["a.off", "-o", "-"], 2, "standard output"),
         (["a.off", "-o", "x.off", "--plane", "1,2,3"], 2, "is no plane"),
+        (["a.off", "-o", "x.off", "--plane", "z:1"], 2, "x, y and z are axes"),
         (["a.off", "-o", "x.off", "--plane", "0,0,0,1"], 2, "is no plane"),
         (["a.off", "-o", "x.off", "--plane", "nan,0,1,1"], 2, "is no plane"),
         (["a.off", "-o", "x.off", "--plane", "0,0,1,1", "--by", "c.stl"], 2, "exclude"),

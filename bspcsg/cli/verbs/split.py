@@ -45,7 +45,7 @@ Examples:
     "--plane",
     metavar="NX,NY,NZ,D",
     callback=numbers("plane", "nx,ny,nz,d", "0,0,1,2.5"),
-    help="Cut along nx x + ny y + nz z = d.",
+    help="Cut along nx x + ny y + nz z = d; z,D is short for 0,0,1,D.",
 )
 @click.option(
     "--by", "cutter", metavar="FILE", type=PATH, help="Cut along the surface of another solid."
