@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import bspcsg as b
+import openscad_suite
 from bspcsg import csg
 
 ROOT = Path(__file__).parents[2]
@@ -76,3 +77,19 @@ def test_real_scripts_equal_openscad(shared_scripts: Path) -> None:
     # What the bound allows is far more than what is found.
     assert max(float(row[2]) for row in plain) < 1e-5
     assert max(float(row[3]) for row in plain) < 2e-6
+
+
+def test_reasons_are_those_of_recorded_scripts() -> None:
+    rows = openscad_suite.recorded()
+    shapes = {row.file: row for row in rows if row.dimension and not row.warnings}
+    assert (len(rows), len(shapes)) == (382, 219)
+    assert set(openscad_suite.REASONS) < set(shapes)
+    plain = [row for row in shapes.values() if row.largest < 1000]
+    assert len(plain) > 200 and all(row.tolerance < 1e-3 * row.border + 1e-8 for row in plain)
+
+
+def test_drawings_of_openscad_are_read() -> None:
+    text = '<svg><path d="\nM 0,-0 L 4,-0 L 4,-4\n L 0,-4 z\nM 1,-1 L 1,-2 L 2,-2 z\n"/></svg>'
+    region = openscad_suite.drawn(text)
+    assert region.area == 16 - 0.5 and region.bounds is not None
+    assert region.bounds.tolist() == [[0, 0], [4, 4]]
