@@ -1,4 +1,4 @@
-"""Counts the instructions of three fixed cases and compares them with the recorded counts.
+"""Counts the instructions of some fixed cases and compares them with the recorded counts.
 
 On a machine that is shared, times say little about a small change; counts repeat to within 0.1 %.
 Needs valgrind. With --record the new counts are kept, with the machine and the compiler.
@@ -19,6 +19,8 @@ from recording import RECORDS, REPOSITORY, keep
 #: The cases of core/examples/fixed_cases.rs, with what each is.
 CASES = {
     "pair": "difference of two spheres of 81 920 triangles, arrays to arrays",
+    "small": "the same of two spheres of 320 triangles, warm",
+    "cubes": "union of two cubes of 12 triangles, arrays to arrays, warm",
     "chain": "cube minus 200 spheres of 80 triangles, the volume read after each step",
     "expression": "union of 64 boxes in one expression",
 }

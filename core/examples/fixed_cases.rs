@@ -1,4 +1,4 @@
-//! Three fixed cases for counting instructions: `fixed_cases pair|chain|expression`.
+//! Five fixed cases for counting instructions: `fixed_cases pair|small|cubes|chain|expression`.
 //!
 //! Everything happens on the main thread, inside [`measured`], so that a profiler which counts
 //! within that function alone sees neither the making of the meshes nor idle threads.
@@ -36,9 +36,18 @@ fn main() {
     started.expect("no pool before this one");
     match case.as_str() {
         "pair" => {
-            let [a, b] = [[0; 3], [700_000_001, 500_000_003, 500_000_009]];
-            let [a, b] = [a, b].map(|at| arrays(&sphere(at, 1.0, 6)));
-            measured(|| pair(&a, &b));
+            let [a, b] = spheres(6);
+            measured(|| pair(SetOp::Difference, &a, &b));
+        }
+        "small" => {
+            let [a, b] = spheres(2);
+            pair(SetOp::Difference, &a, &b);
+            measured(|| pair(SetOp::Difference, &a, &b));
+        }
+        "cubes" => {
+            let [a, b] = [0, UNIT / 2].map(|at| arrays(&Shape::cuboid([at; 3], [at + UNIT; 3])));
+            pair(SetOp::Union, &a, &b);
+            measured(|| pair(SetOp::Union, &a, &b));
         }
         "chain" => {
             let block = Shape::cuboid([0; 3], [UNIT; 3]);
@@ -52,7 +61,7 @@ fn main() {
             measured(|| expression(&solids));
         }
         _ => {
-            eprintln!("fixed_cases: name a case: pair, chain, or expression");
+            eprintln!("fixed_cases: name a case: pair, small, cubes, chain, or expression");
             std::process::exit(2);
         }
     }
@@ -63,6 +72,12 @@ fn main() {
 fn measured(work: impl FnOnce() -> usize) {
     let triangles = work();
     println!("{}", black_box(triangles));
+}
+
+/// Two spheres that cross, of 20 triangles each, divided in four so many times.
+fn spheres(levels: u32) -> [Arrays; 2] {
+    let places = [[0; 3], [700_000_001, 500_000_003, 500_000_009]];
+    places.map(|at| arrays(&sphere(at, 1.0, levels)))
 }
 
 fn sphere(at: [i64; 3], radius: f64, levels: u32) -> Shape {
@@ -89,13 +104,13 @@ fn pitch_exponent(pitch: Pitch) -> i32 {
     i32::try_from(pitch.exponent()).expect("a small exponent")
 }
 
-/// A difference of two meshes, arrays in to arrays out.
-fn pair(a: &Arrays, b: &Arrays) -> usize {
+/// An operation with two meshes, arrays in to arrays out.
+fn pair(op: SetOp, a: &Arrays, b: &Arrays) -> usize {
     let [a, b] = [a, b].map(|mesh| {
         let source = import(&mesh.vertices, &mesh.faces, None).expect("a closed mesh");
         Solid::of_source(Arc::new(source), false)
     });
-    triangles(&applied(SetOp::Difference, &a, &b))
+    triangles(&applied(op, &a, &b))
 }
 
 /// Differences one after the other, with the volume after each as sums kept in the nodes give it.

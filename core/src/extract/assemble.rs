@@ -10,7 +10,7 @@ use super::boundary::leaves::{Fate, Fates};
 use super::boundary::rim::{half_edge_ends, FrontierEdge, Rims};
 use super::contacts;
 use super::emission::assembly::{Assembly, NONE};
-use super::emission::untouched::{Untouched, WholeFaces};
+use super::emission::untouched::{Emitted, Untouched};
 use super::failure::Failure;
 use super::joining::patches::Patches;
 use super::joining::planes::{group, PlaneGroup};
@@ -21,14 +21,17 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::outline::BareEdge;
 use crate::geometry::side::Orientation;
 use crate::geometry::vertex::Vertex;
-use crate::interrupt::{carried, poll};
+use crate::interrupt::{carried, poll, spend};
 use crate::merge::lists::list::Sources;
-use crate::mesh::handle::{Slot, SourceFace};
+use crate::mesh::handle::{OrientedFace, Slot, SourceFace};
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::tree::solid::Solid;
 
-/// The points inserted on the three edges of faces.
-type SplitFaces = HashMap<SourceFace, [Vec<u32>; 3]>;
+/// A whole face, and the points inserted on its three edges.
+struct SplitFace {
+    face: OrientedFace,
+    inner: [Vec<u32>; 3],
+}
 
 /// Groups of as many edges are looked through faster than a table of their points is made.
 const SMALL: usize = 16;
@@ -72,13 +75,13 @@ fn attempt(
 ) -> Result<ExactMesh, Failure> {
     let mut boundary = collect(solid, sources);
     let near = std::mem::take(&mut boundary.near);
-    let (fates, groups, rims) = group(boundary, sources, patches, join);
+    let (mut fates, groups, rims) = group(boundary, sources, patches, join);
     if groups.iter().any(|g| reaches_infinity(g, sources)) {
         return Err(unbounded().into());
     }
     let mut assembly = Assembly::new(sources, &fates);
     assembly.verify = join && !solid.is_reduced();
-    assembly.run(&fates, groups, &rims, &near)?;
+    assembly.run(&mut fates, groups, &rims, &near)?;
     let findings = contacts::split(&mut assembly)?;
     Ok(assembly.finish(findings))
 }
@@ -98,7 +101,7 @@ fn reaches_infinity(group: &PlaneGroup, sources: &Sources) -> bool {
 impl Assembly<'_> {
     fn run(
         &mut self,
-        fates: &Fates,
+        fates: &mut Fates,
         mut groups: Vec<PlaneGroup>,
         rims: &Rims,
         near: &[SourceFace],
@@ -127,16 +130,12 @@ impl Assembly<'_> {
             groups[group].lines()[i - starts[group]]
         };
         let inner = subdivisions(&edges, line, &touching, &self.table);
-        let split = split_faces(&frontier, offset, &inner);
-        self.identify_corners(&split);
-        self.emit_whole(fates, rims, &order_of(&split));
-        for face in order_of(&split) {
+        let split = split_faces(&frontier, offset, &inner, fates);
+        self.identify_corners(&split, fates);
+        self.emit_whole(fates, rims);
+        for split in &split {
             poll();
-            let orientation = match fates[face] {
-                Fate::Whole(orientation) => orientation,
-                Fate::Cut | Fate::Gone => Orientation::Same,
-            };
-            self.emit_split(face.oriented(orientation), &split[&face])?;
+            self.emit_split(split.face, &split.inner)?;
         }
         edges.truncate(offset);
         Ok(self.emit_groups(groups, &edges, &inner)?)
@@ -250,21 +249,23 @@ impl Assembly<'_> {
         }
     }
 
-    /// Makes points of all corners of split faces before any face names them.
-    fn identify_corners(&mut self, split: &SplitFaces) {
-        for face in order_of(split) {
-            self.identify(face);
+    /// Makes points of all corners of split faces before any face names them; what is split is no
+    /// longer whole.
+    fn identify_corners(&mut self, split: &[SplitFace], fates: &mut Fates) {
+        for SplitFace { face, .. } in split {
+            self.identify(face.face);
+            fates[face.face] = Fate::Cut;
         }
     }
 
-    /// Emits the whole faces that are not split, and the vertices that only they have.
-    fn emit_whole(&mut self, fates: &Fates, rims: &Rims, split: &[SourceFace]) {
+    /// Emits the whole faces, and the vertices that only they have.
+    fn emit_whole(&mut self, fates: &Fates, rims: &Rims) {
         let first = as_number(self.vertices.len());
         for (slot, images) in Slot::all().zip(&mut self.images) {
-            let rim = rims.get(slot);
-            for (vertex, image) in (0u32..).zip(images) {
-                poll();
-                if *image == NONE && rim.is_used(vertex) {
+            spend(images.len());
+            let vertices = images.iter_mut().zip(rims.get(slot).used());
+            for (vertex, (image, is_used)) in (0u32..).zip(vertices) {
+                if *image == NONE && is_used {
                     *image = as_number(self.vertices.len());
                     self.vertices.push(Corner::Source(slot, vertex));
                 }
@@ -276,12 +277,9 @@ impl Assembly<'_> {
             let (Some(mesh), images) = (source.mesh(), &self.images[slot.place()]) else {
                 continue;
             };
-            let start = split.partition_point(|s| s.slot < slot);
-            let end = split.partition_point(|s| s.slot <= slot);
-            let split = &split[start..end];
-            let whole = WholeFaces { slot, fates, split };
+            let source = Emitted { slot, mesh, images };
             let (triangles, faces) = (&mut self.triangles, &mut self.faces);
-            self.untouched.emit(mesh, images, &whole, triangles, faces);
+            self.untouched.emit(&source, fates, triangles, faces);
         }
     }
 }
@@ -300,21 +298,32 @@ fn known_end<'e>(
     })
 }
 
-/// The points inserted on the three edges of each whole face that received any; the frontier's
-/// edges are numbered from `offset` on.
-fn split_faces(frontier: &[FrontierEdge], offset: usize, inner: &InnerPoints) -> SplitFaces {
-    let mut split = SplitFaces::default();
-    for (edge, i) in frontier.iter().zip(offset..) {
-        if let Some(points) = inner.get(&i) {
-            let face = split.entry(edge.face()).or_default();
-            face[edge.half as usize % 3].clone_from(points);
+/// The whole faces that received points on their edges, ascending; the frontier's edges, by
+/// faces, are numbered from `offset` on.
+fn split_faces(
+    frontier: &[FrontierEdge],
+    offset: usize,
+    inner: &InnerPoints,
+    fates: &Fates,
+) -> Vec<SplitFace> {
+    let mut split: Vec<SplitFace> = Vec::new();
+    for (edge, number) in frontier.iter().zip(offset..) {
+        let (face, Some(points)) = (edge.face(), inner.get(&number)) else {
+            continue;
+        };
+        if split.last().is_none_or(|last| last.face.face != face) {
+            let orientation = match fates[face] {
+                Fate::Whole(orientation) => orientation,
+                Fate::Cut | Fate::Gone => Orientation::Same,
+            };
+            split.push(SplitFace {
+                face: face.oriented(orientation),
+                inner: Default::default(),
+            });
+        }
+        if let Some(last) = split.last_mut() {
+            last.inner[edge.half as usize % 3].clone_from(points);
         }
     }
     split
-}
-
-fn order_of(split: &SplitFaces) -> Vec<SourceFace> {
-    let mut order: Vec<SourceFace> = split.keys().copied().collect();
-    order.sort_unstable();
-    order
 }

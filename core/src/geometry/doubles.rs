@@ -48,16 +48,14 @@ impl<'a> Facing<'a> {
     #[inline]
     pub fn of(triangle: &'a Triangle) -> Self {
         let [a, b, c] = triangle;
-        let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
-        let products = |i: usize| {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            (u[j] * v[k], u[k] * v[j])
-        };
-        let all = [products(0), products(1), products(2)];
+        let (u, v) = (difference(b, a), difference(c, a));
+        let products = |j: usize, k: usize| (u[j] * v[k], u[k] * v[j]);
+        let (x, y, z) = (products(1, 2), products(2, 0), products(0, 1));
+        let size = |(left, right): (f64, f64)| left.abs() + right.abs();
         Self {
             triangle,
-            minors: all.map(|(left, right)| left - right),
-            sizes: all.map(|(left, right)| left.abs() + right.abs()),
+            minors: [x.0 - x.1, y.0 - y.1, z.0 - z.1],
+            sizes: [size(x), size(y), size(z)],
         }
     }
 
@@ -66,18 +64,41 @@ impl<'a> Facing<'a> {
     #[inline]
     pub fn side(&self, d: &Point) -> i32 {
         let [a, b, c] = self.triangle;
-        if (0..3).any(|i| a[i] == d[i] && b[i] == d[i] && c[i] == d[i]) {
-            return 0;
+        self.clear_side(d)
+            .unwrap_or_else(|| exact_side([a, b, c, d]))
+    }
+
+    /// The side on which a point lies, if doubles settle it.
+    #[inline]
+    pub fn clear_side(&self, d: &Point) -> Option<i32> {
+        let [a, b, c] = self.triangle;
+        let level = |i: usize| a[i] == d[i] && b[i] == d[i] && c[i] == d[i];
+        if level(0) || level(1) || level(2) {
+            return Some(0);
         }
         let (m, s) = (&self.minors, &self.sizes);
-        let w = [d[0] - a[0], d[1] - a[1], d[2] - a[2]];
+        let w = difference(d, a);
         let value = m[0] * w[0] + m[1] * w[1] + m[2] * w[2];
         let size = s[0] * w[0].abs() + s[1] * w[1].abs() + s[2] * w[2].abs();
-        if value.abs() > SIDE_BOUND * size && TRUSTED.contains(&size) {
-            return if value > 0.0 { 1 } else { -1 };
-        }
-        exact_side([a, b, c, d])
+        let clear = value.abs() > SIDE_BOUND * size && TRUSTED.contains(&size);
+        clear.then_some(if value > 0.0 { 1 } else { -1 })
     }
+
+    /// The axis along which the triangle is seen best.
+    pub fn main_axis(&self) -> usize {
+        let [x, y, z] = self.minors;
+        let (x, y, z) = (x.abs(), y.abs(), z.abs());
+        if x >= y && x >= z {
+            0
+        } else {
+            1 + usize::from(z > y)
+        }
+    }
+}
+
+#[inline]
+fn difference(p: &Point, q: &Point) -> Point {
+    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
 }
 
 /// The side of the plane through a triangle's corners on which a point lies; exact.
@@ -116,14 +137,20 @@ fn exact_side(points: [&Point; 4]) -> i32 {
 
 /// Sign of the turn a → b → c in the plane: +1 left, 0 straight, −1 right; exact.
 #[inline]
-pub fn turn([a, b, c]: [[f64; 2]; 3]) -> i32 {
+pub fn turn(points: [[f64; 2]; 3]) -> i32 {
+    clear_turn(points)
+        .or_else(|| turn_by_parts(points))
+        .unwrap_or_else(|| exact_turn(points))
+}
+
+/// Sign of the turn a → b → c in the plane, if doubles settle that there is one.
+#[inline]
+pub fn clear_turn([a, b, c]: [[f64; 2]; 3]) -> Option<i32> {
     let left = (b[0] - a[0]) * (c[1] - a[1]);
     let right = (b[1] - a[1]) * (c[0] - a[0]);
     let (value, size) = (left - right, left.abs() + right.abs());
-    if value.abs() > TURN_BOUND * size && TRUSTED.contains(&size) {
-        return if value > 0.0 { 1 } else { -1 };
-    }
-    turn_by_parts([a, b, c]).unwrap_or_else(|| exact_turn([a, b, c]))
+    let clear = value.abs() > TURN_BOUND * size && TRUSTED.contains(&size);
+    clear.then_some(if value > 0.0 { 1 } else { -1 })
 }
 
 /// The turn where the differences of coordinates are doubles, so that two products decide: points
@@ -219,9 +246,10 @@ pub fn is_flat(triangle: &Triangle) -> bool {
 }
 
 /// A triangle as seen against the direction of an axis.
-pub fn seen_along(triangle: &Triangle, axis: usize) -> [[f64; 2]; 3] {
+#[inline]
+pub fn seen_along([a, b, c]: &Triangle, axis: usize) -> [[f64; 2]; 3] {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    triangle.map(|p| [p[u], p[v]])
+    [[a[u], a[v]], [b[u], b[v]], [c[u], c[v]]]
 }
 
 #[cfg(test)]

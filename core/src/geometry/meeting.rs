@@ -5,7 +5,7 @@
 //! told apart by whether it runs inside the triangles or along their edges.
 #![allow(clippy::float_cmp, reason = "equal corners are meant to the last bit")]
 
-use super::doubles::{is_flat, seen_along, side, turn, Facing, Point, Triangle};
+use super::doubles::{clear_turn, is_flat, seen_along, side, turn, Facing, Point, Triangle};
 
 /// What two triangles have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +26,14 @@ pub enum Meeting {
 
 /// What two triangles that have area have in common.
 pub fn meeting(p: &Triangle, q: &Triangle) -> Meeting {
+    if are_clear(p, q) {
+        Meeting::Clear
+    } else {
+        meeting_by_sides(p, q)
+    }
+}
+
+fn meeting_by_sides(p: &Triangle, q: &Triangle) -> Meeting {
     let of_p = sides(p, q);
     let first = reach(&of_p);
     if first == Reach::Point {
@@ -49,11 +57,65 @@ pub fn meeting(p: &Triangle, q: &Triangle) -> Meeting {
     }
 }
 
+/// Whether doubles alone show that two triangles have nothing or one corner in common: most pairs.
+fn are_clear(p: &Triangle, q: &Triangle) -> bool {
+    if p.iter().filter(|c| has_corner(q, c)).count() > 1 {
+        return false;
+    }
+    let plane = Facing::of(q);
+    if lies_beside(p, &plane, q) || lies_beside(q, &Facing::of(p), p) {
+        return true;
+    }
+    let axis = plane.main_axis();
+    lies_outside(p, q, axis) || lies_outside(q, p, axis)
+}
+
+/// Whether a triangle is clearly on one side of the plane of another, but for common corners.
+fn lies_beside(t: &Triangle, plane: &Facing, other: &Triangle) -> bool {
+    let mut own = 0;
+    for c in t.iter().filter(|c| !has_corner(other, c)) {
+        match plane.clear_side(c) {
+            Some(side) if side != 0 && side != -own => own = side,
+            _ => return false,
+        }
+    }
+    true
+}
+
+/// Whether a triangle, seen along an axis, is clearly beyond an edge of another, but for a corner
+/// that is an end of the edge: seen so, each point of the other is one point.
+fn lies_outside(t: &Triangle, other: &Triangle, axis: usize) -> bool {
+    let (t_seen, other_seen) = (seen_along(t, axis), seen_along(other, axis));
+    let Some(inner) = clear_turn(other_seen) else {
+        return false;
+    };
+    (0..3).any(|i| {
+        let next = (i + 1) % 3;
+        (0..3).all(|k| {
+            let turn = || clear_turn([other_seen[i], other_seen[next], t_seen[k]]);
+            is_same(&t[k], &other[i]) || is_same(&t[k], &other[next]) || turn() == Some(-inner)
+        })
+    })
+}
+
+/// Whether a triangle lies on another that is its mate at an edge, given by its number in the
+/// second; both have area. If not, they have nothing but the edge in common.
+pub fn folds_over(p: &Triangle, q: &Triangle, edge: usize) -> bool {
+    // Seen so that both face one way, they lie on different sides of the edge.
+    let clear = |t: &Triangle, axis: usize| clear_turn(seen_along(t, axis));
+    let is_spread = |axis: usize| clear(p, axis).is_some_and(|own| clear(q, axis) == Some(own));
+    if is_spread(0) || is_spread(1) || is_spread(2) || side(p, &q[(edge + 2) % 3]) != 0 {
+        return false;
+    }
+    let facing = |t: &Triangle, axis: usize| turn(seen_along(t, axis));
+    (0..3).all(|axis| facing(p, axis) == -facing(q, axis))
+}
+
 /// On which sides of a triangle's plane the corners of another lie.
 fn sides(triangle: &Triangle, plane: &Triangle) -> [i32; 3] {
     let facing = Facing::of(plane);
     let side = |p: &Point| {
-        if plane.contains(p) {
+        if has_corner(plane, p) {
             0
         } else {
             facing.side(p)
@@ -61,6 +123,18 @@ fn sides(triangle: &Triangle, plane: &Triangle) -> [i32; 3] {
     };
     let [a, b, c] = triangle;
     [side(a), side(b), side(c)]
+}
+
+/// Whether a point is a corner of a triangle.
+#[inline]
+fn has_corner([a, b, c]: &Triangle, p: &Point) -> bool {
+    is_same(p, a) || is_same(p, b) || is_same(p, c)
+}
+
+/// Whether two points are one; arrays would be compared as slices, which takes longer.
+#[inline]
+fn is_same(p: &Point, q: &Point) -> bool {
+    p[0] == q[0] && p[1] == q[1] && p[2] == q[2]
 }
 
 /// What a triangle has in common with the plane of another.
@@ -124,14 +198,24 @@ fn overlap(p: &Triangle, q: &Triangle) -> bool {
         return false;
     };
     let (p, q) = (seen_along(p, axis), seen_along(q, axis));
-    let separates = |p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]| {
-        let inner = turn(*p);
-        (0..3).any(|i| {
-            let beyond = |c: &[f64; 2]| turn([p[i], p[(i + 1) % 3], *c]) != inner;
-            q.iter().all(beyond)
-        })
-    };
-    !separates(&p, &q) && !separates(&q, &p)
+    !lie_apart(&p, &q) && !separates(&p, &q) && !separates(&q, &p)
+}
+
+/// Whether the boxes around two triangles have no area in common.
+fn lie_apart(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
+    let low = |t: &[[f64; 2]; 3], i: usize| t[0][i].min(t[1][i]).min(t[2][i]);
+    let high = |t: &[[f64; 2]; 3], i: usize| t[0][i].max(t[1][i]).max(t[2][i]);
+    (0..2).any(|i| high(p, i) <= low(q, i) || high(q, i) <= low(p, i))
+}
+
+/// Whether one triangle lies on the outer side of an edge of another, or on its line.
+fn separates(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
+    let inner = turn(*p);
+    (0..3).any(|i| {
+        let (a, b) = (p[i], p[(i + 1) % 3]);
+        let beyond = |c: &[f64; 2]| *c == a || *c == b || turn([a, b, *c]) != inner;
+        q.iter().all(beyond)
+    })
 }
 
 /// Whether the surface that bends from `p` to `p_mate` over their common edge a → b passes through
@@ -177,4 +261,63 @@ pub fn passes(plane: &Triangle, [apex, mate]: [&Point; 2]) -> bool {
 pub fn has_no_area(triangle: &Triangle) -> bool {
     let [a, b, c] = triangle;
     a == b || b == c || c == a || is_flat(triangle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A corner of a small grid, by a number; there triangles touch in every way.
+    fn corner(number: u32, step: f64) -> Point {
+        [1, 3, 9].map(|place| f64::from(number / place % 3) * step)
+    }
+
+    /// Numbers that look random, below a bound.
+    fn numbers(bound: u32) -> impl Iterator<Item = u32> {
+        let next = |x: &u32| Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+        std::iter::successors(Some(7), next).map(move |x| (x >> 8) % bound)
+    }
+
+    #[test]
+    fn what_doubles_show_holds_exactly() {
+        // Thirds are rounded, so that triangles of one plane are not quite so.
+        for step in [1.0, 1.0 / 3.0, 0.1] {
+            let (mut corners, mut clear, mut met) = (numbers(27), 0, 0);
+            for _ in 0..20_000 {
+                let mut next = || [(); 3].map(|()| corner(corners.next().unwrap_or(0), step));
+                let (p, q) = (next(), next());
+                if has_no_area(&p) || has_no_area(&q) {
+                    continue;
+                }
+                let exact = meeting_by_sides(&p, &q);
+                assert_eq!(meeting(&p, &q), exact, "{p:?} {q:?}");
+                clear += usize::from(are_clear(&p, &q));
+                met += usize::from(exact != Meeting::Clear);
+            }
+            assert!(clear > 4000 && met > 4000, "{clear} {met}");
+        }
+    }
+
+    #[test]
+    fn mates_fold_over_where_they_overlap() {
+        for step in [1.0, 1.0 / 3.0] {
+            let (mut corners, mut folded, mut flat) = (numbers(27), 0, 0);
+            for _ in 0..20_000 {
+                let mut next = || corner(corners.next().unwrap_or(0), step);
+                let (a, b, c, d) = (next(), next(), next(), next());
+                let (p, q) = ([a, b, c], [b, a, d]);
+                if has_no_area(&p) || has_no_area(&q) {
+                    continue;
+                }
+                let exact = meeting_by_sides(&p, &q);
+                for (turned, edge) in [(q, 0), ([d, b, a], 1), ([a, d, b], 2)] {
+                    let folds = folds_over(&p, &turned, edge);
+                    assert_eq!(folds, exact == Meeting::Overlap, "{p:?} {turned:?}");
+                }
+                folded += usize::from(exact == Meeting::Overlap);
+                flat += usize::from(exact == Meeting::Clear);
+            }
+            assert!(folded > 100 && flat > 100, "{folded} {flat}");
+        }
+    }
 }

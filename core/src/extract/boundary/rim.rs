@@ -13,7 +13,7 @@ use super::leaves::{Fate, Fates};
 use crate::arith::convert::as_number;
 use crate::geometry::line::LineKey;
 use crate::geometry::side::Orientation;
-use crate::interrupt::{carried, poll};
+use crate::interrupt::{carried, poll, spend};
 use crate::merge::lists::list::Sources;
 use crate::mesh::handle::{FaceId, Slot, SourceFace};
 use crate::mesh::source::Source;
@@ -195,7 +195,7 @@ impl Rim {
         for vertex in source.open_vertices() {
             rim.touch[*vertex as usize] |= OPEN;
         }
-        if (0..as_number(mesh.vertices.len())).any(|v| rim.is_mixed(v)) {
+        if rim.touch.iter().any(|t| is_mixed(*t)) {
             let near = |(_, (corners, fate)): &(FaceId, (&[u32; 3], &Fate))| {
                 matches!(fate, Fate::Whole(_)) && corners.iter().any(|v| rim.is_mixed(*v))
             };
@@ -212,15 +212,17 @@ impl Rim {
 
     /// The number of vertices that are corners of whole faces.
     pub fn used_count(&self) -> usize {
-        self.touch
-            .iter()
-            .filter(|t| **t & (KEPT | TURNED) != 0)
-            .count()
+        self.used().filter(|used| *used).count()
+    }
+
+    /// For each vertex whether a whole face has that corner.
+    pub fn used(&self) -> impl Iterator<Item = bool> + '_ {
+        self.touch.iter().map(|touch| touch & (KEPT | TURNED) != 0)
     }
 
     /// Whether faces of different fates meet at a vertex.
     fn is_mixed(&self, vertex: u32) -> bool {
-        !self.touch[vertex as usize].is_power_of_two() && self.touch[vertex as usize] != 0
+        is_mixed(self.touch[vertex as usize])
     }
 
     /// The half-edges of whole faces that have no opposite among those turned alike, ascending.
@@ -278,17 +280,24 @@ impl Half {
     }
 }
 
+/// Whether several kinds of faces meet.
+fn is_mixed(touch: u8) -> bool {
+    touch & touch.wrapping_sub(1) != 0
+}
+
 fn touch(mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u8> {
     let mut touch = vec![0; mesh.vertices.len()];
-    for (corners, fate) in mesh.faces.iter().zip(fates) {
-        poll();
-        let kind = match fate {
-            Fate::Whole(Orientation::Same) => KEPT,
-            Fate::Whole(Orientation::Opposite) => TURNED,
-            Fate::Cut | Fate::Gone => OTHER,
-        };
-        for corner in corners {
-            touch[*corner as usize] |= kind;
+    for (faces, fates) in mesh.faces.chunks(CHUNK).zip(fates.chunks(CHUNK)) {
+        spend(faces.len());
+        for (&[a, b, c], fate) in faces.iter().zip(fates) {
+            let kind = match fate {
+                Fate::Whole(Orientation::Same) => KEPT,
+                Fate::Whole(Orientation::Opposite) => TURNED,
+                Fate::Cut | Fate::Gone => OTHER,
+            };
+            touch[a as usize] |= kind;
+            touch[b as usize] |= kind;
+            touch[c as usize] |= kind;
         }
     }
     touch

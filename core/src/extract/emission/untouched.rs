@@ -23,16 +23,6 @@ pub struct Untouched {
     pub special: Vec<u32>,
 }
 
-/// The faces of a source, of which the whole ones are to be emitted.
-pub struct WholeFaces<'a> {
-    /// The source.
-    pub slot: Slot,
-    /// The fates of its faces.
-    pub fates: &'a [Fate],
-    /// The whole faces that are left out, ascending.
-    pub split: &'a [SourceFace],
-}
-
 /// A chunk of faces and the places of its triangles.
 struct Task<'a> {
     first_face: usize,
@@ -40,6 +30,16 @@ struct Task<'a> {
     fates: &'a [Fate],
     triangles: &'a mut [[u32; 3]],
     faces: &'a mut [OrientedFace],
+}
+
+/// A source of which the whole faces are to be emitted.
+pub struct Emitted<'a> {
+    /// Its slot.
+    pub slot: Slot,
+    /// Its faces.
+    pub mesh: &'a TriangleMesh,
+    /// The number of each of its vertices.
+    pub images: &'a [u32],
 }
 
 impl Untouched {
@@ -51,16 +51,16 @@ impl Untouched {
         }
     }
 
-    /// Appends the whole faces of a source; `images` has the number of each of its vertices.
+    /// Appends the whole faces of a source.
     pub fn emit(
         &mut self,
-        mesh: &TriangleMesh,
-        images: &[u32],
-        whole: &WholeFaces,
+        source: &Emitted,
+        fates: &[Fate],
         triangles: &mut Vec<[u32; 3]>,
         faces: &mut Vec<OrientedFace>,
     ) {
-        let counts = each_chunk(whole.fates, |first, fates| whole.kept(first, fates).count());
+        let is_whole = |fate: &&Fate| matches!(fate, Fate::Whole(_));
+        let counts = each_chunk(fates, |_, fates| fates.iter().filter(is_whole).count());
         let start = triangles.len();
         self.count = start + counts.iter().sum::<usize>();
         triangles.resize(self.count, [0; 3]);
@@ -68,7 +68,7 @@ impl Untouched {
         let mut tasks = Vec::with_capacity(counts.len());
         let mut rest = (&mut triangles[start..], &mut faces[start..]);
         let mut first_triangle = as_number(start);
-        let chunks = whole.fates.chunks(CHUNK).enumerate();
+        let chunks = fates.chunks(CHUNK).enumerate();
         for ((chunk, fates), count) in chunks.zip(counts) {
             let (triangles, later) = rest.0.split_at_mut(count);
             let (faces, later_faces) = rest.1.split_at_mut(count);
@@ -84,7 +84,7 @@ impl Untouched {
         }
         let emit = carried(|task: Task| {
             spend(task.fates.len());
-            task.run(mesh, images, whole, &self.vertices)
+            task.run(source, &self.vertices)
         });
         let special: Vec<Vec<u32>> = if in_pool() && tasks.len() > 1 {
             tasks.into_par_iter().map(emit).collect()
@@ -95,48 +95,28 @@ impl Untouched {
     }
 }
 
-impl WholeFaces<'_> {
-    /// The faces to emit among a run of faces, and whether they are turned around.
-    fn kept<'a>(
-        &'a self,
-        first: usize,
-        fates: &'a [Fate],
-    ) -> impl Iterator<Item = OrientedFace> + 'a {
-        let start = self.split.partition_point(|s| s.id.place() < first);
-        let mut split = self.split[start..].iter().peekable();
-        (as_number(first)..)
-            .zip(fates)
-            .filter_map(move |(id, fate)| {
-                let Fate::Whole(orientation) = *fate else {
-                    return None;
-                };
-                let face = SourceFace::new(self.slot, FaceId(id));
-                let is_left_out = split.next_if_eq(&&face).is_some();
-                (!is_left_out).then_some(face.oriented(orientation))
-            })
-    }
-}
-
 impl Task<'_> {
     /// Fills in the triangles; returns the numbers of those with other vertices than `own`.
-    fn run(
-        self,
-        mesh: &TriangleMesh,
-        images: &[u32],
-        whole: &WholeFaces,
-        own: &Range<u32>,
-    ) -> Vec<u32> {
+    fn run(self, source: &Emitted, own: &Range<u32>) -> Vec<u32> {
         let mut special = Vec::new();
         let out = self.triangles.iter_mut().zip(self.faces.iter_mut());
-        let kept = whole.kept(self.first_face, self.fates);
-        for ((face, (triangle, origin)), number) in kept.zip(out).zip(self.first_triangle..) {
-            let [a, b, c] = mesh.vertices_of(face.id()).map(|v| images[v as usize]);
-            *triangle = match face.orientation {
+        let mut out = out.zip(self.first_triangle..);
+        let faces = source.mesh.faces[self.first_face..].iter().zip(self.fates);
+        for (id, (&[a, b, c], fate)) in (as_number(self.first_face)..).zip(faces) {
+            let Fate::Whole(orientation) = *fate else {
+                continue;
+            };
+            let Some(((triangle, origin), number)) = out.next() else {
+                break;
+            };
+            let image = |v: u32| source.images[v as usize];
+            let (a, b, c) = (image(a), image(b), image(c));
+            *triangle = match orientation {
                 Orientation::Same => [a, b, c],
                 Orientation::Opposite => [a, c, b],
             };
-            *origin = face;
-            if [a, b, c].iter().any(|v| !own.contains(v)) {
+            *origin = SourceFace::new(source.slot, FaceId(id)).oriented(orientation);
+            if !(own.contains(&a) && own.contains(&b) && own.contains(&c)) {
                 special.push(number);
             }
         }

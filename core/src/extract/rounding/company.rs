@@ -1,6 +1,7 @@
 //! Which triangles of a mesh lie so near others that the two may meet, by a coarse grid.
 
 use crate::arith::convert::{as_double, as_number};
+use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{Point, Triangle};
 
 use crate::mesh::tasks::fill_chunks;
@@ -16,6 +17,7 @@ pub struct Faces<'a> {
 
 impl Faces<'_> {
     /// The corners of a triangle.
+    #[inline]
     pub fn corners(&self, triangle: u32) -> Triangle {
         let [a, b, c] = self.triangles[triangle as usize];
         let at = |vertex: u32| self.vertices[vertex as usize];
@@ -26,38 +28,69 @@ impl Faces<'_> {
 /// The most cells along an axis: the grid then fits into a cache.
 const FINEST: usize = 32;
 
+/// So few triangles are compared all with all: telling them apart costs as much.
+const FEW: usize = 256;
+
 /// The triangles that are not among some, ascending, but may meet one of them or a triangle of
-/// another party; with their parties.
+/// another party; with their parties, ascending.
 ///
 /// # Cost
 /// Two passes over vertices and triangles.
 pub fn in_company(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32) -> Vec<(u32, u32)> {
-    if some.len() == faces.triangles.len() {
+    let count = faces.triangles.len();
+    if some.len() == count {
         return Vec::new();
     }
-    let Some(mut grid) = Grid::around(faces) else {
-        return Vec::new();
+    let others = Others { some, count };
+    let mut near: Vec<(u32, u32)> = if count <= FEW {
+        others.each().map(|t| (party(t), t)).collect()
+    } else {
+        others.near(faces, &party)
     };
-    let mut cells = vec![Cell::default(); faces.vertices.len()];
-    fill_chunks(faces.vertices, &mut cells, |_, places, cells| {
-        for (place, cell) in places.iter().zip(cells) {
-            *cell = grid.cell(place);
+    near.sort_unstable();
+    near
+}
+
+/// All triangles but some, ascending.
+#[derive(Clone, Copy)]
+struct Others<'a> {
+    some: &'a [u32],
+    count: usize,
+}
+
+impl<'a> Others<'a> {
+    fn each(self) -> impl Iterator<Item = u32> + 'a {
+        let ends = self.some.iter().copied().chain([as_number(self.count)]);
+        let mut next = 0;
+        ends.flat_map(move |end| {
+            let between = next..end;
+            next = end + 1;
+            between
+        })
+    }
+
+    /// Those in a cell with one that is left out, or with one of another party.
+    fn near(self, faces: &Faces, party: impl Fn(u32) -> u32) -> Vec<(u32, u32)> {
+        let Some(mut grid) = Grid::around(faces) else {
+            return Vec::new();
+        };
+        let mut cells = vec![Cell::default(); faces.vertices.len()];
+        fill_chunks(faces.vertices, &mut cells, |_, places, cells| {
+            for (place, cell) in places.iter().zip(cells) {
+                *cell = grid.cell(place);
+            }
+        });
+        let block = |t: u32| {
+            let [a, b, c] = faces.triangles[t as usize];
+            Block::of(cells[a as usize], cells[b as usize], cells[c as usize])
+        };
+        for t in self.some {
+            grid.mark(block(*t), SHARED);
         }
-    });
-    let block = |t: u32| Block::of(faces.triangles[t as usize].map(|v| cells[v as usize]));
-    for t in some {
-        grid.mark(block(*t), SHARED);
+        self.each().for_each(|t| grid.mark(block(t), party(t) + 1));
+        let near = self.each().filter(|t| grid.is_shared(block(*t)));
+        near.map(|t| (party(t), t)).collect()
     }
-    let mut own = some.iter().copied().peekable();
-    let is_other = move |t: &u32| own.next_if_eq(t).is_none();
-    let others: Vec<u32> = (0..as_number(faces.triangles.len()))
-        .filter(is_other)
-        .collect();
-    for t in &others {
-        grid.mark(block(*t), party(*t) + 1);
-    }
-    let near = others.into_iter().filter(|t| grid.is_shared(block(*t)));
-    near.map(|t| (party(t), t)).collect()
 }
 
 /// The mark of cells with triangles of several parties, or with one of those that are asked about.
@@ -80,27 +113,29 @@ type Cell = [u8; 3];
 struct Block(Cell, Cell);
 
 impl Block {
-    fn of([a, b, c]: [Cell; 3]) -> Self {
+    fn of(a: Cell, b: Cell, c: Cell) -> Self {
         Self(
-            [0, 1, 2].map(|i| a[i].min(b[i]).min(c[i])),
-            [0, 1, 2].map(|i| a[i].max(b[i]).max(c[i])),
+            each_axis(|i| a[i].min(b[i]).min(c[i])),
+            each_axis(|i| a[i].max(b[i]).max(c[i])),
         )
     }
 }
 
 impl Grid {
     fn around(faces: &Faces) -> Option<Self> {
-        let mut places = faces.vertices.iter();
-        let first = *places.next()?;
-        let (low, high) = places.fold((first, first), |(low, high), p| {
-            let low = [0, 1, 2].map(|i| low[i].min(p[i]));
-            (low, [0, 1, 2].map(|i| high[i].max(p[i])))
-        });
+        let first = *faces.vertices.first()?;
+        let (mut low, mut high) = (first, first);
+        for p in faces.vertices {
+            for i in 0..3 {
+                low[i] = low[i].min(p[i]);
+                high[i] = high[i].max(p[i]);
+            }
+        }
         let size = (faces.triangles.len() / 24).isqrt().clamp(2, FINEST);
         let factor = |i: usize| as_double(size) / (high[i] - low[i]).max(f64::MIN_POSITIVE);
         Some(Self {
             low,
-            factor: [0, 1, 2].map(factor),
+            factor: each_axis(factor),
             size,
             marks: vec![0; size * size * size],
         })
@@ -112,54 +147,97 @@ impl Grid {
         reason = "no place is below the lowest, and none beyond the size"
     )]
     fn cell(&self, p: &Point) -> Cell {
-        [0, 1, 2].map(|i| {
+        let last = self.size - 1;
+        each_axis(|i| {
             let place = (p[i] - self.low[i]) * self.factor[i];
-            (place as usize).min(self.size - 1) as u8
+            (place as usize).min(last) as u8
         })
     }
 
-    /// The stretches of marks that a block covers.
-    fn columns(
-        &self,
-        Block(low, high): Block,
-    ) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
-        let [low, high] = [low, high].map(|c| c.map(usize::from));
-        let size = self.size;
-        (low[0]..=high[0]).flat_map(move |x| {
-            (low[1]..=high[1]).map(move |y| {
-                let start = (x * size + y) * size;
-                start + low[2]..start + high[2] + 1
-            })
-        })
+    /// The first mark of a column of cells.
+    fn start(&self, x: u8, y: u8) -> usize {
+        (usize::from(x) * self.size + usize::from(y)) * self.size
     }
 
-    /// The mark of the only cell of a block.
-    fn single(&self, Block(low, high): Block) -> Option<usize> {
-        let [x, y, z] = low.map(usize::from);
-        (low == high).then_some((x * self.size + y) * self.size + z)
-    }
-
-    fn mark(&mut self, block: Block, party: u32) {
+    fn mark(&mut self, Block(low, high): Block, party: u32) {
         let marked = |mark: &mut u32| {
-            *mark = if *mark == 0 || *mark == party {
-                party
-            } else {
-                SHARED
-            }
+            let own = *mark == 0 || *mark == party;
+            *mark = if own { party } else { SHARED };
         };
-        if let Some(only) = self.single(block) {
-            return marked(&mut self.marks[only]);
-        }
-        for column in self.columns(block) {
-            self.marks[column].iter_mut().for_each(marked);
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                let start = self.start(x, y);
+                for z in low[2]..=high[2] {
+                    marked(&mut self.marks[start + usize::from(z)]);
+                }
+            }
         }
     }
 
-    fn is_shared(&self, block: Block) -> bool {
-        if let Some(only) = self.single(block) {
-            return self.marks[only] == SHARED;
+    fn is_shared(&self, Block(low, high): Block) -> bool {
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                let start = self.start(x, y);
+                for z in low[2]..=high[2] {
+                    if self.marks[start + usize::from(z)] == SHARED {
+                        return true;
+                    }
+                }
+            }
         }
-        self.columns(block)
-            .any(|column| self.marks[column].contains(&SHARED))
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::extent::Extent;
+
+    /// Small triangles in a cube, their places taken from numbers that look random.
+    fn scattered(count: u32) -> (Vec<Point>, Vec<[u32; 3]>) {
+        let next = |x: &u32| Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+        let mut numbers = std::iter::successors(Some(7), next).map(|x| f64::from(x >> 8) / 2e7);
+        let mut number = || numbers.next().unwrap_or(0.0);
+        let mut vertices = Vec::new();
+        for _ in 0..count {
+            let place = [number(), number(), number()];
+            for _ in 0..3 {
+                vertices.push(place.map(|x| x + 0.05 * number()));
+            }
+        }
+        let triangles = (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
+        (vertices, triangles.collect())
+    }
+
+    #[test]
+    fn all_that_may_meet_are_found() {
+        for count in [30, 300, 1500] {
+            let (vertices, triangles) = scattered(count);
+            let faces = Faces {
+                vertices: &vertices,
+                triangles: &triangles,
+            };
+            let party = |t: u32| u32::from(faces.corners(t)[0][0] < 0.4);
+            let some: Vec<u32> = (0..count)
+                .filter(|t| faces.corners(*t)[0][1] > 0.75)
+                .collect();
+            let company = in_company(&faces, &some, party);
+            assert!(company.is_sorted());
+            assert!(company.iter().all(|(p, t)| party(*t) == *p));
+            let is_some = |t: u32| some.binary_search(&t).is_ok();
+            let meet = |t: u32, u: u32| {
+                let [t, u] = [t, u].map(|t| Extent::of(&faces.corners(t)));
+                !t.misses(&u)
+            };
+            let others = (0..count).filter(|t| !is_some(*t));
+            for t in others.clone() {
+                let asked = |u: &u32| is_some(*u) || party(*u) != party(t);
+                let is_near = (0..count).filter(asked).any(|u| meet(t, u));
+                assert!(!is_near || company.contains(&(party(t), t)), "{t}");
+            }
+            assert!(company.iter().all(|(_, t)| !is_some(*t)));
+            assert!(count < 1000 || company.len() < others.count());
+        }
     }
 }

@@ -7,9 +7,11 @@ use rustc_hash::FxHashMap as HashMap;
 
 use super::company::{in_company, Faces};
 use crate::arith::convert::{as_double, as_number, as_whole};
-use crate::geometry::doubles::{side, Point, Triangle};
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::{Point, Triangle};
 use crate::geometry::extent::Extent;
-use crate::geometry::meeting::{has_no_area, interleave, meeting, passes, Meeting};
+use crate::geometry::meeting::{folds_over, has_no_area, interleave, meeting, passes, Meeting};
+use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, Boxed, Swept};
 
@@ -40,23 +42,26 @@ impl Faults {
 /// Others of one party, such as the faces of one input that are as they came, are not compared with
 /// each other.
 pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32) -> Faults {
-    let area = |t: &u32| !has_no_area(&faces.corners(*t));
-    let (solid, flat): (Vec<u32>, Vec<u32>) = some.iter().partition(|t| area(t));
+    let has_area = |t: u32| !has_no_area(&faces.corners(t));
+    let mut elements = in_company(faces, some, &party);
+    elements.retain(|(_, t)| has_area(*t));
+    let mut next = elements.last().map_or(0, |other| other.0 + 1);
+    elements.reserve(some.len());
+    let mut flat = Vec::new();
+    for t in some {
+        if has_area(*t) {
+            elements.push((next, *t));
+            next += 1;
+        } else {
+            flat.push(*t);
+        }
+    }
     let mut search = Search {
         faces,
         crossings: Vec::new(),
         doubtful: Vec::new(),
     };
-    let mut others = in_company(faces, some, &party);
-    others.retain(|(_, t)| area(t));
-    others.sort_unstable();
-    let parties = others.last().map_or(0, |o| o.0 + 1);
-    let new = (parties..).zip(solid);
-    candidates(
-        faces,
-        &others.into_iter().chain(new).collect::<Vec<_>>(),
-        |t, u| search.look_at(t, u),
-    );
+    candidates(faces, &elements, |t, u| search.look_at(t, u));
     search.settle();
     search.crossings.sort_unstable();
     search.crossings.dedup();
@@ -84,34 +89,34 @@ impl Search<'_> {
     fn look_at(&mut self, t: u32, u: u32) {
         poll();
         let pair = [t.min(u), t.max(u)];
-        if self.bend_apart(pair) {
+        let (p, q) = (self.faces.corners(pair[0]), self.faces.corners(pair[1]));
+        if let Some(edge) = self.common_edge(pair) {
+            if folds_over(&p, &q, edge) {
+                self.crossings.push(pair);
+            }
             return;
         }
-        let [p, q] = pair.map(|t| self.faces.corners(t));
         match meeting(&p, &q) {
             Meeting::Clear => {}
             Meeting::Crossing | Meeting::Overlap => self.crossings.push(pair),
-            Meeting::Edges(i, j) if self.are_mates(pair, i, j) => {}
             meeting => self.doubtful.push((pair, meeting)),
         }
     }
 
-    /// Whether two triangles with area are mates at an edge, and bend there: they have nothing
-    /// else in common.
-    fn bend_apart(&self, pair: [u32; 2]) -> bool {
-        let edges = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
-        let mut mates = edges.filter(|(i, j)| self.are_mates(pair, *i, *j));
-        let Some((_, j)) = mates.next() else {
-            return false;
+    /// The edge of the second triangle of a pair at which the two are mates, by its number.
+    fn common_edge(&self, [t, u]: [u32; 2]) -> Option<usize> {
+        let [a, b, c] = self.faces.triangles[t as usize];
+        let [d, e, f] = self.faces.triangles[u as usize];
+        let own = |from: u32, to: u32| {
+            from == a && to == b || from == b && to == c || from == c && to == a
         };
-        let apex = self.faces.corners(pair[1])[(j + 2) % 3];
-        side(&self.faces.corners(pair[0]), &apex) != 0
-    }
-
-    /// Whether two edges are one by index.
-    fn are_mates(&self, pair: [u32; 2], i: usize, j: usize) -> bool {
-        let [[a, b], [c, d]] = [self.ends(pair[0], i), self.ends(pair[1], j)];
-        a == d && b == c
+        if own(e, d) {
+            Some(0)
+        } else if own(f, e) {
+            Some(1)
+        } else {
+            own(d, f).then_some(2)
+        }
     }
 
     fn ends(&self, triangle: u32, edge: usize) -> [u32; 2] {
@@ -129,18 +134,7 @@ impl Search<'_> {
             _ => Vec::new(),
         };
         let wanted = doubtful.iter().flat_map(edges).map(|[a, b]| [b, a]);
-        let mut apexes: HashMap<[u32; 2], Option<u32>> = wanted.map(|e| (e, None)).collect();
-        if apexes.is_empty() {
-            return;
-        }
-        for corners in self.faces.triangles {
-            for i in 0..3 {
-                let edge = [corners[i], corners[(i + 1) % 3]];
-                if let Some(apex) = apexes.get_mut(&edge) {
-                    *apex = Some(corners[(i + 2) % 3]);
-                }
-            }
-        }
+        let apexes = self.apexes(wanted.map(|e| (e, None)).collect());
         for (pair, meeting) in doubtful {
             let mate = |which: usize, edge: usize| {
                 let [a, b] = self.ends(pair[which], edge);
@@ -152,6 +146,28 @@ impl Search<'_> {
                 self.crossings.push(pair);
             }
         }
+    }
+
+    /// The apexes of the triangles at some directed edges.
+    fn apexes(&self, mut at: HashMap<[u32; 2], Option<u32>>) -> HashMap<[u32; 2], Option<u32>> {
+        if at.is_empty() {
+            return at;
+        }
+        let mut is_end = vec![false; self.faces.vertices.len()];
+        for v in at.keys().flatten() {
+            is_end[*v as usize] = true;
+        }
+        for &[a, b, c] in self.faces.triangles {
+            for [from, to, apex] in [[a, b, c], [b, c, a], [c, a, b]] {
+                if is_end[from as usize]
+                    && is_end[to as usize]
+                    && let Some(found) = at.get_mut(&[from, to])
+                {
+                    *found = Some(apex);
+                }
+            }
+        }
+        at
     }
 }
 
@@ -179,28 +195,28 @@ pub fn crosses_at(
 /// Calls `meet` for the pairs of different parties that may meet; triangles come by party.
 fn candidates(faces: &Faces, all: &[(u32, u32)], mut meet: impl FnMut(u32, u32)) {
     let corners = |k: u32| faces.corners(all[k as usize].1);
-    let numbers = || 0..as_number(all.len());
-    let boxes = numbers().map(|k| Extent::of(&corners(k)));
-    let Some(whole) = boxes.reduce(|a, b| a.joined(&b)) else {
+    let numbers = 0..as_number(all.len());
+    let extents: Vec<Extent> = numbers.clone().map(|k| Extent::of(&corners(k))).collect();
+    let Some(whole) = extents.iter().copied().reduce(|a, b| a.joined(&b)) else {
         return;
     };
     let scale = Scale::of(&whole);
     let party = |k: u32| all[k as usize].0 as usize;
     let boxed = |k: u32| {
-        let [low, high] = scale.ends(&Extent::of(&corners(k)));
+        let (low, high) = scale.ends(&extents[k as usize]);
         Boxed::new(party(k), k, [&low, &high], Scale::BITS - 30)
     };
     let swept = |k: u32| {
-        let corners = corners(k);
-        let [low, high] = scale.ends(&Extent::of(&corners));
+        let [a, b, c] = corners(k);
+        let (low, high) = scale.ends(&extents[k as usize]);
         Swept {
             operand: party(k),
             low,
             high,
-            corners: Some(corners.map(|p| scale.image(&p))),
+            corners: Some([scale.image(&a), scale.image(&b), scale.image(&c)]),
         }
     };
-    pairs_of_many(numbers().map(boxed).collect(), swept, |i, j| {
+    pairs_of_many(numbers.map(boxed).collect(), swept, |i, j| {
         meet(all[i as usize].1, all[j as usize].1);
     });
 }
@@ -226,10 +242,14 @@ impl Scale {
     }
 
     fn image(&self, p: &Point) -> Point {
-        [0, 1, 2].map(|i| (p[i] - self.low[i]) * self.factor)
+        each_axis(|i| (p[i] - self.low[i]) * self.factor)
     }
 
-    fn ends(&self, extent: &Extent) -> [[i64; 3]; 2] {
-        [extent.low, extent.high].map(|p| self.image(&p).map(as_whole))
+    fn ends(&self, extent: &Extent) -> (Lattice, Lattice) {
+        let whole = |p: &Point| {
+            let image = self.image(p);
+            each_axis(|i| as_whole(image[i]))
+        };
+        (whole(&extent.low), whole(&extent.high))
     }
 }

@@ -70,8 +70,7 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
     } else {
         turned(&mesh, &exact, &sources)
     };
-    let origin = |f: OrientedFace| [f.slot().0, sources.get(f.slot()).number(f.id())];
-    mesh.origins = exact.faces.iter().copied().map(origin).collect();
+    mesh.origins = origins(&exact.faces, &sources);
     mesh.flips = exact
         .faces
         .iter()
@@ -81,6 +80,17 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
     report(&mut mesh, &unfolded.repaired, &left, &settled, &renumbered);
     mesh.compared = settled.compared as u64;
     Ok(mesh)
+}
+
+/// For each face the slot of its source, and the number it had in its input.
+fn origins(faces: &[OrientedFace], sources: &Sources) -> Vec<[u32; 2]> {
+    let mut origins = Vec::with_capacity(faces.len());
+    for run in faces.chunk_by(|a, b| a.slot() == b.slot()) {
+        let slot = run[0].slot();
+        let source = sources.get(slot);
+        origins.extend(run.iter().map(|f| [slot.0, source.number(f.id())]));
+    }
+    origins
 }
 
 /// Mends the crossings that rounding made.
