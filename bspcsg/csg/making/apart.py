@@ -49,7 +49,7 @@ def _combined(node: Node, children: tuple[Node, ...]) -> Node:
 
 
 def _keeps_axes(node: Node) -> bool:
-    """Whether a node only moves its children by a matrix that has one number for each axis."""
+    """Say whether a node only moves its children by a matrix that has one number for each axis."""
     if node.name != "multmatrix" or len(node.arguments) != 1:
         return False
     [argument] = node.arguments

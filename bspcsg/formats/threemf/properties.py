@@ -54,7 +54,7 @@ def properties_of(
 
 
 class _Reading:
-    """What the triangles of an object say, so far."""
+    """The sayings of the triangles of an object, so far."""
 
     def __init__(self, part: ModelPart, count: int) -> None:
         self._part = part
