@@ -17,6 +17,9 @@ from support.fractions import Corners, common_dimension, exact, is_flat, is_on_b
 
 SCENES = 10_000 if DEEP else 250
 
+#: Meshes of so many faces are looked through in fractions, pair by pair.
+FRACTIONS = 40 if DEEP else 24
+
 #: Of the coarsest operand: given doubles lie up to half of it off the lattice, on each axis.
 STEP = 1e-9
 
@@ -70,7 +73,7 @@ def solid_of(rng: random.Random) -> "b.Solid":
 
 def test_surfaces_that_touch_do_not_cross() -> None:
     seen = set()
-    for seed in range(400):
+    for seed in range(160):
         rng = random.Random(seed)
         first, second = solid_of(rng), solid_of(rng)
         meshes = [solid.to_mesh() for solid in (first, second)]
@@ -116,16 +119,26 @@ def fraction_faults(vertices: np.ndarray, faces: np.ndarray) -> set[tuple[int, i
     }
 
 
-def test_delivered_meshes_do_not_cross() -> None:
-    count = crossing = reported = mended = checked = 0
+@pytest.fixture(scope="module")
+def delivered() -> dict[int, tuple["b.Solid", "b.Mesh"]]:
+    """Return what scenes make, with their meshes, by their seeds."""
+    found = {}
     for seed in range(SCENES):
         try:
             solid = scene(seed).normalized()
             mesh = solid.to_mesh()
         except (b.InvalidMeshError, b.LimitError):
             continue
-        if len(mesh.faces) == 0:
-            continue
+        if len(mesh.faces):
+            found[seed] = solid, mesh
+    return found
+
+
+def test_delivered_meshes_do_not_cross(
+    delivered: dict[int, tuple["b.Solid", "b.Mesh"]],
+) -> None:
+    count = crossing = reported = mended = checked = 0
+    for seed, (solid, mesh) in delivered.items():
         count += 1
         assert_closed(mesh.faces)
         pairs, flat = faults(mesh)
@@ -134,7 +147,7 @@ def test_delivered_meshes_do_not_cross() -> None:
             crossing += 1
             reported += bool({"crossing", "turned", "collapsed"} & codes)
         mended += bool({"moved", "mended"} & codes)
-        if len(mesh.faces) <= 40:
+        if len(mesh.faces) <= FRACTIONS:
             checked += 1
             own = fraction_faults(mesh.vertices, mesh.faces)
             assert own <= {tuple(pair) for pair in pairs}, seed
@@ -145,15 +158,11 @@ def test_delivered_meshes_do_not_cross() -> None:
     assert reported == crossing and crossing <= 0.01 * count
 
 
-def test_meshes_in_single_precision_do_not_cross() -> None:
+def test_meshes_in_single_precision_do_not_cross(
+    delivered: dict[int, tuple["b.Solid", "b.Mesh"]],
+) -> None:
     count = crossing = mended = united = 0
-    for seed in range(SCENES):
-        try:
-            mesh = scene(seed).normalized().to_mesh()
-        except (b.InvalidMeshError, b.LimitError):
-            continue
-        if len(mesh.faces) == 0:
-            continue
+    for seed, (_, mesh) in delivered.items():
         count += 1
         found = mesh_in_single(mesh.vertices, mesh.faces)
         vertices, faces = found["vertices"], found["triangles"]

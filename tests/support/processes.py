@@ -30,6 +30,9 @@ Corner: TypeAlias = tuple[float, ...]
 #: Seconds after which a child counts as stuck.
 PATIENCE = 60
 
+#: Requests to a server of three workers: more than there are workers.
+REQUESTS = 4
+
 
 def job(k: int) -> b.Solid:
     """Return one of many different solids, of more elements than one thread is given."""
@@ -143,7 +146,7 @@ def preload() -> None:
     loaded = job(0)
     loaded.to_mesh()
     assert bsp.Region.rectangle(2).area == 4
-    expected = [loaded & job(k) for k in range(8)]
+    expected = [loaded & job(k) for k in range(REQUESTS)]
     requests: Queue[int | None] = multiprocessing.SimpleQueue()
     answers: Queue[tuple[int, bytes]] = multiprocessing.SimpleQueue()
 
@@ -152,13 +155,13 @@ def preload() -> None:
             answers.put((k, pickle.dumps(loaded & job(k))))
 
     workers = [in_child(serve) for _ in range(3)]
-    for k in range(8):
+    for k in range(REQUESTS):
         requests.put(k)
-    found = dict(answers.get() for _ in range(8))
+    found = dict(answers.get() for _ in range(REQUESTS))
     for _ in workers:
         requests.put(None)
     assert [ended(worker) for worker in workers] == [0, 0, 0]
-    assert all(same(pickle.loads(found[k]), expected[k]) for k in range(8))
+    assert all(same(pickle.loads(found[k]), expected[k]) for k in range(REQUESTS))
 
 
 def volume_of_difference(one: b.Solid, other: b.Solid) -> float:
@@ -243,13 +246,13 @@ def handler() -> None:
         if child:
             statuses.append(ended(child))
 
-    balls = [b.sphere(10, segments=128).translate((k * 0.37, k * 0.21, 0)) for k in range(5)]
+    balls = [b.sphere(10, segments=64).translate((k * 0.37, k * 0.21, 0)) for k in range(5)]
     trees = [ball.tree for ball in balls]
     assert len(trees) == 5
     for action, expected in ((leave, 0), (come_back, signal.SIGABRT)):
         signal.signal(signal.SIGALRM, action)
         for _ in range(20):
-            signal.setitimer(signal.ITIMER_REAL, 0.05)
+            signal.setitimer(signal.ITIMER_REAL, 0.02)
             assert b.union(*balls).to_mesh().faces.size
             if os.getpid() != parent:
                 # The signal came between two calls into the core, where nothing is in the way.
