@@ -1,12 +1,11 @@
 """The cases: what is done, how large, by whom, and what is to be reached."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
 
 from .._types import MeshArrays
 from . import real, shapes
+from .case import BenchCase, WorkMaker
+from .cliffs import CLIFFS
 from .targets import (
     Faster,
     Goal,
@@ -18,50 +17,9 @@ from .targets import (
 )
 from .work import BuiltPair, Carving, Chain, Expression, Pair, Work
 
-#: Makes the work of an item from the folder of shared data.
-WorkMaker: TypeAlias = Callable[[Path], Work]
-
 #: Engines that take part in large pairs and in long chains, beside those that are asked for.
 QUICK_ENGINES = ("bspcsg", "manifold3d", "trueform", "meshlib")
 CHAIN_ENGINES = ("bspcsg", "manifold3d")
-
-
-@dataclass(frozen=True)
-class BenchCase:
-    """One row of the table.
-
-    Parameters
-    ----------
-    title : str
-    targets : tuple of Goal
-    items : dict
-        What is timed, by label; the small forms of the same are in `small`.
-    small : dict
-        Items that take a second or so together.
-    engines : tuple of str
-        Those that can do it in sensible time; none means all.
-    cores : int
-        The whole process is confined to so many; 0 leaves it as it is.
-    alone : bool
-        Each engine runs in a process of its own, and the peak of its memory is what counts.
-    needs : str
-        Path of data that may be missing, below the folder of shared data.
-    limit : float
-        Seconds after which a call is stopped, unless another limit is asked for.
-    checked_at_once : bool
-        If no other engine finishes the chain, manifold3d is asked for the same as one expression.
-    """
-
-    title: str
-    targets: tuple[Goal, ...]
-    items: Mapping[str, WorkMaker]
-    small: Mapping[str, WorkMaker]
-    engines: tuple[str, ...] = ()
-    cores: int = 0
-    alone: bool = False
-    needs: str = ""
-    limit: float = 300.0
-    checked_at_once: bool = False
 
 
 def _spheres(level: int) -> WorkMaker:
@@ -280,4 +238,5 @@ CASES: dict[str, BenchCase] = {
         QUICK_ENGINES,
         alone=True,
     ),
+    **CLIFFS,
 }

@@ -13,7 +13,8 @@ from statistics import median
 from typing import Any
 
 from ..errors import held
-from .cases import CASES, BenchCase
+from .case import BenchCase
+from .cases import CASES
 from .engines import ENGINES
 from .targets import OURS
 from .worker import Task

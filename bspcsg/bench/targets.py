@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import exp, log
 from statistics import mean
 from typing import Any, Protocol
@@ -165,6 +166,43 @@ class GrowthTarget:
         if value is None:
             return Reached(None, "—", None)
         return Reached(value, f"n^{value:.2f}", value <= self.exponent)
+
+
+@dataclass(frozen=True)
+class DoublingTarget:
+    """From each item to the next, about twice as large, cost grows as input and answer do."""
+
+    #: By how much more processor time may grow than what is read and written.
+    share: float = 0.15
+
+    @property
+    def text(self) -> str:
+        """The wish in words."""
+        return f"cost ≤ {1 + self.share:g} × growth of input and answer"
+
+    def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
+        grown = [_growth(a, b) for a, b in pairwise(items)]
+        known = [found for found in grown if found is not None]
+        if not known:
+            return Reached(None, "—", None)
+        cost, size = max(known, key=lambda found: found[0] / found[1])
+        text = f"cost × {cost:.3g}, input and answer × {size:.3g}"
+        return Reached(cost / size, text, cost <= (1 + self.share) * size)
+
+
+def _growth(less: dict[str, Any], more: dict[str, Any]) -> tuple[float, float] | None:
+    """Return how many times processor time grew, and what is read and written.
+
+    An answer that grew less than the operands does not count: these have to be looked at.
+    """
+    ours = [result_of(item, OURS) for item in (less, more)]
+    if not all(found.get("cpu") and "facts" in found for found in ours):
+        return None
+    read = [item["triangles"] for item in (less, more)]
+    both = [n + found["facts"]["triangles"] for n, found in zip(read, ours, strict=True)]
+    size = max(read[1] / read[0], both[1] / both[0])
+    return ours[1]["cpu"] / ours[0]["cpu"], size
 
 
 def result_of(item: dict[str, Any], engine: str) -> dict[str, Any]:

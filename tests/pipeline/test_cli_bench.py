@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -136,3 +137,57 @@ def test_records_of_another_schema_are_refused(capsys: Capture, tmp_path: Path) 
     path.write_text('{"type": "bench", "schema": 0}')
     code, _, err = ran(capsys, "bench", "--from", str(path))
     assert code == 3 and "schema 0, and this version reads 1; measure it again." in err
+
+
+def _record_of_growth(cpu: float) -> dict[str, Any]:
+    facts = {"triangles": 50, "open_edges": 0}
+    items = [
+        {
+            "item": label,
+            "triangles": triangles,
+            "engines": {"bspcsg": _found(used, facts)},
+        }
+        for label, triangles, used in (("n", 100, 1.0), ("2n", 200, cpu))
+    ]
+    row = {"case": "dense-cones", "title": "cones", "small": False, "items": items}
+    machine = {"processor": "p", "cores": 2, "memory_gb": 4, "system": "s"}
+    return {
+        "schema": 1,
+        "type": "bench",
+        "runs": 1,
+        "cases": [row],
+        "machine": machine,
+        "versions": {},
+    }
+
+
+def _found(cpu: float, facts: dict[str, int]) -> dict[str, Any]:
+    return {"state": "ok", "median": cpu, "cpu": cpu, "runs": 5, "facts": facts}
+
+
+@pytest.mark.parametrize(("cpu", "code"), [(2.2, 0), (3.0, 1)])
+def test_a_cost_that_grows_too_fast_fails(
+    capsys: Capture, tmp_path: Path, cpu: float, code: int
+) -> None:
+    path = tmp_path / "r.json"
+    path.write_text(json.dumps(_record_of_growth(cpu)))
+    found, out, _ = ran(capsys, "bench", "--from", str(path))
+    assert found == code and f"cost × {cpu:.3g}, input and answer × 2" in out
+
+
+def test_dense_places_are_a_suite_of_their_own(capsys: Capture) -> None:
+    code, out, _ = ran(capsys, "bench", "--cliffs", "--list")
+    names = [line.split()[0] for line in out.splitlines()[2:]]
+    assert code == 0 and names and all(name.startswith("dense-") for name in names)
+    code, _, err = ran(capsys, "bench", "--cliffs", "cubes")
+    assert code == 2 and "leaves none" in err
+
+
+@pytest.mark.timeout(300)
+def test_dense_places_are_measured_at_two_sizes(capsys: Capture, tmp_path: Path) -> None:
+    path = tmp_path / "r.json"
+    asked = ["dense-cones", "--quick", "--runs", "1", "--against", "manifold3d", "-q"]
+    assert ran(capsys, "bench", "--cliffs", *asked, "-o", str(path))[0] == 0
+    [row] = json.loads(path.read_text())["cases"]
+    assert [item["item"] for item in row["items"]] == ["12", "24"]
+    assert all(item["engines"]["manifold3d"]["agrees"] for item in row["items"])

@@ -7,10 +7,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bspcsg.bench import real, shapes
+from bspcsg.bench import dense, real, shapes
+from bspcsg.bench.cliffs import CLIFFS
 from bspcsg.bench.facts import facts_of, mesh_volume
 from bspcsg.bench.runner import judged
-from bspcsg.bench.targets import Faster, GrowthTarget, MeanFaster, SteadySteps, Within
+from bspcsg.bench.targets import (
+    DoublingTarget,
+    Faster,
+    GrowthTarget,
+    MeanFaster,
+    SteadySteps,
+    Within,
+)
+from bspcsg.bench.work import Expression, Pair
 from bspcsg.bench.worker import Task, perform
 from support.shapes import exact_volume
 
@@ -30,6 +39,31 @@ def test_all_shapes_are_closed() -> None:
         facts = facts_of(mesh)
         assert facts.open_edges == 0 and facts.euler_number == 2
         assert facts.volume > 0
+
+
+@pytest.mark.parametrize("name", CLIFFS)
+def test_operands_of_dense_places_are_closed_and_twice_as_many(name: str, tmp_path: Path) -> None:
+    less, more = (make(tmp_path) for make in CLIFFS[name].small.values())
+    for work in (less, more):
+        assert isinstance(work, Pair | Expression)
+        groups = [[work.second]] if isinstance(work, Pair) else work.groups
+        first = work.first if isinstance(work, Pair) else work.base
+        for mesh in [first, *(mesh for group in groups for mesh in group)]:
+            facts = facts_of(mesh)
+            # A bundle is a mesh of several pieces.
+            assert facts.open_edges == 0 and facts.euler_number in (2, 2 * len(mesh[1]) // 4)
+            assert facts.volume > 0
+    # Base and plate count once; a ball has whole rows.
+    assert 1.5 <= more.extent().triangles / less.extent().triangles <= 8
+
+
+def test_needles_of_a_bundle_are_apart() -> None:
+    bundle, _ = dense.bundles(20)
+    lows = bundle[0].reshape(20, 4, 3).min(axis=1)
+    highs = bundle[0].reshape(20, 4, 3).max(axis=1)
+    for i in range(20):
+        overlap = (lows[i] <= highs).all(axis=1) & (lows <= highs[i]).all(axis=1)
+        assert overlap.sum() == 1
 
 
 @pytest.mark.parametrize("depth", [1, 2, 3])
@@ -109,6 +143,24 @@ def test_times_and_their_growth() -> None:
     chain = _result(1.0, windows={"thousandth": 0.002, "last": 0.005})
     steady = SteadySteps(2).reached([{"engines": {"bspcsg": chain}}])
     assert (steady.value, steady.met) == (2.5, False)
+
+
+def _sized(triangles: int, answer: int, cpu: float) -> dict[str, Any]:
+    found = _result(cpu)
+    found["facts"]["triangles"] = answer
+    return {"triangles": triangles, "engines": {"bspcsg": found}}
+
+
+def test_cost_may_grow_as_input_and_answer_and_a_little_more() -> None:
+    small = _sized(100, 300, 1.0)
+    steady = DoublingTarget().reached([small, _sized(200, 600, 2.2)])
+    assert steady.value == pytest.approx(1.1) and steady.met
+    # The answer is four times as large.
+    assert DoublingTarget().reached([small, _sized(200, 1200, 4.0)]).met
+    assert DoublingTarget().reached([small, _sized(200, 600, 2.4)]).met is False
+    # An answer that stays small is no reason to be faster than reading takes.
+    assert DoublingTarget().reached([small, _sized(200, 10, 2.2)]).met
+    assert DoublingTarget().reached([small]).met is None
 
 
 def test_an_engine_that_uses_up_its_budget_has_one_run() -> None:

@@ -22,6 +22,7 @@ Examples:
   bspcsg bench --list
   bspcsg bench spheres-328k cubes --against manifold3d,trueform
   bspcsg bench -o bench.json --plot sizes.svg        (all cases: an hour or more)
+  bspcsg bench --cliffs --runs 1 --against manifold3d
   bspcsg bench --from bench.json --format md
 """
 
@@ -70,6 +71,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     "cases", nargs=-1, callback=_as_cases, metavar="[CASE]...", shell_complete=_cases_from
 )
 @click.option("--list", "listed", is_flag=True, help="Name the cases and what each is to reach.")
+@click.option("--cliffs", is_flag=True, help="Only dense places, each at two sizes.")
 @click.option(
     "--against",
     "engines",
@@ -147,14 +149,17 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
 @click.option("--counters", is_flag=True, help="Print what our core counted, too.")
 @click.option("-q", "--quiet", is_flag=True, help="Do not say what is under way.")
 @click.option("--debug", is_flag=True, help="Show where an error comes from.")
-def bench(cases: list[str], listed: bool, **given: Any) -> int:
+def bench(cases: list[str], listed: bool, cliffs: bool, **given: Any) -> int:
     """Time set operations beside other engines, and check each answer.
 
     Engines take turns in one process, and the tables show medians. A call that takes longer than
     the limit is stopped, and an engine that crashes is left out; the others go on.
 
-    The exit code is 1 if an answer differs from ours by more than rounding explains, or if we fail.
+    The exit code is 1 if an answer differs from ours by more than rounding explains, if we fail, or
+    if our cost in a dense place grows faster than input and answer.
     """
+    if cliffs:
+        cases = _dense(cases)
     if listed:
         _tell_cases(cases, given["as_json"])
         return output.DONE
@@ -168,10 +173,23 @@ def bench(cases: list[str], listed: bool, **given: Any) -> int:
         if given["counters"] and not given["as_json"]:
             text += _counters(record) + "\n"
         plotted = _plot(record) if given["plot_path"] else ""
-        code = output.FOUND if _is_wrong(record) else output.DONE
+        found = _is_wrong(record) or _has_cliff(record)
+        code = output.FOUND if found else output.DONE
     click.echo(text, nl=False)
     _write(record, plotted, given["record_path"], given["plot_path"])
     return code
+
+
+def _dense(cases: list[str]) -> list[str]:
+    """Return those of some cases that are dense places."""
+    from ...bench.cliffs import CLIFFS
+
+    found = [name for name in cases if name in CLIFFS]
+    if not found:
+        raise click.UsageError(
+            "--cliffs leaves none of these cases; --cliffs --list names its own."
+        )
+    return found
 
 
 def _refuse_early(given: dict[str, Any]) -> None:
@@ -304,6 +322,19 @@ def _is_wrong(record: dict[str, Any]) -> bool:
             if ours.get("state") in ("failed", "crashed") or _is_open(ours):
                 return True
             if any(found.get("agrees") is False for found in others):
+                return True
+    return False
+
+
+def _has_cliff(record: dict[str, Any]) -> bool:
+    """Say whether our cost grows too fast in a case of full size that bounds its growth."""
+    from ...bench.cases import CASES
+    from ...bench.targets import DoublingTarget
+
+    for row in record["cases"]:
+        for target in CASES[row["case"]].targets:
+            bounds = isinstance(target, DoublingTarget) and not row.get("small")
+            if bounds and target.reached(row["items"]).met is False:
                 return True
     return False
 

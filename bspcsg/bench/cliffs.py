@@ -1,0 +1,109 @@
+"""Dense places, each at two sizes: many faces meet there, and cost is to grow as answers do."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from .._types import MeshArrays
+from . import dense
+from .case import BenchCase
+from .targets import DoublingTarget, Faster
+from .work import Expression, Pair, Work
+
+#: Makes the work of an item from its size.
+_Maker = Callable[[int], Work]
+
+
+def _union(meshes: Callable[[int], list[MeshArrays]]) -> _Maker:
+    def make(count: int) -> Work:
+        first, *others = meshes(count)
+        return Expression(first, [[mesh] for mesh in others], "union")
+
+    return make
+
+
+def _difference(meshes: Callable[[int], list[MeshArrays]]) -> _Maker:
+    def make(count: int) -> Work:
+        first, *others = meshes(count)
+        return Expression(first, [[mesh] for mesh in others])
+
+    return make
+
+
+def _intersection(meshes: Callable[[int], list[MeshArrays]]) -> _Maker:
+    def make(count: int) -> Work:
+        first, *others = meshes(count)
+        return Expression(first, [[mesh] for mesh in others], "intersection")
+
+    return make
+
+
+def _pair(meshes: Callable[[int], tuple[MeshArrays, MeshArrays]]) -> _Maker:
+    return lambda count: Pair(*meshes(count))
+
+
+def _doubled(title: str, make: _Maker, count: int, small: int) -> BenchCase:
+    """Return the case of something at a size and at twice that size."""
+
+    def item(size: int) -> Callable[[Path], Work]:
+        return lambda _: make(size)
+
+    return BenchCase(
+        title,
+        (DoublingTarget(), Faster(1)),
+        {f"{n}": item(n) for n in (count, 2 * count)},
+        {f"{n}": item(n) for n in (small, 2 * small)},
+        ("bspcsg", "manifold3d"),
+        limit=120.0,
+    )
+
+
+#: By name; sizes are what manifold3d does within seconds.
+CLIFFS: dict[str, BenchCase] = {
+    "dense-half-spaces": _doubled(
+        "cubes around a ball, one side of each touching it, intersected",
+        _intersection(dense.cubes_around_ball),
+        100,
+        4,
+    ),
+    "dense-turned-cubes": _doubled(
+        "turned cubes at one place, united", _union(dense.turned_cubes), 60, 3
+    ),
+    "dense-boxes": _doubled(
+        "aligned boxes that overlap, united", _union(dense.aligned_boxes), 400, 8
+    ),
+    "dense-needles": _doubled(
+        "two bundles of needles across each other", _pair(dense.bundles), 300, 8
+    ),
+    "dense-cones": _doubled(
+        "two cones with apexes near each other, by sides", _pair(dense.near_cones), 1500, 12
+    ),
+    "dense-cones-at-one-apex": _doubled(
+        "two cones with one apex, by sides", _pair(dense.cones_at_one_apex), 500, 12
+    ),
+    "dense-equal-cones": _doubled("two equal cones, by sides", _pair(dense.equal_cones), 500, 12),
+    "dense-fans": _doubled("turned cones with one apex, united", _union(dense.turned_cones), 60, 3),
+    "dense-plate-and-boxes": _doubled(
+        "turned plate minus boxes", _difference(dense.punched_plate), 900, 4
+    ),
+    "dense-plate-and-cylinders": _doubled(
+        "plate minus cylinders", _difference(dense.drilled_plate), 800, 4
+    ),
+    "dense-shells": _doubled("balls in balls, united", _union(dense.nested_balls), 200, 4),
+    "dense-film": _doubled(
+        "ball minus itself a nanometre beside, by rows", _pair(dense.film), 2500, 50
+    ),
+    "dense-moved-copies": _doubled(
+        "copies of a ball, each moved by less than a step", _union(dense.moved_copies), 10, 3
+    ),
+    "dense-copies": _doubled("copies of a ball, united", _union(dense.copies), 30, 3),
+    "dense-near-balls": _doubled(
+        "balls that nearly coincide, united", _union(dense.near_balls), 10, 2
+    ),
+    "dense-touching-cubes": _doubled(
+        "cubes that touch, united", _union(dense.touching_cubes), 1000, 8
+    ),
+    "dense-soup": _doubled(
+        "turned cubes all over a room, united", _union(dense.cubes_in_room), 500, 8
+    ),
+    "dense-spikes": _doubled("spikes from one point, united", _union(dense.spikes), 250, 4),
+}

@@ -1,0 +1,171 @@
+"""Meshes of the cases with dense places; each function takes how many."""
+
+import numpy as np
+
+from .._types import MeshArrays
+from .shapes import (
+    box,
+    cylinder,
+    generator,
+    icosphere,
+    moved,
+    octasphere,
+    random_rotation,
+    rotation,
+    scaled,
+    turned,
+    unit_vector,
+)
+
+#: Turns what would be aligned with axes.
+_ASKEW = rotation((1, 2, 3), 0.4)
+
+
+def cubes_around_ball(count: int) -> list[MeshArrays]:
+    """Return large cubes that hold the unit ball and touch it with one side each."""
+    random = generator(1)
+    cube = box((-4, -4, -7), (4, 4, 1))
+    return [turned(cube, random_rotation(random)) for _ in range(count)]
+
+
+def turned_cubes(count: int) -> list[MeshArrays]:
+    """Return unit cubes around the origin, turned at random."""
+    random = generator(2)
+    cube = box((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5))
+    return [turned(cube, random_rotation(random)) for _ in range(count)]
+
+
+def aligned_boxes(count: int) -> list[MeshArrays]:
+    """Return axis-parallel boxes, large beside the room that holds them."""
+    random = generator(3)
+    lows = random.random((count, 3))
+    sizes = 0.2 + 0.8 * random.random((count, 3))
+    return [box(low, low + size) for low, size in zip(lows, sizes, strict=True)]
+
+
+def bundles(count: int) -> tuple[MeshArrays, MeshArrays]:
+    """Return two bundles of thin tetrahedra side by side, across each other."""
+    random = generator(4)
+    rows = int(np.ceil(np.sqrt(count)))
+    pitch = 2.0 / rows
+    needle = np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0.03, 0.03, 10 / pitch]]) * pitch
+    places = [(k // rows, k % rows) for k in range(count)]
+    starts = [(x * pitch - 1, y * pitch - 1, -5 + 0.1 * random.random()) for x, y in places]
+    bundle = _joined([(needle + start, _TETRAHEDRON) for start in starts])
+    return bundle, turned(bundle, random_rotation(random))
+
+
+def near_cones(sides: int) -> tuple[MeshArrays, MeshArrays]:
+    """Return two cones of which one is moved by a tenth of its radius."""
+    return cone(sides), moved(cone(sides), (0.03, 0.05, 0.08))
+
+
+def cones_at_one_apex(sides: int) -> tuple[MeshArrays, MeshArrays]:
+    """Return two cones that are turned about their apex."""
+    return cone(sides), turned(cone(sides), rotation((1, 0.2, 0.1), 0.8))
+
+
+def equal_cones(sides: int) -> tuple[MeshArrays, MeshArrays]:
+    """Return a cone twice."""
+    return cone(sides), cone(sides)
+
+
+def turned_cones(count: int) -> list[MeshArrays]:
+    """Return cones of eight sides, turned about their apex at random."""
+    random = generator(5)
+    return [turned(cone(8), random_rotation(random)) for _ in range(count)]
+
+
+def punched_plate(count: int) -> list[MeshArrays]:
+    """Return a plate and boxes through it, in rows of thirty, none touching; all askew."""
+    rows = -(-count // 30)
+    plate = box((0, 0, 0), (rows, min(count, 30), 1))
+    places = [divmod(k, 30) for k in range(count)]
+    holes = [box((x + 0.25, y + 0.25, -1), (x + 0.75, y + 0.75, 2)) for x, y in places]
+    return [turned(mesh, _ASKEW) for mesh in [plate, *holes]]
+
+
+def drilled_plate(count: int) -> list[MeshArrays]:
+    """Return a plate and cylinders of 32 sides through it, in rows of thirty, none touching."""
+    rows = -(-count // 30)
+    drill = cylinder(32, 0.35, -1.0, 2.0)
+    places = [divmod(k, 30) for k in range(count)]
+    holes = [moved(drill, (x + 0.5, y + 0.5, 0)) for x, y in places]
+    return [box((0, 0, 0), (rows, min(count, 30), 1)), *holes]
+
+
+def nested_balls(count: int) -> list[MeshArrays]:
+    """Return balls around one centre, each a little larger than the one before."""
+    ball = icosphere(2)
+    return [scaled(ball, 1 + 0.01 * k) for k in range(count)]
+
+
+def film(triangles: int) -> tuple[MeshArrays, MeshArrays]:
+    """Return a ball of about so many triangles, and the same one step of the lattice beside."""
+    ball = octasphere(round((triangles / 8) ** 0.5))
+    return ball, moved(ball, (1e-9, 0, 0))
+
+
+def moved_copies(count: int) -> list[MeshArrays]:
+    """Return copies of a ball, each moved by a thousandth of a step of the lattice."""
+    ball = icosphere(3)
+    return [moved(ball, (1e-12 * k, 0, 0)) for k in range(count)]
+
+
+def copies(count: int) -> list[MeshArrays]:
+    """Return a ball so many times."""
+    return [icosphere(2)] * count
+
+
+def near_balls(count: int) -> list[MeshArrays]:
+    """Return balls that are turned by a hundredth of a radian, and a little larger each."""
+    random = generator(8)
+    turns = [rotation(unit_vector(random), 0.01) for _ in range(count)]
+    ball = icosphere(2)
+    return [turned(scaled(ball, 1 + 1e-4 * k), turn) for k, turn in enumerate(turns)]
+
+
+def touching_cubes(count: int) -> list[MeshArrays]:
+    """Return unit cubes side by side, in layers of ten by ten."""
+    places = [(k // 100, k // 10 % 10, k % 10) for k in range(count)]
+    return [box(at, np.array(at) + 1) for at in places]
+
+
+def cubes_in_room(count: int) -> list[MeshArrays]:
+    """Return unit cubes turned at random, one for each unit of the room."""
+    random = generator(9)
+    cube = box((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5))
+    side = count ** (1 / 3)
+    return [
+        moved(turned(cube, random_rotation(random)), side * random.random(3)) for _ in range(count)
+    ]
+
+
+def spikes(count: int) -> list[MeshArrays]:
+    """Return thin tetrahedra with one corner at the origin."""
+    random = generator(10)
+    spike = np.array([[0, 0, 0], [0.05, 0, 2], [-0.02, 0.04, 2], [-0.02, -0.04, 2]])
+    return [turned((spike, _TETRAHEDRON), random_rotation(random)) for _ in range(count)]
+
+
+#: The sides of a tetrahedron whose fourth corner lies on the left of the others' turn.
+_TETRAHEDRON = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
+
+
+def cone(sides: int) -> MeshArrays:
+    """Return a cone with its apex at the origin; its base is divided from the middle."""
+    angles = 2 * np.pi * np.arange(sides) / sides
+    rim = np.column_stack([0.9 * np.cos(angles), 0.9 * np.sin(angles), np.full(sides, -1.0)])
+    points = np.concatenate([rim, [[0, 0, 0], [0, 0, -1]]])
+    i = np.arange(sides)
+    j = (i + 1) % sides
+    walls = np.column_stack([i, j, np.full(sides, sides)])
+    base = np.column_stack([j, i, np.full(sides, sides + 1)])
+    return points, np.concatenate([walls, base])
+
+
+def _joined(meshes: list[MeshArrays]) -> MeshArrays:
+    """Return one mesh of several."""
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in meshes)])
+    faces = [mesh[1] + start for mesh, start in zip(meshes, starts, strict=False)]
+    return np.concatenate([vertices for vertices, _ in meshes]), np.concatenate(faces)
