@@ -14,6 +14,7 @@ use bspcsg::tree::partition::{
     check, enclosed, from_preorder, is_bounded, preorder, stats, Entry, Facet, Label,
     PartitionTree, PivotPolicy, Plan,
 };
+use bspcsg::tree::plane::Boundary;
 
 /// Deterministic numbers below a bound.
 struct Numbers(u64);
@@ -114,7 +115,10 @@ fn a_convex_outline_makes_no_chain() {
     let corners: Vec<[i64; 2]> = (-3000..=3000).map(|x| [x, x * x]).collect();
     let tree = enclosed(facets(&corners), 0, positive, &Plan::BALANCED).unwrap();
     assert!(stats(&tree).depth < 40, "{:?}", stats(&tree));
-    let [outline] = outlines(&tree).unwrap().try_into().unwrap();
+    let [outline] = outlines(&Boundary::of(&tree).unwrap())
+        .unwrap()
+        .try_into()
+        .unwrap();
     assert_eq!(outline.corners.len(), corners.len());
     assert!(!outline.is_hole);
 }

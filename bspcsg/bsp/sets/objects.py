@@ -194,8 +194,8 @@ class ObjectTree(TreeQueries):
         Notes
         -----
         The nodes of the trace are those of ``trace.first`` and ``trace.second``, which are the
-        operands on one lattice. Results of set operations on regions may be built anew from their
-        boundary; ``trace.result`` is what merging leaves.
+        operands on one lattice. Results of set operations on regions have a tree of their boundary;
+        ``trace.result`` is what merging leaves.
         """
         if op not in ("union", "intersection", "difference", "xor"):
             raise invalid_parameter(f"There is no operation {op!r}.")
@@ -298,7 +298,9 @@ def merge(a: Set, b: TreeSet, op: SetOp) -> Set:
 
     Notes
     -----
-    Naylor, Amanatides, Thibault 1990, section 3. Nodes of `a` come before those of `b`.
+    Naylor, Amanatides, Thibault 1990, section 3. Nodes of `a` come before those of `b`. Regions
+    combine as by their operators, which may sweep over boundaries instead; for them
+    ``merge(a.tree, b.tree, op)`` merges.
     """
     return a._merged(b, op)
 

@@ -2,17 +2,18 @@
 
 import math
 from fractions import Fraction
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
 from ..._core import ObjectTree as CoreTree
-from ..._types import FloatArray, Vector
+from ..._types import FloatArray, SetOp, Vector
 from ...errors import core_errors, invalid_parameter
 from ...geometry.polygon import convex_corners
 from ...parameters import number
 from .flat_set import FlatSet
 from .loops import Outline
+from .tree_set import TreeSet
 
 
 class PlaneQueries(FlatSet):
@@ -23,6 +24,14 @@ class PlaneQueries(FlatSet):
     def _set(self, tree: CoreTree) -> None:
         super()._set(tree)
         self._outlines: tuple[Outline, ...] | None = None
+
+    # Set operations
+
+    def _merged(self, other: TreeSet, op: SetOp) -> Self:
+        """Return a result by whatever is faster: a sweep over the boundaries, or merged trees."""
+        a, b = self.tree._aligned(other)
+        with core_errors():
+            return self._of(a.combined(b, op))
 
     # Outlines
 
@@ -74,7 +83,9 @@ class PlaneQueries(FlatSet):
     @property
     def area(self) -> float:
         """Area in square model units, rounded once."""
-        return float(self.measure)
+        with core_errors():
+            low, high = (n / d for n, d in self._tree.area_bounds())
+        return low if low == high else float(self.measure)
 
     @property
     def perimeter(self) -> float:

@@ -75,7 +75,7 @@ class Region(PlaneQueries):
     ) -> None:
         loops = closed_loops(outlines)
         points = np.concatenate(loops) if loops else np.zeros((0, 2))
-        rows = segment_rows(loop_segments(loops))
+        rows = loop_segments(loops).reshape(-1, 4)
         self._set(_built(rows, chosen_pitch(pitch, points), winding))
 
     # Making
@@ -145,7 +145,7 @@ class Region(PlaneQueries):
 
     @classmethod
     def compose(cls, regions: Iterable["Region"]) -> "Region":
-        """Return the union of any number of bounded regions, made at once.
+        """Return the union of any number of regions, made at once.
 
         Examples
         --------
@@ -154,9 +154,12 @@ class Region(PlaneQueries):
         10.0
         """
         parts = list(regions)
-        # Outlines wind once around what is inside: all of them together wind at least once.
-        loops = [loop for part in parts for loop in part.to_polygons()]
-        return cls(loops, pitch=min((part.pitch for part in parts), default=None))
+        if not parts:
+            return cls()
+        pitch = min(part.pitch for part in parts)
+        trees = [part.tree._refined(pitch) for part in parts]
+        with core_errors():
+            return cls._of(trees[0].composed(trees[1:]))
 
     def decompose(self) -> list["Region"]:
         """Return the connected parts, each with its holes; see `components`.
@@ -172,12 +175,19 @@ class Region(PlaneQueries):
     @property
     def components(self) -> tuple["Region", ...]:
         """The connected parts, in the order of their outlines; touching corners connect nothing."""
-        outer = [k for k, outline in enumerate(self.outlines) if not outline.is_hole]
-        return tuple(self._component(k) for k in outer)
+        return tuple(Region(loops, pitch=self.pitch) for loops in self._parts())
 
-    def _component(self, outer: int) -> "Region":
-        holes = [o.points for o in self.outlines if o.parent == outer and o.is_hole]
-        return Region([self.outlines[outer].points, *holes], pitch=self.pitch)
+    def _parts(self) -> list[list[FloatArray]]:
+        """Return the outlines of each connected part, the outer one first."""
+        parts: dict[int, list[FloatArray]] = {}
+        outlines = list(enumerate(self.outlines))
+        for k, outline in outlines:
+            if not outline.is_hole:
+                parts[k] = [outline.points]
+        for _, outline in outlines:
+            if outline.is_hole:
+                parts[outline.parent].append(outline.points)
+        return list(parts.values())
 
     # Transforms
 
@@ -422,12 +432,7 @@ class Region(PlaneQueries):
     def to_shapely(self) -> Any:
         """Return a ``shapely.MultiPolygon``; shapely must be installed."""
         shapely = interop.optional("shapely", "shapely")
-        shells = [k for k, outline in enumerate(self.outlines) if not outline.is_hole]
-        holes: Sequence[list[FloatArray]] = [
-            [o.points for o in self.outlines if o.is_hole and o.parent == k] for k in shells
-        ]
-        pairs = zip(shells, holes, strict=True)
-        return shapely.MultiPolygon([(self.outlines[k].points, inner) for k, inner in pairs])
+        return shapely.MultiPolygon([(shell, holes) for shell, *holes in self._parts()])
 
     def _repr_svg_(self) -> str | None:
         """Return a picture for notebooks; None if there is no outline to show."""
@@ -472,4 +477,4 @@ def _built(rows: FloatArray, pitch: int, winding: FillRule) -> CoreTree:
         rows, winding = np.ascontiguousarray(rows[:, [2, 3, 0, 1]]), "positive"
     rule = winding_rule(winding)
     with core_errors():
-        return CoreTree.build(2, rows, pitch, winding=rule)
+        return CoreTree.region(np.ascontiguousarray(rows), pitch, rule)

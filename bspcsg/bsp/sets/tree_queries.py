@@ -52,8 +52,7 @@ class TreeQueries(TreeSet):
             ends = self.boundary().vertices
             return nearest_on_segments(points, np.stack([ends, ends], axis=1))
         with core_errors():
-            edges, _, _ = self._tree.edges()
-        return nearest_on_segments(points, edges.reshape(-1, 2, 2))
+            return self._tree.nearest(points)
 
     def boundary(self) -> Pieces:
         """Return the boundary in convex pieces, with the nodes in whose cuts they lie.

@@ -35,6 +35,13 @@ pub struct Line2 {
     c: i128,
 }
 
+/// A line of which many sides are asked.
+#[derive(Clone, Copy, Debug)]
+pub struct RoundedLine {
+    line: Line2,
+    rounded: [f64; 3],
+}
+
 /// An exact point: a lattice point, or where two lines meet.
 #[derive(Clone, Copy, Debug)]
 pub struct Point2 {
@@ -141,15 +148,30 @@ impl Line2 {
     }
 
     fn side_of(&self, p: &Point2) -> Side {
-        let [a, b, c] = [as_double(self.a), as_double(self.b), as_double(self.c)];
-        let t = [a * p.approx[0], b * p.approx[1], c * p.approx[2]];
-        let sum = t[0] + t[1] + t[2];
-        if sum.abs() > (t[0].abs() + t[1].abs() + t[2].abs()) * FILTER {
-            return if sum > 0.0 { Side::Plus } else { Side::Minus };
+        RoundedLine::of(*self).side_of(p)
+    }
+
+    /// The side of a point that is too near for doubles.
+    fn exact_side_of(&self, p: &Point2) -> Side {
+        if let Some([x, y]) = p.as_lattice() {
+            let along = i128::from(self.a) * i128::from(x) + i128::from(self.b) * i128::from(y);
+            return Side::from_order((along + self.c).cmp(&0));
         }
         let along: Int<LINE_AT_MEET_LIMBS> = p.x[0].mul_i64(self.a) + p.x[1].mul_i64(self.b);
         let last: Int<LINE_AT_MEET_LIMBS> = p.w.mul(&Int::<2>::from_i128(self.c));
         Side::from_sign((along + last).signum())
+    }
+
+    /// Order of two lines by the angle of their directions (−b, a), if these are less than a half
+    /// turn apart: counterclockwise is greater.
+    pub fn turn(&self, other: &Self) -> Ordering {
+        let product = |m: i64, n: i64| i128::from(m) * i128::from(n);
+        (product(self.b, other.a)).cmp(&product(self.a, other.b))
+    }
+
+    /// Whether two lines have one direction, or opposite ones.
+    pub fn is_parallel(&self, other: &Self) -> bool {
+        self.turn(other) == Ordering::Equal
     }
 
     /// The line across this one at a lattice point on it, parallel to the axis this line is less
@@ -161,6 +183,30 @@ impl Line2 {
         } else {
             Self::normalized(0, -direction[1].signum(), point)
         }
+    }
+}
+
+impl RoundedLine {
+    /// A line and its coefficients rounded to doubles.
+    pub fn of(line: Line2) -> Self {
+        let rounded = [as_double(line.a), as_double(line.b), as_double(line.c)];
+        Self { line, rounded }
+    }
+
+    /// The line itself.
+    pub fn line(&self) -> &Line2 {
+        &self.line
+    }
+
+    /// The side on which a point lies, exactly.
+    pub fn side_of(&self, p: &Point2) -> Side {
+        let [a, b, c] = self.rounded;
+        let t = [a * p.approx[0], b * p.approx[1], c * p.approx[2]];
+        let sum = t[0] + t[1] + t[2];
+        if sum.abs() > (t[0].abs() + t[1].abs() + t[2].abs()) * FILTER {
+            return if sum > 0.0 { Side::Plus } else { Side::Minus };
+        }
+        self.line.exact_side_of(p)
     }
 }
 
@@ -187,6 +233,15 @@ impl Point2 {
     fn homogeneous(x: [Int<3>; 2], w: Int<2>) -> Self {
         let approx = [x[0].to_f64(), x[1].to_f64(), w.to_f64()];
         Self { x, w, approx }
+    }
+
+    /// The lattice coordinates, if it was made of them.
+    pub fn as_lattice(&self) -> Option<Lattice2> {
+        if self.w != Int::ONE {
+            return None;
+        }
+        let whole = |x: &Int<LINE_MEET_LIMBS>| i64::try_from(x.to_i128()?).ok();
+        Some([whole(&self.x[0])?, whole(&self.x[1])?])
     }
 
     /// The homogeneous coordinates: x and y times w, and w > 0.
@@ -233,9 +288,28 @@ impl Segment2 {
         })
     }
 
+    /// The segment of a line between two of its points, each with a line that crosses it there.
+    pub fn limited(line: Line2, limits: [Line2; 2], points: [Point2; 2]) -> Self {
+        // The segment lies on the minus sides: it enters the first one's, and leaves the last one's.
+        let turned = |limit: Line2, enters: bool| {
+            if (line.turn(&limit) == Ordering::Greater) == enters {
+                limit
+            } else {
+                limit.flipped()
+            }
+        };
+        let ends = [turned(limits[0], true), turned(limits[1], false)];
+        Self { line, ends, points }
+    }
+
     /// The line the segment lies in.
     pub fn line(&self) -> &Line2 {
         &self.line
+    }
+
+    /// The lines that name its first and its last point, the segment on their minus sides.
+    pub fn limits(&self) -> &[Line2; 2] {
+        &self.ends
     }
 
     /// The first and the last point along the line's direction.

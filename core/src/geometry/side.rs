@@ -1,5 +1,7 @@
 //! Answers to "where does it lie?": sides, orientations and splits.
 
+use std::cmp::Ordering;
+
 use serde::{Deserialize, Serialize};
 
 /// Where a point lies relative to an oriented hyperplane.
@@ -22,6 +24,15 @@ impl Side {
             ..=-1 => Self::Minus,
             0 => Self::On,
             1.. => Self::Plus,
+        }
+    }
+
+    /// The side named by how a hyperplane's value compares to zero.
+    pub fn from_order(order: Ordering) -> Self {
+        match order {
+            Ordering::Less => Self::Minus,
+            Ordering::Equal => Self::On,
+            Ordering::Greater => Self::Plus,
         }
     }
 

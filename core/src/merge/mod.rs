@@ -8,6 +8,7 @@ pub mod kernels;
 pub mod lists;
 pub mod op;
 pub mod pairs;
+pub mod plane;
 pub mod rule;
 pub mod simple;
 

@@ -8,21 +8,21 @@ use pyo3::prelude::*;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::tasks::fill_chunks;
 
-/// The rows of an (n, 3) array: the array's own memory, or a copy if they are not contiguous.
-pub fn rows<'a, T: Element + Copy>(
+/// The rows of an (n, k) array: the array's own memory, or a copy if they are not contiguous.
+pub fn rows<'a, T: Element + Copy, const K: usize>(
     array: &'a PyReadonlyArray2<'_, T>,
     name: &str,
-) -> Result<Cow<'a, [[T; 3]]>> {
+) -> Result<Cow<'a, [[T; K]]>> {
     let view = array.as_array();
-    if view.ncols() != 3 {
-        let text = format!("{name} must have shape (n, 3), not {:?}", view.shape());
+    if view.ncols() != K {
+        let text = format!("{name} must have shape (n, {K}), not {:?}", view.shape());
         return Err(Error::new(ErrorKind::Shape, text));
     }
     // A slice of an array by columns has its columns one after another.
     if let (true, Ok(flat)) = (view.is_standard_layout(), array.as_slice()) {
         return Ok(Cow::Borrowed(flat.as_chunks().0));
     }
-    let row = |r: numpy::ndarray::ArrayView1<'_, T>| [r[0], r[1], r[2]];
+    let row = |r: numpy::ndarray::ArrayView1<'_, T>| std::array::from_fn(|k| r[k]);
     Ok(Cow::Owned(view.rows().into_iter().map(row).collect()))
 }
 

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 use num_bigint::BigInt;
-use numpy::{PyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 
@@ -19,10 +19,9 @@ use super::set_queries::{exact_corners, outline_pieces};
 use super::set_store::Nodes;
 use super::set_traces::{step_row, StepRow};
 use crate::error::Result;
-use crate::merge::SetOp;
+use crate::merge::plane::bounded;
 use crate::mesh::grid::Pitch;
 use crate::query::measure::Fraction;
-use crate::query::region::moments::{area, moments};
 use crate::query::region::outlines::Outline;
 use crate::tree::partition::Location;
 
@@ -160,6 +159,49 @@ impl ObjectTree {
         Ok(self.with(set))
     }
 
+    /// The region inside closed segments, by its boundary; the tree is made when it is asked for.
+    #[classmethod]
+    fn region(
+        _cls: &Bound<'_, PyType>,
+        py: Python<'_>,
+        segments: PyReadonlyArray2<'_, f64>,
+        pitch: i64,
+        winding: &str,
+    ) -> PyResult<Self> {
+        let fail = |e| to_python(py, &e);
+        let pitch = Pitch::new(pitch).map_err(fail)?;
+        let rule = set_input::rule(winding).map_err(fail)?;
+        let rows = super::arrays::rows(&segments, "segments").map_err(fail)?;
+        let set = run(py, 0, rows.len(), || {
+            let outlines = set_input::outlines(&rows, pitch)?;
+            Ok(Set::Plane(bounded(&outlines, rule)?.into()))
+        })?;
+        Ok(Self::of(set, pitch))
+    }
+
+    /// The set operation by whatever is faster, merging trees or sweeping over boundaries.
+    fn combined(&self, py: Python<'_>, other: PyRef<'_, Self>, op: &str) -> PyResult<Self> {
+        let op = set_input::operation(op).map_err(|e| to_python(py, &e))?;
+        let (a, b) = (&self.set, &other.set);
+        set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
+        let set = run(py, 0, a.size() + b.size(), || a.combined(b, op))
+            .map_err(|e| self.blamed(py, e, &[self, &other]))?;
+        Ok(self.with(set))
+    }
+
+    /// The union of this region and others of its lattice, by one sweep over all boundaries.
+    fn composed(&self, py: Python<'_>, others: Vec<PyRef<'_, Self>>) -> PyResult<Self> {
+        for other in &others {
+            set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
+        }
+        let sets: Vec<&Set> = others.iter().map(|other| &other.set).collect();
+        let size = sets.iter().map(|set| set.size()).sum();
+        let all = || Set::composed(std::iter::once(&self.set).chain(sets));
+        let operands: Vec<&Self> = others.iter().map(|other| &**other).collect();
+        let set = run(py, 0, size, all).map_err(|e| self.blamed(py, e, &operands))?;
+        Ok(self.with(set))
+    }
+
     /// The result of an operation, and the steps of merging the trees: kind, two roots or a node,
     /// what is done, and why. Roots are nodes in preorder, −1 an Out leaf, −2 an In leaf.
     fn merge_steps(
@@ -177,18 +219,15 @@ impl ObjectTree {
     }
 
     /// The rows of the inner nodes' hyperplanes in preorder: normal and offset in lattice steps.
-    fn hyperplanes(&self) -> Vec<Row> {
-        self.set.hyperplanes()
+    fn hyperplanes(&self, py: Python<'_>) -> PyResult<Vec<Row>> {
+        self.work(py, |set, _| set.hyperplanes())
     }
 
     fn equals(&self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<bool> {
         let (a, b) = (&self.set, &other.set);
         set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
-        let difference = run(py, 0, a.size() + b.size(), || {
-            a.merge(b, SetOp::SymmetricDifference)
-        })
-        .map_err(|e| self.blamed(py, e, &[self, &other]))?;
-        Ok(difference.uniform_label() == Some(false))
+        run(py, 0, a.size() + b.size(), || a.equals(b))
+            .map_err(|e| self.blamed(py, e, &[self, &other]))
     }
 
     fn complement(&self, py: Python<'_>) -> PyResult<Self> {
@@ -259,17 +298,29 @@ impl ObjectTree {
     }
 
     fn measure(&self, py: Python<'_>) -> PyResult<Ratio> {
-        if self.set.dimension() == 2 {
-            let loops = self.loops(py)?;
-            return self.work(py, |_, pitch| Ok(ratio(area(&loops, pitch))));
-        }
         self.work(py, Set::measure).map(ratio)
     }
 
     fn moments(&self, py: Python<'_>) -> PyResult<Vec<Ratio>> {
-        let loops = self.loops(py)?;
-        let [x, y] = self.work(py, |_, pitch| Ok(moments(&loops, pitch)))?;
-        Ok([area(&loops, self.pitch), x, y].map(ratio).into())
+        Ok(self.work(py, Set::moments)?.map(ratio).into())
+    }
+
+    /// Two fractions between which the area lies, far nearer to each other than doubles are.
+    fn area_bounds(&self, py: Python<'_>) -> PyResult<[Ratio; 2]> {
+        Ok(self.work(py, Set::area_bounds)?.map(ratio))
+    }
+
+    /// The point of the boundary that is nearest to each point, in model units, rounded.
+    fn nearest<'py>(
+        &self,
+        py: Python<'py>,
+        points: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let points = super::arrays::rows(&points, "points").map_err(|e| to_python(py, &e))?;
+        let size = self.set.size() + points.len();
+        let found = run(py, 0, size, || self.set.nearest(&points, self.pitch))
+            .map_err(|e| self.blamed(py, e, &[self]))?;
+        super::arrays::array(py, found)
     }
 
     fn cast<'py>(
@@ -305,7 +356,7 @@ impl ObjectTree {
     }
 
     fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let stats = self.set.stats();
+        let stats = self.work(py, |set, _| set.stats())?;
         let dict = PyDict::new(py);
         dict.set_item("nodes", stats.cuts)?;
         dict.set_item("leaves", stats.leaves)?;

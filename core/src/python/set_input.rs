@@ -7,6 +7,7 @@ use crate::geometry::dim1::{Dim1, Direction, Point1};
 use crate::geometry::dim2::{Dim2, Segment2};
 use crate::geometry::dim3::Dim3;
 use crate::geometry::motion::Motion;
+use crate::merge::plane::Outlines;
 use crate::merge::SetOp;
 use crate::mesh::grid::Pitch;
 use crate::mesh::import::import;
@@ -158,6 +159,17 @@ pub fn segments(input: &Input, pitch: Pitch) -> Result<Vec<Facet<Dim2>>> {
         let to = [pitch.snap(c)?, pitch.snap(d)?];
         Ok(Segment2::between(from, to))
     })
+}
+
+/// Rows (x, y, x', y') of segments that close, the inside on the left.
+pub fn outlines(rows: &[[f64; 4]], pitch: Pitch) -> Result<Outlines> {
+    let mut outlines = Outlines::default();
+    for (source, row) in (0..).zip(rows) {
+        let [a, b, c, d] = row.map(|x| pitch.snap(x));
+        let push = || outlines.push([a?, b?], [c?, d?], 1);
+        push().map_err(|e| Error::at(e.kind(), vec![source], e.message()))?;
+    }
+    Ok(outlines)
 }
 
 /// The faces of a closed mesh.

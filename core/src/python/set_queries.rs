@@ -6,18 +6,20 @@ use super::pieces::PieceList;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::Point1;
-use crate::geometry::dim2::{Dim2, Point2, Segment2};
+use crate::geometry::dim2::{Point2, Segment2};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
+use crate::merge::plane::located;
 use crate::mesh::grid::Pitch;
 use crate::query::exact::big;
 use crate::query::measure::{in_powers, Fraction};
 use crate::query::region::cast::cast;
-use crate::query::region::edges::Boundary;
 use crate::query::region::hyperplane::line_along;
 use crate::query::region::moments;
+use crate::query::region::nearest::Nearest;
 use crate::query::region::outlines::{outlines, Outline};
 use crate::tree::partition::{boundary_of, cells, classify, Location, PartitionTree};
+use crate::tree::plane::PlaneSet;
 
 impl Set {
     /// The boundary in convex pieces, each with the preorder number of its node.
@@ -29,8 +31,8 @@ impl Set {
                     list.push(point_corners(&piece, pitch), node as i64);
                 }
             }
-            Self::Plane(tree) => {
-                for (node, piece) in boundary_of(tree)? {
+            Self::Plane(set) => {
+                for (node, piece) in boundary_of(set.tree()?)? {
                     list.push(segment_corners(&piece, pitch), node as i64);
                 }
             }
@@ -52,7 +54,7 @@ impl Set {
         let mut list = PieceList::new();
         match self {
             Self::Line(tree) => push_cells(tree, &mut list, |p| point_corners(p, pitch)),
-            Self::Plane(tree) => push_cells(tree, &mut list, |p| segment_corners(p, pitch)),
+            Self::Plane(set) => push_cells(set.tree()?, &mut list, |p| segment_corners(p, pitch)),
             Self::Space(tree) => push_cells(tree, &mut list, |p| polygon_corners(p, pitch)),
         }
         Ok(list)
@@ -61,31 +63,54 @@ impl Set {
     /// The maximal edges of a plane region's boundary, the region on their left.
     pub fn edges(&self, pitch: Pitch) -> Result<PieceList> {
         let mut list = PieceList::new();
-        for edge in Boundary::of(self.plane()?)?.edges {
-            list.push(segment_corners(&edge.segment, pitch), edge.inside as i64);
+        let boundary = self.plane()?.boundary()?;
+        for edge in &boundary.edges {
+            let ends = boundary.points(edge);
+            list.push(ends.map(|p| pitch.position_in_plane(p)), edge.inside.into());
         }
         Ok(list)
     }
 
     /// The outlines of a plane region.
     pub fn outlines(&self) -> Result<Vec<Outline>> {
-        outlines(self.plane()?)
+        outlines(self.plane()?.boundary()?)
     }
 
-    /// The exact length or volume; that of the plane follows from the outlines.
+    /// The exact length, area or volume.
     pub fn measure(&self, pitch: Pitch) -> Result<Fraction> {
         match self {
             Self::Line(tree) => moments::length(tree, pitch),
-            Self::Plane(tree) => Ok(moments::area(&outlines(tree)?, pitch)),
+            Self::Plane(set) => moments::area(set.boundary()?, pitch),
             Self::Space(tree) => moments::volume(tree, pitch),
         }
+    }
+
+    /// Two fractions between which the area of a plane region lies.
+    pub fn area_bounds(&self, pitch: Pitch) -> Result<[Fraction; 2]> {
+        moments::area_bounds(self.plane()?.boundary()?, pitch)
+    }
+
+    /// The area of a plane region and its first moments.
+    pub fn moments(&self, pitch: Pitch) -> Result<[Fraction; 3]> {
+        let boundary = self.plane()?.boundary()?;
+        let [x, y] = moments::moments(boundary, pitch)?;
+        Ok([moments::area(boundary, pitch)?, x, y])
+    }
+
+    /// The point of a plane region's boundary that is nearest to each point, in model units.
+    pub fn nearest(&self, points: &[[f64; 2]], pitch: Pitch) -> Result<Vec<[f64; 2]>> {
+        let boundary = self.plane()?.boundary()?;
+        let segment = |edge| boundary.points(edge).map(|p| pitch.position_in_plane(p));
+        let nearest = Nearest::of(boundary.edges.iter().map(segment).collect());
+        let found: Option<Vec<_>> = points.iter().map(|p| nearest.to(*p)).collect();
+        found.ok_or_else(|| shape("a set without boundary has no nearest boundary point"))
     }
 
     /// The stretches of a line inside a plane region.
     pub fn cast(&self, origin: [f64; 2], direction: [f64; 2], pitch: Pitch) -> Result<PieceList> {
         let line = line_along([pitch.snap(origin[0])?, pitch.snap(origin[1])?], direction)?;
         let mut list = PieceList::new();
-        for stretch in cast(self.plane()?, &line)? {
+        for stretch in cast(self.plane()?.tree()?, &line)? {
             list.push(stretch.map(|p| pitch.position_in_plane(&p)), 0);
         }
         Ok(list)
@@ -102,20 +127,23 @@ impl Set {
             }
             row.iter().map(|x| pitch.snap(*x)).collect()
         };
-        let place = |row: &Vec<f64>| {
-            let p = snap(row)?;
-            Ok(match self {
-                Self::Line(tree) => classify(tree, &p[0]),
-                Self::Plane(tree) => classify(tree, &Point2::lattice([p[0], p[1]])),
-                Self::Space(tree) => classify(tree, &Vertex::lattice([p[0], p[1], p[2]])),
-            })
-        };
-        points.iter().map(place).collect()
+        let points = points.iter().map(snap).collect::<Result<Vec<_>>>()?;
+        Ok(match self {
+            Self::Line(tree) => points.iter().map(|p| classify(tree, &p[0])).collect(),
+            Self::Plane(set) => {
+                let points: Vec<_> = points.iter().map(|p| [p[0], p[1]]).collect();
+                located(set, &points)?
+            }
+            Self::Space(tree) => {
+                let place = |p: &Vec<i64>| classify(tree, &Vertex::lattice([p[0], p[1], p[2]]));
+                points.iter().map(place).collect()
+            }
+        })
     }
 
-    fn plane(&self) -> Result<&PartitionTree<Dim2>> {
+    pub(super) fn plane(&self) -> Result<&PlaneSet> {
         match self {
-            Self::Plane(tree) => Ok(tree),
+            Self::Plane(set) => Ok(set),
             _ => Err(shape("only sets of the plane have outlines")),
         }
     }

@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::each::Set;
+use super::errors::to_python;
 use crate::arith::bounds::{normal, offset, COORDINATE_BITS};
 use crate::arith::Int;
 use crate::error::{Error, Result};
@@ -47,7 +48,7 @@ impl Set {
             Self::Line(tree) => stored(tree, |p| {
                 StoredNode::Cut([sign(p), 0, 0], limbs(p.at().into()))
             }),
-            Self::Plane(tree) => stored(tree, |line| {
+            Self::Plane(set) => stored(set.tree()?, |line| {
                 let ([a, b], c) = line.coefficients();
                 StoredNode::Cut([a.into(), b.into(), 0], limbs(c))
             }),
@@ -80,10 +81,13 @@ impl Set {
                 };
                 (!far).then(|| Point1::new(at, inside))
             })?),
-            2 => Self::Plane(restored(&stored.nodes, |n, d| {
-                let narrow = |c: i128| i64::try_from(c).ok();
-                Line2::new(narrow(n[0])?, narrow(n[1])?, d.to_i128()?)
-            })?),
+            2 => {
+                let tree = restored(&stored.nodes, |n, d| {
+                    let narrow = |c: i128| i64::try_from(c).ok();
+                    Line2::new(narrow(n[0])?, narrow(n[1])?, d.to_i128()?)
+                })?;
+                Self::Plane(tree.into())
+            }
             3 => Self::Space(restored(&stored.nodes, |n, d| {
                 let narrow = n.iter().all(|c| c.unsigned_abs() < 1 << NORMAL);
                 let near = d.bit_length() <= OFFSET;
@@ -105,7 +109,7 @@ impl Set {
                 let n = sign(p) as f64;
                 vec![n, n * pitch.coordinate(p.at())]
             }),
-            Self::Plane(tree) => listed(tree, |line| {
+            Self::Plane(set) => listed(set.tree().map_err(|e| to_python(py, &e))?, |line| {
                 let ([a, b], c) = line.coefficients();
                 scaled(&[a as f64, b as f64], c as f64, unit)
             }),

@@ -17,15 +17,18 @@ impl Set {
     pub fn merge_steps(&self, other: &Self, op: SetOp) -> Result<(Self, Vec<MergeStep>)> {
         match (self, other) {
             (Self::Line(a), Self::Line(b)) => told(a, b, op).map(|(t, s)| (Self::Line(t), s)),
-            (Self::Plane(a), Self::Plane(b)) => told(a, b, op).map(|(t, s)| (Self::Plane(t), s)),
+            (Self::Plane(a), Self::Plane(b)) => {
+                let (tree, steps) = told(a.tree()?, b.tree()?, op)?;
+                Ok((Self::Plane(tree.into()), steps))
+            }
             (Self::Space(a), Self::Space(b)) => told(a, b, op).map(|(t, s)| (Self::Space(t), s)),
             _ => Err(shape("the sets have different dimensions")),
         }
     }
 
     /// The hyperplanes of the inner nodes in preorder.
-    pub fn hyperplanes(&self) -> Vec<Row> {
-        each!(self, tree => rows(tree))
+    pub fn hyperplanes(&self) -> Result<Vec<Row>> {
+        Ok(each!(self, tree => rows(tree)))
     }
 }
 

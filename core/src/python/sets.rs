@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use num_bigint::BigInt;
 
-use super::each::{each, map_each, Set};
+use super::each::{each, Set};
 use super::hyperplanes::shape;
 use super::hyperplanes::{in_plane, in_space, on_line};
 use super::set_input::{all, inside_of, points, segments, triangles, Input};
@@ -15,14 +15,15 @@ use crate::geometry::dim2::Dim2;
 use crate::geometry::dim3::Dim3;
 use crate::geometry::motion::Motion;
 use crate::geometry::plane::Plane;
+use crate::merge::plane::{combined, composed, equal};
 use crate::merge::{merge, split_case, SetOp, SplitCase};
 use crate::merge::{partition_tree, split_tree};
 use crate::mesh::grid::Pitch;
-use crate::query::region::condense::{condensed_line, condensed_plane};
-
+use crate::query::region::condense::condensed_line;
 use crate::tree::partition::{
     from_preorder, is_bounded, preorder, stats, Entry, Label, PartitionTree, Sheet, TreeStats,
 };
+use crate::tree::plane::tree_of;
 
 impl Set {
     /// The set inside a boundary.
@@ -34,11 +35,8 @@ impl Set {
             }
             2 => {
                 let cuts = all(&input.cuts, in_plane)?;
-                Ok(Self::Plane(inside_of(
-                    segments(input, pitch)?,
-                    input,
-                    &cuts,
-                )?))
+                let tree = inside_of(segments(input, pitch)?, input, &cuts)?;
+                Ok(Self::Plane(tree.into()))
             }
             3 => {
                 let cuts = all(&input.cuts, in_space)?;
@@ -57,7 +55,7 @@ impl Set {
         let label = Label::from_inside(full);
         match dimension {
             1 => Ok(Self::Line(PartitionTree::Leaf(label))),
-            2 => Ok(Self::Plane(PartitionTree::Leaf(label))),
+            2 => Ok(Self::Plane(PartitionTree::Leaf(label).into())),
             3 => Ok(Self::Space(PartitionTree::Leaf(label))),
             _ => Err(bad_dimension(dimension)),
         }
@@ -79,38 +77,82 @@ impl Set {
         }
     }
 
-    /// The number of nodes.
+    /// The number of nodes or, in the plane, of edges.
     pub fn size(&self) -> usize {
-        self.stats().cuts
+        match self {
+            Self::Line(tree) => stats(tree).cuts,
+            Self::Plane(set) => set.size(),
+            Self::Space(tree) => stats(tree).cuts,
+        }
     }
 
     /// Size figures.
-    pub fn stats(&self) -> TreeStats {
-        each!(self, tree => stats(tree))
+    pub fn stats(&self) -> Result<TreeStats> {
+        Ok(each!(self, tree => stats(tree)))
     }
 
     /// Whether everything (true) or nothing (false) is inside, if either.
     pub fn uniform_label(&self) -> Option<bool> {
-        each!(self, tree => tree.label()).map(|label| label == Label::In)
+        let label = match self {
+            Self::Line(tree) => tree.label(),
+            Self::Plane(set) => set.label(),
+            Self::Space(tree) => tree.label(),
+        };
+        label.map(|label| label == Label::In)
     }
 
     /// Whether the set fits into some box.
     pub fn is_bounded(&self) -> bool {
-        each!(self, tree => is_bounded(tree))
+        match self {
+            Self::Line(tree) => is_bounded(tree),
+            Self::Plane(set) => set.is_bounded(),
+            Self::Space(tree) => is_bounded(tree),
+        }
     }
 
     /// Everything else.
     pub fn complement(&self) -> Self {
-        map_each!(self, tree => tree.complement())
+        match self {
+            Self::Line(tree) => Self::Line(tree.complement()),
+            Self::Plane(set) => Self::Plane(set.complement()),
+            Self::Space(tree) => Self::Space(tree.complement()),
+        }
     }
 
     /// The set operation by merging trees.
     pub fn merge(&self, other: &Self, op: SetOp) -> Result<Self> {
         match (self, other) {
             (Self::Line(a), Self::Line(b)) => Ok(Self::Line(merge(a, b, op)?)),
-            (Self::Plane(a), Self::Plane(b)) => Ok(Self::Plane(merge(a, b, op)?)),
+            (Self::Plane(a), Self::Plane(b)) => {
+                Ok(Self::Plane(merge(a.tree()?, b.tree()?, op)?.into()))
+            }
             (Self::Space(a), Self::Space(b)) => Ok(Self::Space(merge(a, b, op)?)),
             _ => Err(shape("the sets have different dimensions")),
+        }
+    }
+
+    /// The set operation by whatever is faster: in the plane also by a sweep over boundaries.
+    pub fn combined(&self, other: &Self, op: SetOp) -> Result<Self> {
+        match (self, other) {
+            (Self::Plane(a), Self::Plane(b)) => combined(a, b, op).map(Self::Plane),
+            _ => self.merge(other, op),
+        }
+    }
+
+    /// The union of sets of the plane.
+    pub fn composed<'a>(sets: impl Iterator<Item = &'a Self>) -> Result<Self> {
+        let sets = sets.map(Self::plane).collect::<Result<Vec<_>>>()?;
+        composed(&sets).map(Self::Plane)
+    }
+
+    /// Whether both are the same set of points.
+    pub fn equals(&self, other: &Self) -> Result<bool> {
+        match (self, other) {
+            (Self::Plane(a), Self::Plane(b)) => equal(a, b),
+            _ => Ok(self
+                .merge(other, SetOp::SymmetricDifference)?
+                .uniform_label()
+                == Some(false)),
         }
     }
 
@@ -118,7 +160,7 @@ impl Set {
     pub fn partitioned(&self, cut: &[BigInt]) -> Result<Self> {
         Ok(match self {
             Self::Line(tree) => Self::Line(rooted(tree, &on_line(cut)?)?),
-            Self::Plane(tree) => Self::Plane(rooted(tree, &in_plane(cut)?)?),
+            Self::Plane(set) => Self::Plane(rooted(set.tree()?, &in_plane(cut)?)?.into()),
             Self::Space(tree) => Self::Space(rooted(tree, &in_space(cut)?)?),
         })
     }
@@ -127,7 +169,9 @@ impl Set {
     pub fn split(&self, cut: &[BigInt]) -> Result<[Self; 2]> {
         Ok(match self {
             Self::Line(tree) => halves(tree, &on_line(cut)?)?.map(Self::Line),
-            Self::Plane(tree) => halves(tree, &in_plane(cut)?)?.map(Self::Plane),
+            Self::Plane(set) => {
+                halves(set.tree()?, &in_plane(cut)?)?.map(|tree| Self::Plane(tree.into()))
+            }
             Self::Space(tree) => halves(tree, &in_space(cut)?)?.map(Self::Space),
         })
     }
@@ -136,7 +180,7 @@ impl Set {
     pub fn split_case(&self, cut: &[BigInt]) -> Result<&'static str> {
         let case = match self {
             Self::Line(tree) => split_case(tree, &span::<Dim1>(&on_line(cut)?)?),
-            Self::Plane(tree) => split_case(tree, &span::<Dim2>(&in_plane(cut)?)?),
+            Self::Plane(set) => split_case(set.tree()?, &span::<Dim2>(&in_plane(cut)?)?),
             Self::Space(tree) => split_case(tree, &span::<Dim3>(&in_space(cut)?)?),
         };
         case.map(SplitCase::name)
@@ -146,7 +190,7 @@ impl Set {
     pub fn condensed(&self) -> Result<Self> {
         match self {
             Self::Line(tree) => condensed_line(tree).map(Self::Line),
-            Self::Plane(tree) => condensed_plane(tree).map(Self::Plane),
+            Self::Plane(set) => Ok(Self::Plane(tree_of(set.boundary()?)?.into())),
             Self::Space(_) => Ok(self.clone()),
         }
     }
@@ -158,7 +202,10 @@ impl Set {
         let plane = |h: &Arc<Plane>| motion.plane(h).map(Arc::new).ok_or_else(too_large);
         Ok(match self {
             Self::Line(tree) => Self::Line(mapped(tree, end)?),
-            Self::Plane(tree) => Self::Plane(mapped(tree, line)?),
+            Self::Plane(set) => Self::Plane(match set.own_boundary() {
+                Some(boundary) => boundary.moved(motion).ok_or_else(too_large)?.into(),
+                None => mapped(set.tree()?, line)?.into(),
+            }),
             Self::Space(tree) => Self::Space(mapped(tree, plane)?),
         })
     }

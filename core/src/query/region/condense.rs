@@ -1,20 +1,21 @@
 //! A set built anew from its own boundary: a tree of a size that the boundary asks for.
 
-use super::edges::Boundary;
 use crate::error::Result;
-use crate::geometry::axis::AxisSpace;
 use crate::geometry::dim1::Dim1;
 use crate::geometry::dim2::Dim2;
-use crate::geometry::space::Space;
 use crate::tree::partition::{classify_corner, enclosed, walls, Facet, Label, PartitionTree, Plan};
+use crate::tree::plane::{tree_of, Boundary};
 
 /// The same set on the line as a balanced tree.
 ///
 /// # Errors
 /// `Internal` for a broken tree.
 pub fn condensed_line(tree: &PartitionTree<Dim1>) -> Result<PartitionTree<Dim1>> {
+    let base = i32::from(classify_corner(tree) == Label::In);
+    let facet = |(source, fragment)| Facet { fragment, source };
     let pieces = walls(tree)?.into_iter().map(|wall| wall.fragment);
-    rebuilt(tree, pieces.collect())
+    let facets = (0..).zip(pieces).map(facet).collect();
+    enclosed(facets, base, |number| number > 0, &Plan::BALANCED)
 }
 
 /// The same region as a tree of its maximal edges.
@@ -22,16 +23,5 @@ pub fn condensed_line(tree: &PartitionTree<Dim1>) -> Result<PartitionTree<Dim1>>
 /// # Errors
 /// `Internal` for a broken tree.
 pub fn condensed_plane(tree: &PartitionTree<Dim2>) -> Result<PartitionTree<Dim2>> {
-    let boundary = Boundary::of(tree)?;
-    rebuilt(tree, boundary.edges.iter().map(|e| e.segment).collect())
-}
-
-fn rebuilt<S: AxisSpace>(
-    tree: &PartitionTree<S>,
-    pieces: Vec<<S as Space>::Fragment>,
-) -> Result<PartitionTree<S>> {
-    let base = i32::from(classify_corner(tree) == Label::In);
-    let facet = |(source, fragment)| Facet { fragment, source };
-    let facets = (0..).zip(pieces).map(facet).collect();
-    enclosed(facets, base, |number| number > 0, &Plan::BALANCED)
+    tree_of(&Boundary::of(tree)?)
 }

@@ -7,6 +7,7 @@
 //! use bspcsg::query::region::moments::area;
 //! use bspcsg::query::region::outlines::outlines;
 //! use bspcsg::tree::partition::{enclosed, Facet, PartitionTree, Plan};
+//! use bspcsg::tree::plane::Boundary;
 //!
 //! let corners = [[0, 0], [4, 0], [4, 3], [0, 3]];
 //! let sides = (0..4).map(|i| Facet {
@@ -14,17 +15,18 @@
 //!     source: 0,
 //! });
 //! let rectangle: PartitionTree<Dim2> = enclosed(sides.collect(), 0, |w| w > 0, &Plan::BALANCED)?;
-//! let loops = outlines(&rectangle)?;
+//! let boundary = Boundary::of(&rectangle)?;
+//! let loops = outlines(&boundary)?;
 //! assert_eq!(loops[0].corners.len(), 4);
-//! assert_eq!(area(&loops, Pitch::new(0)?).numerator, 12.into());
+//! assert_eq!(area(&boundary, Pitch::new(0)?)?.numerator, 12.into());
 //! # Ok::<(), bspcsg::error::Error>(())
 //! ```
 
 pub mod cast;
 pub mod condense;
-pub mod edges;
 pub mod hyperplane;
 pub mod moments;
+pub mod nearest;
 pub mod outlines;
 pub mod section;
 pub mod solid;

@@ -1,18 +1,20 @@
 //! Exact length, area, volume, and the first moments of the plane.
 
 use num_bigint::BigInt;
+use num_integer::Integer;
 
-use super::outlines::Outline;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::dim1::{Dim1, Direction};
-use crate::geometry::dim2::Point2;
+use crate::geometry::dim2::{Lattice2, Point2};
 use crate::geometry::dim3::Dim3;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
 use crate::mesh::grid::Pitch;
 use crate::query::exact::big;
 use crate::query::measure::{in_powers, pairwise_sum, Fraction};
-use crate::tree::partition::{is_bounded, walls, PartitionTree};
+use crate::tree::partition::{is_bounded, walls, Label, PartitionTree};
+use crate::tree::plane::Boundary;
 
 type Ratio = (BigInt, BigInt);
 
@@ -39,23 +41,95 @@ pub fn length(tree: &PartitionTree<Dim1>, pitch: Pitch) -> Result<Fraction> {
     Ok(in_powers(BigInt::from(sum), one, pitch.exponent(), 1))
 }
 
-/// The exact area inside closed outlines, in square model units.
-pub fn area(outlines: &[Outline], pitch: Pitch) -> Fraction {
-    let (n, d) = pairwise_sum(edges(outlines).map(|(p, q)| doubled(p, q)).collect());
-    in_powers(n, d * 2, pitch.exponent(), 2)
+/// The exact area of a bounded set of the plane, in square model units.
+///
+/// # Errors
+/// `Unbounded`.
+pub fn area(boundary: &Boundary, pitch: Pitch) -> Result<Fraction> {
+    let doubled = Doubled::of(boundary)?;
+    let (n, d) = pairwise_sum(doubled.cut);
+    Ok(in_powers(
+        n + doubled.whole * &d,
+        d * 2,
+        pitch.exponent(),
+        2,
+    ))
 }
 
-/// The exact first moments ∫x and ∫y inside closed outlines, in cubic model units.
-pub fn moments(outlines: &[Outline], pitch: Pitch) -> [Fraction; 2] {
-    [0, 1].map(|axis| {
-        let terms = edges(outlines).map(|(p, q)| {
+/// Two fractions between which the area lies, in square model units, as near as 2^-127 square steps
+/// for each edge that ends in a constructed corner.
+///
+/// # Cost
+/// One short quotient for such an edge, where the exact sum multiplies all denominators.
+///
+/// # Errors
+/// `Unbounded`.
+pub fn area_bounds(boundary: &Boundary, pitch: Pitch) -> Result<[Fraction; 2]> {
+    let doubled = Doubled::of(boundary)?;
+    let rounded = |(n, d): &Ratio| Integer::div_floor(&(n << PLACES), d);
+    let sum: BigInt = doubled.cut.iter().map(rounded).sum();
+    let low = (doubled.whole << PLACES) + sum;
+    let high = &low + BigInt::from(doubled.cut.len());
+    let units = BigInt::from(2) << PLACES;
+    Ok([low, high].map(|bound| in_powers(bound, units.clone(), pitch.exponent(), 2)))
+}
+
+/// Binary places of each quotient that bounds an area.
+const PLACES: usize = 128;
+
+/// Twice an area: the sum over lattice edges, and what edges with constructed corners add.
+struct Doubled {
+    whole: BigInt,
+    cut: Vec<Ratio>,
+}
+
+/// Sums of so many products of lattice coordinates fit 127 bits.
+const CHUNK: usize = 1 << 16;
+
+impl Doubled {
+    fn of(boundary: &Boundary) -> Result<Self> {
+        if boundary.outer == Label::In || !boundary.is_closed() {
+            return Err(unbounded());
+        }
+        let (mut whole, mut cut) = (BigInt::ZERO, Vec::new());
+        for chunk in boundary.edges.chunks(CHUNK) {
+            let mut sum = 0i128;
+            for edge in chunk {
+                poll();
+                let [p, q] = boundary.points(edge);
+                match (p.as_lattice(), q.as_lattice()) {
+                    (Some(p), Some(q)) => sum += lattice_cross(p, q),
+                    _ => cut.push(doubled(p, q)),
+                }
+            }
+            whole += sum;
+        }
+        Ok(Self { whole, cut })
+    }
+}
+
+fn lattice_cross([a, b]: Lattice2, [c, d]: Lattice2) -> i128 {
+    i128::from(a) * i128::from(d) - i128::from(b) * i128::from(c)
+}
+
+/// The exact first moments ∫x and ∫y of a bounded set of the plane, in cubic model units.
+///
+/// # Errors
+/// `Unbounded`.
+pub fn moments(boundary: &Boundary, pitch: Pitch) -> Result<[Fraction; 2]> {
+    if boundary.outer == Label::In || !boundary.is_closed() {
+        return Err(unbounded());
+    }
+    Ok([0, 1].map(|axis| {
+        let terms = boundary.edges.iter().map(|edge| {
+            let [p, q] = boundary.points(edge);
             let (n, d) = doubled(p, q);
             let [(a, v), (b, w)] = [p, q].map(|point| coordinate(point, axis));
             (n * (a * &w + b * &v), d * v * w)
         });
         let (n, d) = pairwise_sum(terms.collect());
         in_powers(n, d * 6, pitch.exponent(), 3)
-    })
+    }))
 }
 
 /// The exact volume of a bounded set in space, in cubic model units.
@@ -70,13 +144,6 @@ pub fn volume(tree: &PartitionTree<Dim3>, pitch: Pitch) -> Result<Fraction> {
     let fans = pieces.iter().flat_map(|wall| fan(&wall.fragment));
     let (n, d) = pairwise_sum(fans.collect());
     Ok(in_powers(n, d * 6, pitch.exponent(), 3))
-}
-
-fn edges(outlines: &[Outline]) -> impl Iterator<Item = (&Point2, &Point2)> {
-    outlines.iter().flat_map(|outline| {
-        let next = outline.corners.iter().cycle().skip(1);
-        outline.corners.iter().zip(next)
-    })
 }
 
 fn coordinate(point: &Point2, axis: usize) -> Ratio {

@@ -4,11 +4,11 @@ use std::cmp::Ordering;
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::edges::{Boundary, Edge};
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::dim2::{Dim2, Point2};
+use crate::geometry::dim2::Point2;
 use crate::interrupt::poll;
-use crate::tree::partition::{is_bounded, PartitionTree};
+use crate::tree::partition::Label;
+use crate::tree::plane::{Boundary, Edge};
 
 /// A simple closed loop, the region on its left: outer loops run counterclockwise, holes clockwise.
 #[derive(Clone, Debug)]
@@ -31,22 +31,21 @@ pub struct Outline {
 ///
 /// # Errors
 /// `Unbounded`.
-pub fn outlines(tree: &PartitionTree<Dim2>) -> Result<Vec<Outline>> {
-    if !is_bounded(tree) {
+pub fn outlines(boundary: &Boundary) -> Result<Vec<Outline>> {
+    if boundary.outer == Label::In || !boundary.is_closed() {
         let text = "the region reaches to infinity and has no closed outlines";
         return Err(Error::new(ErrorKind::Unbounded, text));
     }
-    let boundary = Boundary::of(tree)?;
     let mut loops: Vec<Vec<usize>> = Vec::new();
-    for closed in traced(&boundary)? {
+    for closed in traced(boundary)? {
         poll();
-        loops.extend(simple(&boundary, &closed));
+        loops.extend(simple(boundary, &closed));
     }
     for edges in &mut loops {
-        rotate_to_first(&boundary, edges);
+        rotate_to_first(boundary, edges);
     }
     loops.sort_by_key(|l| (boundary.edges[l[0]].ends, boundary.edges[l[0]].inside));
-    Ok(nested(&boundary, &loops))
+    Ok(nested(boundary, &loops))
 }
 
 /// Closed walks along the boundary that keep to one part of the region.
@@ -86,7 +85,7 @@ fn next_edge(boundary: &Boundary, edge: &Edge) -> Option<usize> {
 }
 
 fn direction(edge: &Edge) -> [i128; 2] {
-    let ([a, b], _) = edge.segment.line().coefficients();
+    let ([a, b], _) = edge.line.coefficients();
     [-i128::from(b), i128::from(a)]
 }
 
@@ -113,7 +112,7 @@ fn clockwise(from: &[i128; 2], a: &[i128; 2], b: &[i128; 2]) -> Ordering {
 fn simple(boundary: &Boundary, walk: &[usize]) -> Vec<Vec<usize>> {
     let mut loops = Vec::new();
     let mut open: Vec<usize> = Vec::new();
-    let mut place: HashMap<usize, usize> = HashMap::default();
+    let mut place: HashMap<u32, usize> = HashMap::default();
     for &edge in walk {
         poll();
         place.insert(boundary.edges[edge].ends[0], open.len());
@@ -167,7 +166,7 @@ fn nested(boundary: &Boundary, loops: &[Vec<usize>]) -> Vec<Outline> {
     let outline = |(i, edges): (usize, &Vec<usize>)| Outline {
         corners: edges
             .iter()
-            .map(|e| boundary.vertices[boundary.edges[*e].ends[0]])
+            .map(|e| boundary.corners[boundary.edges[*e].ends[0] as usize].point)
             .collect(),
         parent: parent(i).copied(),
         is_hole: holes[i],

@@ -4,9 +4,11 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use rustc_hash::FxHashMap as HashMap;
 
+use crate::arith::convert::as_double;
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::assemble::assemble;
-use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::path::determinant;
+use crate::geometry::plane::{Lattice, Plane, ShortPlane, FILTER};
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::query::exact::{big, vertex};
@@ -15,6 +17,8 @@ use crate::tree::solid::Solid;
 /// A bounded solid's boundary, read once for any number of sections.
 pub struct Sections {
     points: Vec<Vertex>,
+    /// The coordinates of lattice points; of others no numbers.
+    near: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
 }
 
@@ -26,9 +30,11 @@ impl Sections {
     pub fn of(solid: &Solid) -> Result<Self> {
         let mesh = assemble(solid)?;
         let numbered = (0u32..).zip(&mesh.vertices);
-        let points = numbered.map(|(i, _)| vertex(solid, &mesh, i));
+        let points: Vec<Vertex> = numbered.map(|(i, _)| vertex(solid, &mesh, i)).collect();
+        let near = |p: &Vertex| p.as_lattice().map_or([f64::NAN; 3], |p| p.map(as_double));
         Ok(Self {
-            points: points.collect(),
+            near: points.iter().map(near).collect(),
+            points,
             triangles: mesh.triangles,
         })
     }
@@ -47,11 +53,15 @@ impl Sections {
     /// `TooLarge` if the section leaves the lattice.
     pub fn by(&self, plane: &Plane) -> Result<Vec<[Lattice; 2]>> {
         poll();
-        let below: Vec<bool> = self.points.iter().map(|p| p.side_of(plane) < 0).collect();
+        let below: Vec<bool> = (0..self.points.len())
+            .map(|i| self.is_below(i, plane))
+            .collect();
         let crossings: Vec<Crossing> = self
             .triangles
             .iter()
-            .filter_map(|triangle| Crossing::of(triangle.map(|v| v as usize), &below))
+            .map(|triangle| triangle.map(|v| v as usize))
+            .filter(|[a, b, c]| below[*a] != below[*b] || below[*b] != below[*c])
+            .filter_map(|corners| Crossing::of(corners, &below))
             .collect();
         let mut edges = Vec::new();
         for [enter, leave] in straight(&self.points, &crossings) {
@@ -63,6 +73,19 @@ impl Sections {
             }
         }
         Ok(edges)
+    }
+
+    /// Whether a point lies below a plane.
+    fn is_below(&self, point: usize, plane: &Plane) -> bool {
+        let ([a, b, c, d], [x, y, z]) = (plane.approx(), &self.near[point]);
+        let (sum, size) = (
+            a * x + b * y + c * z + d,
+            (a * x).abs() + (b * y).abs() + (c * z).abs(),
+        );
+        if sum.abs() > (size + d.abs()) * FILTER {
+            return sum < 0.0;
+        }
+        self.points[point].side_of(plane) < 0
     }
 }
 
@@ -131,6 +154,10 @@ fn successors(points: &[Vertex], crossings: &[Crossing]) -> Vec<Option<usize>> {
 
 /// Whether four points lie in one plane.
 fn coplanar(points: [&Vertex; 4]) -> bool {
+    if let [Some(p), Some(q), Some(r), Some(s)] = points.map(Vertex::as_lattice) {
+        let [u, v, w] = [q, r, s].map(|other| [0, 1, 2].map(|i| other[i] - p[i]));
+        return determinant(&u, &v, &w) == 0;
+    }
     let [p, q, r, s] = points.map(Wide::of);
     // Differences to p, times both denominators.
     let [u, v, w] = [&q, &r, &s]
@@ -142,7 +169,16 @@ fn coplanar(points: [&Vertex; 4]) -> bool {
 
 /// The lattice point nearest to where an edge meets a plane.
 fn meet(points: &[Vertex], edge: Rung, plane: &Plane) -> Result<Lattice> {
-    let [p, q] = edge.map(|i| Wide::of(&points[i]));
+    if let [Some(p), Some(q)] = edge.map(|i| points[i].as_lattice())
+        && let Some(near) = plane.short().and_then(|plane| meet_near(p, q, &plane))
+    {
+        return Ok(near);
+    }
+    meet_wide(edge.map(|i| &points[i]), plane)
+}
+
+fn meet_wide(ends: [&Vertex; 2], plane: &Plane) -> Result<Lattice> {
+    let [p, q] = ends.map(Wide::of);
     let (s, t) = (p.value(plane), q.value(plane));
     // With the values s/v < 0 ≤ t/w at p and q: the point is (t·p − s·q) / (t·v − s·w).
     let w: BigInt = &t * &p.w - &s * &q.w;
@@ -156,6 +192,24 @@ fn meet(points: &[Vertex], edge: Rung, plane: &Plane) -> Result<Lattice> {
     }
     Ok(meet)
 }
+
+/// The same for lattice points whose values are short, in machine words.
+fn meet_near(p: &Lattice, q: &Lattice, plane: &ShortPlane) -> Option<Lattice> {
+    let (s, t) = (plane.value_at(p), plane.value_at(q));
+    if s.unsigned_abs().max(t.unsigned_abs()) >= SHORT_VALUE {
+        return None;
+    }
+    // The point is p + (q − p)·(−s)/w; half of w is added before the quotient is rounded down.
+    let w = t - s;
+    let along = |i: usize| {
+        let twice = 2 * i128::from(q[i] - p[i]) * -s + w;
+        i64::try_from(Integer::div_floor(&twice, &(2 * w))).ok()
+    };
+    Some([p[0] + along(0)?, p[1] + along(1)?, p[2] + along(2)?])
+}
+
+/// Twice the product of such a value with a difference of coordinates, below 2^55, fits 127 bits.
+const SHORT_VALUE: u128 = 1 << 70;
 
 struct Wide {
     x: [BigInt; 3],
@@ -174,5 +228,38 @@ impl Wide {
     fn value(&self, plane: &Plane) -> BigInt {
         let terms = (0..3).map(|i| BigInt::from(plane.normal()[i]) * &self.x[i]);
         terms.sum::<BigInt>() + big(plane.offset()) * &self.w
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::arith::Int;
+
+    fn place() -> impl Strategy<Value = Lattice> {
+        let near = || prop_oneof![-5i64..=5, -(1i64 << 53)..=1 << 53];
+        [near(), near(), near()]
+    }
+
+    proptest! {
+        #[test]
+        fn short_edges_meet_planes_where_wide_ones_do(
+            p in place(),
+            q in place(),
+            normal in [-9i128..=9, -9i128..=9, -9i128..=9],
+            offset in -30i128..=30,
+        ) {
+            let plane = Plane::new(normal, Int::from_i128(offset));
+            let Some(plane) = plane.filter(|h| h.side_of_lattice(&p) < 0 && h.side_of_lattice(&q) >= 0)
+            else {
+                return Ok(());
+            };
+            let short = plane.short().and_then(|plane| meet_near(&p, &q, &plane));
+            let wide = meet_wide([&Vertex::lattice(p), &Vertex::lattice(q)], &plane).ok();
+            prop_assert!(short.is_some());
+            prop_assert_eq!(short, wide);
+        }
     }
 }

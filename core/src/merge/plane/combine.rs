@@ -1,0 +1,101 @@
+//! Set operations on sets of the plane: by a sweep over both boundaries, or by merging trees.
+//!
+//! A sweep costs what both boundaries have, merging what the smaller one has, once the larger one
+//! has a tree. So a sweep is right for operands of like sizes, and for a large one that meets few
+//! small ones; merging is right for one that meets many.
+
+use super::input::Outlines;
+use super::sweep::bounded;
+use crate::error::Result;
+use crate::merge::generic::merge_trees::merge;
+use crate::merge::op::SetOp;
+use crate::tree::partition::Label;
+use crate::tree::plane::{Boundary, PlaneSet, TREE};
+
+/// Operands whose sizes differ by more than this factor are unlike.
+const UNLIKE: usize = 8;
+
+/// A tree that has grown to more than this many times its size at first is built anew.
+const GROWTH: usize = 4;
+
+/// Trees of so few nodes are let grow.
+const SMALL: usize = 64;
+
+/// What a set operation makes of two sets.
+///
+/// # Errors
+/// `Internal` for a defect.
+pub fn combined(a: &PlaneSet, b: &PlaneSet, op: SetOp) -> Result<PlaneSet> {
+    let larger = if a.size() < b.size() { b } else { a };
+    let unlike = UNLIKE * a.size().min(b.size()) < larger.size();
+    let paid = larger.known_tree().is_some() || larger.spent.swept > TREE * larger.size();
+    if unlike && paid {
+        return merged(a, b, op);
+    }
+    match (a.closed()?, b.closed()?) {
+        (Some(first), Some(second)) => {
+            let mut set = PlaneSet::from(swept(first, second, op)?);
+            if unlike {
+                set.spent.swept = larger.spent.swept + larger.size();
+            }
+            Ok(set)
+        }
+        _ => merged(a, b, op),
+    }
+}
+
+fn swept(a: &Boundary, b: &Boundary, op: SetOp) -> Result<Boundary> {
+    let mut outlines = Outlines::default();
+    outlines.extend(a, 1);
+    outlines.extend(b, 2);
+    // Inside the first the number is odd, inside the second it is 2 or 3.
+    let label = |bit: i32| Label::from_inside(bit != 0);
+    bounded(&outlines, |number| {
+        op.labels(label(number & 1), label(number & 2)) == Label::In
+    })
+}
+
+fn merged(a: &PlaneSet, b: &PlaneSet, op: SetOp) -> Result<PlaneSet> {
+    let tree = merge(a.tree()?, b.tree()?, op)?;
+    let nodes = |set: &PlaneSet| match set.spent.built {
+        0 => set.size(),
+        built => built,
+    };
+    let built = nodes(a).max(nodes(b));
+    let mut set = PlaneSet::from(tree);
+    if set.size() > GROWTH * built + SMALL {
+        return Ok(PlaneSet::from(Boundary::clone(set.boundary()?)));
+    }
+    set.spent.built = built;
+    Ok(set)
+}
+
+/// Whether two sets are the same.
+///
+/// # Errors
+/// `Internal` for a defect.
+pub fn equal(a: &PlaneSet, b: &PlaneSet) -> Result<bool> {
+    if let (Some(first), Some(second)) = (a.closed()?, b.closed()?) {
+        return Ok(first.equals(second));
+    }
+    let difference = merge(a.tree()?, b.tree()?, SetOp::SymmetricDifference)?;
+    Ok(difference.label() == Some(Label::Out))
+}
+
+/// The union of any number of sets.
+///
+/// # Errors
+/// `Internal` for a defect.
+pub fn composed(sets: &[&PlaneSet]) -> Result<PlaneSet> {
+    let mut outlines = Outlines::default();
+    let mut open = Vec::new();
+    for set in sets {
+        match set.closed()? {
+            Some(boundary) => outlines.extend(boundary, 1),
+            None => open.push(*set),
+        }
+    }
+    let union = PlaneSet::from(bounded(&outlines, |number| number > 0)?);
+    open.into_iter()
+        .try_fold(union, |union, set| merged(&union, set, SetOp::Union))
+}

@@ -1,0 +1,102 @@
+//! What a sweep's line meets: stretches of lines in their order from below.
+
+use smallvec::SmallVec;
+
+use crate::geometry::dim2::{Point2, RoundedLine};
+use crate::geometry::side::Side;
+
+/// A stretch of a line in which one or more strands lie, from the last stop on it to the next.
+#[derive(Clone, Debug)]
+pub(super) struct Stretch {
+    /// The line, running to the right; its minus side lies above.
+    pub line: RoundedLine,
+    /// The stop where the first of the strands ends.
+    pub right: u32,
+    /// The strands.
+    pub strands: SmallVec<[u32; 2]>,
+    /// What winding numbers rise by from below to above.
+    pub rise: i32,
+    /// The winding number below.
+    pub below: i32,
+    /// The faces of the result below and above.
+    pub faces: [u32; 2],
+    /// The corner of the result where it began to separate inside from outside, if it does.
+    pub start: Option<u32>,
+}
+
+impl Stretch {
+    /// The winding number above.
+    pub(super) fn above(&self) -> i32 {
+        self.below + self.rise
+    }
+}
+
+/// Where a point lies among the stretches that the sweep's line meets.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// The number of stretches below it.
+    pub first: usize,
+    /// The number of stretches below it and through it.
+    pub last: usize,
+}
+
+/// The stretches from below.
+#[derive(Debug, Default)]
+pub(super) struct Status {
+    order: Vec<u32>,
+    stretches: Vec<Stretch>,
+    free: Vec<u32>,
+}
+
+impl Status {
+    /// The stretch in a place from below.
+    pub(super) fn at(&self, place: usize) -> &Stretch {
+        &self.stretches[self.order[place] as usize]
+    }
+
+    /// The number of stretches.
+    pub(super) fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    /// Where a point of the sweep's line lies; `stop` is its number, if it is a corner.
+    pub(super) fn place(&self, point: &Point2, stop: Option<u32>) -> Place {
+        let side = |number: &u32| {
+            let stretch = &self.stretches[*number as usize];
+            if Some(stretch.right) == stop {
+                Side::On
+            } else {
+                stretch.line.side_of(point)
+            }
+        };
+        // What lies above a line running to the right lies on its minus side.
+        let first = self.order.partition_point(|n| side(n) == Side::Minus);
+        let through = self.order[first..]
+            .iter()
+            .take_while(|n| side(n) == Side::On);
+        let last = first + through.count();
+        Place { first, last }
+    }
+
+    /// Puts other stretches in place of those through a point.
+    ///
+    /// # Cost
+    /// Where their number changes, the stretches above are moved by four bytes each.
+    pub(super) fn exchange(&mut self, place: Place, others: impl Iterator<Item = Stretch>) {
+        self.free.extend(&self.order[place.first..place.last]);
+        let mut numbers: SmallVec<[u32; 4]> = SmallVec::new();
+        for stretch in others {
+            numbers.push(self.kept(stretch));
+        }
+        self.order.splice(place.first..place.last, numbers);
+    }
+
+    fn kept(&mut self, stretch: Stretch) -> u32 {
+        if let Some(number) = self.free.pop() {
+            self.stretches[number as usize] = stretch;
+            return number;
+        }
+        self.stretches.push(stretch);
+        crate::arith::convert::as_number(self.stretches.len()) - 1
+    }
+}

@@ -1,0 +1,340 @@
+//! The sweep itself.
+
+use smallvec::SmallVec;
+
+use super::events::{Crossings, Stops};
+use super::input::Outlines;
+use super::output::Output;
+use super::status::{Place, Status, Stretch};
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::dim2::{Lattice2, Line2, Point2, RoundedLine};
+use crate::geometry::side::Side;
+use crate::interrupt::poll;
+use crate::tree::partition::{Label, Location};
+use crate::tree::plane::{Boundary, Corner};
+
+/// The boundary of the set of places whose winding number satisfies a rule.
+///
+/// Strands may cross, overlap and repeat.
+///
+/// # Cost
+/// O((n + k) log n) for n strands that cross in k points, if the sweep's line meets few of them at
+/// once.
+///
+/// # Errors
+/// `NotClosed` if the strands do not give every place one number.
+///
+/// # Example
+/// ```
+/// use bspcsg::merge::plane::{bounded, Outlines};
+///
+/// let mut squares = Outlines::default();
+/// for shift in [0, 1] {
+///     let corners = [[0, 0], [2, 0], [2, 2], [0, 2]].map(|[x, y]| [x + shift, y + shift]);
+///     for i in 0..4 {
+///         squares.push(corners[i], corners[(i + 1) % 4], 1)?;
+///     }
+/// }
+/// assert_eq!(bounded(&squares, |number| number > 0)?.edges.len(), 8);
+/// assert_eq!(bounded(&squares, |number| number > 1)?.edges.len(), 4);
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
+pub fn bounded(outlines: &Outlines, inside: impl Fn(i32) -> bool) -> Result<Boundary> {
+    let mut sweep = Sweep::new(outlines, inside);
+    while let Some(event) = sweep.next() {
+        poll();
+        sweep.pass(&event)?;
+    }
+    Ok(sweep.into_boundary())
+}
+
+/// A strand as the sweep sees it: it runs to the right.
+#[derive(Clone, Copy, Debug)]
+struct Running {
+    line: Line2,
+    right: u32,
+    rise: i32,
+}
+
+/// A place where the sweep stops.
+#[derive(Debug)]
+pub(super) struct Event {
+    /// Where.
+    pub corner: Corner,
+    /// Its number, if a strand begins or ends there.
+    pub stop: Option<u32>,
+}
+
+/// A sweep on its way.
+pub(super) struct Sweep<'a, R> {
+    outlines: &'a Outlines,
+    inside: R,
+    stops: Stops,
+    /// The strands from left to right, and where those that begin in each stop lie in that list.
+    strands: Vec<Running>,
+    starts: Vec<u32>,
+    passed: u32,
+    crossings: Crossings,
+    status: Status,
+    output: Output,
+}
+
+impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
+    pub(super) fn new(outlines: &'a Outlines, inside: R) -> Self {
+        let stops = Stops::of(&outlines.corners);
+        let (strands, starts) = running(outlines, &stops);
+        Self {
+            outlines,
+            inside,
+            stops,
+            strands,
+            starts,
+            passed: 0,
+            crossings: Crossings::default(),
+            status: Status::default(),
+            output: Output::new(),
+        }
+    }
+
+    /// The stop that comes next.
+    pub(super) fn next(&mut self) -> Option<Event> {
+        let stop = self.passed;
+        let corner = self.corner(stop).copied();
+        if let Some(corner) = self.crossings.before(corner.as_ref()) {
+            return Some(Event { corner, stop: None });
+        }
+        self.passed += 1;
+        corner.map(|corner| Event {
+            corner,
+            stop: Some(stop),
+        })
+    }
+
+    /// The corner that is a stop.
+    fn corner(&self, stop: u32) -> Option<&Corner> {
+        let number = self.stops.corners.get(stop as usize)?;
+        self.outlines.corners.get(*number as usize)
+    }
+
+    pub(super) fn into_boundary(self) -> Boundary {
+        let outer = Label::from_inside((self.inside)(self.outlines.base));
+        self.output.into_boundary(outer)
+    }
+
+    /// Whether the result lies on one side of a stretch only.
+    fn separates(&self, stretch: &Stretch) -> bool {
+        (self.inside)(stretch.below) != (self.inside)(stretch.above())
+    }
+
+    /// Passes a stop: ends the stretches through it and begins those that leave it to the right.
+    pub(super) fn pass(&mut self, event: &Event) -> Result<()> {
+        let place = self.status.place(&event.corner.point, event.stop);
+        let (winding, face) = self.below(place.first);
+        let leaving = self.leaving(place, event.stop, winding);
+        let upper = if place.first < place.last {
+            let top = self.status.at(place.last - 1);
+            (top.above(), top.faces[1])
+        } else {
+            (winding, face)
+        };
+        if leaving.last().map_or(winding, Stretch::above) != upper.0 {
+            return Err(not_closed());
+        }
+        let leaving = self.settled(leaving, place, &event.corner, [face, upper.1]);
+        let count = leaving.len();
+        self.status.exchange(place, leaving.into_iter());
+        self.look(place.first);
+        if count > 0 {
+            self.look(place.first + count);
+        }
+        Ok(())
+    }
+
+    /// The winding number and the face below a place.
+    fn below(&self, place: usize) -> (i32, u32) {
+        match place.checked_sub(1) {
+            Some(lower) => {
+                let lower = self.status.at(lower);
+                (lower.above(), lower.faces[1])
+            }
+            None => (self.outlines.base, 0),
+        }
+    }
+
+    /// Where a point lies before the next stop.
+    pub(super) fn location(&self, point: &Lattice2) -> Location {
+        let place = self.status.place(&Point2::lattice(*point), None);
+        if place.first < place.last {
+            return Location::On;
+        }
+        if (self.inside)(self.below(place.first).0) {
+            Location::In
+        } else {
+            Location::Out
+        }
+    }
+
+    /// The stretches that leave a stop to the right, from below.
+    fn leaving(&self, place: Place, stop: Option<u32>, winding: i32) -> SmallVec<[Stretch; 2]> {
+        let mut numbers: SmallVec<[u32; 4]> = SmallVec::new();
+        for passing in place.first..place.last {
+            let strands = self.status.at(passing).strands.iter();
+            let goes_on = |n: &&u32| Some(self.strands[**n as usize].right) != stop;
+            numbers.extend(strands.filter(goes_on).copied());
+        }
+        if let Some(stop) = stop {
+            let stop = stop as usize;
+            numbers.extend(self.starts[stop]..self.starts[stop + 1]);
+        }
+        let line = |n: u32| &self.strands[n as usize].line;
+        numbers.sort_by(|m, n| line(*m).turn(line(*n)));
+        let mut below = winding;
+        let groups = numbers.chunk_by(|m, n| line(*m) == line(*n));
+        groups
+            .map(|group| {
+                let stretch = self.stretch(group, below);
+                below = stretch.above();
+                stretch
+            })
+            .collect()
+    }
+
+    /// The stretch of strands on one line.
+    fn stretch(&self, strands: &[u32], below: i32) -> Stretch {
+        let running = strands.iter().map(|n| &self.strands[*n as usize]);
+        Stretch {
+            line: RoundedLine::of(self.strands[strands[0] as usize].line),
+            right: running.clone().map(|s| s.right).min().unwrap_or(u32::MAX),
+            strands: SmallVec::from_slice(strands),
+            rise: running.map(|s| s.rise).sum(),
+            below,
+            faces: [0; 2],
+            start: None,
+        }
+    }
+
+    /// Gives the stretches that leave a stop their faces and their corner, and ends those before it.
+    fn settled(
+        &mut self,
+        mut leaving: SmallVec<[Stretch; 2]>,
+        place: Place,
+        corner: &Corner,
+        [lower, upper]: [u32; 2],
+    ) -> SmallVec<[Stretch; 2]> {
+        let walls = leaving.iter().filter(|s| self.separates(s)).count();
+        let (mut left, mut face) = (walls, lower);
+        for stretch in &mut leaving {
+            stretch.faces[0] = face;
+            if self.separates(stretch) {
+                left -= 1;
+                face = if left == 0 { upper } else { self.output.face() };
+            }
+            stretch.faces[1] = face;
+        }
+        if walls == 0 {
+            self.output.join(lower, upper);
+        }
+        let arriving = place.first..place.last;
+        let arriving: SmallVec<[usize; 4]> = arriving
+            .filter(|i| self.status.at(*i).start.is_some())
+            .collect();
+        if !self.goes_on(&arriving, &mut leaving, walls) {
+            self.turn(&arriving, &mut leaving, walls, corner);
+        }
+        leaving
+    }
+
+    /// Lets the boundary go straight on, if nothing else of it meets this stop.
+    fn goes_on(&self, arriving: &[usize], leaving: &mut [Stretch], walls: usize) -> bool {
+        let ([before], 1) = (arriving, walls) else {
+            return false;
+        };
+        let before = self.status.at(*before);
+        let Some(after) = leaving.iter_mut().find(|s| self.separates(s)) else {
+            return false;
+        };
+        let above = [before.above(), after.above()].map(&self.inside);
+        let straight = before.line.line() == after.line.line() && above[0] == above[1];
+        if straight {
+            after.start = before.start;
+        }
+        straight
+    }
+
+    /// Makes a corner of the boundary, if any of it meets this stop.
+    fn turn(&mut self, arriving: &[usize], leaving: &mut [Stretch], walls: usize, corner: &Corner) {
+        if arriving.is_empty() && walls == 0 {
+            return;
+        }
+        let here = self.output.corner(corner);
+        for place in arriving {
+            let stretch = self.status.at(*place);
+            let above = Label::from_inside((self.inside)(stretch.above()));
+            if let Some(start) = stretch.start {
+                let line = *stretch.line.line();
+                self.output.edge(line, [start, here], stretch.faces, above);
+            }
+        }
+        for stretch in leaving {
+            if self.separates(stretch) {
+                stretch.start = Some(here);
+            }
+        }
+    }
+
+    /// Notes where two neighbours cross, the upper one in this place.
+    fn look(&mut self, place: usize) {
+        if place == 0 || place >= self.status.len() {
+            return;
+        }
+        let (lower, upper) = (self.status.at(place - 1), self.status.at(place));
+        let end = |stop: u32| self.corner(stop).map(|corner| &corner.point);
+        let on = |line: &RoundedLine, point: Option<&Point2>, side| {
+            point.is_some_and(|point| line.side_of(point) == side)
+        };
+        let cross = if lower.right < upper.right {
+            on(&upper.line, end(lower.right), Side::Minus)
+        } else {
+            lower.right > upper.right && on(&lower.line, end(upper.right), Side::Plus)
+        };
+        if cross {
+            let lines = [lower, upper].map(|stretch| *stretch.line.line());
+            self.crossings.extend(Corner::crossing(lines[0], lines[1]));
+        }
+    }
+}
+
+/// The strands from left to right by where they begin, and the first of each stop.
+fn running(outlines: &Outlines, stops: &Stops) -> (Vec<Running>, Vec<u32>) {
+    let mut strands = Vec::with_capacity(outlines.strands.len());
+    for strand in &outlines.strands {
+        let [from, to] = strand.ends.map(|end| stops.places[end as usize]);
+        let (left, line, rise) = if from < to {
+            (from, strand.line, strand.weight)
+        } else {
+            (to, strand.line.flipped(), -strand.weight)
+        };
+        let right = from.max(to);
+        strands.push((left, Running { line, right, rise }));
+    }
+    let mut starts = vec![0u32; stops.corners.len() + 1];
+    for (left, _) in &strands {
+        starts[*left as usize + 1] += 1;
+    }
+    for stop in 1..starts.len() {
+        starts[stop] += starts[stop - 1];
+    }
+    let mut next = starts.clone();
+    let mut order = vec![0u32; strands.len()];
+    for (number, (left, _)) in (0u32..).zip(&strands) {
+        order[next[*left as usize] as usize] = number;
+        next[*left as usize] += 1;
+    }
+    let sorted = order.iter().map(|n| strands[*n as usize].1);
+    (sorted.collect(), starts)
+}
+
+fn not_closed() -> Error {
+    let text = "the outlines do not give every place one winding number";
+    Error::new(ErrorKind::NotClosed, text)
+}
