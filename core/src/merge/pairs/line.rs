@@ -1,5 +1,6 @@
 //! Lines to sweep along, and how elements lie along them.
 
+use super::view::{views, View, OFF};
 use super::Swept;
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
@@ -10,24 +11,77 @@ pub const MANY: usize = 512;
 /// Projections are widened by this share of the largest coordinate, far above their rounding.
 pub const SLACK: f64 = 1e-14;
 
+/// Lines closer than this cosine are nearly one: their plane shows little.
+const PARALLEL: f64 = 0.8;
+
 /// Lowest and highest place along a line.
 pub type Span = [f64; 2];
 
-/// A line, given by its direction, and the elements along it.
+/// A line, and the elements along it.
 pub struct Line {
-    pub direction: [f64; 3],
+    pub gauge: Gauge,
     pub spans: Vec<Span>,
     pub crowding: f64,
 }
 
+/// What gives points their places along a line.
+#[derive(Clone, Copy)]
+pub enum Gauge {
+    /// How far they are in a direction.
+    Along([f64; 3]),
+    /// The slope at which they are seen from a point.
+    Seen(View),
+}
+
+impl Gauge {
+    /// Whether the plane of two lines shows more than one of them.
+    pub fn is_across(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Along(a), Self::Along(b)) => dot(a, b).abs() < PARALLEL,
+            _ => self.keeps_straight(other),
+        }
+    }
+
+    /// Whether what is straight in space is straight in the plane of two lines.
+    pub fn keeps_straight(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Along(_), Self::Along(_)) => true,
+            (Self::Seen(a), Self::Seen(b)) => a.shares_eye(b),
+            _ => false,
+        }
+    }
+
+    /// The places of a triangle's corners, or of what has the same shadow; `None` if it has no
+    /// bounded one.
+    pub fn places(&self, corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
+        match self {
+            Self::Along(direction) => Some(corners.map(|p| dot(&p, direction))),
+            Self::Seen(view) => view.places(corners),
+        }
+    }
+
+    /// A bound on how far places are off, for coordinates up to a size.
+    pub fn slack(&self, size: f64) -> f64 {
+        match self {
+            Self::Along(_) => size * SLACK,
+            Self::Seen(_) => OFF,
+        }
+    }
+}
+
 impl Line {
     /// The axes and, among many elements, lines along and across the directions in which they are
-    /// long.
+    /// long, and slopes as seen from the corner that most of an operand's have in common.
     pub fn all(elements: &[&Swept]) -> Vec<Self> {
         let mut lines: Vec<Self> = (0..3).map(|axis| Self::axis(elements, axis)).collect();
         if elements.len() > MANY {
             let slanted = directions(elements);
             lines.extend(slanted.iter().filter_map(|d| Self::slanted(elements, d)));
+            lines.extend(
+                views(elements)
+                    .iter()
+                    .filter_map(|v| Self::seen(elements, v)),
+            );
         }
         lines
     }
@@ -36,19 +90,25 @@ impl Line {
         let mut direction = [0.0; 3];
         direction[axis] = 1.0;
         let span = |e: &&Swept| [as_double(e.low[axis]), as_double(e.high[axis])];
-        Self::new(direction, elements.iter().map(span).collect())
+        Self::new(Gauge::Along(direction), elements.iter().map(span).collect())
     }
 
     /// `None` if an element has no corners.
     fn slanted(elements: &[&Swept], direction: &[f64; 3]) -> Option<Self> {
         let spans = projections(elements, direction)?;
-        Some(Self::new(*direction, spans))
+        Some(Self::new(Gauge::Along(*direction), spans))
     }
 
-    fn new(direction: [f64; 3], spans: Vec<Span>) -> Self {
+    /// `None` if no element is all ahead.
+    fn seen(elements: &[&Swept], view: &View) -> Option<Self> {
+        let spans = view.spans(elements)?;
+        Some(Self::new(Gauge::Seen(*view), spans))
+    }
+
+    fn new(gauge: Gauge, spans: Vec<Span>) -> Self {
         let crowding = crowding(&spans);
         Self {
-            direction,
+            gauge,
             spans,
             crowding,
         }
@@ -60,7 +120,7 @@ fn crowding(spans: &[Span]) -> f64 {
     let low = spans.iter().fold(f64::INFINITY, |m, s| m.min(s[0]));
     let high = spans.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s[1]));
     let sum: f64 = spans.iter().map(|s| s[1] - s[0]).sum();
-    sum / (high - low).max(1.0)
+    sum / (high - low).max(f64::MIN_POSITIVE)
 }
 
 /// For the first operand and for the others the direction in which their elements are long and two
@@ -78,7 +138,7 @@ fn directions(elements: &[&Swept]) -> Vec<[f64; 3]> {
 }
 
 /// A direction and two across it.
-fn frame(long: &[f64; 3]) -> [[f64; 3]; 3] {
+pub fn frame(long: &[f64; 3]) -> [[f64; 3]; 3] {
     let thin = (0..3).min_by(|i, j| long[*i].abs().total_cmp(&long[*j].abs()));
     let mut axis = [0.0; 3];
     axis[thin.unwrap_or(0)] = 1.0;
@@ -106,7 +166,7 @@ pub fn longest_edge(corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
     (0..3).map(edge).max_by(longer)
 }
 
-fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
+pub fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
     let size = dot(v, v).sqrt();
     (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
 }

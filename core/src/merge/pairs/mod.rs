@@ -7,12 +7,14 @@ mod boxes;
 mod line;
 mod rim;
 mod sweep;
+mod view;
 
 use std::cell::RefCell;
 
 use crate::geometry::plane::Lattice;
 use boxes::Space;
 pub use boxes::{shift_of, Boxed};
+use view::share_corner;
 
 /// An element as a sweep sees it: its operand, its box, and corners whose convex hull holds it.
 #[derive(Clone, Debug)]
@@ -28,7 +30,8 @@ pub struct Swept {
 }
 
 /// Calls `meet` for all pairs of different operands that may meet, the lower number first; gives up
-/// with `None` where too many elements lie above each other along every line.
+/// with `None` where too many elements lie above each other along every line, or a crowd's operands
+/// have a corner in common: all that have it would meet.
 ///
 /// Elements of one operand follow each other; `swept` gives the element with a number.
 pub fn pairs(
@@ -40,6 +43,9 @@ pub fn pairs(
     let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
     boxes::pairs(elements, found, |crowd, space| {
         let some: Vec<Swept> = crowd.iter().map(|e| swept(e.number)).collect();
+        if share_corner(&some) {
+            return None;
+        }
         sweep::pairs(&some, |i, j| {
             let (a, b) = (&crowd[i], &crowd[j]);
             if space.owns(a, b) {
@@ -116,6 +122,8 @@ fn middle(crowd: &[Boxed]) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::{HashMap, HashSet};
+
     use proptest::prelude::*;
 
     use super::*;
@@ -128,6 +136,34 @@ mod tests {
 
     const REACH: i64 = 2000;
 
+    /// A triangle at a place, the far side within a few steps of where a direction leads.
+    fn sector(apex: Lattice, along: Lattice) -> impl Strategy<Value = [Lattice; 3]> {
+        let near = || [-300..=300i64, -300..=300i64, -300..=300i64];
+        (near(), near()).prop_map(move |(a, b)| {
+            let far = |p: Lattice| each_axis(|i| apex[i] + 7 * along[i] + p[i]);
+            [apex, far(a), far(b)]
+        })
+    }
+
+    /// Two fans, whose apexes are near each other, or the same just before where what counts begins.
+    fn fans() -> impl Strategy<Value = Scene> {
+        let place = || [-9..=9i64, -9..=9i64, -9..=9i64];
+        let direction = || [50..=200i64, -200..=200i64, -200..=200i64];
+        let all = (place(), place(), any::<bool>(), direction(), direction());
+        all.prop_flat_map(|(a, by, same, u, v)| {
+            let b = if same { a } else { each_axis(|i| a[i] + by[i]) };
+            let fan = |k: usize, apex, along| {
+                let some = proptest::collection::vec(sector(apex, along), 300..MANY);
+                some.prop_map(move |fan| fan.into_iter().map(|t| (k, t)).collect::<Vec<_>>())
+            };
+            let floor = if same { a[0] + 1 } else { -REACH };
+            (fan(0, a, u), fan(1, b, v)).prop_map(move |(a, b)| Scene {
+                triangles: [a, b].concat(),
+                floor,
+            })
+        })
+    }
+
     /// A triangle along a direction, within a few steps beside it.
     fn needle(along: Lattice) -> impl Strategy<Value = [Lattice; 3]> {
         let near = || [-99..=99i64, -99..=99i64, -99..=99i64];
@@ -137,19 +173,26 @@ mod tests {
         })
     }
 
-    fn swept(operand: usize, corners: &[Lattice; 3]) -> Swept {
+    /// Triangles with their operands, and from which x on they count.
+    #[derive(Clone, Debug)]
+    struct Scene {
+        triangles: Vec<(usize, [Lattice; 3])>,
+        floor: i64,
+    }
+
+    fn swept(operand: usize, corners: &[Lattice; 3], floor: i64) -> Swept {
         let end = |i: usize, most: fn(i64, i64) -> i64| {
             corners.iter().map(|p| p[i]).reduce(most).unwrap_or(0)
         };
         Swept {
             operand,
-            low: each_axis(|i| end(i, i64::min).max(-REACH)),
+            low: each_axis(|i| end(i, i64::min).max([floor, -REACH, -REACH][i])),
             high: each_axis(|i| end(i, i64::max).min(REACH)),
             corners: Some(corners.map(|p| p.map(as_double))),
         }
     }
 
-    fn scene(operands: usize) -> impl Strategy<Value = Vec<(usize, [Lattice; 3])>> {
+    fn scene(operands: usize) -> impl Strategy<Value = Scene> {
         let direction = || [-200..=200i64, -200..=200i64, -200..=200i64];
         let all = move |(a, b)| {
             let one = prop_oneof![needle(a), needle(b)].boxed();
@@ -157,34 +200,87 @@ mod tests {
             let some = move |size| proptest::collection::vec((0..operands, one.clone()), size);
             sizes.prop_flat_map(some)
         };
-        let sorted = |mut scene: Vec<(usize, [Lattice; 3])>| {
-            scene.sort_by_key(|e| e.0);
-            scene
+        let sorted = |mut triangles: Vec<(usize, [Lattice; 3])>| {
+            triangles.sort_by_key(|e| e.0);
+            Scene {
+                triangles,
+                floor: -REACH,
+            }
         };
         (direction(), direction())
             .prop_flat_map(all)
             .prop_map(sorted)
     }
 
-    fn misses_nothing(scene: &[(usize, [Lattice; 3])]) -> bool {
-        let elements: Vec<Swept> = scene.iter().map(|(k, t)| swept(*k, t)).collect();
-        let mut found = std::collections::HashSet::new();
+    /// The pairs that are found, the lower number first; `None` where the search gives up.
+    fn found(scene: &Scene) -> Option<HashSet<(usize, usize)>> {
+        let triangles = scene.triangles.iter();
+        let elements: Vec<Swept> = triangles.map(|(k, t)| swept(*k, t, scene.floor)).collect();
+        let mut found = HashSet::new();
         let boxed = |(k, e): (u32, &Swept)| Boxed::new(e.operand, k, [&e.low, &e.high], 0);
         let boxes = (0..).zip(&elements).map(boxed).collect();
-        let done = pairs(
-            boxes,
-            |k| elements[k as usize].clone(),
-            |i, j| {
-                found.insert((i as usize, j as usize));
-            },
-        );
+        let one = |k: u32| elements[k as usize].clone();
+        pairs(boxes, one, |i, j| {
+            found.insert((i as usize, j as usize));
+        })?;
+        Some(found)
+    }
+
+    /// Whether triangles of several operands have a corner in common.
+    fn touch(scene: &Scene) -> bool {
+        let mut owners = HashMap::new();
+        let corners = scene.triangles.iter().flat_map(|(k, t)| t.map(|p| (*k, p)));
+        let mut counted = corners.filter(|(_, p)| p[0] >= scene.floor);
+        counted.any(|(k, p)| *owners.entry(p).or_insert(k) != k)
+    }
+
+    fn misses_nothing(scene: &Scene) -> bool {
+        let Some(found) = found(scene) else {
+            return touch(scene);
+        };
         let meet = |i: usize, j: usize| {
-            let (a, b) = (&scene[i], &scene[j]);
+            let (a, b) = (&scene.triangles[i], &scene.triangles[j]);
             a.0 != b.0 && (pierces(&a.1, &b.1) || pierces(&b.1, &a.1))
         };
-        let rows = 0..scene.len();
-        let mut all = rows.flat_map(|i| (i + 1..scene.len()).map(move |j| (i, j)));
-        done.is_some() && all.all(|(i, j)| found.contains(&(i, j)) || !meet(i, j))
+        let rows = 0..scene.triangles.len();
+        let mut all = rows.flat_map(|i| (i + 1..scene.triangles.len()).map(move |j| (i, j)));
+        all.all(|(i, j)| found.contains(&(i, j)) || !meet(i, j))
+    }
+
+    /// The sides of a cone over a polygon of so many corners.
+    fn cone(operand: usize, sides: u32, apex: Lattice) -> Vec<(usize, [Lattice; 3])> {
+        let corner = |k: u32| {
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
+            let (y, x) = angle.sin_cos();
+            [x, y].map(|x| crate::arith::convert::as_whole((x * 900.0).round()))
+        };
+        let place = |k: u32| {
+            let [x, y] = corner(k);
+            [apex[0] + x, apex[1] + y, apex[2] + 1800]
+        };
+        let side = |k: u32| (operand, [apex, place(k), place((k + 1) % sides)]);
+        (0..sides).map(side).collect()
+    }
+
+    /// Two cones, the apex of the second at a place beside that of the first.
+    fn cones(sides: [u32; 2], by: Lattice) -> Scene {
+        let triangles = [cone(0, sides[0], [0; 3]), cone(1, sides[1], by)].concat();
+        Scene {
+            triangles,
+            floor: -REACH,
+        }
+    }
+
+    #[test]
+    fn sides_of_cones_meet_few_others() {
+        let sides = 1000;
+        let found = found(&cones([sides; 2], [30, 50, 80])).expect("the apexes differ");
+        assert!(found.len() < 20 * sides as usize, "{} pairs", found.len());
+    }
+
+    #[test]
+    fn a_crowd_around_a_common_corner_is_given_up() {
+        assert!(found(&cones([1000, 999], [0; 3])).is_none());
     }
 
     proptest! {
@@ -192,6 +288,11 @@ mod tests {
 
         #[test]
         fn needles_of_two_operands_that_cross_are_found(scene in scene(2)) {
+            prop_assert!(misses_nothing(&scene));
+        }
+
+        #[test]
+        fn triangles_of_two_fans_that_cross_are_found(scene in fans()) {
             prop_assert!(misses_nothing(&scene));
         }
 

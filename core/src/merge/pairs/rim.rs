@@ -1,7 +1,6 @@
 //! What bounds triangles in the plane of two lines.
 
-use super::line::SLACK;
-use super::line::{dot, Span};
+use super::line::{Gauge, Span};
 use super::Swept;
 
 /// The points of the plane for which normal · point is at most the limit.
@@ -21,8 +20,8 @@ impl HalfPlane {
     /// What holds the points `corners` and ends along the line through the first two of them.
     ///
     /// Any normal will do, so that only products with it are rounded: by a few units in the last
-    /// place of coordinates up to `size`, well below the slack.
-    fn beside(corners: [[f64; 2]; 3], size: f64) -> Self {
+    /// place of the coordinates, well below what these are off.
+    fn beside(corners: [[f64; 2]; 3], slack: f64) -> Self {
         let [a, b, c] = corners;
         let across = [b[1] - a[1], a[0] - b[0]];
         let dot = |p: &[f64; 2]| across[0] * p[0] + across[1] * p[1];
@@ -32,7 +31,7 @@ impl HalfPlane {
             .iter()
             .map(|p| out * dot(p))
             .fold(f64::MIN, f64::max);
-        let slack = (normal[0].abs() + normal[1].abs()) * size * SLACK;
+        let slack = (normal[0].abs() + normal[1].abs()) * slack;
         Self {
             normal,
             limit: most + slack,
@@ -46,13 +45,17 @@ impl HalfPlane {
     }
 }
 
-/// The half-planes beside the edges of a triangle's projection.
-pub fn rims(corners: Option<&[[f64; 3]; 3]>, plane: &[[f64; 3]; 2], size: f64) -> [HalfPlane; 3] {
-    let Some(corners) = corners else {
+/// The half-planes beside the edges of a triangle's shadow in the plane of two lines, for
+/// coordinates up to a size; all of the plane where edges would not be straight in it.
+pub fn rims(corners: Option<&[[f64; 3]; 3]>, plane: &[Gauge; 2], size: f64) -> [HalfPlane; 3] {
+    let seen = corners.filter(|_| plane[0].keeps_straight(&plane[1]));
+    let shadow = seen.and_then(|c| Some([plane[0].places(c)?, plane[1].places(c)?]));
+    let Some([x, y]) = shadow else {
         return [HalfPlane::ALL; 3];
     };
-    let [a, b, c] = corners.map(|p| [dot(&p, &plane[0]), dot(&p, &plane[1])]);
-    [[a, b, c], [b, c, a], [c, a, b]].map(|corners| HalfPlane::beside(corners, size))
+    let slack = plane[0].slack(size).max(plane[1].slack(size));
+    let [a, b, c] = [0, 1, 2].map(|i| [x[i], y[i]]);
+    [[a, b, c], [b, c, a], [c, a, b]].map(|corners| HalfPlane::beside(corners, slack))
 }
 
 pub fn largest_coordinate(elements: &[&Swept]) -> f64 {

@@ -1,8 +1,9 @@
 //! Pairs of elements whose extents overlap, found by sweeps along lines.
 //!
 //! A line is a coordinate axis, or one along or across the direction in which most elements are long:
-//! needles overlap in every box, but hardly in a projection across them. In the plane of the two best
-//! lines also the edges of triangles tell them from boxes.
+//! needles overlap in every box, but hardly in a projection across them. Triangles around a common corner
+//! overlap in every projection, but hardly as seen from that corner. In the plane of the two best lines
+//! also the edges of triangles tell them from boxes.
 
 use rayon::prelude::*;
 
@@ -18,9 +19,6 @@ const CROWDED: f64 = 3e8;
 
 /// So many pairs of spans are compared in the time of one unit of work.
 const PAIRS: usize = 16;
-
-/// Lines closer than this cosine are nearly one: their plane shows little.
-const PARALLEL: f64 = 0.8;
 
 /// Calls `meet` for all pairs of different operands whose extents overlap along every line, the
 /// lower index first; gives up with `None` where too many elements lie above each other on each.
@@ -102,9 +100,9 @@ impl Sweep {
         let mut lines = Line::all(&swept);
         lines.sort_by(|a, b| a.crowding.total_cmp(&b.crowding));
         let first = lines.remove(0);
-        let across = |line: &Line| dot(&line.direction, &first.direction).abs() < PARALLEL;
+        let across = |line: &Line| line.gauge.is_across(&first.gauge);
         let second = lines.remove(lines.iter().position(across).unwrap_or(0));
-        let plane = [first.direction, second.direction];
+        let plane = [first.gauge, second.gauge];
         let size = largest_coordinate(&swept);
         let low = |i: &usize| first.spans[*i][0];
         let mut order: Vec<usize> = (0..numbers.len()).collect();

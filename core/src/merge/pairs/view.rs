@@ -1,0 +1,176 @@
+//! Slopes at which elements are seen from a corner that many of them share.
+//!
+//! A fan of triangles overlaps in every box and in every projection. Seen from its apex each triangle
+//! is a stroke, and the strokes follow each other around it.
+
+use rustc_hash::FxHashMap;
+
+use super::line::{dot, frame, unit, Span, SLACK};
+use super::rim::largest_coordinate;
+use super::Swept;
+use crate::arith::convert::as_double;
+
+/// An operand's elements are a fan if one in so many has the apex.
+const FAN: usize = 4;
+
+/// A point is ahead if it is farther than this share of the largest coordinate.
+const AHEAD: f64 = 1e-6;
+
+/// A point is ahead if its slope is at most this.
+const STEEP: f64 = 16.0;
+
+/// What slopes of points ahead are off: coordinates and depths are off by less than `SLACK` of the
+/// largest coordinate.
+pub const OFF: f64 = (1.0 + STEEP) * SLACK / AHEAD;
+
+/// A point to look from, a direction to look in, and one in which slopes are measured.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    eye: [f64; 3],
+    ahead: [f64; 3],
+    across: [f64; 3],
+    /// The largest coordinate.
+    size: f64,
+}
+
+/// The views from the apexes of the first operand's elements and of the others'.
+///
+/// From an apex that elements of two operands share inside the cell no slope tells these apart: there
+/// is none.
+pub fn views(elements: &[&Swept]) -> Vec<View> {
+    let own = elements.first().map_or(0, |e| e.operand);
+    let (first, others): (Vec<&Swept>, Vec<&Swept>) =
+        elements.iter().partition(|e| e.operand == own);
+    let apexes = [&first, &others].into_iter().filter_map(|e| apex(e));
+    let mut eyes: Vec<[f64; 3]> = apexes.collect();
+    eyes.dedup_by_key(|eye| bits(eye));
+    let size = largest_coordinate(elements);
+    let from = |eye: &[f64; 3]| {
+        let ahead = middle(elements, eye)?;
+        let [_, u, v] = frame(&ahead);
+        let view = |across: [f64; 3]| View {
+            eye: *eye,
+            ahead,
+            across,
+            size,
+        };
+        Some([view(unit(&u)?), view(unit(&v)?)])
+    };
+    let alone = eyes.iter().filter(|eye| !is_shared(elements, eye));
+    alone.filter_map(from).flatten().collect()
+}
+
+/// The corner that most elements have, if these are a fan.
+fn apex(elements: &[&Swept]) -> Option<[f64; 3]> {
+    let mut counts: FxHashMap<[u64; 3], usize> = FxHashMap::default();
+    for corner in elements.iter().filter_map(|e| e.corners.as_ref()).flatten() {
+        *counts.entry(bits(corner)).or_default() += 1;
+    }
+    let (most, count) = counts
+        .into_iter()
+        .max_by_key(|(bits, count)| (*count, *bits))?;
+    (count * FAN >= elements.len()).then(|| most.map(f64::from_bits))
+}
+
+/// What is the same for equal places: coordinates were whole numbers, so that zero has one sign.
+fn bits(place: &[f64; 3]) -> [u64; 3] {
+    place.map(f64::to_bits)
+}
+
+/// Whether elements of several operands have a corner in common inside the cell.
+pub fn share_corner(elements: &[Swept]) -> bool {
+    let mut owners: FxHashMap<[u64; 3], usize> = FxHashMap::default();
+    elements.iter().any(|e| {
+        let mut within = e.corners.iter().flatten().filter(|p| e.is_at(p));
+        within.any(|p| *owners.entry(bits(p)).or_insert(e.operand) != e.operand)
+    })
+}
+
+/// Whether elements of several operands have this corner in common inside the cell.
+fn is_shared(elements: &[&Swept], place: &[f64; 3]) -> bool {
+    let touches = |e: &&&Swept| e.is_at(place) && e.has(place);
+    let mut operands = elements.iter().filter(touches).map(|e| e.operand);
+    let first = operands.next();
+    operands.any(|operand| Some(operand) != first)
+}
+
+impl Swept {
+    /// Whether a place lies in the element's box inside the cell.
+    fn is_at(&self, place: &[f64; 3]) -> bool {
+        let within = |i: usize| as_double(self.low[i])..=as_double(self.high[i]);
+        (0..3).all(|i| within(i).contains(&place[i]))
+    }
+
+    /// Whether a place is one of the corners.
+    fn has(&self, place: &[f64; 3]) -> bool {
+        let corners = self.corners.iter().flatten();
+        corners.map(bits).any(|corner| corner == bits(place))
+    }
+}
+
+/// The middle of the directions in which an apex's triangles lie.
+fn middle(elements: &[&Swept], eye: &[f64; 3]) -> Option<[f64; 3]> {
+    let mut sum = [0.0f64; 3];
+    let around = elements.iter().filter(|e| e.has(eye));
+    for p in around.filter_map(|e| e.corners.as_ref()).flatten() {
+        if let Some(toward) = unit(&less(p, eye)) {
+            (0..3).for_each(|i| sum[i] += toward[i]);
+        }
+    }
+    unit(&sum)
+}
+
+fn less(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
+    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
+}
+
+impl View {
+    /// Whether two views show slopes from one point.
+    pub fn shares_eye(&self, other: &Self) -> bool {
+        bits(&self.eye) == bits(&other.eye)
+    }
+
+    /// The slopes of a triangle's corners; those of one at the eye are another corner's. `None` if
+    /// not all others are ahead.
+    pub fn places(&self, corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
+        let at_eye = |p: &[f64; 3]| bits(p) == bits(&self.eye);
+        let seen = corners.iter().find(|p| !at_eye(p))?;
+        let mut places = [0.0; 3];
+        for (place, corner) in places.iter_mut().zip(corners) {
+            *place = self.slope(if at_eye(corner) { seen } else { corner })?;
+        }
+        Some(places)
+    }
+
+    /// The slope of a point that is ahead.
+    fn slope(&self, p: &[f64; 3]) -> Option<f64> {
+        let toward = less(p, &self.eye);
+        let depth = dot(&toward, &self.ahead);
+        let slope = dot(&toward, &self.across) / depth;
+        (depth > AHEAD * self.size && slope.abs() < STEEP).then_some(slope)
+    }
+
+    /// From the least to the greatest slope of each element, widened by what these are off; all
+    /// slopes for those that are not ahead. `None` if none is.
+    ///
+    /// A slope is a quotient of linear functions. So on a triangle ahead it is greatest in a corner;
+    /// on one with the eye as a corner it is the same along each line from there.
+    pub fn spans(&self, elements: &[&Swept]) -> Option<Vec<Span>> {
+        let span = |e: &&Swept| {
+            let places = self.places(e.corners.as_ref()?)?;
+            let least = places.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            Some([least - OFF, most + OFF])
+        };
+        let spans: Vec<Option<Span>> = elements.iter().map(span).collect();
+        let known = || spans.iter().flatten();
+        let least = known().map(|s| s[0]).reduce(f64::min)?;
+        let most = known().map(|s| s[1]).reduce(f64::max)?;
+        Some(
+            spans
+                .into_iter()
+                .map(|s| s.unwrap_or([least, most]))
+                .collect(),
+        )
+    }
+}
