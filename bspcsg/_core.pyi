@@ -223,9 +223,8 @@ class StabArrays(TypedDict):
 class CasterArrays(TypedDict):
     low: _Floats
     high: _Floats
-    axis: _Indices
-    minus: _Indices
-    plus: _Indices
+    parent: _Indices
+    deferred: npt.NDArray[np.bool_]
     offsets: _Indices
     facets: _Indices
 
@@ -236,6 +235,7 @@ class RayScene:
     @property
     def pitch(self) -> int: ...
     def complete(self, threads: int = 0) -> None: ...
+    def refitted(self, corners: _Floats) -> RayScene: ...
     def nodes(self) -> CasterArrays: ...
     def first(
         self, origins: _Floats, directions: _Floats, threads: int = 0

@@ -1,7 +1,8 @@
-"""Times first hits beside trimesh's ray engines: the same rays, one thread, answers compared.
+"""Times rays beside trimesh's engines: the same rays, one thread, answers compared.
 
 Needs the packages embreex and rtree for the engines of those names; one that is missing is left
-out. Rates are of rays in processor time; the first pass of bspcsg includes what its tree grows.
+out. Rates are of rays in processor time; the first pass of bspcsg includes what its boxes divide.
+Then trees that grow with use: what a ray costs at first and later, under three distributions.
 """
 
 import argparse
@@ -63,22 +64,112 @@ def seconds(call: Callable[[], Any]) -> tuple[float, Any]:
     return time.process_time() - began, result
 
 
-def engines(mesh: Arrays) -> dict[str, Callable[[Any, Any], Any]]:
-    """Return the first-hit functions of trimesh's engines that are installed."""
+def engines(mesh: Arrays) -> dict[str, Any]:
+    """Return those of trimesh's engines that are installed."""
     surface = trimesh.Trimesh(*mesh, process=False)
-    found: dict[str, Callable[[Any, Any], Any]] = {}
+    found: dict[str, Any] = {}
     engine: Any
     if importlib.util.find_spec("embreex"):
         from trimesh.ray import ray_pyembree
 
         engine = ray_pyembree.RayMeshIntersector
-        found["embreex"] = engine(surface).intersects_first
+        found["embreex"] = engine(surface)
     if importlib.util.find_spec("rtree"):
         from trimesh.ray import ray_triangle
 
         engine = ray_triangle.RayMeshIntersector
-        found["rtree"] = engine(surface).intersects_first
+        found["rtree"] = engine(surface)
     return found
+
+
+def embree(mesh: Arrays) -> Any:
+    """Return embree's engine with its tree made, or None."""
+    engine = engines(mesh).get("embreex")
+    if engine is not None:
+        engine.intersects_first(np.array([[0.0, 0, 3]]), np.array([[0.0, 0, -1]]))
+    return engine
+
+
+def build(mesh: Arrays) -> dict[str, float]:
+    """Return how long all boxes take, those of a mesh that has moved, and embree's tree."""
+    took, caster = seconds(lambda: bsp.RayCaster(mesh, deferred=False))
+    moved = (mesh[0] * [1, 1, 1.01], mesh[1])
+    times = {"bspcsg": took, "bspcsg, refitted": seconds(lambda: caster.refitted(moved))[0]}
+    times["embreex"] = seconds(lambda: embree(mesh))[0]
+    return {name: round(1000 * time, 1) for name, time in times.items()}
+
+
+def other_questions(mesh: Arrays, case: Case) -> list[dict[str, Any]]:
+    """Time whether rays hit at all, and all of their hits, beside embree."""
+    engine = embree(mesh)
+    if engine is None:
+        return []
+    caster = bsp.RayCaster(mesh, deferred=False)
+    rays = (case.origins, case.directions)
+    pairs: dict[str, tuple[Callable[[], Any], Callable[[], Any]]] = {
+        "occluded": (
+            lambda: caster.occluded(rays[0], directions=rays[1], threads=1).sum(),
+            lambda: engine.intersects_any(*rays).sum(),
+        ),
+        "all hits": (
+            lambda: len(caster.all_hits(*rays, threads=1).hits),
+            lambda: len(engine.intersects_id(*rays, multiple_hits=True)[0]),
+        ),
+    }
+    rows = []
+    for question, calls in pairs.items():
+        (mine, found), (theirs, other) = (seconds(call) for call in calls)
+        rates = [round(len(rays[0]) / took) for took in (mine, theirs)]
+        rows.append(
+            {
+                "case": case.name,
+                "question": question,
+                "bspcsg_rays_per_s": rates[0],
+                "embreex_rays_per_s": rates[1],
+                "bspcsg_is_times_faster": round(theirs / mine, 3),
+                "found": [int(found), int(other)],
+            }
+        )
+    return rows
+
+
+def distributions(count: int) -> dict[str, Arrays]:
+    """Return rays from all around: at all of it, at one place, at one that moves."""
+    rng = np.random.default_rng(2)
+    origins = rng.normal(size=(count, 3))
+    origins *= 2 / np.linalg.norm(origins, axis=1, keepdims=True)
+    small = rng.normal(size=(count, 3)) * 0.05
+    angle = np.linspace(0, np.pi, count)
+    around = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    near = np.array([1.0, 0, 0]) + small
+    return {
+        "uniform": (origins, rng.uniform(-0.6, 0.6, (count, 3)) - origins),
+        "skewed": (3 * near, -near),
+        "moving": (3 * around + small, -around),
+    }
+
+
+def growing(mesh: Arrays, count: int) -> list[dict[str, Any]]:
+    """Return what rays cost an adaptive tree: the first, the first tenth, the last tenth."""
+    engine = embree(mesh)
+    rows = []
+    for name, (origins, directions) in distributions(count).items():
+        tree = bsp.AdaptiveTree(mesh)
+        tenth = count // 10
+        parts = {"first": slice(0, 1), "tenth": slice(1, tenth), "last tenth": slice(-tenth, None)}
+        for part, some in parts.items():
+            if part == "last tenth":
+                tree.test_ray(origins[tenth:-tenth], directions[tenth:-tenth])
+            took, tests = seconds(partial(tree.test_ray, origins[some], directions[some]))
+            row: dict[str, Any] = {"distribution": name, "rays": part}
+            row["nodes"] = round(float(tests.nodes.mean()), 1)
+            row["tests"] = round(float(tests.tests.mean()), 1)
+            row["us_per_ray"] = round(1e6 * took / len(tests.nodes), 1)
+            if engine is not None:
+                cast = partial(engine.intersects_first, origins[some], directions[some])
+                row["embreex_us_per_ray"] = round(1e6 * seconds(cast)[0] / len(tests.nodes), 1)
+            rows.append(row)
+    return rows
 
 
 def compare(mesh: Arrays, case: Case) -> list[dict[str, Any]]:
@@ -91,7 +182,8 @@ def compare(mesh: Arrays, case: Case) -> list[dict[str, Any]]:
     mine = count / again
     rows = [_row(case, "bspcsg, first pass", count / first, mine, hits, hits.facet)]
     rows.append(_row(case, "bspcsg", mine, mine, hits, hits.facet))
-    for name, cast in engines(mesh).items():
+    for name, engine in engines(mesh).items():
+        cast = engine.intersects_first
         some = slice(None, None, max(count // RTREE_RAYS, 1) if name == "rtree" else 1)
         few = (case.origins[some], case.directions[some])
         cast(few[0][:10], few[1][:10])
@@ -132,8 +224,16 @@ def main() -> int:
             case_name, engine, rate, ratio, *counts = row.values()
             figures = f"{rate:12,}{ratio:9.2f}{counts[0]:8d}{counts[1]:8d}{counts[2]:7d}"
             print(f"{case_name:22}{engine:20}{figures}", flush=True)
+    others = [
+        row for case in (camera(width), scattered(count)) for row in other_questions(mesh, case)
+    ]
+    grown = growing(mesh, 500 if options.quick else 5000)
+    times = build(mesh)
+    for row in (*others, *grown, {"built, ms": times}):
+        print(row)
     if options.record:
-        print(keep("bench_rays", {"triangles": len(mesh[1]), "cases": rows}))
+        kept = {"triangles": len(mesh[1]), "cases": rows, "questions": others}
+        print(keep("bench_rays", kept | {"adaptive": grown, "build_ms": times}))
     return 0
 
 

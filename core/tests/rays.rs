@@ -5,7 +5,7 @@ use bspcsg::arith::bounds::COORDINATE_BITS;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::query::ray::facet::meet;
 use bspcsg::query::ray::filter::{Filter, Probe};
-use bspcsg::query::ray::first::{Query, Reach};
+use bspcsg::query::ray::first::{blocked, firsts, Query, Reach};
 use bspcsg::query::ray::{bounds, Ratio, Ray, Scene};
 use num_bigint::BigInt;
 use proptest::prelude::*;
@@ -27,6 +27,10 @@ fn coordinate() -> impl Strategy<Value = i64> {
 
 fn point() -> impl Strategy<Value = [i64; 3]> {
     [coordinate(), coordinate(), coordinate()]
+}
+
+fn point_near(reach: i64) -> impl Strategy<Value = [i64; 3]> {
+    [-reach..=reach, -reach..=reach, -reach..=reach]
 }
 
 fn triangle() -> impl Strategy<Value = [[i64; 3]; 3]> {
@@ -143,6 +147,34 @@ proptest! {
                 prop_assert_eq!(n * &sum * &sign, height * m);
             }
         }
+    }
+
+    /// Rays that go together find what each finds alone, and what testing every facet gives.
+    #[test]
+    fn bundles_do_not_show(
+        shape in prop::collection::vec(point_near(40), 20..120),
+        eye in point_near(200),
+        step in [-3i64..=3, -3i64..=3, -3i64..=3],
+        aim in point_near(60),
+        far in prop_oneof![Just(1i64), Just(1 << 20), Just(1 << 44)],
+    ) {
+        let near = |p: [i64; 3], d: [i64; 3]| [0, 1, 2].map(|k| (p[k] + d[k]) * far);
+        let small = (0i64..).zip(&shape).map(|(i, p)| {
+            [near(*p, [0; 3]), near(*p, [3, i % 3, 1]), near(*p, [1, 2, i % 5])]
+        });
+        let triangles: Vec<[[i64; 3]; 3]> = small.collect();
+        let scene = scene(&triangles);
+        let rays: Vec<Ray<3>> = (0..40i64)
+            .filter_map(|i| Ray::between(eye, &near(aim, step.map(|s| s * i))).ok())
+            .collect();
+        let found = firsts(&scene, &rays, |_, found| found.map(|f| f.facet));
+        for (ray, found) in rays.iter().zip(found) {
+            let met = (0u32..).zip(scene.facets()).filter_map(|(i, f)| Some((meet(ray, f)?.at, i)));
+            prop_assert_eq!(found, met.min().map(|m| m.1));
+        }
+        let blocked = blocked(&scene, &rays, |_| Reach::Target);
+        let alone = rays.iter().map(|ray| Query::new(&scene, ray).occluded(Reach::Target));
+        prop_assert_eq!(&blocked, &alone.collect::<Vec<_>>());
     }
 
     /// The tree changes nothing: first, all and shadow are what testing every facet gives.

@@ -146,8 +146,8 @@ fn a_tree_that_counts_tells_what_it_counts() {
         .map(|e| e.map(|p| p.map(|c| c as f64)))
         .collect();
     let scene = || Scene::new(&corners, Some(Pitch::new(0).expect("a pitch"))).expect("a scene");
-    let mut watched = StabTree::<Dim2, 2>::new(scene(), Growth::Visits(3), None).expect("a tree");
-    let mut silent = StabTree::<Dim2, 2>::new(scene(), Growth::Visits(3), None).expect("a tree");
+    let watched = StabTree::<Dim2, 2>::new(scene(), Growth::Visits(3), None).expect("a tree");
+    let silent = StabTree::<Dim2, 2>::new(scene(), Growth::Visits(3), None).expect("a tree");
     let mut told: Vec<StabEvent> = Vec::new();
     for _ in 0..120 {
         let mut near = || numbers.below(61) - 30;

@@ -126,7 +126,7 @@ def test_a_skewed_distribution_pays_and_answers_stay() -> None:
     assert tree.stats().nodes < len(facets)
 
 
-def test_threads_take_turns() -> None:
+def test_threads_share_a_tree_that_grows() -> None:
     facets = soup(3, 80)
     tree = bsp.AdaptiveTree(facets, threshold=2)
     caster = bsp.RayCaster(facets)
@@ -136,6 +136,27 @@ def test_threads_take_turns() -> None:
     for batch, answer in zip(batches, answers, strict=True):
         assert_same_hits(answer, caster.first_hit(*batch))
     assert tree.stats().rays == 2400
+    nodes = tree.nodes
+    # Every ray visits the root, and a node is visited through the one above it.
+    assert nodes.visits[0] == 2400
+    for node in range(len(nodes)):
+        for child in (nodes.minus[node], nodes.plus[node]):
+            assert child < 0 or nodes.visits[child] <= nodes.visits[node]
+
+
+def test_long_lists_are_searched_and_counted_as_short_ones() -> None:
+    # The same rays at facets alone and among others far off, which make the list a long one.
+    few = soup(3, 40)
+    many = np.concatenate([few + [1e4 * k, 0, 0] for k in range(120)])
+    short, long = (bsp.AdaptiveTree(f, threshold=10**6, pitch=-9) for f in (few, many))
+    origins, directions = rays(3, 300, 3)
+    one, other = short.test_ray(origins, directions), long.test_ray(origins, directions)
+    assert one.hits.facet.tolist() == other.hits.facet.tolist()
+    assert (other.tests < one.tests).all()
+    hits = {int(f): int(h) for f, h in zip(short.nodes.facets, short.nodes.hits, strict=True)}
+    for facet, count in zip(long.nodes.facets, long.nodes.hits, strict=True):
+        if facet < len(few):
+            assert hits[int(facet)] == count
 
 
 def test_scores_by_hand() -> None:

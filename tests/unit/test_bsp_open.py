@@ -127,29 +127,33 @@ def inside(polygon: Any, point: Any) -> bool:
 
 class TestCasters:
     def test_nothing_is_divided_before_the_first_ray(self) -> None:
-        scene = bsp.analysis.disjoint_segments(200)
+        scene = bsp.analysis.disjoint_segments(3000)
         caster = bsp.RayCaster(scene)
-        assert (len(caster.nodes), caster.nodes.axis.tolist()) == (1, [-2])
+        assert (len(caster.nodes), caster.nodes.deferred.tolist()) == (1, [True])
         caster.first_hit([-20, 2.0**23], [1, 0])
-        some = len(caster.nodes)
+        some = caster.nodes
         whole = bsp.RayCaster(scene, deferred=False).nodes
-        assert 1 < some < len(whole)
-        assert not (whole.axis == -2).any()
+        assert 1 < len(some) < len(whole)
+        assert some.deferred.any()
+        assert not whole.deferred.any()
 
-    def test_boxes_divide_and_leaves_list_what_meets_them(self) -> None:
-        scene = bsp.analysis.disjoint_segments(200)
+    def test_boxes_are_around_what_is_in_them(self) -> None:
+        scene = bsp.analysis.disjoint_segments(3000)
         nodes = bsp.RayCaster(scene, deferred=False).nodes
-        for v in np.flatnonzero(nodes.axis >= 0):
-            axis, minus, plus = nodes.axis[v], nodes.minus[v], nodes.plus[v]
-            assert nodes.high[minus][axis] == nodes.low[plus][axis]
-            assert (nodes.low[minus] == nodes.low[v]).all()
-            assert (nodes.high[plus] == nodes.high[v]).all()
-        leaves: Any = np.flatnonzero(nodes.axis == -1)
-        listed = {facet for v in leaves for facet in nodes.held(v).tolist()}
-        assert listed == set(range(200))
-        for facet, middle in enumerate(scene.mean(axis=1)):
-            within = (nodes.low[leaves] <= middle).all(1) & (middle <= nodes.high[leaves]).all(1)
-            assert any(facet in nodes.held(v) for v in leaves[within])
+        below = np.flatnonzero(nodes.parent >= 0)
+        above = nodes.parent[below]
+        assert (above < below).all()
+        assert np.bincount(above).max() <= 8
+        # Boxes are rounded to single precision, outward.
+        slack = 2.0**-20 * np.ptp(scene.reshape(-1, 2), axis=0).max()
+        assert (nodes.low[above] <= nodes.low[below] + slack).all()
+        assert (nodes.high[above] >= nodes.high[below] - slack).all()
+        assert sorted(nodes.facets.tolist()) == list(range(3000))
+        for leaf in np.flatnonzero(np.diff(nodes.offsets)).tolist():
+            corners = scene[nodes.held(leaf)].reshape(-1, 2)
+            assert (nodes.low[leaf] <= corners.min(axis=0)).all()
+            assert (nodes.high[leaf] >= corners.max(axis=0)).all()
+            assert (corners.min(axis=0) - nodes.low[leaf] <= slack).all()
 
 
 class TestSets:

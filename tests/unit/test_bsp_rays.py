@@ -307,3 +307,92 @@ def test_boundaries_without_end_are_refused() -> None:
     for endless in (b.half_space((0, 0, 1)), b.half_space((0, 0, 1)) - b.half_space((0, 0, 1), -1)):
         with pytest.raises(b.UnboundedError):
             bsp.RayCaster(endless)
+
+
+def answer_bytes(caster: bsp.RayCaster, starts: Any, along: Any) -> bytes:
+    hits, lists = caster.first_hit(starts, along), caster.all_hits(starts, along)
+    blocked = caster.occluded(starts, directions=along)
+    columns = (hits.facet, hits.t, hits.weights, hits.normal, lists.hits.t, lists.hits.facet)
+    return b"".join(column.tobytes() for column in (*columns, blocked))
+
+
+@pytest.mark.parametrize("deferred", [True, False])
+def test_a_scene_that_has_moved_answers_as_a_new_one(deferred: bool) -> None:
+    vertices, faces = icosphere(5)
+    rng = np.random.default_rng(7)
+    starts = rng.normal(size=(400, 3)) * 2
+    along = rng.normal(size=(400, 3)) * 0.4 - starts
+    caster = bsp.RayCaster((vertices, faces), deferred=deferred)
+    before = answer_bytes(caster, starts, along)
+    turned = vertices @ np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]]).T + [3.0, -2.0, 9.0]
+    bent = vertices * [1, 1, 2] + 0.3 * np.sin(5 * vertices[:, [1, 2, 0]])
+    scattered = rng.permutation(vertices)
+    for moved in (turned, bent, scattered, vertices):
+        again = caster.refitted((moved, faces))
+        fresh = bsp.RayCaster((moved, faces), pitch=caster.pitch)
+        shift = moved.mean(axis=0)
+        assert answer_bytes(again, starts + shift, along) == answer_bytes(
+            fresh, starts + shift, along
+        )
+        assert again.pitch == caster.pitch
+        assert len(again) == len(caster)
+    assert answer_bytes(caster, starts, along) == before
+    assert again.nodes.parent.tolist() == caster.nodes.parent.tolist()
+
+
+def test_facets_that_lose_their_extent_leave_a_moved_scene() -> None:
+    facets = np.array([[[0, 0], [0, 1]], [[1, 0], [1, 1]], [[2, 2], [2, 2]]], float)
+    caster = bsp.RayCaster(facets)
+    assert caster.first_hit([-1, 0.5], [1, 0]).facet.tolist() == [0]
+    moved = facets.copy()
+    moved[0], moved[2] = 7, [[3, 0], [3, 1]]
+    again = caster.refitted(moved)
+    assert again.all_hits([-1, 0.5], [1, 0]).hits.facet.tolist() == [1, 2]
+    with pytest.raises(b.InvalidMeshError, match="same shape"):
+        caster.refitted(facets[:2])
+    with pytest.raises(b.LimitError):
+        caster.refitted(facets * 1e9)
+
+
+def test_rays_in_any_order_answer_for_themselves() -> None:
+    # Enough of them, and wild enough, to be sorted.
+    vertices, faces = icosphere(4)
+    caster = bsp.RayCaster((vertices, faces))
+    rng = np.random.default_rng(8)
+    starts = rng.normal(size=(3000, 3)) * 3
+    along = vertices[rng.integers(0, len(vertices), 3000)] - starts
+    limits = rng.uniform(0, 2, 3000)
+    hits, lists = caster.first_hit(starts, along), caster.all_hits(starts, along)
+    blocked = caster.occluded(starts, directions=along, max_t=limits)
+    hidden = caster.occluded(starts, starts + along)
+    for i in range(0, 3000, 50):
+        one = slice(i, i + 1)
+        assert caster.first_hit(starts[one], along[one]).facet.tolist() == hits.facet[one].tolist()
+        assert caster.all_hits(starts[one], along[one])[0].t.tolist() == lists[i].t.tolist()
+        alone = caster.occluded(starts[one], directions=along[one], max_t=limits[one])
+        assert alone.tolist() == blocked[one].tolist()
+        assert caster.occluded(starts[one], (starts + along)[one]).tolist() == hidden[one].tolist()
+    bad = along.copy()
+    bad[[700, 1500, 2900]] = 0
+    with pytest.raises(b.InvalidMeshError) as caught:
+        caster.first_hit(starts, bad)
+    assert list(caught.value.where) == [700]
+
+
+def test_scenes_far_away_and_rays_from_afar() -> None:
+    # One step of the lattice at the end of its range, seen from the other end.
+    far = 9.0e15
+    wall = np.array([[[far, -far], [far, 8 - far]], [[far, 8 - far], [far, 20 - far]]])
+    caster = bsp.RayCaster(wall, pitch=0)
+    starts = [[-far, far], [-far, far + 4], [far - 1, 5 - far]]
+    hits = caster.first_hit(starts, [[2 * far, 8 - 2 * far], [9.0, -9.0], [1, 0]])
+    assert hits.facet.tolist() == [0, 0, 0]
+    assert hits.kind.tolist() == [bsp.VERTEX, bsp.INTERIOR, bsp.INTERIOR]
+    flat = np.zeros((100, 3, 3))
+    flat[:, 1, 0] = flat[:, 2, 1] = 1
+    flat[:, :, 0] += np.arange(100)[:, None]
+    ground = bsp.RayCaster(flat)
+    above = np.stack([np.arange(100) + 0.25, np.full(100, 0.25), np.full(100, 3.0)], axis=1)
+    assert ground.first_hit(above, [0, 0, -1]).facet.tolist() == list(range(100))
+    assert ground.first_hit([-1, 0, 0], [1, 0, 0]).facet.tolist() == [0]
+    assert len(ground.all_hits([-1, 0, 0], [1, 0, 0]).hits) == 100

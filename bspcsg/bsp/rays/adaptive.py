@@ -30,7 +30,7 @@ class Tests:
     leaves : (n,) int64
         Leaves among them: the stabbed leaves.
     tests : (n,) int64
-        Facets that the ray was tested against.
+        Facets that the ray was tested against; in long lists those whose boxes it meets.
     """
 
     __test__ = False  # not a test class
@@ -205,9 +205,11 @@ class AdaptiveTree(StabTree):
     the first of the input), the other facets being split exactly, so that what is hit often moves
     to the top. Parts of a split facet inherit its counter.
 
-    Objects can be shared by threads: a call of `test_ray` has the tree for itself, others wait.
-    How the tree grows depends on the order of the rays; answers do not. Pickles and copies keep the
-    tree as it is, with its counters, and go on growing from there.
+    Objects can be shared by threads, whose rays are on their way at the same time; only to count
+    hits and to divide a leaf one waits for the other. How the tree grows depends on the order of
+    the rays; answers do not. In lists of more than 4096 facets those are tested whose boxes a ray
+    meets. Pickles and copies keep the tree as it is, with its counters, and go on growing from
+    there.
 
     Parameters
     ----------

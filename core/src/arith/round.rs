@@ -53,10 +53,36 @@ pub fn ratio_to_f64<const A: usize, const B: usize>(
 }
 
 /// The double nearest to a ratio of positive numbers.
+fn magnitudes_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]) -> f64 {
+    leading_to_f64(num, den).unwrap_or_else(|| all_to_f64(num, den))
+}
+
+/// The double nearest to a ratio of positive numbers, if their leading bits decide it.
+///
+/// A numerator n·(1 + a) of 127 bits over a denominator d·(1 + b) of 64, with 0 ≤ a < 2^-126 and
+/// 0 ≤ b < 2^-63: as n/d is below 2^64, the ratio is more than n/d − 2 and at most n/d + 2^-62, and
+/// the quotient is rounded like all numbers from [`UNSURE`] below it to as many above, unless the
+/// middle between two doubles is among them.
+fn leading_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]) -> Option<f64> {
+    const UNSURE: u64 = 4;
+    let (num_bits, den_bits) = (bit_length(num).cast_signed(), bit_length(den).cast_signed());
+    let divisor = limb_at(den, den_bits - 64);
+    let head = u128::from(limb_at(num, num_bits - 63)) << 64;
+    let quotient =
+        low_limb((head | u128::from(limb_at(num, num_bits - 127))) / u128::from(divisor));
+    let exponent = num_bits - den_bits - 63;
+    // Bits below the last one kept.
+    let spare = 64 - f64::MANTISSA_DIGITS - quotient.leading_zeros();
+    let rest = quotient & ((1 << spare) - 1);
+    let sure = rest.abs_diff(1 << (spare - 1)) > UNSURE;
+    (sure && exponent > LEAST_NORMAL_EXPONENT).then(|| scaled_to_f64(quotient, true, exponent))
+}
+
+/// The double nearest to a ratio of positive numbers.
 ///
 /// One step of long division is enough. With the denominator shifted to fill its `B` limbs
 /// and the numerator shifted to `64 * B + 63` bits, the quotient has 63 or 64 bits.
-fn magnitudes_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]) -> f64 {
+fn all_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]) -> f64 {
     let (num_bits, den_bits) = (bit_length(num).cast_signed(), bit_length(den).cast_signed());
     let den_start = den_bits - 64 * as_number(B).cast_signed();
     let divisor: [u64; B] =

@@ -26,6 +26,12 @@ pub struct Pitch(i8);
 /// Powers of ten that a double holds exactly.
 const EXACT_POWERS: i8 = 22;
 
+/// These powers.
+const POWERS_OF_TEN: [f64; EXACT_POWERS as usize + 1] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+];
+
 impl Pitch {
     /// 10^-9 units: CAD numbers are decimals of at most nine places.
     pub const DEFAULT: Self = Self(-9);
@@ -168,7 +174,7 @@ impl Pitch {
 pub const LIMIT: f64 = (1u64 << COORDINATE_BITS) as f64;
 
 fn power_of_ten(exponent: i8) -> f64 {
-    10f64.powi(i32::from(exponent))
+    POWERS_OF_TEN[usize::from(exponent.unsigned_abs())]
 }
 
 /// Rounds the exact product x·power to an integer; |x·power| < 2^53.

@@ -1,7 +1,5 @@
 //! The class `RayTree`: a tree of supporting hyperplanes that rays grow.
 
-use std::sync::{Mutex, PoisonError};
-
 use num_bigint::BigInt;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -47,10 +45,10 @@ macro_rules! with_tree {
 /// Nodes, leaves and tests of each ray, one row after the other.
 type Counts<'py> = Bound<'py, PyArray1<i64>>;
 
-/// A tree that rays grow; calls take turns. See `_core.pyi`.
+/// A tree that rays grow, those of several calls at the same time. See `_core.pyi`.
 #[pyclass(frozen, module = "bspcsg._core")]
 pub struct RayTree {
-    tree: Mutex<Stabbed>,
+    tree: Stabbed,
     calls: InUse,
 }
 
@@ -94,7 +92,7 @@ impl RayTree {
                 Err(Error::new(ErrorKind::Shape, text))
             }
         })?;
-        let (tree, calls) = (Mutex::new(tree), InUse::default());
+        let calls = InUse::default();
         Ok(Self { tree, calls })
     }
 
@@ -116,8 +114,7 @@ impl RayTree {
         let _call = self.calls.enter(py)?;
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
         let (columns, counts) = run(py, 0, origins.len() * WEIGHT, || {
-            let mut tree = self.tree.lock().unwrap_or_else(PoisonError::into_inner);
-            with_tree!(&mut *tree, tree => {
+            with_tree!(&self.tree, tree => {
                 let (hits, traces) = test_rays(tree, origins, heads)?;
                 Ok((Columns::of_first(&hits), counts(&traces)))
             })
@@ -136,8 +133,7 @@ impl RayTree {
         let _call = self.calls.enter(py)?;
         let (origin, head) = (origin.as_slice()?, direction.as_slice()?);
         let (columns, counts, events) = run(py, 0, WEIGHT, || {
-            let mut tree = self.tree.lock().unwrap_or_else(PoisonError::into_inner);
-            with_tree!(&mut *tree, tree => {
+            with_tree!(&self.tree, tree => {
                 let mut events: Vec<StabEvent> = Vec::new();
                 let (hits, traces) = test_rays_watched(tree, origin, head, &mut events)?;
                 Ok((Columns::of_first(&hits), counts(&traces), events))
@@ -188,18 +184,14 @@ impl RayTree {
 }
 
 impl RayTree {
-    /// Looks at the tree with the GIL released, which the thread that holds the tree may need.
+    /// Looks at the tree with the GIL released, which a thread that changes the tree may need.
     fn read<T: Send>(
         &self,
         py: Python<'_>,
         look: impl FnOnce(&Stabbed) -> T + Send,
     ) -> PyResult<T> {
         let _call = self.calls.enter(py)?;
-        run(py, 0, 0, || {
-            Ok(look(
-                &self.tree.lock().unwrap_or_else(PoisonError::into_inner),
-            ))
-        })
+        run(py, 0, 0, || Ok(look(&self.tree)))
     }
 }
 

@@ -12,7 +12,7 @@ use crate::merge::rule::Rule;
 use crate::mesh::grid::Pitch;
 use crate::query::ray::answer::{Hit, Kind};
 use crate::query::ray::batch::{Inside, Rays};
-use crate::query::ray::node::Known;
+use crate::query::ray::view::{views, View};
 use crate::query::ray::Scene;
 
 /// Casting a ray costs about as much as a hundred elements of other work.
@@ -116,33 +116,24 @@ fn known_nodes<'py, const D: usize>(
     py: Python<'py>,
     scene: &Scene<D>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let known = run(py, 0, 0, || Ok(scene.root().known(*scene.cell())))?;
+    let known = run(py, 0, 0, || Ok(views(scene)))?;
     let dict = PyDict::new(py);
-    let steps = |of: fn(&Known<D>) -> [f64; D]| {
+    let steps = |of: fn(&View<D>) -> [f64; D]| {
         let step = scene.pitch().coordinate(1);
         PyArray1::from_vec(py, known.iter().flat_map(of).map(|k| k * step).collect())
     };
     dict.set_item("low", steps(|node| node.cell.low))?;
     dict.set_item("high", steps(|node| node.cell.high))?;
-    let axis = |node: &Known<D>| match (node.cut, &node.facets) {
-        (Some((axis, _)), _) => i64::from(axis),
-        (None, Some(_)) => -1,
-        (None, None) => -2,
-    };
+    let parent = |node: &View<D>| node.parent.map_or(-1, i64::from);
     dict.set_item(
-        "axis",
-        PyArray1::from_vec(py, known.iter().map(axis).collect()),
+        "parent",
+        PyArray1::from_vec(py, known.iter().map(parent).collect()),
     )?;
-    for (side, name) in ["minus", "plus"].into_iter().enumerate() {
-        let child = |node: &Known<D>| node.children[side].map_or(-1, i64::from);
-        dict.set_item(
-            name,
-            PyArray1::from_vec(py, known.iter().map(child).collect()),
-        )?;
-    }
+    let deferred = known.iter().map(|node| node.deferred).collect();
+    dict.set_item("deferred", PyArray1::<bool>::from_vec(py, deferred))?;
     let (mut offsets, mut facets) = (vec![0i64], Vec::new());
     for node in &known {
-        let list = node.facets.iter().flatten();
+        let list = node.facets.iter();
         facets.extend(list.map(|facet| i64::from(scene.number(*facet))));
         offsets.push(facets.len() as i64);
     }
@@ -179,7 +170,7 @@ impl RayScene {
         with_scene!(&self.facets, scene => scene.facets().len())
     }
 
-    /// Divides all deferred leaves.
+    /// Makes all that is deferred.
     #[pyo3(signature = (threads=0))]
     fn complete(&self, py: Python<'_>, threads: usize) -> PyResult<()> {
         self.run(py, threads, SMALL, || {
@@ -188,8 +179,22 @@ impl RayScene {
         })
     }
 
-    /// The nodes that rays have reached, in preorder: boxes, axis (−1 for a leaf, −2 for what is
-    /// deferred), place of the cut, children, and the facets of leaves.
+    /// The scene after its facets have moved, its tree made to fit; there must be as many of them.
+    fn refitted(&self, py: Python<'_>, corners: PyReadonlyArray1<'_, f64>) -> PyResult<Self> {
+        let flat = corners.as_slice()?;
+        let facets = self.run(py, 0, flat.len(), || {
+            Ok(match &self.facets {
+                Facets::Points(scene) => Facets::Points(scene.refitted(&facets(flat)?)?),
+                Facets::Segments(scene) => Facets::Segments(scene.refitted(&facets(flat)?)?),
+                Facets::Triangles(scene) => Facets::Triangles(scene.refitted(&facets(flat)?)?),
+            })
+        })?;
+        let calls = InUse::default();
+        Ok(Self { facets, calls })
+    }
+
+    /// The nodes that rays have reached, in preorder: boxes, the node above, whether one is
+    /// deferred, and the facets of leaves.
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let _call = self.calls.enter(py)?;
         with_scene!(&self.facets, scene => known_nodes(py, scene))

@@ -41,7 +41,7 @@ pub fn hit<const D: usize>(scene: &Scene<D>, ray: &Ray<D>, found: &Found<D>) -> 
         t: scene.parameter(&found.meeting.at, ray.exponent()),
         kind: kind(exact),
         weights,
-        point: scene.position(found.facet, &weights),
+        point: scene.position(&found.corners, &weights),
     }
 }
 

@@ -4,17 +4,21 @@ use rayon::prelude::*;
 
 use super::answer::{hit, Hit};
 use super::crossings::{stretches, Stretch};
-use super::first::{Query, Reach};
+use super::first::{alls, blocked, firsts, Found, Reach};
 use super::line::Ray;
+use super::order::sorted;
 use super::ratio::Ratio;
 use super::scene::Scene;
 use crate::error::{Error, ErrorKind, Result};
-use crate::interrupt::{carried, poll};
+use crate::interrupt::{carried, spend};
 use crate::merge::rule::Rule;
 use crate::mesh::tasks::in_pool;
 
-/// Rays that one thread takes at a time.
-const CHUNK: usize = 512;
+/// Rays that are in the works at a time: some ten kB.
+const CHUNK: usize = 64;
+
+/// Chunks that one thread takes at least.
+const CHUNKS: usize = 8;
 
 /// A stretch inside, in doubles: parameters, and the facets' places in the input.
 #[derive(Clone, Copy, Debug)]
@@ -35,42 +39,46 @@ pub struct Rays<'a> {
 }
 
 impl Rays<'_> {
+    /// What `answer` says to the rays of these numbers; `ray` makes one of a snapped origin and a
+    /// head, and `along` its direction as far as that decides who goes alike.
     fn map<const D: usize, T: Send>(
         &self,
         scene: &Scene<D>,
-        answer: impl Fn(usize, [i64; D], [f64; D]) -> Result<T> + Sync,
+        along: impl Fn([f64; D], [f64; D]) -> [f64; D],
+        ray: impl Fn([i64; D], [f64; D]) -> Result<Ray<D>> + Sync,
+        answer: impl Fn(&[u32], &[Ray<D>]) -> Vec<T> + Sync,
     ) -> Result<Vec<T>> {
         if self.origins.len() != self.heads.len() || !self.origins.len().is_multiple_of(D) {
             let text = format!("origins and directions must both have shape (n, {D})");
             return Err(Error::new(ErrorKind::Shape, text));
         }
-        let one = carried(|i: usize| {
-            poll();
-            let origin = scene.snap(&point(self.origins, i))?;
-            answer(i, origin, point(self.heads, i))
-        });
         let count = self.origins.len() / D;
-        let answers: Vec<Result<T>> = if in_pool() {
-            let rays = (0..count).into_par_iter();
-            rays.with_min_len(CHUNK).map(one).collect()
-        } else {
-            (0..count).map(one).collect()
+        let made = |i: u32| {
+            let origin = scene.snap(&point(self.origins, i as usize))?;
+            ray(origin, point(self.heads, i as usize))
         };
-        // The first error in the order of the rays, whatever the threads did.
-        let numbered = answers.into_iter().enumerate();
-        numbered
-            .map(|(i, a)| a.map_err(|e| at_ray(&e, i)))
-            .collect()
+        let given: Vec<u32> = (0..count as u32).collect();
+        let rough = |i: usize| {
+            let (origin, head) = (point(self.origins, i), point(self.heads, i));
+            (origin.map(|c| scene.pitch().steps(c)), along(origin, head))
+        };
+        let Some(order) = sorted(count, scene.frame(), rough) else {
+            return in_order(&given, &made, &answer);
+        };
+        match in_order(&order, &made, &answer) {
+            Ok(answers) => Ok(restored(&order, answers)),
+            // Another may come first in the order of the rays.
+            Err(_) => in_order(&given, &made, &answer),
+        }
     }
 
     fn cast<const D: usize, T: Send>(
         &self,
         scene: &Scene<D>,
-        answer: impl Fn(&Ray<D>) -> T + Sync,
+        answer: impl Fn(&[u32], &[Ray<D>]) -> Vec<T> + Sync,
     ) -> Result<Vec<T>> {
-        self.map(scene, |_, origin, direction| {
-            Ok(answer(&Ray::new(origin, &direction)?))
-        })
+        let ray = |origin, direction: [f64; D]| Ray::new(origin, &direction);
+        self.map(scene, |_, direction| direction, ray, answer)
     }
 
     /// The first hit of each ray.
@@ -78,9 +86,8 @@ impl Rays<'_> {
     /// # Errors
     /// `Shape`; `NonFinite`, `TooLarge` and `BadNormal` with the ray's number; `Cancelled`.
     pub fn first<const D: usize>(&self, scene: &Scene<D>) -> Result<Vec<Option<Hit<D>>>> {
-        self.cast(scene, |ray| {
-            let found = Query::new(scene, ray).first()?;
-            Some(hit(scene, ray, &found))
+        self.cast(scene, |_, rays| {
+            firsts(scene, rays, |ray, found| Some(hit(scene, ray, &found?)))
         })
     }
 
@@ -89,12 +96,15 @@ impl Rays<'_> {
     /// # Errors
     /// As for `first`.
     pub fn all<const D: usize>(&self, scene: &Scene<D>, merge: bool) -> Result<Vec<Vec<Hit<D>>>> {
-        self.cast(scene, |ray| {
-            let mut found = Query::new(scene, ray).all();
+        let rounded = |(ray, mut found): (&Ray<D>, Vec<Found<D>>)| {
             if merge {
                 found.dedup_by(|next, kept| next.meeting.at == kept.meeting.at);
             }
             found.iter().map(|f| hit(scene, ray, f)).collect()
+        };
+        self.cast(scene, |_, rays| {
+            let found = rays.iter().zip(alls(scene, rays));
+            found.map(rounded).collect()
         })
     }
 
@@ -111,7 +121,7 @@ impl Rays<'_> {
     ) -> Result<Vec<Vec<Inside>>> {
         scene.require_closed()?;
         let number = |f: Option<u32>| f.map_or(-1, |f| i64::from(scene.number(f)));
-        self.cast(scene, |ray| {
+        let of_ray = |ray: &Ray<D>| {
             let found = stretches(scene, ray, rule, outside).into_iter();
             let t = |at: &Ratio| scene.parameter(at, ray.exponent());
             let rounded = |s: Stretch| Inside {
@@ -119,7 +129,8 @@ impl Rays<'_> {
                 facets: [s.entry, s.end.map(|end| end.1)].map(number),
             };
             found.map(rounded).collect()
-        })
+        };
+        self.cast(scene, |_, rays| rays.iter().map(of_ray).collect())
     }
 
     /// Whether something lies strictly between each origin and its target; both are snapped.
@@ -127,10 +138,12 @@ impl Rays<'_> {
     /// # Errors
     /// As for `first`; `BadNormal` where origin and target are one lattice point.
     pub fn hidden<const D: usize>(&self, scene: &Scene<D>) -> Result<Vec<bool>> {
-        self.map(scene, |_, origin, target| {
-            let ray = Ray::between(origin, &scene.snap(&target)?)?;
-            Ok(Query::new(scene, &ray).occluded(Reach::Target))
-        })
+        self.map(
+            scene,
+            |origin, target| std::array::from_fn(|k| target[k] - origin[k]),
+            |origin, target| Ray::between(origin, &scene.snap(&target)?),
+            |_, rays| blocked(scene, rays, |_| Reach::Target),
+        )
     }
 
     /// Whether something lies on each ray at a parameter strictly between 0 and its limit.
@@ -142,11 +155,49 @@ impl Rays<'_> {
             let text = "there must be one limit for each ray";
             return Err(Error::new(ErrorKind::Shape, text));
         }
-        self.map(scene, |i, origin, direction| {
-            let ray = Ray::new(origin, &direction)?;
-            Ok(Query::new(scene, &ray).occluded(Reach::Parameter(limits[i])))
+        self.cast(scene, |numbers, rays| {
+            blocked(scene, rays, |i| {
+                Reach::Parameter(limits[numbers[i] as usize])
+            })
         })
     }
+}
+
+/// The answers to rays in an order, and the first error in it, whatever the threads do.
+fn in_order<const D: usize, T: Send>(
+    order: &[u32],
+    made: &(impl Fn(u32) -> Result<Ray<D>> + Sync),
+    answer: &(impl Fn(&[u32], &[Ray<D>]) -> Vec<T> + Sync),
+) -> Result<Vec<T>> {
+    let chunk = carried(|numbers: &[u32]| {
+        spend(CHUNK);
+        let mut rays = Vec::with_capacity(CHUNK);
+        for i in numbers {
+            rays.push(made(*i).map_err(|e| at_ray(&e, *i as usize))?);
+        }
+        Ok(answer(numbers, &rays))
+    });
+    let answers: Vec<Result<Vec<T>>> = if in_pool() {
+        let chunks = order.par_chunks(CHUNK).with_min_len(CHUNKS);
+        chunks.map(chunk).collect()
+    } else {
+        order.chunks(CHUNK).map(chunk).collect()
+    };
+    let mut all = Vec::with_capacity(order.len());
+    for answers in answers {
+        all.extend(answers?);
+    }
+    Ok(all)
+}
+
+/// Answers in the order of the input.
+fn restored<T>(order: &[u32], answers: Vec<T>) -> Vec<T> {
+    let mut places: Vec<Option<T>> = Vec::new();
+    places.resize_with(order.len(), || None);
+    for (number, answer) in order.iter().zip(answers) {
+        places[*number as usize] = Some(answer);
+    }
+    places.into_iter().flatten().collect()
 }
 
 fn point<const D: usize>(flat: &[f64], i: usize) -> [f64; D] {

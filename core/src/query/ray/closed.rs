@@ -5,18 +5,21 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grid::Pitch;
 use crate::mesh::import::import;
 
-/// Refuses facets, given with their places in the input, that have a border of their own on the lattice.
+/// Refuses facets, given with what tells their places in the input, that have a border of their own on the lattice.
 ///
 /// Triangles must cancel along the lines of their edges, segments end where others begin, and
 /// points of the line come in pairs.
 ///
 /// # Errors
 /// `NotClosed` with the places in the input of facets at the border.
-pub fn require_closed<const D: usize>(facets: &[Facet<D>], numbers: &[u32]) -> Result<()> {
+pub fn require_closed<const D: usize>(
+    facets: &[Facet<D>],
+    number: impl Fn(u32) -> u32,
+) -> Result<()> {
     match D {
         1 => points(facets),
-        2 => segments(facets, numbers),
-        _ => triangles(facets, numbers),
+        2 => segments(facets, number),
+        _ => triangles(facets, number),
     }
 }
 
@@ -29,7 +32,7 @@ fn points<const D: usize>(facets: &[Facet<D>]) -> Result<()> {
     Err(Error::new(ErrorKind::NotClosed, text))
 }
 
-fn segments<const D: usize>(facets: &[Facet<D>], numbers: &[u32]) -> Result<()> {
+fn segments<const D: usize>(facets: &[Facet<D>], number: impl Fn(u32) -> u32) -> Result<()> {
     let facets = (0..).zip(facets);
     let ends = facets.flat_map(|(facet, corners)| {
         let end = |k: usize, step: i64| (corners[k].map(|c| c as i64), step, facet);
@@ -39,7 +42,7 @@ fn segments<const D: usize>(facets: &[Facet<D>], numbers: &[u32]) -> Result<()> 
     ends.sort_unstable();
     for run in ends.chunk_by(|a, b| a.0 == b.0) {
         if run.iter().map(|end| end.1).sum::<i64>() != 0 {
-            let place = run.iter().map(|end| u64::from(numbers[end.2 as usize]));
+            let place = run.iter().map(|end| u64::from(number(end.2)));
             let text = "the segments do not close: as many must end in each point as begin there";
             return Err(Error::at(ErrorKind::NotClosed, place.collect(), text));
         }
@@ -47,7 +50,7 @@ fn segments<const D: usize>(facets: &[Facet<D>], numbers: &[u32]) -> Result<()> 
     Ok(())
 }
 
-fn triangles<const D: usize>(facets: &[Facet<D>], numbers: &[u32]) -> Result<()> {
+fn triangles<const D: usize>(facets: &[Facet<D>], number: impl Fn(u32) -> u32) -> Result<()> {
     if facets.is_empty() {
         return Ok(());
     }
@@ -58,13 +61,13 @@ fn triangles<const D: usize>(facets: &[Facet<D>], numbers: &[u32]) -> Result<()>
     // Corners are whole steps already.
     let steps = Pitch::new(0)?;
     match import(&vertices, &faces, Some(steps)) {
-        Err(e) if e.kind() == ErrorKind::NotClosed => Err(at_input(numbers, &e)),
+        Err(e) if e.kind() == ErrorKind::NotClosed => Err(at_input(number, &e)),
         other => other.map(|_| ()),
     }
 }
 
-fn at_input(numbers: &[u32], error: &Error) -> Error {
-    let number = |place: &u64| u64::from(numbers[*place as usize]);
+fn at_input(number: impl Fn(u32) -> u32, error: &Error) -> Error {
+    let number = |place: &u64| u64::from(number(*place as u32));
     let places = error.place().iter().map(number).collect();
     Error::at(error.kind(), places, error.message())
 }

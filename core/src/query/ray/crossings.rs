@@ -1,8 +1,7 @@
 //! Where a ray is inside: winding numbers between the crossings of closed surfaces.
 
 use super::facet::cross;
-use super::filter::Probe;
-use super::first::Query;
+use super::first::likely;
 use super::line::Ray;
 use super::ratio::Ratio;
 use super::scene::Scene;
@@ -62,9 +61,9 @@ fn stretch(from: Ratio, entry: Option<u32>, end: Option<(Ratio, u32)>) -> Stretc
 
 /// The crossings at positive parameters by parameter and input; +1 where the ray leaves.
 fn crossings<const D: usize>(scene: &Scene<D>, ray: &Ray<D>) -> Vec<Crossing> {
-    let query = Query::new(scene, ray);
-    let mut facets = query.touched();
-    facets.retain(|f| !matches!(query.probe(*f), Probe::Miss));
+    let facets = likely(scene, std::slice::from_ref(ray))
+        .pop()
+        .unwrap_or_default();
     let crossing = |facet: u32| {
         let (at, step) = cross(ray, &scene.facets()[facet as usize])?;
         (at.signum() > 0).then_some(Crossing { at, facet, step })
@@ -72,7 +71,7 @@ fn crossings<const D: usize>(scene: &Scene<D>, ray: &Ray<D>) -> Vec<Crossing> {
     let mut found: Vec<_> = facets.into_iter().filter_map(crossing).collect();
     found.sort_by(|a, b| {
         let order = a.at.cmp(&b.at);
-        order.then_with(|| scene.order(a.facet, b.facet))
+        order.then_with(|| a.facet.cmp(&b.facet))
     });
     found
 }

@@ -20,6 +20,7 @@
 //!   keeps more than half of its size, so that z is off by less than
 //!   12·doubt·M/|Σ wᵢ| + 24 uM.
 
+use super::block::{Block, LANES};
 use super::line::Ray;
 
 /// The unit roundoff of doubles.
@@ -93,42 +94,95 @@ impl<const D: usize> Filter<D> {
     /// Doubles' answer for one facet.
     #[inline]
     pub fn probe(&self, facet: &[[f64; D]; D]) -> Probe {
-        let sheared = facet.map(|corner| self.sheared(&corner));
+        self.side_by_side(&facet.map(|corner| corner.map(|c| [c])))
+            .probe(self, 0)
+    }
+
+    /// Doubles' answers for the lanes of a block that are not certainly missed.
+    #[inline]
+    pub fn probe_block(&self, block: &Block<D>, mut answer: impl FnMut(usize, Probe)) {
+        let seen: Seen<D, LANES> = self.side_by_side(&block.corners);
+        if seen.missed.iter().all(|missed| *missed) {
+            return;
+        }
+        for lane in 0..block.facets().len() {
+            match seen.probe(self, lane) {
+                Probe::Miss => {}
+                found => answer(lane, found),
+            }
+        }
+    }
+
+    /// What facets look like along the ray; by corner, axis and lane.
+    #[inline]
+    fn side_by_side<const L: usize>(&self, corners: &[[[f64; L]; D]; D]) -> Seen<D, L> {
+        let mut sheared = [[[0.0; L]; D]; D];
+        let along = self.axes[D - 1];
+        for (seen, corner) in sheared.iter_mut().zip(corners) {
+            for l in 0..L {
+                let z = corner[along][l] - self.origin[along];
+                for (i, axis) in self.axes.into_iter().enumerate() {
+                    let across = corner[axis][l] - self.origin[axis];
+                    let last = i + 1 == D;
+                    seen[i][l] = if last { z } else { across - self.shear[i] * z };
+                }
+            }
+        }
         let weights = planar_weights(&sheared);
-        let least = weights.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if least < -self.doubt && most > self.doubt {
+        let (mut least, mut most) = (weights[0], weights[0]);
+        for w in &weights[1..] {
+            for l in 0..L {
+                least[l] = if w[l] < least[l] { w[l] } else { least[l] };
+                most[l] = if w[l] > most[l] { w[l] } else { most[l] };
+            }
+        }
+        let mut missed = [false; L];
+        for l in 0..L {
+            missed[l] = least[l] < -self.doubt && most[l] > self.doubt;
+        }
+        Seen {
+            sheared,
+            weights,
+            least,
+            most,
+            missed,
+        }
+    }
+}
+
+/// Facets seen along a ray: sheared corners, and the weights that they give to the ray.
+struct Seen<const D: usize, const L: usize> {
+    sheared: [[[f64; L]; D]; D],
+    weights: [[f64; L]; D],
+    least: [f64; L],
+    most: [f64; L],
+    missed: [bool; L],
+}
+
+impl<const D: usize, const L: usize> Seen<D, L> {
+    #[inline]
+    fn probe(&self, filter: &Filter<D>, lane: usize) -> Probe {
+        if self.missed[lane] {
             return Probe::Miss;
         }
-        if least <= self.doubt && most >= -self.doubt {
+        if self.least[lane] <= filter.doubt && self.most[lane] >= -filter.doubt {
             return Probe::Doubt;
         }
-        self.depth(&sheared, &weights)
+        self.depth(filter, lane)
     }
 
     #[inline]
-    fn sheared(&self, corner: &[f64; D]) -> [f64; D] {
-        let along = self.axes[D - 1];
-        let z = corner[along] - self.origin[along];
-        std::array::from_fn(|i| {
-            if i + 1 == D {
-                return z;
-            }
-            let axis = self.axes[i];
-            corner[axis] - self.origin[axis] - self.shear[i] * z
-        })
-    }
-
-    #[inline]
-    fn depth(&self, sheared: &[[f64; D]; D], weights: &[f64; D]) -> Probe {
-        let sum: f64 = weights.iter().sum();
+    fn depth(&self, filter: &Filter<D>, lane: usize) -> Probe {
+        let sum: f64 = self.weights.iter().map(|w| w[lane]).sum();
         let size = sum.abs();
-        if size < 8.0 * self.doubt {
+        if size < 8.0 * filter.doubt {
             return Probe::Doubt;
         }
-        let moment: f64 = (0..D).map(|i| weights[i] * sheared[i][D - 1]).sum();
-        let z = moment / sum * self.heading;
-        let error = 12.0 * self.doubt * self.reach / size + 24.0 * ROUNDING * self.reach;
+        let moment: f64 = (0..D)
+            .map(|i| self.weights[i][lane] * self.sheared[i][D - 1][lane])
+            .sum();
+        let z = moment / sum * filter.heading;
+        let error = 12.0 * filter.doubt * filter.reach / size + 24.0 * ROUNDING * filter.reach;
         if z < -error {
             Probe::Miss
         } else if z > error {
@@ -141,14 +195,20 @@ impl<const D: usize> Filter<D> {
 
 /// The weights of corners seen along the ray, up to a common factor.
 #[inline]
-fn planar_weights<const D: usize>(p: &[[f64; D]; D]) -> [f64; D] {
-    std::array::from_fn(|i| match D {
-        1 => 1.0,
-        2 if i == 0 => p[1][0],
-        2 => -p[0][0],
-        _ => {
-            let (a, b) = (&p[(i + 1) % D], &p[(i + 2) % D]);
-            a[0] * b[1] - a[1] * b[0]
+fn planar_weights<const D: usize, const L: usize>(p: &[[[f64; L]; D]; D]) -> [[f64; L]; D] {
+    let mut weights = [[1.0; L]; D];
+    for i in 0..D {
+        for l in 0..L {
+            weights[i][l] = match D {
+                1 => 1.0,
+                2 if i == 0 => p[1][0][l],
+                2 => -p[0][0][l],
+                _ => {
+                    let (a, b) = (&p[(i + 1) % D], &p[(i + 2) % D]);
+                    a[0][l] * b[1][l] - a[1][l] * b[0][l]
+                }
+            };
         }
-    })
+    }
+    weights
 }

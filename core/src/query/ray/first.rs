@@ -2,7 +2,8 @@
 
 use std::cmp::Ordering;
 
-use super::facet::{meet, Meeting};
+use super::block::Block;
+use super::facet::{meet, Facet, Meeting};
 use super::filter::{Depth, Filter, Probe, ROUNDING};
 use super::line::Ray;
 use super::scene::Scene;
@@ -13,18 +14,21 @@ use super::walk::walk;
 pub struct Found<const D: usize> {
     /// The facet's index in the scene.
     pub facet: u32,
+    /// Its corners, in lattice steps.
+    pub corners: Facet<D>,
     /// The first point it has in common with the ray.
     pub meeting: Meeting<D>,
 }
 
 /// The nearest facet so far, its depth in doubles.
 #[derive(Clone, Copy, Debug)]
-pub struct Candidate {
+pub struct Candidate<const D: usize> {
     facet: u32,
+    corners: Facet<D>,
     depth: Depth,
 }
 
-impl Candidate {
+impl<const D: usize> Candidate<D> {
     /// The most that the exact depth can be.
     pub fn high(&self) -> f64 {
         self.depth.high()
@@ -57,66 +61,57 @@ impl<'a, const D: usize> Query<'a, D> {
 
     /// The facet with the first point on the ray; of several there, the first of the input.
     pub fn first(&self) -> Option<Found<D>> {
-        let mut best: Option<Candidate> = None;
-        walk(self.scene, self.ray, f64::INFINITY, |facets| {
-            for facet in facets {
-                self.offer(&mut best, *facet);
-            }
-            best.map_or(f64::INFINITY, |b| b.high())
-        });
-        self.found(&best?)
+        firsts(self.scene, std::slice::from_ref(self.ray), |_, found| found).pop()?
+    }
+
+    /// Keeps the facet of a block that is nearer than the best, if any; the depth of the best.
+    #[inline]
+    pub fn offer_block(&self, best: &mut Option<Candidate<D>>, block: &Block<D>) -> f64 {
+        self.try_block(best, block, |_, _| {});
+        best.map_or(f64::INFINITY, |best| best.high())
     }
 
     /// Tests a facet and keeps it if it is nearer than the best; the depth of its hit, if any.
     #[inline]
-    pub fn offer(&self, best: &mut Option<Candidate>, facet: u32) -> Option<Depth> {
-        let found = self.candidate(facet)?;
+    pub fn offer(&self, best: &mut Option<Candidate<D>>, facet: u32) -> Option<Depth> {
+        let corners = &self.scene.facets()[facet as usize];
+        let found = self.candidate(facet, corners, self.filter.probe(corners))?;
         *best = Some(best.map_or(found, |old| self.nearer(old, found)));
         Some(found.depth)
     }
 
+    /// Tests the facets of a block, keeps the nearest, and tells which are hit, and where.
+    #[inline]
+    pub fn try_block(
+        &self,
+        best: &mut Option<Candidate<D>>,
+        block: &Block<D>,
+        mut hit: impl FnMut(u32, Depth),
+    ) {
+        self.filter.probe_block(block, |lane, probe| {
+            let (facet, corners) = (block.facets()[lane], block.lane(lane));
+            if let Some(found) = self.candidate(facet, &corners, probe) {
+                hit(facet, found.depth);
+                *best = Some(best.map_or(found, |old| self.nearer(old, found)));
+            }
+        });
+    }
+
     /// The exact meeting with the nearest facet.
-    pub fn found(&self, nearest: &Candidate) -> Option<Found<D>> {
-        self.exact(nearest.facet)
+    pub fn found(&self, nearest: &Candidate<D>) -> Option<Found<D>> {
+        exact(self.ray, nearest.facet, &nearest.corners)
     }
 
     /// All facets on the ray in the order of their first points, then of the input.
     pub fn all(&self) -> Vec<Found<D>> {
-        let mut facets = self.touched();
-        facets.retain(|f| !matches!(self.probe(*f), Probe::Miss));
-        let mut found: Vec<_> = facets.into_iter().filter_map(|f| self.exact(f)).collect();
-        found.sort_by(|a, b| {
-            let order = a.meeting.at.cmp(&b.meeting.at);
-            order.then_with(|| self.scene.order(a.facet, b.facet))
-        });
-        found
-    }
-
-    /// The facets of all leaves on the ray, each once.
-    pub fn touched(&self) -> Vec<u32> {
-        let mut facets = Vec::new();
-        walk(self.scene, self.ray, f64::INFINITY, |leaf| {
-            facets.extend_from_slice(leaf);
-            f64::INFINITY
-        });
-        facets.sort_unstable();
-        facets.dedup();
-        facets
+        alls(self.scene, std::slice::from_ref(self.ray))
+            .pop()
+            .unwrap_or_default()
     }
 
     /// Whether a facet has a point strictly between the ray's start and its reach.
     pub fn occluded(&self, reach: Reach) -> bool {
-        let limit = self.limit(reach);
-        let mut blocked = false;
-        walk(self.scene, self.ray, limit.high(), |facets| {
-            blocked = blocked || facets.iter().any(|f| self.blocks(*f, reach, &limit));
-            if blocked {
-                f64::NEG_INFINITY
-            } else {
-                limit.high()
-            }
-        });
-        blocked
+        blocked(self.scene, std::slice::from_ref(self.ray), |_| reach) == [true]
     }
 
     /// What doubles tell of a facet.
@@ -124,32 +119,28 @@ impl<'a, const D: usize> Query<'a, D> {
         self.filter.probe(&self.scene.facets()[facet as usize])
     }
 
-    fn exact(&self, facet: u32) -> Option<Found<D>> {
-        let meeting = self.meeting(facet)?;
-        Some(Found { facet, meeting })
-    }
-
-    fn meeting(&self, facet: u32) -> Option<Meeting<D>> {
-        meet(self.ray, &self.scene.facets()[facet as usize])
-    }
-
     #[inline]
-    fn candidate(&self, facet: u32) -> Option<Candidate> {
-        match self.probe(facet) {
-            Probe::Miss => None,
-            Probe::Hit(depth) => Some(Candidate { facet, depth }),
-            Probe::Doubt => self.exact_candidate(facet),
-        }
+    fn candidate(&self, facet: u32, corners: &Facet<D>, probe: Probe) -> Option<Candidate<D>> {
+        let depth = match probe {
+            Probe::Miss => return None,
+            Probe::Hit(depth) => depth,
+            Probe::Doubt => self.exact_depth(corners)?,
+        };
+        let corners = *corners;
+        Some(Candidate {
+            facet,
+            corners,
+            depth,
+        })
     }
 
     #[cold]
-    fn exact_candidate(&self, facet: u32) -> Option<Candidate> {
-        let depth = depth_of(self.ray, self.meeting(facet)?.at.to_f64());
-        Some(Candidate { facet, depth })
+    fn exact_depth(&self, corners: &Facet<D>) -> Option<Depth> {
+        Some(depth_of(self.ray, meet(self.ray, corners)?.at.to_f64()))
     }
 
     #[inline]
-    fn nearer(&self, old: Candidate, new: Candidate) -> Candidate {
+    fn nearer(&self, old: Candidate<D>, new: Candidate<D>) -> Candidate<D> {
         if new.depth.low() > old.depth.high() || new.facet == old.facet {
             old
         } else if new.depth.high() < old.depth.low() {
@@ -160,13 +151,13 @@ impl<'a, const D: usize> Query<'a, D> {
     }
 
     #[cold]
-    fn exactly_nearer(&self, old: Candidate, new: Candidate) -> Candidate {
-        let order = match (self.meeting(new.facet), self.meeting(old.facet)) {
+    fn exactly_nearer(&self, old: Candidate<D>, new: Candidate<D>) -> Candidate<D> {
+        let order = match (meet(self.ray, &new.corners), meet(self.ray, &old.corners)) {
             (Some(a), Some(b)) => a.at.cmp(&b.at),
             // Candidates do meet the ray.
             _ => Ordering::Equal,
         };
-        if order.then_with(|| self.scene.order(new.facet, old.facet)) == Ordering::Less {
+        if order.then_with(|| new.facet.cmp(&old.facet)) == Ordering::Less {
             new
         } else {
             old
@@ -185,18 +176,18 @@ impl<'a, const D: usize> Query<'a, D> {
         }
     }
 
-    fn blocks(&self, facet: u32, reach: Reach, limit: &Depth) -> bool {
-        match self.probe(facet) {
+    fn blocks(&self, corners: &Facet<D>, probe: Probe, reach: Reach, limit: &Depth) -> bool {
+        match probe {
             Probe::Miss => false,
             Probe::Hit(depth) if depth.high() < limit.low() => true,
             Probe::Hit(depth) if depth.low() > limit.high() => false,
-            _ => self.exactly_blocks(facet, reach),
+            _ => self.exactly_blocks(corners, reach),
         }
     }
 
     #[cold]
-    fn exactly_blocks(&self, facet: u32, reach: Reach) -> bool {
-        let Some(meeting) = self.meeting(facet) else {
+    fn exactly_blocks(&self, corners: &Facet<D>, reach: Reach) -> bool {
+        let Some(meeting) = meet(self.ray, corners) else {
             return false;
         };
         let before = match reach {
@@ -205,6 +196,105 @@ impl<'a, const D: usize> Query<'a, D> {
         };
         before && meeting.until.signum() > 0
     }
+}
+
+/// An answer for each ray from the first facet on it.
+pub fn firsts<const D: usize, T>(
+    scene: &Scene<D>,
+    rays: &[Ray<D>],
+    answer: impl Fn(&Ray<D>, Option<Found<D>>) -> T,
+) -> Vec<T> {
+    let queries = queries(scene, rays);
+    let mut best = vec![None; rays.len()];
+    walk(
+        scene,
+        rays,
+        |_| f64::INFINITY,
+        |ray, block| queries[ray].offer_block(&mut best[ray], block),
+    );
+    let found = |query: &Query<'_, D>, best: Option<Candidate<D>>| query.found(&best?);
+    let nearest = queries.iter().zip(best);
+    nearest
+        .map(|(query, best)| answer(query.ray, found(query, best)))
+        .collect()
+}
+
+/// All facets on each ray in the order of their first points, then of the input.
+pub fn alls<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<Found<D>>> {
+    let met = likely(scene, rays).into_iter();
+    let exact = |(ray, facets): (&Ray<D>, Vec<u32>)| {
+        let corners = |facet: u32| &scene.facets()[facet as usize];
+        let found = facets.into_iter().filter_map(|f| exact(ray, f, corners(f)));
+        let mut found: Vec<Found<D>> = found.collect();
+        found.sort_by(|a, b| {
+            let order = a.meeting.at.cmp(&b.meeting.at);
+            order.then_with(|| a.facet.cmp(&b.facet))
+        });
+        found
+    };
+    rays.iter().zip(met).map(exact).collect()
+}
+
+/// The facets that each ray may meet, as far as doubles tell.
+pub fn likely<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<u32>> {
+    let queries = queries(scene, rays);
+    let mut met = vec![Vec::new(); rays.len()];
+    walk(
+        scene,
+        rays,
+        |_| f64::INFINITY,
+        |ray, block| {
+            queries[ray]
+                .filter
+                .probe_block(block, |lane, _| met[ray].push(block.facets()[lane]));
+            f64::INFINITY
+        },
+    );
+    met
+}
+
+/// Whether a facet has a point strictly between each ray's start and its reach.
+pub fn blocked<const D: usize>(
+    scene: &Scene<D>,
+    rays: &[Ray<D>],
+    reach: impl Fn(usize) -> Reach,
+) -> Vec<bool> {
+    let queries = queries(scene, rays);
+    let limit = |ray: usize| queries[ray].limit(reach(ray));
+    let limits: Vec<Depth> = (0..rays.len()).map(limit).collect();
+    let mut blocked = vec![false; rays.len()];
+    walk(
+        scene,
+        rays,
+        |ray| limits[ray].high(),
+        |ray, block| {
+            let (query, limit, found) = (&queries[ray], &limits[ray], &mut blocked[ray]);
+            query.filter.probe_block(block, |lane, probe| {
+                *found = *found || query.blocks(&block.lane(lane), probe, reach(ray), limit);
+            });
+            if *found {
+                f64::NEG_INFINITY
+            } else {
+                limit.high()
+            }
+        },
+    );
+    blocked
+}
+
+/// The meeting with a facet, if there is one.
+fn exact<const D: usize>(ray: &Ray<D>, facet: u32, corners: &Facet<D>) -> Option<Found<D>> {
+    let meeting = meet(ray, corners)?;
+    let corners = *corners;
+    Some(Found {
+        facet,
+        corners,
+        meeting,
+    })
+}
+
+fn queries<'a, const D: usize>(scene: &'a Scene<D>, rays: &'a [Ray<D>]) -> Vec<Query<'a, D>> {
+    rays.iter().map(|ray| Query::new(scene, ray)).collect()
 }
 
 /// A depth from a ray's parameter, which carries at most four roundings.

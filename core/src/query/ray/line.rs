@@ -26,8 +26,6 @@ pub(in crate::query) struct Near<const D: usize> {
     pub heading: f64,
     /// Each component over the largest one.
     pub shear: [f64; D],
-    /// The magnitude of the largest component over each one; infinite where that is zero.
-    pub inverse: [f64; D],
 }
 
 impl<const D: usize> Ray<D> {
@@ -93,7 +91,6 @@ impl<const D: usize> Near<D> {
             main,
             heading: lead.signum(),
             shear: direction.map(|c| c as f64 / lead),
-            inverse: direction.map(|c| lead.abs() / c as f64),
         }
     }
 }

@@ -3,10 +3,11 @@
 //! A scene holds facets with lattice corners: points on the line, segments in the plane, triangles
 //! in space. A ray starts at a lattice point and has an integer direction; whether and where it
 //! meets a facet is decided exactly, doubles only spare the integers where they are certain. So
-//! the tree over the facets decides how fast an answer comes and never what it is.
+//! the hierarchy over the facets decides how fast an answer comes and never what it is.
 //!
-//! Layers, from the bottom: `bounds` < `ray` < `facet` | `filter` < `scene` | `node` < `closed` |
-//! `walk` < `first` | `crossings` < `answer` < `batch`.
+//! Layers, from the bottom: `bounds` < `line` < `facet` | `block` < `filter` | `cell` < `divide` <
+//! `treelet` < `closed` < `scene` < `bundle` | `order` | `view` < `walk` < `first` < `crossings` <
+//! `answer` < `batch`.
 //!
 //! # Example
 //! ```
@@ -26,18 +27,24 @@
 
 pub mod answer;
 pub mod batch;
+pub mod block;
 pub mod bounds;
+mod bundle;
+pub mod cell;
 pub mod closed;
 pub mod crossings;
+mod divide;
 pub mod facet;
 pub mod filter;
 pub mod first;
-pub mod node;
 pub mod ratio;
 pub mod scene;
+pub mod treelet;
+pub mod view;
 pub mod walk;
 
 mod line;
+mod order;
 
 pub use line::Ray;
 pub use ratio::Ratio;

@@ -1,17 +1,17 @@
 //! The facets that rays are cast at, snapped to a lattice, with their tree.
 
-use std::cmp::Ordering;
 use std::sync::OnceLock;
 
+use super::cell::{Cell, Frame};
 use super::closed::require_closed;
 use super::facet::Facet;
-use super::node::{Cell, Node};
 use super::ratio::Ratio;
+use super::treelet::Deferred;
 use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt::poll;
 use crate::mesh::grid::Pitch;
 
-/// Facets on a lattice, and a tree of axis cuts over them that grows where rays go.
+/// Facets on a lattice, and a hierarchy of boxes over them that grows where rays go.
 ///
 /// Facets without extent (corners on one line, or equal) are left out: they are never hit.
 #[derive(Debug)]
@@ -19,10 +19,13 @@ pub struct Scene<const D: usize> {
     pitch: Pitch,
     /// In lattice steps, which doubles hold exactly.
     facets: Vec<Facet<D>>,
-    /// The place of each facet in the input; ascending.
+    /// The place of each facet in the input, ascending; none if it is the index.
     numbers: Vec<u32>,
     cell: Cell<D>,
-    root: Node<D>,
+    frame: Frame<D>,
+    /// How large facets are on average, in the frame.
+    grain: f64,
+    root: Deferred<D>,
     /// Whether the facets bound, once somebody has asked.
     closed: OnceLock<Result<()>>,
 }
@@ -33,14 +36,41 @@ impl<const D: usize> Scene<D> {
     /// # Errors
     /// `NonFinite` and `TooLarge` with the facet's number.
     pub fn new(facets: &[Facet<D>], pitch: Option<Pitch>) -> Result<Self> {
-        if u32::try_from(facets.len()).is_err() {
-            let text = "a scene holds fewer than 2^32 facets";
-            return Err(Error::new(ErrorKind::TooLarge, text));
-        }
         let pitch = match pitch {
             Some(pitch) => pitch,
             None => suited(facets)?,
         };
+        Self::over(facets, pitch, Deferred::over)
+    }
+
+    /// The scene after its facets have moved, with the same lattice and the same tree, whose boxes
+    /// are made to fit; a new tree if their number is another or others have an extent.
+    ///
+    /// # Errors
+    /// As for [`Self::new`].
+    pub fn refitted(&self, facets: &[Facet<D>]) -> Result<Self> {
+        let moved = Self::over(facets, self.pitch, |kept, frame| {
+            if kept.len() == self.facets.len() {
+                self.root.refitted(kept, frame)
+            } else {
+                Deferred::over(kept, frame)
+            }
+        })?;
+        if moved.numbers == self.numbers {
+            return Ok(moved);
+        }
+        Self::new(facets, Some(self.pitch))
+    }
+
+    fn over(
+        facets: &[Facet<D>],
+        pitch: Pitch,
+        root: impl FnOnce(&[Facet<D>], &Frame<D>) -> Deferred<D>,
+    ) -> Result<Self> {
+        if u32::try_from(facets.len()).is_err() {
+            let text = "a scene holds fewer than 2^32 facets";
+            return Err(Error::new(ErrorKind::TooLarge, text));
+        }
         let mut kept = Vec::with_capacity(facets.len());
         let mut numbers = Vec::with_capacity(facets.len());
         for (number, facet) in facets.iter().enumerate() {
@@ -51,13 +81,20 @@ impl<const D: usize> Scene<D> {
                 numbers.push(number as u32);
             }
         }
+        if kept.len() == facets.len() {
+            numbers.clear();
+        }
         let cell = Cell::around(&kept);
-        let root = Node::deferred(cell, (0..kept.len() as u32).collect());
+        let frame = Frame::of(&cell);
+        let grain = grain(&kept) * frame.scale;
+        let root = root(&kept, &frame);
         Ok(Self {
             pitch,
             facets: kept,
             numbers,
             cell,
+            frame,
+            grain,
             root,
             closed: OnceLock::new(),
         })
@@ -75,7 +112,7 @@ impl<const D: usize> Scene<D> {
 
     /// The place in the input of a facet.
     pub fn number(&self, facet: u32) -> u32 {
-        self.numbers[facet as usize]
+        self.numbers.get(facet as usize).copied().unwrap_or(facet)
     }
 
     /// A box around all facets.
@@ -83,8 +120,18 @@ impl<const D: usize> Scene<D> {
         &self.cell
     }
 
+    /// The frame of the boxes.
+    pub fn frame(&self) -> &Frame<D> {
+        &self.frame
+    }
+
+    /// How large facets are on average, in the frame.
+    pub fn grain(&self) -> f64 {
+        self.grain
+    }
+
     /// The tree's root.
-    pub fn root(&self) -> &Node<D> {
+    pub fn root(&self) -> &Deferred<D> {
         &self.root
     }
 
@@ -97,7 +144,7 @@ impl<const D: usize> Scene<D> {
             return known.clone();
         }
         // Not within `get_or_init`: a thread of the pool that waits there could be asked again.
-        let found = require_closed(&self.facets, &self.numbers);
+        let found = require_closed(&self.facets, |facet| self.number(facet));
         self.closed.get_or_init(|| found).clone()
     }
 
@@ -119,18 +166,15 @@ impl<const D: usize> Scene<D> {
         parameter(self.pitch, at, exponent)
     }
 
-    /// The point with barycentric coordinates in a facet, in model units.
-    pub fn position(&self, facet: u32, weights: &[f64; D]) -> [f64; D] {
-        let corners = &self.facets[facet as usize];
-        std::array::from_fn(|k| {
-            let term = |i: usize| weights[i] * self.pitch.coordinate(corners[i][k] as i64);
-            (0..D).map(term).sum()
-        })
-    }
-
-    /// Order of two facets by their places in the input.
-    pub fn order(&self, a: u32, b: u32) -> Ordering {
-        self.numbers[a as usize].cmp(&self.numbers[b as usize])
+    /// The point with barycentric coordinates among corners in lattice steps, in model units.
+    pub fn position(&self, corners: &Facet<D>, weights: &[f64; D]) -> [f64; D] {
+        let mut point = [0.0; D];
+        for (corner, weight) in corners.iter().zip(weights) {
+            for k in 0..D {
+                point[k] += weight * self.pitch.coordinate(corner[k] as i64);
+            }
+        }
+        point
     }
 }
 
@@ -141,8 +185,9 @@ pub fn parameter(pitch: Pitch, at: &Ratio, exponent: i32) -> f64 {
     steps * power_of_two(half) * power_of_two(exponent - half)
 }
 
+/// 2^`exponent`, of a normal number.
 fn power_of_two(exponent: i32) -> f64 {
-    2f64.powi(exponent)
+    f64::from_bits(((exponent + 1023) as u64) << 52)
 }
 
 /// The lattice that suits the facets' size, as for a mesh.
@@ -189,6 +234,17 @@ fn snap_facet<const D: usize>(pitch: Pitch, facet: &Facet<D>) -> Result<[[i64; D
 fn at_facet(error: &Error, number: usize) -> Error {
     let text = format!("facet {number}: {}", error.message());
     Error::at(error.kind(), vec![number as u64], text)
+}
+
+/// The mean of the largest extents of facets.
+fn grain<const D: usize>(facets: &[Facet<D>]) -> f64 {
+    let extent = |facet: &Facet<D>| {
+        let cell = Cell::around([facet]);
+        (0..D)
+            .map(|k| cell.high[k] - cell.low[k])
+            .fold(0.0, f64::max)
+    };
+    facets.iter().map(extent).sum::<f64>() / facets.len().max(1) as f64
 }
 
 /// Whether the corners do not lie on one flat of two dimensions less.

@@ -1,90 +1,153 @@
-//! From leaf to leaf along a ray, nearest first.
+//! From block to block along rays, nearest first.
 //!
-//! # Source
-//! Havran, Kopal, Bittner, Žára 1997, "Fast robust BSP tree traversal algorithm for ray tracing":
-//! the order of children by the position of the cut in the ray's interval. Its singular cases (a
-//! ray in a cut, a start in a cut, a cut at an interval's end) need no case of their own here:
-//! every depth is taken with its error, and where the error leaves both children possible, both
-//! are visited.
-//!
-//! # Bundles
-//! Rays go one by one. On a sphere of 330 000 triangles a camera ray spends about half of its time
-//! on the way to its leaf, a quarter on tests, a quarter on exact numbers: sharing the way within a
-//! bundle could save no more than that half, less what mixed leaves cost.
+//! A bundle descends as one beam; only at a block each of its rays is asked for itself. The order
+//! of blocks decides how early a walk ends and never what is found.
 
 use smallvec::SmallVec;
 
+use super::block::Block;
+use super::bundle::Bundle;
+use super::cell::Cell;
 use super::filter::ROUNDING;
 use super::line::Ray;
-use super::node::{Cell, Content, Node};
 use super::scene::Scene;
+use super::treelet::{Child, Treelet, WIDTH};
 
-/// Relative error of the depth of a cut: a difference, a quotient of two rounded numbers and a
+/// Relative error of the depth of a plane: a difference, a quotient of two rounded numbers and a
 /// product, rounded.
-const SLACK: f64 = 6.0 * ROUNDING;
+const SLACK: f64 = 8.0 * ROUNDING;
 
-type Open<'a, const D: usize> = (&'a Node<D>, f64, f64);
+/// What is in a lane of a node, and the distance at which the beam enters it.
+#[derive(Clone, Copy)]
+struct Open<'a, const D: usize> {
+    from: f32,
+    node: u32,
+    lane: u32,
+    treelet: &'a Treelet<D>,
+}
 
-/// Visits the leaves that a ray meets, until one lies entirely beyond the limit.
+/// Rays that go together.
+const TOGETHER: usize = 16;
+
+/// How far such rays may stray from each other, in facets.
+const WIDE: f64 = 8.0;
+
+type Stack<'a, const D: usize> = SmallVec<[Open<'a, D>; 64]>;
+
+/// Visits the blocks that rays meet, until all lie beyond their limits.
 ///
-/// `visit` gets the facets of a leaf and returns the depth beyond which nothing matters, in
-/// lattice steps along the ray's main axis.
+/// `depth` is where a ray ends, and `visit` gets the number of a ray and a block and returns where it
+/// ends from now on: the depth beyond which nothing matters, in lattice steps along its main axis.
 pub fn walk<const D: usize>(
     scene: &Scene<D>,
-    ray: &Ray<D>,
-    limit: f64,
-    mut visit: impl FnMut(&[u32]) -> f64,
+    rays: &[Ray<D>],
+    depth: impl Fn(usize) -> f64,
+    mut visit: impl FnMut(usize, &Block<D>) -> f64,
 ) {
-    let mut limit = limit;
-    let mut open: SmallVec<[Open<'_, D>; 64]> = SmallVec::new();
-    open.extend(clip(ray, scene.cell()).map(|(from, to)| (scene.root(), from, to)));
-    while let Some((node, from, to)) = open.pop() {
-        if from > limit {
-            continue;
+    let (frame, width) = (scene.frame(), scene.grain() * WIDE);
+    for (number, rays) in rays.chunks(TOGETHER).enumerate() {
+        let first = number * TOGETHER;
+        if rays.len() > 1 {
+            let depth = |i| depth(first + i);
+            if let Some(mut bundle) = Bundle::<D, TOGETHER>::of(rays, frame, width, depth) {
+                descend(scene, &mut bundle, |i, block| visit(first + i, block));
+                continue;
+            }
         }
-        let leaf = descend(scene, ray, (node, from, to), &mut open);
-        if !leaf.is_empty() {
-            limit = visit(leaf);
+        for (i, ray) in rays.iter().enumerate() {
+            let ray = std::slice::from_ref(ray);
+            let depth = |_| depth(first + i);
+            if let Some(mut alone) = Bundle::<D, 1>::of(ray, frame, width, depth) {
+                descend(scene, &mut alone, |_, block| visit(first + i, block));
+            }
         }
     }
 }
 
-/// The nearest leaf below a node; what lies behind it is put on the stack.
-#[inline]
-fn descend<'a, const D: usize>(
-    scene: &'a Scene<D>,
-    ray: &Ray<D>,
-    (mut node, from, mut to): Open<'a, D>,
-    open: &mut SmallVec<[Open<'a, D>; 64]>,
-) -> &'a [u32] {
-    let near = &ray.near;
-    loop {
-        let (axis, at, children) = match node.content(scene.facets()) {
-            Content::Leaf(facets) => return facets,
-            Content::Cut { axis, at, children } => (usize::from(*axis), *at, children),
-        };
-        let gap = at - near.origin[axis];
-        let inverse = near.inverse[axis];
-        if inverse.is_infinite() {
-            // The ray runs along the cut: on one side of it, or within it.
-            if gap == 0.0 {
-                open.push((&children[1], from, to));
-            }
-            node = &children[usize::from(gap < 0.0)];
+/// One bundle's way.
+fn descend<const D: usize, const N: usize>(
+    scene: &Scene<D>,
+    bundle: &mut Bundle<D, N>,
+    mut visit: impl FnMut(usize, &Block<D>) -> f64,
+) {
+    let mut open: Stack<'_, D> = SmallVec::new();
+    let mut limit = bundle.limit();
+    enter(
+        bundle,
+        scene.root().treelet(scene.facets()),
+        0,
+        limit,
+        &mut open,
+    );
+    while let Some(Open {
+        from,
+        node,
+        lane,
+        treelet,
+    }) = open.pop()
+    {
+        if from > limit {
             continue;
         }
-        let depth = gap * inverse;
-        let slack = depth.abs() * SLACK;
-        let first = usize::from(inverse < 0.0);
-        if depth + slack < from {
-            node = &children[1 - first];
-        } else {
-            if depth - slack <= to {
-                open.push((&children[1 - first], from.max(depth - slack), to));
-                to = to.min(depth + slack);
+        let wide = &treelet.nodes[node as usize];
+        match wide.children[lane as usize] {
+            Child::None => {}
+            Child::Node(below) => enter(bundle, treelet, below, limit, &mut open),
+            Child::Deferred(below) => {
+                let below = treelet.deferred[below as usize].treelet(scene.facets());
+                enter(bundle, below, 0, limit, &mut open);
             }
-            node = &children[first];
+            Child::Block(number) => {
+                let block = &treelet.blocks[number as usize];
+                if N == 1 {
+                    let depth = visit(0, block);
+                    bundle.set_limit(0, depth);
+                } else {
+                    let entering = bundle.entering(wide, lane as usize);
+                    for (ray, enters) in entering.into_iter().enumerate() {
+                        if enters {
+                            let depth = visit(ray, block);
+                            bundle.set_limit(ray, depth);
+                        }
+                    }
+                }
+                limit = bundle.limit();
+            }
         }
+    }
+}
+
+/// Puts what the beam meets in a node on the stack, the nearest on top.
+#[inline]
+fn enter<'a, const D: usize, const N: usize>(
+    bundle: &Bundle<D, N>,
+    treelet: &'a Treelet<D>,
+    node: u32,
+    limit: f32,
+    open: &mut Stack<'a, D>,
+) {
+    let Some(wide) = treelet.nodes.get(node as usize) else {
+        return;
+    };
+    let (from, enters) = bundle.enters(wide, limit);
+    let base = open.len();
+    for lane in 0..WIDTH {
+        if !enters[lane] {
+            continue;
+        }
+        let new = Open {
+            from: from[lane],
+            node,
+            lane: lane as u32,
+            treelet,
+        };
+        open.push(new);
+        let mut at = open.len() - 1;
+        while at > base && open[at - 1].from < new.from {
+            open[at] = open[at - 1];
+            at -= 1;
+        }
+        open[at] = new;
     }
 }
 
@@ -93,7 +156,7 @@ pub fn clip<const D: usize>(ray: &Ray<D>, cell: &Cell<D>) -> Option<(f64, f64)> 
     let (mut from, mut to) = (0.0f64, f64::INFINITY);
     for k in 0..D {
         let gaps = [cell.low[k], cell.high[k]].map(|c| c - ray.near.origin[k]);
-        let inverse = ray.near.inverse[k];
+        let inverse = 1.0 / (ray.near.shear[k] * ray.near.heading);
         if inverse.is_infinite() {
             if gaps[0] > 0.0 || gaps[1] < 0.0 {
                 return None;

@@ -17,7 +17,7 @@ pub type Tested<const D: usize> = (Vec<Option<Hit<D>>>, Vec<Trace>);
 /// # Errors
 /// `Shape`; `NonFinite`, `TooLarge`, `BadNormal` with the ray's number, before any ray is tested.
 pub fn test_rays<S: Cast<D>, const D: usize>(
-    tree: &mut StabTree<S, D>,
+    tree: &StabTree<S, D>,
     origins: &[f64],
     directions: &[f64],
 ) -> Result<Tested<D>> {
@@ -29,7 +29,7 @@ pub fn test_rays<S: Cast<D>, const D: usize>(
 /// # Errors
 /// As for [`test_rays`].
 pub fn test_rays_watched<S: Cast<D>, const D: usize>(
-    tree: &mut StabTree<S, D>,
+    tree: &StabTree<S, D>,
     origins: &[f64],
     directions: &[f64],
     watcher: &mut impl Watcher<StabEvent>,

@@ -48,6 +48,25 @@ impl<const D: usize> Cut<D> {
         (self.normal, self.offset)
     }
 
+    /// The side on which all corners of a facet are, clear of the hyperplane; 0 where doubles do not
+    /// tell, or where there is none.
+    #[inline]
+    pub fn side(&self, facet: &[[f64; D]; D]) -> i32 {
+        let mut sides = [false; 2];
+        for corner in facet {
+            let (mut value, mut size) = (self.near_offset, self.near_offset.abs());
+            for (c, normal) in corner.iter().zip(&self.near) {
+                value += c * normal;
+                size += (c * normal).abs();
+            }
+            if value.abs() <= size * FILTER {
+                return 0;
+            }
+            sides[usize::from(value > 0.0)] = true;
+        }
+        i32::from(sides[1]) - i32::from(sides[0])
+    }
+
     /// Where a ray crosses.
     #[inline]
     pub fn stab(&self, ray: &Ray<D>) -> Stab {

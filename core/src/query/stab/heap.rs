@@ -7,8 +7,8 @@ pub struct Entry<F> {
     pub facet: u32,
     /// How often a ray has hit the facet in this leaf; parts inherit the count of the whole.
     pub hits: u64,
-    /// The part of the facet in the leaf's region.
-    pub fragment: F,
+    /// The part of the facet in the leaf's region; none for the whole facet.
+    pub fragment: Option<Box<F>>,
 }
 
 impl<F> Entry<F> {
@@ -53,6 +53,14 @@ impl<F> Heap<F> {
         &self.entries
     }
 
+    /// The place of a facet, which is likely to be `guess`.
+    pub fn place(&self, facet: u32, guess: usize) -> Option<usize> {
+        if self.entries.get(guess).is_some_and(|e| e.facet == facet) {
+            return Some(guess);
+        }
+        self.entries.iter().position(|entry| entry.facet == facet)
+    }
+
     /// Adds a fragment.
     pub fn push(&mut self, entry: Entry<F>) {
         self.entries.push(entry);
@@ -89,7 +97,7 @@ mod tests {
     fn heap(hits: &[u64]) -> Heap<()> {
         let mut heap = Heap::default();
         for (facet, hits) in hits.iter().enumerate() {
-            let (facet, hits, fragment) = (facet as u32, *hits, ());
+            let (facet, hits, fragment) = (facet as u32, *hits, None);
             heap.push(Entry {
                 facet,
                 hits,

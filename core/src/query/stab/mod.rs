@@ -15,7 +15,7 @@
 //! let walls = [[[5.0, -9.0], [5.0, 9.0]], [[7.0, -9.0], [7.0, 9.0]]];
 //! let scene = Scene::new(&walls, Some(Pitch::new(0)?))?;
 //! // A leaf is divided after more than one visit.
-//! let mut tree = StabTree::<Dim2, 2>::new(scene, Growth::Visits(1), None)?;
+//! let tree = StabTree::<Dim2, 2>::new(scene, Growth::Visits(1), None)?;
 //! let ray = Ray::new([0; 2], &[1.0, 0.0])?;
 //! for _ in 0..3 {
 //!     tree.test_ray(&ray);

@@ -1,5 +1,8 @@
 //! The nodes of a tree that counts.
 
+use std::sync::atomic::AtomicU64;
+use std::sync::OnceLock;
+
 use super::cast::Cast;
 use super::cut::Cut;
 use super::heap::Heap;
@@ -13,11 +16,22 @@ pub enum Growth {
     Never,
 }
 
+/// The nodes of a tree.
+#[derive(Debug)]
+pub(super) struct Nodes<S: Cast<D>, const D: usize> {
+    pub(super) all: Vec<Node<S, D>>,
+    /// Leaves divided so far.
+    pub(super) subdivisions: u64,
+}
+
 #[derive(Debug)]
 pub(super) struct Node<S: Cast<D>, const D: usize> {
-    pub(super) visits: u64,
+    /// T(v), counted by all rays that are on their way.
+    pub(super) visits: AtomicU64,
     pub(super) depth: u32,
     pub(super) content: Content<S, D>,
+    /// The facets of a long list in ascending order, each with its place when this was made.
+    places: OnceLock<Vec<(u32, u32)>>,
 }
 
 #[derive(Debug)]
@@ -38,11 +52,28 @@ pub(super) struct Inner<const D: usize> {
 impl<S: Cast<D>, const D: usize> Node<S, D> {
     /// A preliminary leaf that nobody has visited.
     pub(super) fn leaf(list: Heap<S::Fragment>, depth: u32) -> Self {
-        let (visits, content) = (0, Content::Leaf(list));
         Self {
-            visits,
+            visits: AtomicU64::new(0),
             depth,
-            content,
+            content: Content::Leaf(list),
+            places: OnceLock::new(),
         }
+    }
+
+    /// The place of a facet in the list of this leaf, if it is there.
+    pub(super) fn place(&self, list: &Heap<S::Fragment>, facet: u32) -> Option<usize> {
+        let places = self.places.get_or_init(|| {
+            let facets = list.entries().iter().map(|entry| entry.facet);
+            let mut places: Vec<(u32, u32)> = facets.zip(0..).collect();
+            places.sort_unstable();
+            places
+        });
+        let at = places.binary_search_by_key(&facet, |known| known.0).ok()?;
+        list.place(facet, places[at].1 as usize)
+    }
+
+    /// Forgets the places in a list that is divided.
+    pub(super) fn forget_places(&mut self) {
+        self.places = OnceLock::new();
     }
 }

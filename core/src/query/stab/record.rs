@@ -1,5 +1,7 @@
 //! What a tree has become, in numbers: with its facets it can be grown again.
 
+use std::sync::atomic::Ordering;
+
 use serde::{Deserialize, Serialize};
 
 use super::cast::Cast;
@@ -41,13 +43,14 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
             }
             Content::Inner(inner) => ContentRecord::Cut(inner.coplanar.clone(), inner.children[0]),
         };
-        let nodes = self.nodes.iter().map(|node| NodeRecord {
-            visits: node.visits,
+        let nodes = self.nodes();
+        let records = nodes.all.iter().map(|node| NodeRecord {
+            visits: node.visits.load(Ordering::Relaxed),
             content: content(&node.content),
         });
         Record {
-            rays: self.rays,
-            nodes: nodes.collect(),
+            rays: self.rays.load(Ordering::Relaxed),
+            nodes: records.collect(),
         }
     }
 
@@ -56,7 +59,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
     /// # Errors
     /// `BadSnapshot` if the record is not one of a tree over these facets; as for `new`.
     pub fn regrown(scene: Scene<D>, growth: Growth, record: &Record) -> Result<Self> {
-        let mut tree = Self::new(scene, growth, None)?;
+        let tree = Self::new(scene, growth, None)?;
         tree.follow(record).ok_or_else(|| {
             let text = "the stored tree is not one over these facets";
             Error::new(ErrorKind::BadSnapshot, text)
@@ -64,21 +67,22 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         Ok(tree)
     }
 
-    fn follow(&mut self, record: &Record) -> Option<()> {
+    fn follow(&self, record: &Record) -> Option<()> {
+        let mut nodes = self.nodes_mut();
         for (at, facets, child) in record.cuts() {
-            if child as usize != self.nodes.len() {
+            if child as usize != nodes.all.len() {
                 return None;
             }
-            self.divide_by(at, *facets.first()?)?;
+            nodes.divide_by(self.scene(), at, *facets.first()?)?;
         }
-        if self.nodes.len() != record.nodes.len() {
+        if nodes.all.len() != record.nodes.len() {
             return None;
         }
-        for (node, stored) in self.nodes.iter_mut().zip(&record.nodes) {
-            node.visits = stored.visits;
+        for (node, stored) in nodes.all.iter_mut().zip(&record.nodes) {
+            node.visits.store(stored.visits, Ordering::Relaxed);
             restore(&mut node.content, &stored.content)?;
         }
-        self.rays = record.rays;
+        self.rays.store(record.rays, Ordering::Relaxed);
         Some(())
     }
 }

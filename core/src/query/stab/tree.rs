@@ -6,17 +6,19 @@
 //! lists decides how long an answer takes, never what it is: facets are tested whole, and whatever
 //! may be nearer than the best is visited.
 
-use smallvec::SmallVec;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use super::cast::Cast;
 use super::cut::Cut;
 use super::heap::{Entry, Heap};
-use super::node::{Content, Growth, Inner, Node};
+use super::node::{Content, Growth, Inner, Node, Nodes};
 use super::trace::{StabEvent, Trace};
-use super::walk::Walk;
+use super::walk::{Wake, Walk};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::Split;
 use crate::interrupt::poll;
+use crate::query::ray::facet::Facet;
 use crate::query::ray::first::{Found, Query};
 use crate::query::ray::walk::clip;
 use crate::query::ray::{Ray, Scene};
@@ -26,10 +28,10 @@ use crate::tree::trace::Watcher;
 #[derive(Debug)]
 pub struct StabTree<S: Cast<D>, const D: usize> {
     scene: Scene<D>,
-    pub(super) nodes: Vec<Node<S, D>>,
+    /// Rays read them on their way, at the same time, and change them afterwards.
+    nodes: RwLock<Nodes<S, D>>,
     growth: Growth,
-    subdivisions: u64,
-    pub(super) rays: u64,
+    pub(super) rays: AtomicU64,
 }
 
 /// The size and the past of a tree.
@@ -58,22 +60,30 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
     /// `TooLarge` for facets beyond the reach of the space.
     pub fn new(scene: Scene<D>, growth: Growth, hits: Option<&[u64]>) -> Result<Self> {
         let mut list = Heap::default();
-        for (facet, corners) in scene.facets().iter().enumerate() {
+        for (facet, corners) in (0..).zip(scene.facets()) {
             poll();
-            let facet = facet as u32;
+            let beyond = |c: &f64| c.abs() > S::REACH as f64;
+            if corners.iter().flatten().any(beyond) {
+                // Says what is wrong.
+                S::fragment(&lattice(corners))?;
+            }
             let number = scene.number(facet) as usize;
+            let hits = hits.and_then(|h| h.get(number)).copied().unwrap_or(0);
             list.push(Entry {
                 facet,
-                hits: hits.and_then(|h| h.get(number)).copied().unwrap_or(0),
-                fragment: S::fragment(&corners.map(|c| c.map(|x| x as i64)))?,
+                hits,
+                fragment: None,
             });
         }
+        let nodes = Nodes {
+            all: vec![Node::leaf(list, 0)],
+            subdivisions: 0,
+        };
         Ok(Self {
             scene,
-            nodes: vec![Node::leaf(list, 0)],
+            nodes: RwLock::new(nodes),
             growth,
-            subdivisions: 0,
-            rays: 0,
+            rays: AtomicU64::new(0),
         })
     }
 
@@ -82,121 +92,107 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         &self.scene
     }
 
+    /// The nodes as they are.
+    pub(super) fn nodes(&self) -> RwLockReadGuard<'_, Nodes<S, D>> {
+        self.nodes.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The nodes, to be changed.
+    pub(super) fn nodes_mut(&self) -> RwLockWriteGuard<'_, Nodes<S, D>> {
+        self.nodes.write().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Divides leaves until none has more than one fragment.
     ///
     /// # Errors
     /// `TooLarge` if that takes more than `limit` nodes.
     pub fn complete(&mut self, limit: usize) -> Result<()> {
+        let mut nodes = self.nodes_mut();
         let mut next = 0;
-        while next < self.nodes.len() {
+        while next < nodes.all.len() {
             poll();
-            if self.nodes.len() > limit {
+            if nodes.all.len() > limit {
                 let text = format!(
                     "the tree has more than {limit} nodes; allow more, or let rays grow a tree"
                 );
                 return Err(Error::new(ErrorKind::TooLarge, text));
             }
-            self.divide(next);
+            nodes.divide(&self.scene, next);
             next += 1;
         }
         Ok(())
     }
 
     /// The first facet on a ray; counts visits and hits, and divides the leaves that are due.
-    pub fn test_ray(&mut self, ray: &Ray<D>) -> (Option<Found<D>>, Trace) {
+    ///
+    /// Rays of several threads are on their way at the same time.
+    pub fn test_ray(&self, ray: &Ray<D>) -> (Option<Found<D>>, Trace) {
         self.test_ray_watched(ray, &mut ())
     }
 
     /// Tests a ray as [`Self::test_ray`] does, and tells of visits, tests, counts and divisions.
     pub fn test_ray_watched(
-        &mut self,
+        &self,
         ray: &Ray<D>,
         watcher: &mut impl Watcher<StabEvent>,
     ) -> (Option<Found<D>>, Trace) {
-        self.rays += 1;
-        let mut trace = Trace::default();
-        let mut due: SmallVec<[u32; 16]> = SmallVec::new();
-        let found = {
-            let query = Query::new(&self.scene, ray);
-            let mut walk = Walk {
-                scene: &self.scene,
-                query: &query,
-                ray,
-                nodes: &mut self.nodes,
-                growth: self.growth,
-                best: None,
-                trace: &mut trace,
-                due: &mut due,
-                watcher,
-            };
-            walk.run(clip(ray, self.scene.cell()));
-            walk.best.and_then(|best| query.found(&best))
+        self.rays.fetch_add(1, Ordering::Relaxed);
+        let query = Query::new(&self.scene, ray);
+        let nodes = self.nodes();
+        let mut walk = Walk {
+            scene: &self.scene,
+            query: &query,
+            ray,
+            nodes: &nodes.all,
+            growth: self.growth,
+            best: None,
+            met: None,
+            trace: Trace::default(),
+            wake: Wake::default(),
+            watcher,
         };
-        for leaf in due {
-            self.divide(leaf as usize);
-            watcher.tell(|| self.division(leaf));
-        }
-        (found, trace)
+        walk.run(clip(ray, self.scene.cell()));
+        let (best, trace, wake) = (walk.best, walk.trace, walk.wake);
+        drop(nodes);
+        self.learn(&wake, watcher);
+        (best.and_then(|best| query.found(&best)), trace)
     }
 
-    /// Divides a leaf at its most hit fragment; one with a single fragment stays.
-    fn divide(&mut self, at: usize) {
-        let Content::Leaf(list) = &self.nodes[at].content else {
+    /// Counts what a ray has hit, and divides the leaves that are due.
+    fn learn(&self, wake: &Wake, watcher: &mut impl Watcher<StabEvent>) {
+        if wake.hits.is_empty() && wake.due.is_empty() {
             return;
-        };
-        if let [top, _, ..] = list.entries() {
-            self.divide_by(at, top.facet);
         }
-    }
-
-    /// The event of a leaf that was divided last.
-    fn division(&self, node: u32) -> StabEvent {
-        let number = |facet: &u32| self.scene.number(*facet);
-        let list = |child: u32| match &self.nodes[child as usize].content {
-            Content::Leaf(list) => list.entries().iter().map(|e| number(&e.facet)).collect(),
-            Content::Inner(_) => Vec::new(),
-        };
-        let (coplanar, children) = match &self.nodes[node as usize].content {
-            Content::Inner(inner) => (inner.coplanar.iter().map(number).collect(), inner.children),
-            Content::Leaf(_) => (Vec::new(), [node; 2]),
-        };
-        StabEvent::Divide {
-            node,
-            facet: coplanar.first().copied().unwrap_or(u32::MAX),
-            coplanar,
-            children,
-            lists: children.map(list),
+        let mut nodes = self.nodes_mut();
+        // Ascending in each leaf, because a count changes no later place.
+        for hit in &wake.hits {
+            // Another ray may have divided the leaf meanwhile.
+            let Content::Leaf(list) = &mut nodes.all[hit.node as usize].content else {
+                continue;
+            };
+            if let Some(place) = list.place(hit.facet, hit.place) {
+                list.count_hit(place);
+            }
         }
-    }
-
-    /// Divides a leaf at the fragment of this facet; `None` if there is no such leaf or fragment.
-    pub(super) fn divide_by(&mut self, at: usize, facet: u32) -> Option<()> {
-        let (first, depth) = (self.nodes.len() as u32, self.nodes.get(at)?.depth + 1);
-        let Content::Leaf(list) = &mut self.nodes[at].content else {
-            return None;
-        };
-        let place = list.entries().iter().position(|e| e.facet == facet)?;
-        let mut entries = std::mem::take(list).into_entries();
-        let pivot = entries.remove(place);
-        let (inner, halves) = parts::<S, D>(&pivot, entries, &self.scene, first);
-        self.nodes[at].content = Content::Inner(Box::new(inner));
-        self.nodes
-            .extend(halves.map(|half| Node::leaf(half, depth)));
-        self.subdivisions += 1;
-        Some(())
+        for leaf in &wake.due {
+            if nodes.divide(&self.scene, *leaf as usize).is_some() {
+                watcher.tell(|| nodes.division(&self.scene, *leaf));
+            }
+        }
     }
 
     /// Counts what is there.
     pub fn shape(&self) -> Shape {
+        let nodes = self.nodes();
         let mut shape = Shape {
-            nodes: self.nodes.len() as u64,
-            subdivisions: self.subdivisions,
-            rays: self.rays,
+            nodes: nodes.all.len() as u64,
+            subdivisions: nodes.subdivisions,
+            rays: self.rays.load(Ordering::Relaxed),
             ..Shape::default()
         };
-        for node in &self.nodes {
+        for node in &nodes.all {
             shape.depth = shape.depth.max(u64::from(node.depth));
-            shape.visits += node.visits;
+            shape.visits += node.visits.load(Ordering::Relaxed);
             match &node.content {
                 Content::Leaf(list) => {
                     shape.leaves += 1;
@@ -209,30 +205,119 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
     }
 }
 
+impl<S: Cast<D>, const D: usize> Nodes<S, D> {
+    /// Divides a leaf at its most hit fragment; one with a single fragment stays.
+    fn divide(&mut self, scene: &Scene<D>, at: usize) -> Option<()> {
+        let Content::Leaf(list) = &self.all[at].content else {
+            return None;
+        };
+        let [top, _, ..] = list.entries() else {
+            return None;
+        };
+        let facet = top.facet;
+        self.divide_by(scene, at, facet)
+    }
+
+    /// Divides a leaf at the fragment of this facet; `None` if there is no such leaf or fragment.
+    pub(super) fn divide_by(&mut self, scene: &Scene<D>, at: usize, facet: u32) -> Option<()> {
+        let (first, depth) = (self.all.len() as u32, self.all.get(at)?.depth + 1);
+        let Content::Leaf(list) = &mut self.all[at].content else {
+            return None;
+        };
+        let place = list.entries().iter().position(|e| e.facet == facet)?;
+        let pivot = fragment::<S, D>(scene, &list.entries()[place])?;
+        let mut entries = std::mem::take(list).into_entries();
+        entries.remove(place);
+        let (inner, halves) = parts::<S, D>(facet, &pivot, entries, scene, first);
+        self.all[at].content = Content::Inner(Box::new(inner));
+        self.all[at].forget_places();
+        self.all.extend(halves.map(|half| Node::leaf(half, depth)));
+        self.subdivisions += 1;
+        Some(())
+    }
+
+    /// The event of a leaf that was divided last.
+    fn division(&self, scene: &Scene<D>, node: u32) -> StabEvent {
+        let number = |facet: &u32| scene.number(*facet);
+        let list = |child: u32| match &self.all[child as usize].content {
+            Content::Leaf(list) => list.entries().iter().map(|e| number(&e.facet)).collect(),
+            Content::Inner(_) => Vec::new(),
+        };
+        let (coplanar, children) = match &self.all[node as usize].content {
+            Content::Inner(inner) => (inner.coplanar.iter().map(number).collect(), inner.children),
+            Content::Leaf(_) => (Vec::new(), [node; 2]),
+        };
+        StabEvent::Divide {
+            node,
+            facet: coplanar.first().copied().unwrap_or(u32::MAX),
+            coplanar,
+            children,
+            lists: children.map(list),
+        }
+    }
+}
+
+fn lattice<const D: usize>(corners: &Facet<D>) -> [[i64; D]; D] {
+    corners.map(|corner| corner.map(|c| c as i64))
+}
+
+/// The fragment of an entry, made if it is the whole facet; all facets of a scene have one.
+fn fragment<S: Cast<D>, const D: usize>(
+    scene: &Scene<D>,
+    entry: &Entry<S::Fragment>,
+) -> Option<S::Fragment> {
+    match &entry.fragment {
+        Some(part) => Some((**part).clone()),
+        None => S::fragment(&lattice(&scene.facets()[entry.facet as usize])).ok(),
+    }
+}
+
 /// The node that divides a list, and the lists of its children, the first to be at `first`.
 fn parts<S: Cast<D>, const D: usize>(
-    pivot: &Entry<S::Fragment>,
+    facet: u32,
+    pivot: &S::Fragment,
     rest: Vec<Entry<S::Fragment>>,
     scene: &Scene<D>,
     first: u32,
 ) -> (Inner<D>, [Heap<S::Fragment>; 2]) {
-    let plane = S::hyperplane(&pivot.fragment).clone();
-    let mut coplanar = vec![pivot.facet];
-    let corners = scene.facets()[pivot.facet as usize].map(|c| c.map(|x| x as i64));
+    let plane = S::hyperplane(pivot).clone();
+    let cut = Cut::of::<S>(&plane);
+    let mut coplanar = vec![facet];
+    let corners = lattice(&scene.facets()[facet as usize]);
     let [mut below, mut above] = [Heap::default(), Heap::default()];
     let mut touched = [false; 2];
     for entry in rest {
-        let part = |fragment| Entry { fragment, ..entry };
-        match S::split(&entry.fragment, &plane) {
+        // Most facets are clearly on one side.
+        match cut.side(&scene.facets()[entry.facet as usize]) {
+            -1 => {
+                below.push(entry);
+                continue;
+            }
+            1 => {
+                above.push(entry);
+                continue;
+            }
+            _ => {}
+        }
+        let Some(whole) = fragment::<S, D>(scene, &entry) else {
+            continue;
+        };
+        let Entry { facet, hits, .. } = entry;
+        let part = |fragment| Entry {
+            facet,
+            hits,
+            fragment: Some(Box::new(fragment)),
+        };
+        match S::split(&whole, &plane) {
             Split::Minus => {
-                touched[0] |= S::touches(&entry.fragment, &plane, &corners);
+                touched[0] |= S::touches(&whole, &plane, &corners);
                 below.push(entry);
             }
             Split::Plus => {
-                touched[1] |= S::touches(&entry.fragment, &plane, &corners);
+                touched[1] |= S::touches(&whole, &plane, &corners);
                 above.push(entry);
             }
-            Split::Coplanar(_) => coplanar.push(entry.facet),
+            Split::Coplanar(_) => coplanar.push(facet),
             // What crosses the cut is met on both sides of it.
             Split::Both { minus, plus } => {
                 below.push(part(minus));
@@ -240,7 +325,6 @@ fn parts<S: Cast<D>, const D: usize>(
             }
         }
     }
-    let cut = Cut::of::<S>(&plane);
     let children = [first, first + 1];
     let inner = Inner {
         cut,

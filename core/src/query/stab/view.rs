@@ -1,5 +1,7 @@
 //! A tree that counts, laid open: what each node holds.
 
+use std::sync::atomic::Ordering;
+
 use super::cast::Cast;
 use super::node::Content;
 use super::tree::StabTree;
@@ -26,7 +28,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
     pub fn views(&self) -> Vec<View<D>> {
         let number = |facet: u32| self.scene().number(facet);
         let view = |node: &super::node::Node<S, D>| {
-            let (visits, depth) = (node.visits, node.depth);
+            let (visits, depth) = (node.visits.load(Ordering::Relaxed), node.depth);
             match &node.content {
                 Content::Leaf(list) => View {
                     visits,
@@ -47,6 +49,6 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
                 }
             }
         };
-        self.nodes.iter().map(view).collect()
+        self.nodes().all.iter().map(view).collect()
     }
 }

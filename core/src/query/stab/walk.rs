@@ -1,14 +1,18 @@
 //! A ray through a tree that counts: near child, cut, far child.
 
+use std::sync::atomic::Ordering;
+
 use smallvec::SmallVec;
 
 use super::cast::Cast;
 use super::cut::Stab;
-use super::heap::Entry;
+use super::heap::Heap;
 use super::node::{Content, Growth, Inner, Node};
 use super::trace::{StabEvent, Trace};
-use crate::query::ray::filter::Probe;
+use crate::query::ray::block::Block;
+use crate::query::ray::filter::{Depth, Probe};
 use crate::query::ray::first::{Candidate, Query};
+use crate::query::ray::walk::walk;
 use crate::query::ray::{Ray, Scene};
 use crate::tree::trace::Watcher;
 
@@ -29,16 +33,37 @@ enum Far {
 
 type Stack = SmallVec<[Open; 64]>;
 
+/// A leaf's list is tested from end to end, as the notes have it, up to so many facets, which takes
+/// some 40 µs; of a longer one those facets whose boxes the ray meets.
+const LONG: usize = 4096;
+
+/// A facet that was hit within a leaf, and its place in the leaf's list.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hit {
+    pub(super) node: u32,
+    pub(super) facet: u32,
+    pub(super) place: usize,
+}
+
+/// What a ray leaves behind: hits to count, and leaves that are due to be divided.
+#[derive(Debug, Default)]
+pub(super) struct Wake {
+    pub(super) hits: SmallVec<[Hit; 16]>,
+    pub(super) due: SmallVec<[u32; 16]>,
+}
+
 /// One ray on its way.
 pub(super) struct Walk<'a, S: Cast<D>, W, const D: usize> {
     pub(super) scene: &'a Scene<D>,
     pub(super) query: &'a Query<'a, D>,
     pub(super) ray: &'a Ray<D>,
-    pub(super) nodes: &'a mut [Node<S, D>],
+    pub(super) nodes: &'a [Node<S, D>],
     pub(super) growth: Growth,
-    pub(super) best: Option<Candidate>,
-    pub(super) trace: &'a mut Trace,
-    pub(super) due: &'a mut SmallVec<[u32; 16]>,
+    pub(super) best: Option<Candidate<D>>,
+    /// All facets that the ray hits, once a long list has asked for them.
+    pub(super) met: Option<Vec<(u32, Depth)>>,
+    pub(super) trace: Trace,
+    pub(super) wake: Wake,
     pub(super) watcher: &'a mut W,
 }
 
@@ -62,16 +87,16 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
     }
 
     fn visit(&mut self, node: u32, span: (f64, f64), open: &mut Stack) {
-        let visited = &mut self.nodes[node as usize];
-        visited.visits += 1;
+        let visited = &self.nodes[node as usize];
+        let visits = visited.visits.fetch_add(1, Ordering::Relaxed) + 1;
         self.trace.nodes += 1;
         self.watcher.tell(|| StabEvent::Visit {
             node,
-            visits: visited.visits,
+            visits,
             leaf: matches!(visited.content, Content::Leaf(_)),
         });
-        match &self.nodes[node as usize].content {
-            Content::Leaf(_) => self.test_leaf(node, span.1),
+        match &visited.content {
+            Content::Leaf(list) => self.test_leaf(node, list, visits, span.1),
             Content::Inner(inner) => push_parts(inner, self.ray, node, span, open),
         }
     }
@@ -97,41 +122,92 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         !inner.touched[child] && inner.coplanar.len() == 1 && inside(inner.coplanar[0])
     }
 
-    /// Tests all of L(v); hits within the leaf count for its heap.
-    fn test_leaf(&mut self, node: u32, to: f64) {
+    /// Tests what of L(v) the ray may hit; hits within the leaf count for its heap.
+    fn test_leaf(&mut self, node: u32, list: &Heap<S::Fragment>, visits: u64, to: f64) {
         self.trace.leaves += 1;
-        let visits = self.nodes[node as usize].visits;
-        let Content::Leaf(list) = &mut self.nodes[node as usize].content else {
+        let hits = if list.len() > LONG {
+            self.search(node, list, to)
+        } else {
+            self.test_all(node, list, to)
+        };
+        let Growth::Visits(threshold) = self.growth else {
             return;
         };
-        let mut hit: SmallVec<[usize; 16]> = SmallVec::new();
+        for hit in &hits {
+            self.watcher.tell(|| StabEvent::Count {
+                node,
+                facet: self.scene.number(hit.facet),
+                hits: list.entries()[hit.place].hits + 1,
+            });
+        }
+        self.wake.hits.extend(hits);
+        if visits > threshold && list.len() > 1 {
+            self.wake.due.push(node);
+        }
+    }
+
+    /// Tests one facet after the other; the hits within the leaf.
+    fn test_all(&mut self, node: u32, list: &Heap<S::Fragment>, to: f64) -> SmallVec<[Hit; 16]> {
+        let mut hits = SmallVec::new();
         for (place, entry) in list.entries().iter().enumerate() {
+            let facet = entry.facet;
             self.trace.tests += 1;
-            let depth = self.query.offer(&mut self.best, entry.facet);
-            let (facet, met) = (entry.facet, depth.is_some());
-            self.watcher.tell(|| {
-                let facet = self.scene.number(facet);
-                StabEvent::Test { node, facet, met }
+            let depth = self.query.offer(&mut self.best, facet);
+            self.watcher.tell(|| StabEvent::Test {
+                node,
+                facet: self.scene.number(facet),
+                met: depth.is_some(),
             });
             if depth.is_some_and(|d| d.low() <= to) {
-                hit.push(place);
+                hits.push(Hit { node, facet, place });
             }
         }
-        if let Growth::Visits(threshold) = self.growth {
-            // Ascending, because a count changes no later place.
-            for place in hit {
-                let Entry { facet, hits, .. } = list.entries()[place];
-                list.count_hit(place);
-                self.watcher.tell(|| StabEvent::Count {
+        hits
+    }
+
+    /// The hits within the leaf, by their places, of the facets whose boxes the ray meets.
+    fn search(&mut self, node: u32, list: &Heap<S::Fragment>, to: f64) -> SmallVec<[Hit; 16]> {
+        let met = match self.met.take() {
+            Some(met) => met,
+            None => self.test_boxes(node),
+        };
+        let leaf = &self.nodes[node as usize];
+        let within = met.iter().filter(|(_, depth)| depth.low() <= to);
+        let hit = |facet: u32| {
+            let place = leaf.place(list, facet)?;
+            Some(Hit { node, facet, place })
+        };
+        let mut hits: SmallVec<[Hit; 16]> = within.filter_map(|(facet, _)| hit(*facet)).collect();
+        hits.sort_unstable_by_key(|hit| hit.place);
+        self.met = Some(met);
+        hits
+    }
+
+    /// Tests the facets of the scene whose boxes the ray meets; those that it hits.
+    fn test_boxes(&mut self, node: u32) -> Vec<(u32, Depth)> {
+        let mut met = Vec::new();
+        let (query, scene) = (self.query, self.scene);
+        let (best, trace, watcher) = (&mut self.best, &mut self.trace, &mut self.watcher);
+        let visit = |_, block: &Block<D>| {
+            trace.tests += block.facets().len() as u32;
+            let known = met.len();
+            query.try_block(best, block, |facet, depth| met.push((facet, depth)));
+            for facet in block.facets() {
+                watcher.tell(|| StabEvent::Test {
                     node,
-                    facet: self.scene.number(facet),
-                    hits: hits + 1,
+                    facet: scene.number(*facet),
+                    met: met[known..].iter().any(|(hit, _)| hit == facet),
                 });
             }
-            if visits > threshold && list.len() > 1 {
-                self.due.push(node);
-            }
-        }
+            f64::INFINITY
+        };
+        walk(
+            scene,
+            std::slice::from_ref(self.ray),
+            |_| f64::INFINITY,
+            visit,
+        );
+        met
     }
 }
 

@@ -1,0 +1,55 @@
+//! A few facets side by side, so that one ray is tested against all of them at once.
+
+use super::facet::Facet;
+
+/// Facets in a block.
+pub const LANES: usize = 4;
+
+/// Up to [`LANES`] facets, coordinate by coordinate.
+#[derive(Clone, Debug)]
+pub struct Block<const D: usize> {
+    /// By corner, axis and lane, in lattice steps; lanes without a facet repeat the first.
+    pub corners: [[[f64; LANES]; D]; D],
+    facets: [u32; LANES],
+    len: u32,
+}
+
+impl<const D: usize> Block<D> {
+    /// The block of these facets of a scene, at least one and at most [`LANES`].
+    pub fn of(scene: &[Facet<D>], list: impl IntoIterator<Item = u32>) -> Self {
+        let mut facets = [0; LANES];
+        let mut len = 0;
+        for facet in list {
+            facets[len] = facet;
+            len += 1;
+        }
+        let first = facets[0];
+        facets[len..].fill(first);
+        let of = |lane: usize| &scene[facets[lane] as usize];
+        Self {
+            corners: std::array::from_fn(|i| {
+                std::array::from_fn(|k| std::array::from_fn(|lane| of(lane)[i][k]))
+            }),
+            facets,
+            len: len as u32,
+        }
+    }
+
+    /// The facets' indices in the scene.
+    #[inline]
+    pub fn facets(&self) -> &[u32] {
+        &self.facets[..self.len as usize]
+    }
+
+    /// The corners of the facet in a lane.
+    #[inline]
+    pub fn lane(&self, lane: usize) -> Facet<D> {
+        let mut facet = [[0.0; D]; D];
+        for (corner, lanes) in facet.iter_mut().zip(&self.corners) {
+            for (c, lanes) in corner.iter_mut().zip(lanes) {
+                *c = lanes[lane];
+            }
+        }
+        facet
+    }
+}

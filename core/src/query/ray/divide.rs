@@ -1,0 +1,201 @@
+//! Where a list of boxes is divided: by the surface area heuristic.
+//!
+//! # Source
+//! Bins of centres: Wald 2007, "On fast construction of SAH-based bounding volume hierarchies".
+
+use super::block::LANES;
+use super::cell::Span;
+
+/// Candidates for a cut on each axis are the borders of so many bins.
+const BINS: usize = 16;
+
+/// Of a longer list every so many facets are enough to choose a cut.
+const SAMPLE: usize = 4096;
+
+/// Lists of at most so many facets make two blocks: they are divided in the middle.
+const PAIR: usize = 2 * LANES;
+
+/// After so many cuts lists are halved, which ends soon: no scene is meant to get there.
+const LEVELS: u32 = 64;
+
+/// A facet and its box.
+#[derive(Clone, Copy, Debug)]
+pub struct Item {
+    /// The facet's index in the scene.
+    pub facet: u32,
+    /// Its box.
+    pub span: Span,
+}
+
+impl Item {
+    /// A facet with its box.
+    pub fn new(facet: u32, span: Span) -> Self {
+        Self { facet, span }
+    }
+
+    /// Twice the middle of the box on an axis.
+    #[inline]
+    fn centre(&self, axis: usize) -> f32 {
+        self.span.low[axis] + self.span.high[axis]
+    }
+}
+
+/// Sorts a list into two parts, neither empty; the length of the first, and the boxes of both.
+pub fn divide<const D: usize>(items: &mut [Item], whole: &Span, level: u32) -> (usize, [Span; 2]) {
+    let cut = match items.len() {
+        ..=PAIR => None,
+        _ if level >= LEVELS => None,
+        _ => best::<D>(items),
+    };
+    let Some(cut) = cut else {
+        return halve::<D>(items, whole);
+    };
+    let count = partition(items, |item| cut.below(item));
+    if items.len() < 2 * SAMPLE {
+        return (count, cut.spans);
+    }
+    let (below, above) = items.split_at(count);
+    (count, [around(below), around(above)])
+}
+
+fn around(items: &[Item]) -> Span {
+    Span::around(items.iter().map(|item| &item.span))
+}
+
+/// Puts those that are below first; their number.
+fn partition(items: &mut [Item], below: impl Fn(&Item) -> bool) -> usize {
+    let mut count = 0;
+    for at in 0..items.len() {
+        if below(&items[at]) {
+            items.swap(at, count);
+            count += 1;
+        }
+    }
+    count
+}
+
+/// Two halves along the axis on which their boxes are smallest.
+fn halve<const D: usize>(items: &mut [Item], whole: &Span) -> (usize, [Span; 2]) {
+    let middle = items.len().div_ceil(2);
+    let order = |axis: usize| {
+        move |a: &Item, b: &Item| {
+            let centres = a.centre(axis).total_cmp(&b.centre(axis));
+            centres.then_with(|| a.facet.cmp(&b.facet))
+        }
+    };
+    let size = |axis: usize| whole.high[axis] - whole.low[axis];
+    let widest = (0..D).max_by(|a, b| size(*a).total_cmp(&size(*b)));
+    items.select_nth_unstable_by(middle, order(widest.unwrap_or(0)));
+    let (first, rest) = items.split_at(middle);
+    (middle, [around(first), around(rest)])
+}
+
+/// A cut between bins.
+struct Cut {
+    axis: usize,
+    bins: Bins,
+    /// The first bin above.
+    at: usize,
+    spans: [Span; 2],
+    cost: f32,
+}
+
+impl Cut {
+    fn below(&self, item: &Item) -> bool {
+        self.bins.of(item.centre(self.axis)) < self.at
+    }
+}
+
+/// Equal parts of the stretch of centres on an axis.
+#[derive(Clone, Copy)]
+struct Bins {
+    low: f32,
+    factor: f32,
+}
+
+impl Bins {
+    #[inline]
+    fn of(self, centre: f32) -> usize {
+        // Those beyond the ends, as of a sample, go to the last bins.
+        (((centre - self.low) * self.factor) as usize).min(BINS - 1)
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Bin {
+    span: Span,
+    count: u32,
+}
+
+impl Bin {
+    const EMPTY: Self = Self {
+        span: Span::NOTHING,
+        count: 0,
+    };
+
+    #[inline]
+    fn take(&mut self, span: &Span, count: u32) {
+        self.span = self.span.with(span);
+        self.count += count;
+    }
+
+    /// What a ray that meets the box costs: whole blocks are tested.
+    fn cost<const D: usize>(&self) -> f32 {
+        self.span.surface::<D>() * self.count.div_ceil(LANES as u32) as f32
+    }
+}
+
+/// The cut of least cost, as far as a sample tells; none if all its centres are the same.
+fn best<const D: usize>(items: &[Item]) -> Option<Cut> {
+    let sample = || items.iter().step_by((items.len() / SAMPLE).max(1));
+    let (mut low, mut high) = ([f32::INFINITY; D], [f32::NEG_INFINITY; D]);
+    for item in sample() {
+        for k in 0..D {
+            let centre = item.centre(k);
+            low[k] = if centre < low[k] { centre } else { low[k] };
+            high[k] = if centre > high[k] { centre } else { high[k] };
+        }
+    }
+    let bins: [Bins; D] = std::array::from_fn(|k| Bins {
+        low: low[k],
+        factor: BINS as f32 / (high[k] - low[k]).max(f32::MIN_POSITIVE),
+    });
+    let mut full = [[Bin::EMPTY; BINS]; D];
+    for item in sample() {
+        for k in 0..D {
+            full[k][bins[k].of(item.centre(k))].take(&item.span, 1);
+        }
+    }
+    let axes = (0..D).filter(|k| high[*k] > low[*k]);
+    let cuts = axes.filter_map(|axis| cheapest::<D>(axis, bins[axis], &full[axis]));
+    cuts.min_by(|a, b| a.cost.total_cmp(&b.cost))
+}
+
+fn cheapest<const D: usize>(axis: usize, bins: Bins, full: &[Bin; BINS]) -> Option<Cut> {
+    let mut rest = [Bin::EMPTY; BINS];
+    let mut above = Bin::EMPTY;
+    for at in (1..BINS).rev() {
+        above.take(&full[at].span, full[at].count);
+        rest[at] = above;
+    }
+    let mut below = Bin::EMPTY;
+    let mut found: Option<Cut> = None;
+    for at in 1..BINS {
+        below.take(&full[at - 1].span, full[at - 1].count);
+        if below.count == 0 || rest[at].count == 0 {
+            continue;
+        }
+        let cost = below.cost::<D>() + rest[at].cost::<D>();
+        if found.as_ref().is_none_or(|cut| cost < cut.cost) {
+            let spans = [below.span, rest[at].span];
+            found = Some(Cut {
+                axis,
+                bins,
+                at,
+                spans,
+                cost,
+            });
+        }
+    }
+    found
+}

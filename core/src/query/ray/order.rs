@@ -1,0 +1,69 @@
+//! An order in which rays are cast: those that start and go alike one after the other.
+//!
+//! Rays in no order each find their way through memory of its own; sorted they share it, and often
+//! go in bundles. The order never shows: answers stand in the order of the input.
+
+use super::cell::Frame;
+
+/// Bits of the place of entry on each axis.
+const BITS: u32 = 7;
+
+/// Batches of fewer rays are not sorted: all of the tree that they visit stays near.
+const FEW: usize = 256;
+
+/// A batch of which at least one in so many pairs of neighbours go alike is left in its order.
+const ALIKE: usize = 2;
+
+/// The numbers of rays in the order to cast them; `None` for the order of the input.
+///
+/// `ray` gives the origin and the direction, in lattice steps up to rounding.
+pub fn sorted<const D: usize>(
+    count: usize,
+    frame: &Frame<D>,
+    ray: impl Fn(usize) -> ([f64; D], [f64; D]),
+) -> Option<Vec<u32>> {
+    if count < FEW {
+        return None;
+    }
+    let count = u32::try_from(count).ok()?;
+    let key = |i: u32| {
+        let (origin, direction) = ray(i as usize);
+        (key(frame, &origin, &direction), i)
+    };
+    let mut keys: Vec<(u32, u32)> = (0..count).map(key).collect();
+    // Neighbours share all but the last bit on each axis.
+    let alike = |pair: &&[(u32, u32)]| (pair[0].0 ^ pair[1].0) >> D == 0;
+    if keys.windows(2).filter(alike).count() * ALIKE >= keys.len() {
+        return None;
+    }
+    keys.sort_unstable();
+    Some(keys.into_iter().map(|(_, i)| i).collect())
+}
+
+/// The octant of a direction, its main axis, and where the ray enters that axis' stretch, the bits
+/// of all axes interleaved.
+fn key<const D: usize>(frame: &Frame<D>, origin: &[f64; D], direction: &[f64; D]) -> u32 {
+    let size = |k: &usize| direction[*k].abs();
+    let main = (0..D)
+        .max_by(|a, b| size(a).total_cmp(&size(b)))
+        .unwrap_or(0);
+    let lead = direction[main].abs();
+    let at: [f64; D] = std::array::from_fn(|k| frame.inward(k, origin[k]));
+    let skipped = (-1.0 - at[main] * direction[main].signum()).max(0.0);
+    let mut key = 0;
+    let mut cells = [0u32; D];
+    for k in 0..D {
+        let octant = u32::from(direction[k] < 0.0);
+        key |= (octant << 1 | u32::from(k == main)) << (D as u32 * BITS + 2 * k as u32);
+        let entry = at[k] + direction[k] / lead * skipped;
+        // Numbers beyond the range, and what is no number, go to its ends.
+        cells[k] = ((entry + 1.0) * f64::from(1 << (BITS - 1)))
+            .clamp(0.0, f64::from((1 << BITS) - 1)) as u32;
+    }
+    for bit in 0..BITS {
+        for (k, cell) in cells.iter().enumerate() {
+            key |= (cell >> bit & 1) << (bit * D as u32 + k as u32);
+        }
+    }
+    key
+}

@@ -1,0 +1,359 @@
+//! The wide hierarchy of boxes over blocks of facets: small trees that are made when first visited.
+//!
+//! The shape of a tree depends on its list only, never on the order of visits, and answers never
+//! depend on the shape.
+//!
+//! # Source
+//! Two levels, wide boxes over small trees: Cadet, Lécussan 2007, "Coupled use of BSP and BVH trees
+//! in order to exploit ray bundle performance". Wide nodes by taking apart the largest child:
+//! Wald, Benthin, Boulos 2008, "Getting rid of packets". Deferral: Ar, Montag, Tal 2002.
+
+use std::collections::VecDeque;
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+use rayon::prelude::*;
+
+use super::block::{Block, LANES};
+use super::cell::{Frame, Span};
+use super::divide::{divide, Item};
+use super::facet::Facet;
+use crate::interrupt::{poll, spend, Task};
+use crate::mesh::tasks::in_pool;
+
+/// Children of a node.
+pub const WIDTH: usize = 8;
+
+/// A list of at most so many facets becomes one treelet: some 100 µs of work, within 100 kB.
+const TREELET: usize = 1024;
+
+/// A longer list than this is deferred where the tree is only begun.
+const INLINE: usize = LANES * WIDTH;
+
+/// What a node has in a lane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Child {
+    /// Nothing.
+    None,
+    /// A node of the same treelet.
+    Node(u32),
+    /// Facets.
+    Block(u32),
+    /// A treelet of its own.
+    Deferred(u32),
+}
+
+/// Boxes side by side, with what is in them.
+#[derive(Clone, Debug)]
+pub struct Wide<const D: usize> {
+    /// Least coordinates, then largest ones: by axis and lane.
+    pub bounds: [[[f32; WIDTH]; D]; 2],
+    /// What is in each box; all behind the first `None` are `None`.
+    pub children: [Child; WIDTH],
+}
+
+impl<const D: usize> Wide<D> {
+    const EMPTY: Self = Self {
+        bounds: [
+            [[Span::NOTHING.low[0]; WIDTH]; D],
+            [[Span::NOTHING.high[0]; WIDTH]; D],
+        ],
+        children: [Child::None; WIDTH],
+    };
+
+    fn set(&mut self, lane: usize, span: &Span) {
+        for k in 0..D {
+            self.bounds[0][k][lane] = span.low[k];
+            self.bounds[1][k][lane] = span.high[k];
+        }
+    }
+
+    /// The box in a lane.
+    pub fn span(&self, lane: usize) -> Span {
+        let mut span = Span::NOTHING;
+        for k in 0..D {
+            span.low[k] = self.bounds[0][k][lane];
+            span.high[k] = self.bounds[1][k][lane];
+        }
+        span
+    }
+
+    fn whole(&self) -> Span {
+        let spans: [Span; WIDTH] = std::array::from_fn(|lane| self.span(lane));
+        Span::around(&spans)
+    }
+}
+
+/// A small tree: node 0 is its root, and children come after their parents.
+#[derive(Debug, Default)]
+pub struct Treelet<const D: usize> {
+    /// The nodes; none for an empty list.
+    pub nodes: Vec<Wide<D>>,
+    /// The facets.
+    pub blocks: Vec<Block<D>>,
+    /// The treelets below.
+    pub deferred: Vec<Deferred<D>>,
+}
+
+/// A treelet that is made when a ray first visits it.
+#[derive(Debug)]
+pub struct Deferred<const D: usize> {
+    treelet: OnceLock<Treelet<D>>,
+    pending: Mutex<Vec<Item>>,
+}
+
+impl<const D: usize> Deferred<D> {
+    /// The tree over these facets.
+    pub fn over(facets: &[Facet<D>], frame: &Frame<D>) -> Self {
+        let item = |(facet, corners): (u32, _)| Item::new(facet, frame.span(corners));
+        Self::pending((0..).zip(facets).map(item).collect())
+    }
+
+    fn pending(items: Vec<Item>) -> Self {
+        Self {
+            treelet: OnceLock::new(),
+            pending: Mutex::new(items),
+        }
+    }
+
+    /// The treelet; made if nobody has yet.
+    #[inline]
+    pub fn treelet(&self, facets: &[Facet<D>]) -> &Treelet<D> {
+        match self.treelet.get() {
+            Some(treelet) => treelet,
+            None => self.made(facets),
+        }
+    }
+
+    /// The treelet if it has been made.
+    pub fn known(&self) -> Option<&Treelet<D>> {
+        self.treelet.get()
+    }
+
+    #[cold]
+    fn made(&self, facets: &[Facet<D>]) -> &Treelet<D> {
+        // Not below: what is taken out of the slot must arrive.
+        poll();
+        self.treelet.get_or_init(|| {
+            let mut slot = self.pending.lock().unwrap_or_else(PoisonError::into_inner);
+            Making::new(facets, std::mem::take(&mut *slot)).finish()
+        })
+    }
+
+    /// Makes all treelets below, those of one level at the same time.
+    pub fn complete(&self, facets: &[Facet<D>]) {
+        let mut level = vec![self];
+        while !level.is_empty() {
+            let make = |deferred: &&'_ Self| {
+                deferred.treelet(facets);
+            };
+            if in_pool() {
+                let task = Task::current();
+                level.par_iter().for_each(|d| task.run(|| make(d)));
+            } else {
+                level.iter().for_each(make);
+            }
+            let below = level.iter().filter_map(|d| d.known());
+            level = below.flat_map(|t| &t.deferred).collect();
+        }
+    }
+
+    /// The same tree over facets that have moved.
+    #[must_use]
+    pub fn refitted(&self, facets: &[Facet<D>], frame: &Frame<D>) -> Self {
+        let mut order = vec![self];
+        let mut next = 0;
+        while next < order.len() {
+            let below = order[next].known().map_or(&[][..], |t| &t.deferred);
+            order.extend(below);
+            next += 1;
+        }
+        // Those below are at the end in the order of their parents, so the last are the last's.
+        let mut done: VecDeque<(Self, Span)> = VecDeque::new();
+        for deferred in order.into_iter().rev() {
+            poll();
+            let fitted = match deferred.known() {
+                Some(treelet) => {
+                    let start = treelet.deferred.len();
+                    let mut below: Vec<_> = done.drain(..start).collect();
+                    below.reverse();
+                    treelet.fitted(facets, frame, below)
+                }
+                None => deferred.moved(facets, frame),
+            };
+            done.push_back(fitted);
+        }
+        match done.pop_back() {
+            Some((root, _)) => root,
+            None => Self::over(facets, frame),
+        }
+    }
+
+    fn moved(&self, facets: &[Facet<D>], frame: &Frame<D>) -> (Self, Span) {
+        let slot = self.pending.lock().unwrap_or_else(PoisonError::into_inner);
+        let again = |item: &Item| Item::new(item.facet, frame.span(&facets[item.facet as usize]));
+        let items: Vec<Item> = slot.iter().map(again).collect();
+        let span = Span::around(items.iter().map(|item| &item.span));
+        (Self::pending(items), span)
+    }
+}
+
+impl<const D: usize> Treelet<D> {
+    /// This tree over facets that have moved, with the treelets below and their boxes.
+    fn fitted(
+        &self,
+        facets: &[Facet<D>],
+        frame: &Frame<D>,
+        below: Vec<(Deferred<D>, Span)>,
+    ) -> (Deferred<D>, Span) {
+        spend(self.blocks.len());
+        let again = |block: &Block<D>| Block::of(facets, block.facets().iter().copied());
+        let blocks: Vec<Block<D>> = self.blocks.iter().map(again).collect();
+        let around = |block: &Block<D>| {
+            let spans = block
+                .facets()
+                .iter()
+                .map(|f| frame.span(&facets[*f as usize]));
+            spans.fold(Span::NOTHING, |all, span| all.with(&span))
+        };
+        let mut nodes = self.nodes.clone();
+        for at in (0..nodes.len()).rev() {
+            for lane in 0..WIDTH {
+                let span = match nodes[at].children[lane] {
+                    Child::None => break,
+                    Child::Node(node) => nodes[node as usize].whole(),
+                    Child::Block(block) => around(&blocks[block as usize]),
+                    Child::Deferred(number) => below[number as usize].1,
+                };
+                nodes[at].set(lane, &span);
+            }
+        }
+        let whole = nodes.first().map_or(Span::NOTHING, Wide::whole);
+        let treelet = Self {
+            nodes,
+            blocks,
+            deferred: below.into_iter().map(|(deferred, _)| deferred).collect(),
+        };
+        let deferred = Deferred {
+            treelet: OnceLock::from(treelet),
+            pending: Mutex::default(),
+        };
+        (deferred, whole)
+    }
+}
+
+/// What a child has room for, if a node with so many facets is to have full ones below.
+fn room(facets: usize) -> usize {
+    let mut room = LANES;
+    while room * WIDTH < facets {
+        room *= WIDTH;
+    }
+    room
+}
+
+/// A treelet in the making.
+struct Making<'a, const D: usize> {
+    facets: &'a [Facet<D>],
+    items: Vec<Item>,
+    treelet: Treelet<D>,
+    /// Whether only the root is made.
+    begun: bool,
+}
+
+/// A stretch of the items that becomes one child, and how many cuts are above it.
+#[derive(Clone, Copy)]
+struct Part {
+    from: usize,
+    to: usize,
+    level: u32,
+    span: Span,
+}
+
+impl Part {
+    fn len(&self) -> usize {
+        self.to - self.from
+    }
+}
+
+impl<'a, const D: usize> Making<'a, D> {
+    fn new(facets: &'a [Facet<D>], items: Vec<Item>) -> Self {
+        let begun = items.len() > TREELET;
+        Self {
+            facets,
+            items,
+            begun,
+            treelet: Treelet {
+                nodes: Vec::new(),
+                blocks: Vec::new(),
+                deferred: Vec::new(),
+            },
+        }
+    }
+
+    fn finish(mut self) -> Treelet<D> {
+        if self.items.is_empty() {
+            return self.treelet;
+        }
+        let whole = Part {
+            from: 0,
+            to: self.items.len(),
+            level: 0,
+            span: Span::around(self.items.iter().map(|item| &item.span)),
+        };
+        self.treelet.nodes.push(Wide::EMPTY);
+        let mut open = vec![(0, whole)];
+        while let Some((node, part)) = open.pop() {
+            for (lane, part) in self.parts(part).into_iter().enumerate() {
+                let child = self.child(&part);
+                if let Child::Node(below) = child {
+                    self.treelet.nodes.push(Wide::EMPTY);
+                    open.push((below as usize, part));
+                }
+                let node = &mut self.treelet.nodes[node];
+                node.set(lane, &part.span);
+                node.children[lane] = child;
+            }
+        }
+        self.treelet
+    }
+
+    /// Takes a list apart, the part with the largest box first, until the nodes below can be full.
+    fn parts(&mut self, whole: Part) -> Vec<Part> {
+        let room = if self.begun { LANES } else { room(whole.len()) };
+        let mut parts = vec![whole];
+        while parts.len() < WIDTH {
+            let large = parts.iter().enumerate().filter(|(_, p)| p.len() > room);
+            let surface = |part: &Part| part.span.surface::<D>();
+            let largest = large.max_by(|a, b| surface(a.1).total_cmp(&surface(b.1)));
+            let Some((at, part)) = largest.map(|(at, part)| (at, *part)) else {
+                break;
+            };
+            let items = &mut self.items[part.from..part.to];
+            let (count, spans) = divide::<D>(items, &part.span, part.level);
+            let (middle, level) = (part.from + count, part.level + 1);
+            let half = |from, to, span| Part {
+                from,
+                to,
+                level,
+                span,
+            };
+            parts[at] = half(part.from, middle, spans[0]);
+            parts.push(half(middle, part.to, spans[1]));
+        }
+        parts
+    }
+
+    fn child(&mut self, part: &Part) -> Child {
+        let items = &self.items[part.from..part.to];
+        let treelet = &mut self.treelet;
+        if items.len() <= LANES {
+            let facets = items.iter().map(|item| item.facet);
+            treelet.blocks.push(Block::of(self.facets, facets));
+            Child::Block(treelet.blocks.len() as u32 - 1)
+        } else if self.begun && items.len() > INLINE {
+            treelet.deferred.push(Deferred::pending(items.to_vec()));
+            Child::Deferred(treelet.deferred.len() as u32 - 1)
+        } else {
+            Child::Node(treelet.nodes.len() as u32)
+        }
+    }
+}

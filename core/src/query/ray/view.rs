@@ -1,0 +1,67 @@
+//! The nodes of a scene's tree as they can be looked at.
+
+use super::cell::Cell;
+use super::scene::Scene;
+use super::treelet::{Child, Treelet};
+use crate::interrupt::poll;
+
+/// What is known of a node.
+#[derive(Clone, Debug)]
+pub struct View<const D: usize> {
+    /// Its box, in lattice steps.
+    pub cell: Cell<D>,
+    /// The number of the node above.
+    pub parent: Option<u32>,
+    /// Whether no ray has reached it yet.
+    pub deferred: bool,
+    /// The facets of a leaf.
+    pub facets: Vec<u32>,
+}
+
+/// The nodes that are known by now, in preorder.
+pub fn views<const D: usize>(scene: &Scene<D>) -> Vec<View<D>> {
+    let mut found: Vec<View<D>> = Vec::new();
+    let known = scene.root().known();
+    let mut open = vec![(None, *scene.cell(), known, known.map_or(Child::None, root))];
+    while let Some((parent, cell, treelet, child)) = open.pop() {
+        poll();
+        let number = found.len() as u32;
+        let (mut deferred, mut facets) = (treelet.is_none(), Vec::new());
+        if let Some(treelet) = treelet {
+            let (below, node) = match child {
+                Child::Node(node) => (Some(treelet), node),
+                Child::Deferred(i) => (treelet.deferred[i as usize].known(), 0),
+                Child::None | Child::Block(_) => (None, 0),
+            };
+            if let Child::Block(block) = child {
+                facets = treelet.blocks[block as usize].facets().to_vec();
+            }
+            deferred = matches!(child, Child::Deferred(_)) && below.is_none();
+            let wide = below.and_then(|below| Some((below, below.nodes.get(node as usize)?)));
+            if let Some((below, wide)) = wide {
+                for (lane, child) in wide.children.iter().enumerate().rev() {
+                    if *child != Child::None {
+                        let cell = scene.frame().outward(&wide.span(lane));
+                        open.push((Some(number), cell, Some(below), *child));
+                    }
+                }
+            }
+        }
+        found.push(View {
+            cell,
+            parent,
+            deferred,
+            facets,
+        });
+    }
+    found
+}
+
+/// The root of a treelet as a child.
+fn root<const D: usize>(treelet: &Treelet<D>) -> Child {
+    if treelet.nodes.is_empty() {
+        Child::None
+    } else {
+        Child::Node(0)
+    }
+}
