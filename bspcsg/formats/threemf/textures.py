@@ -22,7 +22,7 @@ _SLASHES = str.maketrans("/\\", "__")
 
 
 @dataclass(frozen=True)
-class Picture:
+class PackedPicture:
     """A picture as a part of a package.
 
     Parameters
@@ -50,7 +50,7 @@ class Resources:
 
     def __init__(self, first: int) -> None:
         self._next = first
-        self._pictures: dict[tuple[str, bytes], Picture] = {}
+        self._pictures: dict[tuple[str, bytes], PackedPicture] = {}
         self._textures: dict[str, int] = {}
 
     def free(self) -> int:
@@ -59,17 +59,17 @@ class Resources:
         return self._next - 1
 
     @property
-    def pictures(self) -> list[Picture]:
+    def pictures(self) -> list[PackedPicture]:
         """All pictures so far."""
         return list(self._pictures.values())
 
-    def picture(self, name: str, material: Material) -> Picture:
+    def picture(self, name: str, material: Material) -> PackedPicture:
         """Return the picture of a material; the same of the same name is one part."""
         data, media = material.texture or b"", material.media or ""
         path = _path(len(self._pictures) + 1, name, media)
-        return self._pictures.setdefault((name, data), Picture(path, media, data))
+        return self._pictures.setdefault((name, data), PackedPicture(path, media, data))
 
-    def texture(self, picture: Picture) -> tuple[int, list[str]]:
+    def texture(self, picture: PackedPicture) -> tuple[int, list[str]]:
         """Return the number of a picture's texture, and what says so unless that was said."""
         if picture.path in self._textures:
             return self._textures[picture.path], []
@@ -101,13 +101,13 @@ def fit_for_parts(names: list[str]) -> dict[str, str]:
     return found
 
 
-def content_types(pictures: Iterable[Picture]) -> str:
+def content_types(pictures: Iterable[PackedPicture]) -> str:
     """Return what the types of a package say about its pictures."""
     media = sorted({one.media for one in pictures})
     return "".join(f'<Default Extension="{_SUFFIXES[one]}" ContentType="{one}"/>' for one in media)
 
 
-def relations(pictures: Iterable[Picture]) -> Iterator[str]:
+def relations(pictures: Iterable[PackedPicture]) -> Iterator[str]:
     """Yield what relates the model to its pictures."""
     for number, one in enumerate(pictures):
         yield f'<Relationship Id="rel{number}" Target="{one.path}" Type="{_TEXTURE}"/>\n'

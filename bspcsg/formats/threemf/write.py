@@ -20,7 +20,7 @@ from ...errors import Finding
 from ...mesh.mesh import Mesh
 from ..raw import RawMesh, compacted, empty_set, parts_of, says_empty_set
 from ..said import said_of
-from .textures import Picture, Resources, content_types, relations
+from .textures import PackedPicture, Resources, content_types, relations
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _MATERIALS = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02"
@@ -53,7 +53,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     yield packed(_model(mesh, resources), resources.pictures)
 
 
-def packed(model: Iterator[str], pictures: Sequence[Picture]) -> bytes:
+def packed(model: Iterator[str], pictures: Sequence[PackedPicture]) -> bytes:
     """Return the package of a model, with the pictures that it names."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:

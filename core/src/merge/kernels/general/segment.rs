@@ -53,7 +53,7 @@ impl<'a> Crosser<'a> {
     }
 }
 
-/// Two borders meet in a point, or a corner lies in the other plane.
+/// A corner lies in the other plane, or curves are not certain to be simple.
 pub(super) struct Doubt;
 
 /// An element that is crossed.
@@ -66,7 +66,8 @@ impl Crossed<'_> {
     /// The segment in which a face crosses the element, if it does.
     ///
     /// Along the line in which the planes meet, with the face's minus side on the left, the element
-    /// reaches from x to x′ and the face from y to y′; the segment is what both have.
+    /// reaches from x to x′ and the face from y to y′; the segment is what both have. Where both
+    /// borders meet in a point, it ends on the element's; what is no longer than a point is none.
     pub(super) fn segment(
         &self,
         other: &Crosser,
@@ -79,11 +80,11 @@ impl Crossed<'_> {
         let [x, x_end] = [change(&other.ours, true)?, change(&other.ours, false)?];
         let [y, y_end] = [change(&other.theirs, false)?, change(&other.theirs, true)?];
         let mut inside = |edge: (usize, bool), rim: usize| self.inside(edge, other, rim, points);
-        if !inside((x_end, false), y)? || !inside((x, true), y_end)? {
+        if inside((x_end, false), y)? <= 0 || inside((x, true), y_end)? <= 0 {
             return Ok(None);
         }
-        let starts_here = inside((x, true), y)?;
-        let ends_here = inside((x_end, false), y_end)?;
+        let starts_here = inside((x, true), y)? >= 0;
+        let ends_here = inside((x_end, false), y_end)? >= 0;
         let mut end = |here: bool, own: usize, theirs: usize| {
             let plane = (face.support(), other.number);
             let at = if here {
@@ -106,36 +107,27 @@ impl Crossed<'_> {
         }))
     }
 
-    /// Whether the point in which an edge of the element, on its way to the face's plus side or
-    /// back, crosses the face's plane lies on the inner side of one of the face's own edges.
+    /// Where the point in which an edge of the element, on its way to the face's plus side or back,
+    /// crosses the face's plane lies: 1 on the inner side of one of the face's own edges, 0 on it.
     fn inside(
         &self,
         (edge, rises): (usize, bool),
         other: &Crosser,
         rim: usize,
         points: &mut Points,
-    ) -> Result<bool, Doubt> {
+    ) -> Result<i32, Doubt> {
         let face = &other.face.polygon;
         let carriers = (
             &self.polygon.corners()[edge].edge,
             &face.corners()[rim].edge,
         );
-        let side = if let (Carrier::Edge(edge), Carrier::Edge(rim)) = carriers {
+        if let (Carrier::Edge(edge), Carrier::Edge(rim)) = carriers {
             let turn = passes(edge.ends(), rim.ends());
-            if rises {
-                turn
-            } else {
-                -turn
-            }
-        } else {
-            let plane = (face.support(), other.number);
-            let at = points.at((self.polygon, edge), plane).ok_or(Doubt)?;
-            -at.side_of(&other.face.rims()[rim])
-        };
-        match side {
-            0 => Err(Doubt),
-            side => Ok(side > 0),
+            return Ok(if rises { turn } else { -turn });
         }
+        let plane = (face.support(), other.number);
+        let at = points.at((self.polygon, edge), plane).ok_or(Doubt)?;
+        Ok(-at.side_of(&other.face.rims()[rim]).signum())
     }
 }
 

@@ -194,3 +194,82 @@ fn corners_inside(count: usize, first: bool, ends: &[BorderEnd]) -> SmallVec<[bo
     }
     inside
 }
+
+#[cfg(test)]
+mod tests {
+    use std::borrow::Cow;
+
+    use super::super::cutting::{contact, Contact, Face};
+    use super::*;
+    use crate::geometry::plane::{Lattice, Plane};
+
+    fn polygon(corners: &[Lattice; 3]) -> Polygon {
+        let [a, b, c] = corners;
+        let plane = Plane::through(a, b, c).expect("a triangle with an area");
+        Polygon::triangle(corners, Arc::new(plane))
+    }
+
+    fn crosser<'a>(polygon: &Polygon, face: &'a Face<'a>, number: u32) -> Crosser<'a> {
+        let Contact::Crossing(ours, theirs) = contact(polygon, face) else {
+            panic!("the face crosses the polygon's plane");
+        };
+        Crosser {
+            face,
+            number,
+            operand: 1,
+            weight: 1,
+            ours,
+            theirs,
+        }
+    }
+
+    /// The edge of a wall goes through the border of a polygon: (4, 4, 0) lies on both.
+    #[test]
+    fn a_curve_may_end_where_two_edges_meet() {
+        let crossed = polygon(&[[0, 0, 0], [8, 0, 0], [8, 8, 0]]);
+        let wall = [
+            [[4, 4, -8], [4, 4, 8], [7, -3, 1]],
+            [[4, 4, 8], [4, 4, -8], [1, 9, 1]],
+        ];
+        let faces = wall.map(|corners| Face::new(Cow::Owned(polygon(&corners))));
+        let crossers: Vec<Crosser> = (1..)
+            .zip(&faces)
+            .map(|(number, face)| crosser(&crossed, face, number))
+            .collect();
+        let element = Crossed {
+            polygon: &crossed,
+            number: 0,
+        };
+        let trace = Trace::new(&element, &crossers, &mut Points::default());
+        let trace = trace.expect("one curve from border to border");
+        let corner = Vertex::lattice([4, 4, 0]);
+        assert_eq!(trace.segments.len(), 1);
+        assert_eq!(trace.ends.len(), 2);
+        assert!(trace
+            .ends
+            .iter()
+            .any(|end| end.edge == 2 && end.at.same(&corner)));
+        assert_ne!(trace.holds_corner(0), trace.holds_corner(1));
+        assert_eq!(trace.holds_corner(1), trace.holds_corner(2));
+    }
+
+    /// Both faces at the edge lie over the polygon: their curve only touches its border.
+    #[test]
+    fn a_curve_that_touches_the_border_is_in_doubt() {
+        let crossed = polygon(&[[0, 0, 0], [8, 0, 0], [8, 8, 0]]);
+        let wedge = [
+            [[4, 4, -8], [4, 4, 8], [7, -3, 1]],
+            [[4, 4, 8], [4, 4, -8], [9, 3, 1]],
+        ];
+        let faces = wedge.map(|corners| Face::new(Cow::Owned(polygon(&corners))));
+        let crossers: Vec<Crosser> = (1..)
+            .zip(&faces)
+            .map(|(number, face)| crosser(&crossed, face, number))
+            .collect();
+        let element = Crossed {
+            polygon: &crossed,
+            number: 0,
+        };
+        assert!(Trace::new(&element, &crossers, &mut Points::default()).is_none());
+    }
+}
