@@ -88,6 +88,12 @@ CLIFFS: dict[str, BenchCase] = {
     "dense-plate-and-cylinders": _doubled(
         "plate minus cylinders", _difference(dense.drilled_plate), 800, 4
     ),
+    "dense-plate-at-once": _doubled(
+        "plate minus one mesh of cylinders", _pair(dense.drilled_at_once), 400, 4
+    ),
+    "dense-column": _doubled(
+        "column minus a slab that parts it, by sides", _pair(dense.slab_and_column), 2000, 16
+    ),
     "dense-shells": _doubled("balls in balls, united", _union(dense.nested_balls), 200, 4),
     "dense-film": _doubled(
         "ball minus itself a nanometre beside, by rows", _pair(dense.film), 2500, 50

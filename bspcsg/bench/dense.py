@@ -94,6 +94,17 @@ def drilled_plate(count: int) -> list[MeshArrays]:
     return [box((0, 0, 0), (rows, min(count, 30), 1)), *holes]
 
 
+def drilled_at_once(count: int) -> tuple[MeshArrays, MeshArrays]:
+    """Return the plate of `drilled_plate` and its cylinders as one mesh."""
+    plate, *holes = drilled_plate(count)
+    return plate, _joined(holes)
+
+
+def slab_and_column(sides: int) -> tuple[MeshArrays, MeshArrays]:
+    """Return a column and a slab that parts it; edges of the two meet on the slab's diagonals."""
+    return cylinder(sides, 2.0, 0.0, 5.0), box((-3, -3, 1), (3, 3, 2))
+
+
 def nested_balls(count: int) -> list[MeshArrays]:
     """Return balls around one centre, each a little larger than the one before."""
     ball = icosphere(2)

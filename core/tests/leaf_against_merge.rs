@@ -272,7 +272,10 @@ impl Pair {
         };
         let answer = LocalTrees.solve(&problem).expect("trees take every cell");
         self.check(op, "trees", answer.node);
-        match GeneralPosition.solve(&problem).filter(|_| self.is_simple()) {
+        match GeneralPosition::LAST
+            .solve(&problem)
+            .filter(|_| self.is_simple())
+        {
             Some(answer) => {
                 self.check(op, "general position", answer.node);
                 true

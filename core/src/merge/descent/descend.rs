@@ -233,8 +233,12 @@ impl<'a> Descent<'a> {
         // No level of bins suited these faces, so halving will not separate them either.
         let long = listed && opening >= MANY;
         if long || listed && stuck || round.suits_general_position(&cell, &states, total) {
-            let kernel = &[&GeneralPosition as &dyn Kernel];
-            if let Some(branch) = self.solved(cell, &expression, &states, total, kernel) {
+            let kernel: &dyn Kernel = if stuck {
+                &GeneralPosition::LAST
+            } else {
+                &GeneralPosition::FIRST
+            };
+            if let Some(branch) = self.solved(cell, &expression, &states, total, &[kernel]) {
                 return Ok(branch);
             }
             round.refused(total);

@@ -1,5 +1,6 @@
 //! Lines to sweep along, and how elements lie along them.
 
+use super::direction::{cross, dot, frame, unit, Span, SLACK};
 use super::view::{views, View, OFF};
 use super::Swept;
 use crate::arith::convert::as_double;
@@ -8,14 +9,8 @@ use crate::geometry::axes::each_axis;
 /// Among fewer elements than this other lines than the axes are not worth finding.
 pub const MANY: usize = 512;
 
-/// Projections are widened by this share of the largest coordinate, far above their rounding.
-pub const SLACK: f64 = 1e-14;
-
 /// Lines closer than this cosine are nearly one: their plane shows little.
 const PARALLEL: f64 = 0.8;
-
-/// Lowest and highest place along a line.
-pub type Span = [f64; 2];
 
 /// A line, and the elements along it.
 pub struct Line {
@@ -137,15 +132,6 @@ fn directions(elements: &[&Swept]) -> Vec<[f64; 3]> {
     found.iter().filter_map(unit).collect()
 }
 
-/// A direction and two across it.
-pub fn frame(long: &[f64; 3]) -> [[f64; 3]; 3] {
-    let thin = (0..3).min_by(|i, j| long[*i].abs().total_cmp(&long[*j].abs()));
-    let mut axis = [0.0; 3];
-    axis[thin.unwrap_or(0)] = 1.0;
-    let any = cross(long, &axis);
-    [*long, any, cross(long, &any)]
-}
-
 /// The direction in which elements are long.
 fn direction_along(elements: &[&Swept]) -> Option<[f64; 3]> {
     let mut long = [0.0f64; 3];
@@ -164,23 +150,6 @@ pub fn longest_edge(corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
     };
     let longer = |a: &[f64; 3], b: &[f64; 3]| dot(a, a).total_cmp(&dot(b, b));
     (0..3).map(edge).max_by(longer)
-}
-
-pub fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
-    let size = dot(v, v).sqrt();
-    (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
-}
-
-pub fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 /// The extents along a direction, widened by their rounding; `None` if an element has no corners.

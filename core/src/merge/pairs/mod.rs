@@ -4,6 +4,7 @@
 //! found by sweeps along the lines on which their elements overlap least.
 
 mod boxes;
+mod direction;
 mod line;
 mod rim;
 mod sweep;

@@ -1,7 +1,7 @@
 //! What bounds triangles in the plane of two lines.
 
-use super::line::{Gauge, Span};
-use super::Swept;
+use super::direction::Span;
+use super::line::Gauge;
 
 /// The points of the plane for which normal · point is at most the limit.
 #[derive(Clone, Copy)]
@@ -56,10 +56,4 @@ pub fn rims(corners: Option<&[[f64; 3]; 3]>, plane: &[Gauge; 2], size: f64) -> [
     let slack = plane[0].slack(size).max(plane[1].slack(size));
     let [a, b, c] = [0, 1, 2].map(|i| [x[i], y[i]]);
     [[a, b, c], [b, c, a], [c, a, b]].map(|corners| HalfPlane::beside(corners, slack))
-}
-
-pub fn largest_coordinate(elements: &[&Swept]) -> f64 {
-    let corners = elements.iter().filter_map(|e| e.corners.as_ref());
-    let coordinates = corners.flatten().flatten();
-    coordinates.fold(1.0f64, |m, x| m.max(x.abs()))
 }

@@ -7,8 +7,9 @@
 
 use rayon::prelude::*;
 
-use super::line::{dot, longest_edge, Line, Span, MANY};
-use super::rim::{largest_coordinate, rims, HalfPlane};
+use super::direction::{dot, largest_coordinate, Span};
+use super::line::{longest_edge, Line, MANY};
+use super::rim::{rims, HalfPlane};
 use super::Swept;
 use crate::arith::convert::as_double;
 use crate::interrupt::{carried, spend};

@@ -5,8 +5,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::line::{dot, frame, unit, Span, SLACK};
-use super::rim::largest_coordinate;
+use super::direction::{dot, frame, largest_coordinate, unit, Span, SLACK};
 use super::Swept;
 use crate::arith::convert::as_double;
 

@@ -49,12 +49,13 @@ pub(super) enum Parts {
 }
 
 impl Scene<'_> {
-    /// The fates of all elements; `None` if two meet in a special way.
-    pub(super) fn fates(&self) -> Option<Vec<Fate>> {
+    /// The fates of all elements; `None` if two meet in a special way, or one is divided piece by
+    /// piece by more than so many.
+    pub(super) fn fates(&self, cutters: usize) -> Option<Vec<Fate>> {
         let neighbours = self.neighbours()?;
         let mut points = Points::default();
         (0..self.elements.len())
-            .map(|i| self.fate(i, &neighbours[i], &mut points))
+            .map(|i| self.fate(i, &neighbours[i], &mut points, cutters))
             .collect()
     }
 
@@ -94,7 +95,13 @@ impl Scene<'_> {
         }
     }
 
-    fn fate(&self, i: usize, neighbours: &[u32], points: &mut Points) -> Option<Fate> {
+    fn fate(
+        &self,
+        i: usize,
+        neighbours: &[u32],
+        points: &mut Points,
+        cutters: usize,
+    ) -> Option<Fate> {
         let element = &self.elements[i];
         if neighbours.is_empty() && element.vertices_in(self.cell).next().is_some() {
             return Some(Fate::Untouched);
@@ -119,7 +126,7 @@ impl Scene<'_> {
             polygon: &polygon,
             number: as_number(i),
         };
-        let parts = Parts::of(&crossed, &crossers, points)?;
+        let parts = Parts::of(&crossed, &crossers, points, cutters)?;
         Some(Fate::Cut(Box::new(Cut {
             polygon,
             parts,
@@ -151,9 +158,17 @@ impl Scene<'_> {
 }
 
 impl Parts {
-    fn of(crossed: &Crossed, crossers: &[Crosser], points: &mut Points) -> Option<Self> {
+    fn of(
+        crossed: &Crossed,
+        crossers: &[Crosser],
+        points: &mut Points,
+        most: usize,
+    ) -> Option<Self> {
         if let Some(trace) = Trace::new(crossed, crossers, points) {
             return Some(Self::Sides(trace));
+        }
+        if crossers.len() > most {
+            return None;
         }
         let cutters: Vec<Cutter> = crossers.iter().map(Crosser::cutter).collect();
         Some(Self::Pieces(cut_up(crossed.polygon.clone(), &cutters)?))

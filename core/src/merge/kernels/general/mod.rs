@@ -28,6 +28,10 @@ use scene::Scene;
 /// More operands than this do not meet in one small cell, or are left to the local trees.
 pub const MOST: usize = 64;
 
+/// Most faces by which another one is divided piece by piece, where the cell may be halved instead:
+/// the cost is the square of their number, that of a halving is not.
+const CUTTERS: usize = 48;
+
 /// For each operand of the cell whether a region is inside it, as bits.
 type Labels = u64;
 
@@ -38,14 +42,27 @@ type OnPieces = SmallVec<[Labels; 2]>;
 ///
 /// Refuses cells in which anything is special, and rules other than w > 0.
 #[derive(Debug)]
-pub struct GeneralPosition;
+pub struct GeneralPosition {
+    cutters: usize,
+}
+
+impl GeneralPosition {
+    /// For cells that are not halved any more.
+    pub const LAST: Self = Self {
+        cutters: usize::MAX,
+    };
+
+    /// For cells that are halved if they are refused: those, too, in which a face is divided along
+    /// more than one curve by many others.
+    pub const FIRST: Self = Self { cutters: CUTTERS };
+}
 
 impl Kernel for GeneralPosition {
     fn solve(&self, problem: &CellProblem) -> Option<Solution> {
         if problem.rule != Rule::Positive {
             return None;
         }
-        let (kept, corner) = kept_and_corner(problem)?;
+        let (kept, corner) = kept_and_corner(problem, self.cutters)?;
         let before = problem.operands.iter().map(|l| l.list.work()).max();
         let work = before.unwrap_or_default().max(Work::General);
         Some(assemble(kept, corner, work, problem.cell, problem.sources).into())
@@ -53,14 +70,14 @@ impl Kernel for GeneralPosition {
 }
 
 /// What stays of the operands' boundaries, and the value at the cell's corner.
-fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
+fn kept_and_corner(problem: &CellProblem, cutters: usize) -> Option<(Vec<Kept>, i32)> {
     let operands = &problem.operands;
     let simple = operands.iter().all(|l| (0..=1).contains(&l.list.corner));
     if !simple || operands.len() < 2 || operands.len() > MOST {
         return None;
     }
     let scene = Scene::new(problem.cell, operands, problem.sources);
-    let fates = scene.fates()?;
+    let fates = scene.fates(cutters)?;
     let labels = scene.labels(&fates)?;
     let place = |number: u32| operands.partition_point(|l| l.number < number);
     let scratch = &mut Vec::new();

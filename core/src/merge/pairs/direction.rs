@@ -1,0 +1,44 @@
+//! Directions in doubles, and how far coordinates reach.
+
+use super::Swept;
+
+/// Projections are widened by this share of the largest coordinate, far above their rounding.
+pub const SLACK: f64 = 1e-14;
+
+/// Lowest and highest place along a line.
+pub type Span = [f64; 2];
+
+/// A direction and two across it.
+pub fn frame(long: &[f64; 3]) -> [[f64; 3]; 3] {
+    let thin = (0..3).min_by(|i, j| long[*i].abs().total_cmp(&long[*j].abs()));
+    let mut axis = [0.0; 3];
+    axis[thin.unwrap_or(0)] = 1.0;
+    let any = cross(long, &axis);
+    [*long, any, cross(long, &any)]
+}
+
+/// The direction of a vector; `None` if it has none.
+pub fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
+    let size = dot(v, v).sqrt();
+    (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
+}
+
+/// The product of two vectors.
+pub fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The vector across two.
+pub fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+pub fn largest_coordinate(elements: &[&Swept]) -> f64 {
+    let corners = elements.iter().filter_map(|e| e.corners.as_ref());
+    let coordinates = corners.flatten().flatten();
+    coordinates.fold(1.0f64, |m, x| m.max(x.abs()))
+}
