@@ -153,7 +153,7 @@ def test_parts_of_a_solid_the_largest_first() -> None:
     [
         lambda s: s.split((0, 0, 0), 1),
         lambda s: s.split((0, 0, 1), float("inf")),
-        lambda s: s.split("z"),
+        lambda s: s.split("w"),
         lambda s: s.trim((0, 0), 1),
         lambda s: s.trim((0, 0, float("nan"))),
         lambda s: s.rotate(30, z=30),
