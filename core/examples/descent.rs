@@ -117,7 +117,7 @@ fn section(shape: &Shape) -> String {
     shape.faces.iter().filter_map(cut).collect()
 }
 
-/// Where an edge crosses the plane.
+/// Return the point in which an edge crosses the plane.
 fn crossing(p: [f64; 3], q: [f64; 3]) -> Option<[f64; 2]> {
     let t = (HEIGHT - p[2]) / (q[2] - p[2]);
     (0.0..1.0)
@@ -135,7 +135,7 @@ fn head() -> String {
     )
 }
 
-/// What the colours mean, and how many of the drawn cells have each.
+/// Write what the colours mean, and how many of the drawn cells have each.
 fn legend(cells: &[(Cell, usize)]) -> String {
     let line = |(i, (colour, text)): (usize, &(&str, &str))| {
         let y = WIDTH + 14.0 + 20.0 * double(i64::try_from(i).expect("small"));

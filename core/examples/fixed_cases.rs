@@ -67,7 +67,7 @@ fn main() {
     }
 }
 
-/// What is counted.
+/// Do the work that is counted.
 #[inline(never)]
 fn measured(work: impl FnOnce() -> usize) {
     let triangles = work();

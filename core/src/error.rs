@@ -4,7 +4,7 @@ pub mod panics;
 
 use std::fmt;
 
-/// What went wrong, as a stable name for programs.
+/// The kinds of errors, as stable names for programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
@@ -109,7 +109,7 @@ impl Error {
         Self::new(ErrorKind::Internal, message)
     }
 
-    /// What went wrong.
+    /// Return the kind of the error.
     pub fn kind(&self) -> ErrorKind {
         self.kind
     }

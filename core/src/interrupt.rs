@@ -24,7 +24,7 @@ use crate::error::{Error, ErrorKind, Result};
 /// a pass; a pair of elements; an exact question), so looks are 10 µs to some milliseconds apart.
 const BUDGET: usize = 1 << 10;
 
-/// How often a caller who works himself is asked.
+/// The time between two questions to a caller who works himself.
 const ASK_EVERY: Duration = Duration::from_millis(50);
 
 /// The number of no call.
@@ -32,7 +32,7 @@ const NOBODY: u64 = 0;
 
 static NEXT: AtomicU64 = AtomicU64::new(1);
 
-/// How many calls are being stopped.
+/// The number of calls that are being stopped.
 static STOPPING: AtomicUsize = AtomicUsize::new(0);
 
 static STOPPED: Mutex<Vec<u64>> = Mutex::new(Vec::new());
@@ -64,7 +64,7 @@ pub struct Call {
     number: u64,
 }
 
-/// What a thread works for; tasks that it hands to other threads carry it on.
+/// The call that a thread works for; tasks that it hands to other threads carry it on.
 #[derive(Clone, Copy, Debug)]
 pub struct Task {
     call: u64,
@@ -141,7 +141,7 @@ impl Drop for Call {
 }
 
 impl Task {
-    /// What this thread works for.
+    /// Return the call that this thread works for.
     #[must_use]
     pub fn current() -> Self {
         CURRENT.get()

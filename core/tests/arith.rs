@@ -63,7 +63,7 @@ fn double_in_least_steps(bits: u64) -> BigInt {
     }
 }
 
-/// Whether `value` is nearest to `numerator / denominator`, and even where two are.
+/// Return whether `value` is nearest to `numerator / denominator`, and even where two are.
 fn is_nearest(value: f64, numerator: &BigInt, denominator: &BigInt) -> bool {
     if (*numerator < BigInt::ZERO) != value.is_sign_negative() {
         return false;
@@ -340,7 +340,7 @@ fn residues_at_the_ends() {
     }
 }
 
-/// Whether `n` passes the Miller–Rabin test for the bases that decide it below 2^64.
+/// Return whether `n` passes the Miller–Rabin test for the bases that decide it below 2^64.
 fn is_prime(n: u64) -> bool {
     let times = |a: u64, b: u64| u128::from(a) * u128::from(b) % u128::from(n);
     let times = |a: u64, b: u64| u64::try_from(times(a, b)).unwrap();

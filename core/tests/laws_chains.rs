@@ -84,7 +84,7 @@ fn kept_volumes_are_right_at_every_step() {
     }
 }
 
-/// Where nobody vouched for the operands, checking them is enough to know the result.
+/// The results of operands that nobody vouched for are known once these are checked.
 #[test]
 fn results_of_simple_meshes_are_reduced_once_these_are_checked() {
     let mut numbers = Numbers::new(22);
@@ -157,7 +157,7 @@ fn tables_keep_the_order_of_the_expression() {
     assert_eq!(second.slot(&sources[3]), Some(Slot(4)));
 }
 
-/// What a chain has cut away leaves its table.
+/// The tables of long chains forget what was cut away.
 #[test]
 fn tables_of_long_chains_forget() {
     let mut solid = Shape::cuboid([0; 3], [100; 3]).solid();

@@ -1,4 +1,5 @@
-//! What keeps a solid as it is: snapshots, motions of the lattice, threads; and quick volumes.
+//! The ways that keep a solid as it is: snapshots, motions of the lattice, threads; and quick
+//! volumes.
 
 mod support;
 
@@ -28,7 +29,7 @@ use support::{
     Numbers, Ratio, Shape, LIMIT,
 };
 
-/// What must not depend on the number of threads: the boundary and the mesh, byte for byte.
+/// Return what must not depend on the number of threads: the boundary and the mesh, byte for byte.
 fn fingerprint() -> (Vec<u8>, Vec<[u64; 3]>, Vec<[u32; 3]>) {
     let ball = |x: i64| Shape::sphere([x, 900, 900], 800.0, 3).solid();
     let tool = Shape::any_cuboid(&mut Numbers::new(8), 1500).solid();
@@ -121,7 +122,7 @@ fn forged(solid: &Solid, numbers: &mut Numbers) -> Vec<u8> {
     bytes
 }
 
-/// What is done with a solid that was read; defects are not among the errors it may end with.
+/// Use a solid that was read; defects are not among the errors it may end with.
 fn used(solid: &Solid, tool: &Solid) -> Result<()> {
     let volume = || measure::volume(solid).map(drop);
     let near = || measure::volume_near(solid).map(drop);
@@ -264,7 +265,7 @@ fn any_mixture(numbers: &mut Numbers, reach: i64) -> Shape {
     (0..4).map(one).fold(Shape::default(), Shape::with)
 }
 
-/// Whether a finding of this code was made.
+/// Return whether a finding of this code was made.
 fn found(mesh: &Mesh, code: &str) -> bool {
     mesh.findings.iter().any(|finding| finding.code == code)
 }

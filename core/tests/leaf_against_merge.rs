@@ -80,7 +80,7 @@ fn tree_in(source: &Source, cell: &Cell, number: i32, first: u64, seed: u64) -> 
     labelled.expect("a closed surface").tree
 }
 
-/// What pieces of boundary add up to: for each face and orientation their cones' exact volume.
+/// The sum of pieces of boundary: for each face and orientation their cones' exact volume.
 ///
 /// Cones are additive over pieces, and a plane through the origin is the only one they miss.
 type Flux = HashMap<(u64, bool), Ratio>;
@@ -284,7 +284,8 @@ impl Pair {
         }
     }
 
-    /// Whether no operand overlaps itself here: only then the shortcut promises the reduced boundary.
+    /// Return whether no operand overlaps itself here: only then the shortcut promises the reduced
+    /// boundary.
     fn is_simple(&self) -> bool {
         let simple = |l: &List| LeafTree::new(l, &self.cell, &self.sources).is_simple();
         self.lists.iter().all(simple)

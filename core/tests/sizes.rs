@@ -19,7 +19,7 @@ const RADIUS: i64 = 1 << 20;
 /// The same, as balls take it.
 const BALL: f64 = (1u32 << 20) as f64;
 
-/// What must not depend on threads: the tree, and the doubles and triangles of the mesh.
+/// The bytes that must not depend on threads: the tree, and the doubles and triangles of the mesh.
 type Bytes = (Vec<u8>, Vec<[u64; 3]>, Vec<[u32; 3]>);
 
 fn bytes(solid: &Solid, context: &str) -> Bytes {

@@ -1,4 +1,4 @@
-//! What trees tell of their work leads to the same trees and answers.
+//! Traces of trees lead to the same trees and answers.
 
 #![allow(clippy::cast_possible_truncation, clippy::cast_precision_loss)]
 

@@ -20,7 +20,7 @@ const REACHES: [i64; 6] = [3, 5, 9, 40, 4000, 1 << 30];
 /// Half-spaces have small normals; their offsets go through lattice points in small reaches.
 const STEEPEST: i64 = 3;
 
-/// What a scene may hold, so that an execution takes milliseconds.
+/// The most that a scene may hold, so that an execution takes milliseconds.
 const OPERANDS: usize = 4;
 const PARTS: usize = 3;
 const LINES: usize = 6;
@@ -79,7 +79,7 @@ impl Scene {
         self.operands.iter().map(Operand::solid).collect()
     }
 
-    /// What the expression makes of the solids.
+    /// Return what the expression makes of the solids.
     #[must_use]
     pub fn result(&self) -> Solid {
         combined(&self.solids(), self.lines.clone())
@@ -103,7 +103,7 @@ impl Scene {
         *values.last().expect("there are operands")
     }
 
-    /// Where a point lies relative to the result, if it can be told.
+    /// Locate a point relative to the result, if it can be told.
     #[must_use]
     pub fn location(&self, point: &Lattice) -> Option<Location> {
         let sets: Vec<Known> = self.operands.iter().map(|o| o.known.clone()).collect();

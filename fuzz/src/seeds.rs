@@ -8,7 +8,7 @@ use crate::support::{combined, Numbers, Shape};
 /// Names the folder that a target writes its seeds to, after which it ends.
 pub const ASKED: &str = "BSPCSG_FUZZ_SEEDS";
 
-/// How many seeds a target starts from.
+/// The number of seeds that a target starts from.
 const COUNT: u64 = 40;
 
 /// Bytes of scenes with four operands and all their points.

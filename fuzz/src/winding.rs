@@ -1,4 +1,5 @@
-//! Where a point lies, from winding numbers in whole numbers: no tree, no plane, no cell of the core.
+//! The location of a point, from winding numbers in whole numbers: no tree, no plane, no cell of
+//! the core.
 //!
 //! A place is a point and up to three steps, each infinitely smaller than the one before. All
 //! predicates are linear in the place, so each is decided by its first value that is not zero.
@@ -69,7 +70,8 @@ impl Place {
 }
 
 impl Known {
-    /// Whether a place is inside; `None` if it lies on the boundary, or all rays meet an edge.
+    /// Return whether a place is inside; `None` if it lies on the boundary, or all rays meet an
+    /// edge.
     #[must_use]
     pub fn holds(&self, place: &Place) -> Option<bool> {
         match self {
@@ -82,7 +84,7 @@ impl Known {
         }
     }
 
-    /// Whether all corners are near enough to a point for steps around it.
+    /// Return whether all corners are near enough to a point for steps around it.
     fn is_near(&self, point: &Lattice) -> bool {
         let near = |corner: &Lattice| (0..3).all(|i| (corner[i] - point[i]).abs() <= NEAR);
         match self {
@@ -107,7 +109,8 @@ impl Known {
     }
 }
 
-/// How often triangles wind around a place; `None` if it lies on one, or all rays meet an edge.
+/// Count how often triangles wind around a place; `None` if it lies on one, or all rays meet an
+/// edge.
 #[must_use]
 pub fn winding(faces: &[[Lattice; 3]], place: &Place) -> Option<i32> {
     RAYS.iter().find_map(|ray| {
@@ -116,7 +119,7 @@ pub fn winding(faces: &[[Lattice; 3]], place: &Place) -> Option<i32> {
     })
 }
 
-/// Where a point lies relative to the set that an expression makes of others.
+/// Locate a point relative to the set that an expression makes of others.
 ///
 /// All planes that meet at the point divide its neighbourhood; it is on the boundary if the
 /// expression holds in some of these parts and not in others. `None` if that cannot be told.
@@ -187,7 +190,8 @@ fn beside_plane(point: &Lattice, along: &Wide, normal: &Wide) -> Vec<Place> {
     places
 }
 
-/// How a ray from a place crosses a triangle: +1 if it leaves, −1 if it enters, 0 if it misses.
+/// Return how a ray from a place crosses a triangle: +1 if it leaves, −1 if it enters, 0 if it
+/// misses.
 fn crossing(face: &[Lattice; 3], place: &Place, ray: &Wide) -> Option<i32> {
     let [a, b, c] = face.each_ref().map(|corner| place.arm(corner));
     let turns = [(a, b), (b, c), (c, a)].map(|(from, to)| {
@@ -210,7 +214,7 @@ fn crossing(face: &[Lattice; 3], place: &Place, ray: &Wide) -> Option<i32> {
     })
 }
 
-/// Whether a point lies on a triangle or its border.
+/// Return whether a point lies on a triangle or its border.
 fn touches(face: &[Lattice; 3], point: &Lattice) -> bool {
     let n = normal(face);
     let arm = |corner: &Lattice| less(&wide(corner), &wide(point));
@@ -219,7 +223,7 @@ fn touches(face: &[Lattice; 3], point: &Lattice) -> bool {
     n != [0; 3] && dot(&n, &a) == 0 && turns.iter().all(|t| *t >= 0)
 }
 
-/// How far above a plane a point is, in units of the normal.
+/// Return the height of a point above a plane, in units of the normal.
 fn above(normal: &Wide, offset: i64, point: &Lattice) -> i128 {
     dot(normal, &wide(point)) - i128::from(offset)
 }

@@ -40,7 +40,7 @@ pub struct NodeView {
     span: Vec<[f64; 3]>,
 }
 
-/// What a ray met and cost.
+/// The first facet that a ray met, and its cost.
 #[derive(Serialize)]
 pub struct Shot {
     facet: Option<u32>,

@@ -90,7 +90,7 @@ impl Autopartition {
         each!(&self.0, scene => told(scene.orders(trials, u64::from(seed))))
     }
 
-    /// How many fragments the tree has.
+    /// Return the number of the tree's fragments.
     pub fn fragments(&self) -> usize {
         each!(&self.0, scene => scene.fragments())
     }
@@ -100,7 +100,7 @@ impl Autopartition {
         each!(&self.0, scene => told(scene.policies(u64::from(seed))))
     }
 
-    /// What a ray meets first, and its steps through the tree.
+    /// Return the first facet that a ray meets, and its steps through the tree.
     pub fn shoot(
         &self,
         x: f64,

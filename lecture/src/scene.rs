@@ -48,9 +48,9 @@ pub struct NodeView {
     halves: [Walls; 2],
     /// The region's share of the root's.
     share: f64,
-    /// What lay in the region, in the order of the pivots.
+    /// The parts that lay in the region, in the order of the pivots.
     list: Vec<Part>,
-    /// What lies in the hyperplane.
+    /// The parts in the hyperplane.
     coplanar: Vec<Part>,
     /// The facets that the hyperplane cut.
     cut: Vec<u32>,
@@ -86,7 +86,7 @@ struct LeafView {
     depth: u32,
 }
 
-/// What many random orders made of the same facets.
+/// The trees that many random orders made of the same facets.
 #[derive(Serialize)]
 pub struct Orders {
     /// Fragments, order by order.
@@ -175,7 +175,7 @@ impl<S: Affine> Scene<S> {
         }
     }
 
-    /// What lay in each node's region before it was divided.
+    /// Return what lay in each node's region before it was divided.
     fn lists(&self) -> Vec<Vec<Piece<S>>> {
         let nodes = self.tree.nodes();
         let mut lists = vec![Vec::new(); nodes.len()];
@@ -225,7 +225,7 @@ impl<S: Affine> Scene<S> {
         Ok(found)
     }
 
-    /// How many fragments the tree has.
+    /// Return the number of the tree's fragments.
     pub fn fragments(&self) -> usize {
         self.tree.fragments().len()
     }
@@ -311,7 +311,7 @@ impl<S: Affine> Scene<S> {
     }
 }
 
-/// Who cut whom, each pair once, however many parts were cut.
+/// List who cut whom, each pair once, however many parts were cut.
 fn pairs<S: Affine>(tree: &FragmentTree<S>) -> Vec<(usize, usize)> {
     let mut found: Vec<_> = tree
         .crossings()

@@ -24,9 +24,9 @@ pub struct SetView {
 
 #[derive(Serialize)]
 struct NodeView {
-    /// What a leaf says.
+    /// The label of a leaf.
     label: Option<Label>,
-    /// Whose hyperplane it is: a facet of the first set or of the second.
+    /// The facet whose hyperplane it is, of the first set or of the second.
     name: String,
     region: Walls,
     span: Vec<[f64; 3]>,

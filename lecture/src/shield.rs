@@ -20,7 +20,7 @@ pub fn shields(segments: &[Segment2], i: usize) -> Vec<Option<(usize, [f64; 2])>
     met.iter().map(rank).collect()
 }
 
-/// Where the line of one segment cuts another in two.
+/// Return the point in which the line of one segment cuts another in two.
 fn crossing(own: &Segment2, other: &Segment2) -> Option<Point2> {
     match Dim2::split(other, own.line()) {
         Split::Both { .. } => Point2::meet(own.line(), other.line()),
@@ -28,7 +28,7 @@ fn crossing(own: &Segment2, other: &Segment2) -> Option<Point2> {
     }
 }
 
-/// Whether `p` lies between the segment and `q`, on the same side of the segment.
+/// Return whether `p` lies between the segment and `q`, on the same side of the segment.
 fn is_between(own: &Segment2, p: &Point2, q: &Point2) -> bool {
     let [first, last] = own.points();
     let ahead = |x: &Point2| own.along(last, x) != Ordering::Greater;

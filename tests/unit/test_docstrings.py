@@ -1,4 +1,4 @@
-"""Docstrings say what a thing does or is, in the active voice: no question words at the start."""
+"""Docstrings, and doc comments of Rust, say what a thing does or is: no questions at the start."""
 
 import ast
 import re
@@ -9,8 +9,15 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 MODULES = sorted((ROOT / "bspcsg").rglob("*.py"))
+SOURCES = sorted(
+    path
+    for folder in ("core", "fuzz", "lecture")
+    for path in (ROOT / folder).rglob("*.rs")
+    if "target" not in path.parts
+)
 
 _QUESTION = re.compile(r"(What|Whether|Which|Who|Whose|How|Where|When|Why)\b")
+_COMMENT = re.compile(r"\s*(//[/!]) ?(.*)")
 
 
 def first_words(module: str) -> Iterator[tuple[str, str]]:
@@ -26,6 +33,27 @@ def test_docstrings_say_what_things_do(module: Path) -> None:
     assert [name for name, text in found if _QUESTION.match(text)] == []
 
 
+def comments(source: str) -> Iterator[str]:
+    """Yield the first line of each doc comment of a Rust source."""
+    before = ""
+    for line in source.splitlines():
+        found = _COMMENT.match(line)
+        mark = found[1] if found else ""
+        if found and mark != before:
+            yield found[2]
+        before = mark
+
+
+def test_comments_of_rust_say_what_things_are() -> None:
+    read = ((path, comments(path.read_text(encoding="utf-8"))) for path in SOURCES)
+    found = [(path.name, line) for path, lines in read for line in lines if _QUESTION.match(line)]
+    assert len(SOURCES) > 200 and found == []
+
+
 def test_a_question_is_noticed() -> None:
     [(name, text)] = first_words('def f():\n    """Whether it holds."""\n')
     assert name == "f" and _QUESTION.match(text)
+    source = "//! Trees.\n\n/// The place.\n/// Where it ends.\n    /// Whether it holds.\n"
+    assert list(comments(source)) == ["Trees.", "The place."]
+    [line] = comments("    /// Whether it holds.\n    fn holds();")
+    assert _QUESTION.match(line)

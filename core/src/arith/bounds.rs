@@ -1,4 +1,4 @@
-//! How wide the exact numbers of the kernel are.
+//! The widths of the exact numbers of the kernel.
 //!
 //! A bound is a number of bits `b` such that the magnitude is below 2^`b`; the sign takes one
 //! bit more. Everything follows from one fact: a determinant of order 2, 3 or 4 with entries in
@@ -26,7 +26,7 @@ pub const COORDINATE_BITS: u32 = 53;
 /// No lattice coordinate is as large as this in magnitude; points and lines across axes may be.
 pub const REACH: i64 = 1 << COORDINATE_BITS;
 
-/// Whether this is the coordinate of a lattice point.
+/// Return whether this is the coordinate of a lattice point.
 pub const fn is_coordinate(k: i64) -> bool {
     k.unsigned_abs() < REACH.unsigned_abs()
 }

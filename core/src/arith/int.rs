@@ -124,13 +124,13 @@ impl<const N: usize> Int<N> {
         }
     }
 
-    /// Whether the value is zero.
+    /// Return whether the value is zero.
     #[inline]
     pub fn is_zero(&self) -> bool {
         self.limbs.iter().fold(0, |all, limb| all | limb) == 0
     }
 
-    /// Whether the value is below zero.
+    /// Return whether the value is below zero.
     #[inline]
     pub const fn is_negative(&self) -> bool {
         self.limbs[N - 1].cast_signed() < 0
@@ -149,7 +149,7 @@ impl<const N: usize> Int<N> {
         }
     }
 
-    /// Whether the value is −2^(64 `N` − 1), the one without a negative.
+    /// Return whether the value is −2^(64 `N` − 1), the one without a negative.
     #[inline]
     fn is_minimum(&self) -> bool {
         self.limbs[N - 1] == 1 << 63 && self.limbs[..N - 1].iter().all(|&limb| limb == 0)

@@ -182,7 +182,7 @@ pub(super) fn limb_at<const N: usize>(limbs: &[u64; N], start: i32) -> u64 {
     low_limb(pair >> offset)
 }
 
-/// Whether a bit below bit `end` is set.
+/// Return whether a bit below bit `end` is set.
 #[inline]
 pub(super) fn any_bit_below<const N: usize>(limbs: &[u64; N], end: i32) -> bool {
     let end = usize::try_from(end).unwrap_or(0);

@@ -70,7 +70,7 @@ const fn fold(number: u128, excess: u64) -> u128 {
     (number & LOW).wrapping_add((number >> 61).wrapping_mul(excess as u128))
 }
 
-/// How far `p` lies below 2^61.
+/// The distance from `p` up to 2^61.
 #[inline]
 const fn excess(p: u64) -> u64 {
     let excess = (1u64 << 61).wrapping_sub(p);

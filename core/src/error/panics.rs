@@ -7,10 +7,10 @@ use std::sync::Mutex;
 
 use super::{Error, Result};
 
-/// How many panics are remembered for those who catch them on another thread.
+/// The number of panics that are remembered for those who catch them on another thread.
 const RECENT: usize = 8;
 
-/// What a panic said, and where it happened.
+/// A panic: what it said, and where it happened.
 struct Seen {
     message: String,
     place: String,

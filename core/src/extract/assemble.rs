@@ -91,7 +91,7 @@ fn unbounded() -> Error {
     Error::new(ErrorKind::Unbounded, text)
 }
 
-/// Whether an outline runs on the border of the universe, where only half-spaces reach.
+/// Return whether an outline runs on the border of the universe, where only half-spaces reach.
 fn reaches_infinity(group: &PlaneGroup, sources: &Sources) -> bool {
     let mut faces = group.faces.iter();
     faces.any(|f| sources.get(f.slot()).mesh().is_none())

@@ -1,4 +1,4 @@
-//! Why the boundary of a solid makes no mesh.
+//! The reasons why the boundary of a solid makes no mesh.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use crate::mesh::handle::{OrientedFace, Slot};
 use crate::mesh::source::Source;
 use crate::tree::solid::Solid;
 
-/// Why a boundary makes no mesh.
+/// A reason why a boundary makes no mesh.
 pub(super) enum Failure {
     /// Faces cross or overlap each other.
     Overlap(Overlap),
@@ -18,7 +18,7 @@ pub(super) enum Failure {
 
 /// Faces that cross or overlap each other, as their boundary shows.
 pub(super) struct Overlap {
-    /// What shows it.
+    /// A sign of the failure, in words.
     pub(super) sign: String,
     /// The faces where it shows.
     pub(super) faces: Vec<OrientedFace>,

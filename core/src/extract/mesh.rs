@@ -10,21 +10,21 @@ use crate::mesh::source::Shape;
 /// A closed triangle mesh with exact vertices.
 #[derive(Debug, Default)]
 pub struct ExactMesh {
-    /// Where each vertex is.
+    /// The places of the vertices.
     pub vertices: Vec<Corner>,
     /// Triangles, counterclockwise as seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// For each triangle the face it lies in.
     pub faces: Vec<OrientedFace>,
-    /// How many triangles at the start are faces of sources as they came.
+    /// The number of triangles at the start that are faces of sources as they came.
     pub untouched: usize,
     /// The constructed points that [`Corner::Point`] names.
     pub table: VertexTable,
-    /// What was noticed on the way.
+    /// The findings on the way.
     pub findings: Vec<Finding>,
 }
 
-/// Where a vertex of an [`ExactMesh`] is.
+/// The place of a vertex of an [`ExactMesh`].
 #[derive(Clone, Copy, Debug)]
 pub enum Corner {
     /// A vertex of a source.
@@ -56,9 +56,9 @@ pub struct Mesh {
     pub origins: Vec<[u32; 2]>,
     /// For each triangle whether it faces the other way than that face.
     pub flips: Vec<bool>,
-    /// What was noticed on the way.
+    /// The findings on the way.
     pub findings: Vec<Finding>,
-    /// How many triangles were compared exactly with all near them, because they are not faces of
-    /// inputs as they came; those that cross something are a finding.
+    /// The number of triangles that were compared exactly with all near them, because they are not
+    /// faces of inputs as they came; those that cross something are a finding.
     pub compared: u64,
 }

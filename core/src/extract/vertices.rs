@@ -86,12 +86,12 @@ impl VertexTable {
         &self.places[id as usize]
     }
 
-    /// Whether there are no points.
+    /// Return whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
-    /// How many points there are.
+    /// Return the number of points.
     pub fn len(&self) -> usize {
         self.points.len()
     }
@@ -107,8 +107,8 @@ fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
     ((0..3).all(near) && vertex.is_at(&nearest)).then_some(nearest)
 }
 
-/// How far apart two doubles of one coordinate may be, relative to it: twice three units in the last
-/// place of 2^-52, and room for the rounding of the question.
+/// The distance that two doubles of one coordinate may have, relative to it: twice three units in
+/// the last place of 2^-52, and room for the rounding of the question.
 const NEAR: f64 = 8.0 * f64::EPSILON;
 
 /// A place in doubles with all but some forty leading bits rounded away.
@@ -119,7 +119,7 @@ const NEAR: f64 = 8.0 * f64::EPSILON;
 struct Blur([u64; 3]);
 
 impl Blur {
-    /// How many bits are rounded away.
+    /// The number of bits that are rounded away.
     const BITS: u32 = 12;
 
     /// Six units in the last place, twice that beside a power of two; the next power of two.
@@ -191,7 +191,7 @@ impl Projection<'_> {
         [as_double(p[self.u]), as_double(p[self.v])]
     }
 
-    /// Whether a point lies strictly between two others, on their line.
+    /// Return whether a point lies strictly between two others, on their line.
     pub fn is_between(&self, a: u32, point: u32, b: u32) -> bool {
         point != a
             && point != b
@@ -201,7 +201,7 @@ impl Projection<'_> {
 }
 
 impl Projection<'_> {
-    /// Whether two segments cross inside both.
+    /// Return whether two segments cross inside both.
     pub fn crosses(&self, a: [u32; 2], b: [u32; 2]) -> bool {
         a.iter().all(|p| !b.contains(p))
             && self.orient(a[0], a[1], b[0]) * self.orient(a[0], a[1], b[1]) < 0

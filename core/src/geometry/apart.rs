@@ -1,11 +1,11 @@
-//! Whether two triangles keep clear of each other, by signs of determinants in doubles.
+//! The test whether two triangles keep clear of each other, by signs of determinants in doubles.
 
 use super::path::{near_determinant, NearCross};
 use super::plane::Lattice;
 
 type Triangle = [Lattice; 3];
 
-/// Whether two lattice triangles certainly have no point in common; errs on no.
+/// Return whether two lattice triangles certainly have no point in common; errs on no.
 ///
 /// They do not if one lies on one side of the other's plane, or else if the stretches in which they
 /// cover the line that both planes share are apart (Möller 1997; in signs alone as Guigue and
@@ -38,7 +38,7 @@ fn sides(triangle: &Triangle, plane: &Triangle) -> [i32; 3] {
     ]
 }
 
-/// Whether all corners certainly lie on one side.
+/// Return whether all corners certainly lie on one side.
 fn is_beside(sides: &[i32; 3]) -> bool {
     sides[0] != 0 && sides[1] == sides[0] && sides[2] == sides[0]
 }
@@ -58,8 +58,8 @@ fn alone(sides: &[i32; 3]) -> Option<usize> {
     })
 }
 
-/// Whether the edges at the lone corner `p[i]` cross the other plane all before or all behind the
-/// points in which those at `q[k]` cross the first.
+/// Return whether the edges at the lone corner `p[i]` cross the other plane all before or all
+/// behind the points in which those at `q[k]` cross the first.
 ///
 /// Which of two edges of different triangles comes first is the sign of the volume they span, up to
 /// a sign that is the same for all four pairs.
@@ -79,7 +79,7 @@ fn less(p: &Lattice, q: &Lattice) -> Lattice {
     [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
 }
 
-/// Whether some point of an edge of `p` lies in `q`, by exact determinants.
+/// Return whether some point of an edge of `p` lies in `q`, by exact determinants.
 #[cfg(test)]
 pub fn pierces(p: &Triangle, q: &Triangle) -> bool {
     let volume = |a: &Lattice, b: &Lattice, c: &Lattice, d: &Lattice| {

@@ -93,24 +93,24 @@ impl Cell {
         half
     }
 
-    /// Whether every lattice point of `other` is one of this cell.
+    /// Return whether every lattice point of `other` is one of this cell.
     pub fn holds(&self, other: &Self) -> bool {
         self.holds_box(other.low(), &other.high())
     }
 
-    /// Whether a lattice box lies inside.
+    /// Return whether a lattice box lies inside.
     pub fn holds_box(&self, low: &Lattice, high: &Lattice) -> bool {
         let top = self.high();
         (0..3).all(|i| self.low[i] <= low[i] && high[i] <= top[i])
     }
 
-    /// Whether the cells share lattice points.
+    /// Return whether the cells share lattice points.
     #[inline]
     pub fn meets(&self, other: &Self) -> bool {
         self.meets_box(other.low(), &other.high())
     }
 
-    /// Whether the cell shares lattice points with a box.
+    /// Return whether the cell shares lattice points with a box.
     #[inline]
     pub fn meets_box(&self, low: &Lattice, high: &Lattice) -> bool {
         let top = self.high();

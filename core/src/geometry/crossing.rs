@@ -1,4 +1,4 @@
-//! How the winding number changes along an axis-parallel segment between cell corners.
+//! Changes of the winding number along an axis-parallel segment between cell corners.
 //!
 //! Corners are shifted by (ε, ε², ε³), one vector for everything, so that no sign is ever zero and
 //! each count is the crossing number of one generic path.

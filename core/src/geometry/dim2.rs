@@ -169,7 +169,7 @@ impl Line2 {
         (product(self.b, other.a)).cmp(&product(self.a, other.b))
     }
 
-    /// Whether two lines have one direction, or opposite ones.
+    /// Return whether two lines have one direction, or opposite ones.
     pub fn is_parallel(&self, other: &Self) -> bool {
         self.turn(other) == Ordering::Equal
     }
@@ -456,7 +456,7 @@ pub fn border() -> Vec<Segment2> {
     (0..4).filter_map(side).collect()
 }
 
-/// Whether a line may not have this component of a normal.
+/// Return whether a line may not have this component of a normal.
 fn is_wide(component: i64) -> bool {
     component.unsigned_abs() >= 1 << LINE_NORMAL_BITS
 }

@@ -240,7 +240,7 @@ fn sign(value: &BigInt) -> i32 {
     }
 }
 
-/// Whether the corners of a triangle lie on one line, or in one place; exact.
+/// Return whether the corners of a triangle lie on one line, or in one place; exact.
 pub fn is_flat(triangle: &Triangle) -> bool {
     (0..3).all(|axis| turn(seen_along(triangle, axis)) == 0)
 }

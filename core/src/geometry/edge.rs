@@ -43,7 +43,7 @@ impl LatticeEdge {
         }
     }
 
-    /// Whether two edges have one direction, or opposite ones.
+    /// Return whether two edges have one direction, or opposite ones.
     pub fn is_parallel(&self, other: &Self) -> bool {
         let ((a, b), (c, d)) = (self.ends(), other.ends());
         let step = |p: &Lattice, q: &Lattice, i: usize| i128::from(q[i] - p[i]);
@@ -53,19 +53,19 @@ impl LatticeEdge {
         })
     }
 
-    /// Whether two edges have the same ends, in either order.
+    /// Return whether two edges have the same ends, in either order.
     pub fn shares_ends(&self, other: &Self) -> bool {
         let (ends, (a, b)) = (self.ends(), other.ends());
         ends == (a, b) || ends == (b, a)
     }
 
-    /// Whether both ends lie in a plane.
+    /// Return whether both ends lie in a plane.
     pub fn lies_in(&self, plane: &Plane) -> bool {
         let (a, b) = self.ends();
         plane.side_of_lattice(a) == 0 && plane.side_of_lattice(b) == 0
     }
 
-    /// Whether a lattice point lies on the edge's line.
+    /// Return whether a lattice point lies on the edge's line.
     pub fn line_holds(&self, place: &Lattice) -> bool {
         let (a, b) = self.ends();
         normal(a, b, place) == [0; 3]

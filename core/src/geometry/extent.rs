@@ -31,7 +31,7 @@ impl Extent {
         }
     }
 
-    /// Whether the two have no point in common.
+    /// Return whether the two have no point in common.
     pub fn misses(&self, other: &Self) -> bool {
         (0..3).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i])
     }

@@ -30,7 +30,7 @@ pub type Ring = SmallVec<[Fixed; 12]>;
 pub struct Flux {
     /// The value.
     pub value: Int<6>,
-    /// How far it may be from the true one.
+    /// A bound of its distance from the true one.
     pub error: f64,
 }
 
@@ -144,7 +144,7 @@ fn quotient<const N: usize, const M: usize>(
     first.saturating_add(as_wide(rest.to_f64() * reciprocal))
 }
 
-/// How far a coordinate can be from the true one after a quotient, if none exceeds `size`.
+/// Bound the error of a coordinate after a quotient, if none exceeds `size`.
 ///
 /// The first step leaves 2^-50 of the quotient, the second as much of that, and one for rounding.
 fn slack(size: f64) -> f64 {
@@ -174,7 +174,7 @@ impl Walls {
         }
     }
 
-    /// How far a lattice point lies beyond a wall, in half steps.
+    /// Return the distance of a lattice point beyond a wall, in half steps.
     pub fn beyond(&self, wall: usize, p: &Lattice) -> i64 {
         let over = 2 * p[wall / 2] - self.doubled[wall];
         if wall.is_multiple_of(2) {
@@ -184,7 +184,7 @@ impl Walls {
         }
     }
 
-    /// How far a point lies beyond a wall.
+    /// Return the distance of a point beyond a wall.
     fn excess(&self, wall: usize, p: &Fixed) -> i128 {
         let over = p[wall / 2] - self.at[wall];
         if wall.is_multiple_of(2) {
@@ -194,12 +194,13 @@ impl Walls {
         }
     }
 
-    /// Whether all points lie inside.
+    /// Return whether all points lie inside.
     pub fn hold<'a>(&self, mut points: impl Iterator<Item = &'a Fixed>) -> bool {
         points.all(|p| (0..6).all(|wall| self.excess(wall, p) <= 0))
     }
 
-    /// Whether a point lies inside, of which each coordinate is off by some units in its last place.
+    /// Return whether a point lies inside, of which each coordinate is off by some units in its
+    /// last place.
     pub fn surely_hold(&self, near: &[f64; 3]) -> bool {
         (0..3).all(|i| {
             let [low, high] = [2 * i, 2 * i + 1].map(|wall| as_double(self.doubled[wall]) / 2.0);
@@ -237,7 +238,7 @@ impl Walls {
     }
 }
 
-/// Where an edge with ends on both sides meets a wall.
+/// Return the point in which an edge with ends on both sides meets a wall.
 ///
 /// The ends are taken in one order, so that neighbours on the two sides of an edge agree.
 fn crossing(p: &Fixed, q: &Fixed, axis: usize, wall: i128) -> Fixed {
@@ -308,7 +309,7 @@ impl<'a> Triangle<'a> {
         }
     }
 
-    /// Where an edge meets a wall, between its ends.
+    /// Return the point in which an edge meets a wall, between its ends.
     fn crossing(&self, from: &Cut, to: &Fixed, walls: &Walls, wall: usize) -> Fixed {
         let axis = wall / 2;
         let mut at = from.0;
@@ -402,7 +403,7 @@ pub fn of_cubic_steps(whole: &Int<4>) -> Int<6> {
     Int::from_limbs(limbs)
 }
 
-/// How far points lie from the origin, and apart, in units.
+/// Distances of points from the origin, and from each other, in units.
 #[derive(Clone, Copy, Debug)]
 pub struct Reach {
     size: f64,

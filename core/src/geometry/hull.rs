@@ -83,7 +83,7 @@ fn extreme_corners(points: &[Point], faces: &[[usize; 3]]) -> Vec<usize> {
     corners
 }
 
-/// Whether triangles that share a corner lie in different planes.
+/// Return whether triangles that share a corner lie in different planes.
 fn are_apart(a: &Triangle, b: &Triangle) -> bool {
     b.iter().any(|p| side(a, p) != 0)
 }
@@ -267,7 +267,7 @@ fn simplex(points: &[Point]) -> Option<[usize; 4]> {
     })
 }
 
-/// Whether three points lie on one line: then they do along each axis.
+/// Return whether three points lie on one line: then they do along each axis.
 fn are_in_line(points: &Triangle) -> bool {
     (0..3).all(|axis| {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);

@@ -1,4 +1,4 @@
-//! What two triangles in doubles have in common, exactly.
+//! The points that two triangles in doubles have in common, exactly.
 //!
 //! Points that surfaces share never make them cross: where two surfaces pass through each other
 //! they do so along lines. So common points count as nothing, and a common stretch of a line is
@@ -7,7 +7,7 @@
 
 use super::doubles::{clear_turn, is_flat, seen_along, side, turn, Facing, Point, Triangle};
 
-/// What two triangles have in common.
+/// The kinds of points that two triangles have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meeting {
     /// Nothing, or points.
@@ -24,7 +24,7 @@ pub enum Meeting {
     Overlap,
 }
 
-/// What two triangles that have area have in common.
+/// Return what two triangles that have area have in common.
 pub fn meeting(p: &Triangle, q: &Triangle) -> Meeting {
     if are_clear(p, q) {
         Meeting::Clear
@@ -57,7 +57,8 @@ fn meeting_by_sides(p: &Triangle, q: &Triangle) -> Meeting {
     }
 }
 
-/// Whether doubles alone show that two triangles have nothing or one corner in common: most pairs.
+/// Return whether doubles alone show that two triangles have nothing or one corner in common: most
+/// pairs.
 fn are_clear(p: &Triangle, q: &Triangle) -> bool {
     if p.iter().filter(|c| has_corner(q, c)).count() > 1 {
         return false;
@@ -70,7 +71,8 @@ fn are_clear(p: &Triangle, q: &Triangle) -> bool {
     lies_outside(p, q, axis) || lies_outside(q, p, axis)
 }
 
-/// Whether a triangle is clearly on one side of the plane of another, but for common corners.
+/// Return whether a triangle is clearly on one side of the plane of another, but for common
+/// corners.
 fn lies_beside(t: &Triangle, plane: &Facing, other: &Triangle) -> bool {
     let mut own = 0;
     for c in t.iter().filter(|c| !has_corner(other, c)) {
@@ -82,8 +84,8 @@ fn lies_beside(t: &Triangle, plane: &Facing, other: &Triangle) -> bool {
     true
 }
 
-/// Whether a triangle, seen along an axis, is clearly beyond an edge of another, but for a corner
-/// that is an end of the edge: seen so, each point of the other is one point.
+/// Return whether a triangle, seen along an axis, is clearly beyond an edge of another, but for a
+/// corner that is an end of the edge: seen so, each point of the other is one point.
 fn lies_outside(t: &Triangle, other: &Triangle, axis: usize) -> bool {
     let (t_seen, other_seen) = (seen_along(t, axis), seen_along(other, axis));
     let Some(inner) = clear_turn(other_seen) else {
@@ -98,8 +100,8 @@ fn lies_outside(t: &Triangle, other: &Triangle, axis: usize) -> bool {
     })
 }
 
-/// Whether a triangle lies on another that is its mate at an edge, given by its number in the
-/// second; both have area. If not, they have nothing but the edge in common.
+/// Return whether a triangle lies on another that is its mate at an edge, given by its number in
+/// the second; both have area. If not, they have nothing but the edge in common.
 pub fn folds_over(p: &Triangle, q: &Triangle, edge: usize) -> bool {
     // Seen so that both face one way, they lie on different sides of the edge.
     let clear = |t: &Triangle, axis: usize| clear_turn(seen_along(t, axis));
@@ -125,19 +127,19 @@ fn sides(triangle: &Triangle, plane: &Triangle) -> [i32; 3] {
     [side(a), side(b), side(c)]
 }
 
-/// Whether a point is a corner of a triangle.
+/// Return whether a point is a corner of a triangle.
 #[inline]
 fn has_corner([a, b, c]: &Triangle, p: &Point) -> bool {
     is_same(p, a) || is_same(p, b) || is_same(p, c)
 }
 
-/// Whether two points are one; arrays would be compared as slices, which takes longer.
+/// Return whether two points are one; arrays would be compared as slices, which takes longer.
 #[inline]
 fn is_same(p: &Point, q: &Point) -> bool {
     p[0] == q[0] && p[1] == q[1] && p[2] == q[2]
 }
 
-/// What a triangle has in common with the plane of another.
+/// The part of a triangle in the plane of another.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Reach {
     /// A corner at most.
@@ -176,8 +178,8 @@ fn alone(sides: &[i32; 3]) -> usize {
     (0..3).find(single).unwrap_or(0)
 }
 
-/// Whether the stretches in which two triangles cover the line that their planes share have more
-/// than a point in common.
+/// Return whether the stretches in which two triangles cover the line that their planes share have
+/// more than a point in common.
 ///
 /// The edges at the lone corners `p[i]` and `q[k]` end the stretches. Which of two such edges comes
 /// first on the line is the sign of the volume they span, up to a sign that is the same for all
@@ -191,7 +193,7 @@ fn has_common_stretch(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
     orders.contains(&1) && orders.contains(&-1)
 }
 
-/// Whether two triangles of one plane have an area in common: no edge's line separates them.
+/// Return whether two triangles of one plane have an area in common: no edge's line separates them.
 fn overlap(p: &Triangle, q: &Triangle) -> bool {
     let facing = |axis: usize| turn(seen_along(p, axis));
     let Some(axis) = (0..3).find(|axis| facing(*axis) != 0) else {
@@ -201,14 +203,14 @@ fn overlap(p: &Triangle, q: &Triangle) -> bool {
     !lie_apart(&p, &q) && !separates(&p, &q) && !separates(&q, &p)
 }
 
-/// Whether the boxes around two triangles have no area in common.
+/// Return whether the boxes around two triangles have no area in common.
 fn lie_apart(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
     let low = |t: &[[f64; 2]; 3], i: usize| t[0][i].min(t[1][i]).min(t[2][i]);
     let high = |t: &[[f64; 2]; 3], i: usize| t[0][i].max(t[1][i]).max(t[2][i]);
     (0..2).any(|i| high(p, i) <= low(q, i) || high(q, i) <= low(p, i))
 }
 
-/// Whether one triangle lies on the outer side of an edge of another, or on its line.
+/// Return whether one triangle lies on the outer side of an edge of another, or on its line.
 fn separates(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
     let inner = turn(*p);
     (0..3).any(|i| {
@@ -218,8 +220,9 @@ fn separates(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
     })
 }
 
-/// Whether the surface that bends from `p` to `p_mate` over their common edge a → b passes through
-/// the one that bends from `q` to `q_mate` over an edge on the same line, each given by its apex.
+/// Return whether the surface that bends from `p` to `p_mate` over their common edge a → b passes
+/// through the one that bends from `q` to `q_mate` over an edge on the same line, each given by its
+/// apex.
 ///
 /// Half-planes that coincide have an area in common, which is found elsewhere; here they count as
 /// not passing.
@@ -238,7 +241,7 @@ pub fn interleave(axis: [&Point; 2], [p, p_mate]: [&Point; 2], [q, q_mate]: [&Po
     !beside(q) && !beside(q_mate) && inside(q) != inside(q_mate)
 }
 
-/// Whether two points of one plane with a line lie on the same side of it.
+/// Return whether two points of one plane with a line lie on the same side of it.
 fn is_same_half(axis: [&Point; 2], x: &Point, y: &Point) -> bool {
     let first = [*axis[0], *axis[1], *x];
     let second = [*axis[0], *axis[1], *y];
@@ -251,13 +254,13 @@ fn is_same_half(axis: [&Point; 2], x: &Point, y: &Point) -> bool {
     })
 }
 
-/// Whether a surface that bends over an edge, given by the apexes of its two triangles, passes
-/// through the plane of a triangle in which the edge lies.
+/// Return whether a surface that bends over an edge, given by the apexes of its two triangles,
+/// passes through the plane of a triangle in which the edge lies.
 pub fn passes(plane: &Triangle, [apex, mate]: [&Point; 2]) -> bool {
     side(plane, apex) * side(plane, mate) < 0
 }
 
-/// Whether a triangle has no area, so that its points all lie on its neighbours' edges.
+/// Return whether a triangle has no area, so that its points all lie on its neighbours' edges.
 pub fn has_no_area(triangle: &Triangle) -> bool {
     let [a, b, c] = triangle;
     a == b || b == c || c == a || is_flat(triangle)

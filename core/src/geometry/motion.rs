@@ -49,7 +49,7 @@ impl Motion {
         Some(motion)
     }
 
-    /// Whether the motion turns right hands into left ones.
+    /// Return whether the motion turns right hands into left ones.
     pub fn mirrors(&self) -> bool {
         let order = self.axes.map(|a| a.0);
         let even = matches!(order, [0, 1, 2] | [1, 2, 0] | [2, 0, 1]);

@@ -18,7 +18,7 @@ pub struct OutlineEdge {
     pub from: Arc<Vertex>,
     /// End.
     pub to: Arc<Vertex>,
-    /// What it lies on, beside the support.
+    /// The carrier that it lies on, beside the support.
     pub carrier: Carrier,
     /// The line it lies on.
     pub line: LineKey,
@@ -31,7 +31,7 @@ pub struct BareEdge {
     pub from: Arc<Vertex>,
     /// End.
     pub to: Arc<Vertex>,
-    /// What it lies on, beside the support.
+    /// The carrier that it lies on, beside the support.
     pub carrier: Carrier,
 }
 
@@ -116,7 +116,7 @@ impl Outline {
         }
     }
 
-    /// What remains of some edges.
+    /// Return the outline that remains of some edges.
     pub fn of(edges: Vec<OutlineEdge>) -> Self {
         let edges = maximal(edges);
         let lines = edges.iter().map(|e| e.line).collect();
@@ -277,7 +277,7 @@ fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>
     }
 }
 
-/// Whether one edge of a line is another run backwards.
+/// Return whether one edge of a line is another run backwards.
 fn is_opposite(a: &OutlineEdge, b: &OutlineEdge, axis: usize) -> bool {
     let same = |p, q| order_along(p, q, axis) == Ordering::Equal;
     same(&a.from, &b.to) && same(&a.to, &b.from)
@@ -331,7 +331,7 @@ pub fn convex_loop(support: &Arc<Plane>, edges: &[BareEdge]) -> Option<Polygon> 
         .then(|| Polygon::of_corners(ring, Arc::clone(support)))
 }
 
-/// Whether two edges of a face that meet lie on one line.
+/// Return whether two edges of a face that meet lie on one line.
 fn continues(first: &Carrier, second: &Carrier) -> bool {
     match (first, second) {
         (Carrier::Edge(first), Carrier::Edge(second)) => first.is_parallel(second),
@@ -339,7 +339,8 @@ fn continues(first: &Carrier, second: &Carrier) -> bool {
     }
 }
 
-/// Whether all of an outline lies on the inner side of an edge, and only its ends in its line.
+/// Return whether all of an outline lies on the inner side of an edge, and only its ends in its
+/// line.
 fn bounds(carrier: &Carrier, edges: &[BareEdge]) -> bool {
     let Carrier::Cut(plane, plus) = carrier else {
         return true;

@@ -1,4 +1,4 @@
-//! How the winding number changes along a straight path from a cell's corner to an exact point.
+//! Changes of the winding number along a straight path from a cell's corner to an exact point.
 //!
 //! The path ends at a point of one surface, to learn on which side of others it lies. Unlike the
 //! segments between corners it is not made generic: where it runs through an edge, or ends on the
@@ -16,7 +16,7 @@ use crate::arith::Int;
 /// u = 2^-53, relative to the sum of magnitudes; 16u leaves room for the bound's own rounding.
 const DETERMINANT_FILTER: f64 = 16.0 / 9_007_199_254_740_992.0;
 
-/// What boxes are widened by, as a share of the largest coordinate.
+/// The width that boxes gain, as a share of the largest coordinate.
 ///
 /// Ends and differences are rounded by a few units in the last place of a coordinate, quotients by
 /// as much of the extent: together below 2^-48 of the largest coordinate.
@@ -42,7 +42,7 @@ impl Way {
         }
     }
 
-    /// Whether the path may meet a box; errs on yes.
+    /// Return whether the path may meet a box; errs on yes.
     pub fn may_meet(&self, low: &Lattice, high: &Lattice) -> bool {
         let (mut first, mut last) = (0.0f64, 1.0f64);
         for i in 0..3 {

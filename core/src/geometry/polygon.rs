@@ -15,7 +15,7 @@ use super::vertex::Vertex;
 use crate::arith::convert::as_double;
 use crate::interrupt::poll;
 
-/// What an edge lies on, beside the supporting plane.
+/// The support of an edge, beside the plane of the polygon.
 #[derive(Clone, Debug)]
 pub enum Carrier {
     /// A lattice edge of a face, in the face's own direction.
@@ -52,7 +52,8 @@ impl Carrier {
         }
     }
 
-    /// Whether this is the border of the universe, which cuts half-spaces off and nothing else.
+    /// Return whether this is the border of the universe, which cuts half-spaces off and nothing
+    /// else.
     pub fn is_border(&self) -> bool {
         match self {
             Self::Edge(..) => false,
@@ -102,9 +103,9 @@ fn edge_plane(edge: &LatticeEdge, support: &Plane) -> Plane {
 /// A corner and the carrier of the edge that leaves it.
 #[derive(Clone, Debug)]
 pub struct Corner {
-    /// Where.
+    /// The place of the corner.
     pub at: Arc<Vertex>,
-    /// What the edge to the next corner lies on.
+    /// The carrier of the edge to the next corner.
     pub edge: Carrier,
 }
 
@@ -116,7 +117,7 @@ pub type Sides = SmallVec<[i32; 8]>;
 /// The ends of a segment inside a polygon.
 pub type Chord = SmallVec<[Arc<Vertex>; 2]>;
 
-/// Whether there are corners on the minus side, and on the plus side.
+/// Return whether there are corners on the minus side, and whether there are on the plus side.
 pub fn straddle(sides: &[i32]) -> (bool, bool) {
     (sides.iter().any(|s| *s < 0), sides.iter().any(|s| *s > 0))
 }
@@ -146,7 +147,7 @@ pub struct Polygon {
     corners: Corners,
 }
 
-/// Where a polygon lies relative to a plane.
+/// The sides of a plane on which a polygon lies, and its parts there.
 ///
 /// Pieces are moved on at once, never stored, so that boxing the large variant would only cost.
 #[derive(Debug)]
@@ -264,7 +265,7 @@ impl Polygon {
         ends
     }
 
-    /// Where the edge from a corner crosses a plane that has its ends on both sides.
+    /// Return the point in which the edge from a corner crosses a plane between its ends.
     fn crossing(&self, corner: usize, cut: &Arc<Plane>) -> Arc<Vertex> {
         let meet = self.corners[corner].edge.meet(&self.support, cut);
         Arc::new(meet.expect("an edge with ends on both sides meets the plane"))
@@ -345,7 +346,7 @@ impl Polygon {
         Some(polygon)
     }
 
-    /// Whether the polygon may reach beyond half a step outside low and high; errs on yes.
+    /// Return whether the polygon may reach beyond half a step outside low and high; errs on yes.
     fn reach(&self, axis: usize, low: i64, high: i64) -> (bool, bool) {
         let (mut below, mut above) = (false, false);
         for corner in &self.corners {
@@ -377,7 +378,8 @@ impl Polygon {
         }
     }
 
-    /// Whether an edge of one polygon has the other entirely beyond it; both lie in one plane.
+    /// Return whether an edge of one polygon has the other entirely beyond it; both lie in one
+    /// plane.
     pub fn lies_beside(&self, other: &Self) -> bool {
         poll();
         self.has_beyond_an_edge(other) || other.has_beyond_an_edge(self)

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use serde::{Deserialize, Serialize};
 
-/// Where a point lies relative to an oriented hyperplane.
+/// The side of an oriented hyperplane on which a point lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Side {
     /// Strictly inside: the hyperplane's value is negative.
@@ -67,8 +67,8 @@ impl Half {
     }
 }
 
-/// How two hyperplanes that are the same set of points are oriented to each other, or a face of a
-/// solid to the face it came from.
+/// The orientation of two hyperplanes that are the same set of points to each other, or of a face
+/// of a solid to the face it came from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Orientation {
     /// Their minus sides agree.
@@ -96,12 +96,12 @@ impl Orientation {
         }
     }
 
-    /// Whether the sides are exchanged.
+    /// Return whether the sides are exchanged.
     pub fn is_opposite(self) -> bool {
         self == Self::Opposite
     }
 
-    /// What has a sign: itself, or its negative if the sides are exchanged.
+    /// Return what has a sign: itself, or its negative if the sides are exchanged.
     ///
     /// ```
     /// use bspcsg::geometry::side::Orientation;
@@ -118,7 +118,7 @@ impl Orientation {
     }
 }
 
-/// Where a convex piece lies relative to a hyperplane; touching it does not count as crossing.
+/// The sides of a hyperplane on which a convex piece lies; touching it does not count as crossing.
 ///
 /// The one-sided answers carry nothing: the piece that was asked about is the answer.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -50,7 +50,7 @@ pub trait Space: Copy + Debug + Send + Sync + 'static {
     /// The orientation of `a` relative to `b` if they are the same set of points.
     fn coincide(a: &Self::Hyperplane, b: &Self::Hyperplane) -> Option<Orientation>;
 
-    /// Where `piece` lies relative to `cut`, with its two parts if it crosses.
+    /// Split `piece` by `cut`: return the side it lies on, or its two parts if it crosses.
     fn split(piece: &Self::Fragment, cut: &Self::Hyperplane) -> Split<Self::Fragment>;
 
     /// The part of `cut` inside `frame`, if that has a relative interior in the frame's interior.

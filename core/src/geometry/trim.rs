@@ -11,7 +11,7 @@ use super::side::Orientation;
 use crate::arith::convert::as_double;
 use crate::arith::Int;
 
-/// What the walls of a cell leave of a triangle.
+/// The part of a triangle that the walls of a cell leave.
 #[derive(Clone, Copy, Debug)]
 pub enum Rest {
     /// All of it.
@@ -24,7 +24,7 @@ pub enum Rest {
     Open,
 }
 
-/// What the walls of a cell leave of a lattice triangle; `area` is its normal's z.
+/// Return what the walls of a cell leave of a lattice triangle; `area` is its normal's z.
 pub fn trimmed(corners: &[Lattice; 3], area: i128, walls: &Walls) -> Rest {
     let mut cuts = [None; 6];
     for (wall, cut) in cuts.iter_mut().enumerate() {
@@ -101,7 +101,7 @@ fn at_corner(corners: &[Lattice; 3], area: i128, beyond: &[i64; 3], lone: usize)
     }
 }
 
-/// What part of an edge lies before a wall, from the distances of its ends; rounded down.
+/// Return the part of an edge before a wall, from the distances of its ends; rounded down.
 fn share(before: u64, behind: u64) -> Int<2> {
     let length = u128::from(before + behind);
     let dividend = u128::from(before) << (SHARE / 2);

@@ -135,7 +135,7 @@ impl Vertex {
         ([x - a, y - b, z - c], [x + a, y + b, z + c])
     }
 
-    /// Whether this may be a lattice point; errs on yes.
+    /// Return whether this may be a lattice point; errs on yes.
     pub fn may_be(&self, place: &Lattice) -> bool {
         let (low, high) = self.bounds();
         (0..3).all(|i| low[i] <= as_double(place[i]) && as_double(place[i]) <= high[i])
@@ -172,7 +172,7 @@ impl Vertex {
         (value.abs() > doubt).then_some(if value > 0.0 { 1 } else { -1 })
     }
 
-    /// Whether the point lies in a plane by what it was constructed from; errs on no.
+    /// Return whether the point lies in a plane by what it was constructed from; errs on no.
     fn is_known_in(&self, plane: &Plane) -> bool {
         let is_it = |own: &Arc<Plane>| {
             std::ptr::eq(Arc::as_ptr(own), plane) || own.coincides(plane).is_some()
@@ -220,7 +220,7 @@ impl Vertex {
         certain.then(|| left.total_cmp(&right))
     }
 
-    /// Whether two vertices are the same point.
+    /// Return whether two vertices are the same point.
     ///
     /// What a point was constructed from meets nowhere else, so that another point that lies in all
     /// of that is the same.
@@ -252,7 +252,7 @@ impl Vertex {
         (0..3).all(|axis| p.compare(&q, axis) == Ordering::Equal)
     }
 
-    /// Whether this is a lattice point.
+    /// Return whether this is a lattice point.
     pub fn is_at(&self, place: &Lattice) -> bool {
         match &self.place {
             Place::Lattice(p) => p == place,

@@ -129,7 +129,7 @@ fn wrong_source(operand: &Solid, number: usize) -> Option<Error> {
     None
 }
 
-/// Whether the faces of a source cross or overlap each other, or enclose a region twice.
+/// Return whether the faces of a source cross or overlap each other, or enclose a region twice.
 ///
 /// # Errors
 /// `Internal`.

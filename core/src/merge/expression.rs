@@ -62,7 +62,7 @@ pub struct Expression {
     terms: Vec<Term>,
 }
 
-/// What is left of an expression.
+/// An expression after some of its operands have become constant.
 #[derive(Clone, Debug)]
 pub enum Residual {
     /// Inside or outside, whatever the unknown operands are.
@@ -85,7 +85,7 @@ enum Known {
 pub struct Parted {
     /// The two others; they have no operand in common.
     pub halves: [Expression; 2],
-    /// What they make, the first as operand 0 and the second as operand 1.
+    /// The expression that they make, the first as operand 0 and the second as operand 1.
     pub whole: Expression,
 }
 

@@ -26,7 +26,7 @@ pub enum SetOp {
     SymmetricDifference,
 }
 
-/// What an operation makes of one operand where the other is a leaf.
+/// The result of an operation for one operand where the other is a leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Outcome {
     /// A leaf, whatever the operand is.

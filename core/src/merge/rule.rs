@@ -1,6 +1,6 @@
-//! Which winding numbers count as inside.
+//! Rules by which winding numbers count as inside.
 
-/// Which winding numbers count as inside.
+/// A rule by which winding numbers count as inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Rule {
     /// w > 0.
@@ -12,7 +12,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// Whether a region with this winding number is inside.
+    /// Return whether a region with this winding number is inside.
     ///
     /// ```
     /// use bspcsg::merge::rule::Rule;

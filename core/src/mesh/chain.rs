@@ -1,9 +1,9 @@
-//! Whether the boundary of a surface vanishes, without looking for pairs.
+//! The test whether the boundary of a surface vanishes, without looking for pairs.
 
 use super::tasks::each_chunk;
 use crate::arith::convert::low_limb;
 
-/// Whether every directed edge occurs as often as its opposite.
+/// Return whether every directed edge occurs as often as its opposite.
 ///
 /// Each edge is given a number of 128 bits that looks random; it is added for one direction and
 /// subtracted for the other, modulo 2^128. A closed surface sums to zero, whatever its order. An

@@ -16,7 +16,7 @@ fn turn(a: &Lattice, b: &Lattice, c: &Lattice, axes: (usize, usize)) -> i128 {
     arm(b, u) * arm(c, v) - arm(b, v) * arm(c, u)
 }
 
-/// Whether a polygon, counterclockwise in the projection, is strictly convex and winds once.
+/// Return whether a polygon, counterclockwise in the projection, is strictly convex and winds once.
 pub fn is_convex(corners: &[Lattice], axes: (usize, usize)) -> bool {
     let n = corners.len();
     let at = |i: usize| &corners[i % n];
@@ -30,7 +30,7 @@ pub fn is_convex(corners: &[Lattice], axes: (usize, usize)) -> bool {
     strict && starts == 1
 }
 
-/// Whether two edges of an outline that are no neighbours have a point in common.
+/// Return whether two edges of an outline that are no neighbours have a point in common.
 fn crosses_itself(corners: &[Lattice], axes: (usize, usize)) -> bool {
     let n = corners.len();
     let edge = |i: usize| (&corners[i], &corners[(i + 1) % n]);
@@ -41,7 +41,7 @@ fn crosses_itself(corners: &[Lattice], axes: (usize, usize)) -> bool {
     })
 }
 
-/// Whether two closed segments have a point in common.
+/// Return whether two closed segments have a point in common.
 fn meet(p: (&Lattice, &Lattice), q: (&Lattice, &Lattice), axes: (usize, usize)) -> bool {
     let apart = |i: usize| {
         p.0[i].max(p.1[i]) < q.0[i].min(q.1[i]) || q.0[i].max(q.1[i]) < p.0[i].min(p.1[i])

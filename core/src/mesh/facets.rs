@@ -12,7 +12,7 @@ use crate::interrupt::poll;
 pub struct Facet {
     /// One corner, two, or those of a convex polygon; unused coordinates are zero.
     pub corners: Vec<Lattice>,
-    /// Whether the edge that leaves each corner is a diagonal of the input facet.
+    /// Marks of the edges, by the corner they leave, that are diagonals of the input facet.
     pub seams: Vec<bool>,
     /// The number of the input facet.
     pub source: u32,
@@ -83,7 +83,7 @@ pub fn check_reach(rows: &[Lattice]) -> Result<()> {
     }
 }
 
-/// What to do with facets that are not what they should be, instead of refusing them.
+/// The flaws of facets that are mended instead of refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lenience {
     /// Make triangles of polygons that are not planar.
@@ -191,7 +191,8 @@ fn polygon(given: &[Lattice], source: u32, lenient: bool) -> Result<Vec<Facet>> 
     Ok(parts.iter().map(|t| part(&corners, t, source)).collect())
 }
 
-/// Why a polygon has no normal: it is flat, or what it turns one way round it turns the other.
+/// Explain why a polygon has no normal: it is flat, or what it turns one way round it turns the
+/// other.
 fn without_normal(corners: &[Lattice], source: u32) -> Error {
     let (kind, text) = match corners {
         // Of more than three corners none lies between its neighbours on one line.

@@ -1,6 +1,6 @@
-//! What was noticed about a mesh, as data.
+//! Findings about a mesh, as data.
 
-/// How much a finding matters.
+/// The weight of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
     /// Worth knowing; the result is what was asked for.
@@ -25,9 +25,9 @@ impl Severity {
 pub struct Finding {
     /// A stable name for programs.
     pub code: &'static str,
-    /// How much it matters.
+    /// The weight of the finding.
     pub severity: Severity,
-    /// How often.
+    /// The number of times that it was found.
     pub count: u64,
     /// The first few places: faces or vertices, as the message says.
     pub place: Vec<u64>,
@@ -35,7 +35,7 @@ pub struct Finding {
     pub message: String,
 }
 
-/// How many places a finding names.
+/// The number of places that a finding names.
 const PLACES: usize = 8;
 
 impl Finding {

@@ -90,7 +90,7 @@ impl SourceFace {
 pub struct OrientedFace {
     /// The face.
     pub face: SourceFace,
-    /// How it is turned.
+    /// The orientation of the face.
     pub orientation: Orientation,
 }
 

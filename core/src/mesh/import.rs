@@ -254,7 +254,7 @@ fn weigh_chunk(
     (volume, flat)
 }
 
-/// Whether a triangle has no area.
+/// Return whether a triangle has no area.
 pub fn is_flat(corners: &[Lattice; 3]) -> bool {
     let [a, b, c] = corners;
     let [u, v] = spokes([a, b, c]);
@@ -266,7 +266,7 @@ fn spokes([a, b, c]: [&Lattice; 3]) -> [[f64; 3]; 2] {
     [b, c].map(|end| each_axis(|i| as_double(end[i] - a[i])))
 }
 
-/// Whether two edges are not parallel, beyond the rounding of their cross product.
+/// Return whether two edges are not parallel, beyond the rounding of their cross product.
 fn surely_wide(u: &[f64; 3], v: &[f64; 3]) -> bool {
     let certain = |i: usize, j: usize| {
         let (p, q) = (u[i] * v[j], u[j] * v[i]);

@@ -1,4 +1,4 @@
-//! Where several fans of faces, or more than two faces of an edge, share a vertex.
+//! Irregular vertices: several fans of faces, or more than two faces of an edge, share them.
 //!
 //! The link of a vertex has a directed edge for each face around it: from the corner after the
 //! vertex to the one before it. The faces make one fan if the link is one cycle.
@@ -79,7 +79,7 @@ fn label(vertex: u32) -> u16 {
     vertex as u16 | 1 << 15
 }
 
-/// Whether a link is surely one cycle; its starts must be its ends in another order.
+/// Return whether a link is surely one cycle; its starts must be its ends in another order.
 ///
 /// The walk below maps label to label. If it first returns after `count` steps, it saw as many
 /// labels, all different; no label is seen that no start has, since the walk stays at zero from

@@ -31,7 +31,7 @@ pub struct Source {
     findings: Vec<Finding>,
 }
 
-/// What a source consists of.
+/// The faces and vertices of a source.
 #[derive(Debug)]
 pub enum Shape {
     /// Triangles on the lattice.
@@ -96,7 +96,7 @@ impl Source {
         self.pitch
     }
 
-    /// What was noticed at import, and where the surface is no manifold.
+    /// Return what was noticed at import, and where the surface is no manifold.
     pub fn findings(&self) -> Vec<Finding> {
         let mut findings = self.findings.clone();
         findings.extend(self.irregularity());
@@ -181,7 +181,7 @@ impl Source {
         }
     }
 
-    /// Whether the faces close, by index or along lines, as all do that were imported.
+    /// Return whether the faces close, by index or along lines, as all do that were imported.
     pub fn closes(&self) -> bool {
         let Some(mesh) = self.mesh() else {
             return true;
@@ -190,7 +190,7 @@ impl Source {
         self.open_vertices().is_empty() || self.topology().is_none_or(|t| open(t).is_empty())
     }
 
-    /// Whether no face was left out and no vertex welded at import.
+    /// Return whether no face was left out and no vertex welded at import.
     pub fn is_as_given(&self) -> bool {
         let welded = self.findings.iter().any(|f| f.code == WELDED);
         !welded && self.mesh().is_some_and(|m| m.numbers.is_none())
@@ -228,7 +228,7 @@ impl Source {
         }
     }
 
-    /// Whether a face is perpendicular to an axis.
+    /// Return whether a face is perpendicular to an axis.
     pub fn is_orthogonal(&self, face: FaceId) -> bool {
         match &self.shape {
             Shape::Mesh(mesh) => {

@@ -3,7 +3,7 @@
 use crate::arith::convert::as_number;
 use crate::interrupt::poll;
 
-/// How many different things of each kind make up a mesh.
+/// The numbers of different things of each kind that make up a mesh.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Counts {
     /// Vertices that a face uses.
@@ -41,7 +41,7 @@ pub fn counts(faces: &[[u32; 3]], vertex_count: usize) -> Counts {
     }
 }
 
-/// How many of the two directions of an edge are open; one that begins where it ends is.
+/// Count the open ones of an edge's two directions; one that begins where it ends is open.
 fn open(uses: &[(u32, bool)], is_loop: bool) -> usize {
     let forth = uses.iter().filter(|(_, forth)| *forth).count();
     match (forth, uses.len() - forth) {

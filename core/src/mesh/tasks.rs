@@ -7,7 +7,8 @@ use crate::interrupt::{spend, Task};
 /// Elements of one task: some 50 µs of work, far above what handing it over costs.
 pub const CHUNK: usize = 1 << 14;
 
-/// Whether work may be shared: outside of a pool, handing it over costs more than most calls.
+/// Return whether work may be shared: outside of a pool, handing it over costs more than most
+/// calls.
 pub fn in_pool() -> bool {
     rayon::current_thread_index().is_some()
 }

@@ -1,4 +1,4 @@
-//! Which half-edge is whose mate.
+//! The mates of half-edges.
 
 use crate::arith::convert::as_number;
 use crate::geometry::axes::each_axis;
@@ -81,7 +81,7 @@ impl Topology {
     }
 }
 
-/// How many half-edges leave a vertex in the fan of one of them; open fans count as endless.
+/// Count the half-edges that leave a vertex in the fan of one of them; open fans count as endless.
 fn turns(start: u32, mate: impl Fn(u32) -> u32) -> usize {
     let mut half = start;
     let mut count = 0;

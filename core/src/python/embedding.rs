@@ -1,4 +1,4 @@
-//! Whether a mesh in doubles crosses itself, and meshes in single precision.
+//! Crossings of a mesh in doubles with itself, and meshes in single precision.
 
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;

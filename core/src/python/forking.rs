@@ -1,4 +1,4 @@
-//! What must not be half done when the process is forked.
+//! Work that must not be half done when the process is forked.
 
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;

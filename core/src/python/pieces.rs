@@ -9,9 +9,9 @@ use pyo3::prelude::*;
 pub struct PieceList {
     /// Coordinates, `dimension` for each corner.
     pub coordinates: Vec<f64>,
-    /// Where each piece begins, counted in corners, and where the last one ends.
+    /// The place where each piece begins, counted in corners, and where the last one ends.
     pub offsets: Vec<i64>,
-    /// What belongs to each piece: a node, a cell or a parent.
+    /// The owner of each piece: a node, a cell or a parent.
     pub tags: Vec<i64>,
 }
 

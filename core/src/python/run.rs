@@ -19,10 +19,10 @@ pub const SMALL: usize = 2000;
 const POLL: Duration = Duration::from_millis(50);
 
 thread_local! {
-    /// What a signal handler raised while this thread waited or worked.
+    /// The exception that a signal handler raised while this thread waited or worked.
     static RAISED: Cell<Option<PyErr>> = const { Cell::new(None) };
 
-    /// What is called while this thread's calls run.
+    /// The callable that is called while this thread's calls run.
     static WATCHER: RefCell<Option<Py<PyAny>>> = const { RefCell::new(None) };
 }
 
@@ -98,7 +98,7 @@ fn shared<T: Send>(
     })
 }
 
-/// Whether a signal has arrived of which the handler raised an exception, such as
+/// Return whether a signal has arrived of which the handler raised an exception, such as
 /// `KeyboardInterrupt`, or the watcher raised one.
 ///
 /// A handler may fork. The child has the threads of the pool no more, and the work borrows from

@@ -1,4 +1,4 @@
-//! What a set is made from: names, rows of doubles, hyperplanes.
+//! The input that a set is made from: names, rows of doubles, hyperplanes.
 
 use super::hyperplanes::{shape, Row};
 use crate::error::{Error, ErrorKind, Result};
@@ -14,13 +14,13 @@ use crate::mesh::import::import;
 use crate::query::region::solid;
 use crate::tree::partition::{enclosed, Facet, PartitionTree, PivotPolicy, Plan};
 
-/// Which winding numbers are inside.
+/// A rule by which winding numbers are inside.
 pub type Rule = fn(i32) -> bool;
 
-/// How the facets' hyperplanes are chosen, and whether axis-parallel cuts come above them.
+/// The choice of the facets' hyperplanes, and whether axis-parallel cuts come above them.
 pub type Policy = (PivotPolicy, bool);
 
-/// What a set is built from.
+/// The input that a set is built from.
 #[derive(Debug)]
 pub struct Input {
     /// Points with orientations (1D), ends of segments (2D), or vertices (3D).
@@ -29,9 +29,9 @@ pub struct Input {
     pub faces: Vec<[i64; 3]>,
     /// Hyperplanes to be cut along first.
     pub cuts: Vec<Row>,
-    /// Which winding numbers are inside.
+    /// The rule by which winding numbers are inside.
     pub rule: Rule,
-    /// How the rest is divided.
+    /// The policy by which the rest is divided.
     pub policy: Policy,
 }
 

@@ -1,4 +1,4 @@
-//! What a set answers with: pieces, outlines, measures, places.
+//! The answers of sets: pieces, outlines, measures, places.
 
 use super::each::Set;
 use super::hyperplanes::shape;
@@ -116,7 +116,7 @@ impl Set {
         Ok(list)
     }
 
-    /// Where points lie, snapped to the lattice.
+    /// Locate points, snapped to the lattice.
     pub fn classify(&self, points: &[Vec<f64>], pitch: Pitch) -> Result<Vec<Location>> {
         let snap = |row: &Vec<f64>| -> Result<Vec<i64>> {
             if row.len() != self.dimension() {

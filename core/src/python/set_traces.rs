@@ -1,4 +1,4 @@
-//! How two sets are merged, as plain tuples.
+//! The merging of two sets, as plain tuples.
 
 use super::each::{each, Set};
 use super::hyperplanes::{row_of, shape, Row};

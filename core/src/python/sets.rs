@@ -91,7 +91,7 @@ impl Set {
         Ok(each!(self, tree => stats(tree)))
     }
 
-    /// Whether everything (true) or nothing (false) is inside, if either.
+    /// Return true if everything is inside, false if nothing is, and `None` otherwise.
     pub fn uniform_label(&self) -> Option<bool> {
         let label = match self {
             Self::Line(tree) => tree.label(),
@@ -101,7 +101,7 @@ impl Set {
         label.map(|label| label == Label::In)
     }
 
-    /// Whether the set fits into some box.
+    /// Return whether the set fits into some box.
     pub fn is_bounded(&self) -> bool {
         match self {
             Self::Line(tree) => is_bounded(tree),
@@ -145,7 +145,7 @@ impl Set {
         composed(&sets).map(Self::Plane)
     }
 
-    /// Whether both are the same set of points.
+    /// Return whether both are the same set of points.
     pub fn equals(&self, other: &Self) -> Result<bool> {
         match (self, other) {
             (Self::Plane(a), Self::Plane(b)) => equal(a, b),

@@ -1,4 +1,4 @@
-//! What the arrays of a mesh tell: equal points, connected surfaces, counts and sums.
+//! Answers from the arrays of a mesh: equal points, connected surfaces, counts and sums.
 
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;

@@ -270,7 +270,7 @@ impl Tree {
         Ok(solid.map(Self::of))
     }
 
-    /// Whether the elements are the reduced boundary; None if nobody has looked.
+    /// Return whether the elements are the reduced boundary; None if nobody has looked.
     #[getter]
     fn simple(&self) -> Option<bool> {
         let known = self.solid.is_reduced() || self.solid.united().get().is_some();
@@ -338,7 +338,7 @@ impl Tree {
         )))
     }
 
-    /// Whether the tree holds the arrays it was made from, each face as it was.
+    /// Return whether the tree holds the arrays it was made from, each face as it was.
     #[getter]
     fn holds_given(&self) -> bool {
         self.given().is_some()

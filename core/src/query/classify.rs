@@ -1,4 +1,4 @@
-//! Where lattice points lie.
+//! The locations of lattice points.
 
 use crate::error::Result;
 use crate::geometry::cell::Cell;
@@ -10,7 +10,7 @@ use crate::merge::lists::list::{List, Sources};
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
-/// Where a point lies relative to a solid.
+/// The location of a point relative to a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
     /// In the interior.
@@ -24,7 +24,7 @@ pub enum Location {
 /// Lists with at most this many elements are searched with a local tree.
 const LEAF: usize = 20;
 
-/// Where each lattice point lies; the solid must be reduced for "on" to mean its boundary.
+/// Locate each lattice point; the solid must be reduced for "on" to mean its boundary.
 ///
 /// Deferred leaves are divided on the way, for the points at hand only.
 ///
@@ -158,7 +158,7 @@ impl Search<'_> {
     }
 }
 
-/// Whether a point lies on a closed polygon.
+/// Return whether a point lies on a closed polygon.
 fn touches(polygon: &Polygon, p: &Lattice) -> bool {
     polygon.support().side_of_lattice(p) == 0
         && polygon

@@ -50,20 +50,21 @@ pub fn locate<S: Affine>(tree: &FragmentTree<S>, point: &Viewpoint) -> Vec<Point
     steps
 }
 
-/// What happens to a ray on its way; parameters are in model units per length of the direction.
+/// An event of a ray on its way; parameters are in model units per length of the direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum RayEvent {
     /// An inner node is visited.
     Visit {
         /// The node.
         node: u32,
-        /// Where the ray enters the node's region.
+        /// The parameter at which the ray enters the node's region.
         from: f64,
-        /// Where it leaves the region; `None` if it does not.
+        /// The parameter at which it leaves the region; `None` if it does not.
         to: Option<f64>,
         /// The side of the hyperplane on which the ray starts: the near child.
         near: Side,
-        /// Where the ray's line crosses the hyperplane; `None` if it runs beside or within.
+        /// The parameter at which the ray's line crosses the hyperplane; `None` if it runs beside
+        /// or within.
         at: Option<f64>,
     },
     /// A piece in a node's hyperplane is tested.
@@ -72,21 +73,21 @@ pub enum RayEvent {
         node: u32,
         /// The piece.
         piece: u32,
-        /// Where the ray meets it.
+        /// The parameter at which the ray meets it.
         at: Option<f64>,
     },
     /// A leaf, which is an empty region, is stabbed.
     Leaf {
         /// The node above; `None` for a tree without nodes.
         place: Option<(u32, Half)>,
-        /// Where the ray enters the region.
+        /// The parameter at which the ray enters the region.
         from: f64,
-        /// Where it leaves the region; `None` if it does not.
+        /// The parameter at which it leaves the region; `None` if it does not.
         to: Option<f64>,
     },
 }
 
-/// What a ray met first, and what it cost.
+/// The first facet that a ray met, and the cost of finding it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RayPath {
     /// The piece and the parameter, correctly rounded.
@@ -166,7 +167,7 @@ impl Stretch {
 enum Open {
     /// A child, perhaps empty, at this place.
     Child(Option<u32>, Option<(u32, Half)>, Stretch),
-    /// What lies in a node's hyperplane.
+    /// The facets in a node's hyperplane.
     Cut(u32, Stretch),
 }
 
@@ -284,11 +285,11 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
     }
 }
 
-/// How a ray and a hyperplane lie to each other.
+/// The crossing of a ray and a hyperplane.
 struct Crossing {
     /// The side on which the ray starts.
     start: Side,
-    /// Where the ray's line crosses; `None` if it runs beside or within.
+    /// The parameter at which the ray's line crosses; `None` if it runs beside or within.
     at: Option<Ratio>,
     /// The half that comes first on the line; `None` if the line runs within.
     first: Option<Half>,
@@ -319,7 +320,7 @@ impl Crossing {
     }
 }
 
-/// Where a ray first meets a convex facet, as a fan of facets of `D` corners.
+/// Return where a ray first meets a convex facet, as a fan of facets of `D` corners.
 fn meeting<const D: usize>(facet: &Facet, ray: &Ray<D>) -> Option<Ratio> {
     let corner = |i: usize| -> [f64; D] { std::array::from_fn(|k| facet.corners[i][k] as f64) };
     let last = facet.corners.len();

@@ -32,13 +32,13 @@ pub struct Shares {
     cut: Vec<Share>,
     /// Of each constructed point that a triangle has.
     weights: Vec<BigInt>,
-    /// How many triangles have it.
+    /// The number of triangles that have it.
     uses: Vec<u32>,
 }
 
 /// The share of a triangle with constructed corners.
 struct Share {
-    /// What is divided by the weights of the points.
+    /// The value that is divided by the weights of the points.
     value: BigInt,
     /// Ascending.
     points: SmallVec<[u32; 3]>,
@@ -59,7 +59,7 @@ struct Partial {
 struct Point {
     x: [BigInt; 3],
     weight: BigInt,
-    /// Where it is, about.
+    /// Its place, about.
     near: [f64; 3],
 }
 

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// What the bytes describe.
+/// The kind of thing that the bytes describe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// The boundary of a solid.
@@ -25,7 +25,7 @@ const MARK: [u8; 6] = *b"bspcsg";
 /// The version that is written.
 const VERSION: u8 = 2;
 
-/// How bytes of version 1 begin, which had neither mark nor checksum.
+/// The first byte of version 1, which had neither mark nor checksum.
 const FIRST: u8 = 1;
 
 const HEAD: usize = MARK.len() + 2;

@@ -75,7 +75,7 @@ enum SourceData {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct WholeFaces {
     slot: Slot,
-    /// Whether they are turned around.
+    /// True if they are turned around.
     flip: bool,
     faces: Vec<FaceId>,
 }
@@ -84,7 +84,7 @@ struct WholeFaces {
 struct PartData {
     slot: Slot,
     face: FaceId,
-    /// Whether it is turned around.
+    /// True if it is turned around.
     flip: bool,
     edges: Vec<EdgeData>,
 }
@@ -243,7 +243,8 @@ impl Snapshot {
         Ok(image)
     }
 
-    /// Whether an unbounded face is boundary beside others, or cut at the border of the universe.
+    /// Return whether an unbounded face is boundary beside others, or cut at the border of the
+    /// universe.
     fn reaches_infinity(&self) -> bool {
         let unbounded = |slot: Slot| {
             matches!(
@@ -299,7 +300,7 @@ impl Snapshot {
     }
 }
 
-/// Whether nothing but the border of the universe bounds a half-space's face.
+/// Return whether nothing but the border of the universe bounds a half-space's face.
 fn is_full_plane(cut: &CutFace) -> bool {
     let mut edges = cut.outline.edges().iter();
     edges.all(|e| e.carrier.is_border())
@@ -462,7 +463,7 @@ impl CarrierData {
     }
 }
 
-/// Whether a carrier and a support meet in a line that both ends lie on.
+/// Return whether a carrier and a support meet in a line that both ends lie on.
 fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bool {
     let on = |plane: &Plane| from.side_of(plane) == 0 && to.side_of(plane) == 0;
     let crosses = |plane: &Plane| {
@@ -484,7 +485,7 @@ fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bo
     carried && on(support) && !from.same(to)
 }
 
-/// Whether as many edges of an outline leave each point as arrive.
+/// Return whether as many edges of an outline leave each point as arrive.
 fn is_balanced(edges: &[OutlineEdge]) -> bool {
     let mut ends: Vec<_> = edges.iter().map(|e| e.from.key()).collect();
     let mut starts: Vec<_> = edges.iter().map(|e| e.to.key()).collect();

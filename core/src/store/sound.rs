@@ -1,4 +1,4 @@
-//! Whether a boundary from outside bounds a set: all that the kernel takes for granted.
+//! The check that a boundary from outside bounds a set: all that the kernel takes for granted.
 //!
 //! A closed boundary gives every point a winding number that does not depend on the path to it, and
 //! with that the kernel is right: whether faces overlap or cross is for it to find out.
@@ -22,8 +22,8 @@ use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Deferred, Node, Part, PartElement};
 use crate::tree::solid::Solid;
 
-/// Whether the one leaf of a solid, of which the indices and ranges have been checked, is the
-/// boundary of a set.
+/// Return whether the one leaf of a solid, of which the indices and ranges have been checked, is
+/// the boundary of a set.
 pub fn is_sound(solid: &Solid) -> bool {
     let Node::Deferred(leaf) = &*solid.root().node else {
         return true;
@@ -35,7 +35,7 @@ pub fn is_sound(solid: &Solid) -> bool {
         && fates(leaf, &sources).is_some_and(|fates| is_closed(leaf, &fates, &sources))
 }
 
-/// Whether a source could be that of an import that was moved and refined.
+/// Return whether a source could be that of an import that was moved and refined.
 fn is_proper(source: &Source) -> bool {
     let Some(mesh) = source.mesh() else {
         return true;
@@ -45,7 +45,7 @@ fn is_proper(source: &Source) -> bool {
     numbers.into_iter().all(ascending) && doubles_fit(mesh, source.pitch()) && source.closes()
 }
 
-/// Whether each vertex is what its doubles are snapped to, on this lattice or, where all
+/// Return whether each vertex is what its doubles are snapped to, on this lattice or, where all
 /// coordinates are its steps, on a coarser one.
 fn doubles_fit(mesh: &TriangleMesh, pitch: Pitch) -> bool {
     (0..3).all(|axis| {
@@ -70,7 +70,7 @@ fn coarsest_step(vertices: &[Lattice], axis: usize) -> i64 {
     step
 }
 
-/// Whether the outline bounds a part of the face, with the part on its left everywhere.
+/// Return whether the outline bounds a part of the face, with the part on its left everywhere.
 ///
 /// The convex pieces are disjoint parts of the face. If their edges and the outline's cancel, it
 /// bounds them and nothing else.
@@ -88,7 +88,8 @@ fn lies_on_face(part: &Part) -> bool {
     !pieces.is_empty() && cancel(bounds.chain(reversed).collect()).is_empty()
 }
 
-/// Whether no corner of an outline lies outside of a face, and its lattice edges are the face's.
+/// Return whether no corner of an outline lies outside of a face, and its lattice edges are the
+/// face's.
 fn is_within(part: &Part, face: &Polygon) -> bool {
     let own: Vec<&Carrier> = face.edges().map(|(_, _, carrier)| carrier).collect();
     let walls: Vec<Plane> = own.iter().map(|c| c.plane(face.support())).collect();
@@ -105,7 +106,7 @@ fn is_within(part: &Part, face: &Polygon) -> bool {
         .all(|e| inside(&e.from) && known(&e.carrier))
 }
 
-/// What is listed of each face; `None` if something is listed twice.
+/// Return what is listed of each face; `None` if something is listed twice.
 fn fates(leaf: &Deferred, sources: &Sources) -> Option<Fates> {
     let gone = |s: &Arc<Source>| vec![Fate::Gone; s.face_count()];
     let mut fates = Fates::new(sources.table().iter().map(gone).collect());
@@ -137,7 +138,7 @@ fn fates(leaf: &Deferred, sources: &Sources) -> Option<Fates> {
     once.then_some(fates)
 }
 
-/// Whether the edges of all that is listed cancel, but at the border of the universe.
+/// Return whether the edges of all that is listed cancel, but at the border of the universe.
 fn is_closed(leaf: &Deferred, fates: &Fates, sources: &Sources) -> bool {
     let rims = Rims::of(fates, sources);
     let frontier = rims.frontier(fates, sources).into_iter();

@@ -24,7 +24,7 @@ use crate::interrupt::poll;
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
 
-/// What a branch contributes; computed where no operation before has left it.
+/// Return what a branch contributes; computed where no operation before has left it.
 pub fn share(root: &Branch) -> Share {
     for branch in unknown(root).into_iter().rev() {
         match &*branch.node {
@@ -162,7 +162,7 @@ impl Sum {
         }
     }
 
-    /// Whether all of a part lies in the cell; errs on no.
+    /// Return whether all of a part lies in the cell; errs on no.
     fn surely_holds(&self, part: &Part) -> bool {
         self.cell.holds(&part.home) || {
             let mut corners = part.edges.iter().map(|e| e.from.approx());

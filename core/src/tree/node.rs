@@ -41,7 +41,7 @@ impl Node {
 pub struct Halves {
     /// Minus half first.
     pub children: [Branch; 2],
-    /// What the node contributes to the volume, once somebody has asked.
+    /// The node's share of the volume, once somebody has asked.
     pub share: Cached<Share>,
 }
 
@@ -55,7 +55,7 @@ pub struct Branch {
     pub cell: Cell,
     /// The winding number around the cell.
     pub outside: i32,
-    /// Whether the node is meant turned inside out.
+    /// True if the node is meant turned inside out.
     pub complement: bool,
     /// The node.
     pub node: Arc<Node>,
@@ -137,13 +137,13 @@ pub struct Deferred {
     pub parts: Vec<PartElement>,
     /// The winding number at the cell's low corner.
     pub corner: i32,
-    /// What several operands' boundaries here went through.
+    /// The work that several operands' boundaries here went through.
     pub work: Work,
-    /// What the node contributes to the volume, once somebody has asked.
+    /// The node's share of the volume, once somebody has asked.
     pub share: Cached<Share>,
 }
 
-/// Which kernel made a leaf; the later ones leave more open.
+/// The kernel that made a leaf; the later ones leave more open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Work {
     /// None: it is an operand's boundary, as it was.
@@ -158,9 +158,9 @@ pub enum Work {
 /// Whole faces of one source with one orientation.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// Where the faces live.
+    /// The source in which the faces live.
     pub source: Arc<Source>,
-    /// How the faces are turned, seen from the source.
+    /// The orientation of the faces, seen from the source.
     pub orientation: Orientation,
     /// The faces, ascending.
     pub faces: Vec<FaceId>,
@@ -171,7 +171,7 @@ pub struct Group {
 pub struct PartElement {
     /// The part.
     pub part: Arc<Part>,
-    /// How it is turned, seen from the source.
+    /// Its orientation, seen from the source.
     pub orientation: Orientation,
 }
 
@@ -180,7 +180,7 @@ pub struct PartElement {
 /// The outline runs on the face's own edges, input planes and the home cell's border.
 #[derive(Debug)]
 pub struct Part {
-    /// Where the face lives.
+    /// The source in which the face lives.
     pub source: Arc<Source>,
     /// The face.
     pub face: FaceId,
@@ -251,14 +251,14 @@ impl Deferred {
         self.parts.len() + self.groups.iter().map(|g| g.faces.len()).sum::<usize>()
     }
 
-    /// Whether all elements are perpendicular to axes.
+    /// Return whether all elements are perpendicular to axes.
     pub fn is_orthogonal(&self) -> bool {
         let faces = |g: &Group| g.faces.iter().all(|f| g.source.is_orthogonal(*f));
         let part = |p: &PartElement| p.part.source.is_orthogonal(p.part.face);
         self.groups.iter().all(faces) && self.parts.iter().all(part)
     }
 
-    /// Whether nothing is listed.
+    /// Return whether nothing is listed.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -1,14 +1,14 @@
-//! What a part of a boundary contributes to the volume.
+//! The share of a part of a boundary in the volume.
 
 use crate::geometry::fixed::Flux;
 use crate::geometry::side::Orientation;
 
-/// What a node's boundary contributes to the volume.
+/// The share of a node's boundary in the volume.
 #[derive(Clone, Copy, Debug)]
 pub struct Share {
     /// Six times the flux through the boundary in the node's cell.
     pub flux: Flux,
-    /// Whether the boundary may reach infinity, so that the flux means nothing.
+    /// True if the boundary may reach infinity, so that the flux means nothing.
     pub open: bool,
 }
 

@@ -42,10 +42,10 @@ pub struct Solid {
     root: Branch,
     pitch: Pitch,
     sources: Table,
-    /// How many sources the tree named when that was last counted.
+    /// The number of sources that the tree named when that was last counted.
     named: usize,
     reduced: bool,
-    /// Whether stored data say that it is reduced, or that an operand was.
+    /// True if stored data say that it is reduced, or that an operand was.
     claimed: bool,
     /// Solids of meshes nobody has checked: if all are simple, this solid is reduced.
     doubts: Option<Arc<[Solid]>>,
@@ -75,7 +75,7 @@ impl Solid {
         self
     }
 
-    /// Whether it is reduced by the word of stored data only.
+    /// Return whether it is reduced by the word of stored data only.
     pub fn is_claimed(&self) -> bool {
         self.claimed
     }
@@ -108,7 +108,7 @@ impl Solid {
         self.doubts.as_deref()
     }
 
-    /// Whether this is a mesh as it was given.
+    /// Return whether this is a mesh as it was given.
     fn is_whole_mesh(&self) -> bool {
         self.sources.len() == 1
             && self.sources.get(Slot(0)).mesh().is_some()
@@ -132,7 +132,7 @@ impl Solid {
         self
     }
 
-    /// How many sources the tree named when that was last counted.
+    /// Return the number of sources that the tree named when that was last counted.
     pub fn named(&self) -> usize {
         self.named
     }
@@ -191,7 +191,7 @@ impl Solid {
         &self.sources
     }
 
-    /// Whether the elements are known to be the reduced boundary (promise G2).
+    /// Return whether the elements are known to be the reduced boundary (promise G2).
     pub fn is_reduced(&self) -> bool {
         let stays = |united: &Self| Arc::ptr_eq(&united.root.node, &self.root.node);
         self.reduced || self.united.get().is_some_and(stays)

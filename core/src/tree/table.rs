@@ -71,7 +71,7 @@ impl Log {
     }
 }
 
-/// What a lock guards, unless somebody holds it.
+/// Return what a lock guards, unless somebody holds it.
 fn free<T>(lock: Result<T, TryLockError<T>>) -> Option<T> {
     match lock {
         Ok(guard) => Some(guard),
@@ -97,7 +97,7 @@ impl Table {
         }
     }
 
-    /// Whether there are no sources.
+    /// Return whether there are no sources.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -4,9 +4,9 @@
 //! event is made and nothing is left of it in the compiled code; a list keeps all events. Events are
 //! plain numbers, which can be stored and shown elsewhere.
 
-/// Who is told what an algorithm does.
+/// A listener who is told what an algorithm does.
 pub trait Watcher<E> {
-    /// Whether anything is listened to: what only events need is not worked out otherwise.
+    /// True if anything is listened to: what only events need is not worked out otherwise.
     const LISTENS: bool;
 
     /// Takes an event, which is made only if it is wanted.

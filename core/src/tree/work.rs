@@ -1,4 +1,4 @@
-//! How much an operation may have to look at.
+//! The budget of an operation: how much it may have to look at.
 
 use super::node::{Branch, Node};
 use super::solid::Solid;

@@ -37,7 +37,7 @@ fn corners(mesh: &Mesh, context: &str) -> HashMap<(u32, u32), u32> {
     after
 }
 
-/// How many closed fans the corners make, given what comes after each edge around its start.
+/// Count the closed fans that the corners make, given what comes after each edge around its start.
 fn fans(after: &HashMap<(u32, u32), u32>) -> usize {
     let mut seen: HashSet<(u32, u32)> = HashSet::with_capacity(after.len());
     let mut count = 0;

@@ -1,4 +1,4 @@
-//! What the tests of solids share.
+//! Helpers that the tests of solids share.
 #![allow(dead_code, unused_imports, reason = "each test file uses its part")]
 
 mod meshes;

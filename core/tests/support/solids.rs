@@ -34,12 +34,12 @@ pub fn complement(a: &Solid) -> Solid {
     combined(std::slice::from_ref(a), vec![Term::Not(0)])
 }
 
-/// Whether no point is inside.
+/// Return whether no point is inside.
 pub fn is_empty(solid: &Solid) -> bool {
     has_no_boundary(solid) && solid.root().outside <= 0
 }
 
-/// Whether all points are inside.
+/// Return whether all points are inside.
 pub fn is_full(solid: &Solid) -> bool {
     has_no_boundary(solid) && solid.root().outside > 0
 }
@@ -49,7 +49,7 @@ pub fn normalized(solid: &Solid, rule: Rule) -> Solid {
     normalize(solid, rule).expect("normalizes")
 }
 
-/// What a rule says of a winding number, in words of its own.
+/// Return what a rule says of a winding number, in words of its own.
 pub fn wanted(rule: Rule, number: i32) -> bool {
     match rule {
         Rule::Positive => number >= 1,
@@ -58,12 +58,12 @@ pub fn wanted(rule: Rule, number: i32) -> bool {
     }
 }
 
-/// Where lattice points lie.
+/// Locate lattice points.
 pub fn located(solid: &Solid, points: &[Lattice]) -> Vec<Location> {
     classify(solid, points).expect("lattice points")
 }
 
-/// Whether the places of a labelling are inside; for points on no boundary.
+/// Mark the places of a labelling that are inside; for points on no boundary.
 pub fn inside(solid: &Solid, points: &[Lattice]) -> Vec<bool> {
     let is_inside = |l: &Location| *l == Location::Inside;
     located(solid, points).iter().map(is_inside).collect()

@@ -1,4 +1,4 @@
-//! What several targets check.
+//! The checks that several targets share.
 
 use bspcsg::error::ErrorKind;
 use bspcsg::extract::rounding::round;

@@ -97,7 +97,7 @@ fn any_point(u: &mut Unstructured<'_>) -> arbitrary::Result<Lattice> {
     Ok([next()?, next()?, next()?])
 }
 
-/// Whether the directed edges cancel, each divided at every vertex on it.
+/// Return whether the directed edges cancel, each divided at every vertex on it.
 fn closes(faces: &[[Lattice; 3]], vertices: &[Lattice]) -> bool {
     let mut sums = HashMap::new();
     for face in faces {
@@ -123,7 +123,7 @@ fn square(a: &Lattice, b: &Lattice) -> i64 {
     (0..3).map(|i| (a[i] - b[i]).pow(2)).sum()
 }
 
-/// Whether a point lies on a segment, ends included.
+/// Return whether a point lies on a segment, ends included.
 fn is_between(from: &Lattice, to: &Lattice, p: &Lattice) -> bool {
     let along = [0, 1, 2].map(|i| to[i] - from[i]);
     let arm = [0, 1, 2].map(|i| p[i] - from[i]);

@@ -100,14 +100,14 @@ fn assert_inside_section(
     }
 }
 
-/// Whether a place is inside, if it can be told.
+/// Return whether a place is inside, if it can be told.
 fn holds(scene: &Scene, place: &Place) -> Option<bool> {
     let operands = scene.operands.iter();
     let known: Option<Vec<bool>> = operands.map(|o| o.known.holds(place)).collect();
     known.map(|inside| scene.value(&inside))
 }
 
-/// How often edges wind around a point of their plane; `None` if one passes within two steps.
+/// Count how often edges wind around a point of their plane; `None` if one passes within two steps.
 fn turns_around(
     edges: &[[Lattice; 2]],
     flat: impl Fn(&Lattice) -> [i64; 2],

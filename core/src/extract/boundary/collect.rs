@@ -1,4 +1,4 @@
-//! What a tree says of each face: kept whole, cut, or gone.
+//! The fates of faces, read from a tree: kept whole, cut, or gone.
 
 use rayon::prelude::*;
 use smallvec::{smallvec, SmallVec};
@@ -93,7 +93,7 @@ impl Collector<'_> {
         Boundary { fates, cut, near }
     }
 
-    /// Whether all of a face that spans leaves is boundary, and turned one way.
+    /// Return whether all of a face that spans leaves is boundary, and turned one way.
     fn is_whole(&self, run: &[Spanning]) -> bool {
         let first = run[0].face;
         let source = self.sources.get(first.slot());
@@ -103,7 +103,7 @@ impl Collector<'_> {
             && (self.fill_box(run, source) || covers(self.root, source, first))
     }
 
-    /// Whether the cells of the leaves that list a face make up its box; errs on no.
+    /// Return whether the cells of the leaves that list a face make up its box; errs on no.
     fn fill_box(&self, run: &[Spanning], source: &Source) -> bool {
         let leaves = run.chunk_by(|a, b| a.leaf == b.leaf).map(|s| s[0].leaf);
         fill(
@@ -154,7 +154,7 @@ impl Collector<'_> {
     }
 }
 
-/// What leaves list, sorted by face; the leaves of a face keep their order.
+/// Return what leaves list, sorted by face; the leaves of a face keep their order.
 fn by_face(spanning: &[Spanning], fates: &Fates) -> Vec<Spanning> {
     let faces = fates.faces();
     let mut sorted = spanning.to_vec();
@@ -187,7 +187,7 @@ fn by_face(spanning: &[Spanning], fates: &Fates) -> Vec<Spanning> {
     sorted
 }
 
-/// Whether an outline is the face's own triangle.
+/// Return whether an outline is the face's own triangle.
 fn is_full_face(cut: &mut CutFace, source: &Source) -> bool {
     let Shape::Mesh(mesh) = source.shape() else {
         return false;
@@ -222,7 +222,7 @@ impl<'a> Place<'a> {
         child.cell.holds_box(&self.low, &self.high)
     }
 
-    /// Whether this is a leaf that lists the face.
+    /// Return whether this is a leaf that lists the face.
     fn is_listed(&self, source: &Source, face: OrientedFace) -> bool {
         match &*self.branch.node {
             Node::Deferred(leaf) => lists(leaf, source, face, self.complement),
@@ -231,7 +231,7 @@ impl<'a> Place<'a> {
     }
 }
 
-/// Whether every leaf that a face meets lists it; errs on no.
+/// Return whether every leaf that a face meets lists it; errs on no.
 fn covers(root: &Branch, source: &Source, face: OrientedFace) -> bool {
     let (low, high) = source.face_box(face.id());
     if !root.cell.holds_box(&low, &high) {
@@ -277,12 +277,12 @@ fn covers(root: &Branch, source: &Source, face: OrientedFace) -> bool {
     true
 }
 
-/// Whether a face has area in a cell.
+/// Return whether a face has area in a cell.
 fn enters(source: &Source, face: FaceId, cell: &Cell) -> bool {
     !misses(source, face, cell) && source.clip(face, cell).is_some()
 }
 
-/// Whether a leaf, perhaps turned inside out, lists a face.
+/// Return whether a leaf, perhaps turned inside out, lists a face.
 fn lists(leaf: &Deferred, source: &Source, face: OrientedFace, complement: bool) -> bool {
     let orientation = face.orientation.turned_if(complement);
     leaf.groups.iter().any(|g| {
@@ -291,7 +291,7 @@ fn lists(leaf: &Deferred, source: &Source, face: OrientedFace, complement: bool)
     })
 }
 
-/// Whether a solid has no boundary: it is empty or all of space.
+/// Return whether a solid has no boundary: it is empty or all of space.
 ///
 /// A tree may list faces that meet none of their cells, so that the tree alone does not tell.
 pub fn has_no_boundary(solid: &Solid) -> bool {

@@ -1,4 +1,4 @@
-//! What each leaf of a tree says of the faces it lists, for all leaves at once.
+//! The listings of all leaves of a tree at once: what each says of its faces.
 
 use std::ops::{Index, IndexMut};
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -30,14 +30,14 @@ pub struct Spanning {
     pub leaf: u32,
 }
 
-/// What of a face one leaf lists.
+/// The part of a face that one leaf lists.
 pub struct Piece<'a> {
     /// The face.
     pub face: OrientedFace,
     extent: Extent<'a>,
 }
 
-/// Where a piece ends; most outlines are looked up or made when it is their turn.
+/// The extent of a piece; most outlines are looked up or made when it is their turn.
 enum Extent<'a> {
     /// The face's own edges, and the border of the cell of the leaf with this number.
     Face(u32),
@@ -79,7 +79,7 @@ impl Piece<'_> {
     }
 }
 
-/// What the leaves say, in their order.
+/// The listings of leaves, in the leaves' order.
 #[derive(Default)]
 pub struct Listed<'a> {
     /// Faces inside a leaf's cell are whole, those with a part in one are cut.
@@ -94,7 +94,7 @@ pub struct Listed<'a> {
     pub cells: Vec<Cell>,
 }
 
-/// What one leaf says but for the faces inside its cell.
+/// The listing of one leaf but for the faces inside its cell.
 #[derive(Default)]
 struct Found<'a> {
     spanning: Vec<Spanning>,
@@ -153,7 +153,7 @@ type Pieces<'a> = SmallVec<[Piece<'a>; 1]>;
 
 type Extents<'a> = SmallVec<[Extent<'a>; 1]>;
 
-/// What listed parts, by their faces, are in their leaves.
+/// Return the pieces that listed parts, by their faces, are in their leaves.
 fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
     let runs: Vec<&[Listing]> = parts.chunk_by(|a, b| a.face == b.face).collect();
     let face = carried(|run: &&[Listing<'a>]| pieces_of_face(run, cells));
@@ -194,7 +194,7 @@ fn extents_by_part<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Extents<'a> {
         .collect()
 }
 
-/// Where a part ends that some leaves list.
+/// Return the extents of a part in the leaves that list it.
 fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
     if is_whole(part, leaves, cells) {
         return smallvec![Extent::Part(part)];
@@ -203,7 +203,7 @@ fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
     edges.filter(|e| !e.is_empty()).map(Extent::Edges).collect()
 }
 
-/// Whether the leaves that list a part have all of it; errs on no.
+/// Return whether the leaves that list a part have all of it; errs on no.
 fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
     if let [leaf] = leaves
         && cells[*leaf as usize] == part.home
@@ -223,7 +223,7 @@ fn part_box(part: &Part) -> (Lattice, Lattice) {
     )
 }
 
-/// Whether the cells of different leaves make up a box; errs on no.
+/// Return whether the cells of different leaves make up a box; errs on no.
 ///
 /// Leaves are apart, so that it is enough to count lattice points.
 pub fn fill(
@@ -248,7 +248,7 @@ pub fn fill(
     rest == 0
 }
 
-/// How many lattice points a box has; `None` for huge ones.
+/// Count the lattice points of a box; `None` for huge ones.
 fn count(low: &Lattice, high: &Lattice) -> Option<u128> {
     let extent = |i: usize| u64::try_from(high[i] - low[i] + 1).unwrap_or(0);
     let area = u128::from(extent(0)) * u128::from(extent(1));
@@ -423,7 +423,7 @@ impl<'a> Leaf<'a> {
     }
 }
 
-/// Whether a face's corners lie in a cell.
+/// Return a test whether a face's corners lie in a cell.
 fn holder<'a>(mesh: &'a TriangleMesh, cell: &Cell) -> impl Fn(FaceId) -> bool + 'a {
     let (low, high) = (*cell.low(), cell.high());
     move |face| {

@@ -1,4 +1,4 @@
-//! What a tree says of the faces of its sources, and where whole faces end.
+//! The boundary as a tree lists it: the fates of its sources' faces, and the rims of whole faces.
 
 pub mod collect;
 pub mod leaves;

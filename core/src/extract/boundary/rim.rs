@@ -1,4 +1,4 @@
-//! Where a source's whole faces end: found by vertices, so that no mates are needed.
+//! The rim of a source's whole faces: found by vertices, so that no mates are needed.
 //!
 //! Two faces of an edge share both its ends. So only faces whose corners are touched by faces of
 //! another fate, too, can lie beside such a face. They are few, and are compared by their edges.
@@ -20,7 +20,7 @@ use crate::mesh::source::Source;
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
 
-/// What meets at a vertex: a whole face, one turned around, another one.
+/// Bits for what meets at a vertex: a whole face, one turned around, another one.
 const KEPT: u8 = 1;
 const TURNED: u8 = 2;
 const OTHER: u8 = 4;
@@ -205,7 +205,7 @@ impl Rim {
         rim
     }
 
-    /// Whether a whole face has this corner.
+    /// Return whether a whole face has this corner.
     pub fn is_used(&self, vertex: u32) -> bool {
         self.touch[vertex as usize] & (KEPT | TURNED) != 0
     }
@@ -220,7 +220,7 @@ impl Rim {
         self.touch.iter().map(|touch| touch & (KEPT | TURNED) != 0)
     }
 
-    /// Whether faces of different fates meet at a vertex.
+    /// Return whether faces of different fates meet at a vertex.
     fn is_mixed(&self, vertex: u32) -> bool {
         is_mixed(self.touch[vertex as usize])
     }
@@ -280,7 +280,7 @@ impl Half {
     }
 }
 
-/// Whether several kinds of faces meet.
+/// Return whether several kinds of faces meet.
 fn is_mixed(touch: u8) -> bool {
     touch & touch.wrapping_sub(1) != 0
 }

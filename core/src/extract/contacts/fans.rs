@@ -15,7 +15,7 @@ use crate::interrupt::poll;
 /// The fan of a corner not yet visited.
 const NONE: usize = usize::MAX;
 
-/// What the splitting needs to know about geometry.
+/// The geometry that the splitting needs.
 pub trait Radial {
     /// Outward normal of a triangle's plane, exact up to a positive factor, with components below 2^120.
     fn normal(&self, triangle: u32) -> [i128; 3];
@@ -37,7 +37,7 @@ pub struct Split {
     pub split_vertices: Vec<u32>,
 }
 
-/// Why triangles are not a closed oriented surface.
+/// The reasons why triangles are not a closed oriented surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error {
     /// A corner is not the index of a vertex, or two corners of the triangle are the same.
@@ -235,7 +235,7 @@ fn next(half: usize) -> usize {
     }
 }
 
-/// Which corners hang together around a vertex.
+/// The corners around a vertex, in groups that hang together.
 struct Fans {
     /// Corner to fan.
     of: Vec<usize>,

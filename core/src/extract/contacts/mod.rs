@@ -1,4 +1,4 @@
-//! Where a solid touches itself: edges of four or more faces, vertices of several fans.
+//! The places where a solid touches itself: edges of four or more faces, vertices of several fans.
 
 pub mod fans;
 
@@ -62,7 +62,7 @@ pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>, Failure> {
     Ok(findings)
 }
 
-/// Whether the triangles around special vertices form one closed fan each.
+/// Return whether the triangles around special vertices form one closed fan each.
 ///
 /// # Errors
 /// `Overlap` if an edge at a special vertex has no opposite: the assembly is not closed.
@@ -127,14 +127,14 @@ impl Fans {
         fans
     }
 
-    /// Whether no directed edge between vertices that are not special occurs twice.
+    /// Return whether no directed edge between vertices that are not special occurs twice.
     fn edges_apart_are_single(&mut self) -> bool {
         self.apart.sort_unstable();
         self.apart.windows(2).all(|pair| pair[0] != pair[1])
     }
 }
 
-/// Whether as many triangles leave along each edge at a vertex as arrive.
+/// Return whether as many triangles leave along each edge at a vertex as arrive.
 fn is_balanced(fan: &[[u32; 2]]) -> bool {
     let mut starts: Vec<u32> = fan.iter().map(|c| c[0]).collect();
     let mut ends: Vec<u32> = fan.iter().map(|c| c[1]).collect();
@@ -143,7 +143,7 @@ fn is_balanced(fan: &[[u32; 2]]) -> bool {
     starts == ends
 }
 
-/// Whether corners are one closed fan that leaves along each edge once; sorts them.
+/// Return whether corners are one closed fan that leaves along each edge once; sorts them.
 fn is_single_fan(fan: &mut [[u32; 2]]) -> bool {
     fan.sort_unstable();
     if fan.windows(2).any(|pair| pair[0][0] == pair[1][0]) {

@@ -31,7 +31,7 @@ pub(in crate::extract) struct Assembly<'a> {
     pub(in crate::extract) faces: Vec<OrientedFace>,
     /// The triangles, at the start, that are faces of sources as they came.
     pub(in crate::extract) untouched: Untouched,
-    /// Whether to compare areas, because faces of one plane might overlap.
+    /// True if areas are compared, because faces of one plane might overlap.
     pub(in crate::extract) verify: bool,
 }
 
@@ -94,12 +94,12 @@ impl<'a> Assembly<'a> {
         self.untouched.special.iter().copied().chain(last)
     }
 
-    /// Whether an output vertex lies where something was cut or may touch.
+    /// Return whether an output vertex lies where something was cut or may touch.
     fn is_special(&self, vertex: u32) -> bool {
         !self.untouched.vertices.contains(&vertex)
     }
 
-    /// How many vertices are special.
+    /// Return the number of special vertices.
     pub(in crate::extract) fn special_count(&self) -> usize {
         self.vertices.len() - self.untouched.vertices.len()
     }

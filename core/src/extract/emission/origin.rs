@@ -1,4 +1,4 @@
-//! Which source face a new triangle of a joined polygon comes from.
+//! The origins of new triangles: the source face that each triangle of a joined polygon lies in.
 
 use crate::extract::joining::planes::PlaneGroup;
 use crate::extract::triangulate::Planar;

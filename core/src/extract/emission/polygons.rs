@@ -150,7 +150,7 @@ fn chain(edges: &[Edge], first: usize, inner: &InnerPoints) -> Vec<(u32, u32)> {
     chain
 }
 
-/// Whether the triangles' area is the one the outline encloses, as far as doubles can tell.
+/// Return whether the triangles' area is the one the outline encloses, as far as doubles can tell.
 fn covers_once(view: &Projection, edges: &[(u32, u32)], triangles: &[[u32; 3]]) -> bool {
     let Some(origin) = edges.first().map(|e| view.approx(e.0)) else {
         return true;

@@ -17,7 +17,7 @@ use crate::mesh::triangles::TriangleMesh;
 pub struct Untouched {
     /// The vertices that only such triangles have.
     pub vertices: Range<u32>,
-    /// How many triangles there are.
+    /// The number of triangles.
     pub count: usize,
     /// Those with other vertices, too, ascending.
     pub special: Vec<u32>,

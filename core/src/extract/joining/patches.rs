@@ -1,16 +1,16 @@
-//! Which faces of one plane may become one polygon.
+//! Patches: the faces of one plane that may become one polygon.
 
 use crate::mesh::handle::SourceFace;
 use crate::mesh::source::Source;
 
-/// What each face belongs to, by its source's slot and the number it had in its input.
+/// The patch of each face, by its source's slot and the number it had in its input.
 ///
 /// Faces of different patches are never joined, so that each triangle lies in one face of those
 /// whose data differ. Whoever has no patches says nothing, and joins everything in a plane.
 #[derive(Clone, Debug, Default)]
 pub struct Patches(Vec<Option<Vec<u32>>>);
 
-/// What the faces of sources belong to that nothing is said about.
+/// The patch of faces of sources that nothing is said about.
 const COMMON: u32 = u32::MAX;
 
 impl Patches {
@@ -19,7 +19,7 @@ impl Patches {
         Self(patches)
     }
 
-    /// What a face belongs to.
+    /// Return the patch of a face.
     pub fn of(&self, face: SourceFace, source: &Source) -> u32 {
         let own = self.0.get(face.slot.place()).and_then(Option::as_ref);
         let found = own.and_then(|own| own.get(source.number(face.id) as usize));

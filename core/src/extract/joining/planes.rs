@@ -166,7 +166,8 @@ impl Grouping<'_> {
         self.patches.of(face.face, self.sources.get(face.slot()))
     }
 
-    /// Whether a face lies in the plane of a group, is turned as the group is, and of its patch.
+    /// Return whether a face lies in the plane of a group, is turned as the group is, and of its
+    /// patch.
     fn lies_in(&self, face: OrientedFace, group: usize) -> bool {
         let Some(mesh) = self.sources.get(face.slot()).mesh() else {
             return false;

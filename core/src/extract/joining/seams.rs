@@ -121,7 +121,7 @@ impl<'a> Boxed<'a> {
         }
     }
 
-    /// Whether a point may lie on the edge; a rounded one that does lies in the box.
+    /// Return whether a point may lie on the edge; a rounded one that does lies in the box.
     fn may_hold(&self, p: [f64; 2]) -> bool {
         (0..2).all(|i| self.low[i] <= p[i] && p[i] <= self.high[i])
     }
@@ -145,7 +145,7 @@ fn unpaired(
     keyed.collect()
 }
 
-/// Which edges have an opposite one with equal ends for themselves.
+/// Mark the edges that have an opposite one with equal ends for themselves.
 fn paired(edges: &[Edge], points: usize) -> Vec<bool> {
     let mut paired = vec![false; edges.len()];
     let mut waiting: Vec<u32> = Vec::new();

@@ -1,4 +1,4 @@
-//! Which triangles of a mesh lie so near others that the two may meet, by a coarse grid.
+//! The triangles of a mesh that lie so near others that the two may meet, by a coarse grid.
 
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;

@@ -1,4 +1,4 @@
-//! Where the triangles of a mesh in doubles cross or overlap, exactly.
+//! Crossings and overlaps of the triangles of a mesh in doubles, exactly.
 //!
 //! Surfaces may touch: points and edges that two parts of a mesh share are no crossings, whether or
 //! not they are vertices and edges of both.
@@ -15,7 +15,7 @@ use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, Boxed, Swept};
 
-/// What keeps a mesh from being embedded.
+/// The faults that keep a mesh from being embedded.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Faults {
     /// Pairs of triangles that cross or overlap, the lower first, in ascending order.
@@ -25,12 +25,12 @@ pub struct Faults {
 }
 
 impl Faults {
-    /// Whether there are none.
+    /// Return whether there are none.
     pub fn is_empty(&self) -> bool {
         self.crossings.is_empty() && self.flat.is_empty()
     }
 
-    /// How many there are.
+    /// Return the number of faults.
     pub fn count(&self) -> usize {
         self.crossings.len() + self.flat.len()
     }
@@ -171,8 +171,9 @@ impl Search<'_> {
     }
 }
 
-/// Whether surfaces cross where two triangles meet like this; `mate` gives the apex of the triangle
-/// across an edge of the first or the second. What has no neighbour crosses what it lies in.
+/// Return whether surfaces cross where two triangles meet like this; `mate` gives the apex of the
+/// triangle across an edge of the first or the second. What has no neighbour crosses what it lies
+/// in.
 pub fn crosses_at(
     meeting: Meeting,
     [p, q]: &[Triangle; 2],

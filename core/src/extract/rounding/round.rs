@@ -217,7 +217,7 @@ const TURNED: &str = "rounding to doubles turned these triangles over or left th
 const CROSSING: &str = "rounding to doubles makes these triangles cross or overlap others, which \
     could not be mended";
 
-/// Whether two corners of a triangle were rounded to the same place.
+/// Return whether two corners of a triangle were rounded to the same place.
 #[allow(clippy::float_cmp)]
 fn is_collapsed(mesh: &Mesh, triangle: u64) -> bool {
     let [a, b, c] = mesh.triangles[as_place(triangle)].map(|v| mesh.vertices[v as usize]);

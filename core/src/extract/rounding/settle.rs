@@ -20,16 +20,16 @@ pub struct Rounded {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// What is known of a mesh that was settled.
+/// A mesh that was settled, and what is known of it.
 #[derive(Clone, Debug, Default)]
 pub struct Settled {
-    /// How many triangles were compared with all near them.
+    /// The number of triangles that were compared with all near them.
     pub compared: usize,
     /// The triangles that were changed, ascending; removed ones, too.
     pub mended: Vec<u32>,
     /// Vertices put where the exact surface has them, ascending.
     pub moved: Vec<u32>,
-    /// What could not be mended.
+    /// The faults that could not be mended.
     pub left: Faults,
 }
 
@@ -105,12 +105,12 @@ impl Rounded {
         }
     }
 
-    /// Whether all triangles are of one party.
+    /// Return whether all triangles are of one party.
     fn is_of_one(&self, party: impl Fn(u32) -> u32) -> bool {
         (1..as_number(self.triangles.len())).all(|t| party(t) == party(0))
     }
 
-    /// Whether a triangle was removed.
+    /// Return whether a triangle was removed.
     pub fn is_removed(&self, triangle: u32) -> bool {
         let [a, b, _] = self.triangles[triangle as usize];
         a == b

@@ -16,7 +16,7 @@ use crate::merge::lists::list::Sources;
 /// Swaps tried per triangle found turned over; each lowers the number of such triangles.
 const TRIES: usize = 8;
 
-/// What rounding did to the triangles of a mesh.
+/// The changes that rounding made to the triangles of a mesh.
 #[derive(Debug, Default)]
 pub struct Unfolded {
     /// Triangles made by swapping an edge.
@@ -90,7 +90,7 @@ impl Planes<'_> {
     }
 }
 
-/// Whether a rounded triangle does not face as its plane does, seen along its main axis.
+/// Return whether a rounded triangle does not face as its plane does, seen along its main axis.
 fn is_turned(mesh: &Mesh, corners: &[u32; 3], normal: &[i128; 3]) -> bool {
     let axis = (0..3).rev().max_by_key(|i| normal[*i].unsigned_abs());
     let axis = axis.unwrap_or(0);

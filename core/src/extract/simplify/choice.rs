@@ -1,4 +1,4 @@
-//! What there is to do in a round, and which of it can be done at the same time.
+//! The changes that are possible in a round, and a choice that can be made at the same time.
 
 use super::edit::{Act, Edit, Limits, MOST_AROUND};
 use super::sizes::{height, lengths};
@@ -11,7 +11,7 @@ use crate::mesh::tasks::each_chunk;
 type Wanted = (f64, Act);
 
 impl Surface<'_> {
-    /// What there is to do where vertices are awake: collapses before flips, the smallest first.
+    /// List the changes where vertices are awake: collapses before flips, the smallest first.
     pub fn acts(&self, awake: &[bool], tolerance: f64) -> Vec<Act> {
         let of = |first: usize, triangles: &[[u32; 3]]| {
             let some = (as_number(first)..).zip(triangles);
@@ -58,11 +58,11 @@ impl Surface<'_> {
     }
 }
 
-/// What is done in a round.
+/// The changes of a round.
 pub struct Chosen {
     /// Changes of which none has to know of another.
     pub edits: Vec<Edit>,
-    /// What may be possible once these are made.
+    /// Changes that may be possible once these are made.
     pub waiting: Vec<Act>,
 }
 
@@ -99,7 +99,7 @@ fn is_flip(act: &Act) -> bool {
     matches!(act, Act::Flip(_))
 }
 
-/// What changes that were chosen do to a vertex.
+/// The claims on a vertex of changes that were chosen.
 #[derive(Clone, Copy, Default)]
 struct Lock {
     /// It goes, or something comes to it.
@@ -110,7 +110,7 @@ struct Lock {
     turns: bool,
 }
 
-/// Whether something has to wait.
+/// Return whether something has to wait.
 ///
 /// A collapse reads the neighbours of both ends and the triangles around the one that goes; a flip
 /// reads its two triangles, whether their apexes are joined, and what came to its corners. Neither

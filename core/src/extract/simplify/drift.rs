@@ -1,4 +1,4 @@
-//! How far the old surface lies from the new one, at most.
+//! A bound of the distance between the old surface and the new one.
 //!
 //! There is a map from the old surface onto the new one that is affine on each triangle: a collapse
 //! takes the vertex, and with it the triangles around, to where the other end of the edge is. So each
@@ -13,7 +13,7 @@ use super::sizes::distance_above;
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::Point;
 
-/// What has come to each vertex.
+/// The drift of each vertex: what has come to it.
 pub struct Drift {
     witnesses: Vec<Witness>,
     /// For each vertex how far the old surface that came to it may be.
@@ -24,12 +24,12 @@ pub struct Drift {
 /// vertex itself has its own number.
 struct Witness {
     place: Point,
-    /// How far from the place it may lie.
+    /// The distance from the place at which it may lie.
     slack: f64,
     next: u32,
 }
 
-/// What comes to a vertex.
+/// An old point that comes to a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Coming {
     /// All that came to another vertex.
@@ -52,12 +52,12 @@ impl Drift {
         }
     }
 
-    /// How far what came to a vertex may be from it.
+    /// Return a bound of the distance of what came to a vertex from it.
     pub fn at(&self, v: u32) -> f64 {
         self.bounds[v as usize]
     }
 
-    /// How far what has come to this vertex may be from it once more comes; `None` beyond a limit.
+    /// Return the bound at this vertex once more comes; `None` beyond a limit.
     pub fn with(&self, (to, place): (u32, &Point), coming: Coming, limit: f64) -> Option<f64> {
         let far = match coming {
             Coming::Vertex(v) => self.farthest(v, place, limit)?,
@@ -66,7 +66,7 @@ impl Drift {
         (far <= limit).then(|| far.max(self.at(to)))
     }
 
-    /// How far what came to a vertex is from a place; `None` beyond a limit.
+    /// Return the largest distance of what came to a vertex from a place; `None` beyond a limit.
     fn farthest(&self, v: u32, place: &Point, limit: f64) -> Option<f64> {
         let mut farthest = 0.0f64;
         let mut at = v;
@@ -99,7 +99,7 @@ impl Drift {
         self.bounds[to] = bound;
     }
 
-    /// How far any point may be from the other surface.
+    /// Return a bound of the distance of any point from the other surface.
     pub fn bound(&self) -> f64 {
         self.bounds.iter().fold(0.0, |m, b| m.max(*b))
     }

@@ -1,4 +1,4 @@
-//! What can be done about a short edge or a sliver, and whether it may.
+//! Changes that mend a short edge or a sliver, and whether they may be made.
 
 use super::drift::{Coming, Drift};
 use super::sizes::{dot, height, less, normal, rounding_of, swept};
@@ -24,15 +24,15 @@ pub enum Act {
 /// A change that keeps the surface closed, with one fan at each vertex, and near.
 #[derive(Clone, Debug)]
 pub struct Edit {
-    /// What is done.
+    /// The change.
     pub act: Act,
     /// The triangles, with what becomes of them; those that vanish have one corner three times.
     pub changes: Vec<(u32, [u32; 3])>,
     /// The vertex to which a part of the surface comes.
     pub target: u32,
-    /// What comes to it.
+    /// The old point that comes to it.
     pub coming: Coming,
-    /// How far the old surface may then be from it.
+    /// The bound of the old surface's distance afterwards.
     pub bound: f64,
     /// Six times the volume between the old and the new surface.
     swept: f64,
@@ -73,13 +73,13 @@ impl Edit {
     }
 }
 
-/// What limits changes.
+/// The limits of changes.
 pub struct Limits<'a> {
     /// The surface as it is.
     pub surface: &'a Surface<'a>,
-    /// How far it has come.
+    /// The drift so far.
     pub drift: &'a Drift,
-    /// How far it may.
+    /// The drift that is allowed.
     pub tolerance: f64,
 }
 
@@ -151,8 +151,8 @@ impl Limits<'_> {
         !is_tetrahedron && common.count() == 2
     }
 
-    /// Whether a triangle may become another: it has area and does not turn over. A sliver may turn,
-    /// for it has no side to speak of.
+    /// Return whether a triangle may become another: it has area and does not turn over. A sliver
+    /// may turn, for it has no side to speak of.
     fn is_fit(&self, old: &Triangle, new: &Triangle) -> bool {
         let turns = || dot(&normal(old), &normal(new)) <= 0.0;
         !is_flat(new) && (height(old) <= self.tolerance || !turns())

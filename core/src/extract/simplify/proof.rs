@@ -1,4 +1,4 @@
-//! Whether changes leave the surface free of crossings, exactly; those that do not are taken back.
+//! The proof that changes leave the surface free of crossings, exactly; others are taken back.
 
 use rustc_hash::FxHashMap as HashMap;
 

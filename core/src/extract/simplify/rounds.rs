@@ -28,7 +28,7 @@ pub struct Simplified {
     pub bound: f64,
     /// Triangles that are slivers or have a short edge still, ascending.
     pub left: Vec<u32>,
-    /// Whether anything was changed.
+    /// True if anything was changed.
     pub changed: bool,
 }
 
@@ -64,7 +64,7 @@ struct Simplifying {
     shells: Shells,
     /// Vertices around which something may be done: their surroundings changed, or something waits.
     awake: Vec<bool>,
-    /// What made surfaces cross.
+    /// Changes that made surfaces cross.
     refused: HashSet<Act>,
     changed: bool,
 }

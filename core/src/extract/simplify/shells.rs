@@ -32,12 +32,13 @@ impl Shells {
         shells
     }
 
-    /// Whether the shell of a change may be changed at all: it is clear which side is inside.
+    /// Return whether the shell of a change may be changed at all: it is clear which side is
+    /// inside.
     pub fn is_certain(&self, edit: &Edit) -> bool {
         self.sides[self.of_edit(edit)] != 0
     }
 
-    /// Which shells are not turned as they were.
+    /// Mark the shells that are not turned as they were.
     pub fn turned(&self, vertices: &[Point], triangles: &[[u32; 3]]) -> Vec<bool> {
         let now = self.sides_of(vertices, triangles);
         now.iter().zip(&self.sides).map(|(a, b)| a != b).collect()
@@ -161,7 +162,8 @@ impl Resting {
     }
 }
 
-/// Whether a tetrahedron, which may be flat, may hold a point: no face certainly separates them.
+/// Return whether a tetrahedron, which may be flat, may hold a point: no face certainly separates
+/// them.
 fn may_hold(body: &[&Point; 4], point: &Point) -> bool {
     let separates = |apex: usize| {
         let face = [1, 2, 3].map(|i| *body[(apex + i) % 4]);

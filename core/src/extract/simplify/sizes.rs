@@ -1,4 +1,4 @@
-//! How large triangles are, in doubles; whether a change is right is never decided by these.
+//! Sizes of triangles, in doubles; they never decide whether a change is right.
 
 use crate::geometry::doubles::{Point, Triangle};
 
@@ -69,7 +69,8 @@ pub fn height(corners: &Triangle) -> f64 {
     dot(&normal, &normal).sqrt() / longest
 }
 
-/// Whether a triangle is a sliver or has a short edge; one with a short edge is no higher than that.
+/// Return whether a triangle is a sliver or has a short edge; one with a short edge is no higher
+/// than that.
 pub fn is_small(corners: &Triangle, tolerance: f64) -> bool {
     height(corners) <= tolerance || lengths(corners).iter().any(|l| *l <= tolerance)
 }

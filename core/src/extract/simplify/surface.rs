@@ -9,7 +9,7 @@ pub struct Surface<'a> {
     pub vertices: &'a [Point],
     /// The triangles.
     pub triangles: &'a [[u32; 3]],
-    /// Where the triangles around each vertex begin.
+    /// The places in `around` where the triangles of each vertex begin.
     starts: Vec<u32>,
     stars: Vec<u32>,
 }
@@ -56,7 +56,7 @@ impl<'a> Surface<'a> {
         })
     }
 
-    /// Whether an edge joins two vertices.
+    /// Return whether an edge joins two vertices.
     pub fn are_joined(&self, v: u32, w: u32) -> bool {
         let [few, other] = self.rarer_first(v, w);
         self.neighbours(few).any(|n| n == other)
@@ -97,7 +97,7 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// Which corner of its triangle a vertex is.
+/// Return the corner of its triangle that a vertex is.
 pub fn place_of(v: u32, corners: &[u32; 3]) -> usize {
     corners.iter().position(|c| *c == v).unwrap_or(0)
 }

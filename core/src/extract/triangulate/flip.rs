@@ -173,7 +173,8 @@ impl Mates {
         self.mates[half] != NONE && half < self.mates[half]
     }
 
-    /// Whether the angles opposite the edge exceed 180 degrees together and the flip is valid.
+    /// Return whether the angles opposite the edge exceed 180 degrees together and the flip is
+    /// valid.
     fn should_flip<P: Planar>(&self, points: &P, half: usize) -> bool {
         let mate = self.mates[half];
         if mate == NONE {
@@ -229,7 +230,7 @@ fn angle(apex: [f64; 2], p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
     [ux * vx + uy * vy, ux * vy - uy * vx]
 }
 
-/// Whether two angles add up to more than 180 degrees: the sine of the sum is negative.
+/// Return whether two angles add up to more than 180 degrees: the sine of the sum is negative.
 fn exceed_straight([cos_a, sin_a]: [f64; 2], [cos_b, sin_b]: [f64; 2]) -> bool {
     // The triangles turn left; a sine that rounds below zero belongs to an angle near 0 or 180 degrees.
     let (first, second) = (cos_a * sin_b.max(0.0), cos_b * sin_a.max(0.0));

@@ -69,7 +69,8 @@ pub trait Planar {
     fn approx(&self, a: u32) -> [f64; 2];
 }
 
-/// Why a set of edges is not the boundary of a region. Every variant names a vertex at the fault.
+/// A reason why a set of edges is not the boundary of a region. Every variant names a vertex at the
+/// fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error {
     /// The vertex does not have as many edges arriving as leaving.

@@ -17,7 +17,7 @@ use crate::interrupt::poll;
 
 const NONE: usize = usize::MAX;
 
-/// How the region lies at a corner, in the order in which corners of one vertex are visited.
+/// The shape of the region at a corner, in the order in which corners of one vertex are visited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     /// An interval closes.
@@ -41,7 +41,7 @@ struct Node {
     up: usize,
 }
 
-/// Where the sweep line meets the region between two boundary edges.
+/// A stretch of the sweep line inside the region, between two boundary edges.
 struct Interval {
     lower: usize,
     upper: usize,
@@ -340,13 +340,14 @@ impl<P: Planar> Sweep<'_, P> {
         self.order.remove(place, interval, touches).then_some(())
     }
 
-    /// Whether the interval's lower edge passes strictly below a vertex.
+    /// Return whether the interval's lower edge passes strictly below a vertex.
     fn is_below(&self, interval: usize, vertex: u32) -> bool {
         let (a, b) = self.edges[self.intervals[interval].lower];
         a != vertex && b != vertex && self.points.orient(a, b, vertex) > 0
     }
 
-    /// Whether the interval's lower edge passes below `vertex`, or starts there and runs below `head`.
+    /// Return whether the interval's lower edge passes below `vertex`, or starts there and runs
+    /// below `head`.
     fn is_below_ray(&self, interval: usize, vertex: u32, head: u32) -> bool {
         let (a, b) = self.edges[self.intervals[interval].lower];
         if a == vertex {

@@ -1,4 +1,4 @@
-//! What a partition tree shows of itself: coefficients, corners, boxes, sizes.
+//! Partition trees in numbers: coefficients, corners, boxes, sizes.
 //!
 //! [`Space`] answers where things lie and never says where that is; this trait is the door to
 //! numbers, for axis-parallel cuts, viewpoints, measures and output.
@@ -54,7 +54,7 @@ pub trait Affine: Space {
     /// an end of the facet. `seams` marks the facet's edges that do not count.
     fn original(piece: &Self::Fragment, facet: &[Lattice], seams: &[bool]) -> Vec<bool>;
 
-    /// Where `piece` lies relative to `cut`, without its parts.
+    /// Return the side of `cut` on which `piece` lies, without its parts.
     fn relation(piece: &Self::Fragment, cut: &Self::Hyperplane) -> Split<()>;
 
     /// The size of a fragment: 1 in 1D, length in 2D, area in 3D.
@@ -76,7 +76,7 @@ pub trait Affine: Space {
     }
 }
 
-/// Which of the two strict sides occur among a convex piece's corners.
+/// Tell a split from the strict sides that occur among a convex piece's corners.
 fn relation_of(sides: impl Iterator<Item = i32>) -> Split<()> {
     let (mut minus, mut plus) = (false, false);
     for side in sides {

@@ -1,4 +1,4 @@
-//! Which cells are for a kernel, and which are halved.
+//! The choice of cells: some are for a kernel, and others are halved.
 
 use super::state::{State, States};
 use crate::arith::convert::as_double;
@@ -48,16 +48,16 @@ const MANY: usize = 16;
 /// Parts of a cell that tell whether several operands have elements there are about this small.
 const SAMPLE: usize = 16;
 
-/// How the element count fared in the current round of three halvings.
+/// The element count in the current round of three halvings.
 #[derive(Clone, Copy)]
 pub struct Round {
     depth: u32,
     start: usize,
     stuck: bool,
-    /// How many operands mattered when the round began.
+    /// The number of operands that mattered when the round began.
     operands: usize,
     crowded: bool,
-    /// How many elements the kernel for general position refused.
+    /// The number of elements that the kernel for general position refused.
     refused: usize,
 }
 
@@ -96,8 +96,8 @@ impl Round {
         self.refused = total;
     }
 
-    /// Whether halving has stopped separating: a round kept nearly all elements, and nearly all of
-    /// them reach out of the cell, as around a vertex of many faces.
+    /// Return whether halving has stopped separating: a round kept nearly all elements, and nearly
+    /// all of them reach out of the cell, as around a vertex of many faces.
     pub fn is_stuck(&self, cell: &Cell, states: &States, total: usize) -> bool {
         let reaching = |s: &(u32, State)| match &s.1 {
             State::List(list) => list.reaching_out(cell),
@@ -106,18 +106,18 @@ impl Round {
         self.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
     }
 
-    /// Whether so many operands are in one place that no kernel should be asked.
+    /// Return whether so many operands are in one place that no kernel should be asked.
     pub fn is_overcrowded(&self, cell: &Cell, states: &States) -> bool {
         states.len() >= MANY && self.is_crowded(cell, states)
     }
 
-    /// Whether operands are in one place: a round of halvings left nearly all of them in the cell,
-    /// or many of the boxes around their boundaries overlap.
+    /// Return whether operands are in one place: a round of halvings left nearly all of them in the
+    /// cell, or many of the boxes around their boundaries overlap.
     pub fn is_crowded(&self, cell: &Cell, states: &States) -> bool {
         states.len() >= GROUPED && (self.crowded || many_overlap(cell, states))
     }
 
-    /// Whether a cell of so many elements is for the kernel for general position.
+    /// Return whether a cell of so many elements is for the kernel for general position.
     ///
     /// That looks at all elements, halving only at where they are: so at least half of them should
     /// lie in small parts of the cell where several operands have some.
@@ -132,7 +132,7 @@ impl Round {
     }
 }
 
-/// Whether one of three pairs of operands has overlapping boxes, as far as a sample shows.
+/// Return whether one of three pairs of operands has overlapping boxes, as far as a sample shows.
 fn many_overlap(cell: &Cell, states: &States) -> bool {
     let some = states.iter().step_by(states.len().div_ceil(MOST));
     let boxes: Vec<[Lattice; 2]> = some.map(|s| s.1.bounds(cell)).collect();

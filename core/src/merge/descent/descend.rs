@@ -71,16 +71,17 @@ impl Counters {
     }
 }
 
-/// What all cells of an evaluation share.
+/// The data that all cells of an evaluation share.
 #[derive(Debug)]
 pub struct Descent<'a> {
     /// The sources of all operands.
     pub sources: &'a Sources,
-    /// Which winding numbers of an operand are inside.
+    /// The rule by which winding numbers of an operand are inside.
     pub rule: Rule,
-    /// Whether a single operand's boundary is taken as it is, or made the reduced boundary.
+    /// True if a single operand's boundary is taken as it is, false if it is made the reduced
+    /// boundary.
     pub share: bool,
-    /// What was done.
+    /// The counters of what was done.
     pub counters: Counters,
     /// For each operand whether a visited cell showed that it overlaps itself, or that what it made
     /// together with others does.
@@ -368,8 +369,8 @@ impl<'a> Descent<'a> {
         states.iter().map(listed).collect()
     }
 
-    /// What the first of some kernels that takes the cell leaves there; `None` if none does, or an
-    /// operand's elements cannot be listed.
+    /// Return what the first of some kernels that takes the cell leaves there; `None` if none does,
+    /// or an operand's elements cannot be listed.
     fn solved(
         &self,
         cell: Cell,

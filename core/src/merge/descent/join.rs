@@ -156,7 +156,7 @@ impl Listed {
         })
     }
 
-    /// How much of the face's part in the cell the two leaves hold.
+    /// Return how much of the face's part in the cell the two leaves hold.
     fn extent_in(&self, cell: &Cell, halves: &[(&Branch, &Deferred, Cell); 2]) -> Extent {
         let (low, high) = self.source.face_box(self.face);
         let holders: Vec<_> = halves
@@ -183,7 +183,7 @@ impl Listed {
     }
 }
 
-/// How much of a face inside a cell is boundary.
+/// The share of a face inside a cell that is boundary.
 enum Extent {
     All,
     Some,

@@ -1,4 +1,4 @@
-//! What is known of an operand in a cell of the descent.
+//! The state of an operand in a cell of the descent.
 
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -19,7 +19,7 @@ pub const MANY: usize = 1024;
 /// With so few entries in a cell the bins give way to a list.
 const FEW: usize = 64;
 
-/// What is known of an operand in a cell.
+/// The state of an operand in a cell: what is known of it there.
 #[derive(Clone, Debug)]
 pub enum State {
     /// One winding number.
@@ -35,7 +35,7 @@ pub enum State {
 /// The operands that matter, by number, ascending.
 pub type States = Vec<(u32, State)>;
 
-/// What is known of an operand.
+/// Find the state of an operand.
 pub fn find(states: &States, operand: u32) -> Option<&State> {
     let at = states.binary_search_by_key(&operand, |s| s.0).ok()?;
     Some(&states[at].1)
@@ -55,7 +55,7 @@ pub fn nested(cell: &Cell, states: &States) -> Option<Cell> {
     inner.filter(|c| c != cell)
 }
 
-/// Whether there is an operand without boundary in the cell.
+/// Return whether there is an operand without boundary in the cell.
 pub fn has_constant(states: &States) -> bool {
     states.iter().any(|s| matches!(s.1, State::Constant(_)))
 }
@@ -92,7 +92,7 @@ impl State {
         }
     }
 
-    /// Whether it lists an operand's boundary as that was given.
+    /// Return whether it lists an operand's boundary as that was given.
     pub fn is_given(&self) -> bool {
         match self {
             Self::Constant(_) => false,
@@ -124,7 +124,7 @@ impl State {
         }
     }
 
-    /// Whether all elements are known, and perpendicular to axes.
+    /// Return whether all elements are known, and perpendicular to axes.
     pub fn is_orthogonal(&self, sources: &Sources) -> bool {
         match self {
             Self::List(list) => {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::side::Half;
 
-/// How the root of a tree and a splitting hyperplane lie to each other.
+/// The cases of the root of a tree and a splitting hyperplane, by how they lie to each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum SplitCase {
     /// The tree is a leaf: both halves are.

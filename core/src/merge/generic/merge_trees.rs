@@ -100,7 +100,7 @@ enum Step<S: Space> {
     },
 }
 
-/// What decides a pair, and how.
+/// A pair that is decided, and what decided it.
 struct Decided<'a, S: Space> {
     outcome: Outcome,
     operand: &'a PartitionTree<S>,

@@ -29,7 +29,8 @@ pub struct Halves<S: Space> {
     pub coplanar: Vec<Facet<S>>,
 }
 
-/// How an inner node and the splitting hyperplane lie to each other inside the node's region.
+/// The cases of an inner node and the splitting hyperplane, by how they lie inside the node's
+/// region.
 enum Case<S: Space> {
     /// H is the node's own cut.
     Same,
@@ -49,7 +50,7 @@ enum Case<S: Space> {
     },
 }
 
-/// Which case the root of a tree and a splitting hyperplane are.
+/// Return the case of the root of a tree and a splitting hyperplane.
 ///
 /// # Errors
 /// As for [`split_tree`].

@@ -1,4 +1,4 @@
-//! What splitting and merging trees do, node by node.
+//! The steps of splitting and merging trees, node by node.
 //!
 //! The algorithms tell of shared nodes ([`Seen`]); a [`Journal`] numbers the nodes of both operands
 //! in preorder and keeps plain records ([`MergeStep`]). From the operands as lists of numbers and
@@ -33,7 +33,7 @@ impl<S: Space> Root<S> {
     }
 }
 
-/// What happens, told by shared nodes.
+/// An event, told by shared nodes.
 #[derive(Clone, Debug)]
 pub enum Seen<S: Space> {
     /// A pair of trees of one region is to be combined.
@@ -42,16 +42,16 @@ pub enum Seen<S: Space> {
         a: Root<S>,
         /// The part of the second.
         b: Root<S>,
-        /// What becomes of them.
+        /// The decision about them.
         decision: Decision,
     },
     /// A subtree is to be split.
     Split {
         /// Its root.
         root: Root<S>,
-        /// How the splitting hyperplane lies to it.
+        /// The case of it and the splitting hyperplane.
         case: SplitCase,
-        /// Where the two cross: what lies in the cut on the minus and the plus side.
+        /// The parts in the cut on the minus and the plus side, where the two cross.
         parts: Option<[Arc<Sheet<S>>; 2]>,
     },
     /// A subtree has been split.
@@ -63,12 +63,12 @@ pub enum Seen<S: Space> {
     Join {
         /// The node's own sheet.
         sheet: Arc<Sheet<S>>,
-        /// What it has become.
+        /// Its part in the result.
         joined: Joined,
     },
 }
 
-/// What becomes of a pair of trees of one region.
+/// The decision about a pair of trees of one region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Decision {
     /// The second tree is split by the first one's root; the halves are combined.
@@ -85,7 +85,7 @@ pub enum Decision {
     SecondComplement(Because),
 }
 
-/// What decides a pair of trees.
+/// The reason that decides a pair of trees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Because {
     /// The first tree is a leaf.
@@ -98,7 +98,7 @@ pub enum Because {
     Complement,
 }
 
-/// What a node of the first operand has become.
+/// The part in the result that a node of the first operand has become.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Joined {
     /// Itself: nothing below it changed.
@@ -129,14 +129,14 @@ pub enum MergeStep {
         a: Name,
         /// The part of the second.
         b: Name,
-        /// What becomes of them.
+        /// The decision about them.
         decision: Decision,
     },
     /// A subtree is split by the first tree's cut chosen last.
     Split {
         /// The subtree's root.
         root: Name,
-        /// How the splitting hyperplane lies to it.
+        /// The case of it and the splitting hyperplane.
         case: SplitCase,
     },
     /// A subtree has been split.
@@ -150,7 +150,7 @@ pub enum MergeStep {
     Join {
         /// The node of the first operand.
         node: Name,
-        /// What it has become.
+        /// Its part in the result.
         joined: Joined,
     },
 }
@@ -177,7 +177,7 @@ impl<S: Space> Journal<S> {
         }
     }
 
-    /// What has been written down.
+    /// Return the steps that have been written down.
     pub fn into_steps(self) -> Vec<MergeStep> {
         self.steps
     }

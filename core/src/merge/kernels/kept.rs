@@ -1,4 +1,4 @@
-//! What stays of the faces in a cell, joined again to the elements of a leaf.
+//! The faces that stay in a cell, joined again to the elements of a leaf.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use crate::mesh::handle::{FaceId, SourceFace};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Deferred, Group, Node, Part, PartElement, Work};
 
-/// What stays of one element with one orientation.
+/// The part of one element that stays with one orientation.
 #[derive(Debug)]
 pub struct Kept {
     face: SourceFace,
@@ -33,7 +33,8 @@ enum What {
     Part(Arc<Part>),
     /// Some convex pieces, and what some edges bound.
     Pieces(Vec<Polygon>, Vec<BareEdge>),
-    /// What an outline bounds that needs no joining, and is not all of the face in the cell.
+    /// The part that an outline bounds that needs no joining, and is not all of the face in the
+    /// cell.
     Outline(Vec<BareEdge>),
 }
 
@@ -78,8 +79,8 @@ impl Kept {
         }
     }
 
-    /// What an outline bounds: some, but not all of a face in the cell; no two of its edges that
-    /// follow each other lie on one line.
+    /// Keep what an outline bounds: some, but not all of a face in the cell; no two of its edges
+    /// that follow each other lie on one line.
     pub fn outlined(face: SourceFace, orientation: Orientation, edges: Vec<BareEdge>) -> Self {
         let what = What::Outline(edges);
         Self {
@@ -204,9 +205,9 @@ fn list_whole(
     }
 }
 
-/// Whether an outline runs only on the face's own edges and the cell's border: then it is the
-/// border of the whole face inside the cell, for a part of a connected set with no border of its
-/// own is all of it.
+/// Return whether an outline runs only on the face's own edges and the cell's border: then it is
+/// the border of the whole face inside the cell, for a part of a connected set with no border of
+/// its own is all of it.
 pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: FaceId, cell: &Cell) -> bool {
     let ends = edges.iter().map(|e| (&e.from, &e.to, &e.carrier));
     if has_inner(ends, source, face, cell) {
@@ -238,8 +239,8 @@ pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: FaceId, cell: &Cel
     others.iter().all(|e| border.contains(&e.line))
 }
 
-/// Whether some edge of a face surely lies on none of the face's edges and in no wall of the cell;
-/// errs on no.
+/// Return whether some edge of a face surely lies on none of the face's edges and in no wall of the
+/// cell; errs on no.
 fn has_inner<'a>(
     mut edges: impl Iterator<Item = (&'a Arc<Vertex>, &'a Arc<Vertex>, &'a Carrier)>,
     source: &Source,
@@ -257,7 +258,7 @@ fn has_inner<'a>(
     })
 }
 
-/// Whether two points may lie in one wall of a cell that holds both; errs on yes.
+/// Return whether two points may lie in one wall of a cell that holds both; errs on yes.
 fn may_share_wall(a: &Vertex, b: &Vertex, cell: &Cell) -> bool {
     let (ends, low, high) = ([a, b].map(Vertex::bounds), cell.low(), cell.high());
     (0..3).any(|i| {

@@ -1,4 +1,4 @@
-//! What a kernel is asked, what it answers, and who is asked first.
+//! The problem that a kernel is asked, its solution, and the order in which kernels are asked.
 
 use std::borrow::Cow;
 
@@ -13,9 +13,9 @@ use crate::tree::node::Node;
 pub struct CellProblem<'a> {
     /// The cell.
     pub cell: &'a Cell,
-    /// What is left of the expression there.
+    /// The expression as far as it is left there.
     pub expression: &'a Expression,
-    /// Which winding numbers of an operand are inside.
+    /// The rule by which winding numbers of an operand are inside.
     pub rule: Rule,
     /// The operands, by ascending numbers.
     pub operands: Vec<Listed<'a>>,
@@ -32,7 +32,7 @@ pub struct Listed<'a> {
     pub list: Cow<'a, List>,
 }
 
-/// What an expression leaves in a cell.
+/// The tree that an expression leaves in a cell.
 #[derive(Debug)]
 pub struct Solution {
     /// The boundary that stays.
@@ -46,7 +46,7 @@ pub struct Solution {
 /// All kernels leave the same set. Each has positions that it does not know; a cell that one
 /// refuses is for the next one, or is halved.
 pub trait Kernel {
-    /// What the expression leaves in the cell; `None` if the cell is not for this kernel.
+    /// Return what the expression leaves in the cell; `None` if the cell is not for this kernel.
     fn solve(&self, problem: &CellProblem) -> Option<Solution>;
 }
 

@@ -1,4 +1,4 @@
-//! What stays of faces and of the pieces of parts, as a kernel's result.
+//! The parts that stay of faces and of the pieces of parts, as a kernel's result.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::interrupt::poll;
 use crate::mesh::handle::{Slot, SourceFace};
 use crate::tree::node::Part;
 
-/// What stays of an element on one side.
+/// The part of an element that stays on one side.
 pub enum Stays {
     /// Nothing.
     Nothing,
@@ -18,11 +18,12 @@ pub enum Stays {
     All,
     /// These pieces.
     Pieces(Vec<Polygon>),
-    /// What an outline bounds, of which no two edges that follow each other lie on one line.
+    /// The part that an outline bounds, of which no two edges that follow each other lie on one
+    /// line.
     Outline(Vec<BareEdge>),
 }
 
-/// Whose an element is.
+/// The face or the part that an element is of.
 pub enum Owner {
     /// All of a face.
     Face(SourceFace),
@@ -35,7 +36,7 @@ pub enum Owner {
 pub type Settled = (usize, Owner, [Stays; 2]);
 
 impl Stays {
-    /// What is left as pieces.
+    /// Make one of what is left as pieces.
     pub fn of(pieces: Vec<Polygon>) -> Self {
         if pieces.is_empty() {
             Self::Nothing
@@ -54,7 +55,8 @@ impl Stays {
     }
 }
 
-/// What stays of all elements, given the parts with their slots, and the polygon of an element.
+/// Return what stays of all elements, given the parts with their slots, and the polygon of an
+/// element.
 pub fn kept(
     settled: impl Iterator<Item = Settled>,
     parts: &[(&Arc<Part>, Slot)],

@@ -41,7 +41,7 @@ pub struct Bins {
     /// The number of each group's first element: elements are numbered through all groups.
     firsts: Vec<u32>,
     window: Window,
-    /// Where the entries of each cell start, and the end of the last.
+    /// The places where the entries of each cell start, and the end of the last.
     starts: Vec<u32>,
     /// The elements by cells.
     entries: Vec<u32>,
@@ -106,7 +106,7 @@ impl Bins {
         })
     }
 
-    /// Whether the halves of a cell are still made of whole cells of the window.
+    /// Return whether the halves of a cell are still made of whole cells of the window.
     pub fn divide(&self, cell: &Cell) -> bool {
         self.window.is_divided_in(cell)
     }
@@ -144,7 +144,7 @@ impl Bins {
         Branch::of_node(*cell, Node::Deferred(leaf))
     }
 
-    /// What the home went through.
+    /// Return the work that the home went through.
     pub fn work(&self) -> Work {
         self.leaf().work
     }
@@ -239,7 +239,7 @@ fn find<'a, 'b>(runs: &'a [Run<'b>], element: u32) -> (&'a Run<'b>, FaceId) {
 }
 
 impl Run<'_> {
-    /// Whether it is worth while to look at all vertices of the mesh once.
+    /// Return whether it is worth while to look at all vertices of the mesh once.
     fn is_most(&self) -> bool {
         self.faces.len() >= self.mesh.vertices.len()
     }

@@ -1,4 +1,4 @@
-//! How the winding number of a window's faces changes along the lines between its cells.
+//! Changes of the winding number of a window's faces along the lines between its cells.
 //!
 //! From the low corner of the window the path to another corner runs along the first axis, then the
 //! second, then the third. Only faces that lie across lines of two axes can meet one of the third.
@@ -92,7 +92,7 @@ impl Crossings {
     }
 }
 
-/// How many lines a span may meet.
+/// Return the number of lines that a span may meet.
 pub fn line_count(span: &Span) -> usize {
     let mut count = 0;
     if crosses_two(span) {
@@ -101,7 +101,7 @@ pub fn line_count(span: &Span) -> usize {
     count
 }
 
-/// Whether a face lies across lines of two axes.
+/// Return whether a face lies across lines of two axes.
 fn crosses_two(span: &Span) -> bool {
     (0..3).filter(|i| !span.lines(*i).is_empty()).count() >= 2
 }
@@ -130,7 +130,8 @@ fn number(window: &Window, axis: usize, x: i32, y: i32) -> u32 {
     }
 }
 
-/// Where a face crosses a line inside the window, and the change of the winding number there.
+/// Return the place where a face crosses a line inside the window, and the change of the winding
+/// number there.
 fn crossing(
     window: &Window,
     span: &Span,

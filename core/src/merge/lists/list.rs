@@ -94,7 +94,7 @@ impl Record {
         self.run.slot()
     }
 
-    /// How the face is turned, seen from the source.
+    /// Return the orientation of the face, seen from the source.
     pub fn orientation(&self) -> Orientation {
         self.run.orientation()
     }
@@ -228,12 +228,12 @@ impl List {
         self.records.len() + self.parts.len()
     }
 
-    /// Which kernel the elements went through.
+    /// Return the kernel that the elements went through.
     pub fn work(&self) -> Work {
         self.work
     }
 
-    /// Whether no element is listed.
+    /// Return whether no element is listed.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -276,7 +276,7 @@ impl List {
         plus
     }
 
-    /// How many elements reach across the cell's border: these no halving can separate soon.
+    /// Count the elements that reach across the cell's border: these no halving can separate soon.
     pub fn reaching_out(&self, cell: &Cell) -> usize {
         let high = cell.high();
         let (low, high) = (self.frame.indices(cell.low()), self.frame.indices(&high));
@@ -406,7 +406,7 @@ impl Frame {
         }
     }
 
-    /// Whether a record is so large that its plane may miss a cell its bounds meet.
+    /// Return whether a record is so large that its plane may miss a cell its bounds meet.
     fn exceeds(&self, r: &Record, cell: &Cell) -> bool {
         let size = cell.size();
         (0..3).any(|i| {

@@ -1,4 +1,4 @@
-//! What meets a cell: lists of elements, divided with the cells, and bins for long ones.
+//! The elements that meet a cell: lists of them, divided with the cells, and bins for long ones.
 
 pub(super) mod bins;
 pub(super) mod crossings;

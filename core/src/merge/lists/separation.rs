@@ -1,4 +1,4 @@
-//! Whether a face misses a box, by separating axes in doubles.
+//! The test whether a face misses a box, by separating axes in doubles.
 
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
@@ -10,7 +10,7 @@ use crate::mesh::source::{Shape, Source};
 /// Relative slack of the separating axis tests in doubles: far above their rounding.
 const SLACK: f64 = 1e-13;
 
-/// Whether a face certainly misses a closed cell; errs on no.
+/// Return whether a face certainly misses a closed cell; errs on no.
 pub fn misses(source: &Source, face: FaceId, cell: &Cell) -> bool {
     let (low, high) = (cell.low(), cell.high());
     match source.shape() {
@@ -28,8 +28,8 @@ fn plane_misses(plane: &Plane, low: &Lattice, high: &Lattice) -> bool {
     value.abs() > reach + (size + reach) * SLACK
 }
 
-/// Whether a lattice triangle certainly misses the box half a step around lattice points; errs on
-/// no.
+/// Return whether a lattice triangle certainly misses the box half a step around lattice points;
+/// errs on no.
 ///
 /// Separating axes: the face's normal, and each of its edges projected along each axis.
 pub fn triangle_misses(corners: &[Lattice; 3], low: &Lattice, high: &Lattice) -> bool {

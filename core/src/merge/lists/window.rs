@@ -151,7 +151,7 @@ impl Window {
         each_axis(|i| self.place(i, cell.low()[i]).max(0))
     }
 
-    /// Whether a cell's cut lies between cells of the window.
+    /// Return whether a cell's cut lies between cells of the window.
     pub fn is_divided_in(&self, cell: &Cell) -> bool {
         cell.size().iter().any(|s| u32::from(*s) > self.size)
     }

@@ -157,7 +157,7 @@ impl Space {
         }
     }
 
-    /// Whether a pair belongs here.
+    /// Return whether a pair belongs here.
     pub fn owns(&self, a: &Boxed, b: &Boxed) -> bool {
         (0..3).all(|i| {
             let corner = a.extent.low(i).max(b.extent.low(i));
@@ -191,7 +191,7 @@ impl Task {
         self.space.low[axis].midpoint(self.space.high[axis])
     }
 
-    /// How many elements the lower and the upper half would have.
+    /// Count the elements that the lower and the upper half would have.
     fn counts(&self, axis: usize) -> [usize; 2] {
         let at = self.middle(axis);
         let count = |[below, above]: [u32; 2], e: &Boxed| {

@@ -19,17 +19,17 @@ pub struct Line {
     pub crowding: f64,
 }
 
-/// What gives points their places along a line.
+/// A measure that gives points their places along a line.
 #[derive(Clone, Copy)]
 pub enum Gauge {
-    /// How far they are in a direction.
+    /// The distance in a direction.
     Along([f64; 3]),
     /// The slope at which they are seen from a point.
     Seen(View),
 }
 
 impl Gauge {
-    /// Whether the plane of two lines shows more than one of them.
+    /// Return whether the plane of two lines shows more than one of them.
     pub fn is_across(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Along(a), Self::Along(b)) => dot(a, b).abs() < PARALLEL,
@@ -37,7 +37,7 @@ impl Gauge {
         }
     }
 
-    /// Whether what is straight in space is straight in the plane of two lines.
+    /// Return whether what is straight in space is straight in the plane of two lines.
     pub fn keeps_straight(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Along(_), Self::Along(_)) => true,

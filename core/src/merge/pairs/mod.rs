@@ -113,7 +113,7 @@ fn sweep_groups(
     }
 }
 
-/// Where the operand begins that divides elements best; `None` if there is only one.
+/// Return the start of the operand that divides elements best; `None` if there is only one.
 fn middle(crowd: &[Boxed]) -> Option<usize> {
     let begins = |at: &usize| crowd[at - 1].operand != crowd[*at].operand;
     let half = crowd.len() / 2;
@@ -227,7 +227,7 @@ mod tests {
         Some(found)
     }
 
-    /// Whether triangles of several operands have a corner in common.
+    /// Return whether triangles of several operands have a corner in common.
     fn touch(scene: &Scene) -> bool {
         let mut owners = HashMap::new();
         let corners = scene.triangles.iter().flat_map(|(k, t)| t.map(|p| (*k, p)));

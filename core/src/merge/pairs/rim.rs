@@ -1,4 +1,4 @@
-//! What bounds triangles in the plane of two lines.
+//! The rims of triangles in the plane of two lines.
 
 use super::direction::Span;
 use super::line::Gauge;
@@ -17,7 +17,8 @@ impl HalfPlane {
         limit: f64::INFINITY,
     };
 
-    /// What holds the points `corners` and ends along the line through the first two of them.
+    /// Return the half-plane that holds the points `corners` and ends along the line through the
+    /// first two of them.
     ///
     /// Any normal will do, so that only products with it are rounded: by a few units in the last
     /// place of the coordinates, well below what these are off.
@@ -38,7 +39,7 @@ impl HalfPlane {
         }
     }
 
-    /// Whether a box lies outside.
+    /// Return whether a box lies outside.
     pub fn excludes(&self, spans: &[Span; 2]) -> bool {
         let least = |i: usize| self.normal[i] * spans[i][usize::from(self.normal[i] < 0.0)];
         least(0) + least(1) > self.limit

@@ -90,7 +90,7 @@ struct Swath {
     second: Vec<Span>,
     /// Along the others.
     others: Vec<Vec<Span>>,
-    /// What bounds each element in the plane of the two best lines.
+    /// The half-planes that bound each element in the plane of the two best lines.
     rims: Vec<[HalfPlane; 3]>,
     numbers: Vec<usize>,
 }

@@ -18,7 +18,7 @@ const AHEAD: f64 = 1e-6;
 /// A point is ahead if its slope is at most this.
 const STEEP: f64 = 16.0;
 
-/// What slopes of points ahead are off: coordinates and depths are off by less than `SLACK` of the
+/// The error of slopes of points ahead: coordinates and depths are off by less than `SLACK` of the
 /// largest coordinate.
 pub const OFF: f64 = (1.0 + STEEP) * SLACK / AHEAD;
 
@@ -71,12 +71,13 @@ fn apex(elements: &[&Swept]) -> Option<[f64; 3]> {
     (count * FAN >= elements.len()).then(|| most.map(f64::from_bits))
 }
 
-/// What is the same for equal places: coordinates were whole numbers, so that zero has one sign.
+/// Return bits that are the same for equal places: coordinates were whole numbers, so that zero has
+/// one sign.
 fn bits(place: &[f64; 3]) -> [u64; 3] {
     place.map(f64::to_bits)
 }
 
-/// Whether elements of several operands have a corner in common inside the cell.
+/// Return whether elements of several operands have a corner in common inside the cell.
 pub fn share_corner(elements: &[Swept]) -> bool {
     let mut owners: FxHashMap<[u64; 3], usize> = FxHashMap::default();
     elements.iter().any(|e| {
@@ -85,7 +86,7 @@ pub fn share_corner(elements: &[Swept]) -> bool {
     })
 }
 
-/// Whether elements of several operands have this corner in common inside the cell.
+/// Return whether elements of several operands have this corner in common inside the cell.
 fn is_shared(elements: &[&Swept], place: &[f64; 3]) -> bool {
     let touches = |e: &&&Swept| e.is_at(place) && e.has(place);
     let mut operands = elements.iter().filter(touches).map(|e| e.operand);
@@ -94,13 +95,13 @@ fn is_shared(elements: &[&Swept], place: &[f64; 3]) -> bool {
 }
 
 impl Swept {
-    /// Whether a place lies in the element's box inside the cell.
+    /// Return whether a place lies in the element's box inside the cell.
     fn is_at(&self, place: &[f64; 3]) -> bool {
         let within = |i: usize| as_double(self.low[i])..=as_double(self.high[i]);
         (0..3).all(|i| within(i).contains(&place[i]))
     }
 
-    /// Whether a place is one of the corners.
+    /// Return whether a place is one of the corners.
     fn has(&self, place: &[f64; 3]) -> bool {
         let corners = self.corners.iter().flatten();
         corners.map(bits).any(|corner| corner == bits(place))
@@ -124,7 +125,7 @@ fn less(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
 }
 
 impl View {
-    /// Whether two views show slopes from one point.
+    /// Return whether two views show slopes from one point.
     pub fn shares_eye(&self, other: &Self) -> bool {
         bits(&self.eye) == bits(&other.eye)
     }

@@ -21,7 +21,7 @@ const GROWTH: usize = 4;
 /// Trees of so few nodes are let grow.
 const SMALL: usize = 64;
 
-/// What a set operation makes of two sets.
+/// Return the set that a set operation makes of two sets.
 ///
 /// # Errors
 /// `Internal` for a defect.
@@ -70,7 +70,7 @@ fn merged(a: &PlaneSet, b: &PlaneSet, op: SetOp) -> Result<PlaneSet> {
     Ok(set)
 }
 
-/// Whether two sets are the same.
+/// Return whether two sets are the same.
 ///
 /// # Errors
 /// `Internal` for a defect.

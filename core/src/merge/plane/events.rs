@@ -1,4 +1,4 @@
-//! Where a sweep stops: the corners in order, and the crossings that it finds on its way.
+//! The stops of a sweep: the corners in order, and the crossings that it finds on its way.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

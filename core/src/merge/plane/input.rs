@@ -1,4 +1,4 @@
-//! What is swept: weighted segments between corners.
+//! The input of a sweep: weighted segments between corners.
 
 use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
@@ -24,7 +24,7 @@ pub struct Strand {
     pub line: Line2,
     /// The numbers of its first and its last corner.
     pub ends: [u32; 2],
-    /// What it adds to the winding number on the minus side.
+    /// The number that it adds to the winding number on the minus side.
     pub weight: i32,
 }
 

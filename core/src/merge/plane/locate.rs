@@ -1,4 +1,4 @@
-//! Where many points lie: a sweep that passes them with the corners of a boundary.
+//! The locations of many points: a sweep passes them with the corners of a boundary.
 
 use super::input::Outlines;
 use super::sweep::Sweep;
@@ -8,7 +8,7 @@ use crate::interrupt::poll;
 use crate::tree::partition::{classify, Location};
 use crate::tree::plane::{Boundary, PlaneSet};
 
-/// Where each of some points lies relative to a set.
+/// Locate each of some points relative to a set.
 ///
 /// # Errors
 /// `Internal` for a defect.
@@ -23,7 +23,7 @@ pub fn located(set: &PlaneSet, points: &[Lattice2]) -> Result<Vec<Location>> {
     Ok(points.iter().map(place).collect())
 }
 
-/// Where each of some points lies relative to a closed boundary's set.
+/// Locate each of some points relative to a closed boundary's set.
 ///
 /// # Cost
 /// O((n + k) log n) for n edges and k points, if the sweep's line meets few edges at once.

@@ -1,4 +1,4 @@
-//! What a sweep leaves: the boundary as far as it has come.
+//! The output of a sweep: the boundary as far as it has come.
 
 use crate::arith::convert::as_number;
 use crate::geometry::dim2::Line2;

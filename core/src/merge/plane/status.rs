@@ -1,4 +1,4 @@
-//! What a sweep's line meets: stretches of lines in their order from below.
+//! The status of a sweep: the stretches of lines that its line meets, in their order from below.
 
 use smallvec::SmallVec;
 
@@ -14,7 +14,7 @@ pub(super) struct Stretch {
     pub right: u32,
     /// The strands.
     pub strands: SmallVec<[u32; 2]>,
-    /// What winding numbers rise by from below to above.
+    /// The rise of winding numbers from below to above.
     pub rise: i32,
     /// The winding number below.
     pub below: i32,
@@ -31,7 +31,7 @@ impl Stretch {
     }
 }
 
-/// Where a point lies among the stretches that the sweep's line meets.
+/// The place of a point among the stretches that the sweep's line meets.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     /// The number of stretches below it.
@@ -59,7 +59,7 @@ impl Status {
         self.order.len()
     }
 
-    /// Where a point of the sweep's line lies; `stop` is its number, if it is a corner.
+    /// Return the place of a point of the sweep's line; `stop` is its number, if it is a corner.
     pub(super) fn place(&self, point: &Point2, stop: Option<u32>) -> Place {
         let side = |number: &u32| {
             let stretch = &self.stretches[*number as usize];

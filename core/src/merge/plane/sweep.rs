@@ -59,7 +59,7 @@ struct Running {
 /// A place where the sweep stops.
 #[derive(Debug)]
 pub(super) struct Event {
-    /// Where.
+    /// The place of the stop.
     pub corner: Corner,
     /// Its number, if a strand begins or ends there.
     pub stop: Option<u32>,
@@ -121,7 +121,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         self.output.into_boundary(outer)
     }
 
-    /// Whether the result lies on one side of a stretch only.
+    /// Return whether the result lies on one side of a stretch only.
     fn separates(&self, stretch: &Stretch) -> bool {
         (self.inside)(stretch.below) != (self.inside)(stretch.above())
     }
@@ -161,7 +161,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
     }
 
-    /// Where a point lies before the next stop.
+    /// Locate a point that lies before the next stop.
     pub(super) fn location(&self, point: &Lattice2) -> Location {
         let place = self.status.place(&Point2::lattice(*point), None);
         if place.first < place.last {

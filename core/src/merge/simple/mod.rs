@@ -1,4 +1,5 @@
-//! Whether a mesh is simple: nothing overlaps, and the winding number is 0 outside and 1 inside.
+//! The check whether a mesh is simple: nothing overlaps, and winding numbers are 0 outside and 1
+//! inside.
 //!
 //! Nearly all pairs of faces in a small cell share a vertex or lie beyond each other's planes; such
 //! cells need no tree. The others are labelled, and so is one cell for each shell.
@@ -45,7 +46,7 @@ struct Check<'a> {
     overlap: AtomicBool,
 }
 
-/// Whether a solid made of one mesh is simple; `None` if it is made of anything else.
+/// Return whether a solid made of one mesh is simple; `None` if it is made of anything else.
 ///
 /// # Errors
 /// `Cancelled`.
@@ -132,7 +133,7 @@ fn shell_of(source: &Arc<Source>, faces: Vec<FaceId>) -> Branch {
     Branch::of_node(cell, Node::Deferred(leaf))
 }
 
-/// Whether faces enclose more inside than outside.
+/// Return whether faces enclose more inside than outside.
 fn is_outward(mesh: &TriangleMesh, faces: impl Iterator<Item = FaceId>) -> bool {
     let mut volume = Int::<4>::ZERO;
     for face in faces {
@@ -229,7 +230,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Whether no two of the faces overlap, as far as a quick look can tell; errs on no.
+    /// Return whether no two of the faces overlap, as far as a quick look can tell; errs on no.
     fn is_clean(&self, faces: &[FaceId]) -> bool {
         spend(faces.len());
         let look = |f: &FaceId| Looked::at(self.mesh, *f, &self.irregular);
@@ -273,7 +274,7 @@ impl Looked {
         }
     }
 
-    /// Whether two faces certainly have nothing in common but shared corners and edges.
+    /// Return whether two faces certainly have nothing in common but shared corners and edges.
     fn is_clear_of(&self, other: &Self) -> bool {
         if (0..3).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i]) {
             return true;
@@ -286,14 +287,15 @@ impl Looked {
         }
     }
 
-    /// Whether more than two faces may meet in the common edge: surfaces can cross there although
-    /// no two faces do.
+    /// Return whether more than two faces may meet in the common edge: surfaces can cross there
+    /// although no two faces do.
     fn shares_irregular_edge(&self, other: &Self) -> bool {
         let common = |i: &usize| other.corners.contains(&self.corners[*i]);
         (0..3).filter(common).all(|i| self.irregular[i])
     }
 
-    /// Whether the other face's corners that are not shared lie strictly on one side of this plane.
+    /// Return whether the other face's corners that are not shared lie strictly on one side of this
+    /// plane.
     fn has_beyond(&self, other: &Self) -> bool {
         let mut sides = other
             .corners
@@ -306,7 +308,8 @@ impl Looked {
         first != 0 && sides.all(|s| s == first)
     }
 
-    /// Whether two faces with a common edge lie in different planes, or flat beside each other.
+    /// Return whether two faces with a common edge lie in different planes, or flat beside each
+    /// other.
     fn folds_away(&self, other: &Self) -> bool {
         let apex = other.corners.iter().find(|p| !self.corners.contains(p));
         let cosine: f64 = (0..3).map(|i| self.normal[i] * other.normal[i]).sum();
@@ -314,7 +317,7 @@ impl Looked {
         apex.is_some_and(|p| self.side(p) != 0) || (cosine > bound && self.runs_against(other))
     }
 
-    /// Whether some edge of one face is an edge of the other, run backwards.
+    /// Return whether some edge of one face is an edge of the other, run backwards.
     fn runs_against(&self, other: &Self) -> bool {
         let edge = |c: &[Lattice; 3], i: usize| (c[i], c[(i + 1) % 3]);
         (0..3).any(|i| {

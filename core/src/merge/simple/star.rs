@@ -1,4 +1,5 @@
-//! Whether a closed mesh is star-shaped: a point sees all of its faces from behind, each once.
+//! The test whether a closed mesh is star-shaped: a point sees all its faces from behind, each
+//! once.
 //!
 //! Let a point lie strictly behind the planes of all faces. Seen from there, each face covers its
 //! part of the sphere of directions once, and all turn the same way. The surface has no border, so
@@ -19,7 +20,8 @@ use crate::geometry::path::near_determinant;
 use crate::geometry::plane::Lattice;
 use crate::mesh::triangles::TriangleMesh;
 
-/// Whether a mesh that closes by index is star-shaped about the mean of its vertices; errs on no.
+/// Return whether a mesh that closes by index is star-shaped about the mean of its vertices; errs
+/// on no.
 pub fn is_star_shaped(mesh: &TriangleMesh) -> bool {
     let Some(eye) = mean(&mesh.vertices) else {
         return false;
@@ -38,13 +40,13 @@ fn mean(points: &[Lattice]) -> Option<Lattice> {
     Some(sum.map(|s| s.div_euclid(count) as i64))
 }
 
-/// Whether a point lies strictly behind a face's plane; errs on no.
+/// Return whether a point lies strictly behind a face's plane; errs on no.
 fn is_behind(point: &Lattice, corners: &[Lattice; 3]) -> bool {
     let [a, b, c] = corners.map(|corner| each_axis(|i| corner[i] - point[i]));
     near_determinant(&a, &b, &c) > 0
 }
 
-/// How many faces a ray along x meets, beside a point that lies behind all of them.
+/// Count the faces that a ray along x meets, beside a point that lies behind all of them.
 fn faces_ahead(mesh: &TriangleMesh, eye: &Lattice) -> Option<i32> {
     let (_, high) = mesh.bounds()?;
     let ray = Segment {

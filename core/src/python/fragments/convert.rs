@@ -9,7 +9,7 @@ use crate::python::arrays::array;
 use crate::python::hyperplanes::Row;
 use crate::tree::fragments::{NodeCut, Policy, Sample};
 
-/// What a caller says about how to build, before the dimension is known.
+/// A caller's wish how to build, before the dimension is known.
 #[derive(Clone, Debug)]
 pub enum Wish {
     Policy(Policy, Option<usize>, i64),
@@ -66,7 +66,7 @@ pub fn rows<T: numpy::Element + Copy>(
     PyArray1::from_vec(py, flat.collect()).reshape([count, dimension])
 }
 
-/// What stands for an axis in the row of a hyperplane that is the tree's own.
+/// The mark that stands for an axis in the row of a hyperplane that is the tree's own.
 const OWN: i64 = -2;
 
 /// Cuts as rows: (-1, piece) for a pivot, (axis, coordinate) for an axis-parallel cut, (-2, place)

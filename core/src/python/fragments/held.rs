@@ -112,7 +112,7 @@ pub struct Export {
 }
 
 impl<S: FromRow> Held<S> {
-    /// How the tree came about: it is built once more.
+    /// Return the construction of the tree, which is built once more.
     pub fn construction(&self, recipe: &Recipe) -> Result<Vec<Division>> {
         let mut divisions = Vec::new();
         let plan = plan(&self.facets, recipe)?;

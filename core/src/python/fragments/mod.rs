@@ -209,7 +209,7 @@ impl PyFragmentTree {
         })
     }
 
-    /// How the tree came about, node by node.
+    /// Return the construction of the tree, node by node.
     fn construction(&self, py: Python<'_>) -> PyResult<Vec<DivisionRow>> {
         let recipe = &self.recipe;
         let divisions = self.run(
@@ -462,7 +462,7 @@ impl PyFragmentTree {
         Ok((corners, PyArray1::from_vec(py, self.offsets.clone())))
     }
 
-    /// How many convex pieces the facets were taken apart into.
+    /// Return the number of convex pieces into which the facets were taken apart.
     #[getter]
     fn piece_count(&self) -> usize {
         each!(&self.inner, held => held.facets.len())
@@ -479,7 +479,7 @@ impl PyFragmentTree {
 /// Casting a ray costs about as much as a thousand elements of other work.
 const CAST: usize = 1000;
 
-/// What a callable raised.
+/// The exception that a callable raised.
 type Raised = Arc<Mutex<Option<PyErr>>>;
 
 fn wish_of(policy: &str, seed: u64, sample: usize, alpha: f64, top: usize) -> Result<Wish> {

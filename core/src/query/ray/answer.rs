@@ -5,7 +5,7 @@ use super::line::Ray;
 use super::scene::Scene;
 use crate::arith::{ratio_to_f64, Int};
 
-/// Where in a facet a ray meets it.
+/// The part of a facet in which a ray meets it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// In the facet's relative interior.
@@ -23,7 +23,7 @@ pub struct Hit<const D: usize> {
     pub number: u32,
     /// The point is origin + t · direction; correctly rounded (but for subnormal numbers).
     pub t: f64,
-    /// Where in the facet.
+    /// The part of the facet.
     pub kind: Kind,
     /// Barycentric coordinates, correctly rounded; zero exactly where they are.
     pub weights: [f64; D],

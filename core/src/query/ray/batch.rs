@@ -23,7 +23,7 @@ const CHUNKS: usize = 8;
 /// A stretch inside, in doubles: parameters, and the facets' places in the input.
 #[derive(Clone, Copy, Debug)]
 pub struct Inside {
-    /// Where it begins and ends; infinite where it does not.
+    /// The parameters at which it begins and ends; infinite where it does not.
     pub t: [f64; 2],
     /// The facets at the ends; −1 where the ray starts inside or stays there.
     pub facets: [i64; 2],
@@ -39,8 +39,8 @@ pub struct Rays<'a> {
 }
 
 impl Rays<'_> {
-    /// What `answer` says to the rays of these numbers; `ray` makes one of a snapped origin and a
-    /// head, and `along` its direction as far as that decides who goes alike.
+    /// Return what `answer` says to the rays of these numbers; `ray` makes one of a snapped origin
+    /// and a head, and `along` its direction as far as that decides who goes alike.
     fn map<const D: usize, T: Send>(
         &self,
         scene: &Scene<D>,
@@ -133,7 +133,7 @@ impl Rays<'_> {
         self.cast(scene, |_, rays| rays.iter().map(of_ray).collect())
     }
 
-    /// Whether something lies strictly between each origin and its target; both are snapped.
+    /// Mark the origins between which and their targets something lies strictly; both are snapped.
     ///
     /// # Errors
     /// As for `first`; `BadNormal` where origin and target are one lattice point.
@@ -146,7 +146,7 @@ impl Rays<'_> {
         )
     }
 
-    /// Whether something lies on each ray at a parameter strictly between 0 and its limit.
+    /// Mark the rays on which something lies at a parameter strictly between 0 and its limit.
     ///
     /// # Errors
     /// As for `first`; `Shape` unless there is one limit for each ray.

@@ -1,4 +1,4 @@
-//! How wide the exact numbers of ray casting are, derived as in `arith::bounds`.
+//! The widths of the exact numbers of ray casting, derived as in `arith::bounds`.
 //!
 //! Notation: `p` bounds a lattice coordinate, so that corners relative to a ray's origin are below
 //! 2^(p + 1). Determinants with entries in [−1, 1] are at most 2 (order 2) and 4 (order 3).
@@ -58,7 +58,7 @@ pub const fn value_within(p: u32) -> u32 {
     det2([p + 1, p + 1])
 }
 
-/// How that weight changes along the ray.
+/// Bound the change of that weight along the ray.
 pub const fn slope_within(p: u32) -> u32 {
     det2([DIRECTION_BITS, p + 2])
 }

@@ -22,7 +22,7 @@ const BLUR: f64 = 1.0 / (1u64 << 20) as f64;
 /// The slack of the way to a start, for each unit of its length.
 const DRIFT: f64 = 1.0 / (1u64 << 49) as f64;
 
-/// What a ray is in the frame.
+/// A ray in the frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Start<const D: usize> {
     main: usize,
@@ -76,7 +76,7 @@ impl<const D: usize> Start<D> {
         }
     }
 
-    /// Whether slopes have the same signs and the same largest one.
+    /// Return whether slopes have the same signs and the same largest one.
     fn goes_with(&self, other: &Self) -> bool {
         let same = |k: usize| (self.slope[k] < 0.0) == (other.slope[k] < 0.0);
         self.main == other.main && (0..D).all(same)
@@ -90,7 +90,7 @@ impl<const D: usize> Start<D> {
     }
 }
 
-/// Where planes of boxes are seen from along an axis, and the inverse slopes there.
+/// The places of planes of boxes along an axis, and the inverse slopes there.
 #[derive(Clone, Copy, Debug, Default)]
 struct View {
     near: f32,
@@ -254,7 +254,7 @@ impl<const D: usize, const N: usize> Bundle<D, N> {
         (from, enters)
     }
 
-    /// Which rays enter a box of a node.
+    /// Mark the rays that enter a box of a node.
     #[inline]
     pub fn entering(&self, node: &Wide<D>, lane: usize) -> [bool; N] {
         let mut from = [0.0f32; N];

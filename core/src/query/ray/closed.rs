@@ -1,4 +1,4 @@
-//! Whether facets bound: what "inside" along a ray presumes.
+//! The check that facets bound: what "inside" along a ray presumes.
 
 use super::facet::Facet;
 use crate::error::{Error, ErrorKind, Result};

@@ -1,4 +1,4 @@
-//! Where a ray is inside: winding numbers between the crossings of closed surfaces.
+//! Stretches of a ray that are inside: winding numbers between the crossings of closed surfaces.
 
 use super::facet::cross;
 use super::first::likely;
@@ -10,11 +10,12 @@ use crate::merge::rule::Rule;
 /// A stretch of a ray with constant answer "inside".
 #[derive(Clone, Debug)]
 pub struct Stretch {
-    /// Where it begins.
+    /// The parameter at which it begins.
     pub from: Ratio,
     /// The facet through which the ray enters; none where it starts inside.
     pub entry: Option<u32>,
-    /// Where it ends, and the facet through which the ray leaves; none for a stretch without end.
+    /// The parameter at which it ends, and the facet through which the ray leaves; none for a
+    /// stretch without end.
     pub end: Option<(Ratio, u32)>,
 }
 

@@ -1,4 +1,4 @@
-//! Where a list of boxes is divided: by the surface area heuristic.
+//! The division of a list of boxes: by the surface area heuristic.
 //!
 //! # Source
 //! Bins of centres: Wald 2007, "On fast construction of SAH-based bounding volume hierarchies".
@@ -139,7 +139,7 @@ impl Bin {
         self.count += count;
     }
 
-    /// What a ray that meets the box costs: whole blocks are tested.
+    /// Return the cost of a ray that meets the box: whole blocks are tested.
     fn cost<const D: usize>(&self) -> f32 {
         self.span.surface::<D>() * self.count.div_ceil(LANES as u32) as f32
     }

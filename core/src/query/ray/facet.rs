@@ -1,4 +1,4 @@
-//! Where a ray meets a facet, in integers.
+//! The meeting of a ray and a facet, in integers.
 //!
 //! Notation: v₀ … are the facet's corners relative to the ray's origin, d the direction. By
 //! Cramer's rule the ray meets the facet's hyperplane at s = det(v) / Σ wᵢ, where wᵢ = det(v with
@@ -71,7 +71,8 @@ fn meet_across<const D: usize>(
     })
 }
 
-/// Where the line of the ray, shifted by (ε, ε², ε³), crosses the facet, and in which direction.
+/// Return where the line of the ray, shifted by (ε, ε², ε³), crosses the facet, and in which
+/// direction.
 ///
 /// Shifted so, the line meets no edge, no vertex and no facet lengthwise, so that the signs along
 /// it add up to winding numbers. The parameter is the limit for ε → 0 and can be negative.

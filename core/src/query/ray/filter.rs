@@ -26,7 +26,7 @@ use super::line::Ray;
 /// The unit roundoff of doubles.
 pub const ROUNDING: f64 = f64::EPSILON / 2.0;
 
-/// What doubles can tell of a ray and a facet.
+/// The answer of doubles about a ray and a facet.
 #[derive(Clone, Copy, Debug)]
 pub enum Probe {
     /// The ray does not meet the facet.
@@ -113,7 +113,7 @@ impl<const D: usize> Filter<D> {
         }
     }
 
-    /// What facets look like along the ray; by corner, axis and lane.
+    /// Return the facets as they look along the ray; by corner, axis and lane.
     #[inline]
     fn side_by_side<const L: usize>(&self, corners: &[[[f64; L]; D]; D]) -> Seen<D, L> {
         let mut sheared = [[[0.0; L]; D]; D];

@@ -35,7 +35,7 @@ impl<const D: usize> Candidate<D> {
     }
 }
 
-/// Where on the ray a shadow test ends.
+/// The end of a shadow test on the ray.
 #[derive(Clone, Copy, Debug)]
 pub enum Reach {
     /// Before parameter 1, where the target is.
@@ -109,12 +109,12 @@ impl<'a, const D: usize> Query<'a, D> {
             .unwrap_or_default()
     }
 
-    /// Whether a facet has a point strictly between the ray's start and its reach.
+    /// Return whether a facet has a point strictly between the ray's start and its reach.
     pub fn occluded(&self, reach: Reach) -> bool {
         blocked(self.scene, std::slice::from_ref(self.ray), |_| reach) == [true]
     }
 
-    /// What doubles tell of a facet.
+    /// Ask doubles about a facet.
     pub fn probe(&self, facet: u32) -> Probe {
         self.filter.probe(&self.scene.facets()[facet as usize])
     }
@@ -253,7 +253,7 @@ pub fn likely<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<u32>
     met
 }
 
-/// Whether a facet has a point strictly between each ray's start and its reach.
+/// Mark the rays between whose starts and reaches a facet has a point, strictly.
 pub fn blocked<const D: usize>(
     scene: &Scene<D>,
     rays: &[Ray<D>],

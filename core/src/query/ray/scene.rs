@@ -23,10 +23,10 @@ pub struct Scene<const D: usize> {
     numbers: Vec<u32>,
     cell: Cell<D>,
     frame: Frame<D>,
-    /// How large facets are on average, in the frame.
+    /// The mean size of facets, in the frame.
     grain: f64,
     root: Deferred<D>,
-    /// Whether the facets bound, once somebody has asked.
+    /// The answer whether the facets bound, once somebody has asked.
     closed: OnceLock<Result<()>>,
 }
 
@@ -125,7 +125,7 @@ impl<const D: usize> Scene<D> {
         &self.frame
     }
 
-    /// How large facets are on average, in the frame.
+    /// Return the mean size of facets, in the frame.
     pub fn grain(&self) -> f64 {
         self.grain
     }
@@ -247,7 +247,7 @@ fn grain<const D: usize>(facets: &[Facet<D>]) -> f64 {
     facets.iter().map(extent).sum::<f64>() / facets.len().max(1) as f64
 }
 
-/// Whether the corners do not lie on one flat of two dimensions less.
+/// Return whether the corners do not lie on one flat of two dimensions less.
 fn has_extent<const D: usize>(corners: &[[i64; D]; D]) -> bool {
     let edge = |i: usize| -> [i128; D] {
         std::array::from_fn(|k| i128::from(corners[i][k]) - i128::from(corners[0][k]))

@@ -29,7 +29,7 @@ const TREELET: usize = 1024;
 /// A longer list than this is deferred where the tree is only begun.
 const INLINE: usize = LANES * WIDTH;
 
-/// What a node has in a lane.
+/// The child of a node in a lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Child {
     /// Nothing.
@@ -47,7 +47,7 @@ pub enum Child {
 pub struct Wide<const D: usize> {
     /// Least coordinates, then largest ones: by axis and lane.
     pub bounds: [[[f32; WIDTH]; D]; 2],
-    /// What is in each box; all behind the first `None` are `None`.
+    /// The child in each box; all behind the first `None` are `None`.
     pub children: [Child; WIDTH],
 }
 
@@ -241,7 +241,7 @@ impl<const D: usize> Treelet<D> {
     }
 }
 
-/// What a child has room for, if a node with so many facets is to have full ones below.
+/// Return the room of a child, if a node with so many facets is to have full ones below.
 fn room(facets: usize) -> usize {
     let mut room = LANES;
     while room * WIDTH < facets {
@@ -255,7 +255,7 @@ struct Making<'a, const D: usize> {
     facets: &'a [Facet<D>],
     items: Vec<Item>,
     treelet: Treelet<D>,
-    /// Whether only the root is made.
+    /// True if only the root is made.
     begun: bool,
 }
 

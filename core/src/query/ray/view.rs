@@ -5,14 +5,14 @@ use super::scene::Scene;
 use super::treelet::{Child, Treelet};
 use crate::interrupt::poll;
 
-/// What is known of a node.
+/// A node as it is shown.
 #[derive(Clone, Debug)]
 pub struct View<const D: usize> {
     /// Its box, in lattice steps.
     pub cell: Cell<D>,
     /// The number of the node above.
     pub parent: Option<u32>,
-    /// Whether no ray has reached it yet.
+    /// True if no ray has reached it yet.
     pub deferred: bool,
     /// The facets of a leaf.
     pub facets: Vec<u32>,

@@ -17,7 +17,7 @@ use super::treelet::{Child, Treelet, WIDTH};
 /// product, rounded.
 const SLACK: f64 = 8.0 * ROUNDING;
 
-/// What is in a lane of a node, and the distance at which the beam enters it.
+/// A lane of a node, and the distance at which the beam enters it.
 #[derive(Clone, Copy)]
 struct Open<'a, const D: usize> {
     from: f32,
@@ -29,7 +29,7 @@ struct Open<'a, const D: usize> {
 /// Rays that go together.
 const TOGETHER: usize = 16;
 
-/// How far such rays may stray from each other, in facets.
+/// The distance by which such rays may stray from each other, in facets.
 const WIDE: f64 = 8.0;
 
 type Stack<'a, const D: usize> = SmallVec<[Open<'a, D>; 64]>;

@@ -1,4 +1,4 @@
-//! Where a line runs through the inside of a region.
+//! The stretches of a line inside a region.
 
 use crate::error::Result;
 use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2, Square};

@@ -111,7 +111,8 @@ impl Extent {
         })
     }
 
-    /// Where a segment lies along a curve that visits quarters of this box one after another.
+    /// Return the place of a segment along a curve that visits quarters of this box one after
+    /// another.
     fn place(&self, [p, q]: &[Point; 2]) -> u64 {
         let step = |axis: usize| {
             let size = self.high[axis] - self.low[axis];

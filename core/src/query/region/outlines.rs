@@ -17,7 +17,7 @@ pub struct Outline {
     pub corners: Vec<Point2>,
     /// The loop around this one: the outer loop of a hole, the hole of an island.
     pub parent: Option<usize>,
-    /// Whether it is a hole.
+    /// True if it is a hole.
     pub is_hole: bool,
 }
 
@@ -134,7 +134,7 @@ fn rotate_to_first(boundary: &Boundary, edges: &mut [usize]) {
     edges.rotate_left(first.unwrap_or(0));
 }
 
-/// Whether a loop that starts at its first corner runs clockwise: that corner is convex.
+/// Return whether a loop that starts at its first corner runs clockwise: that corner is convex.
 fn is_hole(boundary: &Boundary, edges: &[usize]) -> bool {
     let [first, last] = [edges[0], edges[edges.len() - 1]].map(|i| direction(&boundary.edges[i]));
     cross(&last, &first) < 0

@@ -1,4 +1,4 @@
-//! Where a plane cuts a solid.
+//! The section of a solid by a plane.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -75,7 +75,7 @@ impl Sections {
         Ok(edges)
     }
 
-    /// Whether a point lies below a plane.
+    /// Return whether a point lies below a plane.
     fn is_below(&self, point: usize, plane: &Plane) -> bool {
         let ([a, b, c, d], [x, y, z]) = (plane.approx(), &self.near[point]);
         let (sum, size) = (
@@ -152,7 +152,7 @@ fn successors(points: &[Vertex], crossings: &[Crossing]) -> Vec<Option<usize>> {
     crossings.iter().map(beyond).collect()
 }
 
-/// Whether four points lie in one plane.
+/// Return whether four points lie in one plane.
 fn coplanar(points: [&Vertex; 4]) -> bool {
     if let [Some(p), Some(q), Some(r), Some(s)] = points.map(Vertex::as_lattice) {
         let [u, v, w] = [q, r, s].map(|other| [0, 1, 2].map(|i| other[i] - p[i]));

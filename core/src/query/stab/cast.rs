@@ -1,4 +1,4 @@
-//! What a space must tell of its hyperplanes for rays to stab them.
+//! The demands on a space whose hyperplanes rays stab.
 
 use crate::arith::bounds::REACH;
 use crate::arith::Int;
@@ -26,7 +26,7 @@ pub trait Cast<const D: usize>: Space {
     /// Normal n and offset c of n·x + c = 0, positive on the plus side.
     fn coefficients(cut: &Self::Hyperplane) -> ([i128; D], Int<3>);
 
-    /// Whether a fragment beside `cut` can have a point in the interior of a facet in `cut`.
+    /// Return whether a fragment beside `cut` can have a point in the interior of a facet in `cut`.
     ///
     /// It cannot if at most two of its corners are in the cut, and those are the facet's.
     fn touches(piece: &Self::Fragment, cut: &Self::Hyperplane, facet: &[[i64; D]; D]) -> bool;

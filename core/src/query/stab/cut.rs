@@ -1,4 +1,5 @@
-//! Where a ray crosses a hyperplane: certain enough to choose children, exact where it matters.
+//! The crossing of a ray and a hyperplane: certain enough to choose children, exact where it
+//! matters.
 
 use super::cast::Cast;
 use crate::arith::Int;
@@ -26,7 +27,7 @@ pub enum Stab {
     Through {
         /// Along the ray's main axis, in lattice steps.
         depth: Depth,
-        /// Whether the minus side comes first.
+        /// True if the minus side comes first.
         rising: bool,
     },
 }
@@ -67,7 +68,7 @@ impl<const D: usize> Cut<D> {
         i32::from(sides[1]) - i32::from(sides[0])
     }
 
-    /// Where a ray crosses.
+    /// Return the crossing of a ray.
     #[inline]
     pub fn stab(&self, ray: &Ray<D>) -> Stab {
         let near = &ray.near;

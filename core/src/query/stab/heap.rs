@@ -5,7 +5,8 @@
 pub struct Entry<F> {
     /// The facet it is a part of.
     pub facet: u32,
-    /// How often a ray has hit the facet in this leaf; parts inherit the count of the whole.
+    /// The number of rays that have hit the facet in this leaf; parts inherit the count of the
+    /// whole.
     pub hits: u64,
     /// The part of the facet in the leaf's region; none for the whole facet.
     pub fragment: Option<Box<F>>,
@@ -43,7 +44,7 @@ impl<F> Heap<F> {
         self.entries.len()
     }
 
-    /// Whether there is none.
+    /// Return whether there is none.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }

@@ -7,7 +7,7 @@ use super::cast::Cast;
 use super::cut::Cut;
 use super::heap::Heap;
 
-/// When leaves are divided.
+/// The times at which leaves are divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Growth {
     /// After more visits than this.
@@ -45,7 +45,8 @@ pub(super) struct Inner<const D: usize> {
     pub(super) cut: Cut<D>,
     pub(super) coplanar: Vec<u32>,
     pub(super) children: [u32; 2],
-    /// Whether a facet of each child may have a point in the interior of a facet in the cut.
+    /// Marks of the children of which a facet may have a point in the interior of a facet in the
+    /// cut.
     pub(super) touched: [bool; 2],
 }
 

@@ -1,4 +1,4 @@
-//! What a tree has become, in numbers: with its facets it can be grown again.
+//! The record of a tree, in numbers: with its facets it can be grown again.
 
 use std::sync::atomic::Ordering;
 
@@ -34,7 +34,7 @@ enum ContentRecord {
 }
 
 impl<S: Cast<D>, const D: usize> StabTree<S, D> {
-    /// What the tree has become.
+    /// Return the record of the tree.
     pub fn record(&self) -> Record {
         let content = |content: &Content<S, D>| match content {
             Content::Leaf(list) => {

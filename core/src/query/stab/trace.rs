@@ -1,4 +1,4 @@
-//! What a ray cost, and what it did to the tree.
+//! The trace of a ray: its cost, and what it did to the tree.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +22,7 @@ pub enum StabEvent {
         node: u32,
         /// T(v) after this visit.
         visits: u64,
-        /// Whether it is a leaf.
+        /// True if it is a leaf.
         leaf: bool,
     },
     /// A facet of a leaf's list or in a cut is tested.
@@ -31,7 +31,7 @@ pub enum StabEvent {
         node: u32,
         /// The facet.
         facet: u32,
-        /// Whether the ray meets it.
+        /// True if the ray meets it.
         met: bool,
     },
     /// A facet of a leaf is hit within the leaf.

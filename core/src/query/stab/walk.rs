@@ -22,7 +22,7 @@ enum Open {
     Cut { node: u32, from: f64, far: Far },
 }
 
-/// What lies below a cut on the stack.
+/// An entry of the stack: the part of a tree below a cut.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Far {
     /// Something else.
@@ -45,7 +45,7 @@ pub(super) struct Hit {
     pub(super) place: usize,
 }
 
-/// What a ray leaves behind: hits to count, and leaves that are due to be divided.
+/// The wake of a ray: hits to count, and leaves that are due to be divided.
 #[derive(Debug, Default)]
 pub(super) struct Wake {
     pub(super) hits: SmallVec<[Hit; 16]>,

@@ -7,7 +7,7 @@ use crate::geometry::side::Split;
 use crate::interrupt::poll;
 use crate::tree::trace::Watcher;
 
-/// How many candidates a policy compares at each node, evenly spaced in its list.
+/// The number of candidates that a policy compares at each node, evenly spaced in its list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample(pub usize);
 
@@ -36,7 +36,7 @@ pub enum Policy {
     LeastCost(Sample),
 }
 
-/// How a hyperplane divides a list of pieces.
+/// The numbers of pieces that a hyperplane puts on its sides, and divides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Tally {
     pub minus: usize,
@@ -72,7 +72,7 @@ impl Tally {
         }
     }
 
-    /// Whether `count` pieces do not all lie on one side.
+    /// Return whether `count` pieces do not all lie on one side.
     pub fn divides(&self, count: usize) -> bool {
         let one_sided = |all: usize, none: usize| all == count && none == 0;
         !one_sided(self.minus, self.plus) && !one_sided(self.plus, self.minus)
@@ -90,12 +90,12 @@ impl Tally {
 }
 
 impl Policy {
-    /// Whether candidates are judged by the region they divide.
+    /// Return whether candidates are judged by the region they divide.
     pub fn needs_region(&self) -> bool {
         matches!(self, Self::LeastCost(_))
     }
 
-    /// Why the pivot is the pivot.
+    /// Return the reason why the pivot is the pivot.
     pub(super) fn reason(&self) -> Reason {
         match self {
             Self::First => Reason::First,

@@ -1,4 +1,5 @@
-//! Who decides which hyperplane divides a region: a policy, given cuts, or whoever is asked.
+//! The choice of the hyperplane that divides a region: by a policy, by given cuts, or by whoever is
+//! asked.
 
 use super::axis::median_cut;
 use super::choice::{Policy, Sample, Tally};
@@ -28,7 +29,7 @@ pub(super) enum Chooser<S: Affine> {
 }
 
 impl<S: Affine> Chooser<S> {
-    /// Who decides by a plan, and the hyperplanes that the tree has of its own.
+    /// Return the chooser of a plan, and the hyperplanes that the tree has of its own.
     pub fn of(plan: Plan<S>) -> (Self, Vec<S::Hyperplane>) {
         match plan {
             Plan::Policy { policy, top, .. } => (Self::Policy { policy, top }, Vec::new()),
@@ -92,7 +93,7 @@ impl<S: Affine> Chooser<S> {
         }
     }
 
-    /// Whether all that was given was used.
+    /// Make sure that all that was given was used.
     pub fn finish(self) -> Result<()> {
         match self {
             Self::Given(rest) if rest.len() > 0 => {

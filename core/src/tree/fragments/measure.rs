@@ -4,7 +4,7 @@ use super::node::FragmentTree;
 use crate::geometry::affine::{Affine, Polytope};
 use crate::interrupt::poll;
 
-/// How large a region is, in lattice steps.
+/// The size of a region, in lattice steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measure {
     /// Length, area or volume.

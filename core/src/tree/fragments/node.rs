@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::geometry::affine::{Affine, Polytope};
 use crate::geometry::side::Half;
 
-/// What goes into a tree: a convex piece and its number.
+/// An input of a tree: a convex piece and its number.
 #[derive(Clone, Debug)]
 pub struct Piece<S: Affine> {
     /// The convex piece.
@@ -16,16 +16,16 @@ pub struct Piece<S: Affine> {
     pub number: u32,
 }
 
-/// What lies in a node's coplanar set.
+/// A piece in a node's coplanar set.
 #[derive(Clone, Debug)]
 pub struct Fragment<S: Affine> {
     /// The part of an input piece.
     pub piece: Piece<S>,
-    /// Whether it faces against its node's hyperplane.
+    /// True if it faces against its node's hyperplane.
     pub flipped: bool,
 }
 
-/// Where a node's hyperplane comes from: enough to build the same tree again.
+/// The origin of a node's hyperplane: enough to build the same tree again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum NodeCut {
     /// The supporting hyperplane of the input piece with this number.
@@ -34,7 +34,7 @@ pub enum NodeCut {
     Axis {
         /// The axis the cut is perpendicular to.
         axis: usize,
-        /// Where.
+        /// The coordinate.
         at: i64,
     },
     /// The hyperplane of the tree's own list with this place, see [`FragmentTree::own`].
@@ -46,7 +46,7 @@ pub enum NodeCut {
 pub struct Node<S: Affine> {
     /// H(v).
     pub hyperplane: S::Hyperplane,
-    /// Where the hyperplane comes from.
+    /// The origin of the hyperplane.
     pub cut: NodeCut,
     /// The coplanar set S(v), as a range of the tree's fragments.
     pub coplanar: Range<u32>,

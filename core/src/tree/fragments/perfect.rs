@@ -72,7 +72,7 @@ struct Search {
 }
 
 impl Search {
-    /// Whether a set has a perfect tree; the recursion is as deep as the set is large.
+    /// Return whether a set has a perfect tree; the recursion is as deep as the set is large.
     fn decide(&mut self, set: u32) -> bool {
         if set == 0 {
             return true;

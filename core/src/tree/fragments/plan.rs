@@ -1,4 +1,4 @@
-//! How a tree is to be built, and what of it is still to be divided.
+//! The plan by which a tree is to be built, and what of it is still to be divided.
 
 use super::choice::{Policy, Sample};
 use super::node::{FragmentTree, NodeCut, Piece};
@@ -8,11 +8,11 @@ use crate::geometry::affine::{Affine, Polytope};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
 
-/// How a tree is to be built.
+/// The plan by which a tree is to be built.
 pub enum Plan<S: Affine> {
     /// By a policy.
     Policy {
-        /// Who becomes the pivot.
+        /// The policy that chooses the pivot.
         policy: Policy,
         /// Regions with more pieces than this are divided by axis-parallel cuts where that helps;
         /// `None` for autopartition alone.
@@ -57,7 +57,7 @@ impl<S: Affine> Plan<S> {
 /// A function that decides.
 pub type Answering<S> = Box<dyn FnMut(u32, usize, &[Candidate]) -> Result<Answer<S>> + Send>;
 
-/// Who is asked for each region, and how many candidates he is shown.
+/// The one who is asked for each region, and how many candidates he is shown.
 pub struct Ask<S: Affine> {
     /// Candidates are evenly spaced in the region's list; there is at least one.
     pub sample: Sample,
@@ -66,7 +66,7 @@ pub struct Ask<S: Affine> {
     pub answer: Answering<S>,
 }
 
-/// What divides a region.
+/// The answer that divides a region.
 pub enum Answer<S: Affine> {
     /// The candidate with this place.
     Candidate(usize),
@@ -78,7 +78,7 @@ pub enum Answer<S: Affine> {
 pub struct Lines {
     /// The corners of each piece, by its number.
     pub corners: Vec<Vec<Lattice>>,
-    /// How many are compared in each region, beside as many supporting hyperplanes.
+    /// The number that are compared in each region, beside as many supporting hyperplanes.
     pub sample: Sample,
 }
 

@@ -1,4 +1,4 @@
-//! How a fragment tree came about: one record for each node, in the order of the nodes.
+//! The construction of a fragment tree: one record for each node, in the order of the nodes.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,9 +16,9 @@ pub struct Division {
     pub place: Option<(u32, Half)>,
     /// The number of cuts above.
     pub depth: u32,
-    /// Whose hyperplane it is.
+    /// The owner of the hyperplane.
     pub cut: NodeCut,
-    /// Why this one.
+    /// The reason for this one.
     pub reason: Reason,
     /// The candidates compared, in the order of the list; none where nothing was compared.
     pub candidates: Vec<Candidate>,
@@ -34,7 +34,7 @@ pub struct Division {
     pub coplanar: Vec<u32>,
 }
 
-/// Why a hyperplane divides a region.
+/// The reason why a hyperplane divides a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Reason {
     /// Its piece is the first of the list.
@@ -62,14 +62,14 @@ pub enum Reason {
 /// A hyperplane that might have been chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
-    /// Whose hyperplane it is.
+    /// The piece whose hyperplane it is.
     pub piece: u32,
-    /// How many pieces have parts on its minus side.
+    /// The number of pieces that have parts on its minus side.
     pub minus: u32,
-    /// How many on its plus side.
+    /// The number of those on its plus side.
     pub plus: u32,
-    /// How many on both.
+    /// The number of those on both.
     pub splits: u32,
-    /// What the policy minimizes; of equal ones the first is taken.
+    /// The score that the policy minimizes; of equal ones the first is taken.
     pub score: f64,
 }

@@ -5,7 +5,7 @@ use crate::geometry::axis::AxisSpace;
 use crate::geometry::side::{Half, Split};
 use crate::interrupt::poll;
 
-/// Whether the set stays clear of the frame's border, that is, fits into some box.
+/// Return whether the set stays clear of the frame's border, that is, fits into some box.
 ///
 /// # Cost
 /// Proportional to the nodes whose regions reach the border.

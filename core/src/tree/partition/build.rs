@@ -29,7 +29,7 @@ pub enum PivotPolicy {
 pub struct Built<S: Space> {
     /// The tree; its labels mean nothing unless the facets bound a set.
     pub tree: PartitionTree<S>,
-    /// Whether no leaf was seen from two sides at once; false proves overlap or a hole.
+    /// True if no leaf was seen from two sides at once; false proves overlap or a hole.
     pub simple: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Where does a point lie?
+//! The location of a point.
 
 use super::node::{Label, PartitionTree};
 use crate::geometry::axis::AxisSpace;
@@ -6,7 +6,7 @@ use crate::geometry::side::{Half, Side};
 use crate::geometry::space::Space;
 use crate::interrupt::poll;
 
-/// Where a point lies relative to a set.
+/// The location of a point relative to a set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Location {
     /// In the set's interior.

@@ -15,12 +15,12 @@ use crate::interrupt::poll;
 /// Lists of at most this many facets get no axis-parallel cut.
 const FEW: usize = 12;
 
-/// How a tree is divided above the facets' own hyperplanes.
+/// The division of a tree above the facets' own hyperplanes.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan<'a, S: AxisSpace> {
     /// Cuts to be made first, in this order, wherever facets lie.
     pub cuts: &'a [S::Hyperplane],
-    /// Whether axis-parallel cuts divide long lists.
+    /// True if axis-parallel cuts divide long lists.
     pub axis_cuts: bool,
     /// The choice among the facets' hyperplanes.
     pub policy: PivotPolicy,

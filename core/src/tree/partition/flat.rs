@@ -76,7 +76,7 @@ impl<S: Space> Flat<S> {
         })
     }
 
-    /// What a leaf says; `None` for an inner node.
+    /// Return the label of a leaf; `None` for an inner node.
     pub fn label(&self, node: usize) -> Option<Label> {
         match &self.nodes[node] {
             FlatNode::Leaf(label) => Some(*label),

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::geometry::side::{Half, Split};
 use crate::geometry::space::Space;
 
-/// What a leaf says about its region.
+/// The label of a leaf: what it says about its region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Label {
     /// The region belongs to the set.
@@ -44,7 +44,7 @@ pub struct Facet<S: Space> {
     pub source: u64,
 }
 
-/// What lies in a node's cut: its sub-hyperplane and its coplanar set.
+/// The contents of a node's cut: its sub-hyperplane and its coplanar set.
 #[derive(Debug)]
 pub struct Sheet<S: Space> {
     /// The cut inside the node's region, oriented as the cut.
@@ -143,7 +143,7 @@ impl<S: Space> PartitionTree<S> {
         }
     }
 
-    /// Whether both are the same reference (or equal leaves), hence the same set.
+    /// Return whether both are the same reference (or equal leaves), hence the same set.
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Leaf(a), Self::Leaf(b)) => a == b,
@@ -152,7 +152,7 @@ impl<S: Space> PartitionTree<S> {
         }
     }
 
-    /// Whether one is a reference to the complement of the other.
+    /// Return whether one is a reference to the complement of the other.
     pub fn is_complement(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Leaf(a), Self::Leaf(b)) => a != b,
@@ -176,7 +176,7 @@ impl<S: Space> Cut<S> {
         S::hyperplane(&self.node.sheet.span)
     }
 
-    /// What lies in the hyperplane.
+    /// Return the contents of the hyperplane.
     pub fn sheet(&self) -> &Arc<Sheet<S>> {
         &self.node.sheet
     }

@@ -88,7 +88,7 @@ fn check_cut<S: Space>(cut: &Cut<S>, region: &Region<S>) -> Result<()> {
     Ok(())
 }
 
-/// Whether `outer` covers the coplanar `inner`.
+/// Return whether `outer` covers the coplanar `inner`.
 fn holds<S: Space>(outer: &S::Fragment, inner: &S::Fragment) -> bool {
     let (inside, outside) = overlay::<S>(inner.clone(), outer);
     inside.is_some() && outside.is_empty()

@@ -16,7 +16,7 @@ use crate::interrupt::poll;
 pub struct Winding<S: Space> {
     /// The set of places whose number satisfies the rule.
     pub tree: PartitionTree<S>,
-    /// Whether all numbers are 0 or 1 and no two facets overlap.
+    /// True if all numbers are 0 or 1 and no two facets overlap.
     pub simple: bool,
 }
 

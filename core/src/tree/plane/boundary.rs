@@ -11,7 +11,7 @@ use crate::tree::partition::{classify_corner, walls, Label, PartitionTree, Wall}
 /// A boundary in edges, each from one corner to another, the set on the left.
 #[derive(Clone, Debug)]
 pub struct Boundary {
-    /// What lies beyond all edges: what the lowest corner of the frame is.
+    /// The label beyond all edges: that of the lowest corner of the frame.
     pub outer: Label,
     /// The corners, ordered by x, then y.
     pub corners: Vec<Corner>,
@@ -22,7 +22,7 @@ pub struct Boundary {
 /// A point of the plane and two lines that cross there.
 #[derive(Clone, Copy, Debug)]
 pub struct Corner {
-    /// Where.
+    /// The place of the corner.
     pub point: Point2,
     lines: [Line2; 2],
 }
@@ -128,7 +128,7 @@ impl Boundary {
         }
     }
 
-    /// Whether every edge is followed by another one: the set or its complement is bounded.
+    /// Return whether every edge is followed by another one: the set or its complement is bounded.
     pub fn is_closed(&self) -> bool {
         let mut balance = vec![0i32; self.corners.len()];
         for edge in &self.edges {
@@ -170,7 +170,7 @@ impl Boundary {
         Self::sorted(self.outer.complement(), self.corners.clone(), edges)
     }
 
-    /// Whether two sets are equal: their boundaries are, but for the numbers of parts.
+    /// Return whether two sets are equal: their boundaries are, but for the numbers of parts.
     pub fn equals(&self, other: &Self) -> bool {
         let same_place = |(a, b): (&Corner, &Corner)| a.point.order(&b.point) == Ordering::Equal;
         let same_edge = |(a, b): (&Edge, &Edge)| a.line == b.line && a.ends == b.ends;

@@ -54,7 +54,7 @@ impl Corner {
     }
 }
 
-/// Whether a point lies on the lattice's square.
+/// Return whether a point lies on the lattice's square.
 fn is_near(point: &Point2) -> bool {
     let [low, high] = [-REACH, REACH].map(|k| Point2::lattice([k, k]));
     let near =

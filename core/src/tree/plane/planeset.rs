@@ -25,7 +25,7 @@ use crate::tree::partition::{enclosed, is_bounded, stats, Facet, Label, Partitio
 pub struct PlaneSet {
     form: Form,
     size: usize,
-    /// What was spent on the way to this set.
+    /// The work that was spent on the way to this set.
     pub spent: Spent,
     /// Sweeps over all edges for the sake of a few points.
     asked: Arc<AtomicUsize>,
@@ -35,7 +35,7 @@ pub struct PlaneSet {
 /// against half a microsecond.
 pub const TREE: usize = 32;
 
-/// What was spent on making a set by operations, since its tree was last built anew.
+/// The work that was spent on making a set by operations, since its tree was last built anew.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Spent {
     /// Edges of larger operands that sweeps went over for the sake of smaller ones.
@@ -44,7 +44,7 @@ pub struct Spent {
     pub built: usize,
 }
 
-/// What a set was made of, and what has been made of that.
+/// The form of a set: what it was made of, and what has been made of that.
 #[derive(Clone, Debug)]
 enum Form {
     Boundary(Arc<Boundary>, OnceCell<PartitionTree<Dim2>>),
@@ -115,8 +115,8 @@ impl PlaneSet {
         }
     }
 
-    /// Whether points are better looked up in the tree: it is there, or questions about a few at a
-    /// time have come so often that sweeps cost more.
+    /// Return whether points are better looked up in the tree: it is there, or questions about a
+    /// few at a time have come so often that sweeps cost more.
     pub fn wants_tree(&self, points: usize) -> bool {
         if self.known_tree().is_some() {
             return true;
@@ -138,7 +138,7 @@ impl PlaneSet {
         self.size
     }
 
-    /// What everything is, if the set is all or nothing.
+    /// Return the label of everything, if the set is all or nothing.
     pub fn label(&self) -> Option<Label> {
         match &self.form {
             Form::Boundary(boundary, _) => boundary.edges.is_empty().then_some(boundary.outer),
@@ -146,7 +146,7 @@ impl PlaneSet {
         }
     }
 
-    /// Whether the set fits into some box.
+    /// Return whether the set fits into some box.
     pub fn is_bounded(&self) -> bool {
         match &self.form {
             Form::Boundary(boundary, _) => boundary.outer == Label::Out && boundary.is_closed(),

@@ -21,7 +21,7 @@ struct Spoke {
 struct Axis {
     /// A coordinate in which the edge's ends differ.
     coordinate: usize,
-    /// Whether the edge runs up or down in it.
+    /// The direction of the edge in it: up or down.
     sign: i32,
 }
 
@@ -73,7 +73,7 @@ fn match_wedges(spokes: &[Spoke]) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// Where to start so that at any time at least as many wedges have begun as ended.
+/// Return a start from which at any time at least as many wedges have begun as ended.
 fn start(spokes: &[Spoke]) -> usize {
     let (mut depth, mut lowest, mut start) = (0_i64, 0_i64, 0);
     for (k, spoke) in spokes.iter().enumerate() {

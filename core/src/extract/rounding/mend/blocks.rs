@@ -62,7 +62,7 @@ impl Blocks {
         met.flat_map(|(_, members)| members.iter().copied())
     }
 
-    /// How many boxes a question compares, beside those of the triangles it finds.
+    /// Return the number of boxes that a question compares, beside those of the triangles it finds.
     pub fn count(&self) -> usize {
         self.members.len()
     }

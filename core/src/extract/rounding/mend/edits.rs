@@ -135,7 +135,7 @@ impl Mending {
         Some(())
     }
 
-    /// Whether all triangles around a vertex are in this part.
+    /// Return whether all triangles around a vertex are in this part.
     fn is_whole(&self, v: u32) -> bool {
         self.star(v).iter().all(|t| {
             let corners = self.triangles[*t as usize].unwrap_or_default();
@@ -236,7 +236,7 @@ fn fans(v: u32, around: Vec<Numbered>) -> Option<Vec<Vec<Numbered>>> {
     Some(fans)
 }
 
-/// Whether the diagonals of the triangles a b c and b a d pass each other within a distance.
+/// Return whether the diagonals of the triangles a b c and b a d pass each other within a distance.
 ///
 /// Seen along the axis that both face most, none of the triangles turns over with the other
 /// diagonal, exactly; so the diagonals cross there, and how far apart they are is a quotient.

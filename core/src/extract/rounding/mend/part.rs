@@ -46,8 +46,8 @@ impl Precision {
     }
 }
 
-/// How far a change may move the surface, in spacings of the largest coordinate: rounding moves a
-/// point by half a spacing on each axis, and two surfaces in opposite directions.
+/// The distance by which a change may move the surface, in spacings of the largest coordinate:
+/// rounding moves a point by half a spacing on each axis, and two surfaces in opposite directions.
 const FARTHEST: f64 = 4.0;
 
 /// Comparisons of boxes, at about a nanosecond each, after which mending gives up.
@@ -88,7 +88,7 @@ pub struct Mending {
 pub(super) struct Edit {
     pub(super) moves: Vec<(u32, Point)>,
     pub(super) triangles: Vec<(u32, Option<[u32; 3]>)>,
-    /// How far the vertex that another was merged with has moved it.
+    /// The vertex that another was merged with, and the distance by which that has moved it.
     pub(super) drift: Option<(u32, f64)>,
     /// Copies of vertices, in order, made for surfaces that no longer hang together.
     pub(super) copies: Vec<u32>,
@@ -138,7 +138,7 @@ impl Mending {
         }
     }
 
-    /// Whether a vertex was moved.
+    /// Return whether a vertex was moved.
     pub fn is_moved(&self, vertex: u32) -> bool {
         self.moved.contains(&vertex)
     }
@@ -150,7 +150,8 @@ impl Mending {
         crossings.copied().chain(flat).collect()
     }
 
-    /// How far a vertex, or one that was merged with it, is from where it came when it is here.
+    /// Return the distance of a vertex, when it is here, from where it or one that was merged with
+    /// it came.
     pub(super) fn drift(&self, v: u32, place: &Point) -> f64 {
         self.drifts[v as usize] + distance(&self.vertices[v as usize], place)
     }

@@ -19,7 +19,7 @@ pub(super) struct Anchor {
     pub(super) place: Spot,
 }
 
-/// Where an anchor is.
+/// The place of an anchor.
 #[derive(Clone)]
 pub(super) enum Spot {
     Lattice(Lattice),
@@ -89,7 +89,7 @@ impl Anchor {
         })
     }
 
-    /// Whether a corner is the anchor.
+    /// Return whether a corner is the anchor.
     pub(super) fn is_at(&self, corner: &Arc<Vertex>) -> bool {
         match &self.place {
             Spot::Lattice(p) => corner.as_lattice() == Some(p),
@@ -98,7 +98,7 @@ impl Anchor {
     }
 }
 
-/// Whether a point certainly lies in a cell.
+/// Return whether a point certainly lies in a cell.
 fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
     let ((least, most), low, high) = (vertex.bounds(), cell.low(), cell.high());
     (0..3).all(|i| least[i] >= as_double(low[i]) && most[i] <= as_double(high[i]))

@@ -7,7 +7,7 @@ use crate::arith::convert::as_double;
 use crate::geometry::polygon::{bounds, Polygon};
 use crate::interrupt::poll;
 
-/// Which segment continues each.
+/// The segment that continues each.
 pub(super) struct Joints(Vec<Option<usize>>);
 
 impl Joints {
@@ -103,7 +103,7 @@ impl Joints {
     }
 }
 
-/// Whether two segments that do not follow each other may meet.
+/// Return whether two segments that do not follow each other may meet.
 pub(super) fn may_cross(segments: &[Segment]) -> bool {
     let (count, inner) = (
         segments.len(),
@@ -145,7 +145,7 @@ fn widest(boxes: &[([f64; 3], [f64; 3])]) -> usize {
 }
 
 impl Segment {
-    /// Whether two segments follow each other, or one lies on one side of the other's line.
+    /// Return whether two segments follow each other, or one lies on one side of the other's line.
     fn is_clear_of(&self, other: &Self) -> bool {
         let follows = |a: &Self, b: &Self| Arc::ptr_eq(&a.to.at, &b.from.at);
         follows(self, other)
@@ -160,8 +160,8 @@ impl Segment {
     }
 }
 
-/// Whether a closed curve of segments turns left around what it encloses, as seen from the plus
-/// side of the polygon's plane.
+/// Return whether a closed curve of segments turns left around what it encloses, as seen from the
+/// plus side of the polygon's plane.
 pub(super) fn turns_left(polygon: &Polygon, segments: &[Segment]) -> Result<bool, Doubt> {
     let axis = polygon.support().main_axis();
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);

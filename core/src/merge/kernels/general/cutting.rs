@@ -47,14 +47,14 @@ impl<'a> Face<'a> {
         polygon_on_path(self.polygon.support(), || self.rims(), from, to)
     }
 
-    /// Whether a segment in the plane of the face meets its interior, for a segment whose plane
-    /// has corners of the face strictly on both sides.
+    /// Return whether a segment in the plane of the face meets its interior, for a segment whose
+    /// plane has corners of the face strictly on both sides.
     fn meets(&self, segment: &Chord) -> bool {
         let beyond = |rim: &Plane| segment.iter().all(|end| end.side_of(rim) >= 0);
         !self.rims().iter().any(beyond)
     }
 
-    /// Whether a point in the plane of the face lies in it or on its border.
+    /// Return whether a point in the plane of the face lies in it or on its border.
     fn holds(&self, point: &Vertex) -> bool {
         self.rims().iter().all(|rim| point.side_of(rim) <= 0)
     }
@@ -65,7 +65,7 @@ impl<'a> Face<'a> {
 pub struct Cutter<'a> {
     /// The face, or a convex piece of it.
     pub face: &'a Face<'a>,
-    /// Whose it is.
+    /// The operand that it belongs to.
     pub operand: usize,
     /// By how much the winding number on its minus side exceeds that on its plus side.
     pub weight: i32,
@@ -317,7 +317,7 @@ impl Partition<'_> {
     }
 }
 
-/// How a face may meet a polygon.
+/// The ways in which a face may meet a polygon.
 #[derive(Debug)]
 pub enum Contact {
     /// Not in a way that matters.
@@ -329,7 +329,7 @@ pub enum Contact {
     Special,
 }
 
-/// How a face may meet a polygon whose bounds it shares.
+/// Return how a face may meet a polygon whose bounds it shares.
 pub fn contact(polygon: &Polygon, face: &Face<'_>) -> Contact {
     let theirs = face.polygon.sides(polygon.support());
     let crossed = straddle(&theirs) == (true, true);

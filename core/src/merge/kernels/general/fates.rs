@@ -1,4 +1,4 @@
-//! What becomes of the elements: those that faces of other operands cross are divided.
+//! The fates of elements: those that faces of other operands cross are divided.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::merge::pairs::{pairs, shift_of, Boxed};
 /// Elements that may meet another one, by number: rarely more than six.
 type Neighbours = SmallVec<[u32; 6]>;
 
-/// What became of an element.
+/// The fate of an element.
 pub(super) enum Fate {
     /// It does not meet the cell.
     Absent,
@@ -40,9 +40,9 @@ pub(super) struct Cut {
     pub(super) anchors: Vec<Anchor>,
 }
 
-/// What an element is divided into.
+/// The parts into which an element is divided.
 pub(super) enum Parts {
-    /// What lies outside one operand, and what inside.
+    /// The parts outside one operand, and those inside.
     Sides(Trace),
     /// Convex pieces, by the faces of any operands.
     Pieces(Cutting),
@@ -87,7 +87,7 @@ impl Scene<'_> {
         Some(found)
     }
 
-    /// Whether two elements certainly do not touch.
+    /// Return whether two elements certainly do not touch.
     fn separated(&self, i: usize, j: usize) -> bool {
         match (&self.elements[i].place, &self.elements[j].place) {
             (Place::Face(a), Place::Face(b)) => are_apart(&a.corners, &b.corners),

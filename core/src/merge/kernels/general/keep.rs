@@ -1,4 +1,4 @@
-//! What an expression leaves of the elements.
+//! The faces that an expression leaves of the elements.
 
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
@@ -12,7 +12,7 @@ use crate::merge::kernels::stays::{kept, Owner, Stays};
 use crate::mesh::handle::{FaceId, SourceFace};
 
 impl Scene<'_> {
-    /// What stays of all elements, given their labels and the expression's value for labels.
+    /// Return what stays of all elements, given their labels and the expression's value for labels.
     pub(super) fn keep(
         &self,
         fates: Vec<Fate>,
@@ -38,7 +38,7 @@ impl Scene<'_> {
 }
 
 impl Element<'_> {
-    /// What stays as the source has the face, and what stays turned.
+    /// Return what stays as the source has the face, and what stays turned.
     fn stays(
         &self,
         fate: Fate,
@@ -57,7 +57,8 @@ impl Element<'_> {
         }
     }
 
-    /// Whether a piece where the others have these labels stays, and as what: 1 is turned.
+    /// Return the orientation in which a piece stays where the others have these labels, 1 if it is
+    /// turned; `None` if it goes.
     fn side(
         &self,
         others: Labels,

@@ -1,4 +1,4 @@
-//! What is known of the other operands at anchors.
+//! The labels of the other operands at anchors, as far as they are known.
 
 use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 

@@ -69,7 +69,7 @@ impl Kernel for GeneralPosition {
     }
 }
 
-/// What stays of the operands' boundaries, and the value at the cell's corner.
+/// Return what stays of the operands' boundaries, and the value at the cell's corner.
 fn kept_and_corner(problem: &CellProblem, cutters: usize) -> Option<(Vec<Kept>, i32)> {
     let operands = &problem.operands;
     let simple = operands.iter().all(|l| (0..=1).contains(&l.list.corner));

@@ -18,7 +18,7 @@ struct Point {
     _planes: Option<[Arc<Plane>; 2]>,
 }
 
-/// What tells edges apart, the same for all elements at an edge.
+/// The name of an edge, the same for all elements at it.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum EdgeName {
     /// The ends of a lattice edge, the lower one first.

@@ -42,13 +42,13 @@ pub(super) struct Element<'a> {
     /// By how much the winding number behind the face exceeds that in front of it.
     pub(super) weight: i32,
     pub(super) place: Place<'a>,
-    /// Whether all of it is known to lie in the cell.
+    /// True if all of it is known to lie in the cell.
     inside: bool,
     pub(super) low: Lattice,
     pub(super) high: Lattice,
 }
 
-/// What an element is, and where.
+/// An element and its place.
 pub(super) enum Place<'a> {
     Face(Triangle<'a>),
     /// The face of a half-space: its slot, and its part in the cell.
@@ -126,7 +126,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// What tells points apart that several elements may have in common.
+/// The name of a point that several elements may have in common.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Name {
     /// A vertex of a source.
@@ -195,7 +195,7 @@ impl<'a> Element<'a> {
         })
     }
 
-    /// Which vertices of a whole face lie in the cell.
+    /// Return the vertices of a whole face that lie in the cell.
     pub(super) fn vertices_in(&self, cell: &Cell) -> impl Iterator<Item = usize> {
         let inside = match &self.place {
             Place::Face(_) if self.inside => [true; 3],

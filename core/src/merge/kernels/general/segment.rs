@@ -16,7 +16,7 @@ pub(super) struct Segment {
     pub(super) to: End,
     /// The plane of the face in which it lies.
     pub(super) plane: Arc<Plane>,
-    /// Whether that operand's inside is on the plus side of the plane.
+    /// True if that operand's inside is on the plus side of the plane.
     pub(super) plus: bool,
 }
 
@@ -107,8 +107,9 @@ impl Crossed<'_> {
         }))
     }
 
-    /// Where the point in which an edge of the element, on its way to the face's plus side or back,
-    /// crosses the face's plane lies: 1 on the inner side of one of the face's own edges, 0 on it.
+    /// Return where the point in which an edge of the element, on its way to the face's plus side
+    /// or back, crosses the face's plane lies: 1 on the inner side of one of the face's own edges,
+    /// 0 on it.
     fn inside(
         &self,
         (edge, rises): (usize, bool),

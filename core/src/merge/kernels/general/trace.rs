@@ -20,11 +20,11 @@ use crate::interrupt::poll;
 /// An element divided by the surface of one other operand.
 pub(super) struct Trace {
     pub(super) operand: usize,
-    /// Which corners lie inside that operand.
+    /// Marks of the corners that lie inside that operand.
     corners: SmallVec<[bool; 6]>,
     /// With the inside on their left.
     segments: Vec<Segment>,
-    /// Where they leave the border and come back to it, counterclockwise.
+    /// The ends at which they leave the border and come back to it, counterclockwise.
     ends: Vec<BorderEnd>,
 }
 
@@ -32,7 +32,7 @@ pub(super) struct Trace {
 struct BorderEnd {
     edge: usize,
     at: Arc<Vertex>,
-    /// Whether the border beyond lies inside the operand.
+    /// True if the border beyond lies inside the operand.
     enters: bool,
 }
 
@@ -53,7 +53,7 @@ impl Trace {
         })
     }
 
-    /// Whether a corner lies inside the operand.
+    /// Return whether a corner lies inside the operand.
     pub(super) fn holds_corner(&self, corner: usize) -> bool {
         self.corners[corner]
     }

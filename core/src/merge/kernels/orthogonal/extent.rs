@@ -1,9 +1,9 @@
-//! Where facets lie in a grid.
+//! The places of facets in a grid.
 
 use super::facet::{Facet, Place, ACROSS};
 use super::grid::{Grid, Reach};
 
-/// Where a facet lies in a grid.
+/// The place of a facet in a grid.
 pub(super) struct Extent {
     /// The number of the line that is its plane.
     pub(super) line: usize,
@@ -14,7 +14,7 @@ pub(super) struct Extent {
 }
 
 impl Facet<'_> {
-    /// Where the facet's bounds lie on an axis.
+    /// Return the stretch of the facet's bounds on an axis.
     fn reach(&self, grid: &Grid, axis: usize) -> Reach {
         match &self.place {
             Place::Face(_, _, corners) => {
@@ -27,7 +27,7 @@ impl Facet<'_> {
         }
     }
 
-    /// Where the facet lies in a grid.
+    /// Return the place of the facet in a grid.
     pub(super) fn extent(&self, grid: &Grid) -> Extent {
         let (row, bit) = ACROSS[self.axis];
         Extent {

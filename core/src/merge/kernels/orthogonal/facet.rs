@@ -24,7 +24,7 @@ pub(super) struct Facet<'a> {
     pub(super) axis: usize,
     /// The lattice coordinate of its plane.
     pub(super) at: i64,
-    /// Whether its normal points to larger coordinates.
+    /// True if its normal points to larger coordinates.
     pub(super) upward: bool,
     /// By how much the winding number behind it exceeds that in front of it.
     weight: i32,
@@ -32,7 +32,7 @@ pub(super) struct Facet<'a> {
     pub(super) place: Place<'a>,
 }
 
-/// Where a facet comes from.
+/// The element that a facet comes from.
 pub(super) enum Place<'a> {
     /// A triangle of a source.
     Face(&'a Source, SourceFace, [Lattice; 3]),
@@ -173,7 +173,7 @@ impl<'a> Facet<'a> {
         })
     }
 
-    /// Whether the facet's plane meets the cell, and its bounds do.
+    /// Return whether the facet's plane meets the cell, and its bounds do.
     fn may_meet(&self, cell: &Cell) -> bool {
         let (low, high) = (cell.low(), cell.high());
         let within = |i: usize, p: &Lattice| p[i] >= low[i];
@@ -204,18 +204,18 @@ impl<'a> Facet<'a> {
         }
     }
 
-    /// Whether the point just beyond the lower lines of a row and of a bit lies beside no slanted
-    /// edge.
+    /// Return whether the point just beyond the lower lines of a row and of a bit lies beside no
+    /// slanted edge.
     pub(super) fn holds(&self, corner: [i64; 2]) -> bool {
         self.slants.iter().all(|s| s.is_left(corner))
     }
 
-    /// Whether the slanted edges leave something of a rectangle.
+    /// Return whether the slanted edges leave something of a rectangle.
     pub(super) fn touches(&self, low: [i64; 2], high: [i64; 2]) -> bool {
         self.slants.iter().all(|s| s.reaches(low, high))
     }
 
-    /// Whether no slanted edge cuts anything off the facet's bounds.
+    /// Return whether no slanted edge cuts anything off the facet's bounds.
     pub(super) fn is_rectangle(&self) -> bool {
         self.slants.is_empty()
     }
@@ -253,7 +253,7 @@ impl Slant {
         (from[0] != to[0] && from[1] != to[1]).then_some(Self { from, to })
     }
 
-    /// Whether the point (ε, ε²) beyond a doubled one lies on the left.
+    /// Return whether the point (ε, ε²) beyond a doubled one lies on the left.
     fn is_left(&self, point: [i64; 2]) -> bool {
         match turn(&self.from, &self.to, &point) {
             0 => self.to[1] < self.from[1],
@@ -261,7 +261,7 @@ impl Slant {
         }
     }
 
-    /// Whether a rectangle has points on the left.
+    /// Return whether a rectangle has points on the left.
     fn reaches(&self, low: [i64; 2], high: [i64; 2]) -> bool {
         // The left is where the coordinate of a row falls if the edge rises along the bits.
         let row = if self.to[1] > self.from[1] {

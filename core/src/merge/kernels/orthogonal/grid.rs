@@ -62,7 +62,7 @@ impl Grid {
         self.lines[axis].partition_point(|l| *l < 2 * at)
     }
 
-    /// Where the interval between two doubled coordinates lies.
+    /// Return the stretch between two doubled coordinates.
     pub(super) fn between(&self, axis: usize, low: i64, high: i64) -> Reach {
         let lines = &self.lines[axis];
         let below = |at: i64| lines.partition_point(|l| *l < at);
@@ -70,7 +70,7 @@ impl Grid {
         Reach::new(&low, below(high), self.count(axis))
     }
 
-    /// Where the bounds of a polygon lie.
+    /// Return the stretch of a polygon's bounds.
     pub(super) fn under(&self, axis: usize, polygon: &Polygon) -> Reach {
         let (mut low, mut below) = (usize::MAX..usize::MAX, 0);
         for corner in polygon.corners() {
@@ -155,7 +155,7 @@ impl Reach {
     }
 }
 
-/// How many lines a condition holds for from the first on.
+/// Count the lines from the first on for which a condition holds.
 fn count(planes: &[Arc<Plane>], holds: impl Fn(&Arc<Plane>) -> bool) -> usize {
     planes.iter().take_while(|line| holds(line)).count()
 }

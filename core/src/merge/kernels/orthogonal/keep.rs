@@ -1,4 +1,4 @@
-//! What an expression leaves of the facets of a grid.
+//! The faces that an expression leaves of the facets of a grid.
 
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ pub(super) struct Scene<'a> {
     pub(super) cell: &'a Cell,
     pub(super) grid: &'a Grid,
     pub(super) facets: &'a Facets<'a>,
-    /// Where the facets lie in the grid.
+    /// The places of the facets in the grid.
     pub(super) extents: &'a [Extent],
     /// By operand the columns of the grid.
     pub(super) fields: &'a [Vec<u64>],
@@ -25,7 +25,7 @@ pub(super) struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// What stays of all facets; `None` if two of an operand overlap.
+    /// Return what stays of all facets; `None` if two of an operand overlap.
     pub(super) fn keep(&self) -> Option<Vec<Kept>> {
         let all = &self.facets.all;
         let mut order: Vec<usize> = (0..all.len()).collect();
@@ -77,8 +77,8 @@ impl Scene<'_> {
         owned.collect()
     }
 
-    /// Whether facets of one operand and plane that face different ways overlap. Those that face
-    /// the same way do not where winding numbers are 0 and 1.
+    /// Return whether facets of one operand and plane that face different ways overlap. Those that
+    /// face the same way do not where winding numbers are 0 and 1.
     fn overlap(&self, own: &[usize]) -> bool {
         let rises = |i: &&usize| self.facets.all[**i].change() > 0;
         let (up, down): (Vec<&usize>, Vec<&usize>) = own.iter().partition(rises);
@@ -99,8 +99,8 @@ impl Scene<'_> {
         }
     }
 
-    /// What stays of a facet, given the rectangles of its plane that stay with the inside below and
-    /// above; `None` if it does not meet the cell.
+    /// Return what stays of a facet, given the rectangles of its plane that stay with the inside
+    /// below and above; `None` if it does not meet the cell.
     fn settled(&self, i: usize, owned: &[[u64; 2]]) -> Option<Settled> {
         let (facet, extent) = (&self.facets.all[i], &self.extents[i]);
         let owned = &owned[extent.rows.touched.clone()];
@@ -120,7 +120,7 @@ impl Scene<'_> {
         Some((i, facet.owner(), stays?))
     }
 
-    /// What stays of a facet on one side, of the rectangles that it touches from a row on.
+    /// Return what stays of a facet on one side, of the rectangles that it touches from a row on.
     fn side(
         &self,
         facet: &Facet,
@@ -158,7 +158,8 @@ impl Scene<'_> {
     }
 }
 
-/// Whether all bits of a mask are set on one side of every row, or none; `None` if they differ.
+/// Return whether all bits of a mask are set on one side of every row, or none; `None` if they
+/// differ.
 fn all_alike(owned: &[[u64; 2]], side: usize, mask: u64) -> Option<bool> {
     let mut bits = owned.iter().map(|o| o[side] & mask);
     let first = bits.next()?;

@@ -1,4 +1,4 @@
-//! Where in the grid an operand is inside.
+//! The cells of the grid in which an operand is inside.
 
 use std::ops::Range;
 

@@ -38,7 +38,7 @@ impl Kernel for Orthogonal {
     }
 }
 
-/// What stays of the operands' boundaries, and the value at the cell's corner.
+/// Return what stays of the operands' boundaries, and the value at the cell's corner.
 fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
     let operands = &problem.operands;
     let facets = Facets::new(problem.cell, operands, problem.sources)?;
@@ -61,7 +61,7 @@ fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
     Some((kept, i32::from(value[0] & 1 != 0)))
 }
 
-/// Where each operand is inside.
+/// Return the cells in which each operand is inside.
 fn fields(
     grid: &Grid,
     facets: &Facets,
@@ -78,7 +78,7 @@ fn fields(
     operands.iter().enumerate().map(field).collect()
 }
 
-/// Where an expression is true.
+/// Return the cells in which an expression is true.
 fn value(
     expression: &Expression,
     operands: &[Listed],

@@ -48,7 +48,7 @@ impl Kernel for LocalTrees {
     }
 }
 
-/// What stays of all operands, and the value at the cell's corner.
+/// Return what stays of all operands, and the value at the cell's corner.
 fn keep_all(operands: &[Operand], expression: &Expression, rule: Rule) -> (Vec<Kept>, i32) {
     let place = |number: u32| {
         operands
@@ -115,7 +115,8 @@ impl Piece {
             .collect()
     }
 
-    /// Whether this operand is the first whose label differs on the two sides: it owns the piece.
+    /// Return whether this operand is the first whose label differs on the two sides: it owns the
+    /// piece.
     fn is_owned_by(&self, operand: usize) -> bool {
         let differs = |k: usize| self.minus[k] != self.plus[k];
         differs(operand) && !(0..operand).any(differs)

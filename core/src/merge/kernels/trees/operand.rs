@@ -17,7 +17,7 @@ pub(super) struct Operand {
     pub(super) corner: i32,
     pub(super) fragments: Vec<Fragment>,
     pub(super) tree: LocalTree,
-    /// Whether nothing overlaps in the cell and all winding numbers are 0 or 1.
+    /// True if nothing overlaps in the cell and all winding numbers are 0 or 1.
     pub(super) simple: bool,
 }
 
@@ -96,7 +96,7 @@ impl LeafTree {
         self.0.fragments.iter().map(|f| &f.polygon)
     }
 
-    /// Whether nothing overlaps in the cell and all winding numbers are 0 or 1.
+    /// Return whether nothing overlaps in the cell and all winding numbers are 0 or 1.
     pub fn is_simple(&self) -> bool {
         self.0.simple
     }

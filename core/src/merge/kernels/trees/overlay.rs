@@ -16,7 +16,7 @@ pub struct Fragment {
     pub weight: i32,
     /// The face.
     pub face: SourceFace,
-    /// Whether the fragment is all of a whole face inside the cell.
+    /// True if the fragment is all of a whole face inside the cell.
     pub intact: bool,
 }
 
