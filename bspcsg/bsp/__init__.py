@@ -28,10 +28,12 @@ from .rays.trace import LeafDivision, StabNodes, StabStep, StabTrace
 from .sets.interval import Intervals
 from .sets.loops import Outline
 from .sets.objects import ObjectTree, merge, partition_tree, split_tree
+from .sets.paths import BoundaryPath, boundary_paths
 from .sets.pieces import NodeTable, Pieces
 from .sets.region import Region
 from .sets.slicing import plane_frame, slice_solid
 from .sets.spherical import SphericalRegion, visible_sky
+from .sets.sub_hyperplane import SubHyperplane
 from .sets.trace import MergeHalves, MergeJoin, MergePair, MergeSplit, MergeTrace
 from .sets.visibility import visibility_polygon, visibility_volume
 from .trees import analysis as analysis
@@ -62,6 +64,7 @@ __all__ = [
     "VERTEX",
     "AdaptiveTree",
     "AttributeTree",
+    "BoundaryPath",
     "Camera",
     "Candidate",
     "CasterNodes",
@@ -107,8 +110,10 @@ __all__ = [
     "StabTree",
     "StaticTree",
     "Stats",
+    "SubHyperplane",
     "Tests",
     "analysis",
+    "boundary_paths",
     "compare_policies",
     "load_dxf",
     "load_svg",

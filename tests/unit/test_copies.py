@@ -71,6 +71,8 @@ EXAMPLES: dict[type, Callable[[], Any]] = {
     bsp.AdaptiveTree: grown,
     bsp.AttributeTree: lambda: LABELLED,
     bsp.LabelledRegion: lambda: next(iter(LABELLED)),
+    bsp.BoundaryPath: lambda: bsp.boundary_paths(bsp.Region.half_plane((1, 2), 3))[0],
+    bsp.SubHyperplane: lambda: bsp.SubHyperplane((1, 2), 3, bsp.Intervals([(0, 1)])),
     bsp.SphericalRegion: lambda: bsp.SphericalRegion.arc([1, 0], [1, 2]),
     bsp.Candidate: lambda: TREE_BY_COUNT.trace()[0].candidates[0],
     bsp.CasterNodes: lambda: CASTER.nodes,

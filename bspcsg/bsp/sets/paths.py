@@ -1,0 +1,137 @@
+"""Connected paths that bound a region of the plane, also from infinity and to infinity."""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from ..._types import FloatArray
+from .region import Region
+
+#: A corner, exactly.
+_Point = tuple[Fraction, Fraction]
+
+#: Half the side of the square in steps: so that it still lies on the lattice when its double, the
+#: nearest to it, is snapped.
+_FARTHEST = 2**53 - 2
+
+
+@dataclass(frozen=True, eq=False)
+class BoundaryPath:
+    """A connected path along a region's boundary, the region on its left.
+
+    Parameters
+    ----------
+    points : (n, 2) float64
+        The corners in order, rounded. A straight line has none: its one point is the nearest to the
+        origin.
+    start : (2,) float64 or None
+        The direction of length 1 in which the path comes from infinity; None if it is closed.
+    end : (2,) float64 or None
+        The direction of length 1 in which it goes to infinity; None if it is closed.
+    """
+
+    points: FloatArray
+    start: FloatArray | None = None
+    end: FloatArray | None = None
+
+    @property
+    def is_closed(self) -> bool:
+        """True for a loop; other paths begin and end at infinity."""
+        return self.start is None
+
+    @property
+    def length(self) -> float:
+        """Length in model units; infinite for a path that is not closed."""
+        if not self.is_closed:
+            return math.inf
+        steps = np.roll(self.points, -1, axis=0) - self.points
+        return math.fsum(np.hypot(steps[:, 0], steps[:, 1]).tolist())
+
+
+def boundary_paths(region: Region) -> tuple[BoundaryPath, ...]:
+    """Return the connected paths that bound a region of the plane, also an unbounded one.
+
+    Parameters
+    ----------
+    region : Region
+
+    Returns
+    -------
+    tuple of BoundaryPath
+        None for the empty set and the plane. Closed ones are the region's outlines. Paths touch
+        each other and themselves in corners at most.
+
+    Notes
+    -----
+    Beyond the lattice is infinity: what leaves its largest square goes on straight.
+
+    Examples
+    --------
+    >>> from bspcsg import bsp
+    >>> quarter = bsp.Region.half_plane((0, -1)) & bsp.Region.half_plane((-1, 0))
+    >>> (path,) = bsp.boundary_paths(quarter)
+    >>> path.points.tolist(), path.start.tolist(), path.end.tolist()
+    ([[0.0, 0.0]], [0.0, -1.0], [1.0, 0.0])
+    """
+    if region.is_bounded:
+        return tuple(BoundaryPath(outline.points) for outline in region.outlines)
+    side = float(_FARTHEST * Fraction(10) ** region.pitch)
+    corners = [(-side, -side), (side, -side), (side, side), (-side, side)]
+    square = Region(corners, pitch=region.pitch)
+    border = abs(square.exact_outlines[0][0][0])
+    loops = (region & square).exact_outlines
+    return tuple(path for loop in loops for path in _without_border(loop, border))
+
+
+def _without_border(loop: list[_Point], border: Fraction) -> list[BoundaryPath]:
+    """Return what is left of a loop without its edges along the border of a square."""
+    ends = [_along(a, b, border) for a, b in zip(loop, [*loop[1:], loop[0]], strict=True)]
+    if not any(ends):
+        return [BoundaryPath(_rounded(loop))]
+    first = ends.index(True) + 1
+    walk, along = loop[first:] + loop[:first], ends[first:] + ends[:first]
+    paths, open_path = [], [walk[0]]
+    for corner, leaves in zip([*walk[1:], walk[0]], along, strict=True):
+        if not leaves:
+            open_path.append(corner)
+            continue
+        if len(open_path) > 1:
+            paths.append(_endless(open_path))
+        open_path = [corner]
+    return paths
+
+
+def _along(a: _Point, b: _Point, border: Fraction) -> bool:
+    """Say whether an edge lies in the border of a square."""
+    return any(abs(p) == border and p == q for p, q in zip(a, b, strict=True))
+
+
+def _endless(corners: list[_Point]) -> BoundaryPath:
+    """Return the path whose first and last corner lie at infinity."""
+    start, end = _direction(*corners[:2]), _direction(*corners[-2:])
+    inner = corners[1:-1] or [_foot(*corners)]
+    return BoundaryPath(_rounded(inner), start, end)
+
+
+def _direction(a: _Point, b: _Point) -> FloatArray:
+    steps = [q - p for p, q in zip(a, b, strict=True)]
+    longest = max(map(abs, steps))
+    vector = np.array([float(step / longest) for step in steps])
+    direction = vector / np.linalg.norm(vector)
+    direction.flags.writeable = False
+    return np.asarray(direction)
+
+
+def _foot(a: _Point, b: _Point) -> _Point:
+    """Return the point of a line that is nearest to the origin."""
+    (x, y), (u, v) = a, (b[0] - a[0], b[1] - a[1])
+    t = (x * u + y * v) / (u * u + v * v)
+    return x - t * u, y - t * v
+
+
+def _rounded(points: list[_Point]) -> FloatArray:
+    array = np.array([[float(x) for x in point] for point in points])
+    array.flags.writeable = False
+    return array

@@ -1,0 +1,420 @@
+"""`SubHyperplane`: a part of a line or of a plane, as an immutable value.
+
+It is a hyperplane, and in it a set of one dimension less: intervals of a line, a region of a plane.
+"""
+
+from collections.abc import Iterable, Iterator
+from typing import Any, Self, TypeAlias
+
+import numpy as np
+
+from ..._types import FloatArray, Scalar
+from ...errors import UnboundedError, invalid_parameter
+from ...geometry.arrays import doubles
+from .interval import Intervals
+from .objects import ObjectTree
+from .region import Region
+from .rows import hyperplane, hyperplane_row, point_rows
+from .slicing import plane_frame
+from .tree_set import TreeSet
+
+#: A set in a hyperplane.
+InnerSet: TypeAlias = Intervals | Region
+
+#: Hyperplanes count as one if their normals and offsets differ by no more than their rounding.
+_SAME = 1e-12
+
+#: What lies so many steps from the origin reaches to the lattice's border, rounded or not.
+_FARTHEST = 2**53 - 4
+
+
+class SubHyperplane:
+    """A part of a line in the plane, or of a plane in space; an immutable value.
+
+    The hyperplane is exact only as far as its doubles are; what lies in it is an exact set.
+    ``| & - ^ ~`` combine parts of one hyperplane.
+
+    Parameters
+    ----------
+    normal : (2,) or (3,) array_like of float
+        Points to the plus side; need not have length 1.
+    offset : float
+        Points x of the hyperplane have ``normal . x == offset``.
+    part : Intervals or Region, optional
+        In the hyperplane's coordinates, which begin at its point nearest to the origin. On a line
+        they grow with the minus side on the left; for planes see `plane_frame`. By default all.
+
+    Raises
+    ------
+    InvalidMeshError
+        If the normal is zero or has another shape.
+    InvalidParameterError
+        If the part has another dimension.
+
+    Examples
+    --------
+    >>> from bspcsg import bsp
+    >>> cross = bsp.SubHyperplane.inside(bsp.Region.rectangle(4, 3), (1, 1), 5)
+    >>> round(cross.size**2, 6), cross.centroid.round(6).tolist()
+    (8.0, [3.0, 2.0])
+    """
+
+    __slots__ = ("_normal", "_offset", "_part")
+
+    def __init__(self, normal: Any, offset: Scalar = 0.0, part: InnerSet | None = None) -> None:
+        wanted = hyperplane(normal, offset)
+        if len(wanted.normal) == 1:
+            raise invalid_parameter("A sub-hyperplane lies in the plane or in space.")
+        self._normal = np.array([float(x) for x in wanted.normal])
+        length = float(np.linalg.norm(self._normal))
+        self._normal /= length
+        self._normal.flags.writeable = False
+        self._offset = float(wanted.offset) / length
+        inner = self.dimension - 1
+        whole: InnerSet = Intervals.full() if inner == 1 else Region.full()
+        self._part = whole if part is None else part
+        if self._part.dimension != inner:
+            raise invalid_parameter(f"What lies in this hyperplane has dimension {inner}.")
+
+    # Parts of sets
+
+    @classmethod
+    def of_boundary(cls, points: TreeSet) -> tuple["SubHyperplane", ...]:
+        """Return a set's boundary as one sub-hyperplane for each hyperplane and side.
+
+        Parameters
+        ----------
+        points : Region or ObjectTree
+            The set lies on the minus sides.
+
+        Raises
+        ------
+        UnboundedError
+            If a part of a plane reaches to infinity.
+        """
+        tree = _tree(points)
+        rows: dict[tuple[int, ...], list[FloatArray]] = {}
+        for row, piece in _pieces(tree):
+            rows.setdefault(row, []).append(piece)
+        return tuple(_lattice_part(tree, row, pieces) for row, pieces in rows.items())
+
+    @classmethod
+    def inside(cls, points: TreeSet, normal: Any, offset: Scalar = 0.0) -> "SubHyperplane":
+        """Return the part of a hyperplane that lies inside a set.
+
+        What lies on the boundary is left out.
+
+        Parameters
+        ----------
+        points : Region or ObjectTree
+        normal, offset
+            Moved to the nearest hyperplane of the set's lattice (see `ObjectTree.half_space`).
+
+        Raises
+        ------
+        UnboundedError
+            If a part of a plane reaches to infinity.
+        """
+        tree = _tree(points)
+        row = tuple(hyperplane_row(normal, offset, tree.dimension, tree.pitch))
+        minus, plus = tree.split(normal, offset)
+        if tree.is_full:
+            return _lattice_part(tree, row, None)
+        below, above = (
+            _lattice_part(tree, row, [piece for other, piece in _pieces(half) if other == seen])
+            for half, seen in ((minus, _lowest(row)), (plus, _lowest([-x for x in row])))
+        )
+        return below & above
+
+    # What it is
+
+    @property
+    def dimension(self) -> int:
+        """That of the space around: 2 or 3."""
+        return len(self._normal)
+
+    @property
+    def normal(self) -> FloatArray:
+        """The hyperplane's normal, of length 1; it points to the plus side."""
+        return self._normal
+
+    @property
+    def offset(self) -> float:
+        """The normal's product with all points of the hyperplane."""
+        return self._offset
+
+    @property
+    def part(self) -> InnerSet:
+        """The set in it, in the hyperplane's coordinates."""
+        return self._part
+
+    @property
+    def is_empty(self) -> bool:
+        """True if nothing lies in it."""
+        return self._part.is_empty
+
+    @property
+    def is_bounded(self) -> bool:
+        """True if what lies in it fits into some box."""
+        return self._part.is_bounded
+
+    @property
+    def size(self) -> float:
+        """Length or area.
+
+        Raises
+        ------
+        UnboundedError
+            If the part reaches to infinity.
+        """
+        return float(self._part.measure)
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Middle of the length or area, (d,) float64; NaN if nothing lies in it.
+
+        Raises
+        ------
+        UnboundedError
+            If the part reaches to infinity.
+        """
+        flat = np.reshape(self._part.centroid, (1, -1))
+        return np.asarray(self._lifted(flat)[0])
+
+    def pieces(self) -> list[FloatArray]:
+        """Return convex pieces that make it up, (m, d) float64.
+
+        Segments run with the minus side on their left; polygons are counterclockwise seen from the
+        plus side.
+
+        Raises
+        ------
+        UnboundedError
+            If the part reaches to infinity.
+        """
+        if not self.is_bounded:
+            raise UnboundedError("The part reaches to infinity and has no pieces.", "unbounded")
+        if isinstance(self._part, Region):
+            return [self._lifted(corners) for corners in self._part.convex_parts()]
+        return [self._lifted(pair[:, None]) for pair in self._part.pairs]
+
+    def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
+        """Return the nearest point of the part, its border included, to each point.
+
+        Parameters
+        ----------
+        points : (k, d) array_like of float
+
+        Returns
+        -------
+        nearest : (k, d) float64
+        distance : (k,) float64
+
+        Raises
+        ------
+        InvalidParameterError
+            If nothing lies in the hyperplane.
+        """
+        array = point_rows(points, self.dimension)
+        if self.is_empty:
+            raise invalid_parameter("Nothing lies in the hyperplane that could be near.")
+        flat = self._flattened(array)
+        outside = self._part.classify(flat) < 0
+        if outside.any():
+            flat[outside] = self._part.project(flat[outside])[0]
+        nearest = self._lifted(flat)
+        return nearest, np.sqrt(((nearest - array) ** 2).sum(axis=1))
+
+    # Set operations
+
+    def __or__(self, other: "SubHyperplane") -> Self:
+        """Union."""
+        return self._with(self._part | self._beside(other))
+
+    def __and__(self, other: "SubHyperplane") -> Self:
+        """Intersection."""
+        return self._with(self._part & self._beside(other))
+
+    def __sub__(self, other: "SubHyperplane") -> Self:
+        """Difference."""
+        return self._with(self._part - self._beside(other))
+
+    def __xor__(self, other: "SubHyperplane") -> Self:
+        """Symmetric difference."""
+        return self._with(self._part ^ self._beside(other))
+
+    def __invert__(self) -> Self:
+        """Complement within the hyperplane."""
+        return self._with(~self._part)
+
+    def _with(self, part: Any) -> Self:
+        return type(self)(self._normal, self._offset, part)
+
+    def _beside(self, other: "SubHyperplane") -> Any:
+        """Return the other's part in the coordinates of this hyperplane."""
+        if self.dimension != other.dimension:
+            raise invalid_parameter("The sub-hyperplanes must have one dimension.")
+        same = float(self._normal @ other._normal)
+        gap = self._offset - np.sign(same) * other._offset
+        if abs(abs(same) - 1) > _SAME or abs(gap) > _SAME * max(1.0, abs(self._offset)):
+            raise invalid_parameter("The sub-hyperplanes must lie in one hyperplane.")
+        return other._part if same > 0 else other.reversed()._part
+
+    # Division and motion
+
+    def split(self, normal: Any, offset: Scalar = 0.0) -> tuple[Self, Self]:
+        """Return what lies on the minus and on the plus side of a hyperplane.
+
+        What lies in a hyperplane that coincides with this one is on neither side.
+        """
+        other = SubHyperplane(normal, offset)
+        inner = _frame(self._normal) @ other._normal
+        height = other._offset - float(other._normal @ self._normal) * self._offset
+        nothing = self._with(type(self._part).empty())
+        if np.abs(inner).max() <= _SAME:
+            sides = (height > _SAME, height < -_SAME)
+            return (self if sides[0] else nothing, self if sides[1] else nothing)
+        minus, plus = self._part.split(inner if self.dimension == 3 else inner[0], height)
+        return self._with(minus), self._with(plus)
+
+    def transform(self, matrix: Any) -> "SubHyperplane":
+        """Return the image under an affine map; what was on the minus side stays there.
+
+        Parameters
+        ----------
+        matrix : (d + 1, d + 1) or (d, d + 1) array_like of float
+            For column vectors.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the map has another shape or is not invertible.
+        """
+        linear, shift = _affine(matrix, self.dimension)
+        normal = np.linalg.solve(linear.T, self._normal)
+        corner = linear @ (self._normal * self._offset) + shift
+        moved = SubHyperplane(normal, float(normal @ corner))
+        within = _frame(moved._normal)
+        columns = within @ linear @ _frame(self._normal).T
+        return moved._with(_moved(self._part, columns, within @ corner))
+
+    def reversed(self) -> "SubHyperplane":
+        """Return the same points with the sides exchanged."""
+        across = SubHyperplane(-self._normal, -self._offset)
+        columns = _frame(across._normal) @ _frame(self._normal).T
+        return across._with(_moved(self._part, columns, np.zeros(self.dimension - 1)))
+
+    # As a value
+
+    def __eq__(self, other: object) -> bool:
+        """Say whether hyperplane, sides and what lies in it are the same."""
+        if not isinstance(other, SubHyperplane):
+            return NotImplemented
+        mine, others = ([*s._normal.tolist(), s._offset] for s in (self, other))
+        return mine == others and self._part == other._part
+
+    def __hash__(self) -> int:
+        """Hash the hyperplane."""
+        return hash((*self._normal.tolist(), self._offset))
+
+    def __repr__(self) -> str:
+        """Show the hyperplane and what lies in it."""
+        normal = ", ".join(f"{x:.6g}" for x in self._normal)
+        return f"SubHyperplane(({normal}), {self._offset:.6g}, {self._part!r})"
+
+    # Coordinates
+
+    def _lifted(self, flat: FloatArray) -> FloatArray:
+        return np.asarray(flat @ _frame(self._normal) + self._normal * self._offset)
+
+    def _flattened(self, points: FloatArray) -> FloatArray:
+        return np.asarray(points @ _frame(self._normal).T)
+
+
+def _frame(normal: FloatArray) -> FloatArray:
+    """Return the unit vectors of a hyperplane's coordinates as rows."""
+    if len(normal) == 2:
+        return np.array([[-normal[1], normal[0]]]) + 0.0
+    return np.array(plane_frame(normal))
+
+
+def _tree(points: TreeSet) -> ObjectTree:
+    if points.dimension == 1:
+        raise invalid_parameter("A sub-hyperplane lies in the plane or in space.")
+    return points.tree
+
+
+def _lowest(row: Iterable[int]) -> tuple[int, ...]:
+    """Return a hyperplane's whole numbers without common factors."""
+    numbers = list(row)
+    factor = int(np.gcd.reduce(np.array(numbers, dtype=object)))
+    return tuple(number // factor for number in numbers)
+
+
+def _pieces(tree: ObjectTree) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
+    """Yield the pieces of a boundary, each with its hyperplane, the set on the minus side."""
+    pieces, rows = tree.boundary(), tree.nodes.coefficients
+    for number, owner in enumerate(pieces.owner.tolist()):
+        corners, row = pieces[number], _lowest(rows[owner])
+        outward = _outward(corners)
+        if outward.any():
+            facing = float(outward @ np.array([float(x) for x in row[:-1]]))
+            yield (row if facing > 0 else _lowest([-x for x in row])), corners
+
+
+def _outward(corners: FloatArray) -> FloatArray:
+    """Return a normal that points out of the set; zero if rounding left no size."""
+    if corners.shape[1] == 2:
+        (x, y), (u, v) = corners
+        return np.array([v - y, x - u])
+    arms = corners[1:] - corners[0]
+    return np.asarray(np.cross(arms[:-1], arms[1:]).sum(axis=0))
+
+
+def _lattice_part(
+    tree: ObjectTree, row: tuple[int, ...], pieces: list[FloatArray] | None
+) -> SubHyperplane:
+    """Return what convex pieces cover in a hyperplane of a tree's lattice; all if they are None."""
+    step = 10.0**tree.pitch
+    longest = max(map(abs, row[:-1]))
+    normal = [number / longest for number in row[:-1]]
+    whole = SubHyperplane(normal, row[-1] / longest * step)
+    if pieces is None:
+        return whole
+    border = _FARTHEST * step
+    flat = [whole._flattened(piece) for piece in pieces]
+    if tree.dimension == 2:
+        beyond = [np.abs(piece).max(axis=1) > border for piece in pieces]
+        pairs = [
+            np.sort(np.where(far, np.copysign(np.inf, ends[:, 0]), ends[:, 0]))
+            for ends, far in zip(flat, beyond, strict=True)
+        ]
+        return whole._with(Intervals([pair for pair in pairs if pair[0] < pair[1]]))
+    if any(np.abs(piece).max() > border for piece in pieces):
+        raise UnboundedError("A part of the plane reaches to infinity.", "unbounded")
+    return whole._with(Region(flat, winding="nonzero"))
+
+
+def _affine(matrix: Any, dimension: int) -> tuple[FloatArray, FloatArray]:
+    refusal = invalid_parameter(
+        f"A map of {dimension} dimensions is an affine matrix of {dimension} or {dimension + 1}"
+        " rows that can be inverted."
+    )
+    rows = doubles(matrix, refusal)
+    square = (dimension + 1, dimension + 1)
+    last = np.eye(dimension + 1)[-1]
+    if rows.shape not in (square, (dimension, dimension + 1)) or not np.isfinite(rows).all():
+        raise refusal
+    if rows.shape == square and (rows[-1] != last).any():
+        raise refusal
+    linear = rows[:dimension, :dimension]
+    if np.linalg.matrix_rank(linear) < dimension:
+        raise refusal
+    return linear, rows[:dimension, dimension]
+
+
+def _moved(part: InnerSet, columns: FloatArray, shift: FloatArray) -> InnerSet:
+    """Return a part's image under an affine map of the hyperplane's coordinates."""
+    if isinstance(part, Region):
+        return part.transform(np.column_stack([columns, shift]))
+    return part.scale(float(columns[0, 0])).translate(float(shift[0]))
