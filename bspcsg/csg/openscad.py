@@ -62,7 +62,8 @@ def _convert(path: Path, output: Path, defines: Mapping[str, Value], timeout: fl
         )
         raise FormatError(message, "missing_program")
     options = [f"-D{name}={value_text(value)}" for name, value in defines.items()]
-    command = [program, "-o", str(output), *options, "--", str(path.absolute())]
+    # A shape to be kept is no preview, which scripts can ask for.
+    command = [program, "--render", "-o", str(output), *options, "--", str(path.absolute())]
     try:
         done = subprocess.run(
             command,

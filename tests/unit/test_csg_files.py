@@ -42,6 +42,8 @@ DRAWING = '<svg xmlns="http://www.w3.org/2000/svg">{}</svg>'
         ('<line x2="10" stroke-width="2"/>', 24),
         ('<g transform="scale(2)"><path d="M0 0H10" stroke-linecap="butt"/></g>', 40),
         ('<rect display="none" width="10" height="2"/>', 0),
+        ('<style>.a { stroke-width: 4 }</style><line class="a" x2="9"/>', 10),
+        ('<defs><rect id="r" width="9" height="9"/></defs><use href="#r"/>', 0),
     ],
 )
 def test_drawings_are_filled_as_openscad_fills_them(

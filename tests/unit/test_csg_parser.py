@@ -237,8 +237,11 @@ def stand_in(folder: Path, script: str, monkeypatch: pytest.MonkeyPatch) -> None
 @pytest.mark.skipif(os.name != "posix", reason="needs a POSIX shell")
 def test_scad_goes_through_openscad(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "part.scad").write_text("cube(w);")
-    stand_in(tmp_path, 'echo "cube(${3#-Dw=});" > "$2"', monkeypatch)
+    stand_in(tmp_path, 'echo "cube(${4#-Dw=});" > "$3"', monkeypatch)
     assert csg.load(tmp_path / "part.scad", defines={"w": 2.0}).volume == 8.0
+    # What is asked for is the shape, and not its preview.
+    stand_in(tmp_path, '[ "$1" = --render ] && echo "cube(3);" > "$3"', monkeypatch)
+    assert csg.load(tmp_path / "part.scad").volume == 27.0
     stand_in(tmp_path, 'echo "ERROR: Parser error in line 1" >&2; exit 1', monkeypatch)
     with pytest.raises(FormatError, match="refused it: ERROR: Parser error in line 1"):
         csg.load(tmp_path / "part.scad")
@@ -269,7 +272,7 @@ def test_errors_of_scad_quote_the_line_that_they_name(
     path = tmp_path / "part.scad"
     path.write_text(source)
     (tmp_path / "made").write_text(made)
-    stand_in(tmp_path, f'cp "{tmp_path}/made" "$2"', monkeypatch)
+    stand_in(tmp_path, f'cp "{tmp_path}/made" "$3"', monkeypatch)
     with pytest.raises(BspcsgError) as caught:
         csg.load(path)
     first, quoted, *rest = str(caught.value).splitlines()
@@ -282,7 +285,7 @@ def test_errors_of_scad_quote_the_line_that_they_name(
 def test_warnings_of_scad_name_its_lines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "part.scad"
     path.write_text("r = 1 / 0;\ncube(1);\nsphere(r);\n")
-    stand_in(tmp_path, 'printf "cube(1);\\nsphere(r = inf);\\n" > "$2"', monkeypatch)
+    stand_in(tmp_path, 'printf "cube(1);\\nsphere(r = inf);\\n" > "$3"', monkeypatch)
     with pytest.warns(csg.CsgWarning) as told:
         assert csg.load(path).volume == 1
     first, quoted, own = str(told[0].message).splitlines()

@@ -1,5 +1,6 @@
 """Text as regions: fonts, layout, curves."""
 
+import shutil
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -117,6 +118,33 @@ def test_fonts_of_the_system(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) ->
     fonts._fontconfig.cache_clear()
     with pytest.raises(b.InvalidParameterError, match="no font"):
         fonts.font_file("Some Sans")
+    fonts._fontconfig.cache_clear()
+
+
+def test_fonts_of_equal_metrics_stand_for_each_other(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    face = FACES / "LiberationSans-Regular.ttf"
+
+    def answers(families: str) -> None:
+        says = {"fc-match": f"0\n{face}\nSome Sans", "fc-pattern": f"\tfamily: {families}\n"}
+        for name, text in says.items():
+            (tmp_path / f"{name}.txt").write_text(text)
+            (tmp_path / name).write_text(f"#!/bin/sh\nexec {cat} '{tmp_path / name}.txt'\n")
+            (tmp_path / name).chmod(0o755)
+        fonts._fontconfig.cache_clear()
+
+    cat = shutil.which("cat")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    answers('"Equal Sans"(s) "Some Sans"(s) "Liberation Sans"(w)')
+    assert fonts.font_file("Equal Sans:style=Bold") == FontFile(face)
+    # The package's own font counts, too, if it is as near as that.
+    answers('"Arial"(s) "Liberation Sans"(s) "Some Sans"(w)')
+    own = FontFile(FACES / "LiberationSans-Bold.ttf")
+    assert fonts.font_file("Arial:style=Bold") == own
+    answers('"Other Sans"(s) "Liberation Sans"(w) "Some Sans"(w)')
+    with pytest.raises(b.InvalidParameterError, match="no font 'Other Sans'"):
+        fonts.font_file("Other Sans")
     fonts._fontconfig.cache_clear()
 
 

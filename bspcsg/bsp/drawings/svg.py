@@ -2,7 +2,7 @@
 
 import io
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from typing import Any
 from xml.etree import ElementTree
 from xml.parsers import expat
@@ -59,10 +59,16 @@ def load_svg(
     return region
 
 
-def shown_shapes(path: str | os.PathLike[str]) -> list[Any]:
+def shown_shapes(path: str | os.PathLike[str], left_out: Collection[str] = ()) -> list[Any]:
     """Return svgelements' shapes of a file, but for those that are not shown.
 
     Each has a transform to user units of its own: svgelements skews arcs in a wrong way.
+
+    Parameters
+    ----------
+    path : path
+    left_out : collection of str
+        Elements that do not count, by the names of their tags.
 
     Raises
     ------
@@ -72,7 +78,9 @@ def shown_shapes(path: str | os.PathLike[str]) -> list[Any]:
     data = _checked(path)
     elements = optional("svgelements", "svgelements")
     try:
-        drawing = elements.SVG.parse(io.BytesIO(_in_user_units(data)), reify=False, ppi=96.0)
+        drawing = elements.SVG.parse(
+            io.BytesIO(_in_user_units(data, left_out)), reify=False, ppi=96.0
+        )
         shapes = [shape for shape in drawing.elements() if isinstance(shape, elements.Shape)]
     except Exception as error:  # what svgelements raises is of any kind
         message = f"{os.fspath(path)}: this is no valid SVG: {words_of(error)}."
@@ -153,14 +161,21 @@ def _checked(path: str | os.PathLike[str]) -> bytes:
     return data
 
 
-def _in_user_units(data: bytes) -> bytes:
+def _in_user_units(data: bytes, left_out: Collection[str]) -> bytes:
     """Return the drawing without the window that would scale and shift its coordinates."""
     root = ElementTree.fromstring(data)
-    if root.tag.rpartition("}")[2] != "svg":
+    for parent in list(root.iter()):
+        for child in [child for child in parent if _name(child) in left_out]:
+            parent.remove(child)
+    if _name(root) != "svg":
         raise ValueError("the outermost element is not svg")
     for name in ("viewBox", "width", "height", "x", "y", "preserveAspectRatio"):
         root.attrib.pop(name, None)
     return ElementTree.tostring(root)
+
+
+def _name(element: ElementTree.Element) -> str:
+    return element.tag.rpartition("}")[2]
 
 
 def _is_shown(shape: Any) -> bool:

@@ -29,6 +29,9 @@ _ROUNDING = 1e-6
 #: Lines that say less of their width, in user units, are one wide.
 _THINNEST = 0.01
 
+#: Elements that OpenSCAD does not read: it knows attributes alone, and shapes where they stand.
+_UNREAD = frozenset({"style", "use"})
+
 #: Ends of a subpath that are closer than this, in user units, close it.
 _CLOSED = 0.1
 
@@ -48,7 +51,8 @@ def svg_region(path: Path, dpi: float, centered: bool) -> Region:
     What is closed is filled, whatever its fill says, and what is open becomes as wide as its
     stroke; curves have OpenSCAD's corners, whose number does not depend on their size. The view box
     is fitted into its width and height, as browsers do; without a view box, user units count as
-    they are. What is hidden is left out; OpenSCAD 2021.01 draws it.
+    they are. Style sheets and uses of shapes do not count. What is hidden is left out; OpenSCAD
+    2021.01 draws it.
 
     Parameters
     ----------
@@ -69,7 +73,7 @@ def svg_region(path: Path, dpi: float, centered: bool) -> Region:
 
 def _drawn(path: Path) -> Region:
     region = Region()
-    for shape in shown_shapes(path):
+    for shape in shown_shapes(path, _UNREAD):
         with format_errors(str(path), "SVG"):
             outlines = list(outlines_of(shape, _steps_of(shape)))
         closed = [corners for corners, is_closed in outlines if is_closed or _meets(corners)]

@@ -1,6 +1,7 @@
 """Which file holds a font: ours, one that is named by its path, or one of the system's."""
 
 import os
+import re
 import shutil
 import subprocess
 from functools import lru_cache
@@ -51,7 +52,8 @@ def font_file(name: str | os.PathLike[str], *, paths: bool = True) -> FontFile:
     ----------
     name : str or path
         ``"Family"`` or ``"Family:style=Style"``, as fontconfig has it; empty for the font that
-        comes with the package; or the path of a font file.
+        comes with the package; or the path of a font file. Where a family is not there, another one
+        counts that fontconfig knows to be of the same metrics.
     paths : bool
         Whether a name may be a path.
 
@@ -135,20 +137,43 @@ def _family_and_style(name: str) -> tuple[str, str]:
 
 @lru_cache(maxsize=64)
 def _fontconfig(name: str) -> FontFile | None:
-    """Return what fontconfig has of this very family; None without fontconfig, too."""
-    program = shutil.which("fc-match")
-    if program is None or not name.isprintable() or len(name) > _LONGEST_NAME:
-        return None
-    command = [program, "-f", "%{index}\n%{file}\n%{family}", "--", name]
+    """Return what fontconfig has of this family, or of one that it counts as the same.
+
+    None without fontconfig, too.
+    """
+    told = _answer("fc-match", "-f", "%{index}\n%{file}\n%{family}", "--", name)
+    index, path, families = [*told.split("\n", 2), "", "", ""][:3]
+    there = {family.strip().lower() for family in families.split(",")}
+    family, style = _family_and_style(name)
+    for like in (family, *([] if family in there else _equals(name))):
+        own = _own_face(f"{like}:style={style}")
+        if own is not None:
+            return own
+        if like in there:
+            # Beyond 16 bits is the number of a variable font's instance.
+            return FontFile(Path(path), int(index or 0) & 0xFFFF)
+    return None
+
+
+def _equals(name: str) -> list[str]:
+    """Return the families that fontconfig counts as the same as one, in small letters.
+
+    Their metrics are equal: it binds them as strongly as the name itself.
+    """
+    lines = _answer("fc-pattern", "-c", "--", name).splitlines()
+    families = [line for line in lines if line.strip().startswith("family:")]
+    return [found.lower() for line in families for found in re.findall(r'"([^"]*)"\(s\)', line)]
+
+
+def _answer(program: str, *arguments: str) -> str:
+    """Return what a program of fontconfig says; nothing without it, or if the name is no name."""
+    path, name = shutil.which(program), arguments[-1]
+    if path is None or not name.isprintable() or len(name) > _LONGEST_NAME:
+        return ""
     try:
         done = subprocess.run(
-            command, capture_output=True, text=True, timeout=_TIMEOUT, check=False
+            [path, *arguments], capture_output=True, text=True, timeout=_TIMEOUT, check=False
         )
     except (OSError, UnicodeError, subprocess.TimeoutExpired):
-        return None
-    index, path, families = [*done.stdout.split("\n", 2), "", "", ""][:3]
-    wanted = _family_and_style(name)[0]
-    if wanted not in [family.strip().lower() for family in families.split(",")]:
-        return None
-    # Beyond 16 bits is the number of a variable font's instance.
-    return FontFile(Path(path), int(index or 0) & 0xFFFF)
+        return ""
+    return done.stdout

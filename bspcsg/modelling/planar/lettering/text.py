@@ -93,7 +93,8 @@ def text(
         About the height of capitals, in model units; as OpenSCAD has it, the em is 100/72 of it.
     font : str or path
         ``"Family"`` or ``"Family:style=Bold"`` of a font that fontconfig finds on this machine, or
-        the path of a font file. "Liberation Sans", regular and bold, comes with the package.
+        the path of a font file. "Liberation Sans", regular and bold, comes with the package. One of
+        equal metrics stands for a font that is not there, as fontconfig knows them.
     halign : {"left", "center", "right"}
         Which part of the line is at x = 0.
     valign : {"baseline", "bottom", "center", "top"}
