@@ -10,6 +10,7 @@ import os
 import re
 import sys
 from contextlib import chdir
+from importlib import import_module
 from pathlib import Path
 
 os.environ.setdefault("MPLBACKEND", "agg")
@@ -36,6 +37,8 @@ def run(block: str, folder: Path) -> None:
     folder.joinpath("gallery").mkdir(parents=True, exist_ok=True)
     sys.path.insert(0, str(EXAMPLES))
     try:
+        # It says how all plots look, whichever block comes first.
+        import_module("drawing")
         with chdir(folder):
             exec(compile(block, "GALLERY.md", "exec"), {"__name__": "gallery"})
         from matplotlib import pyplot

@@ -181,6 +181,37 @@ class TestRays:
             costs = tree.test_ray(origin, head)
             assert (costs.cost[0], costs.tests[0]) == (trace.cost, trace.tests)
 
+    @pytest.mark.parametrize("seed", SEEDS)
+    def test_cases_say_which_children_are_entered(self, seed: int) -> None:
+        tree = bsp.PartitionTree(segments(seed))
+        seen = set()
+        for origin, head in itertools.product(
+            [(-7, 1), (0, 0), (3, 9), (-9, -9)], [(1, 0), (2, -3), (-1, 0), (0, 1), (1, 1)]
+        ):
+            trace = tree.trace_ray(origin, head)
+            entered: dict[int, set[str]] = {}
+            for step in trace.steps:
+                if step.kind == "leaf" and step.node is not None:
+                    entered.setdefault(step.node, set()).add("minus" if step.side < 0 else "plus")
+                elif step.kind == "visit" and step.node:
+                    above = next(n for n in tree.nodes if step.node in _children(n))
+                    side = "minus" if _children(above)[0] == step.node else "plus"
+                    entered.setdefault(above.index, set()).add(side)
+            for step in trace.steps if trace.facet is None else ():
+                if step.kind == "visit" and step.node is not None and step.side:
+                    sides = ["minus", "plus"][:: -step.side]
+                    expected = {"near": sides[:1], "far": sides[1:]}.get(step.case or "", sides)
+                    assert entered[step.node] == set(expected)
+                seen.add(step.case)
+        assert seen >= {None, "near", "both"}
+
+    def test_a_ray_in_a_hyperplane_runs_within(self) -> None:
+        tree = bsp.PartitionTree(np.array([[[0, 0], [1, 0]], [[0, 2], [1, 2]]]), "first")
+        (first, *_) = (s for s in tree.trace_ray((5, 0), (1, 0)).steps if s.kind == "visit")
+        assert first.case == "within"
+        beside = tree.trace_ray((5, 1), (1, 0)).steps[0]
+        assert beside.case == "near"
+
     def test_c_of_t_is_at_most_depth_times_stabbed_leaves(self) -> None:
         random = np.random.default_rng(1)
         for facets in (segments(1, 40), triangles(1, 20), np.arange(20.0)):
@@ -222,6 +253,11 @@ class TestRays:
     def test_what_is_no_ray_is_refused(self, origin: Any, direction: Any) -> None:
         with pytest.raises(InvalidParameterError):
             bsp.PartitionTree(segments(1)).trace_ray(origin, direction)
+
+
+def _children(node: Any) -> list[int | None]:
+    """Return the numbers of a node's children; None for leaves."""
+    return [getattr(side, "index", None) for side in node.children]
 
 
 def visited(tree: Any, index: int, origin: Any, head: Any, stop: float) -> Iterator[int]:

@@ -1,5 +1,6 @@
 """The table of the lecture names functions, tests and pictures that are there."""
 
+import json
 import re
 from functools import reduce
 from pathlib import Path
@@ -7,13 +8,15 @@ from pathlib import Path
 import pytest
 
 from bspcsg import bsp
+from lecture_peers import page
+from recording import RECORDS
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "lecture.md").read_text(encoding="utf-8")
 TEMPLATES = ROOT / "bspcsg" / "report" / "templates" / "lecture"
 ROWS = [
     [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
-    for line in PAGE.splitlines()
+    for line in PAGE.partition("## The systems")[0].splitlines()
     if line.startswith("| ") and not line.startswith(("| notes", "| ---"))
 ]
 FIGURES = {
@@ -47,3 +50,11 @@ def test_names_are_there(row: list[str]) -> None:
 
 def test_every_figure_of_the_page_belongs_to_a_line() -> None:
     assert {_quoted(row[3]) for row in ROWS} >= FIGURES
+
+
+def test_the_measured_tables_are_those_of_the_record() -> None:
+    record = json.loads((RECORDS / "lecture.json").read_text(encoding="utf-8"))
+    assert page(PAGE, record) == PAGE
+    assert {row["commons_agrees"] for row in record["commons"]} == {True}
+    assert len(record["adaptive"]) == 9
+    assert all("embreex_us_per_ray" in row for row in record["adaptive"])

@@ -223,6 +223,25 @@ class RayStep:
     at: float | None
     cost: int
 
+    @property
+    def case(self) -> Literal["near", "far", "both", "within"] | None:
+        """Of a visit: the children through which the ray goes on; None for other steps.
+
+        The near child is where the ray starts. "within" is a ray that runs in the hyperplane, and
+        goes through both.
+
+        Notes
+        -----
+        Havran, Kopal, Bittner, Žára 1997: their cases N and P are told apart by `side`.
+        """
+        if self.kind != "visit" or self.start is None:
+            return None
+        if self.at is None:
+            return "near" if self.side else "within"
+        if self.at < 0 or (self.end is not None and self.at > self.end):
+            return "near"
+        return "far" if self.at < self.start else "both"
+
 
 @dataclass(frozen=True)
 class RayTrace:
