@@ -11,6 +11,9 @@ use bspcsg::tree::partition::{
 };
 use num_bigint::BigInt;
 
+mod support;
+use support::Numbers;
+
 type Tree = PartitionTree<Dim2>;
 type Lattice = [i64; 2];
 
@@ -73,19 +76,6 @@ fn build(facets: Vec<Facet<Dim2>>, policy: PivotPolicy) -> Tree {
 fn assert_same_set(a: &Tree, b: &Tree) {
     let difference = merge(a, b, SetOp::SymmetricDifference).unwrap();
     assert_eq!(difference.label(), Some(Label::Out));
-}
-
-/// Deterministic numbers below a bound.
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, bound: i64) -> i64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        i64::try_from(self.0 >> 33).unwrap() % bound
-    }
 }
 
 // Voxels: bit 3·row + column of a mask is a square of side 2.
@@ -154,7 +144,7 @@ fn voxel_sets_combine_like_bit_masks() {
     let trees: Vec<Tree> = (0..512)
         .map(|mask| build(voxel_facets(mask), policy(mask)))
         .collect();
-    let mut numbers = Numbers(1);
+    let mut numbers = Numbers::new(1);
     for a in 0..512_u16 {
         for _ in 0..12 {
             let b = u16::try_from(numbers.below(512)).unwrap();
@@ -169,7 +159,7 @@ fn voxel_sets_combine_like_bit_masks() {
 
 #[test]
 fn overlapping_voxel_boundaries_are_united_by_winding_numbers() {
-    let mut numbers = Numbers(2);
+    let mut numbers = Numbers::new(2);
     let corner = Point2::lattice([-5, -7]);
     let reference = |cut: &_| match Dim2::side(cut, &corner) {
         Side::Minus => Half::Minus,
@@ -277,7 +267,7 @@ fn pair_of_stars(numbers: &mut Numbers, reach: i64) -> [Vec<Lattice>; 2] {
 
 #[test]
 fn random_polygons_obey_the_laws() {
-    let mut numbers = Numbers(3);
+    let mut numbers = Numbers::new(3);
     // Small reaches make coincidences likely, the largest one uses the whole lattice.
     for reach in [4, 9, 40, 1000, 1 << 28] {
         for round in 0..40 {
@@ -299,7 +289,7 @@ fn random_polygons_obey_the_laws() {
 /// A polygon and a sector of it share edges that no axis is parallel to.
 #[test]
 fn sectors_of_a_polygon_can_be_cut_out_and_put_back() {
-    let mut numbers = Numbers(4);
+    let mut numbers = Numbers::new(4);
     for reach in [6, 1000, 1 << 28] {
         for round in 0..20 {
             let centre = [numbers.below(reach), numbers.below(reach)];

@@ -15,6 +15,9 @@ use bspcsg::tree::partition::{
 };
 use num_bigint::{BigInt, Sign};
 
+mod support;
+use support::Numbers;
+
 type Tree = PartitionTree<Dim3>;
 
 /// A rational number, numerator over positive denominator, not reduced.
@@ -105,19 +108,8 @@ fn assert_same_set(a: &Tree, b: &Tree) {
     assert_eq!(difference.label(), Some(Label::Out));
 }
 
-/// Deterministic numbers below a bound.
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, bound: i64) -> i64 {
-        let next = self.0.wrapping_mul(6_364_136_223_846_793_005);
-        self.0 = next.wrapping_add(1_442_695_040_888_963_407);
-        i64::try_from(self.0 >> 9).unwrap() % bound
-    }
-
-    fn point(&mut self, reach: i64) -> Lattice {
-        [0; 3].map(|_| self.below(2 * reach) - reach)
-    }
+fn point(numbers: &mut Numbers, reach: i64) -> Lattice {
+    [0; 3].map(|_| numbers.below(2 * reach) - reach)
 }
 
 // Voxels: bit 4·z + 2·y + x of a mask is a cube of side 2.
@@ -133,19 +125,7 @@ fn voxels() -> impl Iterator<Item = Lattice> {
 
 /// The square face of a voxel towards `sign` along `axis`, as two triangles.
 fn square(at: Lattice, axis: usize, sign: i64, source: u64) -> [Facet<Dim3>; 2] {
-    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    let corner = |s: i64, t: i64| {
-        let mut p = at.map(|c| 2 * c);
-        p[axis] += 1 + sign;
-        p[u] += 2 * s;
-        p[v] += 2 * t;
-        p
-    };
-    let mut ring = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-    if sign < 0 {
-        ring.reverse();
-    }
-    let [a, b, c, d] = ring;
+    let [a, b, c, d] = support::square(at, axis, sign);
     [triangle([a, b, c], source), triangle([a, c, d], source)]
 }
 
@@ -200,7 +180,7 @@ fn voxel_sets_combine_like_bit_masks() {
         build(voxel_facets(mask), small_frame(), policy)
     };
     let trees: Vec<Tree> = (0..256).map(tree_of).collect();
-    let mut numbers = Numbers(1);
+    let mut numbers = Numbers::new(1);
     for a in 0..256_u16 {
         for _ in 0..4 {
             let b = u16::try_from(numbers.below(256)).unwrap();
@@ -223,7 +203,7 @@ fn corner_side(cut: &Arc<Plane>) -> Half {
 
 #[test]
 fn overlapping_voxel_boundaries_are_united_by_winding_numbers() {
-    let mut numbers = Numbers(2);
+    let mut numbers = Numbers::new(2);
     for round in 0..60 {
         let [a, b] = [0; 2].map(|_| u16::try_from(numbers.below(256)).unwrap());
         let facets = [voxel_facets(a), voxel_facets(b)].concat();
@@ -262,8 +242,8 @@ fn tetrahedron(corners: [Lattice; 4], source: u64) -> Option<Vec<Facet<Dim3>>> {
 fn tetrahedra(numbers: &mut Numbers, reach: i64) -> [Vec<Facet<Dim3>>; 2] {
     loop {
         let shared: usize = usize::try_from(numbers.below(4)).unwrap();
-        let first = [0; 4].map(|_| numbers.point(reach));
-        let mut second = [0; 4].map(|_| numbers.point(reach));
+        let first = [0; 4].map(|_| point(numbers, reach));
+        let mut second = [0; 4].map(|_| point(numbers, reach));
         second[..shared].copy_from_slice(&first[..shared]);
         if let (Some(a), Some(b)) = (tetrahedron(first, 0), tetrahedron(second, 1)) {
             return [a, b];
@@ -313,7 +293,7 @@ fn assert_laws(a: &Tree, b: &Tree, frame: &Cell, points: &[Lattice]) {
 /// Small reaches make shared corners, edges and planes likely; the largest is the lattice's.
 #[test]
 fn tetrahedra_obey_the_laws() {
-    let mut numbers = Numbers(3);
+    let mut numbers = Numbers::new(3);
     for (reach, frame) in [
         (2, small_frame()),
         (5, small_frame()),
@@ -323,7 +303,7 @@ fn tetrahedra_obey_the_laws() {
         for round in 0..30 {
             let facets = tetrahedra(&mut numbers, reach);
             let [a, b] = facets.map(|f| build(f, frame, PivotPolicy::Random(round)));
-            let points: Vec<Lattice> = (0..30).map(|_| numbers.point(reach)).collect();
+            let points: Vec<Lattice> = (0..30).map(|_| point(&mut numbers, reach)).collect();
             assert_laws(&a, &b, &frame, &points);
         }
     }
@@ -333,12 +313,12 @@ fn tetrahedra_obey_the_laws() {
 #[test]
 fn any_plane_can_become_the_root() {
     use bspcsg::geometry::space::Space;
-    let mut numbers = Numbers(5);
+    let mut numbers = Numbers::new(5);
     for reach in [3, 30] {
         for round in 0..60 {
             let [facets, _] = tetrahedra(&mut numbers, reach);
             let tree = build(facets, small_frame(), PivotPolicy::Random(round));
-            let points = [0; 3].map(|_| numbers.point(reach));
+            let points = [0; 3].map(|_| point(&mut numbers, reach));
             let Some(plane) = Plane::through(&points[0], &points[1], &points[2]) else {
                 continue;
             };
@@ -354,14 +334,14 @@ fn any_plane_can_become_the_root() {
 /// The tetrahedra of a fan around an inner point share slanted faces: cut out and put back.
 #[test]
 fn sectors_of_a_solid_can_be_cut_out_and_put_back() {
-    let mut numbers = Numbers(4);
+    let mut numbers = Numbers::new(4);
     for round in 0..12 {
         let reach = [4, 35][round % 2];
-        let Some(facets) = tetrahedron([0; 4].map(|_| numbers.point(reach)), 0) else {
+        let Some(facets) = tetrahedron([0; 4].map(|_| point(&mut numbers, reach)), 0) else {
             continue;
         };
         let whole = build(facets.clone(), small_frame(), PivotPolicy::First);
-        let apex = numbers.point(3);
+        let apex = point(&mut numbers, 3);
         let mut rest = whole.clone();
         for face in &facets {
             let ring: Vec<Lattice> = face

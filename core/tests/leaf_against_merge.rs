@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use bspcsg::geometry::cell::Cell;
+use bspcsg::geometry::cell::{Cell, Cut};
 use bspcsg::geometry::dim3::Dim3;
 use bspcsg::geometry::plane::{Lattice, Plane};
 use bspcsg::geometry::polygon::Polygon;
@@ -151,12 +151,24 @@ fn list_in(solid: &Solid, cell: &Cell, sources: &Sources) -> Option<List> {
     let mut list = List::open(leaf, root, sources);
     while at.holds(cell) && at != *cell {
         let cut = at.cut()?;
-        let above = cell.low()[cut.axis] >= cut.at;
+        let half = half_of(cut, cell.low());
         let (minus, plus) = list.divide(&at, cut, sources);
-        list = if above { plus } else { minus };
-        at = at.half(cut, above);
+        list = match half {
+            Half::Minus => minus,
+            Half::Plus => plus,
+        };
+        at = at.half(cut, half);
     }
     (at == *cell).then_some(list)
+}
+
+/// The half of a cell that holds a point of it.
+fn half_of(cut: Cut, point: &Lattice) -> Half {
+    if point[cut.axis] < cut.at {
+        Half::Minus
+    } else {
+        Half::Plus
+    }
 }
 
 /// A random cell that a few halvings of `everything` lead to.
@@ -165,7 +177,7 @@ fn any_cell(numbers: &mut Numbers) -> Cell {
     let mut cell = everything();
     for _ in 0..numbers.below(9) {
         let Some(cut) = cell.cut() else { break };
-        cell = cell.half(cut, point[cut.axis] >= cut.at);
+        cell = cell.half(cut, half_of(cut, &point));
     }
     cell
 }

@@ -16,18 +16,8 @@ use bspcsg::tree::partition::{
 };
 use bspcsg::tree::plane::Boundary;
 
-/// Deterministic numbers below a bound.
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, bound: i64) -> i64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        i64::try_from(self.0 >> 33).unwrap() % bound
-    }
-}
+mod support;
+use support::Numbers;
 
 fn facets(corners: &[[i64; 2]]) -> Vec<Facet<Dim2>> {
     let next = corners.iter().cycle().skip(1);
@@ -45,7 +35,7 @@ fn positive(number: i32) -> bool {
 }
 
 fn random_region(seed: u64, size: i64) -> PartitionTree<Dim2> {
-    let mut numbers = Numbers(seed);
+    let mut numbers = Numbers::new(seed);
     let corners: Vec<[i64; 2]> = (0..40)
         .map(|_| [numbers.below(size), numbers.below(size)])
         .collect();
@@ -73,7 +63,7 @@ fn trees_with_axis_cuts_keep_the_invariants() {
 
 #[test]
 fn policies_agree() {
-    let mut numbers = Numbers(3);
+    let mut numbers = Numbers::new(3);
     let corners: Vec<[i64; 2]> = (0..30)
         .map(|_| [numbers.below(20), numbers.below(20)])
         .collect();

@@ -12,25 +12,15 @@ use bspcsg::query::region::outlines::outlines;
 use bspcsg::tree::partition::{check, classify, enclosed, Facet, PartitionTree, Plan};
 use bspcsg::tree::plane::{Boundary, PlaneSet};
 
+mod support;
+use support::Numbers;
+
 type Corners = Vec<[i64; 2]>;
 
-/// Deterministic numbers below a bound.
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, bound: i64) -> i64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        i64::try_from(self.0 >> 33).unwrap() % bound
-    }
-
-    fn corners(&mut self, count: i64, size: i64) -> Corners {
-        let shift = size / 2;
-        let mut corner = || [self.below(size) - shift, self.below(size) - shift];
-        (0..count).map(|_| corner()).collect()
-    }
+fn random_corners(numbers: &mut Numbers, count: i64, size: i64) -> Corners {
+    let shift = size / 2;
+    let mut corner = || [numbers.below(size) - shift, numbers.below(size) - shift];
+    (0..count).map(|_| corner()).collect()
 }
 
 fn sides(corners: &Corners) -> impl Iterator<Item = ([i64; 2], [i64; 2])> + '_ {
@@ -77,8 +67,8 @@ fn assert_same(a: &Boundary, b: &Boundary, what: &str) {
 #[test]
 fn outlines_bound_what_they_enclose() {
     for (seed, size) in (0..300).zip(SIZES.into_iter().cycle()) {
-        let mut numbers = Numbers(seed);
-        let corners = numbers.corners(4 + numbers_of_corners(seed), size);
+        let mut numbers = Numbers::new(seed);
+        let corners = random_corners(&mut numbers, 4 + numbers_of_corners(seed), size);
         for rule in RULES {
             let expected = Boundary::of(&built(&corners, rule)).unwrap();
             assert_same(&swept(&corners, rule), &expected, &format!("seed {seed}"));
@@ -93,9 +83,9 @@ fn numbers_of_corners(seed: u64) -> i64 {
 #[test]
 fn operations_make_what_merging_makes() {
     for (seed, size) in (0..60).zip(SIZES.into_iter().cycle()) {
-        let mut numbers = Numbers(seed + 1000);
+        let mut numbers = Numbers::new(seed + 1000);
         let mut operand = || {
-            let corners = numbers.corners(14, size);
+            let corners = random_corners(&mut numbers, 14, size);
             (
                 PlaneSet::from(swept(&corners, RULES[0])),
                 built(&corners, RULES[0]),
@@ -124,8 +114,8 @@ fn operations_make_what_merging_makes() {
 
 #[test]
 fn a_composition_is_the_union_of_all() {
-    let mut numbers = Numbers(5);
-    let all: Vec<Corners> = (0..12).map(|_| numbers.corners(5, 30)).collect();
+    let mut numbers = Numbers::new(5);
+    let all: Vec<Corners> = (0..12).map(|_| random_corners(&mut numbers, 5, 30)).collect();
     let sets: Vec<PlaneSet> = all.iter().map(|c| swept(c, RULES[1]).into()).collect();
     let union = composed(&sets.iter().collect::<Vec<_>>()).unwrap();
     let mut tree = PartitionTree::EMPTY;
@@ -142,11 +132,11 @@ fn a_composition_is_the_union_of_all() {
 #[test]
 fn points_lie_where_the_tree_says() {
     for (seed, size) in (0..40).zip(SIZES.into_iter().cycle()) {
-        let mut numbers = Numbers(seed + 77);
-        let corners = numbers.corners(20, size);
+        let mut numbers = Numbers::new(seed + 77);
+        let corners = random_corners(&mut numbers, 20, size);
         let set = PlaneSet::from(swept(&corners, RULES[2]));
         let tree = built(&corners, RULES[2]);
-        let mut points = numbers.corners(200, size);
+        let mut points = random_corners(&mut numbers, 200, size);
         points.extend(&corners);
         let expected: Vec<_> = points
             .iter()
@@ -165,7 +155,7 @@ fn points_lie_where_the_tree_says() {
 
 #[test]
 fn many_questions_about_one_point_make_a_tree() {
-    let set = PlaneSet::from(swept(&Numbers(9).corners(20, 50), RULES[2]));
+    let set = PlaneSet::from(swept(&random_corners(&mut Numbers::new(9), 20, 50), RULES[2]));
     let tree = set.clone();
     let expected = classify(tree.tree().unwrap(), &Point2::lattice([1, 2]));
     for _ in 0..40 {
@@ -183,7 +173,7 @@ fn moved_boundaries_are_those_of_moved_outlines() {
         Motion::of_axes(&[1, -2], &[0, 0], 1),
     ];
     for (seed, motion) in (0..).zip(motions.into_iter().map(Option::unwrap)) {
-        let corners = Numbers(seed).corners(25, 20);
+        let corners = random_corners(&mut Numbers::new(seed), 25, 20);
         let place = |p: &[i64; 2]| motion.point(&[p[0], p[1], 0]).map(|[x, y, _]| [x, y]);
         let mut image: Corners = corners.iter().filter_map(place).collect();
         if motion.mirrors() {

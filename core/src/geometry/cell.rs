@@ -2,6 +2,7 @@
 
 use super::axes::each_axis;
 use super::plane::{Lattice, Plane};
+use super::side::Half;
 use crate::arith::bounds::COORDINATE_BITS;
 
 /// A box of the dyadic hierarchy: the lattice points `low[i] .. low[i] + 2^size[i]`.
@@ -12,13 +13,14 @@ use crate::arith::bounds::COORDINATE_BITS;
 /// # Example
 /// ```
 /// use bspcsg::geometry::cell::Cell;
+/// use bspcsg::geometry::side::Half;
 ///
 /// let cell = Cell::around(&[0; 3], &[5, 3, 3]);
 /// assert_eq!((*cell.low(), cell.high()), ([0; 3], [7; 3]));
 /// // The longest axis is halved, between two lattice points.
 /// let cut = cell.cut().expect("more than one point");
 /// assert_eq!((cut.axis, cut.at), (0, 4));
-/// assert_eq!(cell.half(cut, true).low(), &[4, 0, 0]);
+/// assert_eq!(cell.half(cut, Half::Plus).low(), &[4, 0, 0]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cell {
@@ -84,13 +86,13 @@ impl Cell {
 
     /// The minus (0) or plus (1) half of the cell.
     #[must_use]
-    pub fn half(&self, cut: Cut, plus: bool) -> Self {
-        let mut half = *self;
-        half.size[cut.axis] -= 1;
-        if plus {
-            half.low[cut.axis] = cut.at;
+    pub fn half(&self, cut: Cut, half: Half) -> Self {
+        let mut cell = *self;
+        cell.size[cut.axis] -= 1;
+        if half == Half::Plus {
+            cell.low[cut.axis] = cut.at;
         }
-        half
+        cell
     }
 
     /// Return whether every lattice point of `other` is one of this cell.
@@ -165,7 +167,7 @@ impl Cell {
 mod tests {
     use proptest::prelude::*;
 
-    use super::{Cell, Lattice, COORDINATE_BITS};
+    use super::{Cell, Half, Lattice, COORDINATE_BITS};
     use crate::geometry::axes::each_axis;
 
     /// Coordinates near each other, near zero, and anywhere.
@@ -183,7 +185,7 @@ mod tests {
             let high = each_axis(|i| a[i].max(b[i]));
             let mut cell = Cell::UNIVERSE;
             while let Some(cut) = cell.cut() {
-                let halves = [false, true].map(|plus| cell.half(cut, plus));
+                let halves = Half::BOTH.map(|half| cell.half(cut, half));
                 match halves.into_iter().find(|half| half.holds_box(&low, &high)) {
                     Some(half) => cell = half,
                     None => break,

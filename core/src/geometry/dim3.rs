@@ -29,14 +29,7 @@ impl Space for Dim3 {
     }
 
     fn coincide(a: &Arc<Plane>, b: &Arc<Plane>) -> Option<Orientation> {
-        let orientation = |same| {
-            if same {
-                Orientation::Same
-            } else {
-                Orientation::Opposite
-            }
-        };
-        a.coincides(b).map(orientation)
+        a.coincides(b)
     }
 
     fn split(piece: &Polygon, cut: &Arc<Plane>) -> Split<Polygon> {

@@ -1,6 +1,7 @@
 //! Oriented planes with canonical integer coefficients.
 
 use super::axes::each_axis;
+use super::side::Orientation;
 use crate::arith::bounds::{
     self, COORDINATE_BITS, HALF_SPACE_NORMAL_BITS, SHORT_NORMAL_BITS, SHORT_OFFSET_BITS,
 };
@@ -201,18 +202,18 @@ impl Plane {
         }
     }
 
-    /// `Some(true)` for the same oriented plane, `Some(false)` for the opposite one, else `None`.
+    /// Return the orientation of a plane to another, if both are the same set of points.
     #[allow(clippy::float_cmp)]
-    pub fn coincides(&self, other: &Self) -> Option<bool> {
+    pub fn coincides(&self, other: &Self) -> Option<Orientation> {
         // Equal coefficients have equal doubles, which tell most planes apart.
         if (0..4).any(|i| self.approx[i].abs() != other.approx[i].abs()) {
             return None;
         }
         if self == other {
-            return Some(true);
+            return Some(Orientation::Same);
         }
         let opposite = (0..3).all(|i| self.n[i] == -other.n[i]) && self.d == -other.d;
-        opposite.then_some(false)
+        opposite.then_some(Orientation::Opposite)
     }
 
     /// The axis the plane is perpendicular to, if it is perpendicular to one.

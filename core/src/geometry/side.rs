@@ -57,6 +57,9 @@ pub enum Half {
 }
 
 impl Half {
+    /// The inside, then the outside.
+    pub const BOTH: [Self; 2] = [Self::Minus, Self::Plus];
+
     /// The other half-space.
     #[must_use]
     pub fn opposite(self) -> Self {

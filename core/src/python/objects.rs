@@ -20,6 +20,7 @@ use super::set_store::Nodes;
 use super::set_traces::{step_row, StepRow};
 use crate::error::Result;
 use crate::merge::plane::bounded;
+use crate::merge::SetOp;
 use crate::mesh::grid::Pitch;
 use crate::query::measure::Fraction;
 use crate::query::region::outlines::Outline;
@@ -68,6 +69,31 @@ impl ObjectTree {
     }
 
     /// The exception of work; the report of a defect holds the sets.
+    /// Do some work with this set and another of its lattice; a defect tells of both.
+    fn compared<T: Send>(
+        &self,
+        py: Python<'_>,
+        other: &Self,
+        work: impl FnOnce(&Set, &Set) -> Result<T> + Send,
+    ) -> PyResult<T> {
+        let (a, b) = (&self.set, &other.set);
+        set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
+        run(py, 0, a.size() + b.size(), || work(a, b))
+            .map_err(|e| self.blamed(py, e, &[self, other]))
+    }
+
+    /// The result of a set operation with another set, by one of the ways to carry it out.
+    fn operated<T: Send>(
+        &self,
+        py: Python<'_>,
+        other: &Self,
+        op: &str,
+        way: impl FnOnce(&Set, &Set, SetOp) -> Result<T> + Send,
+    ) -> PyResult<T> {
+        let op = set_input::operation(op).map_err(|e| to_python(py, &e))?;
+        self.compared(py, other, |a, b| way(a, b, op))
+    }
+
     fn blamed(&self, py: Python<'_>, error: PyErr, operands: &[&Self]) -> PyErr {
         blamed(py, error, "ObjectTree", || {
             let inputs = PyDict::new(py);
@@ -151,11 +177,7 @@ impl ObjectTree {
     }
 
     fn merge(&self, py: Python<'_>, other: PyRef<'_, Self>, op: &str) -> PyResult<Self> {
-        let op = set_input::operation(op).map_err(|e| to_python(py, &e))?;
-        let (a, b) = (&self.set, &other.set);
-        set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
-        let set = run(py, 0, a.size() + b.size(), || a.merge(b, op))
-            .map_err(|e| self.blamed(py, e, &[self, &other]))?;
+        let set = self.operated(py, &other, op, Set::merge)?;
         Ok(self.with(set))
     }
 
@@ -181,11 +203,7 @@ impl ObjectTree {
 
     /// The set operation by whatever is faster, merging trees or sweeping over boundaries.
     fn combined(&self, py: Python<'_>, other: PyRef<'_, Self>, op: &str) -> PyResult<Self> {
-        let op = set_input::operation(op).map_err(|e| to_python(py, &e))?;
-        let (a, b) = (&self.set, &other.set);
-        set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
-        let set = run(py, 0, a.size() + b.size(), || a.combined(b, op))
-            .map_err(|e| self.blamed(py, e, &[self, &other]))?;
+        let set = self.operated(py, &other, op, Set::combined)?;
         Ok(self.with(set))
     }
 
@@ -210,11 +228,7 @@ impl ObjectTree {
         other: PyRef<'_, Self>,
         op: &str,
     ) -> PyResult<(Self, Vec<StepRow>)> {
-        let op = set_input::operation(op).map_err(|e| to_python(py, &e))?;
-        let (a, b) = (&self.set, &other.set);
-        set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
-        let (set, steps) = run(py, 0, a.size() + b.size(), || a.merge_steps(b, op))
-            .map_err(|e| self.blamed(py, e, &[self, &other]))?;
+        let (set, steps) = self.operated(py, &other, op, Set::merge_steps)?;
         Ok((self.with(set), steps.iter().map(step_row).collect()))
     }
 
@@ -224,10 +238,7 @@ impl ObjectTree {
     }
 
     fn equals(&self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<bool> {
-        let (a, b) = (&self.set, &other.set);
-        set_input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
-        run(py, 0, a.size() + b.size(), || a.equals(b))
-            .map_err(|e| self.blamed(py, e, &[self, &other]))
+        self.compared(py, &other, Set::equals)
     }
 
     fn complement(&self, py: Python<'_>) -> PyResult<Self> {

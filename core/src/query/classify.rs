@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
+use crate::geometry::side::Half;
 use crate::interrupt::poll;
 use crate::merge::kernels::trees::LeafTree;
 use crate::merge::lists::list::{List, Sources};
@@ -135,8 +136,8 @@ impl Search<'_> {
                 Some(cut) => {
                     let (below, above) = self.split(points, |p| p[cut.axis] < cut.at);
                     let (minus, plus) = list.divide(&cell, cut, self.sources);
-                    open.push((cell.half(cut, false), minus, below));
-                    open.push((cell.half(cut, true), plus, above));
+                    open.push((cell.half(cut, Half::Minus), minus, below));
+                    open.push((cell.half(cut, Half::Plus), plus, above));
                 }
                 None => self.leaf(&cell, &list, &points),
             }

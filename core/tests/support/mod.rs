@@ -13,4 +13,4 @@ pub use solids::{
     applied, combined, complement, inside, is_empty, is_full, located, normalized, wanted,
 };
 pub use volumes::{sixfold_volume, volume, Ratio};
-pub use voxels::Voxels;
+pub use voxels::{square, Voxels};

@@ -67,7 +67,7 @@ impl Voxels {
 }
 
 /// The face of the cube at a place, counterclockwise as seen from outside.
-fn square(at: Lattice, axis: usize, sign: i64) -> [Lattice; 4] {
+pub fn square(at: Lattice, axis: usize, sign: i64) -> [Lattice; 4] {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let corner = |s: i64, t: i64| {
         let mut p = at.map(|c| 2 * c);

@@ -4,6 +4,7 @@ use super::state::{State, States};
 use crate::arith::convert::as_double;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
+use crate::geometry::side::Half;
 use crate::merge::kernels::general::MOST;
 
 /// Lists that together hold at most this many elements are worked on by a leaf kernel, whatever
@@ -152,7 +153,7 @@ fn mixed(cell: &Cell, states: &States, total: usize) -> f64 {
         let counts = states.iter().map(|s| s.1.count_in(&part));
         let (present, sum) = counts.fold((0, 0), |(k, n), c| (k + usize::from(c > 0), n + c));
         if let Some(cut) = part.cut().filter(|_| most > SAMPLE && sum > 0) {
-            open.extend([false, true].map(|plus| (part.half(cut, plus), most / 2)));
+            open.extend(Half::BOTH.map(|half| (part.half(cut, half), most / 2)));
             continue;
         }
         all += sum;

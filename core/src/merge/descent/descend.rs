@@ -14,6 +14,7 @@ use super::join;
 use super::state::{find, has_constant, nested, State, States, MANY, TASK};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
+use crate::geometry::side::Half;
 use crate::interrupt::{carried, poll};
 use crate::merge::expression::{Expression, Parted, Residual};
 use crate::merge::kernels::general::GeneralPosition;
@@ -346,10 +347,14 @@ impl<'a> Descent<'a> {
             below.push((k, minus));
             above.push((k, plus));
         }
-        let half = |plus: bool, states: States| {
-            self.cell(cell.half(cut, plus), Arc::clone(expression), states, round)
+        let visit = |half: Half, states: States| {
+            self.cell(cell.half(cut, half), Arc::clone(expression), states, round)
         };
-        let (minus, plus) = both(total >= TASK, || half(false, below), || half(true, above));
+        let (minus, plus) = both(
+            total >= TASK,
+            || visit(Half::Minus, below),
+            || visit(Half::Plus, above),
+        );
         Ok(join::branch(cell, cut, minus?, plus?, self.sources))
     }
 

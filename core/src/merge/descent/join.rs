@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, triangle_change, Segment};
 use crate::geometry::outline::{cancel, OutlineEdge};
-use crate::geometry::side::Orientation;
+use crate::geometry::side::{Half, Orientation};
 use crate::interrupt::poll;
 use crate::merge::kernels::kept::is_whole;
 use crate::merge::lists::list::Sources;
@@ -62,8 +62,8 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
         return None;
     }
     let halves = [
-        (minus, a, cell.half(cut, false)),
-        (plus, b, cell.half(cut, true)),
+        (minus, a, cell.half(cut, Half::Minus)),
+        (plus, b, cell.half(cut, Half::Plus)),
     ];
     let mut held = Vec::with_capacity(faces.len());
     for face in faces {

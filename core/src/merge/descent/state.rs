@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::plane::Lattice;
+use crate::geometry::side::Half;
 use crate::merge::lists::bins::Bins;
 use crate::merge::lists::list::{List, PartRecord, Record, Sources};
 use crate::tree::node::{Branch, Node, Work};
@@ -247,7 +248,7 @@ fn divide_tree(branch: Branch, cell: &Cell, cut: Cut) -> (State, State) {
         );
     }
     let around = State::Constant(branch.outside);
-    if cell.half(cut, false).holds(&branch.cell) {
+    if cell.half(cut, Half::Minus).holds(&branch.cell) {
         (State::Tree(branch), around)
     } else {
         (around, State::Tree(branch))

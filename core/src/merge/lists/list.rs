@@ -9,7 +9,7 @@ use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::crossing::{plane_change, polygon_change, triangle_change, Segment};
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
-use crate::geometry::side::Orientation;
+use crate::geometry::side::{Half, Orientation};
 use crate::interrupt::spend;
 use crate::mesh::cached::Cached;
 use crate::mesh::handle::{FaceId, Slot};
@@ -260,7 +260,7 @@ impl List {
     /// Keeps the records of the minus half, in the memory they are in, and returns the others.
     fn divide_records(&mut self, cell: &Cell, cut: Cut, sources: &Sources) -> Vec<Record> {
         let (axis, at) = (cut.axis, self.frame.index(cut.axis, cut.at));
-        let halves = [cell.half(cut, false), cell.half(cut, true)];
+        let halves = Half::BOTH.map(|half| cell.half(cut, half));
         let missed = |r: &Record, plus: usize| misses(sources.get(r.slot()), r.face, &halves[plus]);
         let count = self.records.iter().filter(|r| r.high[axis] >= at).count();
         let mut plus = Vec::with_capacity(count);

@@ -20,7 +20,7 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::fixed::sixfold_flux;
 use crate::geometry::plane::Lattice;
-use crate::geometry::side::Orientation;
+use crate::geometry::side::{Half, Orientation};
 use crate::interrupt::{poll, spend};
 use crate::mesh::handle::{FaceId, Slot};
 use crate::mesh::source::Source;
@@ -205,8 +205,8 @@ impl<'a> Check<'a> {
             return;
         };
         let (minus, plus) = list.divide(&cell, cut, self.sources);
-        let below = || self.cell(cell.half(cut, false), minus);
-        let above = || self.cell(cell.half(cut, true), plus);
+        let below = || self.cell(cell.half(cut, Half::Minus), minus);
+        let above = || self.cell(cell.half(cut, Half::Plus), plus);
         both(total >= TASK, below, above);
     }
 

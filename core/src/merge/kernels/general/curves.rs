@@ -75,7 +75,7 @@ impl Joints {
             let (a, b) = (&segments[i], &segments[next]);
             match a.plane.coincides(&b.plane) {
                 None => {}
-                Some(same) if same == (a.plus == b.plus) => {
+                Some(orientation) if orientation.is_opposite() == (a.plus != b.plus) => {
                     continued[next] = true;
                     any = true;
                 }

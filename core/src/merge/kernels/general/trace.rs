@@ -223,6 +223,20 @@ mod tests {
         }
     }
 
+    /// The trace that two faces of one operand leave on a polygon.
+    fn trace(crossed: &Polygon, faces: [[Lattice; 3]; 2]) -> Option<Trace> {
+        let faces = faces.map(|corners| Face::new(Cow::Owned(polygon(&corners))));
+        let crossers: Vec<Crosser> = (1..)
+            .zip(&faces)
+            .map(|(number, face)| crosser(crossed, face, number))
+            .collect();
+        let element = Crossed {
+            polygon: crossed,
+            number: 0,
+        };
+        Trace::new(&element, &crossers, &mut Points::default())
+    }
+
     /// The edge of a wall goes through the border of a polygon: (4, 4, 0) lies on both.
     #[test]
     fn a_curve_may_end_where_two_edges_meet() {
@@ -231,17 +245,7 @@ mod tests {
             [[4, 4, -8], [4, 4, 8], [7, -3, 1]],
             [[4, 4, 8], [4, 4, -8], [1, 9, 1]],
         ];
-        let faces = wall.map(|corners| Face::new(Cow::Owned(polygon(&corners))));
-        let crossers: Vec<Crosser> = (1..)
-            .zip(&faces)
-            .map(|(number, face)| crosser(&crossed, face, number))
-            .collect();
-        let element = Crossed {
-            polygon: &crossed,
-            number: 0,
-        };
-        let trace = Trace::new(&element, &crossers, &mut Points::default());
-        let trace = trace.expect("one curve from border to border");
+        let trace = trace(&crossed, wall).expect("one curve from border to border");
         let corner = Vertex::lattice([4, 4, 0]);
         assert_eq!(trace.segments.len(), 1);
         assert_eq!(trace.ends.len(), 2);
@@ -261,15 +265,6 @@ mod tests {
             [[4, 4, -8], [4, 4, 8], [7, -3, 1]],
             [[4, 4, 8], [4, 4, -8], [9, 3, 1]],
         ];
-        let faces = wedge.map(|corners| Face::new(Cow::Owned(polygon(&corners))));
-        let crossers: Vec<Crosser> = (1..)
-            .zip(&faces)
-            .map(|(number, face)| crosser(&crossed, face, number))
-            .collect();
-        let element = Crossed {
-            polygon: &crossed,
-            number: 0,
-        };
-        assert!(Trace::new(&element, &crossers, &mut Points::default()).is_none());
+        assert!(trace(&crossed, wedge).is_none());
     }
 }

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use crate::arith::convert::as_number;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Polygon, PolygonSplit};
+use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 
 /// A convex piece of boundary with its multiplicity.
@@ -248,8 +249,8 @@ impl LocalTree {
                 }
                 Child::Node(node) => &self.nodes[node as usize],
             };
-            if let Some(same) = polygon.support().coincides(&node.cut) {
-                self.coplanar_sides(node, polygon, same, &mut found);
+            if let Some(orientation) = polygon.support().coincides(&node.cut) {
+                self.coplanar_sides(node, polygon, orientation, &mut found);
             } else {
                 descend(polygon, node, &mut open);
             }
@@ -262,13 +263,16 @@ impl LocalTree {
         &self,
         node: &LocalNode,
         polygon: Polygon,
-        same: bool,
+        orientation: Orientation,
         found: &mut Vec<Sided>,
     ) {
         for (piece, below) in self.labelled(node.children[0], polygon) {
             poll();
             for (polygon, above) in self.labelled(node.children[1], piece) {
-                let (minus, plus) = if same { (below, above) } else { (above, below) };
+                let (minus, plus) = match orientation {
+                    Orientation::Same => (below, above),
+                    Orientation::Opposite => (above, below),
+                };
                 found.push(Sided {
                     polygon,
                     minus,

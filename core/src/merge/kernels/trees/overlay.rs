@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::{Polygon, PolygonSplit};
+use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 use crate::mesh::handle::SourceFace;
 
@@ -107,9 +108,12 @@ fn overlaid(old: &Fragment, new: &Fragment) -> Vec<Fragment> {
     let Some(inside) = inside else {
         return vec![old.clone()];
     };
-    let same = old.polygon.support().coincides(new.polygon.support()) == Some(true);
+    let orientation = old.polygon.support().coincides(new.polygon.support());
     let mut both = part_of(old, inside);
-    both.weight += if same { new.weight } else { -new.weight };
+    both.weight += match orientation {
+        Some(Orientation::Same) => new.weight,
+        _ => -new.weight,
+    };
     let mut pieces = vec![both];
     pieces.extend(outside.into_iter().map(|p| part_of(old, p)));
     pieces
