@@ -115,7 +115,9 @@ fn operations_make_what_merging_makes() {
 #[test]
 fn a_composition_is_the_union_of_all() {
     let mut numbers = Numbers::new(5);
-    let all: Vec<Corners> = (0..12).map(|_| random_corners(&mut numbers, 5, 30)).collect();
+    let all: Vec<Corners> = (0..12)
+        .map(|_| random_corners(&mut numbers, 5, 30))
+        .collect();
     let sets: Vec<PlaneSet> = all.iter().map(|c| swept(c, RULES[1]).into()).collect();
     let union = composed(&sets.iter().collect::<Vec<_>>()).unwrap();
     let mut tree = PartitionTree::EMPTY;
@@ -155,7 +157,10 @@ fn points_lie_where_the_tree_says() {
 
 #[test]
 fn many_questions_about_one_point_make_a_tree() {
-    let set = PlaneSet::from(swept(&random_corners(&mut Numbers::new(9), 20, 50), RULES[2]));
+    let set = PlaneSet::from(swept(
+        &random_corners(&mut Numbers::new(9), 20, 50),
+        RULES[2],
+    ));
     let tree = set.clone();
     let expected = classify(tree.tree().unwrap(), &Point2::lattice([1, 2]));
     for _ in 0..40 {
