@@ -66,4 +66,5 @@ fn evaluate() {
 #[test]
 fn extract() {
     holds_around_its_seeds("extract", targets::extract);
+    holds_on_what_is_kept("extract", targets::extract);
 }

@@ -89,6 +89,12 @@ pub const CROSS_LIMBS: usize = 12;
 /// Limbs of the orientation of three such points in a projection.
 pub const ORIENTATION_LIMBS: usize = 18;
 
+/// Limbs of the cosine and the sine of an angle between three such points, in a projection.
+pub const ANGLE_LIMBS: usize = 24;
+
+/// Limbs of the sine of the sum of two such angles.
+pub const ANGLES_LIMBS: usize = 48;
+
 /// The bound of a sum of two numbers.
 const fn sum(a: u32, b: u32) -> u32 {
     1 + if a > b { a } else { b }
@@ -210,6 +216,17 @@ pub const fn point_orientation(p: u32) -> u32 {
     det3([point_numerator(p), point_numerator(p), point_weight(p)])
 }
 
+/// The cosine and the sine of the angle between differences below 2^`d`, in a projection along an
+/// axis, up to a factor.
+pub const fn angle(d: u32) -> u32 {
+    sum(2 * d, 2 * d)
+}
+
+/// The sine of the sum of two such angles, up to a factor.
+pub const fn sum_of_angles(d: u32) -> u32 {
+    sum(2 * angle(d), 2 * angle(d))
+}
+
 /// The limbs that hold numbers of magnitude below 2^`bits` with their sign.
 pub const fn limbs_for(bits: u32) -> usize {
     (bits as usize + 1).div_ceil(64)
@@ -230,6 +247,9 @@ const _: () = {
     assert!(limbs_for(determinant_at_corner(P)) <= OFFSET_LIMBS);
     assert!(limbs_for(numerator_times_weight(P) + 1) <= CROSS_LIMBS);
     assert!(limbs_for(point_orientation(P)) <= ORIENTATION_LIMBS);
+    assert!(limbs_for(angle(P + 1)) <= NORMAL_LIMBS);
+    assert!(limbs_for(angle(numerator_times_weight(P) + 1)) <= ANGLE_LIMBS);
+    assert!(limbs_for(sum_of_angles(numerator_times_weight(P) + 1)) <= ANGLES_LIMBS);
     assert!(HALF_SPACE_NORMAL_BITS + P + 2 <= offset(P));
 };
 

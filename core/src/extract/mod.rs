@@ -1,5 +1,6 @@
 //! From a tree back to a mesh: collecting, joining, pairing, triangulating, splitting, rounding.
 
+mod angles;
 pub mod assemble;
 pub mod boundary;
 pub mod contacts;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
+use super::angles;
 use super::triangulate::Planar;
 use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::arith::Int;
@@ -109,7 +110,7 @@ fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
 
 /// The distance that two doubles of one coordinate may have, relative to it: twice three units in
 /// the last place of 2^-52, and room for the rounding of the question.
-const NEAR: f64 = 8.0 * f64::EPSILON;
+pub(super) const NEAR: f64 = 8.0 * f64::EPSILON;
 
 /// A place in doubles with all but some forty leading bits rounded away.
 ///
@@ -221,6 +222,14 @@ impl Planar for Projection<'_> {
     fn orient(&self, a: u32, b: u32, c: u32) -> i32 {
         self.rough_orient([a, b, c])
             .unwrap_or_else(|| self.exact_orient([a, b, c]))
+    }
+
+    fn opposite_angles(&self, [a, b]: [u32; 2], [c, d]: [u32; 2]) -> Ordering {
+        let quad = [a, b, c, d];
+        angles::rough(quad.map(|p| self.approx(p))).unwrap_or_else(|| {
+            let points = quad.map(|p| &**self.table.point(p));
+            angles::exact(points, [self.u, self.v])
+        })
     }
 
     fn approx(&self, a: u32) -> [f64; 2] {

@@ -1,5 +1,6 @@
 //! Local flips that widen the narrow angles of a triangulation, and the check that it is one.
 
+use std::cmp::Ordering;
 use std::collections::VecDeque;
 
 use super::{Error, Planar};
@@ -12,9 +13,6 @@ const NONE: usize = usize::MAX;
 /// Circles, stars, combs and plates need up to two; a grid of 158 by 158 holes would take fifty to come
 /// to rest, and is left good enough instead. The bound also ends what rounding might send in circles.
 const FLIPS_PER_TRIANGLE: usize = 16;
-
-/// Relative size below which the float criterion counts as undecided.
-const UNDECIDED: f64 = 1e-12;
 
 /// A half-edge `3 t + k` runs from corner `k` of triangle `t` to the next one.
 struct Mates {
@@ -175,6 +173,9 @@ impl Mates {
 
     /// Return whether the angles opposite the edge exceed 180 degrees together and the flip is
     /// valid.
+    ///
+    /// Of four points on one circle the first in lexicographic order stays apart from the third, as if
+    /// it lay farther out: then there is one best triangulation, wherever the flips begin.
     fn should_flip<P: Planar>(&self, points: &P, half: usize) -> bool {
         let mate = self.mates[half];
         if mate == NONE {
@@ -186,10 +187,12 @@ impl Mates {
             self.apex(half),
             self.apex(mate),
         );
-        let [p, q] = [a, b].map(|v| points.approx(v));
-        exceed_straight(angle(points.approx(c), p, q), angle(points.approx(d), q, p))
-            && points.orient(c, a, d) > 0
-            && points.orient(d, b, c) > 0
+        let is_wide = match points.opposite_angles([a, b], [c, d]) {
+            Ordering::Greater => true,
+            Ordering::Equal => is_least_of_ends(points, [a, b], [c, d]),
+            Ordering::Less => false,
+        };
+        is_wide && points.orient(c, a, d) > 0 && points.orient(d, b, c) > 0
     }
 
     /// Replaces the edge by the other diagonal; returns the half-edges around the quadrilateral.
@@ -223,16 +226,14 @@ fn next(half: usize) -> usize {
     }
 }
 
-/// Cosine and sine, up to one positive factor, of the angle at `apex` from `p` to `q`.
-fn angle(apex: [f64; 2], p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
-    let [ux, uy] = [p[0] - apex[0], p[1] - apex[1]];
-    let [vx, vy] = [q[0] - apex[0], q[1] - apex[1]];
-    [ux * vx + uy * vy, ux * vy - uy * vx]
-}
-
-/// Return whether two angles add up to more than 180 degrees: the sine of the sum is negative.
-fn exceed_straight([cos_a, sin_a]: [f64; 2], [cos_b, sin_b]: [f64; 2]) -> bool {
-    // The triangles turn left; a sine that rounds below zero belongs to an angle near 0 or 180 degrees.
-    let (first, second) = (cos_a * sin_b.max(0.0), cos_b * sin_a.max(0.0));
-    first + second < -UNDECIDED * (first.abs() + second.abs())
+/// Return whether the least of four points is one of the first two.
+fn is_least_of_ends<P: Planar>(points: &P, ends: [u32; 2], apexes: [u32; 2]) -> bool {
+    let lesser = |[a, b]: [u32; 2]| {
+        if points.compare(a, b) == Ordering::Less {
+            a
+        } else {
+            b
+        }
+    };
+    points.compare(lesser(ends), lesser(apexes)) == Ordering::Less
 }

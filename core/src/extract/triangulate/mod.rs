@@ -1,8 +1,9 @@
 //! Exact triangulation of planar polygons with holes.
 //!
-//! Knows the points of one plane only by id and by the exact answers of [`Planar`]; coordinates appear
-//! only as floats that steer which of several valid triangulations is returned. Small single loops are
-//! triangulated by clipping ears, everything else by one sweep; local flips then widen the narrow angles.
+//! Knows the points of one plane only by id and by the exact answers of [`Planar`]; floats only bring
+//! them into a rough order. Small single loops are triangulated by clipping ears, everything else by one
+//! sweep; local flips then widen the narrow angles. They end at the constrained Delaunay triangulation,
+//! with ties broken by the points alone: it does not depend on ids or on the order of the edges.
 //! Invariant: every triangle that leaves this module turns strictly left, and the triangles' edges are
 //! the given boundary edges once each and every other edge once in each direction.
 //!
@@ -44,6 +45,16 @@ use std::fmt;
 ///         left.signum()
 ///     }
 ///
+///     fn opposite_angles(&self, ends: [u32; 2], apexes: [u32; 2]) -> Ordering {
+///         let [[a, b], [c, d]] = [ends, apexes].map(|pair| pair.map(|p| self.0[p as usize]));
+///         let angle = |apex: [i32; 2], p: [i32; 2], q: [i32; 2]| {
+///             let [u, v] = [p, q].map(|p| [p[0] - apex[0], p[1] - apex[1]]);
+///             [u[0] * v[0] + u[1] * v[1], u[0] * v[1] - u[1] * v[0]]
+///         };
+///         let ([cos_c, sin_c], [cos_d, sin_d]) = (angle(c, a, b), angle(d, b, a));
+///         0.cmp(&(cos_c * sin_d + cos_d * sin_c))
+///     }
+///
 ///     fn approx(&self, a: u32) -> [f64; 2] {
 ///         self.0[a as usize].map(f64::from)
 ///     }
@@ -65,7 +76,15 @@ pub trait Planar {
     /// - `-1`: right turn
     fn orient(&self, a: u32, b: u32, c: u32) -> i32;
 
-    /// The point in floats. Steers the choice among valid triangulations, never their validity.
+    /// Compare the sum of the angles at two apexes, which look at an edge from its left and its right,
+    /// to 180 degrees.
+    ///
+    /// - `Greater`: it is more, each apex lies inside the circle through the others
+    /// - `Equal`: the four points lie on one circle
+    /// - `Less`: it is less
+    fn opposite_angles(&self, ends: [u32; 2], apexes: [u32; 2]) -> Ordering;
+
+    /// The point in floats, for a rough order that [`Planar::compare`] then mends.
     fn approx(&self, a: u32) -> [f64; 2];
 }
 
@@ -113,7 +132,8 @@ impl std::error::Error for Error {}
 /// only at their ends, and no vertex lies inside an edge. Corners of 180 degrees are kept as corners.
 ///
 /// # Order
-/// Triangles are counterclockwise; their order is a function of the edges and the points alone.
+/// Triangles are counterclockwise; their order is a function of the edges and the points alone. Which
+/// triangles these are depends on the points only, unless the flips end early.
 ///
 /// # Cost
 /// O(n log n) questions for n edges; the flips are bounded by a multiple of n.

@@ -79,6 +79,11 @@ impl<P: Planar> Planar for Relabelled<'_, P> {
         self.points.orient(self.id(a), self.id(b), self.id(c))
     }
 
+    fn opposite_angles(&self, ends: [u32; 2], apexes: [u32; 2]) -> Ordering {
+        let [ends, apexes] = [ends, apexes].map(|pair| pair.map(|p| self.id(p)));
+        self.points.opposite_angles(ends, apexes)
+    }
+
     fn approx(&self, a: u32) -> [f64; 2] {
         self.places[a as usize]
     }

@@ -43,6 +43,16 @@ impl Planar for Lattice {
         i32::try_from(self.doubled_area(a, b, c).signum()).unwrap()
     }
 
+    fn opposite_angles(&self, ends: [u32; 2], apexes: [u32; 2]) -> Ordering {
+        let [[a, b], [c, d]] = [ends, apexes].map(|pair| pair.map(|p| self.at(p)));
+        let angle = |apex: [i128; 2], p: [i128; 2], q: [i128; 2]| {
+            let [u, v] = [p, q].map(|p| [p[0] - apex[0], p[1] - apex[1]]);
+            [u[0] * v[0] + u[1] * v[1], u[0] * v[1] - u[1] * v[0]]
+        };
+        let ([cos_c, sin_c], [cos_d, sin_d]) = (angle(c, a, b), angle(d, b, a));
+        0.cmp(&(cos_c * sin_d + cos_d * sin_c))
+    }
+
     #[allow(clippy::cast_precision_loss)]
     fn approx(&self, a: u32) -> [f64; 2] {
         self.0[a as usize].map(|x| x as f64)
@@ -308,6 +318,77 @@ fn flips_find_the_short_diagonal() {
     assert!(triangles
         .iter()
         .all(|corners| corners.contains(&1) && corners.contains(&3)));
+}
+
+/// The triangles by their places, each from its least corner on.
+fn by_place(points: &Lattice, triangles: &[[u32; 3]]) -> BTreeSet<[[i64; 2]; 3]> {
+    let placed = |corners: &[u32; 3]| {
+        let mut places = corners.map(|v| points.0[v as usize]);
+        let least = (0..3).min_by_key(|k| places[*k]).unwrap();
+        places.rotate_left(least);
+        places
+    };
+    triangles.iter().map(placed).collect()
+}
+
+/// The same shape with its points and edges numbered in another order.
+fn renumbered(points: &Lattice, edges: &Edges, step: usize) -> (Lattice, Edges) {
+    let count = points.0.len();
+    let image = |v: u32| (v as usize * step + 1) % count;
+    let mut places = points.0.clone();
+    for v in 0..u32::try_from(count).unwrap() {
+        places[image(v)] = points.0[v as usize];
+    }
+    let number = |v: u32| u32::try_from(image(v)).unwrap();
+    let mut edges: Edges = edges.iter().map(|&(a, b)| (number(a), number(b))).collect();
+    let turn = step % edges.len();
+    edges.rotate_left(turn);
+    (Lattice(places), edges)
+}
+
+#[test]
+fn numbers_do_not_choose_the_triangles() {
+    let far = (1 << 53) - 40;
+    for corners in [
+        vec![[0, 0], [9, 0], [9, 5], [0, 5]],
+        vec![
+            [far, far],
+            [far + 30, far],
+            [far + 30, far + 1],
+            [far, far + 1],
+        ],
+        vec![[3, 0], [4, 0], [7, 3], [7, 4], [4, 7], [3, 7], [0, 4]],
+        vec![
+            [5, 0],
+            [4, 3],
+            [3, 4],
+            [0, 5],
+            [-3, 4],
+            [-4, 3],
+            [-5, 0],
+            [-4, -3],
+            [0, -5],
+            [4, -3],
+        ],
+    ] {
+        let (mut points, mut edges) = (Lattice::default(), Edges::new());
+        points.push_loop(&mut edges, &corners);
+        let expected = by_place(&points, &check(&points, &edges));
+        let swept = triangulate_by_sweep(&points, &edges).unwrap();
+        assert_eq!(by_place(&points, &swept), expected);
+        for step in (1..corners.len()).filter(|k| gcd(*k, corners.len()) == 1) {
+            let (points, edges) = renumbered(&points, &edges, step);
+            assert_eq!(by_place(&points, &check(&points, &edges)), expected);
+        }
+    }
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 {
+        a
+    } else {
+        gcd(b, a % b)
+    }
 }
 
 #[test]
