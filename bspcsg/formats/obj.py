@@ -14,6 +14,7 @@ from ..attributes.attributes import Attributes, Kind, Values
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from . import mtl
+from .blocks import listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, says_empty_set
 from .said import chosen, is_color, said_of
 from .source import Source, quoted, whole
@@ -305,10 +306,10 @@ def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     if says_empty_set(mesh):
         yield EMPTY_SET
     if said is not None and "color" in said.vertex:
-        for point in np.concatenate([mesh.vertices, said.vertex["color"]], axis=1).tolist():
+        for point in listed(np.concatenate([mesh.vertices, said.vertex["color"]], axis=1)):
             yield "v {!r} {!r} {!r} {!r} {!r} {!r}\n".format(*point).encode()
     else:
-        for point in mesh.vertices.tolist():
+        for point in listed(mesh.vertices):
             yield "v {!r} {!r} {!r}\n".format(*point).encode()
     if said is not None:
         yield from _text_with_attributes(mesh, said)
@@ -317,7 +318,7 @@ def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     for name, faces in parts:
         if name or len(parts) > 1:
             yield f"o {called(name)}\n".encode()
-        for face in (faces + np.int64(1)).tolist():
+        for face in listed(faces + np.int64(1)):
             yield "f {} {} {}\n".format(*face).encode()
 
 
@@ -337,7 +338,7 @@ def _text_with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[by
     for name, faces in parts:
         if name or len(parts) > 1:
             yield f"o {called(name)}\n".encode()
-        for row, face in enumerate(faces.tolist(), start):
+        for row, face in enumerate(listed(faces), start):
             if names is not None and names[row] != current:
                 current = str(names[row])
                 yield f"usemtl {current}\n".encode()

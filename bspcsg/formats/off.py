@@ -9,6 +9,7 @@ import numpy as np
 from ..attributes.attributes import Attributes, Kind, Values
 from ..errors import Finding
 from ..mesh.mesh import Mesh
+from .blocks import listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, says_empty_set
 from .said import as_bytes, chosen, is_color, said_of
 from .source import Source, quoted, whole
@@ -162,9 +163,9 @@ def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     keyword = b"COFF\n" if said and said.vertex else b"OFF\n"
     yield keyword + (EMPTY_SET if says_empty_set(mesh) else b"")
     yield f"{len(mesh.vertices)} {len(mesh.faces)} 0\n".encode()
-    for point, words in zip(mesh.vertices.tolist(), points, strict=True):
+    for point, words in zip(listed(mesh.vertices), points, strict=True):
         yield "{!r} {!r} {!r}{}\n".format(*point, words).encode()
-    for face, words in zip(mesh.faces.tolist(), faces, strict=True):
+    for face, words in zip(listed(mesh.faces), faces, strict=True):
         yield "3 {} {} {}{}\n".format(*face, words).encode()
 
 
@@ -172,4 +173,4 @@ def _words(attributes: Mapping[str, Values], count: int) -> Iterable[str]:
     """Return the colour at the end of each line, with a space before each number."""
     if "color" not in attributes:
         return repeat("", count)
-    return ("".join(f" {value}" for value in row) for row in attributes["color"].tolist())
+    return ("".join(f" {value}" for value in row) for row in listed(attributes["color"]))

@@ -1,7 +1,5 @@
 """What single precision changes about a mesh: binary STL and GLB hold no more."""
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from .._core import mesh_in_single
@@ -11,11 +9,9 @@ from ..errors import Finding, core_errors
 from ..mesh.mesh import Mesh
 from ..mesh.weld import distinct
 from ..solid.solid import solid_of_mesh
+from .blocks import blocks
 from .raw import RawMesh
 from .triangles import are_flat, are_turned
-
-#: Triangles looked at together: their arrays fit into a processor's cache.
-_TOGETHER = 1 << 14
 
 #: How many triangles a finding names.
 _NAMED = 8
@@ -181,8 +177,8 @@ def _flat_and_turned(
 ) -> tuple[IndexArray, IndexArray]:
     """Return the numbers of the triangles that lose their area, and of those that turn over."""
     flat, turned = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
-    for start in _starts(len(faces)):
-        some = faces[start : start + _TOGETHER]
+    for block in blocks(len(faces)):
+        some, start = faces[block], block.start
         before, after = vertices[some], rounded[some]
         is_flat = are_flat(after)
         lost = np.flatnonzero(is_flat)
@@ -190,7 +186,3 @@ def _flat_and_turned(
         kept = np.flatnonzero(~is_flat)
         turned.append(start + kept[are_turned(before[kept], after[kept])])
     return np.concatenate(flat), np.concatenate(turned)
-
-
-def _starts(count: int) -> Iterator[int]:
-    return iter(range(0, count, _TOGETHER))

@@ -14,6 +14,7 @@ from ..errors import Finding
 from ..mesh.mesh import Mesh
 from ..mesh.weld import welded
 from . import single
+from .blocks import blocks
 from .raw import EMPTY_SET, RawMesh, on_one_line, parts_of, says_empty_set
 from .source import BYTE_ORDER_MARK, Source, quoted
 
@@ -129,11 +130,13 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     title = EMPTY_SET.strip(b"# \n") if says_empty_set(mesh) else b"bspcsg"
     header = title.ljust(_HEADER - 4, b" ")
     yield header + len(mesh.faces).to_bytes(4, "little")
-    records = np.zeros(len(mesh.faces), _RECORD)
-    corners = mesh.vertices.astype(np.float32)[mesh.faces]
-    records["corners"] = corners
-    records["normal"] = _normals(mesh.vertices[mesh.faces])
-    yield records.tobytes()
+    rounded = mesh.vertices.astype(np.float32)
+    for block in blocks(len(mesh.faces)):
+        faces = mesh.faces[block]
+        records = np.zeros(len(faces), _RECORD)
+        records["corners"] = rounded[faces]
+        records["normal"] = _normals(mesh.vertices[faces])
+        yield records.tobytes()
 
 
 def called(name: str) -> str:
@@ -146,14 +149,18 @@ def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     for name, faces in parts_of(mesh) or [("", mesh.faces)]:
         title = called(name)
         yield f"solid {title}\n".encode()
-        corners = mesh.vertices[faces]
-        for normal, triangle in zip(_normals(corners).tolist(), corners.tolist(), strict=True):
-            yield (
-                "facet normal {} {} {}\n outer loop\n".format(*normal)
-                + "".join("  vertex {!r} {!r} {!r}\n".format(*corner) for corner in triangle)
-                + " endloop\nendfacet\n"
-            ).encode()
+        for block in blocks(len(faces)):
+            yield from _facets(mesh.vertices[faces[block]])
         yield f"endsolid {title}\n".encode()
+
+
+def _facets(corners: FloatArray) -> Iterator[bytes]:
+    for normal, triangle in zip(_normals(corners).tolist(), corners.tolist(), strict=True):
+        yield (
+            "facet normal {} {} {}\n outer loop\n".format(*normal)
+            + "".join("  vertex {!r} {!r} {!r}\n".format(*corner) for corner in triangle)
+            + " endloop\nendfacet\n"
+        ).encode()
 
 
 def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:

@@ -5,13 +5,20 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
+import numpy as np
 import pytest
 
+import bspcsg as b
 from support.cli import heed_interrupts
 
 #: How long a call may go on after the signal, on a loaded machine, in seconds.
 SOON = 2.0
+
+#: How long saving some hundred thousand triangles may work without hearing a signal, in seconds of
+#: the processor.
+DEAF = 0.1
 
 _COMMON = """
 import numpy as np
@@ -120,3 +127,21 @@ def test_an_interrupt_ends_the_call_soon(name: str) -> None:
         running.communicate()
     assert said == "stopped\n"
     assert taken < SOON, f"{taken:.1f} s"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals as POSIX has them")
+@pytest.mark.parametrize("suffix", [".stl", ".obj", ".off", ".3mf"])
+def test_signals_are_heard_all_the_time_while_a_mesh_is_saved(tmp_path: Path, suffix: str) -> None:
+    ball = b.sphere(1, segments=566)
+    ball.to_mesh()
+    heard = [time.process_time()]
+    before = signal.signal(signal.SIGPROF, lambda *_: heard.append(time.process_time()))
+    signal.setitimer(signal.ITIMER_PROF, 0.005, 0.005)
+    try:
+        ball.save(tmp_path / f"ball{suffix}")
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
+    heard.append(time.process_time())
+    assert len(heard) > 10
+    assert max(np.diff(heard)) < DEAF

@@ -44,9 +44,9 @@ def legacy(data: bytes) -> list[Held]:
 
 
 def _block(data: bytes, at: int, kind: str, count: int) -> tuple[npt.NDArray[Any], int]:
-    """Return so many numbers in native order, and where the bytes go on behind them."""
+    """Return so many numbers, and where the bytes go on behind them."""
     numbers = np.frombuffer(data, kind, count, at)
-    return numbers.astype(numbers.dtype.newbyteorder("=")), at + numbers.nbytes
+    return numbers, at + numbers.nbytes
 
 
 def _behind(key: bytes, data: bytes, at: int) -> int:

@@ -11,6 +11,7 @@ from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes, Values
 from ...errors import Finding, FormatError
 from ...mesh.mesh import Mesh
+from ..blocks import listed
 from ..raw import IndexPolygons, RawMesh, says_empty_set
 from ..said import said_of
 from ..source import Source, quoted, whole
@@ -383,10 +384,10 @@ def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     yield _header(mesh, "ascii")
     vertex, face, lists = _columns(mesh)
     further = _words(vertex, len(mesh.vertices))
-    for point, words in zip(mesh.vertices.tolist(), further, strict=True):
+    for point, words in zip(listed(mesh.vertices), further, strict=True):
         yield "{!r} {!r} {!r}{}\n".format(*point, words).encode()
     further = _words([*face, *lists], len(mesh.faces))
-    for corners, words in zip(mesh.faces.tolist(), further, strict=True):
+    for corners, words in zip(listed(mesh.faces), further, strict=True):
         yield "3 {} {} {}{}\n".format(*corners, words).encode()
 
 
@@ -394,7 +395,7 @@ def _words(columns: _Columns, count: int) -> Iterable[str]:
     """Return what follows in each line, with a space before each word; lists begin by length."""
     if not columns:
         return itertools.repeat("", count)
-    lists = [values.tolist() for _, values in columns]
+    lists = [listed(values) for _, values in columns]
     return ("".join(map(_word, row)) for row in zip(*lists, strict=True))
 
 

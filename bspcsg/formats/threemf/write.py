@@ -18,6 +18,7 @@ from ...attributes.attributes import Attributes, Values
 from ...attributes.material import Material
 from ...errors import Finding
 from ...mesh.mesh import Mesh
+from ..blocks import listed
 from ..raw import RawMesh, compacted, empty_set, parts_of, says_empty_set
 from ..said import said_of
 from .textures import PackedPicture, Resources, content_types, relations
@@ -199,7 +200,7 @@ def _bases(
 def _corner_words(group: int, numbers: IndexArray) -> Values:
     """Return what triangles say that have these numbers of a group at their corners."""
     words: list[str] = []
-    for first, second, third in numbers.reshape(-1, 3).tolist():
+    for first, second, third in listed(numbers.reshape(-1, 3)):
         same = first == second == third
         more = "" if same else f' p2="{second}" p3="{third}"'
         words.append(f' pid="{group}" p1="{first}"{more}')
@@ -212,11 +213,11 @@ def _object(
     used, corners = compacted(faces)
     named = f" name={quoteattr(called(name))}" if name else ""
     yield f'<object id="{number}" type="model"{named}><mesh><vertices>\n'
-    for point in vertices[used].tolist():
+    for point in listed(vertices[used]):
         yield '<vertex x="{!r}" y="{!r}" z="{!r}"/>\n'.format(*point)
     yield "</vertices><triangles>\n"
-    told = itertools.repeat("") if words is None else words.tolist()
-    for face, properties in zip(corners.tolist(), told, strict=False):
+    told = itertools.repeat("") if words is None else listed(words)
+    for face, properties in zip(listed(corners), told, strict=False):
         yield '<triangle v1="{}" v2="{}" v3="{}"{}/>\n'.format(*face, properties)
     yield "</triangles></mesh></object>\n"
 
