@@ -82,8 +82,8 @@ MUTANTS = [
     Mutant(
         "coplanar faces that face each other add up",
         "merge/kernels/trees/overlay.rs",
-        "both.weight += if same { new.weight } else { -new.weight };",
-        "both.weight += new.weight;",
+        "        _ => -new.weight,\n",
+        "        _ => new.weight,\n",
         ("voxels",),
     ),
     Mutant(

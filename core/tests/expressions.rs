@@ -16,7 +16,7 @@ fn any_expression(numbers: &mut Numbers) -> Expression {
         let mut pick = || u32::try_from(numbers.below(last)).expect("few");
         let line = pick();
         let list: Vec<u32> = (0..4).map(|_| pick()).collect();
-        let list = list[..1 + line as usize % 4].to_vec();
+        let list = list[..=line as usize % 4].to_vec();
         terms.push(match numbers.below(4) {
             0 => Term::Not(line),
             1 => Term::And(list),

@@ -8,6 +8,8 @@ import pytest
 import fuzz_record
 from fuzz_guided import outcome_of
 from fuzz_record import Found, Outcome, add_to_record
+from mutants import MUTANTS, Mutant
+from recording import REPOSITORY
 
 SAID = """INFO: seed corpus: files: 40
 #41\tINITED cov: 1200 ft: 3400 corp: 30/9Kb
@@ -48,3 +50,12 @@ def test_runs_add_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     first, second = json.loads((tmp_path / "fuzz.json").read_text())["targets"]["scenes"]
     assert (first["executions"], first["cpu_minutes"], first["hang"]) == (15, 1.5, 1)
     assert (second["seed"], second["coverage"], second["wrong"]) == (2, 9, 0)
+
+
+@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.what)
+def test_mutants_change_one_place_of_the_source(mutant: Mutant) -> None:
+    source = REPOSITORY / "core" / "src" / mutant.file
+    assert source.read_text(encoding="utf-8").count(mutant.old) == 1
+    file, *names = mutant.tests
+    tests = (REPOSITORY / "core" / "tests" / f"{file}.rs").read_text(encoding="utf-8")
+    assert all(f"fn {name}(" in tests for name in names)
