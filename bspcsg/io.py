@@ -22,6 +22,7 @@ from .formats.files import (
 from .formats.raw import RawMesh
 from .formats.registry import FORMATS
 from .formats.solids import solid_of
+from .parameters import file_path, of_kind, truth_value
 from .solid.counting import counted
 from .solid.solid import Solid
 
@@ -68,7 +69,7 @@ def load(path: str | os.PathLike[str], **options: Any) -> Solid:
     InvalidMeshError, LimitError
         If what it holds is no solid: the message names the file, `where` the faces.
     """
-    if Path(path).suffix.lower() in SCRIPTS:
+    if Path(file_path(path)).suffix.lower() in SCRIPTS:
         # Scripts need much that mesh files do not.
         from . import csg
 
@@ -131,10 +132,12 @@ def save(solid: Solid, path: str | os.PathLike[str], *, text: bool = False) -> t
     UnboundedError
         If the solid reaches to infinity.
     """
-    if Path(path).suffix.lower() == ".csg":
+    is_text = truth_value(text, "text")
+    own = of_kind(Solid, solid, "solid")
+    if Path(file_path(path)).suffix.lower() == ".csg":
         from . import csg
 
-        csg.dump(solid, path)
+        csg.dump(own, path)
         return ()
-    form_of(path, text)
-    return write(solid.normalized().to_mesh(), path, text=text)
+    form_of(path, is_text)
+    return write(own.normalized().to_mesh(), path, text=is_text)

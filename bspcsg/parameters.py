@@ -6,7 +6,9 @@ names the parameter. Truth values and texts are no numbers here.
 
 import math
 import operator
-from typing import TYPE_CHECKING, Any
+import os
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ._core import set_threads as _set_threads
 from .errors import LimitError, invalid_parameter
@@ -28,11 +30,16 @@ MOST_SEGMENTS = 1 << 16
 #: Corners of one body. While its solid is made each takes some 600 bytes, all of them 2.4 GB.
 MOST_CORNERS = 4_000_000
 
+#: Messages do not spell out larger numbers.
+_COUNTABLE = 10**15
+
 #: Letters of a value that a message repeats.
 _LONGEST = 80
 
 #: Seeds are taken modulo this.
 _SEEDS = 2**64
+
+_Kind = TypeVar("_Kind")
 
 _WINDING_RULES: "tuple[WindingRule, ...]" = ("positive", "nonzero", "even-odd")
 
@@ -99,8 +106,63 @@ def sides_around(least: int, value: Any, name: str) -> int:
 def refuse_many_corners(count: float, what: str) -> None:
     """Raise `LimitError` if a body would have more than `MOST_CORNERS` corners."""
     if count > MOST_CORNERS:
-        message = f"{what} would have {count:.0f} corners, and {MOST_CORNERS} are the most."
+        amount = f"{count:.0f}" if count < _COUNTABLE else "far too many"
+        message = f"{what} would have {amount} corners, and {MOST_CORNERS} are the most."
         raise LimitError(f"{message} Choose fewer sides.", "too_many")
+
+
+def truth_value(value: Any, name: str) -> bool:
+    """Return True or False; 1 and 0 count as them."""
+    if isinstance(value, bool) or (_is_truth_value(value) and value.shape == ()):
+        return bool(value)
+    if isinstance(value, int) and value in (0, 1):
+        return bool(value)
+    raise invalid_parameter(f"{name} must be True or False, not {shown(value)}.")
+
+
+def pair(value: Any, name: str) -> tuple[Any, Any]:
+    """Return two entries, still unchecked: one alone stands for both."""
+    try:
+        entries = tuple(value)
+    except TypeError:
+        return value, value
+    if len(entries) != 2:
+        raise invalid_parameter(f"{name} must be one number or two, not {shown(value)}.")
+    return entries
+
+
+def file_path(value: Any, name: str = "path") -> str:
+    """Return the name of a file."""
+    try:
+        path = os.fspath(value)
+    except TypeError as error:
+        raise invalid_parameter(f"{name} must name a file, not {shown(value)}.") from error
+    if isinstance(path, str):
+        return path
+    raise invalid_parameter(f"{name} must be a text or a path, not {shown(value)}.")
+
+
+def word(known: Iterable[str], value: Any, name: str) -> str:
+    """Return one of the words that are known."""
+    words = tuple(known)
+    if isinstance(value, str) and value in words:
+        return str(value)
+    raise invalid_parameter(f"{name} must be one of {', '.join(words)}, not {shown(value)}.")
+
+
+def function_of(value: Any, name: str) -> Callable[..., Any]:
+    """Return what can be called."""
+    if callable(value):
+        called: Callable[..., Any] = value
+        return called
+    raise invalid_parameter(f"{name} must be a function, not {shown(value)}.")
+
+
+def of_kind(kind: type[_Kind], value: Any, name: str) -> _Kind:
+    """Return an object of some class."""
+    if isinstance(value, kind):
+        return value
+    raise invalid_parameter(f"{name} must be a {kind.__name__}, not {shown(value)}.")
 
 
 def pitch_exponent(value: Any) -> int:

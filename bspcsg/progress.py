@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from ._core import watch
+from .parameters import function_of, not_negative
 
 
 @contextmanager
@@ -35,17 +36,18 @@ def progress(tell: Callable[[float], object], *, every: float = 0.1) -> Iterator
     ...     (b.cube(2) - b.sphere(1)).volume < 8
     True
     """
+    told, pause = function_of(tell, "tell"), not_negative(every, "every")
     began = last = time.monotonic()
     is_told = False
 
     def look() -> None:
         nonlocal last, is_told
         now = time.monotonic()
-        if is_told or now - last < every:
+        if is_told or now - last < pause:
             return
         last, is_told = now, True
         try:
-            tell(now - began)
+            told(now - began)
         finally:
             is_told = False
 

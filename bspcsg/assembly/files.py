@@ -23,6 +23,7 @@ from ..formats.threemf import scene as threemf
 from ..formats.threemf.properties import kept
 from ..formats.threemf.write import called
 from ..geometry import transform
+from ..parameters import file_path
 from ..solid.solid import Solid
 from . import scripts
 from .tree import Assembly, moved
@@ -42,7 +43,7 @@ _BYTE = 255
 
 def load(path: str | os.PathLike[str], **options: Any) -> Assembly:
     """Read an assembly (see `Assembly.load`)."""
-    suffix = Path(path).suffix.lower()
+    suffix = Path(file_path(path)).suffix.lower()
     if suffix in _SCRIPTS:
         return scripts.load(path, Path(path).stem, **options)
     if suffix in _TREES:
@@ -98,7 +99,7 @@ class _Making:
 
 def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...]:
     """Write an assembly (see `Assembly.save`)."""
-    suffix = Path(path).suffix.lower()
+    suffix = Path(file_path(path)).suffix.lower()
     if suffix == ".csg":
         return scripts.save(assembly, path)
     if suffix == ".obj":

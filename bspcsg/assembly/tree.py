@@ -10,12 +10,13 @@ import numpy as np
 
 from .._types import FloatArray, Scalar, Vector
 from ..above import above
-from ..attributes.material import Material
+from ..attributes.material import color_of
 from ..errors import Finding, invalid_parameter
 from ..geometry import transform
+from ..geometry.arrays import axes_of
 from ..geometry.transform import Factors
 from ..operations.setops import union
-from ..parameters import not_negative
+from ..parameters import not_negative, of_kind, shown
 from ..solid.counting import uncounted
 from ..solid.solid import Solid
 from ..tracebacks import shortened
@@ -106,11 +107,11 @@ class Assembly:
         color: Iterable[float] | None = None,
         density: Scalar | None = None,
     ) -> None:
-        self.name = str(name)
-        self.color = None if color is None else Material(tuple(color)).color
+        self.name = of_kind(str, name, "name")
+        self.color = None if color is None else color_of(color)
         self.density = None if density is None else not_negative(density, "density")
         self.shape = content if isinstance(content, Solid) else None
-        children = () if isinstance(content, Solid) else tuple(map(_as_assembly, content))
+        children = () if isinstance(content, Solid) else _children(content)
         self.children: tuple[Assembly, ...] = children
         self.factors: Factors = ()
         self._depth: int = 1 + max((child._depth for child in children), default=0)
@@ -192,7 +193,7 @@ class Assembly:
     def rotate(self, angle: Scalar | Vector, axis: str | Vector = "z") -> "Assembly":
         """Return the assembly rotated about an axis through the origin, in degrees."""
         about: Any = angle
-        if np.ndim(about) == 0:
+        if axes_of(about) == 0:
             return self._moved((transform.rotation(about, axis),))
         return self._moved(transform.euler_rotation(about))
 
@@ -324,6 +325,14 @@ def moved(solid: Solid, factors: Factors) -> Solid:
     for factor in reversed(factors):
         solid = solid.transform(factor.matrix)
     return solid
+
+
+def _children(content: Any) -> tuple[Assembly, ...]:
+    if not isinstance(content, Iterable):
+        raise invalid_parameter(
+            f"An assembly is made of a Solid or of several, not {shown(content)}."
+        )
+    return tuple(map(_as_assembly, content))
 
 
 def _as_assembly(content: Any) -> Assembly:

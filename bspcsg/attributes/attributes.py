@@ -217,6 +217,10 @@ class Given:
     face: Mapping[str, Any] | None = None
     materials: Mapping[str, Material] | None = None
 
+    @property
+    def _by_kind(self) -> tuple[Mapping[str, Any] | None, ...]:
+        return self.vertex, self.corner, self.face
+
     def over(self, vertex_count: int, faces: IndexArray) -> Attributes | None:
         """Return the arrays over a mesh, or None if there are none.
 
@@ -226,13 +230,14 @@ class Given:
             If an array is of another length or type, or a name stands for two; code
             ``"attributes"``.
         """
-        if not (self.vertex or self.corner or self.face):
+        tables = [_named(given, kind) for kind, given in zip(KINDS, self._by_kind, strict=True)]
+        materials = _materials(self.materials)
+        if not any(tables):
             return None
         shapes: dict[Kind, tuple[int, ...]]
         shapes = {"vertex": (vertex_count,), "corner": (len(faces), 3), "face": (len(faces),)}
         found: dict[Kind, dict[str, Values]] = {}
-        for kind, given in zip(KINDS, (self.vertex, self.corner, self.face), strict=True):
-            arrays = _named(given, kind)
+        for kind, arrays in zip(KINDS, tables, strict=True):
             found[kind] = {name: _array(v, name, kind, shapes[kind]) for name, v in arrays}
         names = [name for kind in KINDS for name in found[kind]]
         twice = sorted({name for name in names if names.count(name) > 1})
@@ -240,7 +245,7 @@ class Given:
             raise _refused(f"“{twice[0]}” is given for two of vertices, corners and faces.")
         own = faces.copy()
         own.flags.writeable = False
-        return Attributes(own, **found, materials=_materials(self.materials))
+        return Attributes(own, **found, materials=materials)
 
 
 def _named(given: Mapping[str, Any] | None, kind: Kind) -> list[tuple[str, Any]]:
@@ -254,11 +259,16 @@ def _named(given: Mapping[str, Any] | None, kind: Kind) -> list[tuple[str, Any]]
     return list(given.items())
 
 
-def _array(values: Any, name: str, kind: Kind, shape: tuple[int, ...]) -> Values:
+def array_of(values: Any, name: str) -> Values:
+    """Return the values of an attribute as an array of their own."""
     try:
-        array: Values = np.array(values, order="C")
+        return np.array(values, order="C")
     except ValueError as error:
         raise _refused(f"the values of “{name}” are no array: {error}.") from error
+
+
+def _array(values: Any, name: str, kind: Kind, shape: tuple[int, ...]) -> Values:
+    array = array_of(values, name)
     if array.dtype.kind not in _TYPES:
         allowed = "truth values, whole numbers, floats and text"
         raise _refused(f"“{name}” holds values of type {array.dtype}; there may be {allowed}.")
@@ -272,6 +282,8 @@ def _array(values: Any, name: str, kind: Kind, shape: tuple[int, ...]) -> Values
 
 
 def _materials(given: Mapping[str, Material] | None) -> Mapping[str, Material]:
+    if given is not None and not isinstance(given, Mapping):
+        raise _refused("materials are given by a mapping of their names.")
     for name, material in (given or {}).items():
         if not isinstance(material, Material):
             raise _refused(f"the material “{name}” is no bspcsg.Material.")

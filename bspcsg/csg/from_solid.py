@@ -13,6 +13,7 @@ import numpy as np
 
 from ..errors import UnboundedError
 from ..geometry.transform import Factor, Factors
+from ..parameters import truth_value
 from ..solid import expression
 from ..solid.counting import uncounted
 from ..solid.expression import Pending, Placed, Plan, make_plan
@@ -67,7 +68,9 @@ def tree_of(solid: Solid, *, flat: bool = False) -> CsgTree:
     half-spaces have none, and where repeated parts, which are written out each time, would make it
     larger than two million corners and triangles. Symmetric differences repeat both their operands.
     """
-    body = _polyhedron(solid) if flat else _Reading().body(*expression_of(solid))
+    body = (
+        _polyhedron(solid) if truth_value(flat, "flat") else _Reading().body(*expression_of(solid))
+    )
     if body is None or body.size > _LARGEST or body.negated:
         body = _polyhedron(solid)
     if body is None or body.negated:

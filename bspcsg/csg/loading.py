@@ -9,6 +9,7 @@ from ..bsp import Region
 from ..errors import BspcsgError, FormatError
 from ..formats.atomic import write_file
 from ..formats.source import limited_content
+from ..parameters import file_path
 from ..solid.counting import counted
 from ..solid.solid import Solid
 from .evaluator import evaluate
@@ -119,7 +120,8 @@ def read_tree(path: str | os.PathLike[str], **options: Any) -> CsgTree:
     FormatError
         If the file cannot be read or is no such script; an empty one is a model of nothing.
     """
-    file, name = Path(path), os.fspath(path)
+    name = file_path(path)
+    file = Path(name)
     suffix = file.suffix.lower()
     if suffix == ".scad":
         return read_scad(file, **options)

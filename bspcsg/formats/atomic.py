@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from ..errors import FormatError
+from ..parameters import file_path
 
 #: Takes what was written, and raises an error if it is not what it should be.
 Proof: TypeAlias = Callable[[bytes], None]
@@ -32,7 +33,7 @@ def write_file(
     FormatError
         If the file cannot be written; code ``"unwritable"``; and what `prove` raises.
     """
-    name = os.fspath(path)
+    name = file_path(path)
     if name == os.devnull:
         _drop(chunks, prove)
         return

@@ -11,6 +11,7 @@ import numpy as np
 
 from .._types import FloatArray
 from ..errors import FormatError
+from ..parameters import file_path
 
 #: What some editors put before a text.
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
@@ -128,7 +129,7 @@ def limited_content(path: str | os.PathLike[str]) -> bytes:
     FormatError
         If it cannot be read or is larger than 256 MiB.
     """
-    name = os.fspath(path)
+    name = file_path(path)
     try:
         data = content_of(Path(name)) if Path(name).stat().st_size <= _LARGEST_TEXT else None
     except (OSError, ValueError) as error:

@@ -19,6 +19,7 @@ import numpy as np
 from .._types import FloatArray, Scalar, Vector
 from ..errors import invalid_parameter
 from ..parameters import number, shown
+from .arrays import doubles
 
 #: Largest number of lattice steps from the origin.
 LATTICE_REACH = 2**53
@@ -131,7 +132,7 @@ def matrix_factor(matrix: Any) -> Factor:
         If the shape is another, an entry is not finite, the last row is not 0, 0, 0, 1, or the
         map flattens space.
     """
-    array = np.asarray(matrix, dtype=np.float64)
+    array = doubles(matrix, invalid_parameter("A transform is a 4x4 matrix of numbers."))
     if array.shape == (3, 4):
         array = np.vstack([array, [0.0, 0.0, 0.0, 1.0]])
     if array.shape != (4, 4):

@@ -113,6 +113,8 @@ def face_array(faces: Any, vertices: FloatArray) -> IndexArray:
         return _triangles(faces, vertices)
     if array.size == 0:
         return np.zeros((0, 3), dtype=np.int64)
+    if array.ndim == 0:
+        raise InvalidMeshError("Faces must be lists of at least 3 indices.", "shape")
     if array.dtype == object:
         return _triangles(faces, vertices)
     if array.ndim != 2 or array.shape[1] < 3:

@@ -26,6 +26,8 @@ def attributes_from(mesh: Any, vertices: Any, faces: Any) -> dict[str, Any]:
     vertices, faces
         Its arrays, as `interop.arrays_from` found them.
     """
+    if isinstance(mesh, (tuple, list)):
+        return {}
     found: dict[str, dict[str, Any]] = {"vertex": {}, "corner": {}, "face": {}, "materials": {}}
     if hasattr(mesh, "to_mesh64"):
         _take_properties(mesh.to_mesh64(), found)

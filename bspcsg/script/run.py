@@ -22,6 +22,7 @@ from typing import Any, TypeAlias
 from ..errors import BspcsgError, FormatError
 from ..geometry.transform import Factors
 from ..operations.setops import union
+from ..parameters import file_path
 from ..solid.counting import counted, uncounted
 from ..solid.solid import LastOperation, Solid, expression_of, with_record
 from .values import VALUES, compiled
@@ -91,7 +92,7 @@ def run_script(
         and line), ends its process ("script_died"), takes too long ("timeout"), leaves no solid
         ("no_result") or assigns no variable of a name in `defines` ("unknown_name").
     """
-    name = os.fspath(path)
+    name = file_path(path)
     if not Path(path).is_file():
         raise FormatError(f"{name}: cannot read this file: no such file.", "unreadable")
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as folder:

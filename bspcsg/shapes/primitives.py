@@ -15,7 +15,14 @@ from ..errors import InvalidMeshError, invalid_parameter
 from ..geometry.hyperplane import Hyperplane
 from ..geometry.polygon import triangulate
 from ..geometry.transform import along, vector3
-from ..parameters import not_negative, number, positive, refuse_many_corners, sides_around
+from ..parameters import (
+    not_negative,
+    number,
+    positive,
+    refuse_many_corners,
+    sides_around,
+    truth_value,
+)
 from ..solid.counting import counted
 from ..solid.leaf import PlaneLeaf
 from ..solid.solid import Solid, from_leaf
@@ -82,7 +89,8 @@ def box(
     for length in lengths:
         positive(length, "size")
     corners = np.indices((2, 2, 2)).reshape(3, 8).T
-    vertices = (corners - 0.5) * lengths if center else corners * lengths
+    is_central = truth_value(center, "center")
+    vertices = (corners - 0.5) * lengths if is_central else corners * lengths
     return from_arrays(vertices, _BOX_FACES)
 
 
@@ -159,7 +167,7 @@ def cylinder(
     if low == high == 0:
         raise invalid_parameter("A cylinder needs a radius above 0.")
     height, around = positive(h, "h"), sides_around(3, segments, "segments")
-    base = -height / 2 if center else 0.0
+    base = -height / 2 if truth_value(center, "center") else 0.0
     ends = np.array([[low, base], [high, base + height]])
     vertices, sides = surface_of_revolution(ends, around, closed=False)
     cap = triangulate([unit_circle(around)])

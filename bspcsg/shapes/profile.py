@@ -10,7 +10,16 @@ from .._types import FloatArray, IndexArray, Scalar, Vector
 from ..errors import invalid_parameter
 from ..geometry.polygon import contours_of, directed_edges, triangulate
 from ..geometry.transform import cos_sin
-from ..parameters import at_least, not_negative, number, positive, refuse_many_corners, sides_around
+from ..parameters import (
+    at_least,
+    not_negative,
+    number,
+    pair,
+    positive,
+    refuse_many_corners,
+    sides_around,
+    truth_value,
+)
 from ..solid.counting import counted
 from ..solid.leaf import MeshLeaf
 from ..solid.solid import Solid, from_leaf
@@ -104,14 +113,10 @@ def _rise(
     turn, lean = number(twist, "twist"), number(taper, "taper")
     if abs(lean) >= 90:
         raise invalid_parameter(f"taper must be between -90 and 90 degrees, not {lean:g}.")
-    given: Any = scale
-    ends = (given, given) if np.ndim(given) == 0 else given
-    if len(ends) != 2:
-        raise invalid_parameter("scale is one number, or two for x and y.")
-    x, y = (not_negative(end, "scale") for end in ends)
+    x, y = (not_negative(end, "scale") for end in pair(scale, "scale"))
     wanted = math.ceil(abs(turn) / 360 * _SLICES_OF_A_TURN) if slices is None else slices
     count = at_least(1, max(wanted, 1) if slices is None else wanted, "slices")
-    base = -height / 2 if center else 0.0
+    base = -height / 2 if truth_value(center, "center") else 0.0
     return Rise(height, base, turn, (x, y), count, height * math.tan(math.radians(lean)))
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from .._core import Tree
 from .._types import FloatArray, IndexArray, ProgramLine, WindingRule
-from ..attributes.attributes import Attributes, Given, Later
+from ..attributes.attributes import Attributes, Given, Later, array_of
 from ..attributes.carrying import SourceArrays, Surface, carried, patches_of
 from ..errors import LimitError, UnboundedError, core_errors
 from ..geometry import transform
@@ -346,7 +346,7 @@ def tagged(
     count = int(arrays[3].max(initial=-1)) + 1
     faces = np.zeros((count, 3), dtype=np.int64) if old is None else old.faces
     said = Attributes(faces) if old is None else old.without(values)
-    given = {name: np.asarray(value) for name, value in values.items()}
+    given = {name: array_of(value, name) for name, value in values.items()}
     face = {
         name: np.broadcast_to(value, (len(faces), *value.shape)) for name, value in given.items()
     }

@@ -11,12 +11,16 @@ from .._types import FloatArray, IndexArray, SideArray
 from ..errors import Finding, core_errors
 from ..mesh import interop
 from ..mesh.mesh import Mesh
+from ..parameters import at_least
 
 #: What `volume_residues` are modulo of.
 _PRIMES = (2**61 - 1, 2**61 - 31)
 
 #: Fractions of more digits take more than about a second to bring to lowest terms.
 LONGEST_VOLUME = 200_000
+
+#: No machine holds a number of more digits; the core counts its bits in 64.
+_MOST_DIGITS = 10**15
 
 
 class Measured(ABC):
@@ -115,7 +119,8 @@ class Measured(ABC):
         LimitError
             If they might have more; the message says how many.
         """
-        bits = math.ceil(most_digits * math.log2(10))
+        digits = min(at_least(1, most_digits, "most_digits"), _MOST_DIGITS)
+        bits = math.ceil(digits * math.log2(10))
         with core_errors():
             return Fraction(*self.normalized().tree.volume6_exact(bits))
 

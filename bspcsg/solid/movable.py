@@ -3,12 +3,12 @@
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from .._types import Scalar, Vector
 from ..errors import invalid_parameter
 from ..geometry import transform
+from ..geometry.arrays import axes_of
 from ..geometry.transform import Factors
+from ..parameters import number
 
 if TYPE_CHECKING:
     from .solid import Solid
@@ -64,8 +64,8 @@ class Movable(ABC):
         """
         if angle is not None and (x, y, z) != (0, 0, 0):
             raise invalid_parameter("A rotation is by an angle and an axis, or by x, y and z.")
-        turn: Any = (x, y, z) if angle is None else angle
-        is_one = np.ndim(turn) == 0
+        turn: Any = (number(x, "x"), number(y, "y"), number(z, "z")) if angle is None else angle
+        is_one = axes_of(turn) == 0
         factors = (transform.rotation(turn, axis),) if is_one else transform.euler_rotation(turn)
         return self._moved(transform.about(about, factors))
 

@@ -11,6 +11,7 @@ from typing import Generic, Literal, TypeAlias, TypeVar
 
 from .._types import ProgramLine
 from ..errors import invalid_parameter
+from ..parameters import shown
 
 Operator: TypeAlias = Literal["or", "and", "xor", "not"]
 
@@ -63,8 +64,8 @@ def program_of(op: str, count: int) -> list[ProgramLine]:
     InvalidParameterError
         If there is no such operation, or no operand.
     """
-    if op not in _NAMED:
-        raise invalid_parameter(f"Unknown operation {op!r}; one of {', '.join(_NAMED)}.")
+    if not isinstance(op, str) or op not in _NAMED:
+        raise invalid_parameter(f"Unknown operation {shown(op)}; one of {', '.join(_NAMED)}.")
     if count == 0:
         raise invalid_parameter(f"The {op} of no operands cannot be compared.")
     lines: list[ProgramLine] = [("leaf", [number]) for number in range(count)]

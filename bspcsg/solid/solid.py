@@ -22,7 +22,7 @@ from ..errors import BspcsgError, core_errors
 from ..geometry.transform import Factors, common_prefix
 from ..mesh import interop, visuals
 from ..mesh.mesh import Mesh
-from ..parameters import not_negative, optional_pitch, winding_rule
+from ..parameters import not_negative, of_kind, optional_pitch, positive, truth_value, winding_rule
 from ..tracebacks import shortened
 from .convertible import Convertible
 from .counting import count, counted, uncounted
@@ -135,7 +135,13 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         arrays = interop.mesh_arrays(vertices, faces)
         given = Given(vertex_attributes, corner_attributes, face_attributes, materials)
         said = given.over(len(arrays[0]), arrays[1])
-        leaf = MeshLeaf(*arrays, pitch=chosen, trusted=trusted, winding=rule, attributes=said)
+        leaf = MeshLeaf(
+            *arrays,
+            pitch=chosen,
+            trusted=truth_value(trusted, "trusted"),
+            winding=rule,
+            attributes=said,
+        )
         # Errors in a mesh belong to the line that gave it, not to the first query.
         leaf.grown()
         leaf.let_go()
@@ -205,9 +211,10 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
             whole: Solid = mesh.to_solid()
             return whole
         if isinstance(mesh, (bytes, bytearray, memoryview)) or hasattr(mesh, "readable"):
-            solid: Solid = above("loads")(mesh, format, **options)
+            suffix = None if format is None else of_kind(str, format, "format")
+            solid: Solid = above("loads")(mesh, suffix, **options)
             return solid
-        arrays = interop.arrays_from(mesh, tolerance)
+        arrays = interop.arrays_from(mesh, positive(tolerance, "tolerance"))
         if interop.are_empty(arrays):
             return cls.empty()
         return cls(*arrays, **{**visuals.attributes_from(mesh, *arrays), **options})
@@ -260,12 +267,12 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     @uncounted
     def equals(self, other: "Solid") -> bool:
         """Say whether both are the same set of points, exactly; so says ``==``, too."""
-        return (self ^ other).is_empty
+        return (self ^ of_kind(Solid, other, "other")).is_empty
 
     @uncounted
     def isdisjoint(self, other: "Solid") -> bool:
         """Say whether the two have no volume in common; contact is allowed."""
-        return (self & other).is_empty
+        return (self & of_kind(Solid, other, "other")).is_empty
 
     def _is_alike(self, other: object) -> bool:
         return isinstance(other, Solid)
@@ -453,7 +460,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         if self._mesh is not None or not isinstance(leaf, TreeLeaf) or leaf.result.is_empty:
             return self._mesh
         stats = leaf.result.stats()
-        if stats["elements"] + stats["kernel_elements"] > _SMALL:
+        # What was moved or read back has no record of the kernels.
+        if stats["elements"] + stats.get("kernel_elements", 0) > _SMALL:
             return None
         try:
             return self.to_mesh()

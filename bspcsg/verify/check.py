@@ -29,6 +29,7 @@ from ..errors import BspcsgError, InternalError, invalid_parameter
 from ..mesh.mesh import Mesh
 from ..mesh.pieces import MeshPieces
 from ..operations.setops import OPERATIONS
+from ..parameters import of_kind
 from ..shapes.primitives import box as box_of
 from ..solid.counting import uncounted
 from ..solid.program import name_of, program_of
@@ -78,6 +79,8 @@ def validate(op: SetOp, *operands: Solid) -> CheckReport:
     (True, 12)
     """
     program_of(op, len(operands))
+    for operand in operands:
+        of_kind(Solid, operand, "An operand")
     return check_result(OPERATIONS[op](*operands), op, operands)
 
 

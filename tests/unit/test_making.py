@@ -94,7 +94,7 @@ def test_patterns_count_once_in_a_block() -> None:
         (lambda: b.surface([[1, 2], [3, math.nan]]), "finite"),
         (lambda: b.surface([[1, 2], [3, 4]], floor=1), "below all heights"),
         (lambda: b.surface([[1, 2], [3, 4]], cell=0), "above 0"),
-        (lambda: b.surface([[1, 2], [3, 4]], cell=(1, 2, 3)), "two for columns"),
+        (lambda: b.surface([[1, 2], [3, 4]], cell=(1, 2, 3)), "cell must be one number or two"),
         (lambda: b.linear_pattern(b.cube(1), 0, (1, 0, 0)), "from 1"),
         (lambda: b.linear_pattern(b.cube(1), 2, (1, 0)), "three"),
         (lambda: b.linear_pattern(b.Region.circle(1), 2, (1, 0, 1)), "two numbers"),

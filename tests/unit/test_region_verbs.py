@@ -67,7 +67,7 @@ def test_long_mitres_can_be_cut() -> None:
     [
         ({"delta": math.nan}, "delta must be finite"),
         ({"delta": "a"}, "delta must be a number"),
-        ({"join": "pointed"}, "Unknown join 'pointed'; there are round, miter"),
+        ({"join": "pointed"}, "join must be one of round, miter, square, bevel"),
         ({"segments": 2}, "segments"),
         ({"miter_limit": 0.5}, "miter_limit must be 1"),
         ({"delta": 1e300}, "too many times"),

@@ -307,6 +307,10 @@ def test_repr_tells_what_is_known_and_evaluates_nothing() -> None:
     count = len((b.cube(2) - a).faces)
     assert repr(difference) == f"Solid({count} triangles, bounds (0, 0, 0) to (2, 2, 2))"
     assert repr(difference.rotate(30)) == "Solid(evaluated, transformed)"
+    moved = difference.translate(1, 0, 0)
+    assert moved.volume == difference.volume
+    assert repr(moved) == f"Solid({count} triangles, bounds (1, 0, 0) to (3, 2, 2))"
+    assert repr(pickle.loads(pickle.dumps(difference))) == repr(difference)
     endless = b.half_space((0, 0, 1)) - a
     assert endless.classify([(0.5, 0.5, 0.5)])[0] == -1
     assert repr(endless) == "Solid(evaluated)"

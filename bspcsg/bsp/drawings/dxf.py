@@ -12,7 +12,7 @@ from ...errors import FormatError, format_errors, words_of
 from ...formats.atomic import write_file
 from ...formats.source import limited_content
 from ...mesh.interop import optional
-from ...parameters import positive
+from ...parameters import file_path, positive
 from ..sets.region import Region
 
 _OUTLINES = "LINE ARC CIRCLE ELLIPSE SPLINE LWPOLYLINE POLYLINE"
@@ -92,7 +92,7 @@ def dxf_data(region: Region) -> bytes:
 def read_document(path: str | os.PathLike[str]) -> Any:
     """Return the ezdxf document of a file; `FormatError` if it is none."""
     ezdxf = optional("ezdxf", "ezdxf")
-    name = os.fspath(path)
+    name = file_path(path)
     text = limited_content(name).decode("utf-8", errors="surrogateescape")
     try:
         return ezdxf.read(io.StringIO(text.replace("\r\n", "\n")))

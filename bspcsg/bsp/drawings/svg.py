@@ -14,7 +14,7 @@ from ...errors import FormatError, format_errors, words_of
 from ...formats.atomic import write_file
 from ...formats.source import limited_content
 from ...mesh.interop import optional
-from ...parameters import positive
+from ...parameters import file_path, positive
 from ..sets.region import Region
 
 
@@ -138,7 +138,7 @@ def _path_of(points: FloatArray) -> str:
 
 def _checked(path: str | os.PathLike[str]) -> bytes:
     """Return the file's bytes if they are XML without entities; a document type is not read."""
-    name = os.fspath(path)
+    name = file_path(path)
     data = limited_content(name)
     parser = expat.ParserCreate()
 

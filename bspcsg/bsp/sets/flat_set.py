@@ -6,7 +6,7 @@ from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Scalar, SetOp
 from ...errors import core_errors
 from .objects import ObjectTree, merge
-from .tree_set import TreeSet
+from .tree_set import TreeSet, set_of
 
 #: A result is built anew when its tree is this many times larger than its operands' were.
 _GROWTH = 4
@@ -63,7 +63,7 @@ class FlatSet(TreeSet):
         InvalidMeshError
             If the other set has another dimension; for ``==`` the two are different then.
         """
-        return self.tree.equals(other.tree)
+        return self.tree.equals(set_of(other).tree)
 
     def _size_key(self) -> object:
         return self.tree._size_key()

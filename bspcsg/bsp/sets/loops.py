@@ -9,7 +9,7 @@ import numpy as np
 from ..._types import FloatArray
 from ...errors import InvalidMeshError, invalid_parameter
 from ...geometry import polygon, transform
-from ...geometry.arrays import doubles
+from ...geometry.arrays import axes_of, doubles
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +63,8 @@ def closed_loops(outlines: Any) -> list[FloatArray]:
         outlines = outlines.to_polygons()
     try:
         items = list(outlines)
-        single = bool(items) and np.ndim(items[0][0]) == 0
-    except (TypeError, IndexError) as error:
+        single = bool(items) and axes_of(items[0][0]) == 0
+    except (TypeError, LookupError) as error:
         raise invalid_parameter("A region is made of outlines, lists of points.") from error
     return [_loop(item, k) for k, item in enumerate([items] if single else items)]
 

@@ -21,7 +21,7 @@ from .pieces import BuildPolicy, NormalAndOffset, SplitCase
 from .rows import hyperplane, hyperplane_row, hyperplane_rows
 from .trace import MergeTrace, merge_trace
 from .tree_queries import TreeQueries
-from .tree_set import TreeSet
+from .tree_set import TreeSet, set_of
 
 Set = TypeVar("Set", bound=TreeSet)
 
@@ -212,7 +212,7 @@ class ObjectTree(TreeQueries):
         InvalidMeshError
             If the other set has another dimension; for ``==`` the two are different then.
         """
-        a, b = self._aligned(other)
+        a, b = self._aligned(set_of(other))
         with core_errors():
             return a.equals(b)
 

@@ -15,7 +15,17 @@ from ...geometry import transform
 from ...geometry.arrays import doubles
 from ...geometry.transform import Factor
 from ...mesh import interop
-from ...parameters import number, positive, sides_around, winding_rule
+from ...parameters import (
+    function_of,
+    number,
+    of_kind,
+    pair,
+    positive,
+    shown,
+    sides_around,
+    truth_value,
+    winding_rule,
+)
 from ...shapes.primitives import extrude, revolve
 from ...shapes.sweep import unit_circle
 from ...solid.solid import Solid
@@ -91,7 +101,11 @@ class Region(PlaneQueries):
         InvalidMeshError
             If they do not close (`where` lists segments).
         """
-        array = np.asarray(segments, dtype=np.float64).reshape(-1, 2, 2)
+        refusal = invalid_parameter("Segments are pairs of points, of two numbers each.")
+        given = doubles(segments, refusal)
+        if given.size % 4:
+            raise refusal
+        array = given.reshape(-1, 2, 2)
         chosen = chosen_pitch(pitch, array.reshape(-1, 2))
         return cls._of(_built(segment_rows(array), chosen, winding))
 
@@ -113,7 +127,7 @@ class Region(PlaneQueries):
         w = positive(width, "width")
         h = w if height is None else positive(height, "height")
         corners = np.array([(0, 0), (w, 0), (w, h), (0, h)], dtype=np.float64)
-        return cls(corners - (w / 2, h / 2) if center else corners)
+        return cls(corners - (w / 2, h / 2) if truth_value(center, "center") else corners)
 
     @classmethod
     def circle(cls, r: Scalar, segments: int = 64) -> Self:
@@ -153,7 +167,9 @@ class Region(PlaneQueries):
         >>> Region.compose(Region.rectangle(2, 1).translate(k, 0) for k in range(9)).area
         10.0
         """
-        parts = list(regions)
+        if not isinstance(regions, Iterable):
+            raise invalid_parameter(f"regions must be a list of them, not {shown(regions)}.")
+        parts = [of_kind(Region, part, "Each part") for part in regions]
         if not parts:
             return cls()
         pitch = min(part.pitch for part in parts)
@@ -205,8 +221,7 @@ class Region(PlaneQueries):
 
     def scale(self, factor: Scalar | Vector) -> "Region":
         """Return the region scaled about the origin, by one factor or one per axis."""
-        both: Any = factor
-        x, y = vector2((both, both) if np.ndim(both) == 0 else both, "factor")
+        x, y = vector2(pair(factor, "factor"), "factor")
         return self._placed(transform.scaling([x, y, 1.0]))
 
     def mirror(self, normal: Vector) -> "Region":
@@ -223,7 +238,7 @@ class Region(PlaneQueries):
         UnboundedError
             If the map is no lattice motion, and the region and its complement are both unbounded.
         """
-        rows = np.asarray(matrix, dtype=np.float64)
+        rows = doubles(matrix, invalid_parameter("A map of the plane is a matrix of numbers."))
         if rows.shape not in ((3, 3), (2, 3)) or (len(rows) == 3 and list(rows[2]) != [0, 0, 1]):
             raise invalid_parameter("A map of the plane is a (3, 3) or (2, 3) affine matrix.")
         wide = np.eye(4)
@@ -370,12 +385,12 @@ class Region(PlaneQueries):
         >>> Region.rectangle(2, 2).warp(lambda p: p * (1, 3)).area
         12.0
         """
-        loops = self.to_polygons()
+        loops, move = self.to_polygons(), function_of(function, "function")
         if not loops:
             return self
         ends = np.cumsum([len(loop) for loop in loops])[:-1]
         points = np.concatenate(loops)
-        moved = _moved_corners(points, function(points.copy()))
+        moved = _moved_corners(points, move(points.copy()))
         warped = np.split(moved, ends)
         return Region(warped, winding="nonzero", pitch=self._pitch_for(warped))
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..._types import FloatArray, Scalar, Vector
 from ...errors import core_errors
+from ...geometry.arrays import axes_of
 from ...geometry.hyperplane import Hyperplane, exact_number
 from ...geometry.transform import along, vector3
 from ...parameters import number
@@ -42,7 +43,7 @@ def slice_solid(
     origin: Vector | None = None,
 ) -> Region | list[Region]:
     """Return sections of a solid by planes, in coordinates of the planes (see `Solid.slice`)."""
-    if np.ndim(offset) == 1:
+    if axes_of(offset) == 1:
         return _sections(solid, list(offset), normal, None)
     return _sections(solid, [offset], normal, origin)[0]
 

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, Self
 
 from ..._core import ObjectTree as CoreTree
 from ..._types import Scalar, SetOp, SideArray
-from ...errors import core_errors
+from ...errors import core_errors, invalid_parameter
+from ...parameters import shown
 from ...solid.point_set import PointSet
 from .rows import point_rows
 
@@ -55,7 +56,7 @@ class TreeSet(PointSet):
 
     def isdisjoint(self, other: "TreeSet") -> bool:
         """Say whether the two have no interior point in common; contact is allowed."""
-        return (self & other).is_empty
+        return (self & set_of(other)).is_empty
 
     def _is_alike(self, other: object) -> bool:
         return isinstance(other, TreeSet) and self.dimension == other.dimension
@@ -123,3 +124,10 @@ class TreeSet(PointSet):
     def is_bounded(self) -> bool:
         """True if the set fits into some box."""
         return self._tree.is_bounded
+
+
+def set_of(other: object) -> TreeSet:
+    """Return what has to be a set of points."""
+    if isinstance(other, TreeSet):
+        return other
+    raise invalid_parameter(f"other must be a set as this one, not {shown(other)}.")

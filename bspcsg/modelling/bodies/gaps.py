@@ -8,6 +8,7 @@ import numpy as np
 from ..._types import FloatArray, IndexArray
 from ...errors import invalid_parameter
 from ...geometry.hyperplane import exact_number
+from ...parameters import of_kind
 from ...solid.counting import uncounted
 from ...solid.solid import Solid
 from .boxes import BoxTree, Nearness, squared_gaps
@@ -27,7 +28,7 @@ _CHUNK = 1 << 16
 @uncounted
 def min_gap(solid: Solid, other: Solid) -> float:
     """Return the least distance of two points, one of each (see `Solid.min_gap`)."""
-    if solid.is_empty or other.is_empty:
+    if solid.is_empty or of_kind(Solid, other, "other").is_empty:
         return math.inf
     found = _nearest(solid, other)
     return 0.0 if found is None else math.sqrt(found[0])
@@ -36,7 +37,7 @@ def min_gap(solid: Solid, other: Solid) -> float:
 @uncounted
 def closest_points(solid: Solid, other: Solid) -> tuple[FloatArray, FloatArray]:
     """Return a point of each at their least distance (see `Solid.closest_points`)."""
-    if solid.is_empty or other.is_empty:
+    if solid.is_empty or of_kind(Solid, other, "other").is_empty:
         raise invalid_parameter("The empty set has no points, and no closest one.")
     found = _nearest(solid, other)
     if found is None:
@@ -48,7 +49,7 @@ def closest_points(solid: Solid, other: Solid) -> tuple[FloatArray, FloatArray]:
 @uncounted
 def intersects(solid: Solid, other: Solid) -> bool:
     """Say whether two solids have a point in common (see `Solid.intersects`)."""
-    if solid.is_empty or other.is_empty:
+    if solid.is_empty or of_kind(Solid, other, "other").is_empty:
         return False
     if _apart(solid, other):
         return False

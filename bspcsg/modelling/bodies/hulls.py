@@ -9,6 +9,7 @@ from ..._core import hull_faces, suited_pitch
 from ..._types import FloatArray
 from ...bsp import Region
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
+from ...geometry.arrays import axes_of
 from ...mesh import interop
 from ...parameters import shown
 from ...solid.counting import counted
@@ -102,7 +103,7 @@ def _lattice_for(points: FloatArray, pitch: int | None) -> int:
 
 
 def _is_flat(given: Any) -> bool:
-    return isinstance(given, Region) or (np.ndim(given) == 2 and np.shape(given)[1] == 2)
+    return isinstance(given, Region) or (axes_of(given) == 2 and np.shape(given)[1] == 2)
 
 
 def _entries(given: Iterable[Any]) -> Iterator[Any]:

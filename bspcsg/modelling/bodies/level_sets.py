@@ -90,7 +90,7 @@ def level_set(f: Field, bounds: Any, edge_length: Scalar, *, level: Scalar = 0.0
 def _box(bounds: Any) -> tuple[FloatArray, FloatArray]:
     try:
         array = np.array(bounds, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise invalid_parameter(f"bounds must be two corners, not {shown(bounds)}.") from error
     if array.shape != (2, 3) or not np.isfinite(array).all() or not (array[0] < array[1]).all():
         raise invalid_parameter(

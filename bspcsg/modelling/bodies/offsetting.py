@@ -1,7 +1,7 @@
 """Solids thickened, made thinner and rounded by a ball."""
 
 from ..._types import Scalar
-from ...parameters import number, positive, sides_around
+from ...parameters import number, positive, sides_around, truth_value
 from ...shapes.primitives import sphere
 from ...solid.counting import counted
 from ...solid.solid import Solid
@@ -22,7 +22,7 @@ def offset(solid: Solid, r: Scalar, segments: int = 16) -> Solid:
 def rounded(solid: Solid, r: Scalar, segments: int = 16, inside: bool = False) -> Solid:
     """Return the solid with round edges (see `Solid.rounded`)."""
     radius = positive(r, "r")
-    first = radius if inside else -radius
+    first = radius if truth_value(inside, "inside") else -radius
     return offset(offset(solid, first, segments), -first, segments)
 
 

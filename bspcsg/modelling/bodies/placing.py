@@ -1,5 +1,6 @@
 """Solids placed beside points and other solids."""
 
+from collections.abc import Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -41,9 +42,13 @@ def _names(axis: str, place: Any) -> tuple[str, str] | None:
     if place is None:
         return None
     pair = (place, place) if isinstance(place, str) else place
-    if not isinstance(pair, (tuple, list)) or len(pair) != 2 or not set(pair) <= set(_SHARES):
+    if not isinstance(pair, (tuple, list)) or len(pair) != 2 or not _are_places(pair):
         raise _wrong(axis, place)
     return pair[0], pair[1]
+
+
+def _are_places(pair: Sequence[Any]) -> bool:
+    return all(isinstance(name, str) and name in _SHARES for name in pair)
 
 
 def _wrong(axis: str, place: Any) -> InvalidParameterError:

@@ -185,5 +185,6 @@ def _edges(faces: IndexArray, count: int) -> tuple[IndexArray, IndexArray]:
 def refuse_many(count: int) -> None:
     """Raise `LimitError` for more triangles than a result may have."""
     if count > _MOST_TRIANGLES:
-        message = f"The result would have {count:,} triangles; {_MOST_TRIANGLES:,} are the most."
+        amount = f"{count:,}" if count < _MOST_TRIANGLES**2 else "far too many"
+        message = f"The result would have {amount} triangles; {_MOST_TRIANGLES:,} are the most."
         raise LimitError(message, "too_large")

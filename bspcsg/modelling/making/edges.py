@@ -7,6 +7,7 @@ import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray, Vector
 from ...errors import invalid_parameter
+from ...geometry.arrays import axes_of
 from ...geometry.transform import axis_vector
 from ...solid.solid import Solid
 from ...tracebacks import shortened
@@ -90,7 +91,8 @@ class EdgeSelection:
         InvalidParameterError
             If there are not as many truth values as edges.
         """
-        given = np.asarray(condition(self) if callable(condition) else condition)
+        found = condition(self) if callable(condition) else condition
+        given = np.asarray(None if axes_of(found) is None else found)
         if given.dtype != np.bool_ or given.shape != (len(self),):
             raise invalid_parameter(
                 f"A condition has one truth value for each of the {len(self)} edges, not"

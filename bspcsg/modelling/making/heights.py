@@ -14,7 +14,7 @@ from ...formats.source import limited_content
 from ...geometry.arrays import doubles
 from ...geometry.polygon import directed_edges
 from ...mesh.interop import optional
-from ...parameters import number, positive, refuse_many_corners
+from ...parameters import number, pair, positive, refuse_many_corners, truth_value
 from ...shapes.sweep import strip
 from ...solid.counting import counted
 from ...solid.solid import Solid
@@ -85,17 +85,13 @@ def surface(
     else:
         read = heights_of(_table(heights))
     refuse_many_corners(2 * read.table.size, "This surface")
-    given: Any = cell
-    both = (given, given) if np.ndim(given) == 0 else given
-    if len(both) != 2:
-        raise invalid_parameter("cell is one number, or two for columns and rows.")
-    width, depth = (positive(entry, "cell") for entry in both)
+    width, depth = (positive(entry, "cell") for entry in pair(cell, "cell"))
     if floor is not None:
         base, least = number(floor, "floor"), float(read.table.min())
         if base >= least:
             raise invalid_parameter(f"floor must be below all heights: {base:g}, {least:g}.")
         read = Heights(read.table, base)
-    body = height_map(read, centered=center)
+    body = height_map(read, centered=truth_value(center, "center"))
     return body if width == depth == 1 else body.scale((width, depth, 1.0))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from ..._types import FloatArray, IndexArray
 from ...errors import invalid_parameter
 from ...geometry.polygon import directed_edges
-from ...parameters import refuse_many_corners
+from ...parameters import refuse_many_corners, truth_value
 from ...solid.counting import counted
 from ...solid.solid import Solid
 from .rings import solid_of, walls
@@ -57,9 +57,10 @@ def loft(profiles: Sequence[Any], *, closed: bool = False) -> Solid:
         sections = [section_of(given, place) for place, given in enumerate(profiles)]
     except TypeError as error:
         raise invalid_parameter("A loft is given by a list of profiles.") from error
-    if len(sections) < 2 + closed:
-        raise invalid_parameter(f"A loft needs {2 + closed} profiles at least.")
-    _refuse_inner_tips(sections, closed)
+    is_ring = truth_value(closed, "closed")
+    if len(sections) < 2 + is_ring:
+        raise invalid_parameter(f"A loft needs {2 + is_ring} profiles at least.")
+    _refuse_inner_tips(sections, is_ring)
     for k in range(1, len(sections)):
         sections[k] = aligned(sections[k - 1], sections[k], k)
     rings = [np.concatenate(section.loops) for section in sections]
@@ -69,7 +70,7 @@ def loft(profiles: Sequence[Any], *, closed: bool = False) -> Solid:
         _between(sections[k], sections[k + 1], starts[k], starts[k + 1])
         for k in range(len(sections) - 1)
     ]
-    if closed:
+    if is_ring:
         first = aligned(sections[-1], sections[0], 0)
         rings.append(np.concatenate(first.loops))
         faces.append(_between(sections[-1], first, starts[-2], starts[-1]))

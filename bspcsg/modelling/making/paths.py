@@ -9,7 +9,7 @@ from ..._types import FloatArray, Scalar
 from ...errors import invalid_parameter
 from ...geometry.arrays import doubles
 from ...geometry.transform import cos_sin
-from ...parameters import number, positive, refuse_many_corners, sides_around
+from ...parameters import number, positive, refuse_many_corners, sides_around, truth_value
 
 
 def helix(
@@ -95,14 +95,14 @@ def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArr
     >>> b.spline([(0, 0, 0), (10, 0, 5), (20, 0, 0)], segments=8).shape
     (17, 3)
     """
-    chords = sides_around(1, segments, "segments")
+    chords, is_ring = sides_around(1, segments, "segments"), truth_value(closed, "closed")
     given = doubles(points, invalid_parameter("A spline is given by points."))
-    if given.ndim != 2 or given.shape[1] not in (2, 3) or len(given) < 2 + closed:
-        raise invalid_parameter(f"A spline needs {2 + closed} points of two or three numbers.")
+    if given.ndim != 2 or given.shape[1] not in (2, 3) or len(given) < 2 + is_ring:
+        raise invalid_parameter(f"A spline needs {2 + is_ring} points of two or three numbers.")
     if not np.isfinite(given).all():
         raise invalid_parameter("The points of a spline must be finite.")
     refuse_many_corners(len(given) * chords, "This spline")
-    return _catmull_rom(_with_neighbours(given, closed), chords)
+    return _catmull_rom(_with_neighbours(given, is_ring), chords)
 
 
 def _with_neighbours(given: FloatArray, closed: bool) -> FloatArray:

@@ -9,9 +9,10 @@ import numpy as np
 from ..._types import Scalar, Vector
 from ...bsp import Region
 from ...errors import LimitError, invalid_parameter
+from ...geometry.arrays import doubles
 from ...geometry.transform import vector3
 from ...operations.setops import union
-from ...parameters import at_least, number
+from ...parameters import at_least, number, shown, truth_value
 from ...solid.counting import counted
 from ...solid.solid import Solid
 
@@ -46,7 +47,7 @@ def linear_pattern(shape: _Shape, count: int, step: Vector) -> _Shape:
     >>> b.linear_pattern(b.cube(1), 4, (2, 0, 0)).volume
     4.0
     """
-    return _row(shape, _copies(count), step)
+    return _row(_of_shape(shape), _copies(count), step)
 
 
 @counted
@@ -86,6 +87,7 @@ def polar_pattern(
     >>> b.polar_pattern(b.cube(1).translate(2, 0, 0), 4).volume
     4.0
     """
+    _of_shape(shape)
     copies, turn = _copies(count), number(angle, "angle")
     parts = copies if turn % 360 == 0 else max(copies - 1, 1)
     middle = _vector(shape, center, "center")
@@ -122,7 +124,8 @@ def grid(shape: _Shape, counts: Sequence[int], steps: Vector, *, center: bool = 
     >>> b.grid(b.cube(1), (3, 2), (2, 2)).volume
     6.0
     """
-    axes = 2 if isinstance(shape, Region) else 3
+    axes = 2 if isinstance(_of_shape(shape), Region) else 3
+    is_central = truth_value(center, "center")
     numbers, lengths = _entries(counts), _entries(steps)
     if len(numbers) != len(lengths) or not 2 <= len(numbers) <= axes:
         raise invalid_parameter(f"counts and steps are two numbers each, or {axes} of them.")
@@ -132,9 +135,15 @@ def grid(shape: _Shape, counts: Sequence[int], steps: Vector, *, center: bool = 
     for axis, (amount, length) in enumerate(zip(copies, lengths, strict=True)):
         step = [0.0] * axes
         step[axis] = number(length, "steps")
-        shift = [-entry * (amount - 1) / 2 * center for entry in step]
+        shift = [-entry * (amount - 1) / 2 * is_central for entry in step]
         result = _row(result.translate(shift), amount, step)
     return result
+
+
+def _of_shape(shape: _Shape) -> _Shape:
+    if not isinstance(shape, (Solid, Region)):
+        raise invalid_parameter(f"A pattern is that of a Solid or a Region, not of {shown(shape)}.")
+    return shape
 
 
 def _entries(given: Any) -> list[Any]:
@@ -170,11 +179,12 @@ def _halves(regions: Sequence[Any]) -> Any:
 def _vector(shape: Solid | Region, given: Any, name: str) -> list[float]:
     if isinstance(shape, Solid):
         return [float(entry) for entry in vector3(given, name)]
-    both = np.asarray(given, dtype=np.float64).ravel()
+    refusal = invalid_parameter(f"The {name} of a region's pattern is two numbers.")
+    both = doubles(given, refusal).ravel()
     if len(both) == 3 and both[2] == 0:
         both = both[:2]
     if len(both) != 2:
-        raise invalid_parameter(f"The {name} of a region's pattern is two numbers.")
+        raise refusal
     return [number(entry, name) for entry in both]
 
 
@@ -186,5 +196,5 @@ def _copies(count: int) -> int:
 
 def _refuse_many(copies: int) -> None:
     if copies > _MOST_COPIES:
-        message = f"A pattern has {_MOST_COPIES} copies at most, not {copies}."
+        message = f"A pattern has {_MOST_COPIES} copies at most, not {shown(copies)}."
         raise LimitError(message, "too_many")

@@ -9,7 +9,7 @@ from ..._types import FloatArray, IndexArray, Scalar, Vector
 from ...errors import invalid_parameter
 from ...geometry.transform import vector3
 from ...mesh.weld import welded
-from ...parameters import not_negative, positive, refuse_many_corners, sides_around
+from ...parameters import not_negative, positive, refuse_many_corners, sides_around, truth_value
 from ...shapes.arrays import from_arrays
 from ...shapes.primitives import box
 from ...solid.counting import counted
@@ -60,7 +60,9 @@ def rounded_box(
     steps = math.ceil(around / 4)
     refuse_many_corners(4 * (steps + 1) * (steps + 2), "This box")
     vertices, faces = _rounded(lengths, radius, steps)
-    return from_arrays(*_proper(vertices if center else vertices + lengths / 2, faces))
+    return from_arrays(
+        *_proper(vertices if truth_value(center, "center") else vertices + lengths / 2, faces)
+    )
 
 
 def _rounded(lengths: FloatArray, radius: float, steps: int) -> tuple[FloatArray, IndexArray]:

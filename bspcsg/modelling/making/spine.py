@@ -10,7 +10,7 @@ import numpy as np
 from ..._types import FloatArray
 from ...errors import invalid_parameter
 from ...geometry.arrays import doubles
-from ...parameters import shown
+from ...parameters import word
 
 #: How the profile turns on its way.
 Frame: TypeAlias = Literal["parallel", "fixed"]
@@ -115,12 +115,10 @@ def spine_of(points: FloatArray, closed: bool, frame: Any) -> Spine:
     bend = after - before
     width = np.linalg.norm(bend, axis=1, keepdims=True)
     bend = bend / np.where(width > 0, width, 1)
-    if frame == "fixed":
+    if word(("fixed", "parallel"), frame, "frame") == "fixed":
         right = _level(points, middle)
-    elif frame == "parallel":
-        right = _carried(middle, directions, closed)
     else:
-        raise invalid_parameter(f"frame must be 'parallel' or 'fixed', not {shown(frame)}.")
+        right = _carried(middle, directions, closed)
     shares = np.concatenate([[0.0], np.cumsum(lengths)])[: len(points)] / lengths.sum()
     up = np.cross(middle, right)
     return Spine(points, shares, right, up, bend, 1 / half[:, 0], closed)

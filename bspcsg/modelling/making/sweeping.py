@@ -88,8 +88,10 @@ def sweep(
     corners = np.concatenate(contours) if contours else np.zeros((0, 2))
     around = sides_around(3, segments, "segments")
     points, closed = path_points(path)
-    refuse_many_corners(len(points) * len(corners), "This sweep")
-    points = divided(points, closed, _slices(twist, scale, around))
+    slices = _slices(twist, scale, around)
+    # Before the path is divided, which takes a second for so many.
+    refuse_many_corners(max(len(points), slices) * max(len(corners), 1), "This sweep")
+    points = divided(points, closed, slices)
     refuse_many_corners(len(points) * len(corners), "This sweep")
     spine = spine_of(points, closed, frame)
     if not contours:

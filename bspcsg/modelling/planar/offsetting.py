@@ -11,7 +11,7 @@ import pyclipper
 from ..._types import FloatArray, Scalar
 from ...bsp import Region
 from ...errors import InvalidMeshError, LimitError, invalid_parameter
-from ...parameters import number, refuse_many_corners, shown, sides_around
+from ...parameters import number, refuse_many_corners, sides_around, word
 
 #: What corners become where the outline moves away from them.
 Join: TypeAlias = Literal["round", "miter", "square", "bevel"]
@@ -47,9 +47,7 @@ def offset_region(
     miter_limit: Scalar = _MITER_LIMIT,
 ) -> Region:
     """Return a region with its outline moved outwards (see `Region.offset`)."""
-    if join not in get_args(Join):
-        known = ", ".join(get_args(Join))
-        raise invalid_parameter(f"Unknown join {shown(join)}; there are {known}.")
+    word(get_args(Join), join, "join")
     distance, limit = number(delta, "delta"), number(miter_limit, "miter_limit")
     sides = sides_around(3, segments, "segments")
     if limit < 1:

@@ -12,7 +12,7 @@ import uharfbuzz
 
 from ....errors import FormatError, InvalidParameterError
 from ....formats.source import limited_content
-from ....parameters import shown
+from ....parameters import file_path, shown
 
 #: The font that comes with the package, and its styles.
 FAMILY = "Liberation Sans"
@@ -64,7 +64,7 @@ def font_file(name: str | os.PathLike[str], *, paths: bool = True) -> FontFile:
     FormatError
         If the path is that of no file.
     """
-    text = os.fspath(name).strip()
+    text = file_path(name, "font").strip()
     if paths and (isinstance(name, os.PathLike) or text.lower().endswith(_SUFFIXES)):
         return FontFile(Path(text))
     own = _own_face(text)

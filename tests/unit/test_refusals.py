@@ -1,0 +1,330 @@
+"""What each public function does with values that make no sense: an error with a code, at once.
+
+Every parameter of every function is given every bad value, the others stay good. A new function
+that is missing here fails the test of completeness.
+"""
+
+import inspect
+import math
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg import Region, Solid
+
+Row: TypeAlias = tuple[Callable[..., Any], dict[str, Any]]
+
+SQUARE = [(0, 0), (2, 0), (2, 2), (0, 2)]
+UNIT = b.cube(1).to_mesh()
+S, OTHER = b.box(1, 2, 3), b.cube(1).translate(5, 0, 0)
+R = Region.rectangle(2, 3)
+EDGES = S.edges()
+A = b.Assembly("all", [b.Assembly("one", b.cube(1)), b.Assembly("two", OTHER)])
+SCRIPT = Path(__file__).parents[1] / "corpus" / "csg" / "pyramid.csg"
+
+
+def in_order(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function of names for one that takes any number of things."""
+    return lambda **given: function(*given.values())
+
+
+def watched(tell: Any, every: Any) -> None:
+    """Do nothing, and be told of it."""
+    with b.progress(tell, every=every):
+        pass
+
+
+#: A name, what is called, and arguments that it takes.
+ROWS: dict[str, Row] = {
+    "arc": (b.arc, {"center": (0, 0), "r": 1, "start": 0, "stop": 90, "tolerance": 0.1}),
+    "bezier": (b.bezier, {"points": [(0, 0), (1, 1), (2, 0)], "tolerance": 0.1}),
+    "boolean": (
+        b.boolean,
+        {"va": UNIT.vertices, "fa": UNIT.faces, "vb": UNIT.vertices, "fb": UNIT.faces, "op": "xor"},
+    ),
+    "box": (b.box, {"size": 1, "y": 2, "z": 3, "center": False}),
+    "box of three": (b.box, {"size": (1, 2, 3)}),
+    "cone": (b.cone, {"h": 1, "r": 1, "segments": 8, "center": False}),
+    "cone by d": (b.cone, {"h": 1, "d": 1}),
+    "cube": (b.cube, {"size": 1, "center": True}),
+    "cylinder": (b.cylinder, {"h": 1, "r": 1, "segments": 8, "center": True}),
+    "cylinder by r1": (b.cylinder, {"h": 1, "r1": 1, "r2": 2}),
+    "cylinder by d1": (b.cylinder, {"h": 1, "d1": 1, "d2": 2}),
+    "cylinder by d": (b.cylinder, {"h": 1, "d": 1}),
+    **{
+        name: (in_order(getattr(b, name)), {"one": S, "two": OTHER})
+        for name in ("union", "intersection", "difference", "xor", "hull")
+    },
+    "hull of points": (in_order(b.hull), {"points": UNIT.vertices}),
+    "minkowski": (b.minkowski, {"a": S, "b": OTHER}),
+    "minkowski of regions": (b.minkowski, {"a": R, "b": R}),
+    "extrude": (
+        b.extrude,
+        {"polygon": SQUARE, "h": 1, "center": False, "twist": 9, "scale": 0.5, "slices": 3},
+    ),
+    "extrude with taper": (b.extrude, {"polygon": SQUARE, "h": 1, "taper": 0.1}),
+    "grid": (b.grid, {"shape": S, "counts": (2, 2), "steps": (5, 5), "center": True}),
+    "half_space": (b.half_space, {"normal": (0, 0, 1), "offset": 1}),
+    "helix": (b.helix, {"r": 1, "pitch": 1, "turns": 2, "r2": 2, "segments": 8}),
+    "level_set": (
+        b.level_set,
+        {
+            "f": lambda p: 1 - np.linalg.norm(p, axis=1),
+            "bounds": [(-2, -2, -2), (2, 2, 2)],
+            "edge_length": 0.5,
+            "level": 0,
+        },
+    ),
+    "linear_pattern": (b.linear_pattern, {"shape": S, "count": 2, "step": (5, 0, 0)}),
+    "linear_pattern of a region": (b.linear_pattern, {"shape": R, "count": 2, "step": (5, 0)}),
+    "load": (b.load, {"path": SCRIPT}),
+    "loft": (b.loft, {"profiles": [(SQUARE, 0), (SQUARE, 1)], "closed": False}),
+    "pipe": (b.pipe, {"path": [(0, 0, 0), (0, 0, 2)], "r": 1, "inner": 0.5, "segments": 8}),
+    "polar_pattern": (
+        b.polar_pattern,
+        {"shape": S, "count": 3, "angle": 90, "axis": "x", "center": (9, 0, 0)},
+    ),
+    "prism": (b.prism, {"sides": 5, "h": 1, "r": 1, "center": True}),
+    "progress": (watched, {"tell": lambda told: None, "every": 1.0}),
+    "revolve": (b.revolve, {"polygon": SQUARE, "angle": 90, "segments": 8}),
+    "rounded_box": (b.rounded_box, {"size": (1, 2, 3), "r": 0.1, "segments": 8, "center": True}),
+    "save": (b.save, {"solid": S, "path": "x.ply", "text": False}),
+    "set_threads": (b.set_threads, {"n": 0}),
+    "show": (in_order(b.show), {"one": S}),
+    "sphere": (b.sphere, {"r": 1, "segments": 8}),
+    "sphere by d": (b.sphere, {"d": 1}),
+    "spline": (
+        b.spline,
+        {"points": [(0, 0, 0), (1, 1, 0), (2, 0, 0)], "segments": 4, "closed": False},
+    ),
+    "surface": (b.surface, {"heights": [[1, 2], [3, 4]], "cell": 1, "floor": 0, "center": True}),
+    "sweep": (
+        b.sweep,
+        {"profile": SQUARE, "path": [(0, 0, 0), (9, 0, 0)], "twist": 9, "scale": 0.5}
+        | {"frame": "parallel", "segments": 8},
+    ),
+    "text": (
+        b.text,
+        {"string": "a", "size": 10, "font": "Liberation Sans", "halign": "left", "valign": "top"}
+        | {"spacing": 1, "direction": "ltr", "language": "en", "script": "Latn", "segments": 8},
+    ),
+    "torus": (b.torus, {"r": 3, "tube": 1, "segments": 8, "tube_segments": 8}),
+    "validate": (in_order(b.validate), {"op": "union", "one": S, "two": OTHER}),
+    "Solid": (
+        Solid,
+        {"vertices": UNIT.vertices, "faces": UNIT.faces, "pitch": -9, "trusted": False}
+        | {"winding": "positive", "vertex_attributes": {"a": np.zeros(8)}}
+        | {"corner_attributes": {"c": np.zeros((12, 3))}, "face_attributes": {"f": np.zeros(12)}}
+        | {"materials": {"red": b.Material((1, 0, 0))}},
+    ),
+    "Solid.from_mesh": (
+        Solid.from_mesh,
+        {"mesh": (UNIT.vertices, UNIT.faces), "tolerance": 0.01},
+    ),
+    "Solid.load": (Solid.load, {"path": SCRIPT}),
+    "Solid.align": (S.align, {"x": "min", "y": "center", "z": "max", "to": (1, 2, 3)}),
+    "Solid.chamfer": (S.chamfer, {"edges": EDGES, "size": 0.1}),
+    "Solid.fillet": (S.fillet, {"edges": EDGES.parallel("z"), "radius": 0.1, "segments": 8}),
+    "Solid.classify": (S.classify, {"points": [(0, 0, 0)]}),
+    **{
+        f"Solid.{name}": (getattr(S, name), {"other": OTHER})
+        for name in ("closest_points", "equals", "intersects", "isdisjoint", "min_gap")
+    },
+    "Solid.exact_volume": (S.exact_volume, {"most_digits": 1000}),
+    "Solid.mirror": (S.mirror, {"normal": (1, 0, 0), "about": (1, 2, 3)}),
+    "Solid.normals": (S.normals, {"sharp_angle": 30}),
+    "Solid.offset": (S.offset, {"r": 0.1, "segments": 8}),
+    "Solid.ray_cast": (S.ray_cast, {"origin": (0, 0, 0), "direction": (1, 1, 1)}),
+    "Solid.refine": (S.refine, {"n": 2}),
+    "Solid.refine by length": (S.refine, {"edge_length": 0.5}),
+    "Solid.rotate": (S.rotate, {"angle": 10, "axis": "z", "about": (1, 2, 3)}),
+    "Solid.rotate by axes": (S.rotate, {"x": 10, "y": 20, "z": 30}),
+    "Solid.rounded": (S.rounded, {"r": 0.1, "segments": 8, "inside": True}),
+    "Solid.save": (S.save, {"path": "x.ply"}),
+    "Solid.scale": (S.scale, {"factor": 2, "about": (1, 2, 3)}),
+    "Solid.simplify": (S.simplify, {"tolerance": 0.1}),
+    "Solid.slice": (S.slice, {"offset": 1, "normal": (0, 0, 1)}),
+    "Solid.slice at": (S.slice, {"normal": (0, 0, 1), "origin": (0, 0, 1)}),
+    "Solid.smooth": (S.smooth, {"n": 2, "sharp_angle": 60}),
+    "Solid.split": (S.split, {"normal": (0, 0, 1), "offset": 1}),
+    "Solid.tagged": (S.tagged, {"name": "x"}),
+    "Solid.to_csg": (S.to_csg, {"flat": True}),
+    "Solid.transform": (S.transform, {"matrix": np.eye(4)}),
+    "Solid.translate": (in_order(S.translate), {"x": 1, "y": 2, "z": 3}),
+    "Solid.translate by a vector": (in_order(S.translate), {"offset": (1, 2, 3)}),
+    "Solid.trim": (S.trim, {"normal": (0, 0, 1), "offset": 1}),
+    "Solid.warp": (S.warp, {"f": lambda p: p * 2, "winding": "positive"}),
+    "Region": (Region, {"outlines": [SQUARE], "winding": "positive", "pitch": -9}),
+    "Region.cast": (R.cast, {"origin": (0, 0), "direction": (1, 0)}),
+    "Region.circle": (Region.circle, {"r": 1, "segments": 8}),
+    "Region.classify": (R.classify, {"points": [(0, 0)]}),
+    "Region.compose": (Region.compose, {"regions": [R, R]}),
+    "Region.equals": (R.equals, {"other": R}),
+    "Region.isdisjoint": (R.isdisjoint, {"other": R}),
+    "Region.extrude": (
+        R.extrude,
+        {"height": 1, "center": True, "twist": 20, "scale": 0.5, "slices": 4},
+    ),
+    "Region.extrude with taper": (R.extrude, {"height": 1, "taper": 1}),
+    "Region.from_dxf": (Region.from_dxf, {"path": "good.dxf"}),
+    "Region.from_svg": (Region.from_svg, {"path": SCRIPT.with_name("drawing.svg")}),
+    "Region.from_segments": (
+        Region.from_segments,
+        {"segments": [[(0, 0), (1, 0)], [(1, 0), (0, 1)], [(0, 1), (0, 0)]]}
+        | {"winding": "positive", "pitch": -9},
+    ),
+    "Region.half_plane": (Region.half_plane, {"normal": (1, 0), "offset": 1, "pitch": -9}),
+    "Region.mirror": (R.mirror, {"normal": (1, 0)}),
+    "Region.offset": (R.offset, {"delta": 1, "join": "miter", "segments": 8, "miter_limit": 4}),
+    "Region.polygon": (Region.polygon, {"points": SQUARE, "pitch": -9}),
+    "Region.project": (R.project, {"points": [(0, 0)]}),
+    "Region.rectangle": (Region.rectangle, {"width": 1, "height": 2, "center": True}),
+    "Region.revolve": (R.revolve, {"angle": 90, "segments": 8}),
+    "Region.rotate": (R.rotate, {"angle": 10}),
+    "Region.scale": (R.scale, {"factor": 2}),
+    "Region.simplify": (R.simplify, {"tolerance": 0.1}),
+    "Region.split": (R.split, {"normal": (1, 0), "offset": 1}),
+    "Region.to_dxf": (R.to_dxf, {"path": "x.dxf"}),
+    "Region.to_svg": (R.to_svg, {"path": "x.svg"}),
+    "Region.transform": (R.transform, {"matrix": np.eye(3)}),
+    "Region.translate": (in_order(R.translate), {"x": 1, "y": 2}),
+    "Region.warp": (R.warp, {"function": lambda p: p * 2}),
+    "EdgeSelection.parallel": (EDGES.parallel, {"axis": "z"}),
+    "EdgeSelection.where": (EDGES.where, {"condition": lambda e: e.length > 1}),
+    "Assembly": (b.Assembly, {"name": "x", "content": S, "color": (1, 0, 0), "density": 2}),
+    "Assembly.clashes": (A.clashes, {"clearance": 0.1}),
+    "Assembly.load": (b.Assembly.load, {"path": SCRIPT}),
+    "Assembly.mirror": (A.mirror, {"normal": (1, 0, 0)}),
+    "Assembly.rotate": (A.rotate, {"angle": 10, "axis": "z"}),
+    "Assembly.save": (A.save, {"path": "x.3mf"}),
+    "Assembly.scale": (A.scale, {"factor": 2}),
+    "Assembly.transform": (A.transform, {"matrix": np.eye(4)}),
+    "Assembly.translate": (in_order(A.translate), {"offset": (1, 2, 3)}),
+    "Material": (b.Material, {"color": (1, 0, 0)}),
+}
+
+#: What is tested elsewhere: a script takes a process of its own, options are those of others.
+ELSEWHERE = {"run_script", "Solid.check", "Solid.validate"}
+
+#: Whatever is wrong for every parameter but those of `TAKEN`.
+NEVER: dict[str, Any] = {
+    "not a number": math.nan,
+    "an object": object(),
+    "a complex number": 1j,
+    "rows of different lengths": [[1, 2], [3]],
+    "not numbers": [math.nan] * 3,
+    "infinite points": [[math.inf, 0, 0]] * 4,
+    "objects": np.array([object()] * 3),
+}
+
+#: What makes sense for some parameters.
+AT_TIMES: dict[str, Any] = {
+    "infinity": math.inf,
+    "a word": "no such word",
+    "bytes": b"x",
+    "below zero": -1,
+    "zero": 0,
+    "thousands of digits": 10**5000,
+    "a huge number": 1e300,
+    "a huge count": 2**40,
+    "nothing": None,
+    "truth": True,
+    "two numbers": [math.nan, math.nan],
+    "four numbers": [1, 2, 3, 4],
+    "lists in lists": [[[[]]]],
+    "an empty list": [],
+    "a dictionary": {},
+    "a function": lambda *_: math.nan,
+    "a solid": S,
+    "a region": R,
+}
+
+#: Parameters that take numbers which are none: what is said of faces may be anything.
+TAKEN = {("Solid.tagged", "name")}
+
+#: Processor time that a refusal may take, in seconds.
+SOON = 1.0
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> Iterator[None]:
+    monkeypatch.chdir(tmp_path)
+    if "from_dxf" in request.node.name:
+        R.to_dxf("good.dxf")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
+    b.set_threads(0)
+
+
+def calls(name: str) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """Yield the parameter, the bad value's name and all arguments."""
+    _, good = ROWS[name]
+    for parameter in good:
+        for what, bad in {**NEVER, **AT_TIMES}.items():
+            yield parameter, what, {**good, parameter: bad}
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_good_arguments_are_taken(name: str) -> None:
+    call, good = ROWS[name]
+    call(**good)
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_bad_arguments_are_refused_at_once(name: str) -> None:
+    call = ROWS[name][0]
+    for parameter, what, arguments in calls(name):
+        begun = time.process_time()
+        try:
+            call(**arguments)
+        except b.BspcsgError as error:
+            assert error.code.isidentifier() and error.code != "internal", (parameter, what)
+            assert error.message[-1] in ".)" and len(error.message) < 500, (parameter, what)
+        else:
+            taken = what in AT_TIMES or (name, parameter) in TAKEN
+            assert taken, f"{name}({parameter}={what}) was taken"
+        assert time.process_time() - begun < SOON, (parameter, what)
+
+
+def parameters_of(value: Any) -> list[str]:
+    """Return the names of what a function or a method takes."""
+    return [name for name in inspect.signature(value).parameters if name != "self"]
+
+
+def test_no_public_function_is_missing() -> None:
+    functions = {name for name in b.__all__ if inspect.isfunction(getattr(b, name))}
+    assert len(functions) > 35
+    methods = {
+        f"{kind.__name__}.{name}"
+        for kind in (Solid, Region, b.EdgeSelection, b.Assembly)
+        for name in dir(kind)
+        if not name.startswith("_")
+        and callable(getattr(kind, name))
+        and parameters_of(getattr(kind, name))
+    }
+    assert len(methods) > 60
+    told = {name.split()[0] for name in ROWS}
+    assert functions | methods <= told | ELSEWHERE
+
+
+def test_no_parameter_is_missing() -> None:
+    given: dict[str, set[str]] = {}
+    for name, (_, good) in ROWS.items():
+        given.setdefault(name.split()[0], set()).update(good)
+    for name, arguments in given.items():
+        owner: Any = b
+        for part in name.split("."):
+            owner = getattr(owner, part)
+        kinds = inspect.signature(owner).parameters.values()
+        named = {one.name for one in kinds if one.kind is not one.VAR_POSITIONAL}
+        wanted = named - {"self", "options", "values", "texture", "format"}
+        assert wanted <= arguments, name
