@@ -87,6 +87,38 @@ def test_every_script_is_in_the_page() -> None:
     assert written == set(SCRIPTS)
 
 
+def test_no_crossing_covers_the_number_of_a_segment(browser: Browser) -> None:
+    places = browser.run(
+        "const at = (kind) => [...document.querySelectorAll(`#fig-shield circle.${kind}`)]"
+        ".map(e => [e.cx.baseVal.value, e.cy.baseVal.value]); return [at('crossing'), at('badge')]"
+    )
+    crossings, badges = (np.array(found) for found in places)
+    assert len(crossings) == 4 and len(badges) == 8
+    assert np.linalg.norm(crossings[:, None] - badges, axis=2).min() > 15
+
+
+def test_equal_costs_are_equally_good(browser: Browser) -> None:
+    cells = browser.run(
+        "return [...document.querySelectorAll('#fig-policies tbody tr')]"
+        ".map(row => [row.lastChild.textContent, row.lastChild.className === 'best'])"
+    )
+    least = min(float(cost) for cost, _ in cells)
+    assert [best for _, best in cells] == [float(cost) == least for cost, _ in cells]
+    assert sum(best for _, best in cells) > 1
+
+
+def test_few_divisions_do_the_work_of_a_whole_tree(browser: Browser) -> None:
+    """Nodes and tests together: to visit one leaf and test all that is in it is no gain."""
+    browser.click("#fig-adaptive .buttons button", 3)
+    browser.click("#fig-adaptive .shoot-one")
+    assert _tile(browser, "fig-adaptive", "mine") == "13"
+    for _ in range(5):
+        browser.click("#fig-adaptive .shoot-many")
+    mine, other = (float(_tile(browser, "fig-adaptive", key)) for key in ("mine", "other"))
+    assert 1 < mine < 1.2 * other
+    assert int(_tile(browser, "fig-adaptive", "divisions")) < 12 / 2
+
+
 def test_the_page_is_small_and_asks_for_nothing(browser: Browser, page: Path) -> None:
     assert page.stat().st_size < _MOST_BYTES
     assert browser.requests() == [page.as_uri()] and browser.errors() == []

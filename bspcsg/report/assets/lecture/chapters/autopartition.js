@@ -155,7 +155,7 @@ function autopartitionFigure(figure) {
     state.lit = id;
     draw(stepper.at);
   });
-  const tell = tiles(figure.querySelector(".read"), [["n", "segments n"], ["fragments", "fragments n̄ so far"], ["cuts", "cuts so far"], ["depth", "depth"], ["nodes", "nodes of the whole tree, 2n̄ + 1"], ["bound", "n + 2 n ln n"]]);
+  const tell = tiles(figure.querySelector(".read"), [["n", "segments n"], ["fragments", "fragments n̄ so far"], ["cuts", "cuts so far"], ["depth", "depth"], ["nodes", "nodes at the end, 2n̄ + 1"], ["bound", "n + 2 n ln n"]]);
   const plotted = histogram(figure.querySelector(".plot-pane"));
   const stepper = new Stepper(figure.querySelector(".steps"), draw, (step) => (state.view ? stepWords(state.view, step) : ""));
   const chips = new Order(figure.querySelector(".order-pane"), "Order of the segments", (order) => {
@@ -259,7 +259,7 @@ function shieldFigure(figure) {
     plane.span(span, { class: `cut now ${colour(state.cutter)}` });
     scene.segments.forEach((segment, i) => {
       plane.line(...segment, { class: `facet ${colour(i)}` });
-      plane.badge(between(...segment), i + 1, { class: colour(i) });
+      plane.badge(beside(segment, shields[i]?.[1]), i + 1, { class: colour(i) });
     });
     const chosen = state.target !== null ? shields[state.target] : null;
     if (chosen) {
@@ -275,6 +275,11 @@ function shieldFigure(figure) {
   }
 
   const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+  /** The middle of a segment, or a place where no crossing covers its number. */
+  const beside = (segment, crossing) => {
+    const middle = between(...segment);
+    return crossing && distance(middle, crossing) < 22 ? between(segment[0], middle) : middle;
+  };
   const isOnWay = (own, at, end) => own.some((from) => distance(from, at) + distance(at, end) < distance(from, end) + 1e-6)
     && own.every((from) => distance(from, at) < distance(from, end));
 

@@ -24,7 +24,7 @@ function policiesFigure(figure) {
           show();
           table.querySelector("[aria-pressed=true]").focus({ preventScroll: true });
         });
-        const cell = (key, digits) => element("td", { class: row[key] - best[key] < 1e-9 ? "best" : "" }, rounded(row[key], digits));
+        const cell = (key, digits) => element("td", { class: rounded(row[key], digits) === rounded(best[key], digits) ? "best" : "" }, rounded(row[key], digits));
         return element("tr", {}, element("td", {}, name), cell("fragments", 0), cell("depth", 0), cell("cost", 2));
       }));
       const chosen = rows.find((row) => row.name === state.policy);
@@ -46,7 +46,7 @@ function adaptiveFigure(figure) {
   const plane = new Plane(figure.querySelector(".room-pane"), "Segments, and rays that you paint: press and sweep", ...ROOM);
   plane.svg.classList.add("painted");
   const tree = new TreePicture(figure.querySelector(".tree-pane"), "The tree as rays have grown it, with the visits of each node");
-  const tell = tiles(figure.querySelector(".read"), [["rays", "rays"], ["divisions", "leaves divided"], ["mine", "nodes per ray, last 40"], ["other", "static tree, random order"], ["most", "most hit segment"]]);
+  const tell = tiles(figure.querySelector(".read"), [["rays", "rays"], ["divisions", "leaves divided"], ["mine", "work per ray, last 40"], ["other", "static tree, random order"], ["most", "most hit segment"]]);
   const plotted = costCurve(figure.querySelector(".plot-pane"));
   const state = { segments: randomSegments(12, ...ROOM, 41, { longest: 120 }), from: [40, 190], aim: [150, 196], threshold: 6, grown: null, still: null, costs: [], trails: [], hits: [] };
   const random = randomOf(77);
@@ -70,7 +70,7 @@ function adaptiveFigure(figure) {
     if (!dx && !dy) return;
     const mine = JSON.parse(state.grown.shoot(...from, dx, dy));
     const other = JSON.parse(state.still.shoot(...from, dx, dy));
-    state.costs.push([mine.nodes, other.nodes]);
+    state.costs.push([mine.nodes + mine.tests, other.nodes + other.tests]);
     if (mine.facet !== null) state.hits[mine.facet] += 1;
     const length = 900 / Math.hypot(dx, dy);
     state.trails.push([from, mine.point ?? [from[0] + dx * length, from[1] + dy * length]]);
@@ -161,7 +161,7 @@ function adaptiveFigure(figure) {
   fan(40, 0.3);
 }
 
-/** Nodes per ray as it goes: the tree that grows, and the one that does not. */
+/** Nodes visited and segments tested per ray as it goes: the tree that grows, and the one that does not. */
 function costCurve(host) {
   const [width, height, window] = [420, 140, 20];
   const plot = drawn("svg", { viewBox: `0 0 ${width} ${height}`, class: "plot", role: "img" });
@@ -184,11 +184,11 @@ function costCurve(host) {
       const points = curve.map((value, i) => `${x(i).toFixed(1)},${y(value).toFixed(1)}`).join(" ");
       plot.append(drawn("polyline", { points, class: `curve ${k ? "other" : "mine"}` }));
     });
-    plot.append(drawn("text", { x: 30, y: 12, class: "axis-name", style: "text-anchor:start" }, `nodes per ray (mean of ${window})`));
+    plot.append(drawn("text", { x: 30, y: 12, class: "axis-name", style: "text-anchor:start" }, `work per ray (mean of ${window})`));
     plot.append(drawn("text", { x: width - 14, y: height - 6, class: "axis-name", style: "text-anchor:end" }, `${costs.length} rays →`));
     plot.append(drawn("text", { x: width - 14, y: 12, class: "axis-name mine", style: "text-anchor:end" }, "self-organising"));
     plot.append(drawn("text", { x: width - 110, y: 12, class: "axis-name other", style: "text-anchor:end" }, "static"));
     const last = curves.map((curve) => curve[curve.length - 1] ?? 0);
-    plot.setAttribute("aria-label", `Nodes per ray after ${costs.length} rays: self-organising ${rounded(last[0], 1)}, static ${rounded(last[1], 1)}`);
+    plot.setAttribute("aria-label", `Work per ray after ${costs.length} rays: self-organising ${rounded(last[0], 1)}, static ${rounded(last[1], 1)}`);
   };
 }
