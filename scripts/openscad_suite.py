@@ -85,8 +85,13 @@ class Reference:
     @property
     def tolerance(self) -> float:
         """How far its measure may be off, as in csg_reference, in either dimension."""
-        digits = 0.5 * 10.0 ** (len(str(int(self.largest))) - 6)
-        return float(self.border * self.dimension**0.5 * (digits + _PLANE_GRID) + 1e-9)
+        return tolerance(self.dimension, self.border, self.largest)
+
+
+def tolerance(dimension: int, border: float, largest: float) -> float:
+    """Return how far a measure may be off with such a border, if coordinates have six digits."""
+    digits = 0.5 * 10.0 ** (len(str(int(largest))) - 6)
+    return float(border * dimension**0.5 * (digits + _PLANE_GRID) + 1e-9)
 
 
 def scripts(source: Path) -> Iterator[str]:
@@ -198,14 +203,14 @@ def record(source: Path) -> None:
             table.writerow(asdict(measured(source, file)))
 
 
-def with_fonts(source: Path, folder: Path) -> None:
-    """Let fontconfig know the fonts of the sources, which scripts take by `use <….ttf>`."""
+def with_fonts(fonts: Path, folder: Path) -> None:
+    """Let fontconfig know the fonts of a folder, and keep what it says of them in another."""
     usual = os.environ.get("FONTCONFIG_FILE", "/etc/fonts/fonts.conf")
     settings = folder / "fonts.conf"
     settings.write_text(
         '<?xml version="1.0"?><!DOCTYPE fontconfig SYSTEM "fonts.dtd"><fontconfig>'
         f'<include ignore_missing="yes">{usual}</include>'
-        f"<dir>{(source / 'testdata' / 'ttf').absolute()}</dir>"
+        f"<dir>{fonts.absolute()}</dir>"
         f"<cachedir>{folder / 'cache'}</cachedir></fontconfig>",
         encoding="utf-8",
     )
@@ -221,7 +226,8 @@ def main() -> int:
     if options.record:
         record(options.source)
     with tempfile.TemporaryDirectory() as folder:
-        with_fonts(options.source, Path(folder))
+        # Scripts take them by `use <….ttf>`.
+        with_fonts(options.source / "testdata" / "ttf", Path(folder))
         counts = compared(options.source)
     print(", ".join(f"{count} {status}" for status, count in sorted(counts.items())))
     judged = sum(counts[status] for status in ("same", "explained", "DIFFERS", "FAILS"))

@@ -6,14 +6,17 @@ of the same scripts. It writes six significant digits, and rounds plane figures 
 
 import csv
 import os
+import re
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import bspcsg as b
+import openscad_nodes
 import openscad_suite
 from bspcsg import csg
 
@@ -88,6 +91,33 @@ def test_reasons_are_those_of_recorded_scripts() -> None:
     assert len(openscad_suite.REASONS) <= 0.05 * len(shapes)
     plain = [row for row in shapes.values() if row.largest < 1000]
     assert len(plain) > 200 and all(row.tolerance < 1e-3 * row.border + 1e-8 for row in plain)
+
+
+@pytest.mark.parametrize("node", openscad_nodes.SCRIPTS)
+def test_ten_scripts_of_each_module_equal_openscad(node: str) -> None:
+    samples = [sample for sample in openscad_nodes.recorded() if sample.node == node]
+    assert [sample.script for sample in samples] == list(openscad_nodes.SCRIPTS[node])
+    assert len(samples) == 10
+    for sample in samples:
+        tree = csg.parse(sample.csg, folder=CORPUS)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", csg.CsgWarning)
+            found = openscad_nodes.ours(sample, csg.evaluate(tree))
+        assert (found.dimension, found.shape) == (sample.dimension, sample.shape), sample.script
+        assert abs(found.measure - sample.measure) <= sample.tolerance, sample.script
+        assert found.border == pytest.approx(sample.border, rel=1e-4), sample.script
+
+
+def test_every_module_of_the_page_has_its_scripts() -> None:
+    page = (ROOT / "docs" / "compare.md").read_text(encoding="utf-8")
+    table = page.split("\n## OpenSCAD\n")[1].split("\n## ")[0]
+    named = {
+        name for cell in re.findall(r"^\| (`.*?) \|", table, re.M) for name in cell.split(", ")
+    }
+    # Which make nothing, and which OpenSCAD 2021.01 does not know.
+    assert {name.strip("`") for name in named} - {"echo", "roof", "fill"} == set(
+        openscad_nodes.SCRIPTS
+    )
 
 
 def test_drawings_of_openscad_are_read() -> None:
