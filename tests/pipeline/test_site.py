@@ -119,6 +119,15 @@ def test_pages_speak_to_screen_readers_and_keyboards(site: Path, browser: Browse
     assert browser.run(f"return {wide}.every(e => e.tabIndex == 0)")
 
 
+@pytest.mark.parametrize(("theme", "width"), [("light", 1280), ("dark", 390)])
+def test_axe_finds_nothing_on_pages(site: Path, browser: Browser, theme: str, width: int) -> None:
+    browser.prefer(theme)
+    browser.size(width, 844)
+    for name in ("docs/index", "docs/tutorials/first_part", "docs/api/solid", "lecture"):
+        browser.open(site / f"{name}.html")
+        assert browser.violations() == [], name
+
+
 def test_the_lecture_is_led_to(site: Path, pages: dict[Path, _Page]) -> None:
     page = site / "lecture.html"
     leading = {

@@ -5,6 +5,7 @@ import json
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -129,6 +130,18 @@ class Browser:
         """Say that the system is "light" or "dark"."""
         features = [{"name": "prefers-color-scheme", "value": theme}]
         self._running.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+
+    def violations(self) -> list[str]:
+        """Return what axe finds in the page that keeps somebody from using it: rule and element."""
+        axe = files("axe_core_python") / "axe.min.js"
+        self.run(axe.read_text(encoding="utf-8"))
+        return list(
+            self.run_later(
+                "const done = arguments[arguments.length - 1];"
+                "axe.run(document, { resultTypes: ['violations'] }).then(found => done("
+                "found.violations.flatMap(v => v.nodes.map(n => `${v.id}: ${n.html}`))));"
+            )
+        )
 
     def run_later(self, script: str) -> Any:
         """Return what the body of a function gives to its last argument."""

@@ -37,8 +37,18 @@ function followChapters() {
   document.querySelectorAll("main > section").forEach((section) => watch.observe(section));
 }
 
+/** Let the keyboard scroll formulas that are wider than their place. */
+function scrollByKeyboard() {
+  for (const formula of document.querySelectorAll("math[display=block]")) {
+    if (formula.scrollWidth > formula.clientWidth) formula.setAttribute("tabindex", "0");
+    else formula.removeAttribute("tabindex");
+  }
+}
+
 async function start() {
   followChapters();
+  scrollByKeyboard();
+  window.addEventListener("resize", scrollByKeyboard);
   const figures = Object.entries(FIGURES).map(([id, make]) => [document.getElementById(id), make]);
   try {
     await startCore();

@@ -27,7 +27,7 @@ function slider(host, label, { min, max, value, step = 1 }, act) {
 function choice(host, label, options, act) {
   const group = element("div", { class: "choice", role: "radiogroup", "aria-label": label });
   const buttons = options.map(([value, words], index) => {
-    const made = button(group, words, () => pick(index), { role: "radio", "aria-checked": index === 0, tabindex: index ? -1 : 0 });
+    const made = button(group, words, () => pick(index), { role: "radio", "aria-checked": String(index === 0), tabindex: index ? -1 : 0 });
     made.dataset.value = value;
     return made;
   });
