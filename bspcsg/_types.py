@@ -1,7 +1,7 @@
 """Names for the arrays and values that cross module borders."""
 
 from collections.abc import Sequence
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -35,3 +35,36 @@ BoolArray: TypeAlias = npt.NDArray[np.bool_]
 
 #: Vertices (n, 3) and triangles (m, 3) of a mesh.
 MeshArrays: TypeAlias = tuple[FloatArray, IndexArray]
+
+
+class _Shown:
+    """What stands for an alias while programs run, so that `help` prints its name.
+
+    Parameters
+    ----------
+    name : str
+    """
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __repr__(self) -> str:
+        """Return the name."""
+        return self._name
+
+    def __or__(self, other: object) -> "_Shown":
+        """Return the union with another type."""
+        return _Shown(f"{self._name} | {_name_of(other)}")
+
+    def __ror__(self, other: object) -> "_Shown":
+        """Return the union with another type."""
+        return _Shown(f"{_name_of(other)} | {self._name}")
+
+
+def _name_of(kind: object) -> str:
+    return "None" if kind is None else getattr(kind, "__name__", None) or repr(kind)
+
+
+if not TYPE_CHECKING:
+    _ARRAYS = ("FloatArray", "IndexArray", "SideArray", "BoolArray", "MeshArrays")
+    globals().update((name, _Shown(name)) for name in (*_ARRAYS, "Scalar", "Vector"))

@@ -1,0 +1,36 @@
+"""What `help` prints of the public functions can be read: names of types, not what they are."""
+
+import inspect
+import pydoc
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+import bspcsg as b
+
+
+def public() -> Iterator[tuple[str, Callable[..., Any]]]:
+    """Yield the public functions, and the methods of the classes that people hold."""
+    for name in b.__all__:
+        if inspect.isfunction(getattr(b, name)):
+            yield name, getattr(b, name)
+    for kind in (b.Solid, b.Region, b.Assembly, b.EdgeSelection):
+        for name in dir(kind):
+            if not name.startswith("_") and callable(getattr(kind, name)):
+                yield f"{kind.__name__}.{name}", getattr(kind, name)
+
+
+@pytest.mark.parametrize(("name", "function"), [pytest.param(*one, id=one[0]) for one in public()])
+def test_signatures_name_types_and_docstrings_say_what_is_done(
+    name: str, function: Callable[..., Any]
+) -> None:
+    told = str(inspect.signature(function))
+    assert "numpy" not in told and len(told) < 500, name
+    assert (inspect.getdoc(function) or "").splitlines()[0].endswith("."), name
+
+
+def test_help_of_a_rotation() -> None:
+    first = pydoc.plain(pydoc.render_doc(b.Solid.rotate)).splitlines()[2]
+    assert first.startswith("rotate(self, angle: Scalar | Vector | None = None, axis: str | Vector")
+    assert str(inspect.signature(b.cone)).startswith("(h: Scalar, r: Scalar | None = None, *,")
