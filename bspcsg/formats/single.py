@@ -10,7 +10,7 @@ from ..mesh.mesh import Mesh
 from ..mesh.weld import distinct
 from ..solid.solid import solid_of_mesh
 from .blocks import blocks
-from .raw import RawMesh
+from .raw import RawMesh, compacted
 from .triangles import are_flat, are_turned
 
 #: How many triangles a finding names.
@@ -112,9 +112,11 @@ def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
     with core_errors():
         found = mesh_in_single(mesh.vertices, mesh.faces)
     kept = found["kept"]
-    carried = mesh.carried and made(mesh.attributes.onto(found["triangles"], kept))
-    result = Mesh(found["vertices"], found["triangles"], mesh.source[kept], carried)
-    return result, found["mended"], _either(found["crossings"], found["flat"])
+    used, faces = compacted(found["triangles"])
+    carried = mesh.carried and made(mesh.attributes.onto(faces, kept))
+    result = Mesh(found["vertices"][used], faces, mesh.source[kept], carried)
+    faulty = np.searchsorted(kept, _either(found["crossings"], found["flat"]))
+    return result, found["mended"], faulty
 
 
 def _either(some: IndexArray, others: IndexArray) -> IndexArray:

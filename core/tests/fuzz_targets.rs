@@ -45,6 +45,7 @@ fn snapshot() {
 #[test]
 fn import() {
     holds_around_its_seeds("import", targets::import);
+    holds_on_what_is_kept("import", targets::import);
 }
 
 #[test]

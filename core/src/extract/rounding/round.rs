@@ -76,7 +76,12 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
         .iter()
         .map(|f| f.orientation.is_opposite())
         .collect();
-    let renumbered = drop_removed(&mut mesh);
+    tell_moved(&mut mesh, &settled.moved);
+    let renumbered = if settled.mended.is_empty() {
+        Vec::new()
+    } else {
+        drop_removed(&mut mesh)
+    };
     report(&mut mesh, &unfolded.repaired, &left, &settled, &renumbered);
     mesh.compared = settled.compared as u64;
     Ok(mesh)
@@ -125,9 +130,6 @@ fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Settled {
 /// returns the new numbers of triangles.
 fn drop_removed(mesh: &mut Mesh) -> Vec<u64> {
     let is_left = |t: &[u32; 3]| t[0] != t[1];
-    if mesh.triangles.iter().all(is_left) {
-        return Vec::new();
-    }
     let next = |next: &mut u64, t: &[u32; 3]| {
         *next += u64::from(is_left(t));
         Some(*next - u64::from(is_left(t)))
@@ -155,9 +157,12 @@ fn drop_unused(mesh: &mut Mesh) {
     for v in mesh.triangles.iter_mut().flatten() {
         *v = numbers[*v as usize];
     }
-    // So far findings name vertices only: those at which the solid touches itself.
-    for place in mesh.findings.iter_mut().flat_map(|f| &mut f.place) {
-        *place = u64::from(numbers[as_place(*place)]);
+    // So far findings name vertices only: where the solid touches itself, and corners that were moved.
+    for finding in &mut mesh.findings {
+        finding.place.retain(|v| used[as_place(*v)]);
+        for v in &mut finding.place {
+            *v = u64::from(numbers[as_place(*v)]);
+        }
     }
     let mut kept = used.iter();
     mesh.vertices
@@ -171,6 +176,15 @@ fn position(solid: &Solid, exact: &ExactMesh, corner: Corner) -> [f64; 3] {
             let mesh = solid.sources().get(slot).mesh();
             mesh.map_or([0.0; 3], |m| m.doubles[vertex as usize])
         }
+    }
+}
+
+/// Reports the corners that were put on the lattice.
+fn tell_moved(mesh: &mut Mesh, moved: &[u32]) {
+    if !moved.is_empty() {
+        let places: Vec<u64> = moved.iter().map(|v| u64::from(*v)).collect();
+        let finding = Finding::about("moved", Severity::Note, &places, MOVED);
+        mesh.findings.push(finding);
     }
 }
 
@@ -189,11 +203,9 @@ fn report(mesh: &mut Mesh, swapped: &[u64], turned: &[u64], settled: &Settled, n
     faulty.dedup();
     let (collapsed, over): (Vec<u64>, Vec<u64>) =
         faulty.iter().partition(|t| is_collapsed(mesh, **t));
-    let moved: Vec<u64> = settled.moved.iter().map(|v| u64::from(*v)).collect();
     let mended: Vec<u64> = wide(&mut settled.mended.iter());
     for (code, severity, places, text) in [
         ("swapped", Severity::Note, &numbered(swapped), SWAPPED),
-        ("moved", Severity::Note, &moved, MOVED),
         ("mended", Severity::Note, &mended, MENDED),
         ("collapsed", Severity::Note, &collapsed, COLLAPSED),
         ("turned", Severity::Warning, &over, TURNED),
