@@ -1,4 +1,4 @@
-//! What is left of an expression, against its truth table.
+//! Residuals of expressions, against their truth tables.
 
 mod support;
 
