@@ -87,7 +87,9 @@ class Edged:
         Raises
         ------
         InvalidParameterError
-            As for `chamfer`; or if more than three round edges would meet.
+            As for `chamfer`; or if more than three round edges would meet. Of edges of both kinds,
+            those taken last run along the facets of the others, which leave no room where they are
+            narrower than the radius; the message has the place.
         LimitError
             If more than 10 000 edges are chosen, or the solid would have too many corners.
 

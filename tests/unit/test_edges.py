@@ -12,6 +12,7 @@ BOX = b.box(4, 3, 2)
 STEP = b.box(4, 4, 2) - b.box(2, 2, 2).translate(2, 2, 0)
 STAR = b.loft([([(2, 0), (0.5, 0.5), (0, 2), (-0.5, 0.5), (-2, 0), (0, -0.5)], 0), [(0, 0, 3)]])
 POST = b.box(6, 6, 1).translate(-3, -3, -1) | b.box(2, 2, 3).translate(-1, -1, 0)
+FLUSH = b.box(6, 6, 1) | b.box(2, 2, 3).translate(0, 2, 1)
 TURNS = [(0, 0, 0), (90, 0, 180), (10, 20, 30), (0, 0, 45)]
 
 
@@ -259,16 +260,15 @@ def test_a_post_and_its_plate_are_round_in_one_call() -> None:
 
 
 def test_two_kinds_that_wait_for_each_other_are_taken_by_few() -> None:
-    flush = b.box(6, 6, 1) | b.box(2, 2, 3).translate(0, 2, 1)
-    part = flush.chamfer(flush.edges(), 0.25)
+    part = FLUSH.chamfer(FLUSH.edges(), 0.25)
     assert part.genus == 0 and part.to_mesh().certificate.ok
-    convex, wide = flush.edges().is_convex, flush.edges().length
+    convex, wide = FLUSH.edges().is_convex, FLUSH.edges().length
     signs = np.where(convex, -1, 1)
     # The corners matter in the third power of the size.
     assert part.volume == pytest.approx(
-        flush.volume + 0.25**2 / 2 * (signs * wide).sum(), abs=len(signs) * 0.25**3
+        FLUSH.volume + 0.25**2 / 2 * (signs * wide).sum(), abs=len(signs) * 0.25**3
     )
-    assert part.volume != pytest.approx(flush.volume - 0.25**2 / 2 * wide.sum(), abs=0.3)
+    assert part.volume != pytest.approx(FLUSH.volume - 0.25**2 / 2 * wide.sum(), abs=0.3)
 
 
 @pytest.mark.parametrize("part", [STEP, POST], ids=["concave-first", "convex-first"])
@@ -299,6 +299,7 @@ def test_blends_count_once_in_a_block() -> None:
         (lambda: BOX.fillet(BOX.edges(), 1), "no room"),
         (lambda: BOX.fillet(BOX.edges().parallel("x"), 1.01), "no room"),
         (lambda: STAR.chamfer(STAR.edges(), 0.1), "convex and concave edges meet, and more than"),
+        (lambda: FLUSH.fillet(FLUSH.edges(), 0.25), r"no room at \(1\.98808, 3\.82222, 4\)"),
         (lambda: BOX.chamfer(STEP.edges(), 0.1), "another solid"),
         (lambda: BOX.chamfer(cast("Any", [0]), 0.1), "selection"),
         (lambda: BOX.chamfer(BOX.edges(), 0), "above 0"),
