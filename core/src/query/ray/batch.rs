@@ -53,22 +53,20 @@ impl Rays<'_> {
             return Err(Error::new(ErrorKind::Shape, text));
         }
         let count = self.origins.len() / D;
-        let made = |i: u32| {
-            let origin = scene.snap(&point(self.origins, i as usize))?;
-            ray(origin, point(self.heads, i as usize))
-        };
+        let read = |i: u32| [self.origins, self.heads].map(|flat| point(flat, i as usize));
+        let made = |[origin, head]: [[f64; D]; 2]| ray(scene.snap(&origin)?, head);
         let given: Vec<u32> = (0..count as u32).collect();
         let rough = |i: usize| {
             let (origin, head) = (point(self.origins, i), point(self.heads, i));
             (origin.map(|c| scene.pitch().steps(c)), along(origin, head))
         };
         let Some(order) = sorted(count, scene.frame(), rough) else {
-            return in_order(&given, &made, &answer);
+            return in_order(&given, &read, &made, &answer);
         };
-        match in_order(&order, &made, &answer) {
+        match in_order(&order, &read, &made, &answer) {
             Ok(answers) => Ok(restored(&order, answers)),
             // Another may come first in the order of the rays.
-            Err(_) => in_order(&given, &made, &answer),
+            Err(_) => in_order(&given, &read, &made, &answer),
         }
     }
 
@@ -166,14 +164,20 @@ impl Rays<'_> {
 /// The answers to rays in an order, and the first error in it, whatever the threads do.
 fn in_order<const D: usize, T: Send>(
     order: &[u32],
-    made: &(impl Fn(u32) -> Result<Ray<D>> + Sync),
+    read: &(impl Fn(u32) -> [[f64; D]; 2] + Sync),
+    made: &(impl Fn([[f64; D]; 2]) -> Result<Ray<D>> + Sync),
     answer: &(impl Fn(&[u32], &[Ray<D>]) -> Vec<T> + Sync),
 ) -> Result<Vec<T>> {
     let chunk = carried(|numbers: &[u32]| {
         spend(CHUNK);
+        // All reads stand side by side, so that they wait for memory together.
+        let mut given = [[[0.0; D]; 2]; CHUNK];
+        for (place, i) in given.iter_mut().zip(numbers) {
+            *place = read(*i);
+        }
         let mut rays = Vec::with_capacity(CHUNK);
-        for i in numbers {
-            rays.push(made(*i).map_err(|e| at_ray(&e, *i as usize))?);
+        for (given, i) in given.into_iter().zip(numbers) {
+            rays.push(made(given).map_err(|e| at_ray(&e, *i as usize))?);
         }
         Ok(answer(numbers, &rays))
     });
