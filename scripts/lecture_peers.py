@@ -241,8 +241,8 @@ def tables(record: Row) -> str:
         ),
         _table(
             "Ar, Montag, Tal: trees that grow with their rays",
-            f"{record['adaptive_triangles']:,} triangles; the first ray, the first tenth of all,"
-            " the last tenth. Embree's time is for the same rays.",
+            f"{_shown(record['adaptive_triangles'])} triangles; the first ray, the first tenth of"
+            " all, the last tenth. Embree's time is for the same rays.",
             {
                 "distribution": "rays",
                 "rays": "which",
