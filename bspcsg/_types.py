@@ -38,7 +38,7 @@ MeshArrays: TypeAlias = tuple[FloatArray, IndexArray]
 
 
 class _Shown:
-    """What stands for an alias while programs run, so that `help` prints its name.
+    """A stand-in for an alias while programs run, so that `help` prints its name.
 
     Parameters
     ----------
