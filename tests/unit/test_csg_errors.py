@@ -149,3 +149,10 @@ def test_what_is_not_the_scripts_fault_is_never_dropped(
         csg.loads('linear_extrude(1) import("a.svg");', folder=tmp_path, lenient=True)
     with pytest.raises(b.FormatError, match=r"part\.csg:1"):
         csg.loads("cube(", name="part.csg", lenient=True)
+
+
+@pytest.mark.parametrize("word", ['"\n -2 "', '"\x1b[31m"', "\x00"])
+def test_errors_are_one_line_that_prints_whatever_they_quote(word: str) -> None:
+    with pytest.raises(b.FormatError) as caught:
+        csg.loads(f"cube(-2 {word});")
+    assert str(caught.value).isprintable()

@@ -35,7 +35,10 @@ class Token(NamedTuple):
         """Return the word as an error quotes it."""
         if self.kind == "end":
             return "the end of the file"
-        return f"“{self.text[:_QUOTED]}{'…' if len(self.text) > _QUOTED else ''}”"
+        text = "".join(
+            c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in self.text[:_QUOTED]
+        )
+        return f"“{text}{'…' if len(self.text) > _QUOTED else ''}”"
 
 
 def tokens(script: Script) -> Iterator[Token]:
