@@ -1,6 +1,7 @@
 """Random tests without end: how long each target ran, on what, and what it found.
 
     scripts/fuzz [--minutes N] [--seed S] [TARGET ...]
+    scripts/fuzz --totals
 
 Targets of the core (`fuzz/`) and of the readers are led by coverage, and their corpora are kept in
 `.fuzz`; scenes, scenes of sizes and files come by rounds. Both go on where they stopped. What was
@@ -16,7 +17,7 @@ import time
 from pathlib import Path
 
 from fuzz_guided import CORE, Core, Readers
-from fuzz_record import Outcome, add_to_record
+from fuzz_record import Outcome, add_to_record, totals
 from fuzz_rounds import Rounds
 from recording import REPOSITORY
 
@@ -33,7 +34,11 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--folder", type=Path, default=FOLDER, help="for corpora and findings")
     parser.add_argument("--no-record", action="store_true", help="keep nothing in scripts/records")
+    parser.add_argument("--totals", action="store_true", help="say what all runs add up to")
     options = parser.parse_args()
+    if options.totals:
+        print("\n".join(totals()))
+        return 0
     unknown = set(options.targets) - set(TARGETS)
     if unknown:
         parser.error(f"no such target: {', '.join(sorted(unknown))}")

@@ -84,3 +84,16 @@ def add_to_record(target: str, seed: int, outcome: Outcome) -> None:
         row[each.kind] += 1
     RECORDS.mkdir(exist_ok=True)
     path.write_text(json.dumps(record, indent=1) + "\n")
+
+
+def totals() -> list[str]:
+    """Return a line for each target: what all its runs add up to."""
+    record = json.loads((RECORDS / "fuzz.json").read_text())
+    lines = []
+    for target, rows in sorted(record["targets"].items()):
+        executions, hours = (sum(row[key] for row in rows) for key in ("executions", "cpu_minutes"))
+        found = sum(row[kind] for row in rows for kind in KINDS)
+        lines.append(
+            f"{target:9} {executions:9} executions, {hours / 60:5.2f} CPU h, {found} found"
+        )
+    return lines

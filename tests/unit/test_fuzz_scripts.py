@@ -7,7 +7,7 @@ import pytest
 
 import fuzz_record
 from fuzz_guided import outcome_of
-from fuzz_record import Found, Outcome, add_to_record
+from fuzz_record import Found, Outcome, add_to_record, totals
 from mutants import MUTANTS, Mutant
 from recording import REPOSITORY
 
@@ -50,6 +50,8 @@ def test_runs_add_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     first, second = json.loads((tmp_path / "fuzz.json").read_text())["targets"]["scenes"]
     assert (first["executions"], first["cpu_minutes"], first["hang"]) == (15, 1.5, 1)
     assert (second["seed"], second["coverage"], second["wrong"]) == (2, 9, 0)
+    (line,) = totals()
+    assert line.split() == ["scenes", "22", "executions,", "0.03", "CPU", "h,", "1", "found"]
 
 
 @pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.what)
