@@ -1,9 +1,12 @@
 //! The check whether a mesh is simple: nothing overlaps, and winding numbers are 0 outside and 1
 //! inside.
 //!
-//! Nearly all pairs of faces in a small cell share a vertex or lie beyond each other's planes; such
-//! cells need no tree. The others are labelled, and so is one cell for each shell.
+//! Nearly all pairs of faces in a small cell share a vertex or lie beyond each other's planes, and
+//! the faces of a cap are told to be clear of each other by its outline; such cells need no tree.
+//! The others are labelled, and so is one cell for each shell.
 
+mod flats;
+mod looked;
 pub(super) mod star;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,14 +15,10 @@ use std::sync::Arc;
 use super::descent::choice::LEAF;
 use super::kernels::trees::LeafTree;
 use super::lists::list::{List, Sources};
-use super::simple::star::is_star_shaped;
-use crate::arith::convert::as_double;
 use crate::arith::Int;
 use crate::error::Result;
-use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::fixed::sixfold_flux;
-use crate::geometry::plane::Lattice;
 use crate::geometry::side::{Half, Orientation};
 use crate::interrupt::{poll, spend};
 use crate::mesh::handle::{FaceId, Slot};
@@ -29,6 +28,9 @@ use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node};
 use crate::tree::solid::Solid;
+use flats::flat_pieces;
+use looked::Looked;
+use star::is_star_shaped;
 
 /// Lists at least this long are worth a task of their own.
 const TASK: usize = 1024;
@@ -42,6 +44,8 @@ struct Check<'a> {
     shells: Vec<u32>,
     /// By vertex, whether surfaces may meet there that pairs of faces do not show.
     irregular: Vec<bool>,
+    /// By face, its flat piece.
+    pieces: Vec<u32>,
     seen: Vec<AtomicBool>,
     overlap: AtomicBool,
 }
@@ -187,6 +191,7 @@ impl<'a> Check<'a> {
             mesh,
             shells,
             irregular: irregular(source, mesh),
+            pieces: flat_pieces(source, mesh),
             seen: (0..count).map(|_| AtomicBool::new(false)).collect(),
             overlap: AtomicBool::new(false),
         }
@@ -233,115 +238,8 @@ impl<'a> Check<'a> {
     /// Return whether no two of the faces overlap, as far as a quick look can tell; errs on no.
     fn is_clean(&self, faces: &[FaceId]) -> bool {
         spend(faces.len());
-        let look = |f: &FaceId| Looked::at(self.mesh, *f, &self.irregular);
+        let look = |f: &FaceId| Looked::at(self.mesh, *f, &self.irregular, self.pieces[f.place()]);
         let looked: Vec<Looked> = faces.iter().map(look).collect();
         (1..looked.len()).all(|i| looked[..i].iter().all(|other| looked[i].is_clear_of(other)))
     }
-}
-
-/// A face prepared for quick looks at pairs.
-struct Looked {
-    corners: [Lattice; 3],
-    low: Lattice,
-    high: Lattice,
-    /// The corners that are irregular vertices.
-    irregular: [bool; 3],
-    /// The normal in doubles, relative to the first corner.
-    normal: [f64; 3],
-    /// A bound on the rounding of the normal's components relative to the edges' lengths.
-    size: f64,
-}
-
-impl Looked {
-    fn at(mesh: &TriangleMesh, face: FaceId, irregular: &[bool]) -> Self {
-        let corners = mesh.corners(face);
-        let (low, high) = mesh.face_box(face);
-        let u = difference(&corners[1], &corners[0]);
-        let v = difference(&corners[2], &corners[0]);
-        let normal = [
-            u[1] * v[2] - u[2] * v[1],
-            u[2] * v[0] - u[0] * v[2],
-            u[0] * v[1] - u[1] * v[0],
-        ];
-        let longest = |w: &[f64; 3]| w.iter().fold(0.0f64, |m, c| m.max(c.abs()));
-        Self {
-            corners,
-            low,
-            high,
-            irregular: mesh.vertices_of(face).map(|v| irregular[v as usize]),
-            normal,
-            size: longest(&u) * longest(&v),
-        }
-    }
-
-    /// Return whether two faces certainly have nothing in common but shared corners and edges.
-    fn is_clear_of(&self, other: &Self) -> bool {
-        if (0..3).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i]) {
-            return true;
-        }
-        let shared = |p: &&Lattice| self.corners.contains(p);
-        match other.corners.iter().filter(shared).count() {
-            0 | 1 => self.has_beyond(other) || other.has_beyond(self),
-            2 => !self.shares_irregular_edge(other) && self.folds_away(other),
-            _ => false,
-        }
-    }
-
-    /// Return whether more than two faces may meet in the common edge: surfaces can cross there
-    /// although no two faces do.
-    fn shares_irregular_edge(&self, other: &Self) -> bool {
-        let common = |i: &usize| other.corners.contains(&self.corners[*i]);
-        (0..3).filter(common).all(|i| self.irregular[i])
-    }
-
-    /// Return whether the other face's corners that are not shared lie strictly on one side of this
-    /// plane.
-    fn has_beyond(&self, other: &Self) -> bool {
-        let mut sides = other
-            .corners
-            .iter()
-            .filter(|p| !self.corners.contains(p))
-            .map(|p| self.side(p));
-        let Some(first) = sides.next() else {
-            return false;
-        };
-        first != 0 && sides.all(|s| s == first)
-    }
-
-    /// Return whether two faces with a common edge lie in different planes, or flat beside each
-    /// other.
-    fn folds_away(&self, other: &Self) -> bool {
-        let apex = other.corners.iter().find(|p| !self.corners.contains(p));
-        let cosine: f64 = (0..3).map(|i| self.normal[i] * other.normal[i]).sum();
-        let bound = 64.0 * f64::EPSILON * self.size * other.size;
-        apex.is_some_and(|p| self.side(p) != 0) || (cosine > bound && self.runs_against(other))
-    }
-
-    /// Return whether some edge of one face is an edge of the other, run backwards.
-    fn runs_against(&self, other: &Self) -> bool {
-        let edge = |c: &[Lattice; 3], i: usize| (c[i], c[(i + 1) % 3]);
-        (0..3).any(|i| {
-            let (a, b) = edge(&self.corners, i);
-            (0..3).any(|j| edge(&other.corners, j) == (b, a))
-        })
-    }
-
-    /// The side of the face's plane a point certainly lies on; 0 in doubt.
-    fn side(&self, p: &Lattice) -> i32 {
-        let w = difference(p, &self.corners[0]);
-        let value: f64 = (0..3).map(|i| self.normal[i] * w[i]).sum();
-        let reach: f64 = w.iter().map(|c| c.abs()).sum();
-        if value.abs() <= 16.0 * f64::EPSILON * self.size * reach {
-            0
-        } else if value > 0.0 {
-            1
-        } else {
-            -1
-        }
-    }
-}
-
-/// a − b, rounded once at most: the difference may have 54 bits.
-fn difference(a: &Lattice, b: &Lattice) -> [f64; 3] {
-    each_axis(|i| as_double(a[i] - b[i]))
 }

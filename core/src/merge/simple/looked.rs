@@ -1,0 +1,139 @@
+//! Quick looks at pairs of faces: most share a vertex or lie beyond each other's planes.
+
+use super::flats::doubles;
+use crate::arith::convert::as_double;
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::Triangle;
+use crate::geometry::meeting::{meeting, Meeting};
+use crate::geometry::plane::Lattice;
+use crate::mesh::handle::FaceId;
+use crate::mesh::topology::NONE;
+use crate::mesh::triangles::TriangleMesh;
+
+/// A face prepared for quick looks at pairs.
+pub(super) struct Looked {
+    corners: [Lattice; 3],
+    low: Lattice,
+    high: Lattice,
+    /// The corners that are irregular vertices.
+    irregular: [bool; 3],
+    /// The normal in doubles, relative to the first corner.
+    normal: [f64; 3],
+    /// A bound on the rounding of the normal's components relative to the edges' lengths.
+    size: f64,
+    /// True if the face certainly has area.
+    has_area: bool,
+    doubles: Triangle,
+    /// The flat piece to which the face belongs, or `NONE`.
+    piece: u32,
+}
+
+impl Looked {
+    pub(super) fn at(mesh: &TriangleMesh, face: FaceId, irregular: &[bool], piece: u32) -> Self {
+        let corners = mesh.corners(face);
+        let (low, high) = mesh.face_box(face);
+        let u = difference(&corners[1], &corners[0]);
+        let v = difference(&corners[2], &corners[0]);
+        let normal = [
+            u[1] * v[2] - u[2] * v[1],
+            u[2] * v[0] - u[0] * v[2],
+            u[0] * v[1] - u[1] * v[0],
+        ];
+        let longest = |w: &[f64; 3]| w.iter().fold(0.0f64, |m, c| m.max(c.abs()));
+        let size = longest(&u) * longest(&v);
+        Self {
+            corners,
+            low,
+            high,
+            irregular: mesh.vertices_of(face).map(|v| irregular[v as usize]),
+            normal,
+            size,
+            has_area: longest(&normal) > 16.0 * f64::EPSILON * size,
+            doubles: doubles(mesh, face),
+            piece,
+        }
+    }
+
+    /// Return whether two faces certainly have nothing in common but shared corners and edges.
+    pub(super) fn is_clear_of(&self, other: &Self) -> bool {
+        if (0..3).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i]) {
+            return true;
+        }
+        if self.piece != NONE && self.piece == other.piece {
+            return true;
+        }
+        let shared = |p: &&Lattice| self.corners.contains(p);
+        match other.corners.iter().filter(shared).count() {
+            0 | 1 => {
+                self.has_beyond(other) || other.has_beyond(self) || self.meets_in_points(other)
+            }
+            2 => !self.shares_irregular_edge(other) && self.folds_away(other),
+            _ => false,
+        }
+    }
+
+    /// Return whether two faces certainly have nothing but points in common. Surfaces cross along
+    /// lines, so points make no overlap.
+    fn meets_in_points(&self, other: &Self) -> bool {
+        let exact = || meeting(&self.doubles, &other.doubles) == Meeting::Clear;
+        self.has_area && other.has_area && exact()
+    }
+
+    /// Return whether more than two faces may meet in the common edge: surfaces can cross there
+    /// although no two faces do.
+    fn shares_irregular_edge(&self, other: &Self) -> bool {
+        let common = |i: &usize| other.corners.contains(&self.corners[*i]);
+        (0..3).filter(common).all(|i| self.irregular[i])
+    }
+
+    /// Return whether the other face's corners that are not shared lie strictly on one side of this
+    /// plane.
+    fn has_beyond(&self, other: &Self) -> bool {
+        let mut sides = other
+            .corners
+            .iter()
+            .filter(|p| !self.corners.contains(p))
+            .map(|p| self.side(p));
+        let Some(first) = sides.next() else {
+            return false;
+        };
+        first != 0 && sides.all(|s| s == first)
+    }
+
+    /// Return whether two faces with a common edge lie in different planes, or flat beside each
+    /// other.
+    fn folds_away(&self, other: &Self) -> bool {
+        let apex = other.corners.iter().find(|p| !self.corners.contains(p));
+        let cosine: f64 = (0..3).map(|i| self.normal[i] * other.normal[i]).sum();
+        let bound = 64.0 * f64::EPSILON * self.size * other.size;
+        apex.is_some_and(|p| self.side(p) != 0) || (cosine > bound && self.runs_against(other))
+    }
+
+    /// Return whether some edge of one face is an edge of the other, run backwards.
+    fn runs_against(&self, other: &Self) -> bool {
+        let edge = |c: &[Lattice; 3], i: usize| (c[i], c[(i + 1) % 3]);
+        (0..3).any(|i| {
+            let (a, b) = edge(&self.corners, i);
+            (0..3).any(|j| edge(&other.corners, j) == (b, a))
+        })
+    }
+
+    /// The side of the face's plane a point certainly lies on; 0 in doubt.
+    fn side(&self, p: &Lattice) -> i32 {
+        let w = difference(p, &self.corners[0]);
+        let value: f64 = (0..3).map(|i| self.normal[i] * w[i]).sum();
+        let reach: f64 = w.iter().map(|c| c.abs()).sum();
+        if value.abs() <= 16.0 * f64::EPSILON * self.size * reach {
+            0
+        } else if value > 0.0 {
+            1
+        } else {
+            -1
+        }
+    }
+}
+
+/// a − b, rounded once at most: the difference may have 54 bits.
+fn difference(a: &Lattice, b: &Lattice) -> [f64; 3] {
+    each_axis(|i| as_double(a[i] - b[i]))
+}
