@@ -2,10 +2,11 @@
 
 use super::input::Outlines;
 use super::sweep::Sweep;
+use crate::arith::convert::as_whole;
 use crate::error::Result;
 use crate::geometry::dim2::{Lattice2, Point2};
 use crate::interrupt::poll;
-use crate::tree::partition::{classify, Location};
+use crate::tree::partition::{classify, Label, Location};
 use crate::tree::plane::{Boundary, PlaneSet};
 
 /// Locate each of some points relative to a set.
@@ -23,16 +24,42 @@ pub fn located(set: &PlaneSet, points: &[Lattice2]) -> Result<Vec<Location>> {
     Ok(points.iter().map(place).collect())
 }
 
+/// Steps around a corner in doubles: two units in the last place are two steps at most below 2⁵³, and
+/// taking the fraction away is less than one.
+const SLACK: f64 = 4.0;
+
+/// The box around a boundary's corners, rounded outwards; `None` without corners.
+fn frame(boundary: &Boundary) -> Option<[Lattice2; 2]> {
+    let points = boundary.corners.iter().map(|c| c.point.approx());
+    let (low, high) = points.map(|p| (p, p)).reduce(|(low, high), (p, _)| {
+        let on_both = |f: fn(f64, f64) -> f64, q: [f64; 2]| [f(q[0], p[0]), f(q[1], p[1])];
+        (on_both(f64::min, low), on_both(f64::max, high))
+    })?;
+    Some([
+        low.map(|c| as_whole(c - SLACK)),
+        high.map(|c| as_whole(c + SLACK)),
+    ])
+}
+
 /// Locate each of some points relative to a closed boundary's set.
 ///
 /// # Cost
-/// O((n + k) log n) for n edges and k points, if the sweep's line meets few edges at once.
+/// O(k + (n + i) log n) for n edges and k points, i of them in the box around the edges, if the
+/// sweep's line meets few edges at once.
 fn passed(boundary: &Boundary, points: &[Lattice2]) -> Result<Vec<Location>> {
     let mut outlines = Outlines::default();
     outlines.extend(boundary, 1);
-    let mut order: Vec<usize> = (0..points.len()).collect();
+    let outside = match boundary.outer {
+        Label::In => Location::In,
+        Label::Out => Location::Out,
+    };
+    let mut places = vec![outside; points.len()];
+    let Some([low, high]) = frame(boundary) else {
+        return Ok(places);
+    };
+    let is_near = |p: &Lattice2| (0..2).all(|i| low[i] <= p[i] && p[i] <= high[i]);
+    let mut order: Vec<usize> = (0..points.len()).filter(|i| is_near(&points[*i])).collect();
     order.sort_unstable_by_key(|i| points[*i]);
-    let mut places = vec![Location::Out; points.len()];
     let mut left = order.into_iter().peekable();
     let mut sweep = Sweep::new(&outlines, |number| number > 0);
     while let Some(event) = sweep.next() {
