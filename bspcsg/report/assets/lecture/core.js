@@ -19,7 +19,7 @@ let wasm_bindgen = (function(exports) {
             wasm.__wbg_autopartition_free(ptr, 0);
         }
         /**
-         * How many fragments the tree has.
+         * Return the number of the tree's fragments.
          * @returns {number}
          */
         fragments() {
@@ -154,7 +154,7 @@ let wasm_bindgen = (function(exports) {
             }
         }
         /**
-         * What a ray meets first, and its steps through the tree.
+         * Return the first facet that a ray meets, and its steps through the tree.
          * @param {number} x
          * @param {number} y
          * @param {number} z
