@@ -32,7 +32,7 @@ struct View {
     plane: Triangle,
     /// The axis along which the face is seen best.
     axis: usize,
-    /// Which way the face turns, seen so; 0 without area.
+    /// The way the face turns, seen so; 0 without area.
     way: i32,
 }
 
