@@ -135,8 +135,8 @@ __all__ = [
 
 _attach()
 
-#: Which module each name is from; it is imported when the name is first asked for, so that the
-#: command line starts without numpy.
+#: The module of each name; it is imported when the name is first asked for, so that the command
+#: line starts without numpy.
 _MODULES = {
     "_core": "__version__",
     "bsp.sets.region": "Region",

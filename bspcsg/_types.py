@@ -21,7 +21,7 @@ Scalar: TypeAlias = float | np.floating[Any] | np.integer[Any]
 #: One number per axis, in any form numpy understands.
 Vector: TypeAlias = Sequence[Scalar] | npt.NDArray[np.floating] | npt.NDArray[np.integer]
 
-#: Which winding numbers count as inside.
+#: The rules that say which winding numbers count as inside.
 WindingRule: TypeAlias = Literal["positive", "nonzero", "even-odd"]
 
 #: A boolean of two or more operands, by name.

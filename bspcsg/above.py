@@ -1,4 +1,4 @@
-"""What methods ask of the floors above them.
+"""The requests of methods to the floors above them.
 
 Files, scripts, sections, checks and pictures are made of solids and regions, and are methods of
 them, too. So that imports go one way all the same, such a method asks here, and
@@ -8,7 +8,7 @@ them, too. So that imports go one way all the same, such a method asks here, and
 from collections.abc import Callable
 from typing import Any, Literal, TypeAlias
 
-#: What is asked for.
+#: The names of the functions that are asked for.
 Convenience: TypeAlias = Literal[
     "align",
     "closest_points",

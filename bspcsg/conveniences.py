@@ -9,7 +9,7 @@ from typing import Any, get_args
 
 from .above import Convenience, answer
 
-#: Which function answers, after its module.
+#: The function that answers, after its module.
 _HOMES: dict[Convenience, str] = {
     "align": "modelling.bodies.placing:align",
     "chamfer": "modelling.making.blends:chamfer",

@@ -85,7 +85,7 @@ class InternalError(BspcsgError, RuntimeError):
 
 _Value = TypeVar("_Value")
 
-#: How much of another library's words a message repeats.
+#: Most characters of another library's words that a message repeats.
 _LONGEST = 200
 
 _CLASSES: dict[str, type[BspcsgError]] = {

@@ -1,4 +1,4 @@
-"""What parameters may be: one check for each kind, used wherever such a parameter is taken.
+"""The checks of parameters: one for each kind, used wherever such a parameter is taken.
 
 Each returns the value as the type that the rest of the package works with, or raises an error that
 names the parameter. Truth values and texts are no numbers here.

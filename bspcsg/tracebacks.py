@@ -18,7 +18,7 @@ _Value = TypeVar("_Value")
 #: The variable of the environment that keeps all frames, and its value.
 _VARIABLE, _FULL = "BSPCSG_TRACEBACKS", "full"
 
-#: What operators and the like are called; other names that begin with a line are nobody's business.
+#: The names of operators and the like; other names that begin with a line are nobody's business.
 _OPERATORS = frozenset(
     """
     __init__ __call__ __eq__ __ne__ __lt__ __le__ __gt__ __ge__ __hash__ __contains__ __bool__

@@ -21,10 +21,10 @@ from .solid.solid import Solid
 if TYPE_CHECKING:
     import trimesh
 
-#: What trimesh is to call this engine.
+#: The name by which trimesh calls this engine.
 NAME = "bspcsg"
 
-#: What trimesh can ask for.
+#: The operations that trimesh can ask for.
 _KNOWN = ("difference", "intersection", "union")
 
 

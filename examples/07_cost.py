@@ -1,4 +1,4 @@
-"""What a partition tree costs: pivot policies compared, in the plane and for a surface."""
+"""The cost of a partition tree: pivot policies compared, in the plane and for a surface."""
 
 import bspcsg as b
 from bspcsg import bsp

@@ -1,4 +1,4 @@
-"""How partition trees grow: fragments against facets, with the bounds."""
+"""The growth of partition trees: fragments against facets, with the bounds."""
 
 import bspcsg as b
 from bspcsg.bsp import analysis

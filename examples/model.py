@@ -1,4 +1,4 @@
-"""What the models in this folder share: the proof that they can be printed, and a picture."""
+"""The shared part of these models: the proof that they can be printed, and a picture."""
 
 import sys
 import tempfile

@@ -21,7 +21,7 @@ from fuzz_record import Outcome, add_to_record, totals
 from fuzz_rounds import Rounds
 from recording import REPOSITORY
 
-#: Where corpora, what was found, and the next rounds are kept.
+#: The folder of corpora, of what was found, and of the next rounds.
 FOLDER = REPOSITORY / ".fuzz"
 
 TARGETS = [*CORE, "readers", "scenes", "sizes", "files"]

@@ -13,7 +13,7 @@ from recording import REPOSITORY
 #: The targets in `fuzz/fuzz_targets`.
 CORE = ("snapshot", "import", "program", "section", "evaluate", "extract")
 
-#: What makes the compiler count edges and comparisons, on stable Rust: the flags of
+#: The flags that make the compiler count edges and comparisons, on stable Rust: those of
 #: `cargo fuzz --sanitizer none`.
 FLAGS = [
     "-Cpasses=sancov-module",

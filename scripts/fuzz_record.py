@@ -1,4 +1,4 @@
-"""What fuzzing did and found, and the record that adds it up."""
+"""The work and the findings of fuzzing, and the record that adds them up."""
 
 import json
 import resource
@@ -7,7 +7,7 @@ from typing import Any
 
 from recording import RECORDS, machine
 
-#: What a finding may be.
+#: The kinds of findings.
 KINDS = ("crash", "wrong", "hang", "memory")
 
 
@@ -22,7 +22,7 @@ class Found:
 
 @dataclass
 class Outcome:
-    """What came of one run of a target.
+    """The outcome of one run of a target.
 
     `coverage` is what libFuzzer counts at the end and counted at the beginning: edges of the
     instrumented code that inputs have reached.

@@ -25,7 +25,7 @@ SECONDS, MEGABYTES = 10, 4096
 #: A round of large operands: some twenty calls, each of which may take as long as another round.
 LARGE_SECONDS = 60
 
-#: Where cases are kept that must be answered.
+#: The folder of cases that must be answered.
 CASES = REPOSITORY / "tests" / "corpus" / "cases"
 
 #: After so many findings in one run a target is left alone.

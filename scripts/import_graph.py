@@ -1,4 +1,4 @@
-"""Which file uses which, in both languages: circles, upward arrows, and the size of each room.
+"""The graph of files by their uses, in both languages: circles, upward arrows, sizes of rooms.
 
 A room is a folder of the package or of the crate, or a file beside them. Its floor is the one that
 `pyproject.toml` (import-linter) or `core/tests/layering.rs` gives it. What annotations alone name

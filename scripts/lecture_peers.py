@@ -28,7 +28,7 @@ from bspcsg import bsp
 from recording import RECORDS, REPOSITORY, keep
 from support.shapes import icosphere
 
-#: Where Debian's package puts it.
+#: The place where Debian's package puts it.
 COMMONS = Path("/usr/share/java/commons-math3.jar")
 
 #: A question is asked again until it has taken so long; the best time counts.

@@ -18,7 +18,7 @@ from recording import REPOSITORY, keep
 
 FOLDER = REPOSITORY / ".fuzz" / "mutants"
 
-#: What cargo returns if a test has failed, rather than the build.
+#: The exit code of cargo if a test has failed, rather than the build.
 FAILED = 101
 
 

@@ -25,7 +25,7 @@ from recording import RECORDS
 
 RECORD = RECORDS / "openscad_nodes.tsv"
 
-#: Where the files lie that scripts import.
+#: The folder of the files that scripts import.
 FOLDER = Path(__file__).parents[1] / "tests" / "corpus" / "csg"
 
 _BLOCK = "cube([3, 2, 1]);"
@@ -250,7 +250,7 @@ class Sample:
 
     @property
     def tolerance(self) -> float:
-        """How far the measure may be off, as in openscad_suite."""
+        """Return how far the measure may be off, as in openscad_suite."""
         return tolerance(self.dimension, self.border, self.largest)
 
 

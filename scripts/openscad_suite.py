@@ -48,7 +48,7 @@ PATIENCE = 300
 _OPEN = "a lone polyhedron that is not closed: OpenSCAD writes its faces as they are"
 _GRID = "OpenSCAD moves corners of DXF files to multiples of 1/1024"
 
-#: Why a script without a warning is another set here.
+#: The reasons for which a script without a warning is another set here.
 REASONS = {
     "testdata/scad/3D/issues/issue1061.scad": "its faces are not plane",
     "testdata/scad/3D/issues/issue964.scad": _OPEN,
@@ -63,7 +63,7 @@ REASONS = {
 
 @dataclass(frozen=True)
 class Reference:
-    """What OpenSCAD makes of a script.
+    """OpenSCAD's result of a script.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class Reference:
 
     @property
     def tolerance(self) -> float:
-        """How far its measure may be off, as in csg_reference, in either dimension."""
+        """Return how far its measure may be off, as in csg_reference, in either dimension."""
         return tolerance(self.dimension, self.border, self.largest)
 
 

@@ -32,7 +32,7 @@ FACES = np.array(
 #: Seconds after which a question counts as not answered.
 _PATIENCE = 120
 
-#: How often the cube is cut by another and put together again.
+#: The number of times that the cube is cut by another and put together again.
 _ROUNDS = 10
 
 #: Relative difference of volumes that rounding explains; some engines are of single precision.

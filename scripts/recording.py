@@ -1,4 +1,4 @@
-"""What the measuring scripts share: where they ran, and how a result is kept."""
+"""The shared part of the measuring scripts: the machine they ran on, and the keeping of results."""
 
 import json
 import platform

@@ -26,7 +26,7 @@ from wheel_contents import problems_of
 OUT = REPOSITORY / "out" / "wheel"
 DIST = REPOSITORY / "dist"
 
-#: What each kind of wheel is compiled for, and the systems that it promises to run on.
+#: The target of the compiler for each kind of wheel, and the systems that it promises to run on.
 TARGETS = {
     "manylinux": ("x86_64-unknown-linux-gnu", "manylinux_2_17"),
     "musllinux": ("x86_64-unknown-linux-musl", "musllinux_1_2"),
@@ -98,7 +98,7 @@ def kept(found: Path) -> Path:
 
 @dataclass
 class Trial:
-    """What it takes from a wheel to the first checked boolean.
+    """The cost of the way from a wheel to the first checked boolean.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def _sizes(folder: Path) -> tuple[int, float]:
 
 
 def runs_here(kind: str) -> bool:
-    """Whether a kind of wheel can be installed on this machine."""
+    """Say whether a kind of wheel can be installed on this machine."""
     library = "manylinux" if platform.libc_ver()[0] == "glibc" else "musllinux"
     return TARGETS[kind][0].startswith(platform.machine()) and kind.startswith(library)
 

@@ -17,10 +17,10 @@ ROOT = Path(__file__).resolve().parent.parent
 #: The largest wheel and source distribution, in bytes.
 LARGEST = 8_000_000
 
-#: What no source distribution holds.
+#: Files that no source distribution holds.
 _FOREIGN = re.compile(r"(^|/)(\.git|\.venv|target|out|dist|__pycache__)/|\.(so|pyd|pyc)$")
 
-#: What a source distribution has beside the package.
+#: Files that a source distribution has beside the package.
 _SOURCES = ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md", "core/Cargo.toml")
 
 #: Sections of a library that was not stripped.

@@ -1,4 +1,4 @@
-"""Where parts of an assembly have volume in common, or come too near each other."""
+"""Clashes: the places where parts of an assembly share volume, or come too near each other."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

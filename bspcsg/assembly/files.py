@@ -140,7 +140,7 @@ class _Describing:
     """The words of files about an assembly; solids that parts share are meshes that nodes share."""
 
     def __init__(self, in_single: bool) -> None:
-        #: How many parts have no volume, which files have no place for.
+        #: The number of parts without volume, which files have no place for.
         self.empty = 0
         self._in_single = in_single
         self._meshes: dict[int, tuple[Solid, RawMesh]] = {}

@@ -16,7 +16,7 @@ from .tree import Assembly
 _UNITING = frozenset({"group", "union", "render", "color"})
 
 
-#: How many of them may lie in one another before what is in them is one part.
+#: Most of them that may lie in one another before what is in them is one part.
 _DEEPEST = 60
 
 

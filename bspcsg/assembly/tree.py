@@ -23,10 +23,10 @@ from ..tracebacks import shortened
 from .bill import Bill, bill_of
 from .clashes import Clash, are_apart, clashes_of
 
-#: How deep assemblies may lie in one another, as in files.
+#: Most assemblies that may lie in one another, as in files.
 _DEEPEST = 64
 
-#: What an assembly is made of.
+#: The content of an assembly.
 Content: TypeAlias = Solid | Iterable[Any]
 
 

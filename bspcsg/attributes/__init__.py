@@ -1,1 +1,1 @@
-"""What a mesh says besides its shape: named arrays of vertices, corners and faces."""
+"""The attributes of a mesh besides its shape: named arrays of vertices, corners and faces."""

@@ -15,7 +15,7 @@ from .material import Material
 #: Values of any type, one or an array of them for each element.
 Values: TypeAlias = npt.NDArray[Any]
 
-#: What an array has a value for.
+#: The elements of a mesh that an array has a value for.
 Kind: TypeAlias = Literal["vertex", "corner", "face"]
 
 KINDS: tuple[Kind, ...] = ("vertex", "corner", "face")

@@ -177,7 +177,7 @@ def carried(
     return Attributes(surface.faces, **found, materials=materials)
 
 
-#: What there is of a source of which nothing is left.
+#: The arrays of a source of which nothing is left.
 _NO_ROWS: IndexArray = np.zeros(0, dtype=np.int64)
 _NO_ARRAYS: SourceArrays = (
     np.zeros((0, 3)),

@@ -13,7 +13,7 @@ import numpy as np
 from .._types import MeshArrays
 from .facts import mesh_volume
 
-#: What engines are asked for; the first operand is the one that the others are taken from.
+#: The operations of engines; the first operand is the one that the others are taken from.
 Operation: TypeAlias = Literal["union", "difference", "intersection"]
 
 #: Largest relative distance by which a double is rounded.
@@ -30,7 +30,7 @@ class Engine(ABC):
 
     name: str
 
-    #: Whether `counters` has something to say.
+    #: True if `counters` has something to say.
     counts = False
 
     @abstractmethod

@@ -1,4 +1,4 @@
-"""What is measured of an answer, and by how much two right answers may differ."""
+"""The facts measured of an answer, and the amounts by which two right answers may differ."""
 
 from dataclasses import dataclass
 from math import log2

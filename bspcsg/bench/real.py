@@ -12,7 +12,7 @@ from .shapes import generator, moved, random_rotation, scaled, turned, unit_vect
 #: Triangles of the meshes that are paired.
 _LEAST, _MOST = 10_000, 500_000
 
-#: How far apart the middles of two meshes are, in halves of their diagonals.
+#: The distance between the middles of two meshes, in halves of their diagonals.
 _APART = 0.3
 
 

@@ -11,7 +11,7 @@ Row = dict[str, Any]
 #: Runs whose median needs no remark.
 _ENOUGH = 5
 
-#: What stands in place of a figure that there is none of.
+#: The sign in place of a figure that there is none of.
 _NOTHING = "—"
 
 _MET = {True: "yes", False: "no", None: _NOTHING}

@@ -1,4 +1,4 @@
-"""What a row is to reach, and what it reached."""
+"""The targets of a row, and the figures that it reached."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

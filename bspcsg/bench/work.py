@@ -1,4 +1,4 @@
-"""What is timed: one thing to do for any engine, prepared outside the clock."""
+"""The work that is timed: one thing to do for any engine, prepared outside the clock."""
 
 import time
 from abc import ABC, abstractmethod

@@ -1,4 +1,4 @@
-"""What a campaign leaves behind: a file of JSON lines, one for each run and each finished case.
+"""The record of a campaign: a file of JSON lines, one for each run and each finished case.
 
 Lines are appended as cases end, in any order, and each is written whole before the next begins. A
 runner that is killed while it writes leaves a torn last line, which readers leave out and writers
@@ -233,7 +233,7 @@ def _parsed(line: str, path: Path, number: int) -> dict[str, Any]:
     return cast(dict[str, Any], found)
 
 
-#: How every line begins.
+#: The beginning of every line.
 _START = b'{"schema": '
 
 

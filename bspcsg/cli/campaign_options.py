@@ -1,4 +1,4 @@
-"""What the options of validate take, and how it is read."""
+"""The values of the options of validate, and the reading of them."""
 
 import click
 

@@ -1,4 +1,4 @@
-"""How long the command has been running, from its first line on."""
+"""The time that the command has been running, from its first line on."""
 
 import time
 

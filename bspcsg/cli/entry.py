@@ -1,11 +1,11 @@
-"""Where the command line begins: before what takes time is imported, Ctrl-C is made quiet."""
+"""The start of the command line: before what takes time is imported, Ctrl-C is made quiet."""
 
 import os
 
 #: As `output.INTERRUPTED`, which is not imported yet.
 _INTERRUPTED = 130
 
-#: Where Python's own code for imports says it is from.
+#: The file that Python's own code for imports says it is from.
 _IMPORTS = "<frozen importlib._bootstrap>"
 
 #: After so many seconds an interrupt that came at a bad moment comes again.

@@ -27,7 +27,7 @@ STREAM = "-"
 #: The format of what nobody keeps and for which none is said: one that keeps all digits.
 _ANY = ".ply"
 
-#: What can be done where a mesh is refused because it is not closed.
+#: Advice where a mesh is refused because it is not closed.
 ON_INVALID = "  --on-invalid repair fills it; --on-invalid warn goes on without it."
 
 

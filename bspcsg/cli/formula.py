@@ -11,7 +11,7 @@ from typing import TypeAlias, TypeVar
 
 _Value = TypeVar("_Value")
 
-#: What ends a bare name, and what is an operator only where a name could begin.
+#: The characters that end a bare name, and operators only where a name could begin.
 _ENDS = "|&^()\"'"
 _SIGNS = "+-~"
 
@@ -23,7 +23,7 @@ _LEVELS: tuple[dict[str, str], ...] = (
     {"+": "union", "-": "difference"},
 )
 
-#: How deep parentheses and complements may lie in one another.
+#: Most parentheses and complements that may lie in one another.
 _DEEPEST = 100
 
 

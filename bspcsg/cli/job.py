@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _EXACT_FACES, _EXACT_BITS = 500, 10_000
 
 
-#: How many crossings a certificate names.
+#: Most crossings that a certificate names.
 _NAMED = 8
 
 

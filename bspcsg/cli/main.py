@@ -71,7 +71,7 @@ _VERBS = {
 #: Other names of verbs, which the help leaves out.
 _ALIASES = {"cut": "difference"}
 
-#: What writing to standard output fails with when it is full, broken or closed.
+#: The errors of writing to a standard output that is full, broken or closed.
 _NO_OUTPUT = (errno.ENOSPC, errno.EIO, errno.EBADF)
 
 _COMPLETE = "_BSPCSG_COMPLETE"

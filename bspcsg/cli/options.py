@@ -158,7 +158,7 @@ ALLOW_EMPTY = click.option(
     "--allow-empty", is_flag=True, help="Write a file even if nothing is left."
 )
 
-#: How the result is compared with manifold3d's.
+#: The depths to which the result is compared with manifold3d's.
 _CHECKS = ("quick", "full", "off")
 
 

@@ -1,4 +1,4 @@
-"""What goes to which stream, and which exit code a failure has."""
+"""The streams of the command line's words, and the exit codes of its failures."""
 
 import json
 import os
@@ -27,7 +27,7 @@ INTERRUPTED = 130
 CLOSED_PIPE = 141
 
 
-#: How many faces or vertices a message names.
+#: Most faces or vertices that a message names.
 _FEW = 3
 
 #: Codes of errors that say which optional package or program is not installed.

@@ -1,4 +1,4 @@
-"""Whether there is a screen."""
+"""The test whether there is a screen."""
 
 import os
 import sys

@@ -12,7 +12,7 @@ from .scripts import SUFFIXES
 if TYPE_CHECKING:
     from ..report.viewer.layer import Layer
 
-#: What is to be seen of some files, made anew whenever it is asked for: layers and their unit.
+#: The view of some files, made anew whenever it is asked for: layers and their unit.
 Showing: TypeAlias = Callable[[Sequence[Path]], "tuple[list[Layer], str]"]
 
 _PART = "/part/"

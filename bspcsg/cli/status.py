@@ -1,4 +1,4 @@
-"""What is under way, on a terminal: after a second a line says what and for how long.
+"""The line on a terminal that says, after a second, what is under way and for how long.
 
 The line stands at the end of standard error and goes before anything else is said there.
 """

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from . import terminal
 
-#: What a table is ruled with on a terminal, and in a pipe or a file.
+#: The characters that rule a table on a terminal, and in a pipe or a file.
 _RULE, _PLAIN_RULE = "─", "-"
 
 #: Columns of the terminal that a column takes besides its text.

@@ -1,4 +1,4 @@
-"""What the terminal shows: colours and widths by the conventions of the command line."""
+"""The look of the terminal: colours and widths by the conventions of the command line."""
 
 import os
 import shutil

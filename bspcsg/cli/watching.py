@@ -117,5 +117,5 @@ class Watching:
         return told_apart(layers_of_solid(self._made, self._script.name)), ""
 
 
-#: Where a result goes that is only looked at.
+#: The path of a result that is only looked at.
 NOWHERE = Path(os.devnull)

@@ -25,7 +25,7 @@ _BREP = (
 )
 _NO_LIBRARY = "{} is not read, for want of a well-kept library; have {} written instead."
 
-#: What to say of formats that people try to read, and that are not for us.
+#: Advice on formats that people try to read, and that are not for us.
 _REFUSALS = {
     **dict.fromkeys((".step", ".stp"), _BREP.format("STEP")),
     **dict.fromkeys((".iges", ".igs"), _BREP.format("IGES")),
@@ -38,7 +38,7 @@ _REFUSALS = {
 
 _CURVED = "{} holds curved surfaces, which meshes have none of; write 3MF or STL."
 
-#: What to say of formats that people try to write.
+#: Advice on formats that people try to write.
 _UNWRITTEN = {
     **dict.fromkeys((".step", ".stp"), _CURVED.format("STEP")),
     **dict.fromkeys((".iges", ".igs"), _CURVED.format("IGES")),

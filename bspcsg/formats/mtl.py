@@ -6,7 +6,7 @@ from ..attributes.material import Material
 from ..errors import InvalidMeshError
 from .source import Source
 
-#: What materials are that say no colour.
+#: The colour of materials that say none.
 _PLAIN = (0.8, 0.8, 0.8, 1.0)
 
 

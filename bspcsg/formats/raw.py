@@ -16,7 +16,7 @@ from ..errors import Finding, FormatError
 from ..geometry.polygon import triangulate_face
 from ..mesh.mesh import Mesh
 
-#: What to call it that faces of more corners became triangles.
+#: The words for faces of more corners, which became triangles.
 POLYGONS = "faces of more than three corners"
 
 
@@ -72,7 +72,7 @@ def says_empty_set(mesh: Mesh | RawMesh) -> bool:
 #: The comment in a text of the empty set, by which it is told from one that lost what it held.
 EMPTY_SET = b"# bspcsg: the empty set\n"
 
-#: What readers say about parts of a file that they pass by.
+#: The codes of findings of readers on parts of a file that they pass by.
 _PASSED_BY = frozenset({"ignored", "curves_ignored", "extra_data"})
 
 

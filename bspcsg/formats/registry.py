@@ -1,4 +1,4 @@
-"""Which suffix stands for which format; its modules are imported when it is asked for."""
+"""The table of formats by suffixes; the modules of a format are imported when it is asked for."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -161,7 +161,7 @@ def _vtk(suffix: str) -> Format:
     return Format(vtk.reader(suffix), None, Form(vtk.writer(suffix), scan))
 
 
-#: What makes each format.
+#: The functions that make the formats.
 MAKERS: dict[str, Callable[[], Format]] = {
     ".stl": _stl,
     ".obj": _obj,

@@ -1,4 +1,4 @@
-"""What files say besides the shape: attributes that a format keeps, and those it leaves out."""
+"""The attributes in files besides the shape: those that a format keeps, and those it leaves out."""
 
 from collections.abc import Callable
 from dataclasses import replace

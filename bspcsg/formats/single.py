@@ -1,4 +1,4 @@
-"""What single precision changes about a mesh: binary STL and GLB hold no more."""
+"""The changes of a mesh by single precision: binary STL and GLB hold no more."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from .blocks import blocks
 from .raw import RawMesh, compacted
 from .triangles import are_flat, are_turned
 
-#: How many triangles a finding names.
+#: Most triangles that a finding names.
 _NAMED = 8
 
 

@@ -13,10 +13,10 @@ from .._types import FloatArray
 from ..errors import FormatError
 from ..parameters import file_path
 
-#: What some editors put before a text.
+#: The mark that some editors put before a text.
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
-#: How much of an offending word an error quotes.
+#: Most characters of an offending word that an error quotes.
 _QUOTED = 24
 
 #: Bytes of a script or drawing: parsed, each becomes ten or more, so that this fills 3 GB.

@@ -1,4 +1,4 @@
-"""How far points are from triangles, also from such that are much longer than wide."""
+"""The distance of points from triangles, also from such that are much longer than wide."""
 
 import numpy as np
 

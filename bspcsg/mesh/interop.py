@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import manifold3d
     import trimesh
 
-#: What a reader returns: vertices and faces, in any form that `mesh_arrays` takes.
+#: The result of a reader: vertices and faces, in any form that `mesh_arrays` takes.
 AnyArrays: TypeAlias = tuple[Any, Any]
 
 _Array = TypeVar("_Array", FloatArray, IndexArray)
@@ -238,7 +238,7 @@ _SHAPE = ("tessellate", "wrapped")
 
 _WORKPLANE = ("val", "plane")
 
-#: What holds a mesh or a shape, by its attributes, and how to get at that.
+#: The objects that hold a mesh or a shape, by their attributes, and the way to get at that.
 _HOLDERS: tuple[tuple[tuple[str, ...], Callable[[Any], Any]], ...] = (
     (("current_mesh",), lambda meshes: meshes.current_mesh()),
     (("part", "pending_faces"), lambda builder: builder.part),

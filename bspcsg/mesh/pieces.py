@@ -14,7 +14,7 @@ Point: TypeAlias = tuple[float, float, float]
 #: Relative rounding error of a tetrahedron's volume, by the lengths of three edges.
 _NOISE = 1e-15
 
-#: How many faces of a piece are looked below, and how many of the points are kept.
+#: Most faces of a piece that are looked below, and most of the points that are kept.
 _TRIES, _POINTS = 60, 6
 
 

@@ -43,7 +43,7 @@ def attributes_from(mesh: Any, vertices: Any, faces: Any) -> dict[str, Any]:
     return _fitting(found, len(vertices), faces)
 
 
-#: Where objects keep arrays by names: trimesh and `Mesh`, then pyvista and meshio.
+#: The places of arrays with names in objects: trimesh and `Mesh`, then pyvista and meshio.
 _DICTIONARIES = {
     "vertex": ("vertex_attributes", "point_data"),
     "corner": ("corner_attributes",),

@@ -1,1 +1,1 @@
-"""What is made of several solids, or of the parts of one."""
+"""Operations on several solids, or on the parts of one."""

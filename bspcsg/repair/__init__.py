@@ -1,1 +1,1 @@
-"""What is wrong with a mesh, and closing it."""
+"""The diagnosis of a mesh, and its repair."""

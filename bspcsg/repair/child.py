@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-#: How many plug-ins a complete installation loads.
+#: The number of plug-ins that a complete installation loads.
 PLUGINS = 58
 
 MISSING = 6

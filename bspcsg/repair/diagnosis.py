@@ -1,4 +1,4 @@
-"""What is wrong with a mesh, by name, number and place.
+"""The diagnosis of a mesh: all that is wrong with it, by name, number and place.
 
 Connectivity is judged after joining corners with equal coordinates, as every reader has to do for
 STL. Whether faces cross or overlap is asked of the core, which decides it exactly.
@@ -21,7 +21,7 @@ from ..mesh.weld import welded
 from ..solid.counting import uncounted
 from ..solid.solid import Solid
 
-#: How many places a finding keeps.
+#: Most places that a finding keeps.
 _PLACES = 8
 
 #: Height by longest edge below which a triangle's area is computed exactly.

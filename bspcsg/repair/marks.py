@@ -1,4 +1,4 @@
-"""Where a mesh is wrong: all places, where a diagnosis names the first few."""
+"""The places where a mesh is wrong: all of them, where a diagnosis names the first few."""
 
 from dataclasses import dataclass
 

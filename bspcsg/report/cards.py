@@ -26,7 +26,7 @@ _CELLS = (128, 64, 40, 24)
 #: Characters of the pictures of one card, about.
 _PICTURES = 10_000
 
-#: How much more than its share of what is left one view may take.
+#: The most that one view may take, in shares of what is left.
 _GENEROSITY = 2
 
 

@@ -1,4 +1,4 @@
-"""Whether values that were read have the form that their type says."""
+"""The test whether values that were read have the form that their type says."""
 
 import math
 from types import NoneType, UnionType

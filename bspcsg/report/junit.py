@@ -6,7 +6,7 @@ from xml.etree import ElementTree as Xml
 
 from ..campaign.record import CaseRecord, RunRecord
 
-#: What each verdict is to a build server; the others passed.
+#: The element for each verdict, for a build server; the others passed.
 _ELEMENTS = {
     "DISAGREE": "failure",
     "subject failed": "failure",

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from ..campaign.record import CaseRecord, RunRecord, is_failure
 from ..campaign.summary import conclusion, counts_by_verdict
 
-#: How many cases a table lists at most.
+#: Most cases that a table lists.
 _MOST = 50
 
 #: Verdicts that are listed although they are no failures.

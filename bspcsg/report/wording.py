@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-#: How much a verdict is to worry about, which gives its colour and its sign.
+#: The concern that a verdict is to cause, which gives its colour and its sign.
 _TONES = {
     "agree": "good",
     "same set, other topology": "good",
@@ -13,7 +13,7 @@ _TONES = {
     "refused": "mute",
 }
 
-#: What each verdict means, for whoever sees one for the first time.
+#: The meaning of each verdict, for whoever sees one for the first time.
 _MEANINGS = {
     "agree": "the same set and the same topology",
     "same set, other topology": "the same set; surfaces that touch are joined in another way",
@@ -27,10 +27,10 @@ _MEANINGS = {
     "crash": "a failure: the process of the case ended before its time",
 }
 
-#: What stands where there is no number.
+#: The sign that stands for no number.
 NOTHING = "–"
 
-#: What stands between thousands.
+#: The space between thousands.
 _THIN = "\N{NARROW NO-BREAK SPACE}"
 
 #: Powers of ten from and below which numbers are written out.

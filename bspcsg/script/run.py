@@ -33,7 +33,7 @@ TIMEOUT = 600.0
 #: The exit code of what was stopped.
 _STOPPED = 130
 
-#: What the child runs: Ctrl-C, which reaches it as well, ends it without a word; its parent tells.
+#: The program of the child: Ctrl-C, which reaches it too, ends it without a word; its parent tells.
 _SERVE = (
     f"import os, signal; signal.signal(signal.SIGINT, lambda *_: os._exit({_STOPPED}));"
     " from bspcsg.script.run import serve; serve()"

@@ -1,4 +1,4 @@
-"""Which solids count in an open block, kept apart from what a solid is.
+"""The choice of the solids that count in an open block, kept apart from what a solid is.
 
 A function that makes a solid for its caller is `counted`: while it runs nothing else counts, and
 what it returns takes the place of the solids that it was given. A query is `uncounted`: what it

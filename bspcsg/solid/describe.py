@@ -1,4 +1,4 @@
-"""What a solid's `repr` says: only what is known already."""
+"""The `repr` of a solid: it says only what is known already."""
 
 from typing import Any
 

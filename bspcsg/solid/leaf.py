@@ -287,10 +287,10 @@ class ConstantLeaf:
         return self
 
 
-#: What is known without asking the core: True if the solid is bounded, False if its complement is.
+#: The extent, without asking the core: True if the solid is bounded, False if its complement is.
 Extent: TypeAlias = bool | None
 
-#: What is said of each source of a tree besides its shape; empty if nothing is said of any.
+#: Words on each source of a tree besides its shape; empty if nothing is said of any.
 Sayings: TypeAlias = tuple[Attributes | None, ...]
 
 ExpressionLeaf: TypeAlias = MeshLeaf | TreeLeaf | PlaneLeaf | ConstantLeaf
@@ -398,7 +398,7 @@ def _other(operand: Extent) -> Extent:
     return None if operand is None else not operand
 
 
-#: What a result's extent must be.
+#: The rules for the extent of a result.
 _EXTENTS: Algebra[Extent] = Algebra(_either, _both, _odd, _other)
 
 

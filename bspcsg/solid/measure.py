@@ -1,4 +1,4 @@
-"""What can be measured of a solid: the queries, apart from the value that answers them."""
+"""The measures of a solid: the queries, apart from the value that answers them."""
 
 import math
 import warnings
@@ -13,7 +13,7 @@ from ..mesh import interop
 from ..mesh.mesh import Mesh
 from ..parameters import at_least
 
-#: What `volume_residues` are modulo of.
+#: The moduli of `volume_residues`.
 _PRIMES = (2**61 - 1, 2**61 - 31)
 
 #: Fractions of more digits take more than about a second to bring to lowest terms.

@@ -1,4 +1,4 @@
-"""What is made of a solid by the verbs of the floors above: the methods, apart from the value."""
+"""The methods that make things of a solid with the floors above, apart from the value."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, overload

@@ -47,7 +47,7 @@ class Algebra(Generic[_Value]):
         return many[operator](found)
 
 
-#: Whether a point is inside.
+#: The algebra of truth values, which tells points inside from points outside.
 TRUTH: Algebra[bool] = Algebra(
     union=any,
     intersection=all,

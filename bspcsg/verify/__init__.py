@@ -1,1 +1,1 @@
-"""Whether a result is right: other engines' answers, and exact rulings between them."""
+"""The checks of a result: other engines' answers, and exact rulings between them."""

@@ -52,13 +52,13 @@ __all__ = [
     "validate",
 ]
 
-#: How much is compared: measures and some points, or the sets in any case.
+#: The extent of the comparison: measures and some points, or the sets in any case.
 Depth: TypeAlias = Literal["quick", "full"]
 
-#: How many lattice steps, neighbouring doubles and tolerances of manifold3d are forgiven.
+#: Lattice steps, neighbouring doubles and tolerances of manifold3d that are forgiven.
 STEPS, ULPS, TOLERANCES = 2, 8, 4
 
-#: How many pieces of a dispute are settled, the thickest first.
+#: Most pieces of a dispute that are settled, the thickest first.
 _MOST_PIECES = 50
 
 

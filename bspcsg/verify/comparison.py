@@ -1,4 +1,4 @@
-"""Whether two solids are the same set, and if not, how they differ.
+"""The test whether two solids are the same set, and the difference between them.
 
 Whether they are the same is decided exactly. How far their boundaries are apart is estimated from
 points on the boundary of the symmetric difference: everywhere else they coincide, so even a small
@@ -21,7 +21,7 @@ from .verdict import Facts
 #: Added to a distance, as a part of the largest coordinate: far more than its rounding.
 _SLACK = 1e-12
 
-#: How many points are measured at once; more need more memory.
+#: The number of points that are measured at once; more need more memory.
 _BATCH = 1000
 
 

@@ -1,4 +1,4 @@
-"""How much two meshes differ as sets, and how thick the difference is.
+"""The difference of two meshes as sets, and its thickness.
 
 A volume alone does not tell rounding from error: a film of one lattice step over a large body has
 more of it than a small lost part. So the symmetric difference is built exactly, taken apart into

@@ -1,4 +1,4 @@
-"""Whether two meshes are alike in all that is cheap to measure.
+"""The test whether two meshes are alike in all that is cheap to measure.
 
 Volume, area, bounds, parts and Euler number, and at points near the seam, where faces from several
 operands meet, the side on which they lie. That finds what is missing, surplus or moved, but not two
@@ -17,13 +17,13 @@ from .verdict import Facts
 #: Relative error of volumes and areas summed in doubles.
 SUMMING = 1e-11
 
-#: How many faces at the seam are looked at, from both sides each.
+#: Most faces at the seam that are looked at, from both sides each.
 _PROBED = 16
 
-#: How many times farther than rounding moves surfaces a point is from the face it belongs to.
+#: The distance of a point from the face it belongs to, in lengths by which rounding moves surfaces.
 _CLEAR = 64.0
 
-#: How far from a face its point is at least, in lengths of the root of the face's area.
+#: The least distance of a point from its face, in lengths of the root of the face's area.
 _NEAR = 0.01
 
 

@@ -1,4 +1,4 @@
-"""Who is right where two engines disagree: exact counts of crossings, with no tree in them.
+"""The ruling where two engines disagree: exact counts of crossings, with no tree in them.
 
 A point of the dispute is classified against the operands by counting, in whole numbers, how
 a ray from it crosses their triangles. This shares no code with the core.

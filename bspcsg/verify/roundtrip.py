@@ -1,4 +1,4 @@
-"""What a file format lost: the mesh that was written against the one that reads back."""
+"""The losses of a file format: the mesh that was written against the one that reads back."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -13,7 +13,7 @@ from ..mesh.weld import welded
 from ..solid.counting import uncounted
 from ..solid.solid import Solid
 
-#: How many names are told.
+#: Most names that are told.
 _TOLD = 4
 
 

@@ -1,4 +1,4 @@
-"""What a check reports: verdicts, facts about meshes, and both in words and as JSON values."""
+"""The report of a check: verdicts, facts about meshes, and both in words and as JSON values."""
 
 from dataclasses import asdict, dataclass
 from enum import StrEnum

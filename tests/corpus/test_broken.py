@@ -165,7 +165,7 @@ def test_good_trees_are_read() -> None:
 
 # Bytes changed at random
 
-#: What a change may put somewhere.
+#: The bytes that a change may put somewhere.
 PIECES = st.sampled_from(
     [b"", b"\0", b"\xff", b"-1", b"9" * 20, b"nan", b"1e999", b" ", b"\n", b"<", b'"', b"{", b"["]
 ) | st.binary(max_size=8)

@@ -41,11 +41,11 @@ MESHES += [(".off", False), (".glb", False), (".3mf", False)]
 FORMATS = [suffix + ("-text" if text else "") for suffix, text in MESHES]
 FORMATS += [".csg", ".json", ".svg", ".dxf", ".snapshot"]
 
-#: What a damaged number becomes.
+#: The numbers that a damaged one may become.
 NUMBERS = [b"0", b"-1", b"1e999", b"nan", b"-inf", b"1e308", b"4294967295", b"9" * 25, b"", b"0.5"]
 NUMBERS += [b"1_0", b"0x10", b"1e-320", b"-0", b"2147483648", b"1,5", b"\xd9\xa3"]
 
-#: What bytes are overwritten with.
+#: The bytes that overwrite others.
 BYTES = [b"\0\0\0\0", b"\xff\xff\xff\xff", b"\x7f\xff\xff\xff", b"\xff\xff\xff\x7f", b"\x80", b"\0"]
 BYTES += [
     b"\x00\x00\xc0\x7f",
@@ -339,7 +339,7 @@ def judge_file(file: File, folder: Path) -> list[str]:
 
 
 def _is_nothing(file: File, error: "b.BspcsgError") -> bool:
-    """Whether a script of nothing was refused for that."""
+    """Say whether a script of nothing was refused for that."""
     return file.volume == 0 and error.code in ("empty_mesh", "empty_solid", "nothing")
 
 

@@ -1,4 +1,4 @@
-"""What is wrong with the answers to a scene: points, volumes, meshes, copies, a rival's volume."""
+"""The judge of answers to a scene: points, volumes, meshes, copies, a rival's volume."""
 
 import pickle
 from collections import Counter
@@ -33,12 +33,12 @@ CLEAR = 1e-6
 #: Steps in a unit in which meshes are looked at: what that moves vertices by is far below a step.
 FINE = 2**40
 
-#: How much volume, of each unit of area, manifold3d may gain or lose where it merges what is near.
+#: The volume, of each unit of area, that manifold3d may gain or lose where it merges what is near.
 MERGED = 1e-4
 
 
 class Kernel:
-    """What is asked of the package; the tests of the judge break it on purpose."""
+    """The questions to the package; the tests of the judge break it on purpose."""
 
     def solid(self, body: Body) -> "b.Solid":
         """Return the solid of an operand, not moved."""
@@ -189,7 +189,7 @@ class _Trial:
                 yield f"inside: the mesh winds {found} times around {point}"
 
     def _is_clear(self, point: Point) -> bool:
-        """Whether no face that comes near the point has a plane near it."""
+        """Say whether no face that comes near the point has a plane near it."""
         for known in self.sets:
             reach = CLEAR * UNIT
             faces = known.balls.around(point, reach) if isinstance(known, Surface) else ()

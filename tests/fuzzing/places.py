@@ -1,4 +1,4 @@
-"""Where points lie, from winding numbers in whole numbers: no lattice, no tree, no plane of a core.
+"""The side of points by winding numbers in whole numbers: no lattice, no tree, no plane of a core.
 
 A place is a point and up to three steps from it, each infinitely smaller than the one before. All
 predicates are linear in the place, so each is decided by its first value that is not zero.
@@ -18,7 +18,7 @@ Point: TypeAlias = tuple[int, int, int]
 Triangle: TypeAlias = tuple[Point, Point, Point]
 Steps: TypeAlias = tuple[Point, ...]
 
-#: Which winding numbers are inside.
+#: The rules that say which winding numbers are inside.
 RULES: dict[str, Callable[[int], bool]] = {
     "positive": lambda w: w > 0,
     "nonzero": lambda w: w != 0,

@@ -87,7 +87,7 @@ class Motion:
 
     @property
     def mirrors(self) -> bool:
-        """Whether left becomes right."""
+        """Say whether left becomes right."""
         order = [axis for axis, _ in self.axes]
         even = order in ([0, 1, 2], [1, 2, 0], [2, 0, 1])
         return even != (np.prod([s for _, s in self.axes]) > 0)
@@ -171,7 +171,7 @@ class Scene:
 
     @property
     def is_bounded(self) -> bool:
-        """Whether no operand is a half-space and infinity is outside."""
+        """Say whether no operand is a half-space and infinity is outside."""
         return all(body.plane is None for body in self.bodies) and not self.value(
             [False] * len(self.bodies)
         )
@@ -227,7 +227,7 @@ def asked(solid: "b.Solid") -> "b.Solid":
     return solid
 
 
-#: What expressions may call.
+#: The functions that expressions may call.
 CALLS = {"copied": copied, "asked": asked}
 
 

@@ -17,7 +17,7 @@ FRAME = [np.array(SQUARE) * 3, np.array(SQUARE)[::-1]]
 STAR = [(math.cos(0.2 * math.pi * k) * (3 - k % 2 * 2), math.sin(0.2 * math.pi * k) * (3 - k % 2 * 2)) for k in range(10)]  # fmt: skip  # noqa: E501
 THIN = [(0.0, 0.0), (5.0, 0.0), (5.0, 2.0**-10)]
 TOUCHING = [(0.0, 0.0), (2.0, 0.0), (0.0, 2.0), (0.0, 1.0), (1e-3, 1.0), (0.0, 0.5)]
-#: What mitres of a ring of 24 sides have in it of their length.
+#: The share of its length that a mitre of a ring of 24 sides keeps.
 MITRE = math.cos(math.pi / 24)
 UP = [(0, 0, 0), (0, 0, 4)]
 

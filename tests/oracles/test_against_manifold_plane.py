@@ -113,7 +113,7 @@ VERBS: dict[str, Verb] = {
 }
 
 
-#: What manifold3d gets wrong, and why.
+#: The errors of manifold3d, and the reasons.
 WRONG_THERE = {
     ("offset inwards", "needle"): "what is thinner than the offset comes back larger",
     ("extrude twisted", "needle"): "the turned walls cross, which leaves a negative volume",

@@ -97,7 +97,7 @@ FIELDS: list[Verb] = [
     lambda p: 0.2 + 0 * p[:, 0],
 ]
 
-#: Where bodies are cut; of the special ones none in a face, for there the two differ.
+#: Heights at which bodies are cut; of the special ones none in a face, for there the two differ.
 HEIGHTS = [0.5, 0.1, 0.3, 0.2, 1.5, 0.5, 0.25, 1.5, 0.5, 5e-4]
 
 SIZES: list[tuple[float, float, float]] = [

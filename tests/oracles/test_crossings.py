@@ -1,4 +1,4 @@
-"""Whether triangles cross, recounted with fractions; and that no delivered mesh does."""
+"""Crossings of triangles, recounted with fractions; and no delivered mesh has any."""
 
 import random
 from itertools import combinations
@@ -26,7 +26,7 @@ FRACTIONS = 40 if DEEP else 24
 #: Of the coarsest operand: given doubles lie up to half of it off the lattice, on each axis.
 STEP = 1e-9
 
-#: How far single precision moves a corner, in spacings: half of one by rounding, four by mending.
+#: The most that single precision moves a corner, in spacings: half by rounding, four by mending.
 MOST = 5
 
 
@@ -208,7 +208,7 @@ def test_what_single_precision_leaves_is_numbered_anew(
 
 
 def is_mended_by_uniting(mesh: "b.Mesh", reach: float) -> bool:
-    """Whether a mesh settles in single precision after all; say what else must be so."""
+    """Say whether a mesh settles in single precision after all; assert what else must be so."""
     delivered, findings = settled(mesh)
     assert (delivered.vertices == delivered.vertices.astype(np.float32)).all()
     assert_closed(delivered.faces)

@@ -33,7 +33,7 @@ SMALL, DECIMALS = entries(20), entries(9999, 3)
 
 
 def written(number: Fraction) -> bool:
-    """Whether a double is written as this number."""
+    """Say whether a double is written as this number."""
     return Fraction(repr(float(number))) == number
 
 
@@ -234,7 +234,7 @@ def test_half_spaces_alone_choose_a_finer_lattice() -> None:
     "height", [1 / 3, 0.1 + 0.2, 1.2345678905, 0.0000000025, float(np.float32(0.1))]
 )
 def test_a_plane_at_a_coordinate_of_a_mesh_meets_its_face(height: float) -> None:
-    """What no lattice plane holds goes where the mesh's coordinates go."""
+    """A plane that the lattice does not hold goes where the mesh's coordinates go."""
     box = b.box((1, 1, height))
     below = b.half_space((0, 0, 1), height)
     assert box <= below

@@ -186,7 +186,7 @@ def bars() -> Any:
 
 
 def covered(bars: Any, upper: int, lower: int, random: np.random.Generator) -> bool:
-    """Whether one bar hides the other somewhere, and nowhere the other way round."""
+    """Say whether one bar hides the other somewhere, and nowhere the other way round."""
     seen = set()
     for weights in random.dirichlet(np.ones(3), 400):
         x, y, _ = weights @ bars[lower]

@@ -1,4 +1,4 @@
-"""What rounding to doubles does to triangles, recounted with fractions."""
+"""The effect on triangles of rounding to doubles, recounted with fractions."""
 
 from fractions import Fraction
 from typing import Any

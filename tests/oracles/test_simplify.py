@@ -16,7 +16,7 @@ from support.degenerate import scene
 SCENES = 2_000 if DEEP else 80
 FIRST = 1_000
 
-#: What distances of samples may be off by, for coordinates of size 1.
+#: The most that distances of samples may be off by, for coordinates of size 1.
 EPSILON = 1e-12
 
 

@@ -1,4 +1,4 @@
-"""What the tool says, word for word, in the situations that people meet first."""
+"""The words of the tool, verbatim, in the situations that people meet first."""
 
 import io
 import json

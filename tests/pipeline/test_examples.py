@@ -38,7 +38,7 @@ def test_example(example: Path, tmp_path: Path) -> None:
         assert_model(example.stem, done.stdout)
 
 
-#: What models say of themselves, beside being closed and certified.
+#: The words that models say of themselves, beside being closed and certified.
 TOLD = {
     "14_enclosure": "the closed lid and the body share 0.0 mm³",
     "16_bolt_and_nut": "bolt and nut share 0.0 mm³\nclearance between them: 0.1 mm",

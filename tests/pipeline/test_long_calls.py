@@ -13,11 +13,11 @@ import pytest
 import bspcsg as b
 from support.cli import heed_interrupts
 
-#: How long a call may go on after the signal, on a loaded machine, in seconds.
+#: The time that a call may go on after the signal, on a loaded machine, in seconds.
 SOON = 2.0
 
-#: How long saving some hundred thousand triangles may work without hearing a signal, in seconds of
-#: the processor.
+#: The time for which saving some hundred thousand triangles may work without hearing a signal, in
+#: seconds of the processor.
 DEAF = 0.1
 
 _COMMON = """
@@ -45,7 +45,7 @@ def arrays(solids):
     return np.concatenate(vertices), np.concatenate(faces)
 """
 
-#: What a call needs, and the call. Each takes far longer than the test waits.
+#: The needs of a call, and the call. Each takes far longer than the test waits.
 CALLS = {
     "half-spaces in one expression": (
         "cuts = [b.half_space(tuple(rng.normal(size=3)), 1.0) for _ in range(60_000)]",

@@ -16,7 +16,7 @@ from bspcsg.report.viewer.view import view_page
 from support.browser import Browser, started
 from support.results import records, write_results
 
-#: What the view of `_parts` looked like, as small as its shapes can be told apart.
+#: The reference picture of the view of `_parts`, as small as its shapes can be told apart.
 _REFERENCE = Path(__file__).parent.parent / "corpus" / "pictures" / "view.png"
 
 _DRAWN = "document.querySelector('.stage[data-drawn]')"

@@ -1,4 +1,4 @@
-"""What makes the command line pleasant every day: one test for each thing that once was not."""
+"""The command line is pleasant every day: one test for each thing that once was not."""
 
 import json
 import os

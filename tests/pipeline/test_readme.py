@@ -1,4 +1,4 @@
-"""What the README shows is what happens: its code runs, its output is right, its files exist."""
+"""The README shows what happens: its code runs, its output is right, its files exist."""
 
 import os
 import re

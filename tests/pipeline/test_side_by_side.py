@@ -13,7 +13,7 @@ from bspcsg.csg import read_scad
 from manual_side import PARTS, TOOLS, lines, script
 from support import DEEP
 
-#: How far volumes may differ: tools make balls, curves and letters of other facets.
+#: The most by which volumes may differ: tools make balls, curves and letters of other facets.
 _ROUNDNESS = 0.015
 
 #: Parts for which another tool has fewer lines; their remarks say why.

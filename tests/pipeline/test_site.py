@@ -27,7 +27,7 @@ _FETCHED = re.compile(r"(?:url\(|@import |fetch\(|src=)['\"]?(?:https?:)?//[^'\"
 
 
 class _Page(HTMLParser):
-    """What a page loads, where it leads, and the places on it."""
+    """The files that a page loads, the links that it has, and the places on it."""
 
     def __init__(self, path: Path) -> None:
         super().__init__()

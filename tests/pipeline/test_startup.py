@@ -1,4 +1,4 @@
-"""What the command line imports before it works: only what the verb at hand needs."""
+"""The command line imports only what the verb at hand needs before it works."""
 
 import shutil
 import subprocess
@@ -9,8 +9,8 @@ import pytest
 
 import bspcsg as b
 
-#: What costs a tenth of a second or more, or comes with dozens of modules, and no small boolean
-#: of STL files needs. numpy.unique imports numpy.ma, xml.sax.saxutils imports urllib.request.
+#: Modules that cost a tenth of a second or more, or come with dozens of others; no small boolean
+#: of STL files needs them. numpy.unique imports numpy.ma, xml.sax.saxutils imports urllib.request.
 HEAVY = [
     "PIL",
     "email",

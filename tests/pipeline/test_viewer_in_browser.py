@@ -1,4 +1,4 @@
-"""What the view of a model can do, in a real browser."""
+"""The view of a model works in a real browser."""
 
 import base64
 import io

@@ -1,4 +1,4 @@
-"""What packages hold, and that a fault in one is named; wheels are built by scripts/wheel."""
+"""Packages hold what they should, and a fault in one is named; scripts/wheel builds the wheels."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""What must not matter: order of faces, corner a face starts at, axes, place, threads."""
+"""Results do not depend on the order of faces, corner a face starts at, axes, place, threads."""
 
 from collections.abc import Iterator
 from itertools import permutations, product

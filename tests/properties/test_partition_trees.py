@@ -1,4 +1,4 @@
-"""What every partition tree keeps: its facets, their sides, and itself when moved or rebuilt."""
+"""The invariants of partition trees: their facets, the sides, and themselves moved or rebuilt."""
 
 from collections import defaultdict
 from fractions import Fraction

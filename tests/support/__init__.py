@@ -1,6 +1,6 @@
-"""What the tests share: plain shapes as arrays, and what a sound result must satisfy."""
+"""The common part of the tests: plain shapes as arrays, and the checks of a sound result."""
 
 import os
 
-#: Whether to take the time for everything, as `scripts/check --deep` does.
+#: True to take the time for everything, as `scripts/check --deep` does.
 DEEP = bool(os.environ.get("BSPCSG_DEEP"))

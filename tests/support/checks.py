@@ -1,4 +1,4 @@
-"""What every result must satisfy, whoever asks."""
+"""The checks that every result must pass, whoever asks."""
 
 import manifold3d
 import numpy as np

@@ -29,10 +29,10 @@ _BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 RUN = ("console", "python")
 SHOWN = ("json", "openscad", "py", "text", "yaml")
 
-#: What only a shell can do.
+#: The signs of what only a shell can do.
 _SHELL = re.compile(r"[|<>;&`]|\$[^?]|\n")
 
-#: What a shell prints before the further lines of a command.
+#: The prompt of a shell before the further lines of a command.
 _GOES_ON = "> "
 
 #: A line that stands for any number of lines.
@@ -41,7 +41,7 @@ ANYTHING = "…"
 
 @dataclass
 class Session:
-    """What the blocks of one page share: variables, and the last exit code."""
+    """The state that the blocks of one page share: variables, and the last exit code."""
 
     variables: dict[str, Any] = field(default_factory=dict)
     code: int = 0
@@ -108,7 +108,7 @@ def expected_of(block: str) -> list[str]:
 
 
 def same(printed: str, shown: str) -> bool:
-    """Whether an output is the one that is shown, but for times, versions and sizes."""
+    """Say whether an output is the one that is shown, but for times, versions and sizes."""
     pattern = "\n".join(re.escape(line) for line in _lines(shown))
     anything = re.escape(ANYTHING)
     pattern = re.sub(rf"^{anything}$", r"[\\s\\S]*", pattern, flags=re.MULTILINE)

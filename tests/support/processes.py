@@ -56,7 +56,7 @@ def triangles(solid: b.Solid) -> set[tuple[Corner, Corner, Corner]]:
 
 
 def same(one: b.Solid, other: b.Solid) -> bool:
-    """Whether two solids have the same triangles in every bit, and are the same set."""
+    """Say whether two solids have the same triangles in every bit, and are the same set."""
     return triangles(one) == triangles(other) and one.equals(other)
 
 
@@ -265,7 +265,7 @@ def handler() -> None:
 
 
 def threads() -> None:
-    """What says how many threads there are says so in a child, too."""
+    """The settings of the number of threads hold in a child, too."""
     count = int(os.environ["RAYON_NUM_THREADS"])
 
     def running() -> int:

@@ -22,7 +22,7 @@ MESHES = REPOSITORY / "examples" / "meshes"
 #: A line for each result: its name and its word.
 RECORD = REPOSITORY / "tests" / "corpus" / "bytes.tsv"
 
-#: What each pair is combined by.
+#: The operations by which each pair is combined.
 OPERATIONS: dict[str, Callable[["b.Solid", "b.Solid"], "b.Solid"]] = {
     "or": lambda x, y: x | y,
     "and": lambda x, y: x & y,

@@ -1,4 +1,4 @@
-"""What a mesh says besides its shape, through operations, transforms and copies."""
+"""The attributes of a mesh besides its shape, through operations, transforms and copies."""
 
 import pickle
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What the bench is made of: its meshes, its bounds, and what counts as reached."""
+"""The parts of the bench: its meshes, its bounds, and what counts as reached."""
 
 from fractions import Fraction
 from pathlib import Path

@@ -73,7 +73,7 @@ def test_svg_fill_rules(tmp_path: Path) -> None:
 
 BOMB = '<!DOCTYPE svg [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]><svg>&b;</svg>'
 OUTSIDE = '<!DOCTYPE svg [<!ENTITY a SYSTEM "file:///etc/passwd">]><svg>&a;</svg>'
-#: What most programs write.
+#: The document type that most programs write.
 DOCTYPE = (
     '<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN"'
     ' "http://www.w3.org/Graphics/SVG/1.1/DTD/svg11.dtd">'

@@ -305,6 +305,6 @@ def test_trees_of_other_dimensions_cannot_become_such_a_set(
 
 
 def test_constructors_of_other_dimensions_are_not_inherited() -> None:
-    """What makes a set of any dimension would make another one than the class it is asked for."""
+    """A maker of sets of any dimension would make another one than the class it is asked for."""
     for kind in (bsp.Region, bsp.Intervals):
         assert not any(hasattr(kind, name) for name in ("half_space", "from_mesh"))

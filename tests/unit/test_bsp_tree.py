@@ -403,7 +403,7 @@ class TestPerfect:
 
 
 def has_perfect(segments: list[Any]) -> bool:
-    """Whether some order of pivots cuts nothing, by trying all."""
+    """Say whether some order of pivots cuts nothing, by trying all."""
 
     def side(pivot: Any, point: Any) -> int:
         (x, y), (u, v) = pivot

@@ -1,4 +1,4 @@
-"""Which cases a command line means."""
+"""The cases that a command line means."""
 
 import json
 from collections import Counter

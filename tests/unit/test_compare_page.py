@@ -26,7 +26,7 @@ def names(cell: str) -> list[str]:
 
 
 def is_ours(name: str) -> bool:
-    """Whether a name is one of the package's, of a class's, or of a submodule's."""
+    """Say whether a name is one of the package's, of a class's, or of a submodule's."""
     owner = b
     for part in name.removeprefix("b.").split("."):
         if not hasattr(owner, part):

@@ -1,4 +1,4 @@
-"""What CONTRIBUTING names is there, and its walks go from file to file in one direction."""
+"""CONTRIBUTING names things that are there, and its walks go from file to file in one direction."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What is wrong with a script, and what is left out of it."""
+"""The errors of a script, and the parts that are left out of it."""
 
 from pathlib import Path
 

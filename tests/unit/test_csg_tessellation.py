@@ -1,4 +1,4 @@
-"""How many sides round things of scripts have."""
+"""The number of sides of round things in scripts."""
 
 import math
 

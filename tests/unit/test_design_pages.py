@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 ARCHITECTURE = ROOT / "core" / "ARCHITECTURE.md"
 PAGES = [ARCHITECTURE, *sorted((ROOT / "docs" / "design").glob("*.md"))]
 
-#: Where the paths of a page may start, and so a path may be shortened to its end.
+#: The folders where the paths of a page may start, and so a path may be shortened to its end.
 _STARTS = (ROOT, ROOT / "core", ROOT / "core" / "src")
 
 _PLACE = re.compile(r"`([\w.]+(?:/[\w.{},]+)+/?|[\w.]+\.(?:rs|py|md))(?:::(\w+))?`")

@@ -1,4 +1,4 @@
-"""What `scripts/fuzz` makes of libFuzzer's words, and how runs add up in its record."""
+"""`scripts/fuzz` reads libFuzzer's words, and runs add up in its record."""
 
 import json
 from pathlib import Path

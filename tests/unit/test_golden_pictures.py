@@ -1,4 +1,4 @@
-"""What the renderers draw, against pictures that are kept in `tests/golden`.
+"""The drawings of the renderers, against pictures that are kept in `tests/golden`.
 
 A picture may differ by a few pixels. `support.rasters` says how they are compared and kept.
 """

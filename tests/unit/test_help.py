@@ -1,4 +1,4 @@
-"""What `help` prints of the public functions can be read: names of types, not what they are."""
+"""The text of `help` on the public functions can be read: names of types, not what they are."""
 
 import inspect
 import pydoc

@@ -41,7 +41,7 @@ MATERIALS = {
     "my glass": b.Material((0.2, 0.4, 0.6, 0.8), PIXEL),
 }
 
-#: What each form of each format holds of these.
+#: The attributes of these that each form of each format holds.
 HELD: dict[str, set[str]] = {
     ".ply": {
         *["color", "weight", "pair", "rank", "flag", "uv", "normal", "heat", "tint", "id", "area"]

@@ -1,4 +1,4 @@
-"""What is written is proved before it gets its name: damage of every kind keeps the old file."""
+"""Files are proved before they get their names: damage of every kind keeps the old file."""
 
 import dataclasses
 from collections.abc import Callable, Iterator

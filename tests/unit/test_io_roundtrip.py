@@ -1,4 +1,4 @@
-"""What was written reads back: sets, names, units; and what is lost is said."""
+"""Written files read back as they were: sets, names, units; and what is lost is said."""
 
 import zipfile
 from pathlib import Path

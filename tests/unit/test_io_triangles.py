@@ -1,4 +1,4 @@
-"""What single precision does to triangles, counted exactly."""
+"""The effect of single precision on triangles, counted exactly."""
 
 from fractions import Fraction
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What is absurdly large or damaged is refused early, with a sentence."""
+"""Absurdly large or damaged input is refused early, with a sentence."""
 
 import io
 import time

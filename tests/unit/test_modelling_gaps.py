@@ -1,4 +1,4 @@
-"""How far apart solids are, against an exact look at all pairs of triangles."""
+"""The distance of solids, against an exact look at all pairs of triangles."""
 
 import math
 import time

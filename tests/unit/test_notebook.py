@@ -1,4 +1,4 @@
-"""What notebooks show for a solid."""
+"""The views of a solid in notebooks."""
 
 import html
 import io

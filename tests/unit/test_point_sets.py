@@ -16,7 +16,7 @@ from bspcsg.solid.point_set import PointSet
 
 @dataclass(frozen=True)
 class Kind:
-    """How to make a box from one number to another on all axes, and half-spaces."""
+    """The makers of a box from one number to another on all axes, and of half-spaces."""
 
     dimension: int
     box: Callable[[float, float], Any]

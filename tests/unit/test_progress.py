@@ -10,7 +10,7 @@ import bspcsg as b
 
 
 class StopError(Exception):
-    """What the caller raises."""
+    """The error that the caller raises."""
 
 
 def slow() -> b.Solid:

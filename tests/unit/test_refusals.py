@@ -1,4 +1,4 @@
-"""What each public function does with values that make no sense: an error with a code, at once.
+"""Each public function refuses values that make no sense: with an error that has a code, at once.
 
 Every parameter of every function is given every bad value, the others stay good. A new function
 that is missing here fails the test of completeness.
@@ -209,7 +209,7 @@ ROWS: dict[str, Row] = {
     "Material": (b.Material, {"color": (1, 0, 0)}),
 }
 
-#: What is tested elsewhere: a script takes a process of its own, options are those of others.
+#: Functions tested elsewhere: a script takes a process of its own, options are those of others.
 ELSEWHERE = {"run_script", "Solid.check", "Solid.validate"}
 
 #: Whatever is wrong for every parameter but those of `TAKEN`.
@@ -223,7 +223,7 @@ NEVER: dict[str, Any] = {
     "objects": np.array([object()] * 3),
 }
 
-#: What makes sense for some parameters.
+#: Values that make sense for some parameters.
 AT_TIMES: dict[str, Any] = {
     "infinity": math.inf,
     "a word": "no such word",

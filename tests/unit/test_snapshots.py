@@ -1,4 +1,4 @@
-"""What pickles hold: bytes with a checksum, looked at in full before use."""
+"""The content of pickles: bytes with a checksum, looked at in full before use."""
 
 import random
 import zlib

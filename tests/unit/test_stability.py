@@ -1,4 +1,4 @@
-"""What the page on stability promises is what the code has."""
+"""The code has what the page on stability promises."""
 
 import json
 import re

@@ -18,7 +18,7 @@ DEFAULT = "#9db9d6"
 
 _NAMES = {"white": "#ffffff", "black": "#000000"}
 
-#: Where the light comes from: to the right, upwards, and away from the viewer.
+#: The direction that the light comes from: the right, above, and away from the viewer.
 _LIGHT = np.array([-0.25, 0.45, -0.85])
 _LIGHT /= np.linalg.norm(_LIGHT)
 _AMBIENT = 0.35

@@ -1,4 +1,4 @@
-"""What a picture consists of: polygons in pixels, in the order in which they are painted."""
+"""The content of a picture: polygons in pixels, in the order in which they are painted."""
 
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
@@ -26,7 +26,7 @@ _NEAR = 1e-6
 #: Cosine between normal and view up to which a facet is seen edge-on: its sign is rounding.
 _EDGE_ON = 1e-9
 
-#: How far beyond its frame a picture is painted, in pixels.
+#: Pixels by which a picture is painted beyond its frame.
 _BLEED = 8.0
 
 

@@ -1,4 +1,4 @@
-"""What rays are cast at: points, segments or triangles out of whatever holds them."""
+"""The targets of rays: points, segments or triangles out of whatever holds them."""
 
 from dataclasses import dataclass
 from typing import Any

@@ -1,4 +1,4 @@
-"""What a ray does to a tree that counts, step by step, and what the tree is then."""
+"""The work of a ray on a tree that counts, step by step, and the tree after it."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal

@@ -8,7 +8,7 @@ from ..._types import FloatArray
 from ...mesh.distance import nearest_on_triangles
 from .pieces import Pieces
 
-#: How many pairs of point and piece are looked at together.
+#: Most pairs of point and piece that are looked at together.
 _PAIRS = 1 << 20
 
 

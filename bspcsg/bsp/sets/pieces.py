@@ -1,15 +1,15 @@
-"""What a partition tree shows of itself: pieces, nodes, and the names of its cases."""
+"""The visible parts of a partition tree: pieces, nodes, and the names of its cases."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, TypeAlias
 
 from ..._types import FloatArray, IndexArray, Scalar
 
-#: How a tree is divided: axis-parallel cuts above the facets in random order, or the hyperplanes of
-#: the facets alone, in random order, in the order given, or those that cut the fewest others first.
+#: The division of a tree: axis-parallel cuts above the facets in random order, or the hyperplanes
+#: of the facets alone, in random order, in the order given, or those first that cut the fewest.
 BuildPolicy: TypeAlias = Literal["balanced", "random", "first", "fewest-splits"]
 
-#: How a root and a splitting hyperplane lie to each other (see `split_case`).
+#: The position of a root and a splitting hyperplane to each other (see `split_case`).
 SplitCase: TypeAlias = Literal[
     "leaf", "same", "opposite", "minus-minus", "minus-plus", "plus-minus", "plus-plus", "crossing"
 ]
@@ -71,7 +71,7 @@ class NodeTable:
     plus: IndexArray
     coefficients: tuple[tuple[int, ...], ...] = ()
 
-    #: What `minus` and `plus` hold for leaves.
+    #: The entries of `minus` and `plus` for leaves.
     OUT: ClassVar[int] = -1
     IN: ClassVar[int] = -2
 

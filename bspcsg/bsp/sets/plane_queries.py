@@ -1,4 +1,4 @@
-"""What can be asked of a region of the plane: outlines, measures, lines, nearest points."""
+"""The queries of a region of the plane: outlines, measures, lines, nearest points."""
 
 import math
 from fractions import Fraction

@@ -36,7 +36,7 @@ from .loops import closed_loops, loop_segments, moved_points
 from .objects import ObjectTree
 from .plane_queries import PlaneQueries, vector2
 
-#: Which winding numbers count as inside, in the plane.
+#: The rules that say which winding numbers count as inside, in the plane.
 FillRule: TypeAlias = WindingRule | Literal["negative"]
 
 

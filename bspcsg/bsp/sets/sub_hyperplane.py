@@ -24,7 +24,7 @@ InnerSet: TypeAlias = Intervals | Region
 #: Hyperplanes count as one if their normals and offsets differ by no more than their rounding.
 _SAME = 1e-12
 
-#: What lies so many steps from the origin reaches to the lattice's border, rounded or not.
+#: Steps from the origin at which a set reaches to the lattice's border, rounded or not.
 _FARTHEST = 2**53 - 4
 
 

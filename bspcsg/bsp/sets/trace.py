@@ -1,4 +1,4 @@
-"""How two sets are merged: the steps of the core, node by node."""
+"""The merging of two sets: the steps of the core, node by node."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 #: A root: a node of an operand in preorder, or a leaf, -1 outside and -2 inside, as in `NodeTable`.
 Root: TypeAlias = int
 
-#: What becomes of a pair of trees: the second is split by the root of the first; a leaf; one of
-#: them as it is, with all its nodes shared, or its complement.
+#: The fate of a pair of trees: the second is split by the root of the first; a leaf; one of them as
+#: it is, with all its nodes shared, or its complement.
 Decision: TypeAlias = Literal[
     "divide",
     "leaf-in",
@@ -26,11 +26,11 @@ Decision: TypeAlias = Literal[
     "second-complement",
 ]
 
-#: What decides a pair: one is a leaf, both are the same nodes, or the complement of each other.
+#: The ground that decides a pair: one is a leaf, both are the same nodes, or complements.
 Because: TypeAlias = Literal["", "first-is-leaf", "second-is-leaf", "same", "complement"]
 
-#: What a node of the first operand has become: itself; a new node with the same cut; a leaf,
-#: because both its sides had become equal ones.
+#: The fate of a node of the first operand: itself; a new node with the same cut; a leaf, because
+#: both its sides had become equal ones.
 Joined: TypeAlias = Literal["shared", "rebuilt", "collapsed-in", "collapsed-out"]
 
 

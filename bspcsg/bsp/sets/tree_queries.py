@@ -1,4 +1,4 @@
-"""What can be asked of a set in any dimension."""
+"""The queries of a set in any dimension."""
 
 from collections.abc import Callable
 from typing import Any

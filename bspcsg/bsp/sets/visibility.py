@@ -1,4 +1,4 @@
-"""What an eye sees: visibility polygons in the plane, visibility volumes in space, exactly.
+"""The view of an eye: visibility polygons in the plane, visibility volumes in space, exactly.
 
 A facet hides what is behind it: the part beyond its hyperplane of the cone under which it is seen.
 What is left of a box without these shadows is what the eye sees.

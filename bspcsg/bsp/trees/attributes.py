@@ -22,7 +22,7 @@ from .asking import lattice_rows
 from .facets import corners_of
 from .node import RegionShape
 
-#: What the leaves are labelled with.
+#: The type of the leaves' labels.
 Label = TypeVar("Label")
 
 #: The labels of the two sides of a new cut: those of the region, or one for each side.

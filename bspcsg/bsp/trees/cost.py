@@ -1,4 +1,4 @@
-"""How good a partition tree is: its expected cost and its size.
+"""The quality of a partition tree: its expected cost and its size.
 
 The cost of the notes, C(T) = 1 + P⁻ C(T⁻) + P⁺ C(T⁺) with C = 0 for an empty region, is the
 expected number of nodes that a query visits. With P± = μ(R(T±)) / μ(R(T)) the products along each

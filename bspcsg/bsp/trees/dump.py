@@ -13,7 +13,7 @@ from ...errors import BspcsgError, FormatError, core_errors, invalid_parameter
 if TYPE_CHECKING:
     from .tree import PartitionTree
 
-#: What a stored tree is made of again: its core object, its lenience and its margin.
+#: The parts that make a stored tree again: its core object, its lenience and its margin.
 Parts: TypeAlias = tuple[FragmentTree, tuple[bool, bool], float]
 
 _FORMAT = "bspcsg partition tree"

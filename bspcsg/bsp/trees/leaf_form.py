@@ -15,7 +15,7 @@ from ..._types import IndexArray
 if TYPE_CHECKING:
     from .tree import PartitionTree
 
-#: What `LeafForm.minus` and `LeafForm.plus` hold for an empty leaf; fragment k is EMPTY - 1 - k.
+#: An empty leaf in `LeafForm.minus` and `LeafForm.plus`; fragment k is EMPTY - 1 - k.
 EMPTY = -1
 
 

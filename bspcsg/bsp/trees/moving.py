@@ -12,7 +12,7 @@ from ...errors import LimitError, core_errors, invalid_parameter
 from ...geometry.arrays import doubles
 from ...geometry.hyperplane import exact_number
 
-#: What the rows of cuts have for an axis if the cut is a hyperplane of the tree's own.
+#: The axis in the rows of cuts if the cut is a hyperplane of the tree's own.
 _OWN = -2
 
 #: Lattice coordinates are below this many steps.

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 #: The two sides of a hyperplane; minus is inside.
 Side = Literal["minus", "plus"]
 
-#: What the rows of cuts have for an axis if a facet gave the cut.
+#: The axis in the rows of cuts if a facet gave the cut.
 _PIVOT = -1
 
 #: A bounded convex region: (2,) ends in 1D, (k, 2) corners counterclockwise in 2D, a list of

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from ..._core import _DivisionRow, _RayEventRow
     from .tree import PartitionTree
 
-#: Why a hyperplane divides a region: a policy's name; "median" for an axis-parallel cut of a long
-#: list; "given" for one that was there; "asked" for the choice of a callable.
+#: The reason of a hyperplane to divide a region: a policy's name; "median" for an axis-parallel cut
+#: of a long list; "given" for one that was there; "asked" for the choice of a callable.
 Reason: TypeAlias = Literal[
     "first",
     "random",

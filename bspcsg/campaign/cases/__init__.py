@@ -1,1 +1,1 @@
-"""What a campaign examines: cases, where they are from, and in which pose."""
+"""The cases that a campaign examines, their sources, and their poses."""

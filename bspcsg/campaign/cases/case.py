@@ -14,7 +14,7 @@ from ..record import Kind
 #: Operations on solids, in the order in which they are asked.
 OPERATIONS = ("union", "difference", "intersection", "xor")
 
-#: What a whole script is, beside the operations.
+#: The name of the operation that runs a whole script.
 SCRIPT = "csg"
 
 #: Digits of a key: of 2^64 keys, a million cases share two with a chance of 3e-8.

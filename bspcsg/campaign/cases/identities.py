@@ -5,7 +5,7 @@ from ...solid.measure import volume_residues
 from ...solid.solid import Solid
 from ..record import IdentityRecord
 
-#: What volumes are compared modulo; see `volume_residues`.
+#: The moduli by which volumes are compared; see `volume_residues`.
 _PRIMES = (2**61 - 1, 2**61 - 31)
 
 #: For each operation the equation, and how often A, B and their intersection count in its volume.

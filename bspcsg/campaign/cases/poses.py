@@ -1,4 +1,4 @@
-"""How the second of two meshes is placed on the first: at random, or so that parts coincide.
+"""The placing of the second of two meshes on the first: at random, or so that parts coincide.
 
 A pose is an affine map, given by the three rows of its matrix, which is applied to the vertices as
 they were read, in double precision.

@@ -1,4 +1,4 @@
-"""Which cases a command line means: files, folders, scripts and files of cases."""
+"""The cases that a command line means: files, folders, scripts and files of cases."""
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -17,7 +17,7 @@ from .poses import COINCIDENT
 _SCRIPTS = frozenset({".csg", ".scad"})
 _CASES = ".json"
 
-#: What a file of cases may look like, for messages.
+#: An example of a file of cases, for messages.
 _EXAMPLE = '{"cases": [{"operation": "union", "operands": [{"file": "a.stl"}, {"file": "b.stl"}]}]}'
 
 

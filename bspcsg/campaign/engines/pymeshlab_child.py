@@ -14,7 +14,7 @@ import numpy as np
 
 MISSING = 6
 
-#: What pymeshlab says when it cannot keep a result in which nothing is left.
+#: The words of pymeshlab when it cannot keep a result in which nothing is left.
 _EMPTY = "Vertex matrix is empty"
 
 #: The boolean filters: exact, by mesh arrangements with CGAL's kernel inside libigl.

@@ -1,4 +1,4 @@
-"""What is asked of another engine, and what it answers."""
+"""Questions to another engine, and its answers."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

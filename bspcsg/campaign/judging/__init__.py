@@ -1,1 +1,1 @@
-"""What a case comes to: its evaluation, opinions on it, and the ruling."""
+"""The judging of a case: its evaluation, opinions on it, and the ruling."""

@@ -1,4 +1,4 @@
-"""What comes of one case: our answer, the other engines', and how they compare."""
+"""The evaluation of one case: our answer, the other engines', and the comparison of them."""
 
 import time
 import warnings

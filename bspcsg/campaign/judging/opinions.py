@@ -34,7 +34,7 @@ ENGINES = {
 #: Points at which crossings are counted, half of them beside the surfaces.
 _POINTS = 24
 
-#: How far beside, by the size of the model.
+#: The distance of these from the surfaces, by the size of the model.
 _BESIDE = 1e-4
 
 

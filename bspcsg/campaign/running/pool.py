@@ -1,4 +1,4 @@
-"""Who answers requests: children of this process, as many at once as it has been told."""
+"""The pool that answers requests: children of this process, as many at once as it has been told."""
 
 import queue
 import threading

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ...assembly.clashes import Clash
     from ...assembly.tree import Assembly
 
-#: What else it takes.
+#: The other form of its operands, for messages.
 _ONE = ", or the name of one mesh or .csg file with several objects, all of them closed."
 
 _EPILOG = """\b

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ...solid.solid import Solid
 
 
-#: What needs no quotes on the command line; an expression is not taken for a text.
+#: Words that need no quotes on the command line; an expression is not taken for a text.
 _PLAIN_WORD = re.compile(r"[A-Za-z_][\w.-]*")
 
 

@@ -40,10 +40,10 @@ Examples:
   bspcsg validate model.csg cases.json --against pymeshlab,openscad
 """
 
-#: How many failures are named at the end; the results file has all.
+#: Most failures that are named at the end; the results file has all.
 _NAMED = 20
 
-#: Why operands were refused is told as often without -v.
+#: Most reasons for refusing operands that are told without -v.
 _REASONS = 3
 
 _FILE = click.Path(path_type=Path, readable=False)

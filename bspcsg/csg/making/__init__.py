@@ -1,1 +1,1 @@
-"""What nodes are made of: numbers of sides, offsets, drawings, height fields."""
+"""The making of nodes: numbers of sides, offsets, drawings, height fields."""

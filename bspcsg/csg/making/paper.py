@@ -23,7 +23,7 @@ _LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%]*)\s*")
 #: Chords of a Bézier curve, and of a quarter of a circle or an ellipse.
 _CURVE_STEPS, _QUARTER_STEPS = 20, 10
 
-#: What is left of a whole number of steps by rounding.
+#: The rest that rounding leaves of a whole number of steps.
 _ROUNDING = 1e-6
 
 #: Lines that say less of their width, in user units, are one wide.

@@ -1,4 +1,4 @@
-"""What six digits took away: rotations that are not quite, faces that no longer meet."""
+"""The mending of what six digits took away: inexact rotations, and faces that no longer meet."""
 
 import math
 from collections.abc import Sequence

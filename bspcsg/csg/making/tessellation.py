@@ -1,4 +1,4 @@
-"""How many sides round things get: OpenSCAD's rules, so that results have the same corners.
+"""The number of sides of round things: OpenSCAD's rules, so that results have the same corners.
 
 ``$fn`` above 0 is the number of sides; otherwise ``$fa``, the smallest angle of a side in degrees,
 and ``$fs``, its smallest length, say what is enough. Source: OpenSCAD's user manual, "Special

@@ -1,4 +1,4 @@
-"""What stands for a node that is left out, and which errors leave one out."""
+"""The stand-in for a node that is left out, and the errors that leave one out."""
 
 from pathlib import PurePath
 

@@ -1,4 +1,4 @@
-"""Which function makes which node."""
+"""The table of functions by the nodes that they make."""
 
 import warnings
 from collections.abc import Callable, Sequence
@@ -14,7 +14,7 @@ from ...solid.solid import Solid
 from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 
-#: What a node stands for; None is nothing at all, which has no dimension.
+#: The shape that a node stands for; None is nothing at all, which has no dimension.
 Geometry: TypeAlias = Solid | Region | None
 
 

@@ -12,7 +12,7 @@ from .writer import value_text
 #: Larger numbers stand for no length or angle; products of three still are doubles.
 LARGEST = 1e100
 
-#: What an error shows of a value.
+#: Most characters of a value that an error shows.
 _QUOTED = 40
 
 

@@ -1,11 +1,11 @@
-"""What openscad made of a script: errors name its lines, which are not the script's."""
+"""The file that openscad made of a script: errors name its lines, which are not the script's."""
 
 import re
 from dataclasses import dataclass
 
 from ...errors import BspcsgError
 
-#: How much of a line an error quotes.
+#: Most characters of a line that an error quotes.
 _QUOTED = 100
 
 _COMMENT = re.compile(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)

@@ -20,7 +20,7 @@ WORD = re.compile(
 _ESCAPE = re.compile(r"\\(x[0-7][0-9a-fA-F]|u[0-9a-fA-F]{4}|U[0-9a-fA-F]{6}|.)", re.DOTALL)
 _CONTROLS = {"n": "\n", "t": "\t", "r": "\r"}
 
-#: How much of an offending word an error quotes.
+#: Most characters of an offending word that an error quotes.
 _QUOTED = 24
 
 

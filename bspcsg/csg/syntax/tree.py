@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeAlias
 from ...errors import BspcsgError
 from .intermediate import Intermediate
 
-#: What an argument may be: a number, a text, true or false, undef (None), or a vector of values.
+#: An argument: a number, a text, true or false, undef (None), or a vector of values.
 Value: TypeAlias = "float | str | bool | tuple[Value, ...] | None"
 
 

@@ -1,4 +1,4 @@
-"""What a GLB file claims, checked before anything is decoded: sizes, ranges, the tree of nodes."""
+"""Claims of a GLB file, checked before anything is decoded: sizes, ranges, the tree of nodes."""
 
 import json
 from dataclasses import dataclass
@@ -10,11 +10,11 @@ from ..source import Source
 _MAGIC, _HEADER = b"glTF", 12
 _JSON, _BINARY = b"JSON", b"BIN\0"
 
-#: How many bytes a component has, and how many components an element, by glTF's names.
+#: Bytes of a component, and components of an element, by glTF's names.
 _COMPONENT = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
 _ELEMENT = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 
-#: How many triangles all nodes together may show, and how deep nodes may lie in one another.
+#: Most triangles that all nodes together may show, and most nodes that may lie in one another.
 _MOST_TRIANGLES = 1 << 27
 _DEEPEST = 64
 

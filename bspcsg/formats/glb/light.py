@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ..._types import FloatArray
 
-#: Where the straight part of the curve ends, on the screen and in light, and its slope.
+#: The end of the straight part of the curve, on the screen and in light, and its slope.
 _DARK, _DARK_LIGHT, _SLOPE = 0.04045, 0.0031308, 12.92
 
 #: Of the curve above.

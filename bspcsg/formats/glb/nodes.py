@@ -1,4 +1,4 @@
-"""What the nodes of a GLB show: triangles in single precision under a matrix, node by node."""
+"""The content of the nodes of a GLB: triangles in single precision under a matrix, node by node."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -25,7 +25,7 @@ Named: TypeAlias = list[tuple[str, Material]]
 #: glTF's names of attributes that everybody knows.
 _KNOWN = {"NORMAL": "normal", "TEXCOORD_0": "uv", "COLOR_0": "color"}
 
-#: What other attributes are called in files: their names behind this.
+#: The beginning of the names that other attributes have in files; their own names follow.
 _OWN = "_"
 
 #: glTF's number of floats.

@@ -1,4 +1,4 @@
-"""What files of GLB hold."""
+"""The content of files of GLB."""
 
 from ..glb.container import container_of
 from ..glb.file import TO_METRES

@@ -1,4 +1,4 @@
-"""What files of STL, OBJ, OFF and PLY hold."""
+"""The content of files of STL, OBJ, OFF and PLY."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""What archives of 3MF hold."""
+"""The content of archives of 3MF."""
 
 import io
 import zipfile
@@ -27,7 +27,7 @@ def _read(archive: zipfile.ZipFile, name: str) -> bytes:
         return b"".join(iter(lambda: part.read(_PIECE), b""))
 
 
-#: How much is unpacked at once, in bytes.
+#: Bytes that are unpacked at once.
 _PIECE = 1 << 20
 
 

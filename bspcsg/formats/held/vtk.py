@@ -1,4 +1,4 @@
-"""What grids of VTK and VTU hold."""
+"""The content of grids of VTK and VTU."""
 
 import re
 from typing import Any

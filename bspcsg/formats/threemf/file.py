@@ -22,17 +22,17 @@ from .part import MILLIMETRES, ModelPart, PartReader, PlacedObject, parse_xml
 from .properties import properties_of
 from .write import NOTHING
 
-#: How many objects a build may place, and how deep components may lie in one another.
+#: Most objects that a build may place, and most components that may lie in one another.
 _MOST_PLACED = 100_000
 _DEEPEST = 64
 
-#: How many triangles a build may have.
+#: Most triangles that a build may have.
 _MOST_TRIANGLES = 1 << 27
 
 #: Parts in an archive: some 16 MB of its directory. The largest projects of slicers have hundreds.
 _MOST_PARTS = 1 << 14
 
-#: What the parts may unpack to, in bytes: 64 times the archive, and this much for small ones. The
+#: Most bytes that the parts may unpack to: 64 times the archive, and this much for small ones. The
 #: XML of meshes shrinks to a fifth, that of one small part written again and again to a 13th, and
 #: a part of nothing but one letter to a thousandth.
 _MOST_GROWTH, _SMALL = 64, 1 << 26
@@ -43,10 +43,10 @@ _LARGEST = 1 << 31
 #: Bytes that are unpacked at a time.
 _CHUNK = 1 << 20
 
-#: What begins the entry of a part in an archive's directory.
+#: The bytes that begin the entry of a part in an archive's directory.
 _ENTRY = b"PK\x01\x02"
 
-#: What the standard library raises on damaged archives.
+#: The errors that the standard library raises on damaged archives.
 DAMAGES = (
     zipfile.BadZipFile,
     NotImplementedError,

@@ -19,7 +19,7 @@ from .textures import fit_for_parts, named_after
 
 _Entry = TypeVar("_Entry")
 
-#: What corners have that have no colour: white.
+#: The colour of corners that have none: white.
 _WHITE = (255, 255, 255, 255)
 
 

@@ -11,13 +11,13 @@ from xml.sax.saxutils import quoteattr
 
 from ...attributes.material import Material
 
-#: What pictures are related to the model by.
+#: The type of the relation of pictures to the model.
 _TEXTURE = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture"
 
 #: Suffixes of parts by media types.
 _SUFFIXES = {"image/png": "png", "image/jpeg": "jpeg"}
 
-#: What names of parts must not have, not even encoded. Nor may they begin with a dot.
+#: Characters that names of parts must not have, not even encoded. Nor may they begin with a dot.
 _SLASHES = str.maketrans("/\\", "__")
 
 

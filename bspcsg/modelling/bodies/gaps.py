@@ -1,4 +1,4 @@
-"""How far apart solids are, and where they are nearest."""
+"""The distance of solids, and the points where they are nearest."""
 
 import math
 from fractions import Fraction
@@ -17,8 +17,8 @@ from .triangles import least_gaps, nearest_points
 #: Relative error of distances in doubles, of the size of the coordinates: some dozens of roundings.
 _NOISE = 1e-14
 
-#: How many pairs of triangles that doubles cannot tell apart are compared in fractions; each takes
-#: about a millisecond.
+#: Most pairs of triangles that are compared in fractions because doubles cannot tell them apart;
+#: each takes about a millisecond.
 _MOST_EXACT = 64
 
 #: Pairs of triangles that are compared together, which bounds the memory to some 100 MB.

@@ -235,7 +235,7 @@ def _is_even(order: IndexArray) -> BoolArray:
     return even
 
 
-#: How many corners are inside, these first, and a triangle by the edges that its corners lie on.
+#: The number of corners inside, these first, and a triangle by the edges that its corners lie on.
 #: It faces away from the inside if the corners are those at the origin, on x, on y and on z.
 _TRIANGLES = [
     (1, [[0, 1], [0, 2], [0, 3]]),

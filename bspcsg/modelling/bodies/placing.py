@@ -12,7 +12,7 @@ from ...parameters import shown
 from ...solid.counting import counted
 from ...solid.solid import Solid
 
-#: Which place of a solid goes where along an axis: one name for both, or one each.
+#: The place of a solid and the place where it goes along an axis: one name for both, or one each.
 Anchor: TypeAlias = str | tuple[str, str]
 
 _SHARES = {"min": 0.0, "center": 0.5, "max": 1.0}

@@ -1,4 +1,4 @@
-"""How near two triangles are, in doubles or in fractions."""
+"""The distance of two triangles, in doubles or in fractions."""
 
 from typing import Any, TypeAlias
 

@@ -43,7 +43,7 @@ _FOLDED = 2e-8
 #: the new surfaces then meet within a millionth of their size of the mirror.
 _SYMMETRICAL = 1e-6
 
-#: How far cutters overlap behind the mirror between them, as a share of their size, so that no gap
+#: The overlap of cutters behind the mirror between them, as a share of their size, so that no gap
 #: is left.
 _OVERLAP = 0.01
 

@@ -22,7 +22,7 @@ from ...solid.solid import Solid
 #: Height of what is white.
 BRIGHTEST = 100.0
 
-#: What red, green and blue add to brightness.
+#: The shares of red, green and blue in brightness.
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 

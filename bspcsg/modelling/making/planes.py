@@ -12,7 +12,7 @@ from ...solid.leaf import PlaneLeaf
 from ...solid.solid import Solid, from_leaf
 from .skeleton import Skeleton
 
-#: How far beyond a face that is no plane of the lattice its half-space reaches, in lattice steps:
+#: Lattice steps by which a half-space reaches beyond its face, if that is no plane of the lattice:
 #: rounding moved its corners by less than one, and its normal by little more.
 _BEYOND = 20
 

@@ -1,4 +1,4 @@
-"""Whether faces have room for what is taken off along their edges."""
+"""The test whether faces have room for what is taken off along their edges."""
 
 from collections.abc import Iterable, Sequence
 

@@ -12,7 +12,7 @@ from ...errors import invalid_parameter
 from ...geometry.arrays import doubles
 from ...parameters import word
 
-#: How the profile turns on its way.
+#: The way in which the profile turns as it goes.
 Frame: TypeAlias = Literal["parallel", "fixed"]
 
 #: Ends that are nearer than this share of the path's size are one point.

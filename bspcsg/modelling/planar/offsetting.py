@@ -13,7 +13,7 @@ from ...bsp import Region
 from ...errors import InvalidMeshError, LimitError, invalid_parameter
 from ...parameters import number, refuse_many_corners, sides_around, word
 
-#: What corners become where the outline moves away from them.
+#: The form of corners where the outline moves away from them.
 Join: TypeAlias = Literal["round", "miter", "square", "bevel"]
 
 #: Mitred corners may reach this many times the distance: as far as they like.

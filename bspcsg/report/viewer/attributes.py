@@ -1,4 +1,4 @@
-"""What attributes of a mesh look like: its materials, colours, labels and numbers as paints."""
+"""The look of a mesh's attributes: its materials, colours, labels and numbers as paints."""
 
 from collections.abc import Iterator
 

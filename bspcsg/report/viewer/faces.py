@@ -11,7 +11,7 @@ from ...errors import invalid_parameter
 from .layer import Layer
 from .paint import Colours, Labels, Paint
 
-#: Where a scale has no value.
+#: The colour of places without a value on the scale.
 _UNKNOWN = "#9aa2ab"
 
 #: The paints that show layers as their files say they look.

@@ -1,4 +1,4 @@
-"""What a notebook shows for a solid: the interactive view, or a picture."""
+"""The view of a solid in a notebook: the interactive one, or a picture."""
 
 from html import escape
 from typing import TYPE_CHECKING

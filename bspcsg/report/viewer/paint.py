@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from ..._types import FloatArray, IndexArray
 
-#: What has a value of its own.
+#: The parts of a mesh that have a value each.
 At: TypeAlias = Literal["face", "corner"]
 
 #: Colours of labels in their order, taken again from the start after the last.

@@ -1,4 +1,4 @@
-"""How thick a solid is at each of its faces."""
+"""The thickness of a solid at each of its faces."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Which file holds a font: ours, one that is named by its path, or one of the system's."""
+"""The file of a font: ours, one that is named by its path, or one of the system's."""
 
 import os
 import re
@@ -24,7 +24,7 @@ _LONGEST_NAME = 200
 #: Suffixes of font files.
 _SUFFIXES = (".ttf", ".otf", ".ttc", ".otc")
 
-#: Where the flags stand in the table "head" of a font.
+#: The place of the flags in the table "head" of a font.
 _HEAD_FLAGS = slice(16, 18)
 
 #: The longest time that fontconfig may take, in seconds; its first run looks at all fonts.
