@@ -6,11 +6,10 @@
 
 use std::cmp::Ordering;
 
-use super::vertices::NEAR;
 use crate::arith::bounds::{ANGLES_LIMBS, ANGLE_LIMBS, CROSS_LIMBS, NORMAL_LIMBS};
 use crate::arith::Int;
 use crate::geometry::plane::Lattice;
-use crate::geometry::vertex::{Homogeneous, Vertex};
+use crate::geometry::vertex::{Homogeneous, Vertex, NEAR};
 
 /// The ends of an edge and the two points that look at it from either side, at places in doubles
 /// that are near enough for [`NEAR`].

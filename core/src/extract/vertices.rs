@@ -11,7 +11,7 @@ use super::triangulate::Planar;
 use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::arith::Int;
 use crate::geometry::plane::{Lattice, Plane};
-use crate::geometry::vertex::Vertex;
+use crate::geometry::vertex::{Vertex, NEAR};
 
 /// Numbered points; equal points have equal numbers.
 #[derive(Debug, Default)]
@@ -107,10 +107,6 @@ fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
     let near = |i: usize| (place[i] - as_double(nearest[i])).abs() <= place[i].abs() * NEAR;
     ((0..3).all(near) && vertex.is_at(&nearest)).then_some(nearest)
 }
-
-/// The distance that two doubles of one coordinate may have, relative to it: twice three units in
-/// the last place of 2^-52, and room for the rounding of the question.
-pub(super) const NEAR: f64 = 8.0 * f64::EPSILON;
 
 /// A place in doubles with all but some forty leading bits rounded away.
 ///

@@ -12,6 +12,10 @@ use super::residue::residue;
 use crate::arith::convert::as_double;
 use crate::arith::Int;
 
+/// The distance that two doubles of one coordinate may have, relative to it: twice three units in
+/// the last place of 2^-52, and room for the rounding of the question.
+pub const NEAR: f64 = 8.0 * f64::EPSILON;
+
 /// An exact point (x/w, y/w, z/w) with w > 0.
 ///
 /// A constructed point is kept as what it was constructed from, and its coordinates are computed
