@@ -26,8 +26,9 @@ def good(tmp_path: Path) -> str:
 def test_crash_and_hang_are_that_request_only(tmp_path: Path, good: str) -> None:
     hanging = tmp_path / "endless.off"
     os.mkfifo(hanging)
-    asked: list[Any] = [good, str(hanging), 3.5, good, 3.5, good]
-    found = dict(LocalPool(2, GREETING).answers([{"survey": file} for file in asked], 3.0))
+    survey, crash = {"survey": good}, {"case": 3.5}
+    asked: list[dict[str, Any]] = [survey, {"survey": str(hanging)}, crash, survey, crash, survey]
+    found = dict(LocalPool(2, GREETING).answers(asked, 3.0))
     for number in (0, 3, 5):
         assert found[number] == {"file": good, "triangles": 12, "refused": None}
     for number in (2, 4):

@@ -72,7 +72,7 @@ def test_walls_that_meet_on_the_way_up_are_united() -> None:
         (SLOTTED, {"taper": -60}, "no room at"),
         (SQUARE, {"taper": 90}, "taper must be"),
         (SQUARE, {"scale": -1}, "scale must not be below 0"),
-        (SQUARE, {"scale": (1, 2, 3)}, "scale is one number"),
+        (SQUARE, {"scale": (1, 2, 3)}, "scale must be one number or two"),
         (SQUARE, {"slices": 0}, "slices must be"),
         (SQUARE, {"twist": math.inf}, "twist must be finite"),
         (SQUARE, {"twist": 1, "slices": 10**9}, "corners"),
