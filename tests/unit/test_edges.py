@@ -259,6 +259,18 @@ def test_a_post_and_its_plate_are_round_in_one_call() -> None:
     assert abs(part.volume - plate - post) < chords * POST.edges().length.sum()
 
 
+@pytest.mark.parametrize("sides", [8, 16])
+def test_a_boss_of_many_sides_and_its_plate_are_round_in_one_call(sides: int) -> None:
+    boss = b.cylinder(6, r=5, segments=sides).translate((10, 10, 3))
+    part = b.box(20, 20, 3) | boss
+    smooth = part.fillet(part.edges(), 0.25, segments=16)
+    assert 2 < part.volume - smooth.volume < 3
+    left = smooth.edges()
+    bend = np.abs(np.asarray(left.angle)[np.asarray(left.length) > 1e-3] - 180)
+    assert bend.max() < 30
+    assert smooth.genus == 0 and smooth.to_mesh().certificate.ok
+
+
 def test_two_kinds_that_wait_for_each_other_are_taken_by_few() -> None:
     part = FLUSH.chamfer(FLUSH.edges(), 0.25)
     assert part.genus == 0 and part.to_mesh().certificate.ok

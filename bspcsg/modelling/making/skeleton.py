@@ -103,7 +103,8 @@ def skeleton_of(mesh: Mesh) -> Skeleton:
         return Skeleton(vertices, triangles, none[:, 0], np.zeros((0, 3)), none, none)
     segments, owners = _segments(triangles, len(vertices))
     areas = _vector_areas(vertices, triangles)
-    face = _groups(owners[_are_flat(vertices, triangles, areas, segments, owners)], len(triangles))
+    flat = owners[_are_flat(vertices, triangles, areas, segments, owners)]
+    face = _groups(_with_one_plane(flat, _are_thin(vertices, triangles, areas)), len(triangles))
     normals = np.zeros((face.max() + 1, 3))
     np.add.at(normals, face, areas)
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -154,6 +155,31 @@ def _are_flat(
     return np.asarray((np.abs(away) <= flatness(vertices)) & ahead)
 
 
+def _are_thin(vertices: FloatArray, triangles: IndexArray, areas: FloatArray) -> BoolArray:
+    """Say which triangles are so thin that they lie in any plane through their longest edge."""
+    around = vertices[triangles] - vertices[np.roll(triangles, 1, axis=1)]
+    longest = np.linalg.norm(around, axis=2).max(axis=1)
+    thin = np.linalg.norm(areas, axis=1) <= flatness(vertices) * longest
+    return np.asarray(thin)
+
+
+def _with_one_plane(flat: IndexArray, is_thin: BoolArray) -> IndexArray:
+    """Return pairs of triangles of one plane; thin ones go with one neighbour only.
+
+    Otherwise a thin triangle along an edge would make one face of the two that meet there.
+    """
+    kept = [flat[~is_thin[flat].any(axis=1)]]
+    is_placed = ~is_thin
+    both = np.concatenate([flat, flat[:, ::-1]])
+    while True:
+        ready = both[is_placed[both[:, 0]] & ~is_placed[both[:, 1]]]
+        if not len(ready):
+            return np.concatenate(kept)
+        _, first = np.unique(ready[:, 1], return_index=True)
+        kept.append(ready[first])
+        is_placed[ready[:, 1]] = True
+
+
 def _groups(pairs: IndexArray, count: int) -> IndexArray:
     """Return the number of the connected group of each of so many things."""
     loops = np.repeat(np.arange(count), 2).reshape(-1, 2)
@@ -183,7 +209,7 @@ def _runs(
     steps = vertices[segments[:, 1]] - vertices[segments[:, 0]]
     ahead = np.einsum("ij,ij->i", steps[before], steps[after]) > 0
     joined = (sides[before] == sides[after]).all(axis=1) & ahead
-    pairs = np.column_stack([before, after])[joined]
+    pairs = _without_loops(np.column_stack([before, after])[joined], len(segments))
     run = _groups(pairs, len(segments))
     first = ~np.isin(np.arange(len(segments)), pairs[:, 1])
     last = ~np.isin(np.arange(len(segments)), pairs[:, 0])
@@ -192,3 +218,14 @@ def _runs(
     of_run = np.empty((len(ends), 2), dtype=np.int64)
     of_run[run] = sides
     return ends, of_run
+
+
+def _without_loops(pairs: IndexArray, count: int) -> IndexArray:
+    """Return the pairs of segments that continue each other, without those that run in a circle.
+
+    Planes meet in lines, but faces that are plane only within a tolerance can meet all around.
+    """
+    run = _groups(pairs, count)
+    has_start = np.zeros(count, dtype=np.bool_)
+    has_start[run[~np.isin(np.arange(count), pairs[:, 1])]] = True
+    return pairs[has_start[run[pairs[:, 0]]]]
