@@ -60,7 +60,7 @@ def run(name: str, options: argparse.Namespace) -> Outcome:
     folder: Path = options.folder / name
     folder.mkdir(parents=True, exist_ok=True)
     state = folder / "state.json"
-    before = json.loads(state.read_text()) if state.is_file() else {}
+    before = json.loads(state.read_text("utf-8")) if state.is_file() else {}
     times = before.get(str(options.seed), 0)
     seconds = 60 * options.minutes
     if name in CORE or name == "readers":

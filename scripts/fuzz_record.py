@@ -62,7 +62,9 @@ def _children() -> float:
 def add_to_record(target: str, seed: int, outcome: Outcome) -> None:
     """Add a run to `scripts/records/fuzz.json`; runs of one commit and seed are one row."""
     path = RECORDS / "fuzz.json"
-    record: dict[str, Any] = json.loads(path.read_text()) if path.is_file() else {"targets": {}}
+    record: dict[str, Any] = (
+        json.loads(path.read_text("utf-8")) if path.is_file() else {"targets": {}}
+    )
     rows = record["targets"].setdefault(target, [])
     here = machine()
     same = {"commit": here["commit"], "seed": seed}
@@ -88,7 +90,7 @@ def add_to_record(target: str, seed: int, outcome: Outcome) -> None:
 
 def totals() -> list[str]:
     """Return a line for each target: what all its runs add up to."""
-    record = json.loads((RECORDS / "fuzz.json").read_text())
+    record = json.loads((RECORDS / "fuzz.json").read_text("utf-8"))
     lines = []
     for target, rows in sorted(record["targets"].items()):
         executions, hours = (sum(row[key] for row in rows) for key in ("executions", "cpu_minutes"))

@@ -48,7 +48,9 @@ def counted(program: Path, case: str) -> int:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise SystemExit(f"{case}: {done.stderr.strip() or f'code {done.returncode}'}")
-        return int(re.findall(r"^(?:summary|totals): (\d+)", output.read_text(), re.MULTILINE)[-1])
+        return int(
+            re.findall(r"^(?:summary|totals): (\d+)", output.read_text("utf-8"), re.MULTILINE)[-1]
+        )
 
 
 def compiler() -> str:
@@ -59,7 +61,7 @@ def compiler() -> str:
 def recorded() -> dict[str, int]:
     """Return the counts that are kept, none if there are none."""
     path = RECORDS / f"{_NAME}.json"
-    counts: dict[str, int] = json.loads(path.read_text())["counts"] if path.exists() else {}
+    counts: dict[str, int] = json.loads(path.read_text("utf-8"))["counts"] if path.exists() else {}
     return counts
 
 

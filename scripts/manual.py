@@ -23,13 +23,13 @@ LARGEST = 100_000
 
 def generated() -> dict[Path, str]:
     """Return each page that is generated or has a generated part, with its text."""
-    pages = {path: with_options(path.stem, path.read_text()) for path in verb_files()}
+    pages = {path: with_options(path.stem, path.read_text("utf-8")) for path in verb_files()}
     for name, text in api_pages().items():
         pages[DOCS / "api" / f"{name}.md"] = text
     side = DOCS / "side_by_side.md"
-    pages[side] = with_parts(side.read_text())
+    pages[side] = with_parts(side.read_text("utf-8"))
     trust = DOCS / "trust.md"
-    pages[trust] = with_answers(trust.read_text())
+    pages[trust] = with_answers(trust.read_text("utf-8"))
     return pages
 
 
@@ -43,7 +43,7 @@ def outdated(pages: dict[Path, str]) -> list[str]:
     found = [
         f"{path.relative_to(DOCS.parent)} is not up to date; run scripts/manual"
         for path, text in pages.items()
-        if not path.exists() or path.read_text() != text
+        if not path.exists() or path.read_text("utf-8") != text
     ]
     found += [
         f"{path.relative_to(DOCS.parent)} is generated no more; delete it"

@@ -135,7 +135,7 @@ def verdict_on(mutant: Mutant, core: Path) -> str:
     """Return whether a mutant's tests notice it, and pass without it."""
     copy_core(core)
     path = core / "src" / mutant.file
-    text = path.read_text()
+    text = path.read_text("utf-8")
     if text.count(mutant.old) != 1:
         return "not there"
     path.write_text(text.replace(mutant.old, mutant.new))

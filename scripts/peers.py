@@ -220,7 +220,7 @@ def table(found: dict[str, dict[str, str]]) -> str:
 
 def recorded() -> dict[str, dict[str, Any]]:
     """Return what is kept: the versions of the engines, and their answers."""
-    found: dict[str, dict[str, Any]] = json.loads((RECORDS / "peers.json").read_text())
+    found: dict[str, dict[str, Any]] = json.loads((RECORDS / "peers.json").read_text("utf-8"))
     return found
 
 

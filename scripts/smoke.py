@@ -81,7 +81,7 @@ def checked() -> Iterator[str]:
     command("compare", "part.ply", "part.obj")
     command("validate", "part.stl", "ball.stl", "--results", "results.jsonl")
     command("report", "results.jsonl", "-o", "report.html")
-    lines = Path("part.off").read_text().splitlines()
+    lines = Path("part.off").read_text("utf-8").splitlines()
     counts = lines[1].split()
     lines[1] = f"{counts[0]} {int(counts[1]) - 1} 0"
     Path("open.off").write_text("\n".join(lines[:-1]) + "\n")

@@ -111,7 +111,7 @@ def _asked(folder: Path, timeout: float | None) -> dict[str, str]:
         message = f"the repair took longer than {timeout:g} s and was stopped."
         raise BspcsgError(message, "timed_out") from error
     path = folder / "said.json"
-    said = json.loads(path.read_text()) if path.exists() else {}
+    said = json.loads(path.read_text("utf-8")) if path.exists() else {}
     if done.returncode == _MISSING and "missing" in said:
         raise missing_part("pymeshlab", f"for repairs ({said['missing']})", remedy(said["missing"]))
     if done.returncode != 0:

@@ -66,7 +66,7 @@ def compare(solid: "b.Solid", expect: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
 def test_case(path: Path) -> None:
-    case = json.loads(path.read_text())
+    case = json.loads(path.read_text("utf-8"))
     assert case["why"]
     expect = dict(case["expect"])
     code = expect.pop("code", None)

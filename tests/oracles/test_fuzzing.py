@@ -178,7 +178,7 @@ def test_what_is_wrong_is_made_small(tmp_path: Path) -> None:
     assert judge(small, Shifted()) and judge(small) == []
     assert len(small.bodies) == 1 and len(small.points) == 1
     assert small.expression == ("|", 0, 0) and len(small.bodies[0].parts) == 1
-    case = json.loads(keep_case(tmp_path, "small", small, "A test.").read_text())
+    case = json.loads(keep_case(tmp_path, "small", small, "A test.").read_text("utf-8"))
     assert case == case_of(small, "A test.") and case["expect"]["places"]
     compare(evaluate(case), case["expect"])
 

@@ -49,7 +49,7 @@ def test_cases_are_measured_recorded_and_shown_again(capsys: Capture, tmp_path: 
         *["-o", str(record_path), "--plot", str(plot_path)],
     )
     assert (code, err) == (0, ""), out
-    record = json.loads(record_path.read_text())
+    record = json.loads(record_path.read_text("utf-8"))
     assert (record["schema"], record["type"]) == (1, "bench")
     assert record["machine"]["cores"] >= 1
     assert {"bspcsg", "manifold3d", "python"} <= set(record["versions"])
@@ -188,6 +188,6 @@ def test_dense_places_are_measured_at_two_sizes(capsys: Capture, tmp_path: Path)
     path = tmp_path / "r.json"
     asked = ["dense-cones", "--quick", "--runs", "1", "--against", "manifold3d", "-q"]
     assert ran(capsys, "bench", "--cliffs", *asked, "-o", str(path))[0] == 0
-    [row] = json.loads(path.read_text())["cases"]
+    [row] = json.loads(path.read_text("utf-8"))["cases"]
     assert [item["item"] for item in row["items"]] == ["12", "24"]
     assert all(item["engines"]["manifold3d"]["agrees"] for item in row["items"])

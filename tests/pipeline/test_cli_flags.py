@@ -155,9 +155,11 @@ def test_files_are_kept_if_asked_to(folder: Path, capsys: Capture, verb: str) ->
     assert ran(capsys, *command)[0] == 0 and Path(written).is_file()
     Path(written).write_text("mine")
     code, out, err = ran(capsys, *command)
-    assert (code, out) == (5, "") and Path(written).read_text() == "mine"
+    assert (code, out) == (5, "") and Path(written).read_text("utf-8") == "mine"
     assert f"{written}: this file is there already; --overwrite replaces it." in err
-    assert ran(capsys, *command, "--overwrite")[0] == 0 and Path(written).read_text() != "mine"
+    assert (
+        ran(capsys, *command, "--overwrite")[0] == 0 and Path(written).read_text("utf-8") != "mine"
+    )
 
 
 def test_a_dangling_link_is_there_as_well(folder: Path, capsys: Capture) -> None:
@@ -258,7 +260,7 @@ def test_streams_of_drawings_that_cannot_be(
 
 def test_a_name_may_be_anything_if_the_format_is_said(folder: Path, capsys: Capture) -> None:
     assert ran(capsys, "slice", "a.off", "--z", "1", "-o", "layer", "--to", ".svg")[0] == 0
-    assert Path("layer").read_text().startswith("<svg")
+    assert Path("layer").read_text("utf-8").startswith("<svg")
 
 
 # Other names

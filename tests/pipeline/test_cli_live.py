@@ -82,7 +82,7 @@ def test_a_script_that_writes_beside_itself_runs_once(folder: Path) -> None:
         asked(port, "/")
         state = asked(port, "/changes")[1]
         assert asked(port, "/")[0] == 200 and asked(port, "/changes")[1] == state
-        assert Path("runs.txt").read_text() == "x"
+        assert Path("runs.txt").read_text("utf-8") == "x"
 
 
 def test_a_folder_has_a_page_for_each_file(folder: Path) -> None:
@@ -128,7 +128,7 @@ def watching(*arguments: str) -> Iterator["subprocess.Popen[bytes]"]:
     finally:
         running.send_signal(signal.SIGINT)
         running.wait(timeout=20)
-    assert "Traceback" not in _SAID.read_text()
+    assert "Traceback" not in _SAID.read_text("utf-8")
 
 
 def until(found: Callable[[], object]) -> None:
@@ -136,19 +136,21 @@ def until(found: Callable[[], object]) -> None:
         if found():
             return
         time.sleep(0.05)
-    raise AssertionError(_SAID.read_text())
+    raise AssertionError(_SAID.read_text("utf-8"))
 
 
 def test_a_script_runs_again_when_it_changes(folder: Path) -> None:
     Path("part.py").write_text(_SCRIPT.format(side=2))
     with watching("part.py", "--watch", "-o", "part.stl") as running:
         said = _SAID
-        until(lambda: "volume 8 " in said.read_text() and "watching" in said.read_text())
+        until(
+            lambda: "volume 8 " in said.read_text("utf-8") and "watching" in said.read_text("utf-8")
+        )
         Path("part.py").write_text("result = 1 +\n")
-        until(lambda: "SyntaxError" in said.read_text())
+        until(lambda: "SyntaxError" in said.read_text("utf-8"))
         Path("part.py").write_text(_SCRIPT.format(side=3))
-        until(lambda: "volume 27 " in said.read_text())
-        assert said.read_text().count("volume") == 2
+        until(lambda: "volume 27 " in said.read_text("utf-8"))
+        assert said.read_text("utf-8").count("volume") == 2
     assert running.returncode == 0 and b.io.load("part.stl").volume == 27
 
 
@@ -157,8 +159,8 @@ def test_a_result_is_shown_without_a_file(folder: Path) -> None:
     before = sorted(os.listdir())
     with watching("part.py", "--watch", "--view") as running:
         said = _SAID
-        until(lambda: "shows the result" in said.read_text())
-        port = int(said.read_text().partition("http://127.0.0.1:")[2].partition("/")[0])
+        until(lambda: "shows the result" in said.read_text("utf-8"))
+        port = int(said.read_text("utf-8").partition("http://127.0.0.1:")[2].partition("/")[0])
         state = asked(port, "/changes")[1]
         assert "2 × 2 × 2" in asked(port, "/")[1] and asked(port, "/x")[0] == 404
         Path("part.py").write_text("result = 1 +\n")
@@ -167,7 +169,7 @@ def test_a_result_is_shown_without_a_file(folder: Path) -> None:
         Path("part.py").write_text(_SCRIPT.format(side=5))
         changed(port, state)
         assert "5 × 5 × 5" in asked(port, "/")[1]
-        assert said.read_text().startswith("part.py  12 triangles")
+        assert said.read_text("utf-8").startswith("part.py  12 triangles")
     assert running.returncode == 0
     assert set(os.listdir()) == {*before, "log"}
 

@@ -159,7 +159,7 @@ def test_svg_as_json(folder: Path, capsys: Capture, style: str) -> None:
     assert code == 0 and found["output"] == "x.svg" and found["style"] == style
     assert found["size"] == [800, 600] and found["view"] == "iso" and found["polygons"] >= 3
     assert ElementTree.parse("x.svg").getroot().get("width") == "800"
-    assert "#102030" in Path("x.svg").read_text()
+    assert "#102030" in Path("x.svg").read_text("utf-8")
 
 
 def test_open_meshes_can_be_seen(folder: Path, capsys: Capture) -> None:

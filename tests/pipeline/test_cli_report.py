@@ -40,7 +40,7 @@ def test_json(shards: Path, capsys: Capture) -> None:
     code, out, _ = ran(capsys, *command)
     told = json.loads(out)
     assert code == 0 and told["format"] == "json" and (told["cases"], told["failures"]) == (2, 1)
-    kept = json.loads(Path("r.json").read_text())
+    kept = json.loads(Path("r.json").read_text("utf-8"))
     assert kept["verdicts"] == {"DISAGREE": 1, "agree": 1} and len(kept["results"]) == 2
 
 

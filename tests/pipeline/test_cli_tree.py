@@ -46,14 +46,14 @@ def test_simplified_trees_are_of_the_same_solid(plate: Path, capsys: Capture) ->
     assert ran(capsys, "tree", "plate.csg", "--simplify", "-o", "less.csg")[0] == 0
     assert csg.load("less.csg").equals(csg.load("plate.csg"))
     again = ran(capsys, "tree", "less.csg", "--simplify", "--to", "csg")[1]
-    assert again == Path("less.csg").read_text()
+    assert again == Path("less.csg").read_text("utf-8")
 
 
 @pytest.mark.parametrize("suffix", [".csg", ".json", ".scad"])
 def test_conversions_keep_the_tree(plate: Path, capsys: Capture, suffix: str) -> None:
     code, out, _ = ran(capsys, "tree", "plate.csg", "-o", f"x{suffix}")
     assert (code, out) == (0, f"x{suffix}  14 nodes\n")
-    text = Path(f"x{suffix}").read_text()
+    text = Path(f"x{suffix}").read_text("utf-8")
     read = csg.from_json(text) if suffix == ".json" else csg.parse(text)
     assert read == csg.parse(PLATE)
 

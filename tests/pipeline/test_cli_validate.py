@@ -20,7 +20,7 @@ OPEN = (cuboid((0, 0, 0), (1, 1, 1))[0], cuboid((0, 0, 0), (1, 1, 1))[1][1:])
 
 
 def lines(path: str = "r.jsonl") -> list[dict[str, Any]]:
-    return [json.loads(line) for line in Path(path).read_text().splitlines()]
+    return [json.loads(line) for line in Path(path).read_text("utf-8").splitlines()]
 
 
 def many(count: int) -> None:
@@ -80,7 +80,7 @@ def test_reports_hold_every_case(folder: Path, capsys: Capture) -> None:
     assert (root.get("tests"), root.get("failures"), root.get("skipped")) == ("3", "0", "2")
     skipped = [case for case in root.iter("testcase") if case.find("skipped") is not None]
     assert [case.get("name") for case in skipped] == ["0001-union", "0002-union"]
-    text = Path("m.md").read_text()
+    text = Path("m.md").read_text("utf-8")
     assert "**None of 3 cases failed.**" in text
     assert "| refused | 2 | 2 |" in text and "open.off" in text
 
@@ -219,7 +219,7 @@ def test_wrong_input_is_told(
 def children_of(process: int) -> list[int]:
     """Return the children of all threads of a process."""
     lists = Path(f"/proc/{process}/task").glob("*/children")
-    return [int(pid) for each in lists for pid in each.read_text().split()]
+    return [int(pid) for each in lists for pid in each.read_text("utf-8").split()]
 
 
 def are_gone(processes: list[int]) -> bool:
@@ -232,7 +232,7 @@ def are_gone(processes: list[int]) -> bool:
 
 def _lives(pid: int) -> bool:
     try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+        return Path(f"/proc/{pid}/stat").read_text("utf-8").rpartition(")")[2].split()[0] != "Z"
     except OSError:
         return False
 
@@ -327,7 +327,7 @@ def test_failed_case_is_a_failure_of_the_build(folder: Path) -> None:
     error = case.find("error")
     assert error is not None and error.get("type") == "timeout"
     assert "again: bspcsg validate a.off c.stl --op xor" in str(error.text)
-    assert "## Failures" in Path("m.md").read_text()
+    assert "## Failures" in Path("m.md").read_text("utf-8")
 
 
 def test_records_have_the_declared_fields(folder: Path, capsys: Capture) -> None:

@@ -31,7 +31,7 @@ def test_cases_run_on_the_workers(folder: Path, capsys: Capture, scheduler: Any)
     where = ["--scheduler", scheduler.scheduler_address]
     code, out, _ = ran(capsys, *given, *where)
     assert code == 0 and json.loads(out)["verdicts"] == {"agree": 4}
-    records = [json.loads(line) for line in Path("r.jsonl").read_text().splitlines()][1:]
+    records = [json.loads(line) for line in Path("r.jsonl").read_text("utf-8").splitlines()][1:]
     volumes = {record["operation"]: record["ours"]["volume"] for record in records}
     assert volumes == {"union": 15.0, "difference": 7.0, "intersection": 1.0, "xor": 14.0}
     assert not cluster._children

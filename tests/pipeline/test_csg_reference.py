@@ -75,7 +75,9 @@ def test_real_scripts_equal_openscad(shared_scripts: Path) -> None:
     }
     # Text depends on the fonts of the machine that made the reference.
     plain = [
-        row for row in by_status["same"] if "text(" not in (shared_scripts / row[0]).read_text()
+        row
+        for row in by_status["same"]
+        if "text(" not in (shared_scripts / row[0]).read_text("utf-8")
     ]
     # What the bound allows is far more than what is found. Which diagonals divide a face tells in
     # the seventh digit of the volume once corners are rounded to six.

@@ -18,7 +18,7 @@ def test_there_are_examples() -> None:
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
 def test_example(example: Path, tmp_path: Path) -> None:
-    lines = example.read_text().splitlines()
+    lines = example.read_text("utf-8").splitlines()
     assert lines[0].startswith('"""')
     assert len(lines) < 100
     done = subprocess.run(

@@ -347,7 +347,7 @@ def test_code_5_when_the_disk_is_full(place: Path, verb: str) -> None:
     running = process(*shlex.split(lines[verb]), stderr=subprocess.PIPE, before=_no_large_files)
     _, err = running.communicate(timeout=60)
     assert running.returncode == 5 and b"cannot write this file: File too large." in err
-    assert set(os.listdir()) == before and Path("x.ply").read_text() == "kept"
+    assert set(os.listdir()) == before and Path("x.ply").read_text("utf-8") == "kept"
     os.unlink("x.ply")
 
 

@@ -12,7 +12,7 @@ from gallery import LONGEST, blocks, pictures, run
 from support.examples import WRITES
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-PAGE = (EXAMPLES / "GALLERY.md").read_text()
+PAGE = (EXAMPLES / "GALLERY.md").read_text("utf-8")
 SHOWN = re.sub(r"<!--.*?-->", "", PAGE, flags=re.DOTALL)
 BLOCKS = blocks()
 PICTURES = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", SHOWN)
@@ -58,8 +58,8 @@ def test_the_report_that_is_linked_is_there_and_of_so_many_cases() -> None:
     pages = {EXAMPLES / "GALLERY.md", EXAMPLES.parent / "README.md"}
     pages.add(EXAMPLES.parent / "docs" / "tasks" / "validate.md")
     for page in pages:
-        (link,) = re.findall(r"\]\(([^)]*campaign_report\.html)\)", page.read_text())
+        (link,) = re.findall(r"\]\(([^)]*campaign_report\.html)\)", page.read_text("utf-8"))
         report = (page.parent / link).resolve()
-        assert report == EXAMPLES / "campaign_report.html" and " 2120 " in page.read_text()
+        assert report == EXAMPLES / "campaign_report.html" and " 2120 " in page.read_text("utf-8")
     text = report.read_text(encoding="utf-8")
     assert "2\N{NARROW NO-BREAK SPACE}120 cases, no failure" in text and len(text) < 1_500_000

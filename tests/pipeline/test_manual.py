@@ -43,7 +43,7 @@ def test_pages_show_what_happens(
     prepare(tmp_path)
     monkeypatch.chdir(tmp_path)
     session = Session()
-    for language, block in blocks(path.read_text()):
+    for language, block in blocks(path.read_text("utf-8")):
         assert language in RUN + SHOWN
         if language == "py":
             compile(block, path.name, "exec")
@@ -56,7 +56,7 @@ def test_pages_show_what_happens(
                 printed = session.command(command)
                 assert "Traceback" not in printed
                 assert same(printed, shown), f"$ {command}\n{printed}"
-    for picture in pictures(path.read_text()):
+    for picture in pictures(path.read_text("utf-8")):
         assert looks_like(tmp_path / picture, path.parent / "pictures" / picture), picture
 
 
@@ -73,7 +73,7 @@ def test_options_and_api_are_up_to_date() -> None:
 
 
 def test_every_verb_has_a_page_with_an_example() -> None:
-    pages = {path.stem: path.read_text() for path in (DOCS / "verbs").glob("*.md")}
+    pages = {path.stem: path.read_text("utf-8") for path in (DOCS / "verbs").glob("*.md")}
     assert set(pages) == set(_VERBS)
     for verb, text in pages.items():
         consoles = [block for language, block in blocks(text) if language == "console"]
@@ -81,7 +81,7 @@ def test_every_verb_has_a_page_with_an_example() -> None:
 
 
 def test_every_public_name_is_in_the_api() -> None:
-    text = "".join(path.read_text() for path in (DOCS / "api").glob("*.md"))
+    text = "".join(path.read_text("utf-8") for path in (DOCS / "api").glob("*.md"))
     documented = set(re.findall(r"^## `([\w.]+)`$", text, re.MULTILINE))
     values = {"__version__", "EDGE", "INTERIOR", "MISS", "VERTEX"}
     top = import_module("bspcsg")
@@ -101,7 +101,7 @@ def test_every_public_name_is_in_the_api() -> None:
 
 @pytest.mark.parametrize("path", ALL, ids=name)
 def test_links_lead_somewhere(path: Path) -> None:
-    for link in re.findall(r"\]\(([^)#:]+)\)", path.read_text()):
+    for link in re.findall(r"\]\(([^)#:]+)\)", path.read_text("utf-8")):
         assert (path.parent / link).exists(), link
 
 
@@ -111,14 +111,14 @@ def test_every_page_can_be_found_from_the_index() -> None:
         path = waiting.pop().resolve()
         if path not in found:
             found.add(path)
-            links = re.findall(r"\]\(([^)#:]+\.md)\)", path.read_text())
+            links = re.findall(r"\]\(([^)#:]+\.md)\)", path.read_text("utf-8"))
             waiting += [path.parent / link for link in links]
     assert set(ALL) <= found
 
 
 def modules() -> list[str]:
     """Return the modules of the package whose docstrings have examples."""
-    files = [path for path in (ROOT / "bspcsg").rglob("*.py") if ">>> " in path.read_text()]
+    files = [path for path in (ROOT / "bspcsg").rglob("*.py") if ">>> " in path.read_text("utf-8")]
     names = [".".join(path.relative_to(ROOT).with_suffix("").parts) for path in files]
     return sorted(name.removesuffix(".__init__") for name in names)
 
@@ -134,19 +134,21 @@ def test_examples_of_docstrings(
 
 def test_every_kept_picture_is_shown_and_small() -> None:
     shown = {
-        path.parent / "pictures" / name for path in PAGES for name in pictures(path.read_text())
+        path.parent / "pictures" / name
+        for path in PAGES
+        for name in pictures(path.read_text("utf-8"))
     }
     assert shown == set(DOCS.glob("**/pictures/*")) and len(shown) >= 4
     assert all(path.stat().st_size < 100_000 for path in shown)
 
 
 def test_the_install_page_has_every_extra() -> None:
-    page = (DOCS / "install.md").read_text()
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    page = (DOCS / "install.md").read_text("utf-8")
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     assert set(re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE)) == (
         set(project["optional-dependencies"]) - {"test"}
     )
 
 
 def test_the_readme_leads_to_the_manual() -> None:
-    assert "(docs/index.md)" in (ROOT / "README.md").read_text()
+    assert "(docs/index.md)" in (ROOT / "README.md").read_text("utf-8")

@@ -9,8 +9,8 @@ import pytest
 from support.documents import Session, blocks, exchanges, expected_of, same
 
 README = Path(__file__).parents[2] / "README.md"
-PYTHON = [text for language, text in blocks(README.read_text()) if language == "python"]
-CONSOLE = [text for language, text in blocks(README.read_text()) if language == "console"]
+PYTHON = [text for language, text in blocks(README.read_text("utf-8")) if language == "python"]
+CONSOLE = [text for language, text in blocks(README.read_text("utf-8")) if language == "console"]
 
 
 def test_the_first_lines_of_python_are_about_ten() -> None:
@@ -30,11 +30,11 @@ def test_blocks_show_what_happens(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 def test_named_files_exist() -> None:
-    for name in re.findall(r"\]\(([^)#:]+)\)", README.read_text()):
+    for name in re.findall(r"\]\(([^)#:]+)\)", README.read_text("utf-8")):
         assert (README.parent / name).exists(), name
 
 
 def test_the_two_commands_are_there_and_can_be_run() -> None:
     for script in ("scripts/demo", "scripts/test"):
-        assert f"\n{script}\n" in README.read_text()
+        assert f"\n{script}\n" in README.read_text("utf-8")
         assert os.access(README.parent / script, os.X_OK)

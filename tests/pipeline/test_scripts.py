@@ -14,10 +14,10 @@ def test_campaign_goes_on_where_it_stopped(tmp_path: Path) -> None:
     first = script("campaign", *common, "--poses", "2")
     assert first.returncode == 0, first.stdout + first.stderr
     assert "1 file left out that is no solid" in first.stderr
-    answers = journal.read_text().splitlines()
+    answers = journal.read_text("utf-8").splitlines()
     second = script("campaign", *common, "--poses", "3")
     assert second.returncode == 0, second.stdout + second.stderr
-    longer = journal.read_text().splitlines()
+    longer = journal.read_text("utf-8").splitlines()
     assert longer[: len(answers)] == answers
     assert len(longer) == len(answers) + 1 + 4
     assert "8 cases of 12 known" in second.stderr
@@ -49,7 +49,9 @@ def test_fuzzing_goes_on_where_it_stopped(tmp_path: Path) -> None:
         done = script("fuzz", *common, "--seed", "7")
         assert done.returncode == 0, done.stdout + done.stderr
         assert done.stdout.count(", 0 found") == 2
-        states = [json.loads((tmp_path / name / "state.json").read_text()) for name in common[:2]]
+        states = [
+            json.loads((tmp_path / name / "state.json").read_text("utf-8")) for name in common[:2]
+        ]
         reached.append([state["7"] for state in states])
     assert all(0 < first < second for first, second in zip(*reached, strict=True))
 

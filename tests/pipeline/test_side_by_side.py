@@ -39,7 +39,7 @@ def volumes() -> dict[str, float]:
     found = {}
     for part in PARTS:
         names: dict[str, object] = {}
-        exec(compile(script(part, "bspcsg").read_text(), part, "exec"), names)
+        exec(compile(script(part, "bspcsg").read_text("utf-8"), part, "exec"), names)
         solid = names["part"]
         assert isinstance(solid, b.Solid) and not solid.to_mesh().open_edges
         found[part] = solid.volume

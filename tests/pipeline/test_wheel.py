@@ -36,7 +36,9 @@ Project-URL: Source, https://example.org
 def put_wheel(folder: Path, change: Callable[[dict[str, bytes]], object] = len) -> Path:
     """Write a wheel of this package with a core of a few bytes, changed somehow."""
     files = {name: (ROOT / name).read_bytes() for name in package()}
-    page = readme_for_index.absolute((ROOT / "README.md").read_text(), readme_for_index.home())
+    page = readme_for_index.absolute(
+        (ROOT / "README.md").read_text("utf-8"), readme_for_index.home()
+    )
     files["bspcsg/_core.abi3.so"] = b"\x7fELF"
     files["bspcsg-1.dist-info/METADATA"] = ABOUT.format(page=page).encode()
     files["bspcsg-1.dist-info/WHEEL"] = b"Tag: cp311-abi3-manylinux_2_17_x86_64\n"
@@ -145,6 +147,6 @@ def test_the_smoke_test_passes(tmp_path: Path) -> None:
 
 
 def test_the_recorded_wheels_are_small_and_quick() -> None:
-    wheels = json.loads((ROOT / "scripts/records/wheel.json").read_text())["wheels"]
+    wheels = json.loads((ROOT / "scripts/records/wheel.json").read_text("utf-8"))["wheels"]
     assert all(wheel["megabytes"] < 8 for wheel in wheels.values())
     assert wheels["manylinux"]["seconds"] < 60

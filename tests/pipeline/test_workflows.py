@@ -34,7 +34,7 @@ def test_workflows_and_action_are_well_formed() -> None:
 
 
 def test_a_fault_in_a_workflow_is_found(tmp_path: Path) -> None:
-    text = WORKFLOWS[1].read_text().replace("runs-on:", "run-on:")
+    text = WORKFLOWS[1].read_text("utf-8").replace("runs-on:", "run-on:")
     (tmp_path / "broken.yml").write_text(text)
     assert "run-on" in schema_findings("vendor.github-workflows", tmp_path / "broken.yml")
 
@@ -77,7 +77,7 @@ def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def put_open(name: str) -> None:
     b.cube(1).save("cube.off")
-    lines = Path("cube.off").read_text().splitlines()
+    lines = Path("cube.off").read_text("utf-8").splitlines()
     Path("cube.off").unlink()
     Path(name).write_text("\n".join(["OFF", "8 11 0", *lines[2:-1]]) + "\n")
 

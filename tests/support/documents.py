@@ -149,7 +149,7 @@ def rewritten(path: Path) -> str:
     """
     import tempfile
 
-    page, session = path.read_text(), Session()
+    page, session = path.read_text("utf-8"), Session()
 
     def anew(match: "re.Match[str]") -> str:
         language, block = match.groups()

@@ -59,7 +59,7 @@ def word(result: Callable[[], "b.Solid"]) -> str:
 def words_of_cases(cases: Sequence[Path] = CASES) -> Iterator[tuple[str, str]]:
     """Name each case of the corpus, and each pair of its operands by operation, with its word."""
     for path in cases:
-        case = json.loads(path.read_text())
+        case = json.loads(path.read_text("utf-8"))
         yield path.stem, word(lambda case=case: evaluate(case))  # type: ignore[misc]
         try:
             operands = [operand(given) for given in case["operands"]]

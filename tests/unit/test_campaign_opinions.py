@@ -96,7 +96,7 @@ def test_question_in_openscads_language_is_the_same_question(
     scripts: list[str] = []
 
     def keep(path: Path, timeout: float) -> Any:
-        scripts.append(path.read_text())
+        scripts.append(path.read_text("utf-8"))
         raise NoOpinionError("kept")
 
     monkeypatch.setattr(openscad_engine, "run_script", keep)

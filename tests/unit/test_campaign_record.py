@@ -42,7 +42,10 @@ def test_torn_last_line_is_left_out_and_cut_off(tmp_path: Path, kept: int) -> No
     assert len(read_results([path]).cases) == 1
     with Journal(path) as journal:
         journal.append(record("two"))
-    assert [json.loads(line)["case"] for line in path.read_text().splitlines()] == ["one", "two"]
+    assert [json.loads(line)["case"] for line in path.read_text("utf-8").splitlines()] == [
+        "one",
+        "two",
+    ]
 
 
 def test_latest_line_of_a_case_counts(tmp_path: Path) -> None:

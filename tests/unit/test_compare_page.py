@@ -12,7 +12,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
 
 def rows(heading: str | None = None) -> list[tuple[str, str]]:
     """Return the first two cells of each row, below one heading or all."""
-    text = PAGE.read_text()
+    text = PAGE.read_text("utf-8")
     if heading is not None:
         text = re.split(rf"^## {heading}$", text, flags=re.MULTILINE)[1].split("\n## ")[0]
     lines = [line for line in text.splitlines() if line.startswith("|")]

@@ -53,7 +53,7 @@ def leads_to(text: str, file: str) -> bool:
     return (
         imports(text, path.parent.name)
         and package.exists()
-        and imports(package.read_text(), path.stem)
+        and imports(package.read_text("utf-8"), path.stem)
     )
 
 

@@ -137,7 +137,7 @@ def test_what_would_be_too_large_is_one_polyhedron(monkeypatch: pytest.MonkeyPat
 def test_saving_by_suffix(tmp_path: Path) -> None:
     part = b.cube(2) - b.cube(1)
     part.save(tmp_path / "part.csg")
-    assert "difference" in (tmp_path / "part.csg").read_text()
+    assert "difference" in (tmp_path / "part.csg").read_text("utf-8")
     tree = csg.read_tree(tmp_path / "part.csg")
     (tmp_path / "part.json").write_text(csg.to_json(tree))
     for name in ("part.csg", "part.json"):

@@ -47,7 +47,7 @@ def test_runs_add_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     add_to_record("scenes", 1, Outcome(10, 60.0, None, [Found("hang", "slow", "here")]))
     add_to_record("scenes", 1, Outcome(5, 30.0))
     add_to_record("scenes", 2, Outcome(7, 6.0, (3, 9)))
-    first, second = json.loads((tmp_path / "fuzz.json").read_text())["targets"]["scenes"]
+    first, second = json.loads((tmp_path / "fuzz.json").read_text("utf-8"))["targets"]["scenes"]
     assert (first["executions"], first["cpu_minutes"], first["hang"]) == (15, 1.5, 1)
     assert (second["seed"], second["coverage"], second["wrong"]) == (2, 9, 0)
     (line,) = totals()

@@ -56,7 +56,7 @@ def test_a_panorama(tmp_path: Path) -> None:
 def test_sections(part: b.Solid, suffix: str, tmp_path: Path) -> None:
     region, path = part.slice(1.75), tmp_path / f"section.{suffix}"
     getattr(region, f"to_{suffix}")(path)
-    drawn = of_dxf(path) if suffix == "dxf" else of_svg(path.read_text(), tmp_path)
+    drawn = of_dxf(path) if suffix == "dxf" else of_svg(path.read_text("utf-8"), tmp_path)
     assert_as_kept(drawn, f"section-{suffix}", tmp_path)
 
 

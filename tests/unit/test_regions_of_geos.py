@@ -25,7 +25,7 @@ OPERATIONS = {
 def cases() -> Iterator[tuple[str, str, str, str, str]]:
     """Yield name, operation, both operands and the result of each case."""
     name = a = b = ""
-    for line in CASES.read_text().splitlines():
+    for line in CASES.read_text("utf-8").splitlines():
         word, _, rest = line.partition(" ")
         if word == "case":
             name = rest

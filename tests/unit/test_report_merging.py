@@ -41,7 +41,7 @@ def test_the_last_line_about_a_case_counts(tmp_path: Path, agreeing: Record) -> 
 
 def test_a_torn_last_line_is_left_out(tmp_path: Path, agreeing: Record) -> None:
     path = write_results(tmp_path / "r.jsonl", [header(), agreeing])
-    path.write_text(path.read_text() + '{"schema": 1, "type": "ca')
+    path.write_text(path.read_text("utf-8") + '{"schema": 1, "type": "ca')
     assert len(merged([path]).cases) == 1
 
 

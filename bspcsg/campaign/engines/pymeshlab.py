@@ -54,7 +54,7 @@ def _asked_child(folder: Path, timeout: float) -> dict[str, str]:
     except subprocess.TimeoutExpired as error:
         raise NoOpinionError(f"it took longer than {timeout:g} s") from error
     path = folder / "said.json"
-    said: dict[str, str] = json.loads(path.read_text()) if path.exists() else {}
+    said: dict[str, str] = json.loads(path.read_text("utf-8")) if path.exists() else {}
     if done.returncode == _MISSING and "missing" in said:
         raise NoOpinionError(f"it could not be loaded: {said['missing']}")
     if done.returncode != 0 or not said:
