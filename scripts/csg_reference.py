@@ -76,7 +76,7 @@ def compare(folder: Path, row: dict[str, str]) -> tuple[str, str]:
         reference += first_node(folder / row["file"]).volume
     relative, rounded = (abs(v / reference - 1) for v in (volume, six_digits(solid)))
     status = "DIFFERS" if relative > allowed else "same" if reason is None else "explained"
-    figures = f"{relative:8.1e} {rounded:8.1e} {allowed:8.1e} {volume:15.5f} {seconds:6.2f} s"
+    figures = f"{relative:8.2e} {rounded:8.2e} {allowed:8.2e} {volume:15.5f} {seconds:6.2f} s"
     return status, figures if reason is None else f"{figures}  {reason}"
 
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from support import DEEP
 
 STEP = 10**9
 Vector = list[Fraction]
@@ -54,7 +53,7 @@ def turned_triangles(mesh: Any, operands: list[b.Solid]) -> int:
 
 def test_turned_triangles_are_repaired_or_reported() -> None:
     swapped = 0
-    for seed in range(120 if DEEP else 40):
+    for seed in range(120):
         operands = nearly_equal_cubes(seed)
         result = b.union(operands)
         found = {finding.code: finding.count for finding in result.findings}

@@ -79,10 +79,9 @@ def test_real_scripts_equal_openscad(shared_scripts: Path) -> None:
         for row in by_status["same"]
         if "text(" not in (shared_scripts / row[0]).read_text("utf-8")
     ]
-    # What the bound allows is far more than what is found. Which diagonals divide a face tells in
-    # the seventh digit of the volume once corners are rounded to six.
+    # What the bound allows is far more than what is found.
     assert max(float(row[2]) for row in plain) < 1e-5
-    assert max(float(row[3]) for row in plain) < 2.5e-6
+    assert max(float(row[3]) for row in plain) < 2e-6
 
 
 def test_reasons_are_those_of_recorded_scripts() -> None:
