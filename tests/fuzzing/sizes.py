@@ -42,6 +42,9 @@ LEAST, MOST = 8, 1 << 14
 #: Faces around a corner, and corners of a polygon, at most: their needles cost the square.
 FAN = 129
 
+#: Steps to points that are far from everything, at most.
+FAR = 100 * UNIT
+
 #: Operands of a scene that has many: their names are letters.
 CROWD = 24
 
@@ -204,7 +207,8 @@ def _with_tools(rng: Rng) -> tuple[Body, ...]:
 def _tool(rng: Rng, large: Part) -> Body:
     kind = int(rng.integers(6))
     if kind == 0:
-        plane = random_plane(rng, UNIT // 10, 4)
+        beside = bool(rng.random() < 0.5)
+        plane = _plane_beside(rng, large) if beside else random_plane(rng, UNIT // 10, 4)
         if plane is not None:
             return Body(plane=plane)
     if kind == 1:
@@ -212,6 +216,21 @@ def _tool(rng: Rng, large: Part) -> Body:
     if kind == 2 and (glued := _glued(rng, large)) is not None:
         return Body((glued,))
     return Body((_tiny(rng, large),))
+
+
+def _plane_beside(rng: Rng, large: Part) -> Triangle:
+    """Return three points of a plane across an axis, before a surface, behind it or through it."""
+    axis, outwards = int(rng.integers(3)), bool(rng.random() < 0.5)
+    along = [corner[axis] for corner in large.vertices]
+    at = int(rng.choice([min(along) - UNIT, along[0], max(along) + UNIT]))
+    places = [(0, 0), (1, 0), (0, 1)] if outwards else [(0, 0), (0, 1), (1, 0)]
+    p, q, r = (_with_axis(axis, at, (j * UNIT, k * UNIT)) for j, k in places)
+    return p, q, r
+
+
+def _with_axis(axis: int, at: int, others: tuple[int, int]) -> Point:
+    j, k = others
+    return ((at, j, k), (k, at, j), (j, k, at))[axis]
 
 
 def _tiny(rng: Rng, large: Part) -> Part:
@@ -409,7 +428,7 @@ def _any_face(rng: Rng, part: Part) -> Triangle:
 
 
 def _points(rng: Rng, scene: Scene) -> tuple[Point, ...]:
-    """Return points of the smaller operands, and of all operands near them."""
+    """Return points of the smaller operands, of all operands near them, and points far away."""
     balls = [known.balls for known in scene.known() if isinstance(known, Surface)]
     small = min(balls, key=lambda each: len(each.triangles))
     points: list[Point] = []
@@ -422,6 +441,7 @@ def _points(rng: Rng, scene: Scene) -> tuple[Point, ...]:
         x, y, z = points[k]
         dx, dy, dz = rng.integers(-2, 3, 3).tolist()
         points.append((x + dx, y + dy, z + dz))
+    points += [(x, y, z) for x, y, z in rng.integers(-FAR, FAR, (3, 3)).tolist()]
     return tuple(points)
 
 

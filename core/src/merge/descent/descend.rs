@@ -133,10 +133,7 @@ impl<'a> Descent<'a> {
         let branch = self.resolve(cell, residual, states, round)?;
         Ok(match branch.constant() {
             Some(w) => Branch::uniform(branch.cell, w),
-            None => Branch {
-                outside: i32::from(outside),
-                ..branch
-            },
+            None => join::around(cell, branch, i32::from(outside)),
         })
     }
 
@@ -203,10 +200,7 @@ impl<'a> Descent<'a> {
             let branch = self.cell(inner, expression, states, round)?;
             return Ok(match branch.constant() {
                 Some(w) if (w > 0) == outside => Branch::uniform(cell, w),
-                _ => Branch {
-                    outside: i32::from(outside),
-                    ..branch
-                },
+                _ => join::around(inner, branch, i32::from(outside)),
             });
         }
         let opening: usize = states.iter().map(|s| s.1.len_to_open(&cell)).sum();

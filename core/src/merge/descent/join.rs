@@ -21,27 +21,63 @@ pub const JOINED: usize = 16;
 
 /// The branch for a cell from the branches for its halves.
 ///
-/// No boundary lies in a dyadic cut, so that next to a uniform half the other one is uniform
-/// along the cut: it then stands for the whole cell (path compression).
+/// A half that is uniform is left out where what the other half has around its own cell is the same
+/// (path compression). It need not be: a face may lie in a slab between two uniform ones.
 pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch, sources: &Sources) -> Branch {
+    let fits = |w: i32, other: &Branch, half: Half| {
+        other.cell == cell.half(cut, half) || is_same(w, other.outside)
+    };
     match (minus.constant(), plus.constant()) {
-        (Some(w), Some(v)) if (w > 0) == (v > 0) => Branch::uniform(cell, w),
-        (Some(w), None) => Branch { outside: w, ..plus },
-        (None, Some(w)) => Branch {
+        (Some(w), Some(v)) if is_same(w, v) => Branch::uniform(cell, w),
+        (Some(w), None) if fits(w, &plus, Half::Plus) => Branch { outside: w, ..plus },
+        (None, Some(w)) if fits(w, &minus, Half::Minus) => Branch {
             outside: w,
             ..minus
         },
         _ => {
-            let outside = minus.outside;
-            let node = joined(&cell, cut, &minus, &plus, sources)
-                .unwrap_or_else(|| Node::cut(minus, plus));
-            Branch {
-                cell,
-                outside,
-                complement: false,
-                node: Arc::new(node),
-            }
+            let node = joined(&cell, cut, &minus, &plus, sources);
+            divided(cell, minus, plus, node)
         }
+    }
+}
+
+/// The branch for a cell that has `outside` around it.
+///
+/// What the branch at hand has around its own cell is the same, unless something unbounded crosses
+/// the border of both cells.
+pub fn around(cell: Cell, branch: Branch, outside: i32) -> Branch {
+    let cut = cell
+        .cut()
+        .filter(|_| branch.cell != cell && !is_same(branch.outside, outside));
+    let Some(cut) = cut else {
+        return Branch { outside, ..branch };
+    };
+    let [minus, plus] = Half::BOTH.map(|half| {
+        let half = cell.half(cut, half);
+        if half.holds(&branch.cell) {
+            branch.clone()
+        } else {
+            Branch::uniform(half, branch.outside)
+        }
+    });
+    Branch {
+        outside,
+        ..divided(cell, minus, plus, None)
+    }
+}
+
+/// Return whether two winding numbers are on the same side.
+fn is_same(w: i32, v: i32) -> bool {
+    (w > 0) == (v > 0)
+}
+
+/// The branch of the two halves of a cell, or of one node for both.
+fn divided(cell: Cell, minus: Branch, plus: Branch, joined: Option<Node>) -> Branch {
+    Branch {
+        cell,
+        outside: minus.outside,
+        complement: false,
+        node: Arc::new(joined.unwrap_or_else(|| Node::cut(minus, plus))),
     }
 }
 
