@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import bspcsg as b
 from support.cli import Capture, put, ran
 from support.shapes import cube
 
@@ -46,6 +47,15 @@ def test_without_a_name_the_page_is_a_temporary_file(
     assert code == 0 and told["opened"] and told["triangles"] == 12
     assert Path(told["output"]).is_relative_to(folder) and Path(told["output"]).name == "a.html"
     assert Path(told["output"]).stat().st_size == told["bytes"]
+
+
+def test_the_page_is_called_as_the_file_and_not_as_a_part_of_it(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(folder))
+    b.Assembly("box", [b.Assembly("body", b.cube(1)), b.Assembly("lid", b.cube(2))]).save("two.3mf")
+    told = json.loads(ran(capsys, "view", "two.3mf", "--no-open", "--json")[1])
+    assert Path(told["output"]).name == "two.html"
 
 
 @pytest.mark.parametrize(

@@ -9,12 +9,15 @@ from PIL import Image
 from selenium.webdriver.common.keys import Keys
 
 import bspcsg as b
+from bspcsg.cli.main import run
 from bspcsg.report.merging import merged
 from bspcsg.report.page import report_page
 from bspcsg.report.viewer.layer import COLOURS, Layer
 from bspcsg.report.viewer.view import view_page
 from support.browser import Browser, started
+from support.cli import put
 from support.results import records, write_results
+from support.shapes import cuboid
 
 #: The reference picture of the view of `_parts`, as small as its shapes can be told apart.
 _REFERENCE = Path(__file__).parent.parent / "corpus" / "pictures" / "view.png"
@@ -42,6 +45,28 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def view(tmp_path_factory: pytest.TempPathFactory) -> Path:
     page = tmp_path_factory.mktemp("view") / "view.html"
     page.write_text(view_page(_parts(), "a drilled cube & a ball", unit="mm"), encoding="utf-8")
+    return page
+
+
+@pytest.fixture(scope="module")
+def checked(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return what `check` says of a ball with a hole."""
+    folder = tmp_path_factory.mktemp("checked")
+    vertices, faces = b.sphere(r=1, segments=16).to_mesh()
+    put(str(folder / "open.off"), (vertices, np.delete(faces, [100, 101], axis=0)))
+    assert run(["check", str(folder / "open.off"), "--html", str(folder / "check.html"), "-q"]) == 1
+    return folder / "check.html"
+
+
+@pytest.fixture(scope="module")
+def compared(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return what `compare` says of two boxes."""
+    folder = tmp_path_factory.mktemp("compared")
+    files = [str(folder / f"{height}.off") for height in (2, 3)]
+    for name, height in zip(files, (2, 3), strict=True):
+        put(name, cuboid((0, 0, 0), (2, 2, height)))
+    page = folder / "compare.html"
+    assert run(["compare", *files, "--html", str(page), "-q"]) == 1
     return page
 
 
@@ -143,6 +168,30 @@ def test_the_view_of_a_case(browser: Browser, report: Path) -> None:
     assert not ((without[:, :, 0] > 150) & (without[:, :, 1:] < 90).all(axis=2)).any()
     browser.click("#case-1 .close")
     assert browser.texts("#case-1 canvas") == [] and browser.texts("#case-1 .opener") != []
+
+
+def test_axe_finds_nothing_on_pages(
+    browser: Browser, report: Path, view: Path, checked: Path, compared: Path
+) -> None:
+    shown = [(page, "light") for page in (report, view, checked, compared)] + [(report, "dark")]
+    for page, theme in shown:
+        browser.prefer(theme)
+        browser.open(page)
+        if page == report:
+            browser.click("#case-1 .opener")
+        browser.wait(_DRAWN)
+        browser.run("for (const part of document.querySelectorAll('details')) part.open = true")
+        assert browser.violations() == [], (page.name, theme)
+    browser.prefer("light")
+
+
+def test_axe_finds_what_is_wrong(browser: Browser, view: Path) -> None:
+    browser.open(view)
+    browser.wait(_DRAWN)
+    browser.run("document.querySelector('.tools select').ariaLabel = ''")
+    browser.run("document.querySelector('main').append(document.createElement('img'))")
+    rules = {finding.partition(":")[0] for finding in browser.violations()}
+    assert rules == {"select-name", "image-alt"}
 
 
 def test_only_a_few_views_are_open_at_once(browser: Browser, report: Path) -> None:

@@ -215,6 +215,23 @@ def test_places_are_looked_at(opened: Browser) -> None:
     assert opened.run("return document.querySelectorAll('.overlay .ring').length") == 1
 
 
+def test_the_sheet_hides_nothing_beside_it(browser: Browser, part: Path) -> None:
+    browser.device({"width": 900, "height": 900, "deviceScaleFactor": 1, "mobile": False})
+    browser.open(part)
+    browser.wait(_DRAWN)
+    closed = _looks(browser)
+    browser.run("document.querySelector('.more').open = true")
+    top = browser.run(
+        "const [sheet, canvas] = ['.sheet', 'canvas'].map("
+        "name => document.querySelector(name).getBoundingClientRect().top);"
+        "return Math.floor(sheet - canvas) - 30"
+    )
+    above, whole = (_change(closed[:end], _looks(browser)[:end]) for end in (top, None))
+    browser.device(None)
+    # The sheet's shadow is all that reaches up there.
+    assert top > 200 and above < 0.001 < 0.1 < whole
+
+
 def test_every_control_has_a_name(opened: Browser) -> None:
     opened.run("document.querySelector('.more').open = true")
     nameless = opened.run(

@@ -87,7 +87,7 @@ class _Viewing:
         layers, unit = self._scene(self._files)
         title = ", ".join(layer.name for layer in layers)
         page = view_page(layers, title, unit=unit)
-        target = self._target or _temporary(layers[0].name)
+        target = self._target or _temporary(self._files[0])
         size = write_page(target, page)
         if size > _LARGE:
             self._out.note(f"the page has {size / 1e6:.0f} MB; browsers take a while for it.")
@@ -164,6 +164,7 @@ class _Viewing:
         self._out.result(line, document)
 
 
-def _temporary(name: str) -> Path:
+def _temporary(shown_first: Path) -> Path:
     """Return a name for a page in a folder of its own, which stays."""
-    return Path(tempfile.mkdtemp(prefix="bspcsg-")) / f"{Path(name).stem or 'view'}.html"
+    stem = "view" if str(shown_first) == STREAM else shown_first.stem
+    return Path(tempfile.mkdtemp(prefix="bspcsg-")) / f"{stem}.html"
