@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import time
 from pathlib import Path
@@ -79,7 +80,7 @@ def test_reports_hold_every_case(folder: Path, capsys: Capture) -> None:
     root = Xml.parse("j.xml").getroot()
     assert (root.get("tests"), root.get("failures"), root.get("skipped")) == ("3", "0", "2")
     skipped = [case for case in root.iter("testcase") if case.find("skipped") is not None]
-    assert [case.get("name") for case in skipped] == ["0001-union", "0002-union"]
+    assert [case.get("name") for case in skipped] == ["0001-a-open-union", "0002-c-open-union"]
     text = Path("m.md").read_text("utf-8")
     assert "**None of 3 cases failed.**" in text
     assert "| refused | 2 | 2 |" in text and "open.off" in text
@@ -90,12 +91,15 @@ def test_each_pose_that_is_named_counts(folder: Path, capsys: Capture) -> None:
     more = ["--pose", "random:3", "--pose", "random:4", "--pose", "copy", "--results", "r.jsonl"]
     assert ran(capsys, *given, *more)[0] == 0
     names = [case["case"] for case in lines()[1:]]
-    assert sorted(names) == ["0000-copy-union", "0003-random-union", "0004-random-union"]
+    assert sorted(names) == [
+        f"000{k}-a-c-{pose}-union" for k, pose in [(0, "copy"), (3, "random"), (4, "random")]
+    ]
     more = ["--pose", "mirror", "--poses", "2", "--results", "s.jsonl"]
     assert ran(capsys, *given, *more)[0] == 0
     names = [case["case"] for case in lines("s.jsonl")[1:]]
-    wanted = {f"000{k}-{pose}-union" for k in (0, 1) for pose in ("copy", "mirror")}
-    assert set(names) == wanted and len(names) == 4
+    wanted = {(k, pose) for k in ("0000", "0001") for pose in ("copy", "mirror")}
+    found = [re.fullmatch(r"(\d+)-[ac]-[ac]-(\w+)-union", name) for name in names]
+    assert {one.groups() for one in found if one} == wanted and len(names) == 4
 
 
 def test_file_of_cases_names_operands_and_poses(folder: Path, capsys: Capture) -> None:
@@ -159,8 +163,8 @@ def test_shards_are_the_whole(folder: Path, capsys: Capture) -> None:
     shards = read_results(sorted(Path().glob("r-*.jsonl")))
     assert len(shards.runs) == 3
     assert sorted(case["case"] for case in shards.cases.values()) == sorted(
-        f"{pair:04d}-{op}"
-        for pair in range(3)
+        f"{number:04d}-{pair}-{op}"
+        for number, pair in enumerate(("00-01", "00-02", "01-02"))
         for op in ("union", "difference", "intersection", "xor")
     )
 

@@ -30,9 +30,18 @@ def parts(tmp_path: Path) -> Path:
 def test_folder_is_paired_with_itself(parts: Path) -> None:
     cases = cases_of(inputs_in([parts]), ("union", "xor"), Draw())
     names = [case.name for case in cases]
-    assert names == [*(f"{n:04d}-{op}" for n in range(3) for op in ("union", "xor")), "m.csg"]
+    named = ("0000-a-b", "0001-a-c", "0002-b-c")
+    assert names == [*(f"{pair}-{op}" for pair in named for op in ("union", "xor")), "m.csg"]
     pairs = {tuple(Path(str(one.file)).name for one in case.operands) for case in cases}
     assert pairs == {("a.off", "b.stl"), ("a.off", "c.obj"), ("b.stl", "c.obj"), ("m.csg",)}
+
+
+def test_cases_are_called_by_their_files(parts: Path) -> None:
+    (parts / "elsewhere").mkdir()
+    (parts / "elsewhere" / "b.off").write_bytes((parts / "a.off").read_bytes())
+    files = [parts / "a.off", parts / "b.stl", parts / "elsewhere" / "b.off"]
+    cases = cases_of(inputs_in(files), ("xor",), Draw())
+    assert [case.name for case in cases] == ["0000-a-b-xor", "0001-a-b-xor", "0002-b-b-xor"]
 
 
 def test_draws_are_the_same_each_time(parts: Path) -> None:
@@ -49,7 +58,7 @@ def test_pose_can_be_named(parts: Path) -> None:
     cases = cases_of(inputs_in([parts / "a.off", parts / "b.stl"]), ("union",), Draw(pose="beside"))
     assert [(case.pose, case.number) for case in cases] == [("beside", 0)]
     one = cases_of(inputs_in([parts / "a.off"]), ("union",), Draw(seed=3, pose="copy", number=7))
-    assert [(case.name, case.seed) for case in one] == [("0007-copy-union", 3)]
+    assert [(case.name, case.seed) for case in one] == [("0007-a-a-copy-union", 3)]
     assert one[0].command.endswith("--op union --pose copy:7 --seed 3")
 
 

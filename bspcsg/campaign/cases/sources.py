@@ -125,7 +125,8 @@ def _pairs(paths: Sequence[Path], operations: Sequence[str], draw: Draw) -> Iter
         operands = (operand("a", first), operand("b", second))
         for op in operations:
             command = command_for([str(first), str(second)], "--op", op)
-            yield Case(f"{number:04d}-{op}", "pair", op, operands, command=command)
+            name = _name(number, first, second, op)
+            yield Case(name, "pair", op, operands, command=command)
 
 
 def _posed(
@@ -165,8 +166,13 @@ def _in_pose(
     for op in operations:
         options = ["--op", op, "--pose", f"{pose}:{number}", "--seed", str(seed)]
         command = command_for([str(first), str(second)], *options)
-        name = f"{number:04d}-{pose}-{op}"
+        name = _name(number, first, second, pose, op)
         yield Case(name, "pose", op, operands, pose, seed, number, command)
+
+
+def _name(number: int, first: Path, second: Path, *words: str) -> str:
+    """Return what a case of two files is called; the number tells files of one name apart."""
+    return "-".join([f"{number:04d}", first.stem, second.stem, *words])
 
 
 class _Operands:
