@@ -151,6 +151,16 @@ def _sizes(folder: Path) -> tuple[int, float]:
     return len(packages), sum(path.stat().st_size for path in files) / 1e6
 
 
+def kind_of(path: Path) -> str:
+    """Return the kind of a distribution, by its name."""
+    if path.suffix != ".whl":
+        return "sdist"
+    for kind, (target, tag) in TARGETS.items():
+        if f"{tag}_{target.partition('-')[0]}" in path.name:
+            return kind
+    raise SystemExit(f"{path.name}: not one of {', '.join(TARGETS)}")
+
+
 def runs_here(kind: str) -> bool:
     """Say whether a kind of wheel can be installed on this machine."""
     library = "manylinux" if platform.libc_ver()[0] == "glibc" else "musllinux"
@@ -161,13 +171,17 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("kinds", nargs="*", metavar="kind", help=f"of {', '.join(TARGETS)}, sdist")
     parser.add_argument(
-        "--wheel",
+        "--built",
+        nargs="+",
+        default=[],
+        metavar="file",
         type=lambda name: Path(name).resolve(),
-        help="a built wheel, to be looked at and tried only",
+        help="wheels and sources that are there, to be looked at and tried only",
     )
     parser.add_argument("--record", action="store_true", help="keep the figures")
     options = parser.parse_args()
-    kinds = options.kinds or ["manylinux"]
+    there = {kind_of(path): path for path in options.built}
+    kinds = options.kinds or list(there) or ["manylinux"]
     unknown = [kind for kind in kinds if kind not in {*TARGETS, "sdist"}]
     if unknown:
         parser.error(f"no such kind: {', '.join(unknown)}")
@@ -175,7 +189,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as name:
         tree = committed(Path(name))
         for kind in kinds:
-            path = options.wheel or (source(tree) if kind == "sdist" else built(kind, tree))
+            path = there.get(kind) or (source(tree) if kind == "sdist" else built(kind, tree))
             found[kind] = examined(kind, path, tree)
     if options.record:
         print(f"kept in {keep('wheel', {'wheels': found})}")
