@@ -49,7 +49,16 @@ _PAGES = {
 }
 
 #: Methods that are as everybody expects them.
-_UNTOLD = ("__init__", "__repr__", "__str__", "__copy__", "__deepcopy__", "__reduce__", "__hash__")
+_UNTOLD = (
+    "__init__",
+    "__repr__",
+    "__str__",
+    "__copy__",
+    "__deepcopy__",
+    "__reduce__",
+    "__hash__",
+    "__post_init__",
+)
 
 #: The words in docstrings of methods that are public for neighbours only.
 _INSIDE = "for the modules of this package"

@@ -148,3 +148,16 @@ def test_pages_fit_a_phone(site: Path, browser: Browser) -> None:
         browser.open(site / f"{name}.html")
         assert browser.run("return document.documentElement.scrollWidth") <= 390, name
         assert browser.errors() == []
+
+
+def test_a_phone_shows_buttons_apart_and_pictures_large(site: Path, browser: Browser) -> None:
+    browser.size(390, 844)
+    browser.open(site / "examples/GALLERY.html")
+    widths = browser.run("return [...document.querySelectorAll('td img')].map(e => e.clientWidth)")
+    assert len(widths) > 11 and min(widths) > 120
+    apart = browser.run(
+        "const buttons = [...document.querySelectorAll('.mobile-header .header-right > *')];"
+        "const [theme, contents] = buttons.map(e => e.getBoundingClientRect());"
+        "return contents.left - theme.right"
+    )
+    assert apart >= 8
