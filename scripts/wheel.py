@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 
-from recording import REPOSITORY, keep
+from recording import REPOSITORY, keep, machine
 from wheel_contents import problems_of
 
 OUT = REPOSITORY / "out" / "wheel"
@@ -185,14 +185,17 @@ def main() -> int:
     unknown = [kind for kind in kinds if kind not in {*TARGETS, "sdist"}]
     if unknown:
         parser.error(f"no such kind: {', '.join(unknown)}")
-    found = {}
+    if options.built and options.record:
+        parser.error("--record is for what is built here: of other files the commit is not known")
+    # Work may go on while wheels are built; they belong to the commit of the beginning.
+    found, here = {}, machine()
     with tempfile.TemporaryDirectory() as name:
         tree = committed(Path(name))
         for kind in kinds:
             path = there.get(kind) or (source(tree) if kind == "sdist" else built(kind, tree))
             found[kind] = examined(kind, path, tree)
     if options.record:
-        print(f"kept in {keep('wheel', {'wheels': found})}")
+        print(f"kept in {keep('wheel', {'machine': here, 'wheels': found})}")
     return 0
 
 
