@@ -103,10 +103,14 @@ NAVIGATION = {
 
 myst_enable_extensions = ["colon_fence"]
 myst_heading_anchors = 4
+myst_html_meta = {
+    "description": "Exact set operations on solids, from Python and from the command line."
+}
 smartquotes = False  # two hyphens begin an option
 
 html_theme = "furo"
 html_title = "bspcsg"
+html_favicon = "static/icon.svg"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_js_files = ["site.js"]
