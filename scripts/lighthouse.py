@@ -2,8 +2,8 @@
 
     scripts/site && scripts/lighthouse
 
-Needs npm with Node 22, its registry, and Chromium. The scores of performance are those of a simulated phone, and
-fall when the machine has other work. With --record they are kept.
+Needs npm with Node 22, its registry, and Chromium. The score of performance is that of a simulated
+phone, and falls when the machine has other work. With --record the figures are kept.
 """
 
 import argparse
