@@ -40,8 +40,8 @@ MUTANTS = [
     Mutant(
         "a triangle that a path crosses counts with the other sign",
         "geometry/crossing.rs",
-        "        return -sign;\n",
-        "        return sign;\n",
+        "        return i32::from(-sign);\n",
+        "        return i32::from(sign);\n",
         ("laws_solids",),
     ),
     Mutant(

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use bspcsg::extract::rounding::round;
 use bspcsg::geometry::dim3::Dim3;
 use bspcsg::geometry::plane::{Lattice, Plane};
-use bspcsg::geometry::polygon::Polygon;
+use bspcsg::geometry::polygon::{straddle, Polygon};
 use bspcsg::geometry::vertex::Vertex;
 use bspcsg::merge::{split_tree, SetOp};
 use bspcsg::mesh::triangles::TriangleMesh;
@@ -109,7 +109,7 @@ fn splits(c: &mut Criterion) {
         let points = [0; 3].map(|_| n.point(REACH));
         let sides = points.map(|p| cut.side_of_lattice(&p));
         let support = Plane::through(&points[0], &points[1], &points[2]);
-        if let (Some(support), true) = (support, sides.contains(&-1) && sides.contains(&1)) {
+        if let (Some(support), (true, true)) = (support, straddle(&sides)) {
             break Polygon::triangle(&points, Arc::new(support));
         }
     });

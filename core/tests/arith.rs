@@ -115,7 +115,7 @@ macro_rules! width_laws {
                 fn sign_and_order(a in int::<N>(), b in int::<N>()) {
                     let (x, y) = (big(&a), big(&b));
                     prop_assert_eq!(a.cmp(&b), x.cmp(&y));
-                    prop_assert_eq!(a.signum().cmp(&0), x.cmp(&BigInt::ZERO));
+                    prop_assert_eq!(a.sign().order(), x.cmp(&BigInt::ZERO));
                     prop_assert_eq!(a.is_zero(), x == BigInt::ZERO);
                     prop_assert_eq!(a.is_negative(), x < BigInt::ZERO);
                     prop_assert_eq!(big(&a.abs()), BigInt::from(x.magnitude().clone()));

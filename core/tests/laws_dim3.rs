@@ -6,7 +6,7 @@ use bspcsg::geometry::cell::Cell;
 use bspcsg::geometry::dim3::Dim3;
 use bspcsg::geometry::plane::{Lattice, Plane};
 use bspcsg::geometry::polygon::Polygon;
-use bspcsg::geometry::side::Half;
+use bspcsg::geometry::side::{Half, Side};
 use bspcsg::geometry::vertex::Vertex;
 use bspcsg::merge::{merge, partition_tree, SetOp};
 use bspcsg::tree::partition::{
@@ -194,11 +194,7 @@ fn voxel_sets_combine_like_bit_masks() {
 }
 
 fn corner_side(cut: &Arc<Plane>) -> Half {
-    if cut.side_of_corner(&small_frame().corner()) < 0 {
-        Half::Minus
-    } else {
-        Half::Plus
-    }
+    cut.side_of_corner(&small_frame().corner())
 }
 
 #[test]
@@ -231,9 +227,9 @@ fn an_open_surface_has_no_winding_numbers() {
 fn tetrahedron(corners: [Lattice; 4], source: u64) -> Option<Vec<Facet<Dim3>>> {
     let [a, b, c, d] = corners;
     let (b, c) = match Plane::through(&a, &b, &c)?.side_of_lattice(&d) {
-        0 => return None,
-        1 => (c, b),
-        _ => (b, c),
+        Side::On => return None,
+        Side::Plus => (c, b),
+        Side::Minus => (b, c),
     };
     let faces = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
     Some(faces.map(|face| triangle(face, source)).to_vec())

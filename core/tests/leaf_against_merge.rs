@@ -57,13 +57,7 @@ fn any_shape(numbers: &mut Numbers, reach: i64) -> Shape {
 
 fn reference(cell: &Cell) -> impl Fn(&Arc<Plane>) -> Half {
     let corner = cell.corner();
-    move |cut| {
-        if cut.side_of_corner(&corner) < 0 {
-            Half::Minus
-        } else {
-            Half::Plus
-        }
-    }
+    move |cut| cut.side_of_corner(&corner)
 }
 
 /// The tree of a source inside a cell, its facets numbered from `first`; `number` is the winding

@@ -2,6 +2,7 @@
 #![allow(clippy::cast_precision_loss, clippy::float_cmp)]
 
 use bspcsg::arith::bounds::COORDINATE_BITS;
+use bspcsg::arith::Sign;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::query::ray::facet::meet;
 use bspcsg::query::ray::filter::{Filter, Probe};
@@ -199,7 +200,7 @@ proptest! {
         let order: Vec<u32> = expected.iter().map(|e| e.1).collect();
         prop_assert_eq!(all, order);
         let before = |f: &Triangle| {
-            meet(&ray, f).is_some_and(|m| m.at < Ratio::ONE && m.until.signum() > 0)
+            meet(&ray, f).is_some_and(|m| m.at < Ratio::ONE && m.until.sign() == Sign::Positive)
         };
         prop_assert_eq!(query.occluded(Reach::Target), scene.facets().iter().any(before));
     }

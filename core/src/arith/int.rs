@@ -7,6 +7,7 @@ use super::limbs::{
 };
 use super::modular;
 use super::round;
+use super::sign::Sign;
 
 /// A signed integer of `N` 64-bit limbs, in two's complement.
 ///
@@ -18,13 +19,13 @@ use super::round;
 ///
 /// # Example
 /// ```
-/// use bspcsg::arith::Int;
+/// use bspcsg::arith::{Int, Sign};
 ///
 /// // A product of two integers of two limbs fits four.
 /// let big = Int::<2>::from_i128(1 << 100);
 /// let square: Int<4> = big.mul(&big);
 /// assert_eq!(square.bit_length(), 201);
-/// assert_eq!((square - square).signum(), 0);
+/// assert_eq!((square - square).sign(), Sign::Zero);
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Int<const N: usize> {
@@ -114,13 +115,15 @@ impl<const N: usize> Int<N> {
         (self.limbs[N - 1].cast_signed() >> 63).cast_unsigned()
     }
 
-    /// −1, 0 or 1.
+    /// The sign.
     #[inline]
-    pub fn signum(&self) -> i32 {
+    pub fn sign(&self) -> Sign {
         if self.is_negative() {
-            -1
+            Sign::Negative
+        } else if self.is_zero() {
+            Sign::Zero
         } else {
-            i32::from(!self.is_zero())
+            Sign::Positive
         }
     }
 

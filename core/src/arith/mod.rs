@@ -1,20 +1,24 @@
-//! Exact integers of fixed width, residues, and correctly rounded ratios and sums.
+//! Exact integers of fixed width, their signs, residues, and correctly rounded ratios and sums.
 //!
 //! Nothing here knows geometry except [`bounds`], which derives how wide the
 //! integers of the exact predicates have to be. Nothing allocates.
 
 pub mod bounds;
 pub mod convert;
+mod filtered;
 mod gcd;
 mod int;
 mod limbs;
 mod modular;
 mod ops;
 mod round;
+mod sign;
 mod sum;
 
+pub use filtered::Filtered;
 pub use gcd::gcd_u128;
 pub use int::Int;
 pub use modular::{inv_mod, mul_mod, P1, P2};
 pub use round::{mantissa_and_exponent, ratio_to_f64};
+pub use sign::Sign;
 pub use sum::Sum;

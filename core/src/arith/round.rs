@@ -3,6 +3,7 @@
 use super::convert::{as_double, as_number, low_limb};
 use super::limbs::{any_bit_below, bit_length, limb_at};
 use super::Int;
+use crate::arith::Sign;
 
 /// The exponent of the least positive double, 2^-1074.
 const LEAST_EXPONENT: i32 = -1074;
@@ -40,7 +41,10 @@ pub fn ratio_to_f64<const A: usize, const B: usize>(
     numerator: &Int<A>,
     denominator: &Int<B>,
 ) -> f64 {
-    debug_assert!(denominator.signum() > 0, "the denominator is not positive");
+    debug_assert!(
+        denominator.sign() == Sign::Positive,
+        "the denominator is not positive"
+    );
     if numerator.is_zero() {
         return 0.0;
     }

@@ -9,7 +9,7 @@ use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 use super::angles;
 use super::triangulate::Planar;
 use crate::arith::convert::{as_double, as_number, as_whole};
-use crate::arith::Int;
+use crate::arith::{Filtered, Int, Sign};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::vertex::{Vertex, NEAR};
 
@@ -192,7 +192,7 @@ impl Projection<'_> {
     pub fn is_between(&self, a: u32, point: u32, b: u32) -> bool {
         point != a
             && point != b
-            && self.orient(a, point, b) == 0
+            && self.orient(a, point, b) == Sign::Zero
             && self.compare(a, point) == self.compare(point, b)
     }
 }
@@ -201,8 +201,8 @@ impl Projection<'_> {
     /// Return whether two segments cross inside both.
     pub fn crosses(&self, a: [u32; 2], b: [u32; 2]) -> bool {
         a.iter().all(|p| !b.contains(p))
-            && self.orient(a[0], a[1], b[0]) * self.orient(a[0], a[1], b[1]) < 0
-            && self.orient(b[0], b[1], a[0]) * self.orient(b[0], b[1], a[1]) < 0
+            && self.orient(a[0], a[1], b[0]) * self.orient(a[0], a[1], b[1]) == Sign::Negative
+            && self.orient(b[0], b[1], a[0]) * self.orient(b[0], b[1], a[1]) == Sign::Negative
     }
 }
 
@@ -215,14 +215,14 @@ impl Planar for Projection<'_> {
         by(self.u).then_with(|| by(self.v))
     }
 
-    fn orient(&self, a: u32, b: u32, c: u32) -> i32 {
+    fn orient(&self, a: u32, b: u32, c: u32) -> Sign {
         self.rough_orient([a, b, c])
-            .unwrap_or_else(|| self.exact_orient([a, b, c]))
+            .or_exact(|| self.exact_orient([a, b, c]))
     }
 
     fn opposite_angles(&self, [a, b]: [u32; 2], [c, d]: [u32; 2]) -> Ordering {
         let quad = [a, b, c, d];
-        angles::rough(quad.map(|p| self.approx(p))).unwrap_or_else(|| {
+        angles::rough(quad.map(|p| self.approx(p))).or_exact(|| {
             let points = quad.map(|p| &**self.table.point(p));
             angles::exact(points, [self.u, self.v])
         })
@@ -245,7 +245,7 @@ impl Projection<'_> {
 
     /// The sign of a turn where doubles decide it: coordinates are within three units in the last
     /// place.
-    fn rough_orient(&self, points: [u32; 3]) -> Option<i32> {
+    fn rough_orient(&self, points: [u32; 3]) -> Filtered<Sign> {
         let [a, b, c] = points.map(|p| self.approx(p));
         let (bu, bv) = (b[0] - a[0], b[1] - a[1]);
         let (cu, cv) = (c[0] - a[0], c[1] - a[1]);
@@ -255,22 +255,22 @@ impl Projection<'_> {
         let bound = 2.0 * doubt * (size + 2.0 * doubt)
             + 4.0 * f64::EPSILON * (bu * cv).abs().max((bv * cu).abs());
         let cross = bu * cv - bv * cu;
-        (cross.abs() > bound).then_some(if cross > 0.0 { 1 } else { -1 })
+        Filtered::when(cross.abs() > bound, Sign::of(cross))
     }
 
-    /// Sign of the turn a → b → c in the view: +1 left, 0 straight, -1 right.
-    fn exact_orient(&self, points: [u32; 3]) -> i32 {
+    /// Sign of the turn a → b → c in the view.
+    fn exact_orient(&self, points: [u32; 3]) -> Sign {
         let points = points.map(|id| &**self.table.point(id));
         if let [Some(a), Some(b), Some(c)] = points.map(Vertex::as_lattice) {
             let d = |p: &[i64; 3], q: &[i64; 3], i: usize| i128::from(q[i] - p[i]);
             let cross = d(a, b, self.u) * d(a, c, self.v) - d(a, b, self.v) * d(a, c, self.u);
-            return cross.signum() as i32;
+            return Sign::of(cross);
         }
         wide_orient(&points, self.u, self.v)
     }
 }
 
-fn wide_orient(points: &[&Vertex; 3], u: usize, v: usize) -> i32 {
+fn wide_orient(points: &[&Vertex; 3], u: usize, v: usize) -> Sign {
     let [a, b, c] = points.map(Vertex::coordinates);
     let minor = |p: &Int<6>, q: &Int<6>, r: &Int<6>, s: &Int<6>| -> Int<12> {
         let left: Int<12> = p.mul(q);
@@ -280,10 +280,10 @@ fn wide_orient(points: &[&Vertex; 3], u: usize, v: usize) -> i32 {
     let by_x: Int<18> = minor(&b.x[v], &c.w, &c.x[v], &b.w).mul(&a.x[u]);
     let by_y: Int<18> = minor(&b.x[u], &c.w, &c.x[u], &b.w).mul(&a.x[v]);
     let by_w: Int<18> = minor(&b.x[u], &c.x[v], &c.x[u], &b.x[v]).mul(&a.w);
-    (by_x - by_y + by_w).signum()
+    (by_x - by_y + by_w).sign()
 }
 
 /// The signs of the coordinate differences b − a.
-pub fn direction(a: &Vertex, b: &Vertex) -> [i32; 3] {
-    [0, 1, 2].map(|axis| b.compare(a, axis) as i32)
+pub fn direction(a: &Vertex, b: &Vertex) -> [Sign; 3] {
+    [0, 1, 2].map(|axis| Sign::from_order(b.compare(a, axis)))
 }

@@ -2,8 +2,11 @@
 
 use super::path::{near_determinant, NearCross};
 use super::plane::Lattice;
+use crate::arith::{Filtered, Sign};
 
 type Triangle = [Lattice; 3];
+
+type Sides = [Filtered<Sign>; 3];
 
 /// Return whether two lattice triangles certainly have no point in common; errs on no.
 ///
@@ -12,43 +15,42 @@ type Triangle = [Lattice; 3];
 /// Devillers 2003).
 pub fn are_apart(p: &Triangle, q: &Triangle) -> bool {
     let of_p = sides(p, q);
-    if is_beside(&of_p) {
+    if is_beside(of_p) {
         return true;
     }
     let of_q = sides(q, p);
-    if is_beside(&of_q) {
+    if is_beside(of_q) {
         return true;
     }
-    match (alone(&of_p), alone(&of_q)) {
+    match (alone(of_p), alone(of_q)) {
         (Some(i), Some(k)) => stretches_are_apart(p, i, q, k),
         _ => false,
     }
 }
 
-/// On which sides of a triangle's plane the corners of another lie; 0 where that is not certain.
+/// On which sides of a triangle's plane the corners of another lie.
 #[inline]
-fn sides(triangle: &Triangle, plane: &Triangle) -> [i32; 3] {
+fn sides(triangle: &Triangle, plane: &Triangle) -> Sides {
     let [a, b, c] = plane;
     let normal = NearCross::of(&less(b, a), &less(c, a));
     let [x, y, z] = triangle;
     [
-        normal.side_of(&less(x, a)),
-        normal.side_of(&less(y, a)),
-        normal.side_of(&less(z, a)),
+        normal.sign_with(&less(x, a)),
+        normal.sign_with(&less(y, a)),
+        normal.sign_with(&less(z, a)),
     ]
 }
 
 /// Return whether all corners certainly lie on one side.
-fn is_beside(sides: &[i32; 3]) -> bool {
-    sides[0] != 0 && sides[1] == sides[0] && sides[2] == sides[0]
+fn is_beside(sides: Sides) -> bool {
+    sides[0].is_certain() && sides[1] == sides[0] && sides[2] == sides[0]
 }
 
 /// The corner that is alone on its side; `None` if that is not certain.
-fn alone(sides: &[i32; 3]) -> Option<usize> {
-    let [a, b, c] = *sides;
-    if a == 0 || b == 0 || c == 0 {
+fn alone(sides: Sides) -> Option<usize> {
+    let [Filtered::Certain(a), Filtered::Certain(b), Filtered::Certain(c)] = sides else {
         return None;
-    }
+    };
     Some(if b == c {
         0
     } else if a == c {
@@ -71,7 +73,7 @@ fn stretches_are_apart(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
     let order = |our: &Lattice, their: &Lattice| near_determinant(&toward, our, their);
     let first = order(&ours[0], &theirs[0]);
     let same = |our: &Lattice| theirs.iter().all(|their| order(our, their) == first);
-    first != 0 && ours.iter().all(same)
+    first.is_certain() && ours.iter().all(same)
 }
 
 #[inline]
@@ -125,10 +127,10 @@ mod tests {
             p in [corner(99), corner(99), corner(99)],
             q in [corner(99), corner(99), corner(99)],
         ) {
-            prop_assume!(!sides(&p, &q).contains(&0) && !sides(&q, &p).contains(&0));
+            prop_assume!([sides(&p, &q), sides(&q, &p)].iter().flatten().all(Filtered::is_certain));
             let edges = |t: &Triangle| [0, 1, 2].map(|i| (t[i], t[(i + 1) % 3]));
             let flat = edges(&p).iter().any(|(a, b)| edges(&q).iter().any(|(c, d)| {
-                near_determinant(&less(b, a), &less(c, a), &less(d, a)) == 0
+                !near_determinant(&less(b, a), &less(c, a), &less(d, a)).is_certain()
             }));
             prop_assume!(!flat);
             prop_assert_eq!(are_apart(&p, &q), !(pierces(&p, &q) || pierces(&q, &p)));

@@ -8,10 +8,11 @@ use super::dim2::{Dim2, Line2, Square};
 use super::dim3::Dim3;
 use super::plane::Plane;
 use super::polygon::Polygon;
-use super::side::{Half, Side};
+use super::side::Half;
 use super::space::Space;
 use crate::arith::bounds::REACH;
 use crate::arith::convert::as_whole;
+use crate::arith::Sign;
 
 /// A space with axes.
 pub trait AxisSpace: Space {
@@ -79,11 +80,7 @@ impl AxisSpace for Dim2 {
         let ([a, b], c) = cut.coefficients();
         let wall = 2 * i128::from(REACH) + 1;
         let value = 2 * c - (i128::from(a) + i128::from(b)) * wall;
-        let signs = [value.signum(), i128::from(a), i128::from(b)];
-        match signs.into_iter().find(|sign| *sign != 0) {
-            Some(..=-1) => Half::Minus,
-            _ => Half::Plus,
-        }
+        Half::from_sign(Sign::first([Sign::of(value), Sign::of(a), Sign::of(b)]))
     }
 }
 
@@ -115,9 +112,6 @@ impl AxisSpace for Dim3 {
     }
 
     fn side_of_corner(cut: &Arc<Plane>) -> Half {
-        match Side::from_sign(cut.side_of_corner(&Cell::UNIVERSE.corner())) {
-            Side::Minus => Half::Minus,
-            _ => Half::Plus,
-        }
+        cut.side_of_corner(&Cell::UNIVERSE.corner())
     }
 }

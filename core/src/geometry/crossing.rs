@@ -5,8 +5,9 @@
 
 use super::plane::{first_sign, normal, Lattice, Plane};
 use super::polygon::{Carrier, Polygon};
+use super::side::Half;
 use crate::arith::convert::as_double;
-use crate::arith::Int;
+use crate::arith::{Int, Sign};
 
 /// A segment from one cell corner to another along an axis, in half steps.
 #[derive(Clone, Copy, Debug)]
@@ -35,16 +36,25 @@ impl Segment {
 pub fn plane_change(plane: &Plane, segment: &Segment) -> i32 {
     let before = plane.side_of_corner(&segment.from);
     let after = plane.side_of_corner(&segment.end());
-    (before - after) / 2
+    change_between(before, after)
+}
+
+/// The change of the winding number on the way from one half-space of a surface to another.
+pub fn change_between(before: Half, after: Half) -> i32 {
+    match (before, after) {
+        (Half::Minus, Half::Plus) => -1,
+        (Half::Plus, Half::Minus) => 1,
+        (Half::Minus, Half::Minus) | (Half::Plus, Half::Plus) => 0,
+    }
 }
 
 /// The change of the winding number across a lattice triangle.
 pub fn triangle_change(corners: &[Lattice; 3], segment: &Segment) -> i32 {
     let (u, v) = segment.across();
-    let mut sign = 0;
+    let mut sign = Sign::Zero;
     for i in 0..3 {
         let turn = turn_at_corner(&corners[i], &corners[(i + 1) % 3], &segment.from, u, v);
-        if turn == 0 || turn + sign == 0 {
+        if turn == Sign::Zero || turn == -sign {
             return 0;
         }
         sign = turn;
@@ -57,41 +67,39 @@ pub fn triangle_change(corners: &[Lattice; 3], segment: &Segment) -> i32 {
         return 0;
     }
     if 2 * low > segment.from[segment.axis] && 2 * high < segment.to {
-        return -sign;
+        return i32::from(-sign);
     }
     let n = normal(&corners[0], &corners[1], &corners[2]);
     let before = side_of_corner(&n, &corners[0], &segment.from);
     let after = side_of_corner(&n, &corners[0], &segment.end());
-    (before - after) / 2
+    change_between(before, after)
 }
 
-/// Sign of n·(q + δ − a), for a corner q in half steps.
-fn side_of_corner(n: &[i128; 3], a: &Lattice, q: &Lattice) -> i32 {
+/// The half-space by the sign of n·(q + δ − a), for a corner q in half steps.
+fn side_of_corner(n: &[i128; 3], a: &Lattice, q: &Lattice) -> Half {
     let term = |i: usize| -> Int<3> { Int::<2>::from_i128(n[i]).mul_i64(q[i] - 2 * a[i]) };
-    match (term(0) + term(1) + term(2)).signum() {
-        0 => first_sign(n),
+    Half::from_sign(match (term(0) + term(1) + term(2)).sign() {
+        Sign::Zero => first_sign(n),
         sign => sign,
-    }
+    })
 }
 
 /// Sign of the turn a → b → q + δ in the projection along the third axis; zero only if a and b
 /// coincide there.
-#[allow(clippy::cast_possible_truncation, reason = "a sign")]
-fn turn_at_corner(a: &Lattice, b: &Lattice, q: &Lattice, u: usize, v: usize) -> i32 {
+fn turn_at_corner(a: &Lattice, b: &Lattice, q: &Lattice, u: usize, v: usize) -> Sign {
     let (du, dv) = (b[u] - a[u], b[v] - a[v]);
     let (eu, ev) = (q[u] - 2 * a[u], q[v] - 2 * a[v]);
     let (p, r) = (as_double(du) * as_double(ev), as_double(dv) * as_double(eu));
     let rough = p - r;
     if rough.abs() > 4.0 * f64::EPSILON * (p.abs() + r.abs()) {
-        return if rough > 0.0 { 1 } else { -1 };
+        return Sign::of(rough);
     }
     let exact = i128::from(du) * i128::from(ev) - i128::from(dv) * i128::from(eu);
     if exact != 0 {
-        return if exact > 0 { 1 } else { -1 };
+        return Sign::of(exact);
     }
-    let (by_u, by_v) = (-dv.signum(), du.signum());
-    let (first, second) = if u < v { (by_u, by_v) } else { (by_v, by_u) };
-    (if first == 0 { second } else { first }) as i32
+    let (by_u, by_v) = (-Sign::of(dv), Sign::of(du));
+    Sign::first(if u < v { [by_u, by_v] } else { [by_v, by_u] })
 }
 
 /// The change of the winding number across a convex polygon.
@@ -102,11 +110,7 @@ pub fn polygon_change(polygon: &Polygon, segment: &Segment) -> i32 {
         return 0;
     }
     let (u, v) = segment.across();
-    let upward = if support.normal()[segment.axis] > 0 {
-        1
-    } else {
-        -1
-    };
+    let upward = Sign::of(support.normal()[segment.axis]);
     let inside = polygon.corners().iter().all(|corner| match &corner.edge {
         Carrier::Edge(edge) => {
             let (a, b) = edge.ends();
@@ -114,7 +118,12 @@ pub fn polygon_change(polygon: &Polygon, segment: &Segment) -> i32 {
         }
         Carrier::Cut(plane, flip) => {
             let side = side_where_met(support, plane, segment) * upward;
-            side == if *flip { 1 } else { -1 }
+            let wanted = if *flip {
+                Sign::Positive
+            } else {
+                Sign::Negative
+            };
+            side == wanted
         }
     });
     if inside {
@@ -125,24 +134,20 @@ pub fn polygon_change(polygon: &Polygon, segment: &Segment) -> i32 {
 }
 
 /// Sign of `plane` where the segment's line meets `support`, times the sign of the support's slope.
-fn side_where_met(support: &Plane, plane: &Plane, segment: &Segment) -> i32 {
+fn side_where_met(support: &Plane, plane: &Plane, segment: &Segment) -> Sign {
     let (p, e) = (support.normal(), plane.normal());
     let a = segment.axis;
     let wide = |c: i128| Int::<2>::from_i128(c);
     let left: Int<5> = wide(p[a]).mul(&plane.value_at_doubled(&segment.from));
     let right: Int<5> = wide(e[a]).mul(&support.value_at_doubled(&segment.from));
-    let sign = (left - right).signum();
-    if sign != 0 {
+    let sign = (left - right).sign();
+    if sign != Sign::Zero {
         return sign;
     }
-    let slope = |i: usize| -> i32 {
+    let slope = |i: usize| -> Sign {
         let left: Int<4> = wide(p[a]).mul(&wide(e[i]));
         let right: Int<4> = wide(e[a]).mul(&wide(p[i]));
-        (left - right).signum()
+        (left - right).sign()
     };
-    (0..3)
-        .filter(|i| *i != a)
-        .map(slope)
-        .find(|s| *s != 0)
-        .unwrap_or(0)
+    Sign::first((0..3).filter(|i| *i != a).map(slope))
 }

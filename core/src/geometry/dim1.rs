@@ -48,7 +48,7 @@ impl Space for Dim1 {
     type Frame = ();
 
     fn side(cut: &Point1, point: &i64) -> Side {
-        let side = Side::from_sign(point.cmp(&cut.at) as i32);
+        let side = Side::from_order(point.cmp(&cut.at));
         match cut.inside {
             Direction::Below => side,
             Direction::Above => side.opposite(),

@@ -14,7 +14,7 @@ use crate::arith::bounds::{
     LINE_OFFSET_BITS, REACH,
 };
 use crate::arith::convert::as_double;
-use crate::arith::{gcd_u128, Int};
+use crate::arith::{gcd_u128, Int, Sign};
 
 /// The plane with integer lattice coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -159,7 +159,7 @@ impl Line2 {
         }
         let along: Int<LINE_AT_MEET_LIMBS> = p.x[0].mul_i64(self.a) + p.x[1].mul_i64(self.b);
         let last: Int<LINE_AT_MEET_LIMBS> = p.w.mul(&Int::<2>::from_i128(self.c));
-        Side::from_sign((along + last).signum())
+        Side::from_sign((along + last).sign())
     }
 
     /// Order of two lines by the angle of their directions (−b, a), if these are less than a half
@@ -223,10 +223,10 @@ impl Point2 {
         let times = |k: i64, c: i128| Int::<2>::from_i128(c).mul_i64::<3>(k);
         let x = times(p.b, q.c) - times(q.b, p.c);
         let y = times(q.a, p.c) - times(p.a, q.c);
-        match w.signum() {
-            0 => None,
-            1 => Some(Self::homogeneous([x, y], Int::from_i128(w))),
-            _ => Some(Self::homogeneous([-x, -y], Int::from_i128(-w))),
+        match Sign::of(w) {
+            Sign::Zero => None,
+            Sign::Positive => Some(Self::homogeneous([x, y], Int::from_i128(w))),
+            Sign::Negative => Some(Self::homogeneous([-x, -y], Int::from_i128(-w))),
         }
     }
 

@@ -25,7 +25,7 @@ impl Space for Dim3 {
     type Frame = Cell;
 
     fn side(cut: &Arc<Plane>, point: &Vertex) -> Side {
-        Side::from_sign(point.side_of(cut))
+        point.side_of(cut)
     }
 
     fn coincide(a: &Arc<Plane>, b: &Arc<Plane>) -> Option<Orientation> {

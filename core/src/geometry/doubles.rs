@@ -7,10 +7,11 @@
     reason = "equal coordinates are meant to the last bit"
 )]
 
-use num_bigint::{BigInt, Sign};
+use num_bigint::BigInt;
 
 use super::axes::each_axis;
-use crate::arith::{mantissa_and_exponent, Int};
+use super::side::Side;
+use crate::arith::{mantissa_and_exponent, Filtered, Int, Sign};
 
 /// A point of space in doubles; finite.
 pub type Point = [f64; 3];
@@ -59,29 +60,29 @@ impl<'a> Facing<'a> {
         }
     }
 
-    /// The side on which a point lies: +1 where the normal by the right-hand rule points, 0 in the
-    /// plane, −1 behind; exact.
+    /// The side on which a point lies: `Plus` is where the normal by the right-hand rule points;
+    /// exact.
     #[inline]
-    pub fn side(&self, d: &Point) -> i32 {
+    pub fn side(&self, d: &Point) -> Side {
         let [a, b, c] = self.triangle;
-        self.clear_side(d)
-            .unwrap_or_else(|| exact_side([a, b, c, d]))
+        self.clear_side(d).or_exact(|| exact_side([a, b, c, d]))
     }
 
-    /// The side on which a point lies, if doubles settle it.
+    /// The side on which a point lies, where doubles settle it.
     #[inline]
-    pub fn clear_side(&self, d: &Point) -> Option<i32> {
+    pub fn clear_side(&self, d: &Point) -> Filtered<Side> {
         let [a, b, c] = self.triangle;
         let level = |i: usize| a[i] == d[i] && b[i] == d[i] && c[i] == d[i];
         if level(0) || level(1) || level(2) {
-            return Some(0);
+            return Filtered::Certain(Side::On);
         }
         let (m, s) = (&self.minors, &self.sizes);
         let w = difference(d, a);
         let value = m[0] * w[0] + m[1] * w[1] + m[2] * w[2];
         let size = s[0] * w[0].abs() + s[1] * w[1].abs() + s[2] * w[2].abs();
         let clear = value.abs() > SIDE_BOUND * size && TRUSTED.contains(&size);
-        clear.then_some(if value > 0.0 { 1 } else { -1 })
+        let side = if value > 0.0 { Side::Plus } else { Side::Minus };
+        Filtered::when(clear, side)
     }
 
     /// The axis along which the triangle is seen best.
@@ -106,60 +107,67 @@ fn difference(p: &Point, q: &Point) -> Point {
 /// # Example
 /// ```
 /// use bspcsg::geometry::doubles::side;
+/// use bspcsg::geometry::side::Side;
 ///
 /// let floor = [[0.0, 0.0, 0.1], [1.0, 0.0, 0.1], [0.0, 1.0, 0.1]];
 /// // The sum of these doubles is a little more than the double 0.3.
-/// assert_eq!(side(&floor, &[0.2, 0.2, 0.1 + 0.2 - 0.2]), 1);
-/// assert_eq!(side(&floor, &[0.2, 0.2, 0.1]), 0);
+/// assert_eq!(side(&floor, &[0.2, 0.2, 0.1 + 0.2 - 0.2]), Side::Plus);
+/// assert_eq!(side(&floor, &[0.2, 0.2, 0.1]), Side::On);
 /// ```
 #[inline]
-pub fn side(triangle: &Triangle, d: &Point) -> i32 {
+pub fn side(triangle: &Triangle, d: &Point) -> Side {
     Facing::of(triangle).side(d)
 }
 
-fn exact_side(points: [&Point; 4]) -> i32 {
+fn exact_side(points: [&Point; 4]) -> Side {
     let parts = points.map(|p| p.map(mantissa_and_exponent));
     if let Some(grid) = on_common_grid(parts.as_flattened()) {
         let from = |p: usize, i: usize| Int::<2>::from_i128(grid[3 * p + i] - grid[i]);
         let [u, v, w] = [1, 2, 3].map(|p| each_axis(|i| from(p, i)));
         let minor = |j: usize, k: usize| u[j].mul::<2, 4>(&v[k]) - u[k].mul::<2, 4>(&v[j]);
         let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3).mul::<2, 6>(&w[i]);
-        (term(0) + term(1) + term(2)).signum()
+        Side::from_sign((term(0) + term(1) + term(2)).sign())
     } else {
         let grid = on_big_grid(parts.as_flattened());
         let from = |p: usize, i: usize| &grid[3 * p + i] - &grid[i];
         let [u, v, w] = [1, 2, 3].map(|p| each_axis(|i| from(p, i)));
         let minor = |j: usize, k: usize| &u[j] * &v[k] - &u[k] * &v[j];
         let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3) * &w[i];
-        sign(&(term(0) + term(1) + term(2)))
+        Side::from_order((term(0) + term(1) + term(2)).cmp(&BigInt::ZERO))
     }
 }
 
-/// Sign of the turn a → b → c in the plane: +1 left, 0 straight, −1 right; exact.
+/// Sign of the turn a → b → c in the plane, positive to the left; exact.
 #[inline]
-pub fn turn(points: [[f64; 2]; 3]) -> i32 {
+pub fn turn(points: [[f64; 2]; 3]) -> Sign {
     clear_turn(points)
         .or_else(|| turn_by_parts(points))
-        .unwrap_or_else(|| exact_turn(points))
+        .or_exact(|| exact_turn(points))
 }
 
-/// Sign of the turn a → b → c in the plane, if doubles settle that there is one.
+/// Sign of the turn a → b → c in the plane, where doubles settle that there is one.
 #[inline]
-pub fn clear_turn([a, b, c]: [[f64; 2]; 3]) -> Option<i32> {
+pub fn clear_turn([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
     let left = (b[0] - a[0]) * (c[1] - a[1]);
     let right = (b[1] - a[1]) * (c[0] - a[0]);
     let (value, size) = (left - right, left.abs() + right.abs());
     let clear = value.abs() > TURN_BOUND * size && TRUSTED.contains(&size);
-    clear.then_some(if value > 0.0 { 1 } else { -1 })
+    Filtered::when(clear, Sign::of(value))
 }
 
 /// The turn where the differences of coordinates are doubles, so that two products decide: points
 /// of one plane along the axes, most of all.
-fn turn_by_parts([a, b, c]: [[f64; 2]; 3]) -> Option<i32> {
+fn turn_by_parts([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
     let [u, v] = [b, c].map(|p| [0, 1].map(|i| exact_difference(p[i], a[i])));
-    let [left, right] = [exact_product(u[0]?, v[1]?)?, exact_product(u[1]?, v[0]?)?];
     // Rounding keeps the order of products; equal ones differ by what was cut off.
-    left.partial_cmp(&right).map(|order| order as i32)
+    let order = || {
+        let [left, right] = [exact_product(u[0]?, v[1]?)?, exact_product(u[1]?, v[0]?)?];
+        left.partial_cmp(&right)
+    };
+    match order() {
+        Some(order) => Filtered::Certain(Sign::from_order(order)),
+        None => Filtered::Doubtful,
+    }
 }
 
 /// a − b, if a double holds it (Knuth's sum of two).
@@ -192,17 +200,17 @@ fn halves(x: f64) -> [f64; 2] {
     [leading, x - leading]
 }
 
-fn exact_turn(points: [[f64; 2]; 3]) -> i32 {
+fn exact_turn(points: [[f64; 2]; 3]) -> Sign {
     let parts = points.map(|p| p.map(mantissa_and_exponent));
     if let Some(grid) = on_common_grid(parts.as_flattened()) {
         let from = |p: usize, i: usize| Int::<2>::from_i128(grid[2 * p + i] - grid[i]);
         let [u, v] = [1, 2].map(|p| [from(p, 0), from(p, 1)]);
-        (u[0].mul::<2, 4>(&v[1]) - u[1].mul::<2, 4>(&v[0])).signum()
+        (u[0].mul::<2, 4>(&v[1]) - u[1].mul::<2, 4>(&v[0])).sign()
     } else {
         let grid = on_big_grid(parts.as_flattened());
         let from = |p: usize, i: usize| &grid[2 * p + i] - &grid[i];
         let [u, v] = [1, 2].map(|p| [from(p, 0), from(p, 1)]);
-        sign(&(&u[0] * &v[1] - &u[1] * &v[0]))
+        Sign::from_order((&u[0] * &v[1]).cmp(&(&u[1] * &v[0])))
     }
 }
 
@@ -232,17 +240,9 @@ fn on_big_grid(parts: &[(i64, i32)]) -> Vec<BigInt> {
     parts.iter().map(scaled).collect()
 }
 
-fn sign(value: &BigInt) -> i32 {
-    match value.sign() {
-        Sign::Plus => 1,
-        Sign::NoSign => 0,
-        Sign::Minus => -1,
-    }
-}
-
 /// Return whether the corners of a triangle lie on one line, or in one place; exact.
 pub fn is_flat(triangle: &Triangle) -> bool {
-    (0..3).all(|axis| turn(seen_along(triangle, axis)) == 0)
+    (0..3).all(|axis| turn(seen_along(triangle, axis)) == Sign::Zero)
 }
 
 /// A triangle as seen against the direction of an axis.
@@ -260,11 +260,14 @@ mod tests {
     fn turns_are_exact_in_the_last_place() {
         let step = f64::EPSILON;
         let (a, b) = ([0.0, 0.0], [1.0 + step, 1.0 + step]);
-        assert_eq!(turn([a, b, [2.0, 2.0]]), 0);
-        assert_eq!(turn([a, b, [2.0, 2.0 + 2.0 * step]]), 1);
-        assert_eq!(turn([a, b, [2.0, 2.0 - step]]), -1);
-        assert_eq!(turn([a, [1e-300, 1e-300], [1e300, 1e300]]), 0);
-        assert_eq!(turn([[-1.0, 0.5], [0.0, 0.5], [0.5, 0.5 + step]]), 1);
+        assert_eq!(turn([a, b, [2.0, 2.0]]), Sign::Zero);
+        assert_eq!(turn([a, b, [2.0, 2.0 + 2.0 * step]]), Sign::Positive);
+        assert_eq!(turn([a, b, [2.0, 2.0 - step]]), Sign::Negative);
+        assert_eq!(turn([a, [1e-300, 1e-300], [1e300, 1e300]]), Sign::Zero);
+        assert_eq!(
+            turn([[-1.0, 0.5], [0.0, 0.5], [0.5, 0.5 + step]]),
+            Sign::Positive
+        );
     }
 
     #[test]
@@ -276,7 +279,7 @@ mod tests {
             let [a, u] = [[next(0), next(1)], [next(2), next(3)]].map(|p| p.map(|x| x * scale));
             let along = |t: f64| [a[0] + t * u[0], a[1] + t * u[1]];
             let points = [a, along(2.0), along(f64::from(seed % 3) - 0.5)];
-            if let Some(sign) = turn_by_parts(points) {
+            if let Filtered::Certain(sign) = turn_by_parts(points) {
                 assert_eq!(sign, exact_turn(points), "seed {seed}");
                 decided += 1;
             }
@@ -288,12 +291,12 @@ mod tests {
     fn sides_are_exact_in_the_last_place() {
         let step = f64::EPSILON;
         let plane = [[0.0, 0.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
-        assert_eq!(side(&plane, &[0.25, 0.5, 0.75]), 0);
-        assert_eq!(side(&plane, &[0.5, 0.25, 0.75 + step]), 1);
-        assert_eq!(side(&plane, &[0.5, 0.25, 0.75 - step]), -1);
+        assert_eq!(side(&plane, &[0.25, 0.5, 0.75]), Side::On);
+        assert_eq!(side(&plane, &[0.5, 0.25, 0.75 + step]), Side::Plus);
+        assert_eq!(side(&plane, &[0.5, 0.25, 0.75 - step]), Side::Minus);
         let far = [[0.0, 0.0, 0.0], [1e300, 0.0, 1e300], [0.0, 1e-300, 1e-300]];
-        assert_eq!(side(&far, &[1.0, 1.0, 2.0]), 0);
-        assert_eq!(side(&far, &[1.0, 1.0, 2.0 + 2.0 * step]), 1);
+        assert_eq!(side(&far, &[1.0, 1.0, 2.0]), Side::On);
+        assert_eq!(side(&far, &[1.0, 1.0, 2.0 + 2.0 * step]), Side::Plus);
     }
 
     #[test]
@@ -309,7 +312,7 @@ mod tests {
             let minor = |j: usize, k: usize| from(1, j) * from(2, k) - from(1, k) * from(2, j);
             let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3) * from(3, i);
             let [a, b, c, d] = &points;
-            let expected = sign(&(term(0) + term(1) + term(2)));
+            let expected = Side::from_order((term(0) + term(1) + term(2)).cmp(&BigInt::ZERO));
             assert_eq!(side(&[*a, *b, *c], d), expected, "seed {seed}");
         }
     }

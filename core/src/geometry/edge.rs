@@ -5,6 +5,7 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use super::plane::{normal, Lattice, Plane};
+use super::side::Side;
 
 /// The corners of a face, in order.
 pub type Ring = SmallVec<[Lattice; 3]>;
@@ -62,7 +63,7 @@ impl LatticeEdge {
     /// Return whether both ends lie in a plane.
     pub fn lies_in(&self, plane: &Plane) -> bool {
         let (a, b) = self.ends();
-        plane.side_of_lattice(a) == 0 && plane.side_of_lattice(b) == 0
+        plane.side_of_lattice(a) == Side::On && plane.side_of_lattice(b) == Side::On
     }
 
     /// Return whether a lattice point lies on the edge's line.

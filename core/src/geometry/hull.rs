@@ -12,6 +12,8 @@
 use rustc_hash::FxHashMap as HashMap;
 
 use super::doubles::{side, turn, Facing, Point, Triangle};
+use super::side::Side;
+use crate::arith::Sign;
 use crate::interrupt::poll;
 
 /// The number of no face.
@@ -85,7 +87,7 @@ fn extreme_corners(points: &[Point], faces: &[[usize; 3]]) -> Vec<usize> {
 
 /// Return whether triangles that share a corner lie in different planes.
 fn are_apart(a: &Triangle, b: &Triangle) -> bool {
-    b.iter().any(|p| side(a, p) != 0)
+    b.iter().any(|p| side(a, p) != Side::On)
 }
 
 struct Polytope<'a> {
@@ -148,7 +150,7 @@ impl<'a> Polytope<'a> {
             let facing = Facing::of(&triangle);
             let is_before = |p: &usize| {
                 poll();
-                facing.side(&self.points[*p]) > 0
+                facing.side(&self.points[*p]) == Side::Plus
             };
             let (before, others) = points.into_iter().partition(is_before);
             self.faces[face].before = before;
@@ -213,7 +215,7 @@ impl<'a> Polytope<'a> {
                 if self.faces[behind].is_gone {
                     continue;
                 }
-                if side(&self.triangle(behind), &self.points[point]) > 0 {
+                if side(&self.triangle(behind), &self.points[point]) == Side::Plus {
                     self.faces[behind].is_gone = true;
                     seen.push(behind);
                 } else {
@@ -256,11 +258,11 @@ fn simplex(points: &[Point]) -> Option<[usize; 4]> {
     let normal = cross(&from(&pa, &pb), &from(&pa, &points[c]));
     let height = |p: &usize| dot(&normal, &from(&pa, &points[*p])).abs();
     let high = (0..points.len()).max_by(|p, q| height(p).total_cmp(&height(q)))?;
-    let is_out = |p: &usize| side(&base, &points[*p]) != 0;
+    let is_out = |p: &usize| side(&base, &points[*p]) != Side::On;
     let d = Some(high)
         .filter(is_out)
         .or_else(|| (0..points.len()).find(is_out))?;
-    Some(if side(&base, &points[d]) < 0 {
+    Some(if side(&base, &points[d]) == Side::Minus {
         [a, b, c, d]
     } else {
         [a, c, b, d]
@@ -271,7 +273,7 @@ fn simplex(points: &[Point]) -> Option<[usize; 4]> {
 fn are_in_line(points: &Triangle) -> bool {
     (0..3).all(|axis| {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        turn(points.map(|p| [p[u], p[v]])) == 0
+        turn(points.map(|p| [p[u], p[v]])) == Sign::Zero
     })
 }
 
@@ -298,7 +300,7 @@ fn length(u: &Point) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{hull, side, Point};
+    use super::{hull, side, Point, Side};
     use proptest::prelude::*;
 
     /// Points of a small grid, most of them in common lines and planes.
@@ -316,8 +318,8 @@ mod tests {
         let corner = |p: usize| points[p];
         for face in &faces {
             let triangle = face.map(corner);
-            assert!(points.iter().all(|p| side(&triangle, p) <= 0));
-            assert!(points.iter().any(|p| side(&triangle, p) < 0));
+            assert!(points.iter().all(|p| side(&triangle, p) != Side::Plus));
+            assert!(points.iter().any(|p| side(&triangle, p) == Side::Minus));
             for edge in 0..3 {
                 let back = [face[(edge + 1) % 3], face[edge]];
                 let has = |f: &&[usize; 3]| (0..3).any(|k| [f[k], f[(k + 1) % 3]] == back);
@@ -326,7 +328,7 @@ mod tests {
         }
         if faces.is_empty() {
             let flat = |a: &Point, b: &Point, c: &Point| {
-                points.iter().all(|p| side(&[*a, *b, *c], p) == 0)
+                points.iter().all(|p| side(&[*a, *b, *c], p) == Side::On)
             };
             let few = points.len().min(12);
             let (a, b) = (&points[..few], &points[..few]);

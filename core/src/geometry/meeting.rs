@@ -6,6 +6,9 @@
 #![allow(clippy::float_cmp, reason = "equal corners are meant to the last bit")]
 
 use super::doubles::{clear_turn, is_flat, seen_along, side, turn, Facing, Point, Triangle};
+use super::polygon::straddle;
+use super::side::Side;
+use crate::arith::{Filtered, Sign};
 
 /// The kinds of points that two triangles have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,17 +38,17 @@ pub fn meeting(p: &Triangle, q: &Triangle) -> Meeting {
 
 fn meeting_by_sides(p: &Triangle, q: &Triangle) -> Meeting {
     let of_p = sides(p, q);
-    let first = reach(&of_p);
+    let first = reach(of_p);
     if first == Reach::Point {
         return Meeting::Clear;
     }
     let of_q = sides(q, p);
-    match (first, reach(&of_q)) {
+    match (first, reach(of_q)) {
         (_, Reach::Point) => Meeting::Clear,
         (Reach::All, _) | (_, Reach::All) if overlap(p, q) => Meeting::Overlap,
         (Reach::All, _) | (_, Reach::All) => Meeting::Clear,
         (Reach::Edge(i), Reach::Edge(j)) if is_same_edge(p, i, q, j) => Meeting::Edges(i, j),
-        (first, second) if has_common_stretch(p, alone(&of_p), q, alone(&of_q)) => {
+        (first, second) if has_common_stretch(p, alone(of_p), q, alone(of_q)) => {
             match (first, second) {
                 (Reach::Edge(i), Reach::Edge(j)) => Meeting::Edges(i, j),
                 (Reach::Edge(i), _) => Meeting::FirstEdge(i),
@@ -74,10 +77,10 @@ fn are_clear(p: &Triangle, q: &Triangle) -> bool {
 /// Return whether a triangle is clearly on one side of the plane of another, but for common
 /// corners.
 fn lies_beside(t: &Triangle, plane: &Facing, other: &Triangle) -> bool {
-    let mut own = 0;
+    let mut own = Side::On;
     for c in t.iter().filter(|c| !has_corner(other, c)) {
         match plane.clear_side(c) {
-            Some(side) if side != 0 && side != -own => own = side,
+            Filtered::Certain(side) if side != Side::On && side != own.opposite() => own = side,
             _ => return false,
         }
     }
@@ -88,14 +91,16 @@ fn lies_beside(t: &Triangle, plane: &Facing, other: &Triangle) -> bool {
 /// corner that is an end of the edge: seen so, each point of the other is one point.
 fn lies_outside(t: &Triangle, other: &Triangle, axis: usize) -> bool {
     let (t_seen, other_seen) = (seen_along(t, axis), seen_along(other, axis));
-    let Some(inner) = clear_turn(other_seen) else {
+    let Filtered::Certain(inner) = clear_turn(other_seen) else {
         return false;
     };
     (0..3).any(|i| {
         let next = (i + 1) % 3;
         (0..3).all(|k| {
             let turn = || clear_turn([other_seen[i], other_seen[next], t_seen[k]]);
-            is_same(&t[k], &other[i]) || is_same(&t[k], &other[next]) || turn() == Some(-inner)
+            is_same(&t[k], &other[i])
+                || is_same(&t[k], &other[next])
+                || turn() == Filtered::Certain(-inner)
         })
     })
 }
@@ -105,8 +110,11 @@ fn lies_outside(t: &Triangle, other: &Triangle, axis: usize) -> bool {
 pub fn folds_over(p: &Triangle, q: &Triangle, edge: usize) -> bool {
     // Seen so that both face one way, they lie on different sides of the edge.
     let clear = |t: &Triangle, axis: usize| clear_turn(seen_along(t, axis));
-    let is_spread = |axis: usize| clear(p, axis).is_some_and(|own| clear(q, axis) == Some(own));
-    if is_spread(0) || is_spread(1) || is_spread(2) || side(p, &q[(edge + 2) % 3]) != 0 {
+    let is_spread = |axis: usize| {
+        let own = clear(p, axis);
+        own.is_certain() && clear(q, axis) == own
+    };
+    if is_spread(0) || is_spread(1) || is_spread(2) || side(p, &q[(edge + 2) % 3]) != Side::On {
         return false;
     }
     let facing = |t: &Triangle, axis: usize| turn(seen_along(t, axis));
@@ -114,11 +122,11 @@ pub fn folds_over(p: &Triangle, q: &Triangle, edge: usize) -> bool {
 }
 
 /// On which sides of a triangle's plane the corners of another lie.
-fn sides(triangle: &Triangle, plane: &Triangle) -> [i32; 3] {
+fn sides(triangle: &Triangle, plane: &Triangle) -> [Side; 3] {
     let facing = Facing::of(plane);
     let side = |p: &Point| {
         if has_corner(plane, p) {
-            0
+            Side::On
         } else {
             facing.side(p)
         }
@@ -152,9 +160,9 @@ enum Reach {
     All,
 }
 
-fn reach(sides: &[i32; 3]) -> Reach {
-    let zeros = sides.iter().filter(|s| **s == 0).count();
-    let passes = sides.contains(&1) && sides.contains(&-1);
+fn reach(sides: [Side; 3]) -> Reach {
+    let zeros = sides.iter().filter(|s| **s == Side::On).count();
+    let passes = straddle(&sides) == (true, true);
     match (zeros, passes) {
         (3, _) => Reach::All,
         (2, _) => Reach::Edge((alone(sides) + 1) % 3),
@@ -170,10 +178,10 @@ fn is_same_edge(p: &Triangle, i: usize, q: &Triangle, j: usize) -> bool {
 }
 
 /// The corner that is alone on its side, and not in the plane where another can be.
-fn alone(sides: &[i32; 3]) -> usize {
+fn alone(sides: [Side; 3]) -> usize {
     let single = |i: &usize| {
         let others = sides.iter().filter(|s| **s == sides[*i]).count();
-        others == 1 && sides[*i] != 0
+        others == 1 && sides[*i] != Side::On
     };
     (0..3).find(single).unwrap_or(0)
 }
@@ -183,20 +191,20 @@ fn alone(sides: &[i32; 3]) -> usize {
 ///
 /// The edges at the lone corners `p[i]` and `q[k]` end the stretches. Which of two such edges comes
 /// first on the line is the sign of the volume they span, up to a sign that is the same for all
-/// four pairs; zero says that they meet there.
+/// four pairs; `On` says that they meet there.
 fn has_common_stretch(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
     let ends = |t: &Triangle, at: usize| [t[(at + 1) % 3], t[(at + 2) % 3]];
     let order = |our: &Point, their: &Point| side(&[p[i], *our, q[k]], their);
     let (ours, theirs) = (ends(p, i), ends(q, k));
     let pairs = [(0, 0), (0, 1), (1, 0), (1, 1)];
     let orders = pairs.map(|(a, b)| order(&ours[a], &theirs[b]));
-    orders.contains(&1) && orders.contains(&-1)
+    straddle(&orders) == (true, true)
 }
 
 /// Return whether two triangles of one plane have an area in common: no edge's line separates them.
 fn overlap(p: &Triangle, q: &Triangle) -> bool {
     let facing = |axis: usize| turn(seen_along(p, axis));
-    let Some(axis) = (0..3).find(|axis| facing(*axis) != 0) else {
+    let Some(axis) = (0..3).find(|axis| facing(*axis) != Sign::Zero) else {
         return false;
     };
     let (p, q) = (seen_along(p, axis), seen_along(q, axis));
@@ -230,12 +238,12 @@ pub fn interleave(axis: [&Point; 2], [p, p_mate]: [&Point; 2], [q, q_mate]: [&Po
     let turn = |u: &Point, v: &Point| side(&[*axis[0], *axis[1], *u], v);
     // The sector counterclockwise from p to its mate, by what lies strictly inside it.
     let inside = |x: &Point| match turn(p, p_mate) {
-        1 => turn(p, x) > 0 && turn(x, p_mate) > 0,
-        -1 => !(turn(p_mate, x) >= 0 && turn(x, p) >= 0),
-        _ => turn(p, x) > 0,
+        Side::Plus => turn(p, x) == Side::Plus && turn(x, p_mate) == Side::Plus,
+        Side::Minus => turn(p_mate, x) == Side::Minus || turn(x, p) == Side::Minus,
+        Side::On => turn(p, x) == Side::Plus,
     };
     let beside = |x: &Point| {
-        let same = |y: &Point| turn(y, x) == 0 && is_same_half(axis, y, x);
+        let same = |y: &Point| turn(y, x) == Side::On && is_same_half(axis, y, x);
         same(p) || same(p_mate)
     };
     !beside(q) && !beside(q_mate) && inside(q) != inside(q_mate)
@@ -250,14 +258,14 @@ fn is_same_half(axis: [&Point; 2], x: &Point, y: &Point) -> bool {
             turn(seen_along(&first, along)),
             turn(seen_along(&second, along)),
         ];
-        turns[0] != 0 && turns[0] == turns[1]
+        turns[0] != Sign::Zero && turns[0] == turns[1]
     })
 }
 
 /// Return whether a surface that bends over an edge, given by the apexes of its two triangles,
 /// passes through the plane of a triangle in which the edge lies.
 pub fn passes(plane: &Triangle, [apex, mate]: [&Point; 2]) -> bool {
-    side(plane, apex) * side(plane, mate) < 0
+    side(plane, apex).is_across_from(side(plane, mate))
 }
 
 /// Return whether a triangle has no area, so that its points all lie on its neighbours' edges.

@@ -9,6 +9,7 @@ use smallvec::SmallVec;
 use super::line::{LineKey, PlaneResidues};
 use super::plane::Plane;
 use super::polygon::{Carrier, Corner, Polygon, PolygonSplit};
+use super::side::Side;
 use super::vertex::Vertex;
 
 /// A directed edge with the region it bounds on its left, in the plane it lies in.
@@ -345,11 +346,11 @@ fn bounds(carrier: &Carrier, edges: &[BareEdge]) -> bool {
     let Carrier::Cut(plane, plus) = carrier else {
         return true;
     };
-    let beyond = if *plus { -1 } else { 1 };
+    let beyond = if *plus { Side::Minus } else { Side::Plus };
     let mut ends = 0;
     for edge in edges {
         match edge.from.side_of(plane) {
-            0 => ends += 1,
+            Side::On => ends += 1,
             side if side == beyond => return false,
             _ => {}
         }
@@ -397,14 +398,14 @@ fn divide_edges(
     let (mut minus, mut plus) = (Vec::new(), Vec::new());
     for edge in edges {
         match (edge.from.side_of(cut), edge.to.side_of(cut)) {
-            (0, 0) => {}
-            (a, b) if a <= 0 && b <= 0 => minus.push(edge),
-            (a, b) if a >= 0 && b >= 0 => plus.push(edge),
-            (a, _) => {
+            (Side::On, Side::On) => {}
+            (Side::Minus | Side::On, Side::Minus | Side::On) => minus.push(edge),
+            (Side::Plus | Side::On, Side::Plus | Side::On) => plus.push(edge),
+            (from, _) => {
                 let meet = edge.carrier.meet(support, cut);
                 let at = Arc::new(meet.expect("an edge with ends on both sides meets the plane"));
                 let (first, second) = cut_edge(&edge, &at);
-                let (low, high) = if a < 0 {
+                let (low, high) = if from == Side::Minus {
                     (first, second)
                 } else {
                     (second, first)

@@ -2,13 +2,15 @@
 //!
 //! The path ends at a point of one surface, to learn on which side of others it lies. Unlike the
 //! segments between corners it is not made generic: where it runs through an edge, or ends on the
-//! surface it is counted against, the answer is `None`.
+//! surface it is counted against, the answer is doubtful.
 
 use super::axes::each_axis;
+use super::crossing::change_between;
 use super::plane::{Lattice, Plane};
+use super::side::{Half, Side};
 use super::vertex::Vertex;
 use crate::arith::convert::as_double;
-use crate::arith::Int;
+use crate::arith::{Filtered, Int, Sign};
 
 /// Relative error bound of a determinant of three rows of rounded differences of integers.
 ///
@@ -63,32 +65,35 @@ impl Way {
 }
 
 /// The change of the winding number across a lattice triangle, from a doubled corner to a lattice
-/// point; `None` if the path is not generic.
-pub fn triangle_on_path(corners: &[Lattice; 3], from: &Lattice, to: &Lattice) -> Option<i32> {
+/// point; doubtful if the path is not generic.
+pub fn triangle_on_path(corners: &[Lattice; 3], from: &Lattice, to: &Lattice) -> Filtered<i32> {
     let doubled = |p: &Lattice| each_axis(|i| 2 * p[i] - from[i]);
     let [a, b, c] = [&corners[0], &corners[1], &corners[2]].map(doubled);
     let end = doubled(to);
     let turns = [(&a, &b), (&b, &c), (&c, &a)].map(|(p, q)| determinant(&end, p, q));
-    let certain = |s: i32| turns.iter().all(|t| *t == s);
-    if turns.contains(&0) {
-        return None;
+    let all = |s: Sign| turns.iter().all(|t| *t == s);
+    if turns.contains(&Sign::Zero) {
+        return Filtered::Doubtful;
     }
-    if !certain(1) && !certain(-1) {
-        return Some(0);
+    if !all(Sign::Positive) && !all(Sign::Negative) {
+        return Filtered::Certain(0);
     }
     let less = |p: &Lattice, q: &Lattice| each_axis(|i| p[i] - q[i]);
     let (u, v) = (less(&b, &a), less(&c, &a));
     let before = determinant(&less(&[0; 3], &a), &u, &v);
     let after = determinant(&less(&end, &a), &u, &v);
-    if before == 0 || after == 0 {
-        return None;
+    if before == Sign::Zero || after == Sign::Zero {
+        return Filtered::Doubtful;
     }
-    Some((before - after) / 2)
+    Filtered::Certain(change_between(
+        Half::from_sign(before),
+        Half::from_sign(after),
+    ))
 }
 
-/// Sign of the determinant of three rows, by doubles; 0 if that leaves it in doubt.
-pub fn near_determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> i32 {
-    NearCross::of(b, c).side_of(a)
+/// Sign of the determinant of three rows, by doubles.
+pub fn near_determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> Filtered<Sign> {
+    NearCross::of(b, c).sign_with(a)
 }
 
 /// A cross product in doubles, to be multiplied with many.
@@ -111,33 +116,33 @@ impl NearCross {
         }
     }
 
-    /// The sign of its product with a row; 0 if doubles leave it in doubt.
+    /// The sign of its product with a row, where doubles tell it.
     #[inline]
-    pub fn side_of(&self, a: &Lattice) -> i32 {
+    pub fn sign_with(&self, a: &Lattice) -> Filtered<Sign> {
         let p = a.map(as_double);
         let value = p[0] * self.value[0] + p[1] * self.value[1] + p[2] * self.value[2];
         let size =
             p[0].abs() * self.size[0] + p[1].abs() * self.size[1] + p[2].abs() * self.size[2];
         let doubt = size * DETERMINANT_FILTER;
-        i32::from(value > doubt) - i32::from(value < -doubt)
+        Filtered::when(value.abs() > doubt, Sign::of(value))
     }
 }
 
 /// Sign of the determinant of three rows.
-pub fn determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> i32 {
-    let near = near_determinant(a, b, c);
-    if near != 0 {
-        return near;
-    }
+pub fn determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> Sign {
+    near_determinant(a, b, c).or_exact(|| exact_determinant(a, b, c))
+}
+
+fn exact_determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> Sign {
     let minor = |i: usize, j: usize| {
         i128::from(b[i]) * i128::from(c[j]) - i128::from(b[j]) * i128::from(c[i])
     };
     let term = |i: usize, m: i128| -> Int<3> { Int::<2>::from_i128(m).mul_i64(a[i]) };
-    (term(0, minor(1, 2)) + term(1, minor(2, 0)) + term(2, minor(0, 1))).signum()
+    (term(0, minor(1, 2)) + term(1, minor(2, 0)) + term(2, minor(0, 1))).sign()
 }
 
 /// The change of the winding number across a convex polygon, from a doubled corner to an exact
-/// point; `None` if the path is not generic.
+/// point; doubtful if the path is not generic.
 ///
 /// The polygon is given by its plane and by the planes that bound it within that.
 pub fn polygon_on_path<'a>(
@@ -145,27 +150,29 @@ pub fn polygon_on_path<'a>(
     rims: impl FnOnce() -> &'a [Plane],
     from: &Lattice,
     to: &Vertex,
-) -> Option<i32> {
+) -> Filtered<i32> {
     let (before, after) = (support.side_of_corner(from), to.side_of(support));
-    if after == 0 {
-        return None;
-    }
+    let after = match after {
+        Side::Minus => Half::Minus,
+        Side::On => return Filtered::Doubtful,
+        Side::Plus => Half::Plus,
+    };
     if before == after {
-        return Some(0);
+        return Filtered::Certain(0);
     }
     for rim in rims() {
-        match before * cross(support, rim, from, to) {
-            0 => return None,
-            1.. => return Some(0),
-            ..=-1 => {}
+        match before.sign() * cross(support, rim, from, to) {
+            Sign::Zero => return Filtered::Doubtful,
+            Sign::Positive => return Filtered::Certain(0),
+            Sign::Negative => {}
         }
     }
-    Some((before - after) / 2)
+    Filtered::Certain(change_between(before, after))
 }
 
 /// Sign of b(c) e(x) − e(c) b(x): of `e` where the path from c to x meets the plane `b`, times the
 /// sign of b(c).
-fn cross(b: &Plane, e: &Plane, c: &Lattice, x: &Vertex) -> i32 {
+fn cross(b: &Plane, e: &Plane, c: &Lattice, x: &Vertex) -> Sign {
     let (bc, ec) = (b.near_value_at_doubled(c), e.near_value_at_doubled(c));
     let (bx, ex) = (x.near_value(b), x.near_value(e));
     let value = bc.0 * ex.0 - ec.0 * bx.0;
@@ -173,9 +180,9 @@ fn cross(b: &Plane, e: &Plane, c: &Lattice, x: &Vertex) -> i32 {
         (p.0.abs() + p.1) * q.1 + p.1 * q.0.abs() + p.0.abs() * q.0.abs() * 4.0 * f64::EPSILON
     };
     if value.abs() > 2.0 * (doubt(bc, ex) + doubt(ec, bx)) {
-        return if value > 0.0 { 1 } else { -1 };
+        return Sign::of(value);
     }
     let left: Int<11> = b.value_at_doubled(c).mul(&x.value(e));
     let right: Int<11> = e.value_at_doubled(c).mul(&x.value(b));
-    (left - right).signum()
+    (left - right).sign()
 }

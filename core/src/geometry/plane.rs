@@ -1,12 +1,12 @@
 //! Oriented planes with canonical integer coefficients.
 
 use super::axes::each_axis;
-use super::side::Orientation;
+use super::side::{Half, Orientation, Side};
 use crate::arith::bounds::{
     self, COORDINATE_BITS, HALF_SPACE_NORMAL_BITS, SHORT_NORMAL_BITS, SHORT_OFFSET_BITS,
 };
 use crate::arith::convert::{as_double, as_whole};
-use crate::arith::{gcd_u128, Int};
+use crate::arith::{gcd_u128, Int, Sign};
 
 /// A lattice point, in steps of the pitch; each coordinate below 2^53 in magnitude.
 pub type Lattice = [i64; 3];
@@ -102,18 +102,18 @@ impl Plane {
         let n = normal(a, b, c);
         let level = |i: &usize| a[*i] == b[*i] && b[*i] == c[*i];
         match (0..3).find(level) {
-            Some(axis) => Self::level(axis, a[axis], n[axis].signum()),
+            Some(axis) => Self::level(axis, a[axis], Sign::of(n[axis])),
             None => Self::new(n, -dot_lattice(&n, a)),
         }
     }
 
-    /// The plane at a coordinate of an axis whose normal has this sign along it; `None` for 0.
-    fn level(axis: usize, at: i64, sign: i128) -> Option<Self> {
+    /// The plane at a coordinate of an axis whose normal has this sign along it; `None` for zero.
+    fn level(axis: usize, at: i64, sign: Sign) -> Option<Self> {
         let plane = Self::axis_cut(axis, 2 * at);
         match sign {
-            0 => None,
-            1 => Some(plane),
-            _ => Some(plane.flipped()),
+            Sign::Zero => None,
+            Sign::Positive => Some(plane),
+            Sign::Negative => Some(plane.flipped()),
         }
     }
 
@@ -259,10 +259,8 @@ impl Plane {
         }
     }
 
-    /// Sign of the plane's value at a lattice point.
-    ///
-    /// -1 on the minus side (inside), 0 on the plane, +1 on the plus side.
-    pub fn side_of_lattice(&self, p: &Lattice) -> i32 {
+    /// The side on which a lattice point lies.
+    pub fn side_of_lattice(&self, p: &Lattice) -> Side {
         let a = &self.approx;
         let t = [
             a[0] * as_double(p[0]),
@@ -272,9 +270,9 @@ impl Plane {
         let sum = t[0] + t[1] + t[2] + self.approx[3];
         let size = t[0].abs() + t[1].abs() + t[2].abs() + self.approx[3].abs();
         if sum.abs() > size * FILTER {
-            return if sum > 0.0 { 1 } else { -1 };
+            return if sum > 0.0 { Side::Plus } else { Side::Minus };
         }
-        self.value_at(p).signum()
+        Side::from_sign(self.value_at(p).sign())
     }
 
     /// The plane's value at a lattice point.
@@ -298,17 +296,16 @@ impl Plane {
         (t[0] + t[1] + t[2] + twice, size * FILTER)
     }
 
-    /// Sign of the plane's value at `doubled`/2 + (ε, ε², ε³); never zero.
-    pub fn side_of_corner(&self, doubled: &Lattice) -> i32 {
+    /// The half-space in which `doubled`/2 + (ε, ε², ε³) lies.
+    pub fn side_of_corner(&self, doubled: &Lattice) -> Half {
         let (value, doubt) = self.near_value_at_doubled(doubled);
         if value.abs() > doubt {
-            return if value > 0.0 { 1 } else { -1 };
+            return if value > 0.0 { Half::Plus } else { Half::Minus };
         }
-        let value = (self.value_at_doubled(doubled)).signum();
-        if value != 0 {
-            return value;
-        }
-        first_sign(&self.n)
+        Half::from_sign(match self.value_at_doubled(doubled).sign() {
+            Sign::Zero => first_sign(&self.n),
+            sign => sign,
+        })
     }
 
     /// Twice the plane's value at half the given coordinates.
@@ -345,10 +342,8 @@ fn fitting(d: Int<3>) -> Option<Int<3>> {
 pub const FILTER: f64 = 9.0 / 9_007_199_254_740_992.0;
 
 /// The first non-zero sign of three components, zero if all vanish.
-pub fn first_sign(n: &[i128; 3]) -> i32 {
-    n.iter()
-        .find(|c| **c != 0)
-        .map_or(0, |c| if *c > 0 { 1 } else { -1 })
+pub fn first_sign(n: &[i128; 3]) -> Sign {
+    Sign::first(n.map(Sign::of))
 }
 
 /// (b − a) × (c − a) in lattice steps.

@@ -11,6 +11,7 @@ use super::cell::Cell;
 use super::edge::{LatticeEdge, Ring};
 use super::line::{Line, PlaneResidues};
 use super::plane::{Lattice, Plane};
+use super::side::Side;
 use super::vertex::Vertex;
 use crate::arith::convert::as_double;
 use crate::interrupt::poll;
@@ -112,14 +113,14 @@ pub struct Corner {
 type Corners = SmallVec<[Corner; 5]>;
 
 /// The sides of a plane on which the corners of a polygon lie.
-pub type Sides = SmallVec<[i32; 8]>;
+pub type Sides = SmallVec<[Side; 8]>;
 
 /// The ends of a segment inside a polygon.
 pub type Chord = SmallVec<[Arc<Vertex>; 2]>;
 
 /// Return whether there are corners on the minus side, and whether there are on the plus side.
-pub fn straddle(sides: &[i32]) -> (bool, bool) {
-    (sides.iter().any(|s| *s < 0), sides.iter().any(|s| *s > 0))
+pub fn straddle(sides: &[Side]) -> (bool, bool) {
+    (sides.contains(&Side::Minus), sides.contains(&Side::Plus))
 }
 
 /// A convex polygon of positive area, counterclockwise as seen from its support's plus side.
@@ -252,13 +253,13 @@ impl Polygon {
 
     /// The ends of the segment in which a plane with corners strictly on both sides cuts the
     /// polygon, in the order in which its border meets them.
-    pub fn chord(&self, cut: &Arc<Plane>, sides: &[i32]) -> Chord {
+    pub fn chord(&self, cut: &Arc<Plane>, sides: &[Side]) -> Chord {
         let n = self.corners.len();
         let mut ends = Chord::new();
         for i in 0..n {
-            if sides[i] == 0 {
+            if sides[i] == Side::On {
                 ends.push(Arc::clone(&self.corners[i].at));
-            } else if sides[i] * sides[(i + 1) % n] < 0 {
+            } else if sides[i].is_across_from(sides[(i + 1) % n]) {
                 ends.push(self.crossing(i, cut));
             }
         }
@@ -272,38 +273,37 @@ impl Polygon {
     }
 
     /// The pieces on the minus and on the plus side of a plane that cuts the polygon in a chord.
-    pub fn divided(&self, cut: &Arc<Plane>, sides: &[i32], chord: &Chord) -> (Self, Self) {
-        let half = |plus| self.half(cut, sides, chord, plus);
-        (half(false), half(true))
+    pub fn divided(&self, cut: &Arc<Plane>, sides: &[Side], chord: &Chord) -> (Self, Self) {
+        let half = |own| self.half(cut, sides, chord, own);
+        (half(Side::Minus), half(Side::Plus))
     }
 
-    /// One of these pieces.
-    fn half(&self, cut: &Arc<Plane>, sides: &[i32], chord: &Chord, plus: bool) -> Self {
+    /// The piece on a strict side.
+    fn half(&self, cut: &Arc<Plane>, sides: &[Side], chord: &Chord, own: Side) -> Self {
         let n = self.corners.len();
-        let own = |side: i32| if plus { side > 0 } else { side < 0 };
         let along = |at: &Arc<Vertex>| Corner {
             at: Arc::clone(at),
-            edge: Carrier::Cut(Arc::clone(cut), plus),
+            edge: Carrier::Cut(Arc::clone(cut), own == Side::Plus),
         };
         let mut corners = Corners::new();
         let mut ends = chord.iter();
         for (i, corner) in self.corners.iter().enumerate() {
             let next = sides[(i + 1) % n];
-            if sides[i] == 0 {
+            if sides[i] == Side::On {
                 ends.next();
             }
-            if own(sides[i]) || sides[i] == 0 && own(next) {
+            if sides[i] == own || sides[i] == Side::On && next == own {
                 corners.push(corner.clone());
-            } else if sides[i] == 0 {
+            } else if sides[i] == Side::On {
                 corners.push(along(&corner.at));
             }
-            let crossing = if sides[i] * next < 0 {
+            let crossing = if sides[i].is_across_from(next) {
                 ends.next()
             } else {
                 None
             };
             match crossing {
-                Some(at) if own(next) => corners.push(Corner {
+                Some(at) if next == own => corners.push(Corner {
                     at: Arc::clone(at),
                     edge: corner.edge.clone(),
                 }),
@@ -322,7 +322,7 @@ impl Polygon {
     pub fn inside(self, cut: &Arc<Plane>) -> Option<Self> {
         let sides = self.sides(cut);
         match straddle(&sides) {
-            (true, true) => Some(self.half(cut, &sides, &self.chord(cut, &sides), false)),
+            (true, true) => Some(self.half(cut, &sides, &self.chord(cut, &sides), Side::Minus)),
             (true, false) => Some(self),
             (false, _) => None,
         }
@@ -388,7 +388,10 @@ impl Polygon {
     fn has_beyond_an_edge(&self, other: &Self) -> bool {
         self.corners.iter().any(|corner| {
             let plane = corner.edge.plane(&self.support);
-            other.corners.iter().all(|c| c.at.side_of(&plane) >= 0)
+            other
+                .corners
+                .iter()
+                .all(|c| c.at.side_of(&plane) != Side::Minus)
         })
     }
 

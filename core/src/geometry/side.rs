@@ -4,27 +4,47 @@ use std::cmp::Ordering;
 
 use serde::{Deserialize, Serialize};
 
+use crate::arith::Sign;
+
 /// The side of an oriented hyperplane on which a point lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[repr(i8)]
 pub enum Side {
     /// Strictly inside: the hyperplane's value is negative.
-    Minus,
+    Minus = -1,
     /// In the hyperplane: its value is zero.
-    On,
+    On = 0,
     /// Strictly outside: its value is positive.
-    Plus,
+    Plus = 1,
 }
 
 impl Side {
     /// The side named by the sign of a hyperplane's value.
     ///
     /// Negative: `Minus`; zero: `On`; positive: `Plus`.
-    pub fn from_sign(sign: i32) -> Self {
+    #[inline]
+    pub fn from_sign(sign: Sign) -> Self {
         match sign {
-            ..=-1 => Self::Minus,
-            0 => Self::On,
-            1.. => Self::Plus,
+            Sign::Negative => Self::Minus,
+            Sign::Zero => Self::On,
+            Sign::Positive => Self::Plus,
         }
+    }
+
+    /// The sign of a hyperplane's value here.
+    #[inline]
+    pub fn sign(self) -> Sign {
+        match self {
+            Self::Minus => Sign::Negative,
+            Self::On => Sign::Zero,
+            Self::Plus => Sign::Positive,
+        }
+    }
+
+    /// Return whether this place and another lie strictly on different sides.
+    #[inline]
+    pub fn is_across_from(self, other: Self) -> bool {
+        self != Self::On && other == self.opposite()
     }
 
     /// The side named by how a hyperplane's value compares to zero.
@@ -59,6 +79,24 @@ pub enum Half {
 impl Half {
     /// The inside, then the outside.
     pub const BOTH: [Self; 2] = [Self::Minus, Self::Plus];
+
+    /// The half-space named by the sign of a hyperplane's value, which is not zero.
+    #[inline]
+    pub fn from_sign(sign: Sign) -> Self {
+        match sign {
+            Sign::Negative => Self::Minus,
+            Sign::Zero | Sign::Positive => Self::Plus,
+        }
+    }
+
+    /// The sign of a hyperplane's value in it.
+    #[inline]
+    pub fn sign(self) -> Sign {
+        match self {
+            Self::Minus => Sign::Negative,
+            Self::Plus => Sign::Positive,
+        }
+    }
 
     /// The other half-space.
     #[must_use]

@@ -9,8 +9,9 @@ pub use super::coordinates::{cross, Homogeneous};
 use super::edge::LatticeEdge;
 use super::plane::{Lattice, Plane, FILTER};
 use super::residue::residue;
+use super::side::Side;
 use crate::arith::convert::as_double;
-use crate::arith::Int;
+use crate::arith::{Filtered, Int};
 
 /// The distance that two doubles of one coordinate may have, relative to it: twice three units in
 /// the last place of 2^-52, and room for the rounding of the question.
@@ -29,6 +30,7 @@ pub const NEAR: f64 = 8.0 * f64::EPSILON;
 /// use std::sync::Arc;
 ///
 /// use bspcsg::geometry::plane::Plane;
+/// use bspcsg::geometry::side::Side;
 /// use bspcsg::geometry::vertex::Vertex;
 ///
 /// // Three planes meet in (1/2, 0, 0), which is no lattice point.
@@ -41,7 +43,7 @@ pub const NEAR: f64 = 8.0 * f64::EPSILON;
 /// let corner = Vertex::meet(&slanted, &front, &floor).expect("one point");
 /// assert_eq!(corner.as_lattice(), None);
 /// assert_eq!(corner.approx(), [0.5, 0.0, 0.0]);
-/// assert_eq!(corner.side_of(&floor), 0);
+/// assert_eq!(corner.side_of(&floor), Side::On);
 /// ```
 #[derive(Clone, Debug)]
 pub struct Vertex {
@@ -145,14 +147,14 @@ impl Vertex {
         (0..3).all(|i| low[i] <= as_double(place[i]) && as_double(place[i]) <= high[i])
     }
 
-    /// Sign of the plane's value here: -1 minus side, 0 on, +1 plus side.
-    pub fn side_of(&self, plane: &Plane) -> i32 {
+    /// The side of a plane on which the point lies.
+    pub fn side_of(&self, plane: &Plane) -> Side {
         match &self.place {
             Place::Lattice(p) => plane.side_of_lattice(p),
             _ => match self.filtered_side(plane) {
-                Some(side) => side,
-                None if self.is_known_in(plane) => 0,
-                None => self.exact().side_of(plane),
+                Filtered::Certain(side) => side,
+                Filtered::Doubtful if self.is_known_in(plane) => Side::On,
+                Filtered::Doubtful => self.exact().side_of(plane),
             },
         }
     }
@@ -171,9 +173,10 @@ impl Vertex {
         self.coordinates().value(plane)
     }
 
-    fn filtered_side(&self, plane: &Plane) -> Option<i32> {
+    fn filtered_side(&self, plane: &Plane) -> Filtered<Side> {
         let (value, doubt) = self.near_value(plane);
-        (value.abs() > doubt).then_some(if value > 0.0 { 1 } else { -1 })
+        let side = if value > 0.0 { Side::Plus } else { Side::Minus };
+        Filtered::when(value.abs() > doubt, side)
     }
 
     /// Return whether the point lies in a plane by what it was constructed from; errs on no.
@@ -193,7 +196,7 @@ impl Vertex {
         if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
             return p[axis].cmp(&q[axis]);
         }
-        if let Some(order) = self.near_order(other, axis) {
+        if let Filtered::Certain(order) = self.near_order(other, axis) {
             return order;
         }
         if let (Some(p), Some(q)) = (self.doubled(axis), other.doubled(axis)) {
@@ -207,7 +210,7 @@ impl Vertex {
         if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
             return p[axis].cmp(&q[axis]);
         }
-        if let Some(order) = self.near_order(other, axis) {
+        if let Filtered::Certain(order) = self.near_order(other, axis) {
             return order;
         }
         if self.same(other) {
@@ -217,11 +220,11 @@ impl Vertex {
     }
 
     /// The order by one coordinate where doubles tell it.
-    fn near_order(&self, other: &Self, axis: usize) -> Option<Ordering> {
+    fn near_order(&self, other: &Self, axis: usize) -> Filtered<Ordering> {
         let left = self.approx[axis] * other.approx[3];
         let right = other.approx[axis] * self.approx[3];
         let certain = (left - right).abs() > (left.abs() + right.abs()) * FILTER;
-        certain.then(|| left.total_cmp(&right))
+        Filtered::when(certain, left.total_cmp(&right))
     }
 
     /// Return whether two vertices are the same point.
@@ -232,17 +235,17 @@ impl Vertex {
         if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
             return p == q;
         }
-        if (0..3).any(|axis| self.near_order(other, axis).is_some()) {
+        if (0..3).any(|axis| self.near_order(other, axis).is_certain()) {
             return false;
         }
         match (&self.place, &other.place) {
             (Place::Lattice(p), _) => other.is_at(p),
             (_, Place::Lattice(p)) => self.is_at(p),
             (Place::OnEdge(edge, cut), Place::OnEdge(same, _)) if edge.shares_ends(same) => {
-                other.side_of(cut) == 0
+                other.side_of(cut) == Side::On
             }
-            (Place::Meet(planes), _) => planes.iter().all(|plane| other.side_of(plane) == 0),
-            (_, Place::Meet(planes)) => planes.iter().all(|plane| self.side_of(plane) == 0),
+            (Place::Meet(planes), _) => planes.iter().all(|plane| other.side_of(plane) == Side::On),
+            (_, Place::Meet(planes)) => planes.iter().all(|plane| self.side_of(plane) == Side::On),
             _ => self.has_coordinates_of(other),
         }
     }
@@ -260,8 +263,10 @@ impl Vertex {
     pub fn is_at(&self, place: &Lattice) -> bool {
         match &self.place {
             Place::Lattice(p) => p == place,
-            Place::OnEdge(edge, cut) => edge.line_holds(place) && cut.side_of_lattice(place) == 0,
-            Place::Meet(planes) => planes.iter().all(|p| p.side_of_lattice(place) == 0),
+            Place::OnEdge(edge, cut) => {
+                edge.line_holds(place) && cut.side_of_lattice(place) == Side::On
+            }
+            Place::Meet(planes) => planes.iter().all(|p| p.side_of_lattice(place) == Side::On),
             Place::Given(_) => self.has_coordinates_of(&Self::lattice(*place)),
         }
     }

@@ -3,6 +3,7 @@
 //! # Source
 //! Meisters 1975, "Polygons have ears".
 
+use crate::arith::Sign;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 
@@ -50,9 +51,9 @@ fn meet(p: (&Lattice, &Lattice), q: (&Lattice, &Lattice), axes: (usize, usize)) 
         return false;
     }
     let sides = |(a, b): (&Lattice, &Lattice), (c, d): (&Lattice, &Lattice)| {
-        turn(a, b, c, axes).signum() * turn(a, b, d, axes).signum()
+        Sign::of(turn(a, b, c, axes)) * Sign::of(turn(a, b, d, axes))
     };
-    sides(p, q) <= 0 && sides(q, p) <= 0
+    sides(p, q) != Sign::Positive && sides(q, p) != Sign::Positive
 }
 
 /// Triangles of corner numbers that make up a polygon, counterclockwise in the projection.

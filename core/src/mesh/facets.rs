@@ -5,6 +5,7 @@ use super::grid::Pitch;
 use crate::arith::bounds::COORDINATE_BITS;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::plane::{normal, Lattice, Plane};
+use crate::geometry::side::Side;
 use crate::interrupt::poll;
 
 /// A convex facet, or a convex part of one.
@@ -172,7 +173,7 @@ fn polygon(given: &[Lattice], source: u32, lenient: bool) -> Result<Vec<Facet>> 
     }
     let corners = without_flat_corners(given);
     let plane = newell_plane(&corners).ok_or_else(|| without_normal(&corners, source))?;
-    let planar = corners.iter().all(|p| plane.side_of_lattice(p) == 0);
+    let planar = corners.iter().all(|p| plane.side_of_lattice(p) == Side::On);
     if !planar && !lenient {
         let text = "is not planar on the lattice";
         return Err(fault(ErrorKind::NonPlanar, source, text));
@@ -197,7 +198,7 @@ fn without_normal(corners: &[Lattice], source: u32) -> Error {
     let (kind, text) = match corners {
         // Of more than three corners none lies between its neighbours on one line.
         [a, b, c, _, ..] => match Plane::through(a, b, c) {
-            Some(plane) if corners.iter().all(|p| plane.side_of_lattice(p) == 0) => {
+            Some(plane) if corners.iter().all(|p| plane.side_of_lattice(p) == Side::On) => {
                 let text = "crosses itself: its areas of either orientation cancel";
                 (ErrorKind::NotSimple, text)
             }

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
-use crate::geometry::side::Half;
+use crate::geometry::side::{Half, Side};
 use crate::interrupt::poll;
 use crate::merge::kernels::trees::LeafTree;
 use crate::merge::lists::list::{List, Sources};
@@ -161,9 +161,9 @@ impl Search<'_> {
 
 /// Return whether a point lies on a closed polygon.
 fn touches(polygon: &Polygon, p: &Lattice) -> bool {
-    polygon.support().side_of_lattice(p) == 0
+    polygon.support().side_of_lattice(p) == Side::On
         && polygon
             .corners()
             .iter()
-            .all(|c| c.edge.plane(polygon.support()).side_of_lattice(p) <= 0)
+            .all(|c| c.edge.plane(polygon.support()).side_of_lattice(p) != Side::Plus)
 }

@@ -302,11 +302,11 @@ impl Crossing {
         let term = |k: usize| Int::<2>::from_i128(normal[k]).mul_i64(ray.origin()[k]);
         let slope: Int<4> = (0..D).fold(Int::ZERO, |sum, k| sum + rise(k));
         let value: Int<3> = (0..D).fold(offset, |sum, k| sum + term(k));
-        let start = Side::from_sign(value.signum());
+        let start = Side::from_sign(value.sign());
         let first = if slope.is_zero() {
             start
         } else {
-            Side::from_sign(-slope.signum())
+            Side::from_sign(-slope.sign())
         };
         Self {
             start,

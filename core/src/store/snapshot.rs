@@ -8,7 +8,7 @@ use super::sealed::{seal, unseal, Kind};
 use super::sound::is_sound;
 use crate::arith::bounds::{self, is_coordinate, COORDINATE_BITS};
 use crate::arith::convert::as_double;
-use crate::arith::Int;
+use crate::arith::{Int, Sign};
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::boundary::collect::{collect, CutFace};
 use crate::extract::boundary::leaves::Fate;
@@ -19,7 +19,7 @@ use crate::geometry::motion::Motion;
 use crate::geometry::outline::{settled, BareEdge, OutlineEdge};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
-use crate::geometry::side::Orientation;
+use crate::geometry::side::{Half, Orientation, Side};
 use crate::geometry::vertex::{cross, Vertex};
 use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
@@ -270,7 +270,7 @@ impl Snapshot {
             && let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot.place())
         {
             let side = plane.plane()?.side_of_corner(&Cell::UNIVERSE.corner());
-            return Ok(i32::from((side < 0) != only.flip));
+            return Ok(i32::from((side == Half::Minus) != only.flip));
         }
         Ok(self.outside)
     }
@@ -465,7 +465,7 @@ impl CarrierData {
 
 /// Return whether a carrier and a support meet in a line that both ends lie on.
 fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bool {
-    let on = |plane: &Plane| from.side_of(plane) == 0 && to.side_of(plane) == 0;
+    let on = |plane: &Plane| from.side_of(plane) == Side::On && to.side_of(plane) == Side::On;
     let crosses = |plane: &Plane| {
         cross(plane.normal(), support.normal())
             .iter()
@@ -476,8 +476,8 @@ fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bo
             let (a, b) = edge.ends();
             let near = [a, b].iter().all(|p| p.iter().all(|k| is_coordinate(*k)));
             near && a != b
-                && support.side_of_lattice(a) == 0
-                && support.side_of_lattice(b) == 0
+                && support.side_of_lattice(a) == Side::On
+                && support.side_of_lattice(b) == Side::On
                 && on(&carrier.plane(support))
         }
         Carrier::Cut(plane, _) => crosses(plane) && on(plane),
@@ -531,7 +531,7 @@ impl VertexData {
                     .iter()
                     .all(|c| fits(c, bounds::point_numerator(COORDINATE_BITS)));
                 let weight = fits(&w, bounds::point_weight(COORDINATE_BITS));
-                if w.signum() <= 0 || !numerators || !weight {
+                if w.sign() != Sign::Positive || !numerators || !weight {
                     return Err(bad_snapshot());
                 }
                 Ok(Vertex::homogeneous(x, w))

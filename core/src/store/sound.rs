@@ -12,7 +12,7 @@ use crate::geometry::edge::LatticeEdge;
 use crate::geometry::outline::{cancel, OutlineEdge};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
-use crate::geometry::side::Orientation;
+use crate::geometry::side::{Orientation, Side};
 use crate::geometry::vertex::Vertex;
 use crate::merge::lists::list::Sources;
 use crate::mesh::grid::Pitch;
@@ -93,7 +93,7 @@ fn lies_on_face(part: &Part) -> bool {
 fn is_within(part: &Part, face: &Polygon) -> bool {
     let own: Vec<&Carrier> = face.edges().map(|(_, _, carrier)| carrier).collect();
     let walls: Vec<Plane> = own.iter().map(|c| c.plane(face.support())).collect();
-    let inside = |vertex: &Vertex| walls.iter().all(|wall| vertex.side_of(wall) <= 0);
+    let inside = |vertex: &Vertex| walls.iter().all(|wall| vertex.side_of(wall) != Side::Plus);
     let known = |carrier: &Carrier| match carrier {
         Carrier::Edge(edge) => own
             .iter()

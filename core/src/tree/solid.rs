@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet as HashSet;
 use super::node::{Branch, Deferred, Group, Node};
 use super::table::Table;
 use crate::geometry::cell::Cell;
-use crate::geometry::side::Orientation;
+use crate::geometry::side::{Half, Orientation};
 use crate::mesh::cached::Cached;
 use crate::mesh::grid::Pitch;
 use crate::mesh::handle::Slot;
@@ -152,7 +152,10 @@ impl Solid {
         };
         let (corner, reduced) = match source.shape() {
             Shape::Mesh(_) => (0, trusted),
-            Shape::HalfSpace(plane) => (i32::from(plane.side_of_corner(&cell.corner()) < 0), true),
+            Shape::HalfSpace(plane) => {
+                let inside = plane.side_of_corner(&cell.corner()) == Half::Minus;
+                (i32::from(inside), true)
+            }
         };
         let sources = [&source].into_iter().collect();
         let faces = source.face_ids().collect();

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use bspcsg::geometry::plane::{Lattice, Plane};
+use bspcsg::geometry::side::Side;
 use bspcsg::merge::rule::Rule;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::import::import;
@@ -62,9 +63,9 @@ impl Shape {
         let [a, b, c, d] = &corners;
         let mut faces = vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
         match Plane::through(a, b, c)?.side_of_lattice(d) {
-            0 => return None,
-            1.. => faces.iter_mut().for_each(|f| f.swap(1, 2)),
-            _ => {}
+            Side::On => return None,
+            Side::Plus => faces.iter_mut().for_each(|f| f.swap(1, 2)),
+            Side::Minus => {}
         }
         let vertices = corners.to_vec();
         Some(Self { vertices, faces })

@@ -10,6 +10,7 @@ mod tests;
 
 use std::fmt;
 
+use crate::arith::Sign;
 use crate::interrupt::poll;
 
 /// The fan of a corner not yet visited.
@@ -21,7 +22,7 @@ pub trait Radial {
     fn normal(&self, triangle: u32) -> [i128; 3];
 
     /// Signs of the three coordinates of b − a, exact.
-    fn direction(&self, a: u32, b: u32) -> [i32; 3];
+    fn direction(&self, a: u32, b: u32) -> [Sign; 3];
 }
 
 /// A surface with one vertex for every fan of triangles.

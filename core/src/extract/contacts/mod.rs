@@ -10,6 +10,7 @@ use super::failure::{Failure, Overlap};
 use super::mesh::outward_normal;
 use super::vertices::direction;
 use crate::arith::convert::as_number;
+use crate::arith::Sign;
 use crate::error::Error;
 use crate::interrupt::poll;
 use crate::mesh::finding::{Finding, Severity};
@@ -169,7 +170,7 @@ impl Radial for Geometry<'_, '_> {
         outward_normal(self.0.faces[triangle as usize], self.0.sources)
     }
 
-    fn direction(&self, a: u32, b: u32) -> [i32; 3] {
+    fn direction(&self, a: u32, b: u32) -> [Sign; 3] {
         direction(&self.0.position(a), &self.0.position(b))
     }
 }

@@ -13,7 +13,7 @@ use crate::geometry::line::{LineKey, PlaneResidues};
 use crate::geometry::outline::{BareEdge, Outline, OutlineEdge};
 use crate::geometry::plane::{normal, Plane};
 use crate::geometry::polygon::Polygon;
-use crate::geometry::side::Orientation;
+use crate::geometry::side::{Orientation, Side};
 use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::handle::{OrientedFace, SourceFace};
@@ -176,7 +176,10 @@ impl Grouping<'_> {
             return false;
         }
         let (plane, [a, b, c]) = (&self.groups[group].plane, mesh.corners(face.id()));
-        if [a, b, c].iter().any(|p| plane.side_of_lattice(p) != 0) {
+        if [a, b, c]
+            .iter()
+            .any(|p| plane.side_of_lattice(p) != Side::On)
+        {
             return false;
         }
         let axis = plane.main_axis();

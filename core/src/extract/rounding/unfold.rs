@@ -7,6 +7,7 @@
 use rustc_hash::FxHashMap as HashMap;
 
 use crate::arith::convert::as_place;
+use crate::arith::Sign;
 use crate::extract::mesh::{outward_normal, Corner, ExactMesh, Mesh};
 use crate::geometry::doubles::{seen_along, turn};
 use crate::geometry::plane::Plane;
@@ -95,7 +96,7 @@ fn is_turned(mesh: &Mesh, corners: &[u32; 3], normal: &[i128; 3]) -> bool {
     let axis = (0..3).rev().max_by_key(|i| normal[*i].unsigned_abs());
     let axis = axis.unwrap_or(0);
     let corners = corners.map(|c| mesh.vertices[c as usize]);
-    let facing = if normal[axis] > 0 { 1 } else { -1 };
+    let facing = Sign::of(normal[axis]);
     turn(seen_along(&corners, axis)) != facing
 }
 

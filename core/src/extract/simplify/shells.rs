@@ -6,7 +6,9 @@
 use super::edit::Edit;
 use super::sizes::{dot, less, normal};
 use crate::arith::convert::as_number;
+use crate::arith::{Filtered, Sign};
 use crate::geometry::doubles::{side, Point};
+use crate::geometry::side::Side;
 use crate::interrupt::{poll, spend};
 
 /// The shell of a vertex without triangles.
@@ -16,8 +18,8 @@ const NONE: u32 = u32::MAX;
 pub struct Shells {
     /// The shell of each vertex.
     numbers: Vec<u32>,
-    /// For each shell whether it encloses volume (+1) or a cavity (−1); 0 if that is not certain.
-    sides: Vec<i32>,
+    /// For each shell the sign of its volume, which is negative for a cavity.
+    sides: Vec<Filtered<Sign>>,
 }
 
 impl Shells {
@@ -35,7 +37,7 @@ impl Shells {
     /// Return whether the shell of a change may be changed at all: it is clear which side is
     /// inside.
     pub fn is_certain(&self, edit: &Edit) -> bool {
-        self.sides[self.of_edit(edit)] != 0
+        self.sides[self.of_edit(edit)].is_certain()
     }
 
     /// Mark the shells that are not turned as they were.
@@ -92,8 +94,8 @@ impl Shells {
         Resting { points }
     }
 
-    /// The sign of each shell's volume; 0 if it may come from rounding.
-    fn sides_of(&self, vertices: &[Point], triangles: &[[u32; 3]]) -> Vec<i32> {
+    /// The sign of each shell's volume.
+    fn sides_of(&self, vertices: &[Point], triangles: &[[u32; 3]]) -> Vec<Filtered<Sign>> {
         spend(triangles.len());
         let used = self.numbers.iter().filter(|n| **n != NONE);
         let count = used.max().map_or(0, |m| *m as usize + 1);
@@ -129,17 +131,9 @@ impl Sum {
         self.count += 1.0;
     }
 
-    fn sign(&self) -> i32 {
+    fn sign(&self) -> Filtered<Sign> {
         let error = (ROUNDINGS + self.count) * f64::EPSILON * self.size;
-        if self.volume.abs() > error {
-            if self.volume > 0.0 {
-                1
-            } else {
-                -1
-            }
-        } else {
-            0
-        }
+        Filtered::when(self.volume.abs() > error, Sign::of(self.volume))
     }
 }
 
@@ -168,7 +162,7 @@ fn may_hold(body: &[&Point; 4], point: &Point) -> bool {
     let separates = |apex: usize| {
         let face = [1, 2, 3].map(|i| *body[(apex + i) % 4]);
         let of_point = side(&face, point);
-        of_point != 0 && of_point != side(&face, body[apex])
+        of_point != Side::On && of_point != side(&face, body[apex])
     };
     !(0..4).any(separates)
 }

@@ -3,6 +3,7 @@
 use smallvec::SmallVec;
 
 use super::{Error, Planar};
+use crate::arith::Sign;
 use crate::interrupt::poll;
 
 /// Loops up to this length are clipped; the sweep wins on longer ones.
@@ -35,13 +36,13 @@ pub(super) fn small_loop(edges: &[(u32, u32)]) -> Option<Loop> {
 /// keeps the diagonals off the vertices on straight runs, so what remains is a simple loop again.
 pub(super) fn clip_ears<P: Planar>(points: &P, mut corners: Loop) -> Result<Vec<[u32; 3]>, Error> {
     if let [a, b, c] = corners[..] {
-        let is_left = points.orient(a, b, c) > 0;
+        let is_left = points.orient(a, b, c) == Sign::Positive;
         return is_left
             .then(|| vec![[a, b, c]])
             .ok_or(Error::Crossing { vertex: a });
     }
     let mut triangles = Vec::with_capacity(corners.len() - 2);
-    let mut turns: SmallVec<[i32; SHORT]> = (0..corners.len())
+    let mut turns: SmallVec<[Sign; SHORT]> = (0..corners.len())
         .map(|k| turn(points, &corners, k))
         .collect();
     while corners.len() > 3 {
@@ -56,7 +57,7 @@ pub(super) fn clip_ears<P: Planar>(points: &P, mut corners: Loop) -> Result<Vec<
         turns[after] = turn(points, &corners, after);
         turns[before] = turn(points, &corners, before);
     }
-    if turns[0] <= 0 {
+    if turns[0] != Sign::Positive {
         return Err(Error::Crossing { vertex: corners[0] });
     }
     triangles.push(around(&corners, 1));
@@ -69,25 +70,26 @@ fn around(corners: &[u32], k: usize) -> [u32; 3] {
     [corners[(k + n - 1) % n], corners[k], corners[(k + 1) % n]]
 }
 
-fn turn<P: Planar>(points: &P, corners: &[u32], k: usize) -> i32 {
+fn turn<P: Planar>(points: &P, corners: &[u32], k: usize) -> Sign {
     let [a, b, c] = around(corners, k);
     points.orient(a, b, c)
 }
 
 /// Only corners that are not strictly convex need a look: where any corner lies in the triangle, one of
 /// those does too.
-fn is_ear<P: Planar>(points: &P, corners: &[u32], turns: &[i32], k: usize) -> bool {
-    if turns[k] <= 0 {
+fn is_ear<P: Planar>(points: &P, corners: &[u32], turns: &[Sign], k: usize) -> bool {
+    if turns[k] != Sign::Positive {
         return false;
     }
     let ear = around(corners, k);
     let blunt = corners
         .iter()
         .zip(turns)
-        .filter(|(v, turn)| **turn <= 0 && !ear.contains(v));
+        .filter(|(v, turn)| **turn != Sign::Positive && !ear.contains(v));
     !blunt.into_iter().any(|(&v, _)| is_in(points, ear, v))
 }
 
 fn is_in<P: Planar>(points: &P, [a, b, c]: [u32; 3], v: u32) -> bool {
-    points.orient(c, a, v) >= 0 && points.orient(a, b, v) >= 0 && points.orient(b, c, v) >= 0
+    let is_inside = |p: u32, q: u32| points.orient(p, q, v) != Sign::Negative;
+    is_inside(c, a) && is_inside(a, b) && is_inside(b, c)
 }

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::collections::VecDeque;
 
 use super::{Error, Planar};
+use crate::arith::Sign;
 use crate::interrupt::poll;
 
 const NONE: usize = usize::MAX;
@@ -192,7 +193,8 @@ impl Mates {
             Ordering::Equal => is_least_of_ends(points, [a, b], [c, d]),
             Ordering::Less => false,
         };
-        is_wide && points.orient(c, a, d) > 0 && points.orient(d, b, c) > 0
+        let is_left = |p, q, r| points.orient(p, q, r) == Sign::Positive;
+        is_wide && is_left(c, a, d) && is_left(d, b, c)
     }
 
     /// Replaces the edge by the other diagonal; returns the half-edges around the quadrilateral.

@@ -22,6 +22,8 @@ mod tests;
 use std::cmp::Ordering;
 use std::fmt;
 
+use crate::arith::Sign;
+
 /// Exact questions about the points of one plane, asked by id.
 ///
 /// Different ids must stand for different points, and the answers must agree with one placement of them.
@@ -30,6 +32,7 @@ use std::fmt;
 /// ```
 /// use std::cmp::Ordering;
 ///
+/// use bspcsg::arith::Sign;
 /// use bspcsg::extract::triangulate::{triangulate, Planar};
 ///
 /// struct Points(Vec<[i32; 2]>);
@@ -39,10 +42,10 @@ use std::fmt;
 ///         self.0[a as usize].cmp(&self.0[b as usize])
 ///     }
 ///
-///     fn orient(&self, a: u32, b: u32, c: u32) -> i32 {
+///     fn orient(&self, a: u32, b: u32, c: u32) -> Sign {
 ///         let [a, b, c] = [a, b, c].map(|p| self.0[p as usize]);
 ///         let left = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-///         left.signum()
+///         Sign::of(left)
 ///     }
 ///
 ///     fn opposite_angles(&self, ends: [u32; 2], apexes: [u32; 2]) -> Ordering {
@@ -71,10 +74,10 @@ pub trait Planar {
 
     /// Turn of the path a, b, c.
     ///
-    /// - `1`: left turn, the triangle abc is counterclockwise
-    /// - `0`: the three points are collinear
-    /// - `-1`: right turn
-    fn orient(&self, a: u32, b: u32, c: u32) -> i32;
+    /// - `Positive`: left turn, the triangle abc is counterclockwise
+    /// - `Zero`: the three points are collinear
+    /// - `Negative`: right turn
+    fn orient(&self, a: u32, b: u32, c: u32) -> Sign;
 
     /// Compare the sum of the angles at two apexes, which look at an edge from its left and its right,
     /// to 180 degrees.

@@ -112,7 +112,7 @@ fn sort_by_angle<P: Planar>(points: &P, vertex: u32, spokes: &mut [Spoke]) -> Re
         let is_left = |spoke: &Spoke| points.compare(spoke.far, vertex) == Ordering::Less;
         is_left(a)
             .cmp(&is_left(b))
-            .then_with(|| 0.cmp(&points.orient(vertex, a.far, b.far)))
+            .then_with(|| points.orient(vertex, a.far, b.far).order().reverse())
     };
     spokes.sort_by(angle);
     if spokes

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use super::{Error, Planar};
+use crate::arith::Sign;
 
 /// A view of some points of `points`, numbered 0, 1, ... in the order of their ids, with cached floats.
 pub(super) struct Relabelled<'a, P> {
@@ -75,7 +76,7 @@ impl<P: Planar> Planar for Relabelled<'_, P> {
         self.points.compare(self.id(a), self.id(b))
     }
 
-    fn orient(&self, a: u32, b: u32, c: u32) -> i32 {
+    fn orient(&self, a: u32, b: u32, c: u32) -> Sign {
         self.points.orient(self.id(a), self.id(b), self.id(c))
     }
 

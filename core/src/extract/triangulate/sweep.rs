@@ -13,6 +13,7 @@ use std::cmp::Ordering;
 use super::order::Order;
 use super::outline::Outline;
 use super::{Error, Planar};
+use crate::arith::Sign;
 use crate::interrupt::poll;
 
 const NONE: usize = usize::MAX;
@@ -108,11 +109,11 @@ fn kinds<P: Planar>(
             (true, true) => Ok(Kind::Lower),
             (false, false) => Ok(Kind::Upper),
             (from_left, _) => match (points.orient(a, b, c), from_left) {
-                (0, _) => Err(Error::Overlap { vertex: b }),
-                (1.., true) => Ok(Kind::End),
-                (_, true) => Ok(Kind::Merge),
-                (1.., false) => Ok(Kind::Start),
-                (_, false) => Ok(Kind::Split),
+                (Sign::Zero, _) => Err(Error::Overlap { vertex: b }),
+                (Sign::Positive, true) => Ok(Kind::End),
+                (Sign::Negative, true) => Ok(Kind::Merge),
+                (Sign::Positive, false) => Ok(Kind::Start),
+                (Sign::Negative, false) => Ok(Kind::Split),
             },
         }
     };
@@ -273,7 +274,7 @@ impl<P: Planar> Sweep<'_, P> {
     /// Keeps a triangle if it turns strictly left.
     fn emit(&mut self, corners: [u32; 3]) -> bool {
         let [a, b, c] = corners;
-        let is_left = self.points.orient(a, b, c) > 0;
+        let is_left = self.points.orient(a, b, c) == Sign::Positive;
         if is_left {
             self.triangles.push(corners);
         }
@@ -343,7 +344,7 @@ impl<P: Planar> Sweep<'_, P> {
     /// Return whether the interval's lower edge passes strictly below a vertex.
     fn is_below(&self, interval: usize, vertex: u32) -> bool {
         let (a, b) = self.edges[self.intervals[interval].lower];
-        a != vertex && b != vertex && self.points.orient(a, b, vertex) > 0
+        a != vertex && b != vertex && self.points.orient(a, b, vertex) == Sign::Positive
     }
 
     /// Return whether the interval's lower edge passes below `vertex`, or starts there and runs
@@ -351,7 +352,7 @@ impl<P: Planar> Sweep<'_, P> {
     fn is_below_ray(&self, interval: usize, vertex: u32, head: u32) -> bool {
         let (a, b) = self.edges[self.intervals[interval].lower];
         if a == vertex {
-            return self.points.orient(a, b, head) > 0;
+            return self.points.orient(a, b, head) == Sign::Positive;
         }
         self.is_below(interval, vertex)
     }

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use proptest::prelude::*;
 
 use super::{triangulate, triangulate_by_sweep, Error, Planar};
+use crate::arith::Sign;
 
 type Edges = Vec<(u32, u32)>;
 
@@ -39,8 +40,8 @@ impl Planar for Lattice {
         self.0[a as usize].cmp(&self.0[b as usize])
     }
 
-    fn orient(&self, a: u32, b: u32, c: u32) -> i32 {
-        i32::try_from(self.doubled_area(a, b, c).signum()).unwrap()
+    fn orient(&self, a: u32, b: u32, c: u32) -> Sign {
+        Sign::of(self.doubled_area(a, b, c))
     }
 
     fn opposite_angles(&self, ends: [u32; 2], apexes: [u32; 2]) -> Ordering {
@@ -150,7 +151,7 @@ fn straightened(points: &Lattice, edges: &Edges, drop: impl Fn(u32) -> bool) -> 
             .collect();
         let &[e, f] = &touching[..] else { continue };
         let (into, out) = if edges[e].1 == vertex { (e, f) } else { (f, e) };
-        if drop(vertex) && points.orient(edges[into].0, vertex, edges[out].1) == 0 {
+        if drop(vertex) && points.orient(edges[into].0, vertex, edges[out].1) == Sign::Zero {
             edges[into].1 = edges[out].1;
             edges.swap_remove(out);
         }

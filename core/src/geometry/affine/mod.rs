@@ -15,7 +15,7 @@ pub use region::Polytope;
 pub use view::Viewpoint;
 
 use super::plane::Lattice;
-use super::side::Split;
+use super::side::{Side, Split};
 use super::space::Space;
 
 /// A space whose parts can be written down as numbers; positions are in lattice steps.
@@ -77,11 +77,11 @@ pub trait Affine: Space {
 }
 
 /// Tell a split from the strict sides that occur among a convex piece's corners.
-fn relation_of(sides: impl Iterator<Item = i32>) -> Split<()> {
+fn relation_of(sides: impl Iterator<Item = Side>) -> Split<()> {
     let (mut minus, mut plus) = (false, false);
     for side in sides {
-        minus |= side < 0;
-        plus |= side > 0;
+        minus |= side == Side::Minus;
+        plus |= side == Side::Plus;
     }
     match (minus, plus) {
         (true, true) => Split::Both {

@@ -7,7 +7,7 @@ use crate::arith::bounds::REACH;
 use crate::arith::convert::as_double;
 use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2, Square};
 use crate::geometry::plane::Lattice;
-use crate::geometry::side::{Side, Split};
+use crate::geometry::side::Split;
 use crate::geometry::space::Space;
 
 fn position(point: &Point2) -> [f64; 3] {
@@ -62,12 +62,7 @@ impl Affine for Dim2 {
         if let Some(orientation) = Self::coincide(piece.line(), cut) {
             return Split::Coplanar(orientation);
         }
-        let sign = |p: &Point2| match Self::side(cut, p) {
-            Side::Minus => -1,
-            Side::On => 0,
-            Side::Plus => 1,
-        };
-        super::relation_of(piece.points().iter().map(sign))
+        super::relation_of(piece.points().iter().map(|p| Self::side(cut, p)))
     }
 
     fn size(piece: &Segment2) -> f64 {

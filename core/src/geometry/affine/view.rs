@@ -1,9 +1,9 @@
 //! Viewpoints: points or directions given as doubles, their sides decided exactly.
 
-use num_bigint::{BigInt, Sign};
+use num_bigint::BigInt;
 
 use super::Affine;
-use crate::arith::mantissa_and_exponent;
+use crate::arith::{mantissa_and_exponent, Sign};
 use crate::geometry::plane::FILTER;
 use crate::geometry::side::Side;
 
@@ -58,7 +58,7 @@ impl Viewpoint {
         // Scaling rounds each coordinate twice more than FILTER allows for; comparisons with an
         // overflow or underflow are false.
         if size.is_normal() && size > 1e-280 && sum.abs() > size * 2.0 * FILTER {
-            return Side::from_sign(if sum > 0.0 { 1 } else { -1 });
+            return Side::from_sign(Sign::of(sum));
         }
         self.exact_side(&S::exact(cut))
     }
@@ -66,11 +66,7 @@ impl Viewpoint {
     fn exact_side(&self, coefficients: &[BigInt; 4]) -> Side {
         let terms = self.exact.iter().zip(coefficients);
         let value: BigInt = terms.map(|(x, n)| x * n).sum();
-        Side::from_sign(match value.sign() {
-            Sign::Minus => -1,
-            Sign::NoSign => 0,
-            Sign::Plus => 1,
-        })
+        Side::from_order(value.cmp(&BigInt::ZERO))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Homogeneous coordinates of any width.
 
-use crate::arith::{inv_mod, mul_mod, Int, P1};
+use crate::arith::{inv_mod, mul_mod, Int, Sign, P1};
 use crate::geometry::plane::{Plane, ShortPlane};
 
 /// Homogeneous coordinates, w > 0.
@@ -15,10 +15,10 @@ pub struct Homogeneous<const N: usize = 6> {
 impl<const N: usize> Homogeneous<N> {
     /// The coordinates with the denominator made positive; `None` if it is zero.
     pub(super) fn positive(x: [Int<N>; 3], w: Int<N>) -> Option<Self> {
-        match w.signum() {
-            0 => None,
-            1 => Some(Self { x, w }),
-            _ => {
+        match w.sign() {
+            Sign::Zero => None,
+            Sign::Positive => Some(Self { x, w }),
+            Sign::Negative => {
                 let x = [-x[0], -x[1], -x[2]];
                 Some(Self { x, w: -w })
             }

@@ -11,6 +11,7 @@ pub use self::long::cross;
 use super::edge::LatticeEdge;
 use super::plane::{Lattice, Plane};
 use crate::arith::Int;
+use crate::geometry::side::Side;
 
 /// Coordinates in four limbs where all planes are short, else in six.
 pub enum Coordinates {
@@ -62,12 +63,12 @@ impl Coordinates {
         }
     }
 
-    /// Sign of a plane's value here.
-    pub fn side_of(&self, plane: &Plane) -> i32 {
-        match (self, plane.short()) {
-            (Self::Short(h), Some(plane)) => h.value(&plane).signum(),
-            (known, _) => known.widened().value(plane).signum(),
-        }
+    /// The side of a plane on which the point lies.
+    pub fn side_of(&self, plane: &Plane) -> Side {
+        Side::from_sign(match (self, plane.short()) {
+            (Self::Short(h), Some(plane)) => h.value(&plane).sign(),
+            (known, _) => known.widened().value(plane).sign(),
+        })
     }
 
     /// Order of two points by one coordinate.
@@ -159,7 +160,7 @@ mod tests {
             };
             let (long_p, long_q) = (Coordinates::Long(p.widened()), Coordinates::Long(q.widened()));
             prop_assert_eq!(p.side_of(&e), long_p.side_of(&e));
-            prop_assert_eq!(p.side_of(&a), 0);
+            prop_assert_eq!(p.side_of(&a), Side::On);
             prop_assert_eq!(p.residues(), long_p.residues());
             for axis in 0..3 {
                 prop_assert_eq!(p.compare(&q, axis), long_p.compare(&long_q, axis));

@@ -9,7 +9,7 @@ use crate::geometry::line::LineKey;
 use crate::geometry::outline::{cancel, BareEdge, OutlineEdge};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
-use crate::geometry::side::Orientation;
+use crate::geometry::side::{Orientation, Side};
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
@@ -249,7 +249,7 @@ fn has_inner<'a>(
 ) -> bool {
     let corners = source.mesh().map(|mesh| mesh.corners(face));
     let holds_own = |plane: &Plane| {
-        let on = |p: &&Lattice| plane.side_of_lattice(p) == 0;
+        let on = |p: &&Lattice| plane.side_of_lattice(p) == Side::On;
         corners.is_some_and(|c| c.iter().filter(on).count() >= 2)
     };
     edges.any(|(from, to, carrier)| match carrier {

@@ -6,9 +6,11 @@
 //! edges says whether it is ever above one, at the cost of the outline instead of all pairs.
 
 use crate::arith::convert::{as_double, as_number};
+use crate::arith::Sign;
 use crate::error::Result;
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{seen_along, turn, Facing, Triangle};
+use crate::geometry::side::Side;
 use crate::interrupt::poll;
 use crate::merge::plane::{bounded, Outlines};
 use crate::mesh::handle::FaceId;
@@ -32,8 +34,8 @@ struct View {
     plane: Triangle,
     /// The axis along which the face is seen best.
     axis: usize,
-    /// The way the face turns, seen so; 0 without area.
-    way: i32,
+    /// The way the face turns, seen so; `Zero` without area.
+    way: Sign,
 }
 
 /// Return for each face the number of its flat piece; `NONE` where faces are few or overlap.
@@ -74,7 +76,7 @@ impl View {
     /// Return whether a face lies in the plane and looks the same way.
     fn shows(&self, face: &Triangle) -> bool {
         let facing = Facing::of(&self.plane);
-        face.iter().all(|corner| facing.side(corner) == 0)
+        face.iter().all(|corner| facing.side(corner) == Side::On)
             && turn(seen_along(face, self.axis)) == self.way
     }
 }
@@ -90,7 +92,9 @@ impl Flats<'_> {
             at += 1;
             for mate in self.mates_of(face).into_iter().flatten() {
                 let piece_of_mate = &mut self.pieces[mate.place()];
-                if *piece_of_mate == NONE && view.way != 0 && view.shows(&doubles(self.mesh, mate))
+                if *piece_of_mate == NONE
+                    && view.way != Sign::Zero
+                    && view.shows(&doubles(self.mesh, mate))
                 {
                     *piece_of_mate = number;
                     piece.push(mate);
@@ -122,7 +126,7 @@ impl Flats<'_> {
             let corners = self.mesh.corners(*face).map(|c| [c[u], c[v]]);
             for (i, mate) in self.mates_of(*face).into_iter().enumerate() {
                 if mate.is_none_or(|m| self.pieces[m.place()] != number) {
-                    outline.push(corners[i], corners[(i + 1) % 3], view.way)?;
+                    outline.push(corners[i], corners[(i + 1) % 3], view.way.into())?;
                 }
             }
         }

@@ -2,10 +2,12 @@
 
 use super::flats::doubles;
 use crate::arith::convert::as_double;
+use crate::arith::{Filtered, Sign};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::Triangle;
 use crate::geometry::meeting::{meeting, Meeting};
 use crate::geometry::plane::Lattice;
+use crate::geometry::side::Side;
 use crate::mesh::handle::FaceId;
 use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
@@ -97,7 +99,7 @@ impl Looked {
         let Some(first) = sides.next() else {
             return false;
         };
-        first != 0 && sides.all(|s| s == first)
+        first.is_certain() && sides.all(|s| s == first)
     }
 
     /// Return whether two faces with a common edge lie in different planes, or flat beside each
@@ -106,7 +108,8 @@ impl Looked {
         let apex = other.corners.iter().find(|p| !self.corners.contains(p));
         let cosine: f64 = (0..3).map(|i| self.normal[i] * other.normal[i]).sum();
         let bound = 64.0 * f64::EPSILON * self.size * other.size;
-        apex.is_some_and(|p| self.side(p) != 0) || (cosine > bound && self.runs_against(other))
+        apex.is_some_and(|p| self.side(p).is_certain())
+            || (cosine > bound && self.runs_against(other))
     }
 
     /// Return whether some edge of one face is an edge of the other, run backwards.
@@ -118,18 +121,13 @@ impl Looked {
         })
     }
 
-    /// The side of the face's plane a point certainly lies on; 0 in doubt.
-    fn side(&self, p: &Lattice) -> i32 {
+    /// The side of the face's plane on which a point lies, where doubles tell it.
+    fn side(&self, p: &Lattice) -> Filtered<Side> {
         let w = difference(p, &self.corners[0]);
         let value: f64 = (0..3).map(|i| self.normal[i] * w[i]).sum();
         let reach: f64 = w.iter().map(|c| c.abs()).sum();
-        if value.abs() <= 16.0 * f64::EPSILON * self.size * reach {
-            0
-        } else if value > 0.0 {
-            1
-        } else {
-            -1
-        }
+        let certain = value.abs() > 16.0 * f64::EPSILON * self.size * reach;
+        Filtered::when(certain, Side::from_sign(Sign::of(value)))
     }
 }
 

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use super::descent::choice::LEAF;
 use super::kernels::trees::LeafTree;
 use super::lists::list::{List, Sources};
-use crate::arith::Int;
+use crate::arith::{Int, Sign};
 use crate::error::Result;
 use crate::geometry::cell::Cell;
 use crate::geometry::fixed::sixfold_flux;
@@ -143,7 +143,7 @@ fn is_outward(mesh: &TriangleMesh, faces: impl Iterator<Item = FaceId>) -> bool 
     for face in faces {
         volume += sixfold_flux(&mesh.corners(face));
     }
-    volume.signum() > 0
+    volume.sign() == Sign::Positive
 }
 
 /// For each face the number of its edge-connected component.

@@ -14,6 +14,7 @@
 //! Mehlhorn, Näher, Seel, Seidel, Schilz, Schirra, Uhrig: *Checking geometric programs or
 //! verification of geometric structures*, 1999. The ray tells one covering from several.
 
+use crate::arith::{Filtered, Sign};
 use crate::geometry::axes::each_axis;
 use crate::geometry::crossing::{triangle_change, Segment};
 use crate::geometry::path::near_determinant;
@@ -43,7 +44,7 @@ fn mean(points: &[Lattice]) -> Option<Lattice> {
 /// Return whether a point lies strictly behind a face's plane; errs on no.
 fn is_behind(point: &Lattice, corners: &[Lattice; 3]) -> bool {
     let [a, b, c] = corners.map(|corner| each_axis(|i| corner[i] - point[i]));
-    near_determinant(&a, &b, &c) > 0
+    near_determinant(&a, &b, &c) == Filtered::Certain(Sign::Positive)
 }
 
 /// Count the faces that a ray along x meets, beside a point that lies behind all of them.

@@ -5,6 +5,7 @@ use super::first::likely;
 use super::line::Ray;
 use super::ratio::Ratio;
 use super::scene::Scene;
+use crate::arith::Sign;
 use crate::merge::rule::Rule;
 
 /// A stretch of a ray with constant answer "inside".
@@ -67,7 +68,8 @@ fn crossings<const D: usize>(scene: &Scene<D>, ray: &Ray<D>) -> Vec<Crossing> {
         .unwrap_or_default();
     let crossing = |facet: u32| {
         let (at, step) = cross(ray, &scene.facets()[facet as usize])?;
-        (at.signum() > 0).then_some(Crossing { at, facet, step })
+        let step = i32::from(step);
+        (at.sign() == Sign::Positive).then_some(Crossing { at, facet, step })
     };
     let mut found: Vec<_> = facets.into_iter().filter_map(crossing).collect();
     found.sort_by(|a, b| {

@@ -9,7 +9,7 @@
 use super::bounds::{DENOMINATOR_LIMBS, NUMERATOR_LIMBS, WEIGHT_LIMBS};
 use super::line::Ray;
 use super::ratio::Ratio;
-use crate::arith::Int;
+use crate::arith::{Int, Sign};
 
 /// The corners of a facet: a point in 1D, a segment in 2D, a triangle in 3D.
 pub type Facet<const D: usize> = [[f64; D]; D];
@@ -41,14 +41,9 @@ pub fn meet<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> Option<Meeti
     let v = relative(ray, facet);
     let weights = weights(&v, ray.direction());
     let sum = total(&weights);
-    match sum.signum() {
-        0 => meet_within(&v, ray.direction()),
-        sign => meet_across(
-            &v,
-            weights.map(|w| signed(w, sign)),
-            signed(sum, sign),
-            sign,
-        ),
+    match sum.sign() {
+        Sign::Zero => meet_within(&v, ray.direction()),
+        sign => meet_across(&v, weights.map(|w| sign.times(w)), sign.times(sum), sign),
     }
 }
 
@@ -56,9 +51,9 @@ fn meet_across<const D: usize>(
     v: &Corners<D>,
     weights: [Weight; D],
     sum: Weight,
-    sign: i32,
+    sign: Sign,
 ) -> Option<Meeting<D>> {
-    let height = signed(determinant(v), sign);
+    let height = sign.times(determinant(v));
     if height.is_negative() || weights.iter().any(Int::is_negative) {
         return None;
     }
@@ -76,24 +71,16 @@ fn meet_across<const D: usize>(
 ///
 /// Shifted so, the line meets no edge, no vertex and no facet lengthwise, so that the signs along
 /// it add up to winding numbers. The parameter is the limit for ε → 0 and can be negative.
-pub fn cross<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> Option<(Ratio, i32)> {
+pub fn cross<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> Option<(Ratio, Sign)> {
     let v = relative(ray, facet);
     let weights = weights(&v, ray.direction());
     let sum = total(&weights);
-    let sign = sum.signum();
-    let inside = |i: usize| match weights[i].signum() {
-        0 => shifted_sign(&v, ray.direction(), i) == sign,
+    let sign = sum.sign();
+    let inside = |i: usize| match weights[i].sign() {
+        Sign::Zero => shifted_sign(&v, ray.direction(), i) == sign,
         other => other == sign,
     };
-    (sign != 0 && (0..D).all(inside)).then(|| (Ratio::new(determinant(&v), sum), sign))
-}
-
-fn signed<const N: usize>(x: Int<N>, sign: i32) -> Int<N> {
-    if sign < 0 {
-        -x
-    } else {
-        x
-    }
+    (sign != Sign::Zero && (0..D).all(inside)).then(|| (Ratio::new(determinant(&v), sum), sign))
 }
 
 fn total<const D: usize>(weights: &[Weight; D]) -> Weight {
@@ -147,21 +134,21 @@ fn determinant<const D: usize>(v: &Corners<D>) -> Int<NUMERATOR_LIMBS> {
 ///
 /// In space w = d · (a × b) with the opposite edge from a to b, which grows by ε⃗ · ((a − b) × d);
 /// in the plane w₀ = d × b and w₁ = a × d, which grow by ∓ d × ε⃗.
-fn shifted_sign<const D: usize>(v: &Corners<D>, d: &[i128; D], i: usize) -> i32 {
+fn shifted_sign<const D: usize>(v: &Corners<D>, d: &[i128; D], i: usize) -> Sign {
     match D {
-        1 => 1,
+        1 => Sign::Positive,
         2 => {
             let first = if d[1] == 0 { -d[0] } else { d[1] };
-            (if i == 0 { first } else { -first }).signum() as i32
+            Sign::of(if i == 0 { first } else { -first })
         }
         _ => {
             let (a, b) = (&v[(i + 1) % D], &v[(i + 2) % D]);
             let edge: [i64; 3] = [0, 1, 2].map(|k| a[k] - b[k]);
             let part = |k: usize| {
                 let (p, q) = ((k + 1) % 3, (k + 2) % 3);
-                -planar(d[p], d[q], edge[p], edge[q]).signum()
+                -planar(d[p], d[q], edge[p], edge[q]).sign()
             };
-            (0..3).map(part).find(|s| *s != 0).unwrap_or(0)
+            Sign::first((0..3).map(part))
         }
     }
 }
@@ -202,11 +189,11 @@ fn meet_within<const D: usize>(v: &Corners<D>, d: &[i128; D]) -> Option<Meeting<
 fn stretch<const D: usize>(rims: &[Rim; D]) -> Option<(Ratio, Ratio)> {
     let (mut from, mut until) = (Ratio::ZERO, None::<Ratio>);
     for rim in rims {
-        match rim.slope.signum() {
-            0 if rim.value.is_negative() => return None,
-            0 => {}
-            1 => from = from.max(rim.zero()),
-            _ => until = Some(until.map_or(rim.zero(), |u| u.min(rim.zero()))),
+        match rim.slope.sign() {
+            Sign::Zero if rim.value.is_negative() => return None,
+            Sign::Zero => {}
+            Sign::Positive => from = from.max(rim.zero()),
+            Sign::Negative => until = Some(until.map_or(rim.zero(), |u| u.min(rim.zero()))),
         }
     }
     // The weights add up to a constant, so that one of them falls along the ray.
@@ -217,12 +204,12 @@ fn stretch<const D: usize>(rims: &[Rim; D]) -> Option<(Ratio, Ratio)> {
 fn segment_rims<const D: usize>(v: &Corners<D>, d: &[i128; D]) -> [Rim; D] {
     let k = usize::from(d[0] == 0) % D;
     let (from, to) = (v[0][k], v[1 % D][k]);
-    let sign = if to > from { 1 } else { -1 };
+    let sign = Sign::from_order(to.cmp(&from));
     std::array::from_fn(|i| {
         let (value, slope) = if i == 0 { (to, -d[k]) } else { (-from, d[k]) };
         Rim {
-            value: signed(Int::from_i64(value), sign),
-            slope: signed(Int::from_i128(slope), sign),
+            value: sign.times(Int::from_i64(value)),
+            slope: sign.times(Int::from_i128(slope)),
         }
     })
 }
@@ -235,13 +222,13 @@ fn triangle_rims<const D: usize>(v: &Corners<D>, d: &[i128; D]) -> [Rim; D] {
     let n = normal(&edge(b), &edge(c));
     let axis = (0..3).max_by_key(|k| n[*k].unsigned_abs()).unwrap_or(0);
     let (p, q) = ((axis + 1) % 3 % D, (axis + 2) % 3 % D);
-    let sign = n[axis].signum() as i32;
+    let sign = Sign::of(n[axis]);
     std::array::from_fn(|i| {
         let (a, b) = (&v[(i + 1) % D], &v[(i + 2) % D]);
         let slope = planar(d[p], d[q], a[p] - b[p], a[q] - b[q]);
         Rim {
-            value: signed(Int::from_i128(minor(a, b, p, q)), sign),
-            slope: signed(slope, sign),
+            value: sign.times(Int::from_i128(minor(a, b, p, q))),
+            slope: sign.times(slope),
         }
     })
 }

@@ -8,6 +8,7 @@ use super::filter::{Depth, Filter, Probe, ROUNDING};
 use super::line::Ray;
 use super::scene::Scene;
 use super::walk::walk;
+use crate::arith::Sign;
 
 /// A facet on a ray, and where.
 #[derive(Clone, Debug)]
@@ -194,7 +195,7 @@ impl<'a, const D: usize> Query<'a, D> {
             Reach::Target => meeting.at < super::Ratio::ONE,
             Reach::Parameter(t) => self.scene.parameter(&meeting.at, self.ray.exponent()) < t,
         };
-        before && meeting.until.signum() > 0
+        before && meeting.until.sign() == Sign::Positive
     }
 }
 

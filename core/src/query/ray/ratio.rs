@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::bounds::{COMPARE_LIMBS, DENOMINATOR_LIMBS, NUMERATOR_LIMBS};
-use crate::arith::{ratio_to_f64, Int};
+use crate::arith::{ratio_to_f64, Int, Sign};
 
 /// A fraction with a positive denominator; it need not be in lowest terms.
 #[derive(Clone, Copy, Debug)]
@@ -50,9 +50,9 @@ impl Ratio {
         &self.denominator
     }
 
-    /// −1, 0 or 1.
-    pub fn signum(&self) -> i32 {
-        self.numerator.signum()
+    /// The sign.
+    pub fn sign(&self) -> Sign {
+        self.numerator.sign()
     }
 
     /// The nearest double.

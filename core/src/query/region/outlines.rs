@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use rustc_hash::FxHashMap as HashMap;
 
+use crate::arith::Sign;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::dim2::Point2;
 use crate::interrupt::poll;
@@ -97,11 +98,11 @@ fn cross(a: &[i128; 2], b: &[i128; 2]) -> i128 {
 fn clockwise(from: &[i128; 2], a: &[i128; 2], b: &[i128; 2]) -> Ordering {
     let quarter = |d: &[i128; 2]| {
         let along = from[0] * d[0] + from[1] * d[1];
-        match (cross(from, d).signum(), along.signum()) {
-            (-1, _) => 0,
-            (0, -1) => 1,
-            (1, _) => 2,
-            _ => 3,
+        match (Sign::of(cross(from, d)), Sign::of(along)) {
+            (Sign::Negative, _) => 0,
+            (Sign::Zero, Sign::Negative) => 1,
+            (Sign::Positive, _) => 2,
+            (Sign::Zero, _) => 3,
         }
     };
     let turn = || cross(a, b).cmp(&0);

@@ -5,10 +5,12 @@ use num_integer::Integer;
 use rustc_hash::FxHashMap as HashMap;
 
 use crate::arith::convert::as_double;
+use crate::arith::Sign;
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::assemble::assemble;
 use crate::geometry::path::determinant;
 use crate::geometry::plane::{Lattice, Plane, ShortPlane, FILTER};
+use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::query::exact::{big, vertex};
@@ -85,7 +87,7 @@ impl Sections {
         if sum.abs() > (size + d.abs()) * FILTER {
             return sum < 0.0;
         }
-        self.points[point].side_of(plane) < 0
+        self.points[point].side_of(plane) == Side::Minus
     }
 }
 
@@ -156,7 +158,7 @@ fn successors(points: &[Vertex], crossings: &[Crossing]) -> Vec<Option<usize>> {
 fn coplanar(points: [&Vertex; 4]) -> bool {
     if let [Some(p), Some(q), Some(r), Some(s)] = points.map(Vertex::as_lattice) {
         let [u, v, w] = [q, r, s].map(|other| [0, 1, 2].map(|i| other[i] - p[i]));
-        return determinant(&u, &v, &w) == 0;
+        return determinant(&u, &v, &w) == Sign::Zero;
     }
     let [p, q, r, s] = points.map(Wide::of);
     // Differences to p, times both denominators.
@@ -252,7 +254,7 @@ mod tests {
             offset in -30i128..=30,
         ) {
             let plane = Plane::new(normal, Int::from_i128(offset));
-            let Some(plane) = plane.filter(|h| h.side_of_lattice(&p) < 0 && h.side_of_lattice(&q) >= 0)
+            let Some(plane) = plane.filter(|h| h.side_of_lattice(&p) == Side::Minus && h.side_of_lattice(&q) != Side::Minus)
             else {
                 return Ok(());
             };

@@ -99,7 +99,7 @@ impl Cast<3> for Dim3 {
 
     fn touches(piece: &Polygon, cut: &Arc<Plane>, facet: &[[i64; 3]; 3]) -> bool {
         let corners = piece.corners().iter();
-        let on = corners.filter(|c| c.at.side_of(cut) == 0);
+        let on = corners.filter(|c| c.at.side_of(cut) == Side::On);
         on.into_iter()
             .any(|c| c.at.as_lattice().is_none_or(|p| !facet.contains(p)))
     }

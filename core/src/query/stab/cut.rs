@@ -2,7 +2,8 @@
 //! matters.
 
 use super::cast::Cast;
-use crate::arith::Int;
+use crate::arith::{Filtered, Int, Sign};
+use crate::geometry::side::{Half, Side};
 use crate::query::ray::filter::{Depth, ROUNDING};
 use crate::query::ray::Ray;
 
@@ -21,8 +22,8 @@ pub struct Cut<const D: usize> {
 /// A ray against a hyperplane.
 #[derive(Clone, Copy, Debug)]
 pub enum Stab {
-    /// The ray keeps to one side (−1 or 1) or runs within (0).
-    Beside(i32),
+    /// The ray keeps to one side or runs within.
+    Beside(Side),
     /// The ray's line crosses at this depth, towards the plus side if `rising`.
     Through {
         /// Along the ray's main axis, in lattice steps.
@@ -49,10 +50,9 @@ impl<const D: usize> Cut<D> {
         (self.normal, self.offset)
     }
 
-    /// The side on which all corners of a facet are, clear of the hyperplane; 0 where doubles do not
-    /// tell, or where there is none.
+    /// The half-space in which all corners of a facet are, where doubles tell; there may be none.
     #[inline]
-    pub fn side(&self, facet: &[[f64; D]; D]) -> i32 {
+    pub fn half(&self, facet: &[[f64; D]; D]) -> Filtered<Half> {
         let mut sides = [false; 2];
         for corner in facet {
             let (mut value, mut size) = (self.near_offset, self.near_offset.abs());
@@ -61,11 +61,15 @@ impl<const D: usize> Cut<D> {
                 size += (c * normal).abs();
             }
             if value.abs() <= size * FILTER {
-                return 0;
+                return Filtered::Doubtful;
             }
             sides[usize::from(value > 0.0)] = true;
         }
-        i32::from(sides[1]) - i32::from(sides[0])
+        match sides {
+            [true, false] => Filtered::Certain(Half::Minus),
+            [false, true] => Filtered::Certain(Half::Plus),
+            _ => Filtered::Doubtful,
+        }
     }
 
     /// Return the crossing of a ray.
@@ -96,14 +100,14 @@ impl<const D: usize> Cut<D> {
         let slope: Int<4> = (0..D).fold(Int::ZERO, |sum, k| sum + rise(k));
         let value: Int<3> = (0..D).fold(self.offset, |sum, k| sum + term(k));
         if slope.is_zero() {
-            return Stab::Beside(value.signum());
+            return Stab::Beside(Side::from_sign(value.sign()));
         }
         let lead = ray.direction()[ray.near.main].unsigned_abs() as f64;
         let z = -value.to_f64() / slope.to_f64() * lead;
         let error = z.abs() * FILTER;
         Stab::Through {
             depth: Depth { z, error },
-            rising: slope.signum() > 0,
+            rising: slope.sign() == Sign::Positive,
         }
     }
 }

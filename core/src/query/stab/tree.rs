@@ -15,8 +15,9 @@ use super::heap::{Entry, Heap};
 use super::node::{Content, Growth, Inner, Node, Nodes};
 use super::trace::{StabEvent, Trace};
 use super::walk::{Wake, Walk};
+use crate::arith::Filtered;
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::side::Split;
+use crate::geometry::side::{Half, Split};
 use crate::interrupt::poll;
 use crate::query::ray::facet::Facet;
 use crate::query::ray::first::{Found, Query};
@@ -288,12 +289,12 @@ fn parts<S: Cast<D>, const D: usize>(
     let mut touched = [false; 2];
     for entry in rest {
         // Most facets are clearly on one side.
-        match cut.side(&scene.facets()[entry.facet as usize]) {
-            -1 => {
+        match cut.half(&scene.facets()[entry.facet as usize]) {
+            Filtered::Certain(Half::Minus) => {
                 below.push(entry);
                 continue;
             }
-            1 => {
+            Filtered::Certain(Half::Plus) => {
                 above.push(entry);
                 continue;
             }

@@ -9,6 +9,7 @@ use super::cut::Stab;
 use super::heap::Heap;
 use super::node::{Content, Growth, Inner, Node};
 use super::trace::{StabEvent, Trace};
+use crate::geometry::side::Side;
 use crate::query::ray::block::Block;
 use crate::query::ray::filter::{Depth, Probe};
 use crate::query::ray::first::{Candidate, Query};
@@ -223,9 +224,9 @@ fn push_parts<const D: usize>(
     let [minus, plus] = inner.children;
     let child = |node, from, to| Open::Node { node, from, to };
     match inner.cut.stab(ray) {
-        Stab::Beside(-1) => open.push(child(minus, from, to)),
-        Stab::Beside(1) => open.push(child(plus, from, to)),
-        Stab::Beside(_) => {
+        Stab::Beside(Side::Minus) => open.push(child(minus, from, to)),
+        Stab::Beside(Side::Plus) => open.push(child(plus, from, to)),
+        Stab::Beside(Side::On) => {
             open.extend([child(plus, from, to), child(minus, from, to)]);
             let far = Far::No;
             open.push(Open::Cut { node, from, far });

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::arith::Int;
+use crate::arith::{Int, Sign};
 
 use super::Radial;
 
@@ -22,7 +22,7 @@ struct Axis {
     /// A coordinate in which the edge's ends differ.
     coordinate: usize,
     /// The direction of the edge in it: up or down.
-    sign: i32,
+    sign: Sign,
 }
 
 /// Pairs the half-edges of one edge, so that the triangles of a pair bound a wedge of the inside.
@@ -103,44 +103,47 @@ impl Spoke {
 }
 
 impl Axis {
-    fn new(direction: [i32; 3]) -> Self {
-        let coordinate = direction.iter().position(|&sign| sign != 0).unwrap_or(0);
+    fn new(direction: [Sign; 3]) -> Self {
+        let coordinate = direction
+            .iter()
+            .position(|&sign| sign != Sign::Zero)
+            .unwrap_or(0);
         Self {
             coordinate,
-            sign: direction[coordinate].signum(),
+            sign: direction[coordinate],
         }
     }
 
     /// Order by angle around the axis, counterclockwise from `zero`.
     fn order(&self, zero: &[i128; 3], u: &[i128; 3], v: &[i128; 3]) -> Ordering {
         let by_half = self.half(zero, u).cmp(&self.half(zero, v));
-        by_half.then_with(|| 0.cmp(&self.turn(u, v)))
+        by_half.then_with(|| self.turn(u, v).order().reverse())
     }
 
     /// 0 at `zero`, 1 before the half turn, 2 at it, 3 after it.
     fn half(&self, zero: &[i128; 3], u: &[i128; 3]) -> u8 {
         match self.turn(zero, u) {
-            1.. => 1,
-            0 if dot_sign(zero, u) > 0 => 0,
-            0 => 2,
-            _ => 3,
+            Sign::Positive => 1,
+            Sign::Zero if dot_sign(zero, u) == Sign::Positive => 0,
+            Sign::Zero => 2,
+            Sign::Negative => 3,
         }
     }
 
     /// Sign of the turn from `u` to `v` about the axis, for vectors at right angles to it.
     ///
-    /// - `1`: counterclockwise, by less than a half turn
-    /// - `0`: none, or a half turn
-    /// - `-1`: clockwise
-    fn turn(&self, u: &[i128; 3], v: &[i128; 3]) -> i32 {
+    /// - `Positive`: counterclockwise, by less than a half turn
+    /// - `Zero`: none, or a half turn
+    /// - `Negative`: clockwise
+    fn turn(&self, u: &[i128; 3], v: &[i128; 3]) -> Sign {
         let (j, k) = ((self.coordinate + 1) % 3, (self.coordinate + 2) % 3);
         // The cross product is parallel to the axis: one coordinate tells its direction.
-        (product(u[j], v[k]) - product(u[k], v[j])).signum() * self.sign
+        (product(u[j], v[k]) - product(u[k], v[j])).sign() * self.sign
     }
 }
 
-fn dot_sign(u: &[i128; 3], v: &[i128; 3]) -> i32 {
-    (product(u[0], v[0]) + product(u[1], v[1]) + product(u[2], v[2])).signum()
+fn dot_sign(u: &[i128; 3], v: &[i128; 3]) -> Sign {
+    (product(u[0], v[0]) + product(u[1], v[1]) + product(u[2], v[2])).sign()
 }
 
 fn product(a: i128, b: i128) -> Wide {

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use proptest::prelude::*;
 
 use super::{split_fans, Error, Radial, Split};
+use crate::arith::Sign;
 
 #[derive(Clone, Debug, Default)]
 struct Surface {
@@ -24,9 +25,9 @@ impl Radial for Surface {
         [(1, 2), (2, 0), (0, 1)].map(|(j, k)| (u[j] * v[k] - u[k] * v[j]) << 100)
     }
 
-    fn direction(&self, a: u32, b: u32) -> [i32; 3] {
+    fn direction(&self, a: u32, b: u32) -> [Sign; 3] {
         let (p, q) = (self.points[a as usize], self.points[b as usize]);
-        [0, 1, 2].map(|k| i32::try_from((q[k] - p[k]).signum()).unwrap())
+        [0, 1, 2].map(|k| Sign::of(q[k] - p[k]))
     }
 }
 

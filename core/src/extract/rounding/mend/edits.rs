@@ -2,6 +2,7 @@
 
 use super::part::{distance, edges, Edit, Mending};
 use crate::arith::convert::as_number;
+use crate::arith::Sign;
 use crate::geometry::doubles::{seen_along, turn, Point, Triangle};
 
 /// Directions in which a vertex is moved, in spacings of the largest coordinate.
@@ -245,7 +246,11 @@ fn diagonals_meet(corners: [&Point; 4], reach: f64) -> bool {
     let (first, second) = (area(&[a, b, c]), area(&[b, a, d]));
     let both = [0, 1, 2].map(|i| first[i] + second[i]);
     let axis = (1..3).fold(0, |m, i| if both[i].abs() > both[m].abs() { i } else { m });
-    let facing = if both[axis] > 0.0 { 1 } else { -1 };
+    let facing = if both[axis] > 0.0 {
+        Sign::Positive
+    } else {
+        Sign::Negative
+    };
     let triangles = [[a, b, c], [b, a, d], [a, d, c], [d, b, c]];
     if triangles
         .iter()

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::segment::{Doubt, End, Segment};
 use crate::arith::convert::as_double;
 use crate::geometry::polygon::{bounds, Polygon};
+use crate::geometry::side::Side;
 use crate::interrupt::poll;
 
 /// The segment that continues each.
@@ -156,7 +157,8 @@ impl Segment {
 
     fn is_beside(&self, other: &Self) -> bool {
         let side = |end: &End| end.at.side_of(&other.plane);
-        side(&self.from) * side(&self.to) > 0
+        let from = side(&self.from);
+        from != Side::On && from == side(&self.to)
     }
 }
 

@@ -14,9 +14,11 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use crate::arith::convert::as_number;
+use crate::arith::Filtered;
 use crate::geometry::path::polygon_on_path;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{straddle, Chord, Corner, Polygon, Sides};
+use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 
@@ -43,20 +45,22 @@ impl<'a> Face<'a> {
     }
 
     /// The change of the winding number across the face along a path; see `geometry::path`.
-    pub fn on_path(&self, from: &Lattice, to: &Vertex) -> Option<i32> {
+    pub fn on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
         polygon_on_path(self.polygon.support(), || self.rims(), from, to)
     }
 
     /// Return whether a segment in the plane of the face meets its interior, for a segment whose
     /// plane has corners of the face strictly on both sides.
     fn meets(&self, segment: &Chord) -> bool {
-        let beyond = |rim: &Plane| segment.iter().all(|end| end.side_of(rim) >= 0);
+        let beyond = |rim: &Plane| segment.iter().all(|end| end.side_of(rim) != Side::Minus);
         !self.rims().iter().any(beyond)
     }
 
     /// Return whether a point in the plane of the face lies in it or on its border.
     fn holds(&self, point: &Vertex) -> bool {
-        self.rims().iter().all(|rim| point.side_of(rim) <= 0)
+        self.rims()
+            .iter()
+            .all(|rim| point.side_of(rim) != Side::Plus)
     }
 }
 
@@ -200,7 +204,7 @@ impl Partition<'_> {
             let plane = self.plane(cutter);
             let sides = piece.sides(plane);
             if straddle(&sides) != (true, true) {
-                if !whole && sides.iter().filter(|s| **s == 0).count() > 1 {
+                if !whole && sides.iter().filter(|s| **s == Side::On).count() > 1 {
                     return Err(Special);
                 }
                 continue;
@@ -243,7 +247,7 @@ impl Partition<'_> {
         let face = self.cutters[cutter as usize].face;
         let mut rims = face.rims().iter();
         rims.try_fold(chord.clone(), |link, rim| {
-            self.clipped(link, face.polygon.support(), rim, true)
+            self.clipped(link, face.polygon.support(), rim, Side::Minus)
         })
     }
 
@@ -253,16 +257,16 @@ impl Partition<'_> {
         segment: Chord,
         plane: &Arc<Plane>,
         cut: &Plane,
-        minus: bool,
+        keep: Side,
     ) -> Option<Chord> {
-        let inside = |v: &Vertex| (v.side_of(cut) < 0) == minus || v.side_of(cut) == 0;
-        let keep = [inside(&segment[0]), inside(&segment[1])];
-        if keep == [true, true] {
+        let inside = |v: &Vertex| [keep, Side::On].contains(&v.side_of(cut));
+        let stay = [inside(&segment[0]), inside(&segment[1])];
+        if stay == [true, true] {
             return Some(segment);
         }
         let cut = Arc::new(cut.clone());
         let at = Arc::new(Vertex::meet(&self.support, plane, &cut)?);
-        match keep {
+        match stay {
             [true, false] => Some(Chord::from_buf([Arc::clone(&segment[0]), at])),
             [false, true] => Some(Chord::from_buf([at, Arc::clone(&segment[1])])),
             _ => None,
@@ -308,7 +312,7 @@ impl Partition<'_> {
                 (false, true) => at = knot.children[1],
                 (minus, plus) => {
                     if plus && minus {
-                        link = self.clipped(link, self.plane(cutter), cut, true)?;
+                        link = self.clipped(link, self.plane(cutter), cut, Side::Minus)?;
                     }
                     at = knot.children[0];
                 }
@@ -333,12 +337,12 @@ pub enum Contact {
 pub fn contact(polygon: &Polygon, face: &Face<'_>) -> Contact {
     let theirs = face.polygon.sides(polygon.support());
     let crossed = straddle(&theirs) == (true, true);
-    if !crossed && theirs.iter().filter(|s| **s == 0).count() > 1 {
+    if !crossed && theirs.iter().filter(|s| **s == Side::On).count() > 1 {
         return Contact::Special;
     }
     let ours = polygon.sides(face.polygon.support());
     let mut corners = ours.iter().zip(polygon.corners());
-    if corners.any(|(side, corner)| *side == 0 && face.holds(&corner.at)) {
+    if corners.any(|(side, corner)| *side == Side::On && face.holds(&corner.at)) {
         return Contact::Special;
     }
     if crossed && straddle(&ours) == (true, true) {

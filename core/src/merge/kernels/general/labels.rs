@@ -12,6 +12,7 @@ use super::known::Known;
 use super::scene::{Element, Place, Scene};
 use super::{Labels, OnPieces};
 use crate::arith::convert::as_double;
+use crate::arith::Filtered;
 use crate::geometry::path::{triangle_on_path, Way};
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
@@ -107,7 +108,7 @@ impl Scene<'_> {
         &self,
         own: usize,
         point: [f64; 3],
-        across: impl Fn(&Element) -> Option<i32>,
+        across: impl Fn(&Element) -> Filtered<i32>,
     ) -> Option<Labels> {
         let way = Way::new(self.corner.map(|x| 0.5 * as_double(x)), point);
         let near = |e: &&Element| way.may_meet(&e.low, &e.high);
@@ -122,7 +123,10 @@ impl Scene<'_> {
             };
             for element in elements.iter().filter(near) {
                 poll();
-                w += element.weight * across(element)?;
+                let Filtered::Certain(change) = across(element) else {
+                    return None;
+                };
+                w += element.weight * change;
             }
             if !(0..=1).contains(&w) {
                 return None;

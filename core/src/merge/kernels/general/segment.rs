@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use super::cutting::{Cutter, Face};
 use super::points::Points;
+use crate::arith::Sign;
 use crate::geometry::axes::each_axis;
 use crate::geometry::path::determinant;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon, Sides};
+use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 
 /// A directed segment on an element, with the inside of another operand on its left.
@@ -73,18 +75,19 @@ impl Crossed<'_> {
         other: &Crosser,
         points: &mut Points,
     ) -> Result<Option<Segment>, Doubt> {
-        if other.ours.contains(&0) || other.theirs.contains(&0) {
+        if other.ours.contains(&Side::On) || other.theirs.contains(&Side::On) {
             return Err(Doubt);
         }
         let face = &other.face.polygon;
-        let [x, x_end] = [change(&other.ours, true)?, change(&other.ours, false)?];
-        let [y, y_end] = [change(&other.theirs, false)?, change(&other.theirs, true)?];
+        let [x, x_end] = [rise(&other.ours)?, fall(&other.ours)?];
+        let [y, y_end] = [fall(&other.theirs)?, rise(&other.theirs)?];
         let mut inside = |edge: (usize, bool), rim: usize| self.inside(edge, other, rim, points);
-        if inside((x_end, false), y)? <= 0 || inside((x, true), y_end)? <= 0 {
+        let no = |inside: Sign| inside != Sign::Positive;
+        if no(inside((x_end, false), y)?) || no(inside((x, true), y_end)?) {
             return Ok(None);
         }
-        let starts_here = inside((x, true), y)? >= 0;
-        let ends_here = inside((x_end, false), y_end)? >= 0;
+        let starts_here = inside((x, true), y)? != Sign::Negative;
+        let ends_here = inside((x_end, false), y_end)? != Sign::Negative;
         let mut end = |here: bool, own: usize, theirs: usize| {
             let plane = (face.support(), other.number);
             let at = if here {
@@ -108,15 +111,15 @@ impl Crossed<'_> {
     }
 
     /// Return where the point in which an edge of the element, on its way to the face's plus side
-    /// or back, crosses the face's plane lies: 1 on the inner side of one of the face's own edges,
-    /// 0 on it.
+    /// or back, crosses the face's plane lies: positive on the inner side of one of the face's own
+    /// edges, zero on it.
     fn inside(
         &self,
         (edge, rises): (usize, bool),
         other: &Crosser,
         rim: usize,
         points: &mut Points,
-    ) -> Result<i32, Doubt> {
+    ) -> Result<Sign, Doubt> {
         let face = &other.face.polygon;
         let carriers = (
             &self.polygon.corners()[edge].edge,
@@ -128,20 +131,28 @@ impl Crossed<'_> {
         }
         let plane = (face.support(), other.number);
         let at = points.at((self.polygon, edge), plane).ok_or(Doubt)?;
-        Ok(-at.side_of(&other.face.rims()[rim]).signum())
+        Ok(-at.side_of(&other.face.rims()[rim]).sign())
     }
 }
 
-/// The edge on which a polygon with corners on these sides changes to the plus side, or back.
-fn change(sides: &[i32], rises: bool) -> Result<usize, Doubt> {
+/// The edge on which a polygon with corners on these sides changes to the plus side.
+fn rise(sides: &[Side]) -> Result<usize, Doubt> {
+    change(sides, (Side::Minus, Side::Plus))
+}
+
+/// The edge on which it changes back.
+fn fall(sides: &[Side]) -> Result<usize, Doubt> {
+    change(sides, (Side::Plus, Side::Minus))
+}
+
+fn change(sides: &[Side], wanted: (Side, Side)) -> Result<usize, Doubt> {
     let n = sides.len();
-    let wanted = if rises { (-1, 1) } else { (1, -1) };
     let found = (0..n).find(|i| (sides[*i], sides[(i + 1) % n]) == wanted);
     found.ok_or(Doubt)
 }
 
-/// On which side of a directed edge another one passes: 1 if it rises on its left.
-fn passes((a, b): (&Lattice, &Lattice), (c, d): (&Lattice, &Lattice)) -> i32 {
+/// On which side of a directed edge another one passes: positive if it rises on its left.
+fn passes((a, b): (&Lattice, &Lattice), (c, d): (&Lattice, &Lattice)) -> Sign {
     let from = |p: &Lattice| each_axis(|i| p[i] - c[i]);
     determinant(&from(d), &from(a), &from(b))
 }

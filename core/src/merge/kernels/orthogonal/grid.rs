@@ -8,6 +8,7 @@ use crate::arith::convert::as_double;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::Polygon;
+use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 
@@ -91,8 +92,8 @@ impl Grid {
         let least = 2.0 * point.bounds().0[axis];
         let below = lines.partition_point(|l| as_double(*l) < least);
         let side = |line: &Arc<Plane>| point.side_of(line);
-        let start = below + count(&self.planes[axis][below..], |line| side(line) > 0);
-        start..start + count(&self.planes[axis][start..], |line| side(line) == 0)
+        let start = below + count(&self.planes[axis][below..], |line| side(line) == Side::Plus);
+        start..start + count(&self.planes[axis][start..], |line| side(line) == Side::On)
     }
 
     /// The number of columns along z.

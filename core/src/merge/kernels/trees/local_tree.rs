@@ -12,7 +12,7 @@ use std::sync::Arc;
 use crate::arith::convert::as_number;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Polygon, PolygonSplit};
-use crate::geometry::side::Orientation;
+use crate::geometry::side::{Half, Orientation, Side};
 use crate::interrupt::poll;
 
 /// A convex piece of boundary with its multiplicity.
@@ -211,7 +211,7 @@ impl LocalTree {
                 Child::Leaf(leaf) => return leaf,
                 Child::Node(node) => {
                     let node = &self.nodes[node as usize];
-                    at = node.children[usize::from(node.cut.side_of_corner(corner) > 0)];
+                    at = node.children[usize::from(node.cut.side_of_corner(corner) == Half::Plus)];
                 }
             }
         }
@@ -225,7 +225,7 @@ impl LocalTree {
                 Child::Leaf(leaf) => return self.labels[leaf as usize],
                 Child::Node(node) => {
                     let node = &self.nodes[node as usize];
-                    at = node.children[usize::from(node.cut.side_of_lattice(point) > 0)];
+                    at = node.children[usize::from(node.cut.side_of_lattice(point) == Side::Plus)];
                 }
             }
         }
