@@ -6,7 +6,7 @@ use super::descent::descend::{Counters, Descent};
 use super::expression::{Expression, Term};
 use super::lists::list::Sources;
 use super::rule::Rule;
-use super::simple::{is_simple, simple_shells};
+use super::simple::{simple_shells, simplicity, Simplicity};
 use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grid::Pitch;
@@ -184,11 +184,11 @@ pub fn settled(solid: &Solid) -> Result<Option<Solid>> {
 
 fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
     let sources = Sources::new(solid.sources().clone());
-    let simple = is_simple(solid, &sources)?;
-    if simple == Some(true) {
+    let found = simplicity(solid, &sources)?;
+    if found == Simplicity::Simple {
         return Ok(solid.clone().with_reduced(true));
     }
-    if simple == Some(false)
+    if found == Simplicity::Overlapping
         && rule != Rule::EvenOdd
         && let Some(united) = union_of_shells(solid, &sources)?
     {

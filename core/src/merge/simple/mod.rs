@@ -50,18 +50,29 @@ struct Check<'a> {
     overlap: AtomicBool,
 }
 
-/// Return whether a solid made of one mesh is simple; `None` if it is made of anything else.
+/// What the check tells of a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Simplicity {
+    /// Nothing overlaps, and winding numbers are 0 outside and 1 inside.
+    Simple,
+    /// Something overlaps or is turned inside out.
+    Overlapping,
+    /// It was not asked: the solid is not made of one mesh.
+    Unasked,
+}
+
+/// Check whether a solid made of one mesh is simple.
 ///
 /// # Errors
 /// `Cancelled`.
-pub fn is_simple(solid: &Solid, sources: &Sources) -> Result<Option<bool>> {
+pub fn simplicity(solid: &Solid, sources: &Sources) -> Result<Simplicity> {
     let Some((leaf, source, mesh)) = only_mesh(solid) else {
-        return Ok(None);
+        return Ok(Simplicity::Unasked);
     };
     let all = leaf.groups[0].faces.iter().copied().eq(mesh.face_ids());
     let closed = || source.open_vertices().is_empty();
     if all && closed() && is_star_shaped(mesh) {
-        return Ok(Some(true));
+        return Ok(Simplicity::Simple);
     }
     let mut check = Check::new(source, mesh, sources);
     if let [alone] = check.seen.as_mut_slice() {
@@ -70,7 +81,11 @@ pub fn is_simple(solid: &Solid, sources: &Sources) -> Result<Option<bool>> {
         *alone.get_mut() = is_outward(mesh, mesh.face_ids());
     }
     check.cell(solid.root().cell, List::open(leaf, solid.root(), sources));
-    Ok(Some(!check.overlap.load(Ordering::Relaxed)))
+    Ok(if check.overlap.load(Ordering::Relaxed) {
+        Simplicity::Overlapping
+    } else {
+        Simplicity::Simple
+    })
 }
 
 /// The leaf, the source and the mesh of a solid that lists faces of one mesh and nothing else.
@@ -88,7 +103,7 @@ fn only_mesh(solid: &Solid) -> Option<(&Deferred, &Source, &TriangleMesh)> {
 /// Where two of them cross or hold each other, their union is what the mesh winds around.
 ///
 /// # Cost
-/// As [`is_simple`]; shells that overlap are not compared with each other.
+/// As [`simplicity`]; shells that overlap are not compared with each other.
 pub fn simple_shells(solid: &Solid, sources: &Sources) -> Option<Vec<Branch>> {
     let (leaf, source, mesh) = only_mesh(solid)?;
     let whole =
