@@ -99,7 +99,7 @@ fn faces_of_different_patches_are_not_joined() {
     let mesh = round::mesh_of_patches(&cut, &one_each).expect("mesh");
     for (triangle, [slot, face]) in mesh.triangles.iter().zip(&mesh.origins) {
         let source = cut.sources().get(Slot(*slot)).mesh().expect("a mesh");
-        let corners = source.faces[*face as usize].map(|v| source.doubles[v as usize]);
+        let corners = source.faces[*face as usize].map(|v| source.doubles[v.place()]);
         for v in triangle {
             let p = mesh.vertices[*v as usize];
             let inside = |i: usize| {

@@ -23,7 +23,7 @@ use crate::geometry::side::Orientation;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::{carried, poll, spend};
 use crate::merge::lists::list::Sources;
-use crate::mesh::handle::{OrientedFace, Slot, SourceFace};
+use crate::mesh::handle::{OrientedFace, Slot, SourceFace, VertexId};
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::tree::solid::Solid;
 
@@ -213,7 +213,7 @@ impl Assembly<'_> {
             for (face, _) in fates.iter().enumerate().filter(|(_, f)| **f == Fate::Cut) {
                 poll();
                 for vertex in mesh.faces[face] {
-                    let place = mesh.vertices[vertex as usize];
+                    let place = mesh.vertices[vertex.place()];
                     if let Some(point) = self.table.find(&Vertex::lattice(place)) {
                         self.names.entry(point).or_insert((slot, vertex));
                     }
@@ -235,7 +235,7 @@ impl Assembly<'_> {
             }
         });
         let all: Vec<_> = fates.by_slot().collect();
-        let found: Vec<Vec<u32>> = if in_pool() && fates.faces() > CHUNK {
+        let found: Vec<Vec<VertexId>> = if in_pool() && fates.faces() > CHUNK {
             all.into_par_iter().map(irregular).collect()
         } else {
             all.into_iter().map(irregular).collect()
@@ -264,7 +264,7 @@ impl Assembly<'_> {
         for (slot, images) in Slot::all().zip(&mut self.images) {
             spend(images.len());
             let vertices = images.iter_mut().zip(rims.get(slot).used());
-            for (vertex, (image, is_used)) in (0u32..).zip(vertices) {
+            for (vertex, (image, is_used)) in VertexId::all().zip(vertices) {
                 if *image == NONE && is_used {
                     *image = as_number(self.vertices.len());
                     self.vertices.push(Corner::Source(slot, vertex));

@@ -4,7 +4,7 @@ use super::vertices::VertexTable;
 use crate::geometry::plane::normal;
 use crate::merge::lists::list::Sources;
 use crate::mesh::finding::Finding;
-use crate::mesh::handle::{OrientedFace, Slot};
+use crate::mesh::handle::{OrientedFace, Slot, VertexId};
 use crate::mesh::source::Shape;
 
 /// A closed triangle mesh with exact vertices.
@@ -28,7 +28,7 @@ pub struct ExactMesh {
 #[derive(Clone, Copy, Debug)]
 pub enum Corner {
     /// A vertex of a source.
-    Source(Slot, u32),
+    Source(Slot, VertexId),
     /// A point of the table.
     Point(u32),
 }

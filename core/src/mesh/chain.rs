@@ -1,5 +1,6 @@
 //! The test whether the boundary of a surface vanishes, without looking for pairs.
 
+use super::handle::VertexId;
 use super::tasks::each_chunk;
 use crate::arith::convert::low_limb;
 
@@ -8,20 +9,20 @@ use crate::arith::convert::low_limb;
 /// Each edge is given a number of 128 bits that looks random; it is added for one direction and
 /// subtracted for the other, modulo 2^128. A closed surface sums to zero, whatever its order. An
 /// open one sums to a number that is zero by chance 2^-128.
-pub fn is_closed(faces: &[[u32; 3]]) -> bool {
-    let sum = |_, faces: &[[u32; 3]]| faces.iter().map(boundary).fold(0, u128::wrapping_add);
+pub fn is_closed(faces: &[[VertexId; 3]]) -> bool {
+    let sum = |_, faces: &[[VertexId; 3]]| faces.iter().map(boundary).fold(0, u128::wrapping_add);
     let sums = each_chunk(faces, sum);
     sums.into_iter().fold(0, u128::wrapping_add) == 0
 }
 
-fn boundary([a, b, c]: &[u32; 3]) -> u128 {
+fn boundary([a, b, c]: &[VertexId; 3]) -> u128 {
     directed(*a, *b)
         .wrapping_add(directed(*b, *c))
         .wrapping_add(directed(*c, *a))
 }
 
-fn directed(from: u32, to: u32) -> u128 {
-    let number = scattered(u64::from(from.min(to)) << 32 | u64::from(from.max(to)));
+fn directed(from: VertexId, to: VertexId) -> u128 {
+    let number = scattered(u64::from(from.min(to).0) << 32 | u64::from(from.max(to).0));
     if from < to {
         number
     } else {
@@ -47,7 +48,7 @@ fn scattered(key: u64) -> u128 {
 
 #[cfg(test)]
 mod tests {
-    use super::is_closed;
+    use super::{is_closed, VertexId};
     use proptest::prelude::*;
 
     proptest! {
@@ -70,6 +71,7 @@ mod tests {
                     sums[to as usize][from as usize] -= 1;
                 }
             }
+            let faces: Vec<_> = faces.into_iter().map(|f| f.map(VertexId)).collect();
             prop_assert_eq!(is_closed(&faces), sums.iter().flatten().all(|s| *s == 0));
         }
     }

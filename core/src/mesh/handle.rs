@@ -61,6 +61,32 @@ impl FaceId {
     }
 }
 
+/// A vertex by its number in its mesh.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
+#[repr(transparent)]
+pub struct VertexId(pub u32);
+
+impl VertexId {
+    /// The first vertex, and all after it.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..).map(Self)
+    }
+
+    /// The place in a list of all vertices.
+    #[inline]
+    pub fn place(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl From<VertexId> for i64 {
+    fn from(vertex: VertexId) -> Self {
+        Self::from(vertex.0)
+    }
+}
+
 /// A face of one of several sources.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceFace {

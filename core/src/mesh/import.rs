@@ -16,6 +16,7 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::{normal, Lattice};
 use crate::interrupt::poll;
+use crate::mesh::handle::VertexId;
 
 /// Sizes of numbers that a message shows without an exponent.
 const PLAIN: std::ops::Range<f64> = 1e-4..1e6;
@@ -76,7 +77,7 @@ pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -
 }
 
 /// The faces with indices of 32 bits, all of them below `count`.
-fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[u32; 3]>> {
+fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[VertexId; 3]>> {
     let limit = u32::try_from(count)
         .ok()
         .filter(|c| *c < u32::MAX / 4)
@@ -87,7 +88,7 @@ fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[u32; 3]>> {
             "a mesh holds at most 2^30 faces",
         ));
     }
-    let mut narrow = vec![[0; 3]; faces.len()];
+    let mut narrow = vec![[VertexId::default(); 3]; faces.len()];
     let good = fill_chunks(faces, &mut narrow, |_, faces, narrow| {
         narrow_all(faces, limit, narrow)
     });
@@ -111,10 +112,10 @@ fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[u32; 3]>> {
     clippy::cast_sign_loss,
     reason = "what is cut off is noticed"
 )]
-fn narrow_all(faces: &[[i64; 3]], limit: u32, narrow: &mut [[u32; 3]]) -> bool {
+fn narrow_all(faces: &[[i64; 3]], limit: u32, narrow: &mut [[VertexId; 3]]) -> bool {
     let mut good = true;
     for (wide, narrow) in faces.as_flattened().iter().zip(narrow.as_flattened_mut()) {
-        *narrow = *wide as u32;
+        *narrow = VertexId(*wide as u32);
         good &= wide.cast_unsigned() < u64::from(limit);
     }
     good
@@ -209,7 +210,7 @@ fn choose_pitch(
 fn weigh(mesh: &TriangleMesh) -> (f64, Vec<u32>) {
     let origin = mesh.vertices.first().copied().unwrap_or_default();
     let weigh =
-        |first: usize, faces: &[[u32; 3]]| weigh_chunk(faces, &mesh.vertices, &origin, first);
+        |first: usize, faces: &[[VertexId; 3]]| weigh_chunk(faces, &mesh.vertices, &origin, first);
     let (volumes, flat): (Vec<f64>, Vec<Vec<u32>>) =
         each_chunk(&mesh.faces, weigh).into_iter().unzip();
     (volumes.iter().sum(), flat.concat())
@@ -232,7 +233,7 @@ fn drop_faces(mesh: &mut TriangleMesh, faces: Vec<u32>, findings: &mut Vec<Findi
 
 /// The share of a run of faces in [`weigh`].
 fn weigh_chunk(
-    faces: &[[u32; 3]],
+    faces: &[[VertexId; 3]],
     vertices: &[Lattice],
     origin: &Lattice,
     first: usize,
@@ -241,7 +242,7 @@ fn weigh_chunk(
     let mut flat = Vec::new();
     for (number, face) in (as_number(first)..).zip(faces) {
         poll();
-        let corners = face.map(|v| &vertices[v as usize]);
+        let corners = face.map(|v| &vertices[v.place()]);
         let [u, v] = spokes(corners);
         let arm = each_axis(|i| as_double(corners[0][i] - origin[i]));
         volume += arm[0] * (u[1] * v[2] - u[2] * v[1])
@@ -277,7 +278,7 @@ fn surely_wide(u: &[f64; 3], v: &[f64; 3]) -> bool {
 
 /// The ends of edges without an opposite by index; vertices are welded by place, then edges
 /// cancelled along lines, if the faces do not close by index.
-fn close(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Vec<u32>> {
+fn close(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Vec<VertexId>> {
     if is_closed(&mesh.faces) {
         return Ok(Vec::new());
     }
@@ -310,7 +311,7 @@ fn not_closed(mesh: &TriangleMesh, open: &[u64]) -> Error {
     faces.dedup();
     let half = as_place(open[0]);
     let face = mesh.faces[half / 3];
-    let (a, b) = (face[half % 3] as usize, face[(half % 3 + 1) % 3] as usize);
+    let (a, b) = (face[half % 3].place(), face[(half % 3 + 1) % 3].place());
     let text = format!(
         "the mesh is not closed: {} edges have no matching opposite; the first belongs to face {} \
          and runs from {} to {}",
@@ -339,14 +340,14 @@ fn rounded(number: f64) -> String {
 }
 
 /// The faces with vertices at one lattice point made one; `None` if there are no such vertices.
-fn weld(mesh: &TriangleMesh) -> Option<Vec<[u32; 3]>> {
-    let mut first: HashMap<Lattice, u32> =
+fn weld(mesh: &TriangleMesh) -> Option<Vec<[VertexId; 3]>> {
+    let mut first: HashMap<Lattice, VertexId> =
         HashMap::with_capacity_and_hasher(mesh.vertices.len(), rustc_hash::FxBuildHasher);
-    let image: Vec<u32> = (0u32..)
+    let image: Vec<VertexId> = VertexId::all()
         .zip(&mesh.vertices)
         .map(|(i, p)| *first.entry(*p).or_insert(i))
         .collect();
-    let changed = (0u32..).zip(&image).any(|(i, v)| i != *v);
-    let weld = |face: &[u32; 3]| face.map(|v| image[v as usize]);
+    let changed = VertexId::all().zip(&image).any(|(i, v)| i != *v);
+    let weld = |face: &[VertexId; 3]| face.map(|v| image[v.place()]);
     changed.then(|| mesh.faces.iter().map(weld).collect())
 }

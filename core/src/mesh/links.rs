@@ -3,6 +3,7 @@
 //! The link of a vertex has a directed edge for each face around it: from the corner after the
 //! vertex to the one before it. The faces make one fan if the link is one cycle.
 
+use super::handle::VertexId;
 use super::tasks::each_chunk;
 use crate::arith::convert::as_number;
 use crate::interrupt::poll;
@@ -16,20 +17,24 @@ const ROOM: usize = 8;
 type Short = [u16; 2 * ROOM];
 
 /// The vertices of a closed surface whose link is not one cycle, sorted.
-pub fn irregular(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
+pub fn irregular(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<VertexId> {
     irregular_among(&doubtful(faces, vertex_count), faces, vertex_count)
 }
 
 /// Those of some vertices of a closed surface whose link is not one cycle, sorted.
 ///
 /// One pass over the faces, and a sort of the corners at these vertices.
-pub fn irregular_among(vertices: &[u32], faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
+pub fn irregular_among(
+    vertices: &[VertexId],
+    faces: &[[VertexId; 3]],
+    vertex_count: usize,
+) -> Vec<VertexId> {
     let mut wanted = vec![0u64; vertex_count.div_ceil(64)];
     for vertex in vertices {
-        wanted[*vertex as usize / 64] |= 1 << (vertex % 64);
+        wanted[vertex.place() / 64] |= 1 << (vertex.place() % 64);
     }
-    let is_wanted = |v: u32| wanted[v as usize / 64] >> (v % 64) & 1 == 1;
-    let at_wanted = |_, faces: &[[u32; 3]]| {
+    let is_wanted = |v: VertexId| wanted[v.place() / 64] >> (v.place() % 64) & 1 == 1;
+    let at_wanted = |_, faces: &[[VertexId; 3]]| {
         let corners = faces
             .iter()
             .flat_map(|&[a, b, c]| [[a, b, c], [b, c, a], [c, a, b]]);
@@ -48,16 +53,16 @@ pub fn irregular_among(vertices: &[u32], faces: &[[u32; 3]], vertex_count: usize
 }
 
 /// Vertices whose short link does not show that they are regular.
-fn doubtful(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
+fn doubtful(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<VertexId> {
     let mut links: Vec<Short> = vec![[0; 2 * ROOM]; vertex_count];
     let mut counts = vec![0u8; vertex_count];
     for &[a, b, c] in faces {
         poll();
         for (vertex, from, to) in [(a, b, c), (b, c, a), (c, a, b)] {
-            let count = &mut counts[vertex as usize];
+            let count = &mut counts[vertex.place()];
             let at = usize::from(*count);
             if at < ROOM {
-                let link = &mut links[vertex as usize];
+                let link = &mut links[vertex.place()];
                 link[at] = label(from);
                 link[ROOM + at] = label(to);
             }
@@ -65,18 +70,20 @@ fn doubtful(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
         }
     }
     let doubtful = |first: usize, links: &[Short]| {
-        let rows = (as_number(first)..).zip(links.iter().zip(&counts[first..]));
-        let doubt = |(vertex, (link, count)): (u32, (&Short, &u8))| {
+        let rows = (as_number(first)..)
+            .map(VertexId)
+            .zip(links.iter().zip(&counts[first..]));
+        let doubt = |(vertex, (link, count)): (VertexId, (&Short, &u8))| {
             (*count > 0 && !is_short_cycle(link, usize::from(*count))).then_some(vertex)
         };
-        rows.filter_map(doubt).collect::<Vec<u32>>()
+        rows.filter_map(doubt).collect::<Vec<VertexId>>()
     };
     each_chunk(&links, doubtful).concat()
 }
 
 #[allow(clippy::cast_possible_truncation, reason = "fifteen bits are a label")]
-fn label(vertex: u32) -> u16 {
-    vertex as u16 | 1 << 15
+fn label(vertex: VertexId) -> u16 {
+    vertex.0 as u16 | 1 << 15
 }
 
 /// Return whether a link is surely one cycle; its starts must be its ends in another order.
@@ -107,7 +114,7 @@ fn after(link: &Short, label: u16) -> u16 {
 }
 
 /// Says if the link of a vertex is one cycle; its corners are sorted, and there are some.
-fn is_cycle(link: &[[u32; 3]]) -> bool {
+fn is_cycle(link: &[[VertexId; 3]]) -> bool {
     if link.windows(2).any(|pair| pair[0][1] == pair[1][1]) {
         return false;
     }
@@ -123,13 +130,13 @@ fn is_cycle(link: &[[u32; 3]]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{irregular, irregular_among};
+    use super::{irregular, irregular_among, VertexId};
     use crate::arith::convert::as_number;
     use crate::mesh::topology::Topology;
     use proptest::prelude::*;
 
     /// Tetrahedra on few vertices: closed, and often irregular.
-    fn tetrahedra() -> impl Strategy<Value = Vec<[u32; 3]>> {
+    fn tetrahedra() -> impl Strategy<Value = Vec<[VertexId; 3]>> {
         let corners = prop::sample::subsequence((0u32..12).collect::<Vec<_>>(), 4);
         let corners = (corners, 0u32..3, any::<bool>());
         prop::collection::vec(corners, 1..6).prop_map(|all| {
@@ -137,17 +144,18 @@ mod tests {
                 // Far numbers share their lower bits.
                 let [a, b, c, d] = [0, 1, 2, 3].map(|i| c[i] + (high << 15) * (as_number(i) % 2));
                 let faces = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
-                faces.map(|[a, b, c]| if *turned { [a, c, b] } else { [a, b, c] })
+                let faces = faces.map(|[a, b, c]| if *turned { [a, c, b] } else { [a, b, c] });
+                faces.map(|f| f.map(VertexId))
             };
             all.iter().flat_map(tetrahedron).collect()
         })
     }
 
     /// A double cone over a ring, its vertices far apart in number.
-    fn double_cone(ring: u32, first: u32, step: u32) -> Vec<[u32; 3]> {
+    fn double_cone(ring: u32, first: u32, step: u32) -> Vec<[VertexId; 3]> {
         let around = |i: u32| first + (i % ring) * step;
         let faces = |i| [[0, around(i), around(i + 1)], [1, around(i + 1), around(i)]];
-        (0..ring).flat_map(faces).collect()
+        (0..ring).flat_map(faces).map(|f| f.map(VertexId)).collect()
     }
 
     proptest! {
@@ -161,9 +169,9 @@ mod tests {
         #[test]
         fn some_vertices_are_looked_at_as_all(faces in tetrahedra(), third in 0u32..3) {
             let count = 1 << 18;
-            let is_asked = |v: &u32| v % 3 == third;
-            let asked: Vec<u32> = (0..as_number(count)).filter(is_asked).collect();
-            let expected: Vec<u32> = irregular(&faces, count).into_iter().filter(is_asked).collect();
+            let is_asked = |v: &VertexId| v.0 % 3 == third;
+            let asked: Vec<VertexId> = VertexId::all().take(count).filter(is_asked).collect();
+            let expected: Vec<VertexId> = irregular(&faces, count).into_iter().filter(is_asked).collect();
             prop_assert_eq!(irregular_among(&asked, &faces, count), expected);
         }
     }
@@ -183,7 +191,10 @@ mod tests {
         for ring in [4, 5, 20] {
             let mut faces = double_cone(ring, 2, 1);
             faces.extend(double_cone(ring, 2 + ring, 1));
-            assert_eq!(irregular(&faces, 2 + 2 * ring as usize), [0, 1]);
+            assert_eq!(
+                irregular(&faces, 2 + 2 * ring as usize),
+                [0, 1].map(VertexId)
+            );
         }
     }
 }

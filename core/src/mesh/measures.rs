@@ -1,5 +1,6 @@
 //! Volume and area of a mesh in doubles, the sums rounded once.
 
+use super::handle::VertexId;
 use crate::arith::Sum;
 use crate::interrupt::poll;
 
@@ -13,11 +14,11 @@ pub struct Measures {
 }
 
 /// Measures a mesh; each face's part is rounded, their sums are not rounded further.
-pub fn measures(vertices: &[[f64; 3]], faces: &[[u32; 3]], middle: [f64; 3]) -> Measures {
+pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]) -> Measures {
     let (mut volume, mut area) = (Sum::default(), Sum::default());
     for face in faces {
         poll();
-        let [a, b, c] = face.map(|vertex| vertices[vertex as usize]);
+        let [a, b, c] = face.map(|vertex| vertices[vertex.place()]);
         let [p, q, r] = [a, b, c].map(|corner| minus(corner, middle));
         volume.add(dot(cross(p, q), r) / 6.0);
         let normal = cross(minus(b, a), minus(c, a));

@@ -7,11 +7,10 @@ use super::cached::Cached;
 use super::chain::is_closed;
 use super::finding::{Finding, Severity};
 use super::grid::Pitch;
-use super::handle::FaceId;
+use super::handle::{FaceId, VertexId};
 use super::links;
 use super::topology::{open_edges, Topology};
 use super::triangles::TriangleMesh;
-use crate::arith::convert::as_number;
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::line::PlaneResidues;
@@ -24,8 +23,8 @@ pub struct Source {
     id: u64,
     pitch: Pitch,
     shape: Shape,
-    open: Cached<Vec<u32>>,
-    irregular: Cached<Vec<u32>>,
+    open: Cached<Vec<VertexId>>,
+    irregular: Cached<Vec<VertexId>>,
     topology: Cached<Topology>,
     cell: Cached<Option<Cell>>,
     findings: Vec<Finding>,
@@ -68,7 +67,7 @@ impl Source {
     pub fn checked(
         mesh: TriangleMesh,
         pitch: Pitch,
-        open: Vec<u32>,
+        open: Vec<VertexId>,
         cell: Cell,
         findings: Vec<Finding>,
     ) -> Self {
@@ -105,7 +104,7 @@ impl Source {
 
     fn irregularity(&self) -> Option<Finding> {
         let irregular = self.irregular_vertices();
-        let places: Vec<u64> = irregular.iter().map(|v| u64::from(*v)).collect();
+        let places: Vec<u64> = irregular.iter().map(|v| u64::from(v.0)).collect();
         let text = "more than two faces share an edge, or several fans a vertex, at these vertices";
         let finding = || Finding::about("non_manifold", Severity::Note, &places, text);
         (!places.is_empty()).then(finding)
@@ -136,7 +135,7 @@ impl Source {
 
     /// The ends of edges that have no opposite by index, sorted: of edges that cancel along lines
     /// only, as at T-junctions.
-    pub fn open_vertices(&self) -> &[u32] {
+    pub fn open_vertices(&self) -> &[VertexId] {
         let Some(mesh) = self.mesh() else {
             return &[];
         };
@@ -152,7 +151,7 @@ impl Source {
     /// Vertices at the ends of edges that more than two faces use, or with several fans, sorted.
     ///
     /// They are looked for on first use.
-    pub fn irregular_vertices(&self) -> &[u32] {
+    pub fn irregular_vertices(&self) -> &[VertexId] {
         let Some(mesh) = self.mesh() else {
             return &[];
         };
@@ -166,12 +165,16 @@ impl Source {
     }
 
     /// Those of [`Self::irregular_vertices`] for which `is_used` holds.
-    pub fn irregular_among(&self, is_used: impl Fn(u32) -> bool, used: usize) -> Vec<u32> {
+    pub fn irregular_among(
+        &self,
+        is_used: impl Fn(VertexId) -> bool,
+        used: usize,
+    ) -> Vec<VertexId> {
         let known = self.irregular.get().is_some() || !self.open_vertices().is_empty();
         match self.mesh() {
             Some(mesh) if !known && used < mesh.vertices.len() / FEW => {
-                let all = 0..as_number(mesh.vertices.len());
-                let used: Vec<u32> = all.filter(|v| is_used(*v)).collect();
+                let all = VertexId::all().take(mesh.vertices.len());
+                let used: Vec<VertexId> = all.filter(|v| is_used(*v)).collect();
                 links::irregular_among(&used, &mesh.faces, mesh.vertices.len())
             }
             _ => {

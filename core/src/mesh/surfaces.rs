@@ -1,6 +1,6 @@
 //! The connected surfaces of a mesh, and what it has of each kind.
 
-use crate::arith::convert::as_number;
+use super::handle::VertexId;
 use crate::interrupt::poll;
 
 /// The numbers of different things of each kind that make up a mesh.
@@ -17,11 +17,11 @@ pub struct Counts {
 }
 
 /// Counts what a mesh is made of, by index.
-pub fn counts(faces: &[[u32; 3]], vertex_count: usize) -> Counts {
+pub fn counts(faces: &[[VertexId; 3]], vertex_count: usize) -> Counts {
     let fans = Fans::new(faces, vertex_count);
     let mut edges = 0;
     let mut open_edges = 0;
-    let mut around: Vec<(u32, bool)> = Vec::new();
+    let mut around: Vec<(VertexId, bool)> = Vec::new();
     for vertex in 0..vertex_count {
         poll();
         around.clear();
@@ -29,7 +29,7 @@ pub fn counts(faces: &[[u32; 3]], vertex_count: usize) -> Counts {
         around.sort_unstable();
         for uses in around.chunk_by(|a, b| a.0 == b.0) {
             edges += 1;
-            open_edges += open(uses, uses[0].0 as usize == vertex);
+            open_edges += open(uses, uses[0].0.place() == vertex);
         }
     }
     let owner = surfaces(faces, vertex_count);
@@ -42,7 +42,7 @@ pub fn counts(faces: &[[u32; 3]], vertex_count: usize) -> Counts {
 }
 
 /// Count the open ones of an edge's two directions; one that begins where it ends is open.
-fn open(uses: &[(u32, bool)], is_loop: bool) -> usize {
+fn open(uses: &[(VertexId, bool)], is_loop: bool) -> usize {
     let forth = uses.iter().filter(|(_, forth)| *forth).count();
     match (forth, uses.len() - forth) {
         _ if is_loop => 1,
@@ -52,10 +52,10 @@ fn open(uses: &[(u32, bool)], is_loop: bool) -> usize {
     }
 }
 
-fn used(faces: &[[u32; 3]], vertex_count: usize) -> usize {
+fn used(faces: &[[VertexId; 3]], vertex_count: usize) -> usize {
     let mut is_used = vec![false; vertex_count];
     for &vertex in faces.iter().flatten() {
-        is_used[vertex as usize] = true;
+        is_used[vertex.place()] = true;
     }
     is_used.into_iter().filter(|&used| used).count()
 }
@@ -63,75 +63,77 @@ fn used(faces: &[[u32; 3]], vertex_count: usize) -> usize {
 /// The number of each face's surface: faces that share a vertex are connected.
 ///
 /// Surfaces are numbered in the order of their lowest vertices.
-pub fn surfaces(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
-    let mut lower: Vec<u32> = (0..as_number(vertex_count)).collect();
+pub fn surfaces(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<u32> {
+    let mut lower: Vec<VertexId> = VertexId::all().take(vertex_count).collect();
     for face in faces {
         poll();
         let roots = face.map(|vertex| root(&mut lower, vertex));
-        let lowest = roots.into_iter().fold(roots[0], u32::min);
+        let lowest = roots.into_iter().fold(roots[0], VertexId::min);
         for root in roots {
-            lower[root as usize] = lowest;
+            lower[root.place()] = lowest;
         }
     }
     let mut number = vec![None; vertex_count];
     for &[vertex, ..] in faces {
-        number[root(&mut lower, vertex) as usize] = Some(0);
+        number[root(&mut lower, vertex).place()] = Some(0);
     }
     for (next, number) in (0..).zip(number.iter_mut().flatten()) {
         *number = next;
     }
-    let number_of = |&[vertex, ..]: &[u32; 3]| number[root(&mut lower, vertex) as usize];
+    let number_of = |&[vertex, ..]: &[VertexId; 3]| number[root(&mut lower, vertex).place()];
     faces.iter().filter_map(number_of).collect()
 }
 
 /// The lowest vertex that a vertex is known to be connected to; the way there is halved.
-fn root(lower: &mut [u32], vertex: u32) -> u32 {
-    let mut at = vertex as usize;
-    while lower[at] as usize != at {
-        lower[at] = lower[lower[at] as usize];
-        at = lower[at] as usize;
+fn root(lower: &mut [VertexId], vertex: VertexId) -> VertexId {
+    let mut at = vertex;
+    while lower[at.place()] != at {
+        lower[at.place()] = lower[lower[at.place()].place()];
+        at = lower[at.place()];
     }
-    as_number(at)
+    at
 }
 
 /// The edges at the lower of their vertices, in compressed rows.
 struct Fans {
     starts: Vec<u32>,
     /// The higher vertex, and whether the edge runs towards it.
-    edges: Vec<(u32, bool)>,
+    edges: Vec<(VertexId, bool)>,
 }
 
 impl Fans {
-    fn new(faces: &[[u32; 3]], vertex_count: usize) -> Self {
+    fn new(faces: &[[VertexId; 3]], vertex_count: usize) -> Self {
         let directed = || faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
         let mut starts = vec![0u32; vertex_count + 1];
         for (a, b) in directed() {
-            starts[a.min(b) as usize + 1] += 1;
+            starts[a.min(b).place() + 1] += 1;
         }
         for i in 0..vertex_count {
             starts[i + 1] += starts[i];
         }
         let mut next = starts.clone();
-        let mut edges = vec![(0, false); 3 * faces.len()];
+        let mut edges = vec![(VertexId::default(), false); 3 * faces.len()];
         for (a, b) in directed() {
             poll();
-            let slot = &mut next[a.min(b) as usize];
+            let slot = &mut next[a.min(b).place()];
             edges[*slot as usize] = (a.max(b), a < b);
             *slot += 1;
         }
         Self { starts, edges }
     }
 
-    fn of(&self, vertex: usize) -> &[(u32, bool)] {
+    fn of(&self, vertex: usize) -> &[(VertexId, bool)] {
         &self.edges[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{counts, surfaces, Counts};
+    use super::{counts, surfaces, Counts, VertexId};
 
-    const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    fn tetrahedron() -> [[VertexId; 3]; 4] {
+        [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|f| f.map(VertexId))
+    }
 
     #[test]
     fn a_closed_surface_has_no_open_edges() {
@@ -141,13 +143,13 @@ mod tests {
             open_edges: 0,
             surfaces: 1,
         };
-        assert_eq!(counts(&TETRAHEDRON, 9), expected);
-        assert_eq!(counts(&TETRAHEDRON[1..], 4).open_edges, 3);
+        assert_eq!(counts(&tetrahedron(), 9), expected);
+        assert_eq!(counts(&tetrahedron()[1..], 4).open_edges, 3);
     }
 
     #[test]
     fn surfaces_are_numbered_by_their_lowest_vertices() {
-        let faces = [[7, 8, 9], [1, 5, 2], [9, 10, 11], [3, 6, 5]];
+        let faces = [[7, 8, 9], [1, 5, 2], [9, 10, 11], [3, 6, 5]].map(|f| f.map(VertexId));
         assert_eq!(surfaces(&faces, 12), [1, 0, 1, 0]);
         assert!(surfaces(&[], 3).is_empty());
     }

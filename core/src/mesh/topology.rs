@@ -1,5 +1,6 @@
 //! The mates of half-edges.
 
+use super::handle::VertexId;
 use crate::arith::convert::as_number;
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
@@ -14,12 +15,12 @@ pub const NONE: u32 = u32::MAX;
 #[derive(Debug)]
 pub struct Topology {
     mates: Vec<u32>,
-    irregular: Vec<u32>,
+    irregular: Vec<VertexId>,
 }
 
 impl Topology {
     /// Pairs each directed edge with an opposite one, in the order of faces.
-    pub fn new(faces: &[[u32; 3]], vertex_count: usize) -> Self {
+    pub fn new(faces: &[[VertexId; 3]], vertex_count: usize) -> Self {
         let outgoing = Outgoing::new(faces, vertex_count);
         let mut mates = vec![NONE; 3 * faces.len()];
         let mut irregular = Vec::new();
@@ -31,7 +32,7 @@ impl Topology {
                     continue;
                 }
                 let twins = outgoing
-                    .of(a as usize)
+                    .of(a.place())
                     .iter()
                     .filter(|h| ends(faces, **h).1 == b)
                     .count();
@@ -39,7 +40,7 @@ impl Topology {
                     irregular.extend([a, b]);
                 }
                 let free = |h: &&u32| ends(faces, **h).1 == a && mates[**h as usize] == NONE;
-                if let Some(&mate) = outgoing.of(b as usize).iter().find(free) {
+                if let Some(&mate) = outgoing.of(b.place()).iter().find(free) {
                     mates[half as usize] = mate;
                     mates[mate as usize] = half;
                 }
@@ -49,7 +50,7 @@ impl Topology {
         irregular.extend((0..vertex_count).filter_map(|v| {
             let fan = outgoing.of(v);
             let several = fan.len() > 3 && turns(fan[0], mates_of) < fan.len();
-            several.then_some(as_number(v))
+            several.then_some(VertexId(as_number(v)))
         }));
         irregular.sort_unstable();
         irregular.dedup();
@@ -62,14 +63,14 @@ impl Topology {
     }
 
     /// Vertices at the ends of edges that more than two faces use, or with several fans, sorted.
-    pub fn irregular(&self) -> &[u32] {
+    pub fn irregular(&self) -> &[VertexId] {
         &self.irregular
     }
 
     /// The ends of half-edges without a mate, sorted.
-    pub fn open_vertices(&self, faces: &[[u32; 3]]) -> Vec<u32> {
-        let ends = |half: usize| <[u32; 2]>::from(ends(faces, as_number(half)));
-        let mut open: Vec<u32> = self.unpaired().flat_map(ends).collect();
+    pub fn open_vertices(&self, faces: &[[VertexId; 3]]) -> Vec<VertexId> {
+        let ends = |half: usize| <[VertexId; 2]>::from(ends(faces, as_number(half)));
+        let mut open: Vec<VertexId> = self.unpaired().flat_map(ends).collect();
         open.sort_unstable();
         open.dedup();
         open
@@ -99,7 +100,7 @@ fn turns(start: u32, mate: impl Fn(u32) -> u32) -> usize {
 }
 
 /// The end vertices of a half-edge.
-pub fn ends(faces: &[[u32; 3]], half: u32) -> (u32, u32) {
+pub fn ends(faces: &[[VertexId; 3]], half: u32) -> (VertexId, VertexId) {
     let face = &faces[half as usize / 3];
     let corner = half as usize % 3;
     (face[corner], face[(corner + 1) % 3])
@@ -112,10 +113,10 @@ struct Outgoing {
 }
 
 impl Outgoing {
-    fn new(faces: &[[u32; 3]], vertex_count: usize) -> Self {
+    fn new(faces: &[[VertexId; 3]], vertex_count: usize) -> Self {
         let mut starts = vec![0u32; vertex_count + 1];
         for vertex in faces.iter().flatten() {
-            starts[*vertex as usize + 1] += 1;
+            starts[vertex.place() + 1] += 1;
         }
         for i in 0..vertex_count {
             starts[i + 1] += starts[i];
@@ -124,7 +125,7 @@ impl Outgoing {
         let mut halves = vec![0u32; 3 * faces.len()];
         for (half, vertex) in (0u32..).zip(faces.iter().flatten()) {
             poll();
-            let slot = &mut next[*vertex as usize];
+            let slot = &mut next[vertex.place()];
             halves[*slot as usize] = half;
             *slot += 1;
         }
@@ -141,7 +142,7 @@ impl Outgoing {
 /// A closed surface with T-junctions leaves none: on each line the pieces of its edges cancel.
 pub fn open_edges(
     vertices: &[Lattice],
-    faces: &[[u32; 3]],
+    faces: &[[VertexId; 3]],
     unpaired: impl Iterator<Item = usize>,
 ) -> Vec<u64> {
     let mut edges: Vec<LineEdge> = unpaired
@@ -168,10 +169,10 @@ struct LineEdge {
 }
 
 impl LineEdge {
-    fn new(vertices: &[Lattice], faces: &[[u32; 3]], half: usize) -> Option<Self> {
+    fn new(vertices: &[Lattice], faces: &[[VertexId; 3]], half: usize) -> Option<Self> {
         let face = &faces[half / 3];
-        let a = vertices[face[half % 3] as usize];
-        let b = vertices[face[(half % 3 + 1) % 3] as usize];
+        let a = vertices[face[half % 3].place()];
+        let b = vertices[face[(half % 3 + 1) % 3].place()];
         let (direction, axis, sign) = primitive_direction(&a, &b)?;
         let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
         let line = (direction, moment(&a, &direction));

@@ -1,7 +1,7 @@
 //! Triangles on the lattice.
 
 use super::grid::Pitch;
-use super::handle::FaceId;
+use super::handle::{FaceId, VertexId};
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 
@@ -13,7 +13,7 @@ pub struct TriangleMesh {
     /// The original doubles of the vertices.
     pub doubles: Vec<[f64; 3]>,
     /// Triangles, counterclockwise as seen from outside.
-    pub faces: Vec<[u32; 3]>,
+    pub faces: Vec<[VertexId; 3]>,
     /// The index each face had in its input, where faces were left out.
     pub numbers: Option<Vec<u32>>,
 }
@@ -28,13 +28,13 @@ impl TriangleMesh {
     #[inline]
     pub fn corners(&self, face: FaceId) -> [Lattice; 3] {
         let [a, b, c] = self.vertices_of(face);
-        let at = |vertex: u32| self.vertices[vertex as usize];
+        let at = |vertex: VertexId| self.vertices[vertex.place()];
         [at(a), at(b), at(c)]
     }
 
     /// The numbers of a face's corners.
     #[inline]
-    pub fn vertices_of(&self, face: FaceId) -> [u32; 3] {
+    pub fn vertices_of(&self, face: FaceId) -> [VertexId; 3] {
         self.faces[face.place()]
     }
 

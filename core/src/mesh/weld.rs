@@ -2,6 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
+use super::handle::VertexId;
 use crate::arith::convert::as_number;
 use crate::interrupt::poll;
 
@@ -11,7 +12,7 @@ pub struct Welded {
     /// Each point once, with 0.0 for -0.0.
     pub points: Vec<[f64; 3]>,
     /// For each given point, the number of its equal in `points`.
-    pub same: Vec<u32>,
+    pub same: Vec<VertexId>,
 }
 
 /// Finds the points whose coordinates are equal as numbers.
@@ -20,13 +21,14 @@ pub struct Welded {
 ///
 /// # Example
 /// ```
+/// use bspcsg::mesh::handle::VertexId;
 /// use bspcsg::mesh::weld::welded;
 ///
 /// let [a, b] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
-/// assert_eq!(welded(&[a, b, a]).same, [0, 1, 0]);
+/// assert_eq!(welded(&[a, b, a]).same, [0, 1, 0].map(VertexId));
 /// ```
 pub fn welded(points: &[[f64; 3]]) -> Welded {
-    let mut numbers: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+    let mut numbers: FxHashMap<[u64; 3], VertexId> = FxHashMap::default();
     let mut different = Vec::new();
     let same = points
         .iter()
@@ -35,7 +37,7 @@ pub fn welded(points: &[[f64; 3]]) -> Welded {
             let point = point.map(|x| x + 0.0);
             *numbers.entry(point.map(f64::to_bits)).or_insert_with(|| {
                 different.push(point);
-                as_number(different.len()) - 1
+                VertexId(as_number(different.len()) - 1)
             })
         })
         .collect();
@@ -47,13 +49,13 @@ pub fn welded(points: &[[f64; 3]]) -> Welded {
 
 #[cfg(test)]
 mod tests {
-    use super::welded;
+    use super::{welded, VertexId};
 
     #[test]
     fn the_first_of_equal_points_stands_for_them() {
         let points = [[1.0, 0.0, 0.0], [0.0; 3], [1.0, -0.0, 0.0], [-0.0; 3]];
         let found = welded(&points);
-        assert_eq!(found.same, [0, 1, 0, 1]);
+        assert_eq!(found.same, [0, 1, 0, 1].map(VertexId));
         assert_eq!(found.points, [[1.0, 0.0, 0.0], [0.0; 3]]);
         assert!(found.points[0][1].is_sign_positive());
     }

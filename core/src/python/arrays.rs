@@ -6,6 +6,7 @@ use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::fill_chunks;
 
 /// The rows of an (n, k) array: the array's own memory, or a copy if they are not contiguous.
@@ -33,11 +34,12 @@ pub fn rows<'a, T: Element + Copy, const K: usize>(
 pub fn triangles_of(
     triangles: &PyReadonlyArray2<'_, i64>,
     vertex_count: usize,
-) -> Result<Vec<[u32; 3]>> {
+) -> Result<Vec<[VertexId; 3]>> {
     let index = |v: i64| {
         u32::try_from(v)
             .ok()
-            .filter(|v| (*v as usize) < vertex_count)
+            .map(VertexId)
+            .filter(|v| v.place() < vertex_count)
     };
     let row = |(t, corners): (usize, &[i64; 3])| {
         if let [Some(a), Some(b), Some(c)] = corners.map(index) {
@@ -51,11 +53,11 @@ pub fn triangles_of(
 }
 
 /// Indices as Python has them.
-pub fn wide<const K: usize>(rows: &[[u32; K]]) -> Vec<[i64; K]> {
+pub fn wide<T: Copy + Into<i64> + Sync, const K: usize>(rows: &[[T; K]]) -> Vec<[i64; K]> {
     let mut wide = vec![[0; K]; rows.len()];
     fill_chunks(rows, &mut wide, |_, rows, wide| {
         for (row, wide) in rows.iter().zip(wide) {
-            *wide = row.map(i64::from);
+            *wide = row.map(T::into);
         }
     });
     wide

@@ -71,6 +71,7 @@ fn given(
         return Err(Error::new(ErrorKind::NonFinite, text));
     }
     let triangles = triangles_of(triangles, vertices.len())?;
+    let triangles = triangles.into_iter().map(|t| t.map(|v| v.0)).collect();
     Ok(Rounded {
         vertices,
         triangles,

@@ -13,7 +13,7 @@ use crate::tree::solid::Solid;
 pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Option<Lattice> {
     match mesh.vertices[vertex as usize] {
         Corner::Source(slot, index) => {
-            Some(solid.sources().get(slot).mesh()?.vertices[index as usize])
+            Some(solid.sources().get(slot).mesh()?.vertices[index.place()])
         }
         Corner::Point(point) => mesh.table.point(point).as_lattice().copied(),
     }

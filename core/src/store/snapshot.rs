@@ -24,7 +24,7 @@ use crate::geometry::vertex::{cross, Vertex};
 use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::grid::Pitch;
-use crate::mesh::handle::{FaceId, Slot};
+use crate::mesh::handle::{FaceId, Slot, VertexId};
 use crate::mesh::import::is_flat;
 use crate::mesh::source::{Shape, Source};
 use crate::mesh::triangles::TriangleMesh;
@@ -66,7 +66,7 @@ enum SourceData {
     Mesh {
         vertices: Vec<Lattice>,
         doubles: Vec<[f64; 3]>,
-        faces: Vec<[u32; 3]>,
+        faces: Vec<[VertexId; 3]>,
         numbers: Option<Vec<u32>>,
     },
     HalfSpace(PlaneData),
@@ -339,10 +339,10 @@ impl SourceData {
                 numbers,
             } => {
                 let count = vertices.len();
-                let named = faces.iter().flatten().all(|v| (*v as usize) < count);
+                let named = faces.iter().flatten().all(|v| v.place() < count);
                 let fits = vertices.iter().flatten().all(|k| is_coordinate(*k));
                 let numbered = numbers.as_ref().is_none_or(|n| n.len() == faces.len());
-                let flat = |f: &[u32; 3]| is_flat(&f.map(|v| vertices[v as usize]));
+                let flat = |f: &[VertexId; 3]| is_flat(&f.map(|v| vertices[v.place()]));
                 let sound = named && fits && numbered && doubles.len() == count;
                 if !sound || faces.iter().any(flat) {
                     return Err(bad_snapshot());

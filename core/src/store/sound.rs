@@ -157,7 +157,7 @@ fn is_closed(leaf: &Deferred, fates: &Fates, sources: &Sources) -> bool {
 /// An edge of a whole face, run as the face is turned.
 fn rim_edge(edge: FrontierEdge, fates: &Fates, sources: &Sources) -> Option<OutlineEdge> {
     let mesh = sources.get(edge.slot).mesh()?;
-    let [from, to] = half_edge_ends(mesh, edge.half).map(|v| mesh.vertices[v as usize]);
+    let [from, to] = half_edge_ends(mesh, edge.half).map(|v| mesh.vertices[v.place()]);
     let forward = OutlineEdge {
         from: Arc::new(Vertex::lattice(from)),
         to: Arc::new(Vertex::lattice(to)),

@@ -428,7 +428,7 @@ fn holder<'a>(mesh: &'a TriangleMesh, cell: &Cell) -> impl Fn(FaceId) -> bool + 
     let (low, high) = (*cell.low(), cell.high());
     move |face| {
         mesh.vertices_of(face).iter().all(|v| {
-            let p = &mesh.vertices[*v as usize];
+            let p = &mesh.vertices[v.place()];
             (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i])
         })
     }

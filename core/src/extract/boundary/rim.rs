@@ -15,7 +15,7 @@ use crate::geometry::line::LineKey;
 use crate::geometry::side::Orientation;
 use crate::interrupt::{carried, poll, spend};
 use crate::merge::lists::list::Sources;
-use crate::mesh::handle::{FaceId, Slot, SourceFace};
+use crate::mesh::handle::{FaceId, Slot, SourceFace, VertexId};
 use crate::mesh::source::Source;
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
@@ -32,7 +32,7 @@ const OPEN: u8 = 8;
 pub struct Rims {
     by_slot: Vec<Rim>,
     /// The half-edges near a rim by their ends, found on first use.
-    by_ends: Vec<OnceLock<HashMap<[u32; 2], u32>>>,
+    by_ends: Vec<OnceLock<HashMap<[VertexId; 2], u32>>>,
     /// The faces around each vertex of a source, found on first use.
     around: Vec<OnceLock<Around>>,
     /// Slots of which fates have changed.
@@ -57,7 +57,7 @@ impl FrontierEdge {
     /// The line it lies on.
     pub fn line(&self, sources: &Sources) -> LineKey {
         let mesh = sources.get(self.slot).mesh();
-        let ends = mesh.map(|m| half_edge_ends(m, self.half).map(|v| m.vertices[v as usize]));
+        let ends = mesh.map(|m| half_edge_ends(m, self.half).map(|v| m.vertices[v.place()]));
         let [a, b] = ends.unwrap_or([[0; 3], [1, 0, 0]]);
         LineKey::of_edge(&a, &b)
     }
@@ -147,7 +147,7 @@ impl Around {
     fn of(mesh: &TriangleMesh) -> Self {
         let mut starts = vec![0u32; mesh.vertices.len() + 1];
         for vertex in mesh.faces.iter().flatten() {
-            starts[*vertex as usize] += 1;
+            starts[vertex.place()] += 1;
         }
         let mut sum = 0;
         for start in &mut starts {
@@ -158,7 +158,7 @@ impl Around {
         for (face, corners) in mesh.faces.iter().enumerate().rev() {
             poll();
             for vertex in corners {
-                let start = &mut starts[*vertex as usize];
+                let start = &mut starts[vertex.place()];
                 *start -= 1;
                 faces[*start as usize] = FaceId(as_number(face));
             }
@@ -167,8 +167,8 @@ impl Around {
     }
 
     /// The faces around a vertex, ascending.
-    fn faces(&self, vertex: u32) -> &[FaceId] {
-        let [start, end] = [0, 1].map(|i| self.starts[vertex as usize + i] as usize);
+    fn faces(&self, vertex: VertexId) -> &[FaceId] {
+        let [start, end] = [0, 1].map(|i| self.starts[vertex.place() + i] as usize);
         &self.faces[start..end]
     }
 }
@@ -193,10 +193,10 @@ impl Rim {
             near: Vec::new(),
         };
         for vertex in source.open_vertices() {
-            rim.touch[*vertex as usize] |= OPEN;
+            rim.touch[vertex.place()] |= OPEN;
         }
         if rim.touch.iter().any(|t| is_mixed(*t)) {
-            let near = |(_, (corners, fate)): &(FaceId, (&[u32; 3], &Fate))| {
+            let near = |(_, (corners, fate)): &(FaceId, (&[VertexId; 3], &Fate))| {
                 matches!(fate, Fate::Whole(_)) && corners.iter().any(|v| rim.is_mixed(*v))
             };
             let faces = FaceId::all().zip(mesh.faces.iter().zip(fates));
@@ -206,8 +206,8 @@ impl Rim {
     }
 
     /// Return whether a whole face has this corner.
-    pub fn is_used(&self, vertex: u32) -> bool {
-        self.touch[vertex as usize] & (KEPT | TURNED) != 0
+    pub fn is_used(&self, vertex: VertexId) -> bool {
+        self.touch[vertex.place()] & (KEPT | TURNED) != 0
     }
 
     /// The number of vertices that are corners of whole faces.
@@ -221,8 +221,8 @@ impl Rim {
     }
 
     /// Return whether faces of different fates meet at a vertex.
-    fn is_mixed(&self, vertex: u32) -> bool {
-        is_mixed(self.touch[vertex as usize])
+    fn is_mixed(&self, vertex: VertexId) -> bool {
+        is_mixed(self.touch[vertex.place()])
     }
 
     /// The half-edges of whole faces that have no opposite among those turned alike, ascending.
@@ -251,7 +251,7 @@ impl Rim {
     }
 
     /// The half-edges of the whole faces with a mixed corner by their ends.
-    fn by_ends(&self, mesh: &TriangleMesh) -> HashMap<[u32; 2], u32> {
+    fn by_ends(&self, mesh: &TriangleMesh) -> HashMap<[VertexId; 2], u32> {
         let halves = self.near.iter().flat_map(|face| face.half_edges());
         let mut by_ends = HashMap::default();
         for half in halves {
@@ -263,14 +263,14 @@ impl Rim {
 
 /// A half-edge of a whole face, to be sorted by its edge.
 struct Half {
-    edge: [u32; 2],
+    edge: [VertexId; 2],
     turned: bool,
     backward: bool,
     number: u32,
 }
 
 impl Half {
-    fn new(number: u32, [a, b]: [u32; 2], fate: Fate) -> Self {
+    fn new(number: u32, [a, b]: [VertexId; 2], fate: Fate) -> Self {
         Self {
             edge: [a.min(b), a.max(b)],
             turned: fate == Fate::Whole(Orientation::Opposite),
@@ -295,16 +295,16 @@ fn touch(mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u8> {
                 Fate::Whole(Orientation::Opposite) => TURNED,
                 Fate::Cut | Fate::Gone => OTHER,
             };
-            touch[a as usize] |= kind;
-            touch[b as usize] |= kind;
-            touch[c as usize] |= kind;
+            touch[a.place()] |= kind;
+            touch[b.place()] |= kind;
+            touch[c.place()] |= kind;
         }
     }
     touch
 }
 
 /// The end vertices of a half-edge.
-pub fn half_edge_ends(mesh: &TriangleMesh, half: u32) -> [u32; 2] {
+pub fn half_edge_ends(mesh: &TriangleMesh, half: u32) -> [VertexId; 2] {
     let face = mesh.vertices_of(FaceId::beside(half));
     let corner = half as usize % 3;
     [face[corner], face[(corner + 1) % 3]]

@@ -13,7 +13,7 @@ use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::finding::Finding;
-use crate::mesh::handle::{OrientedFace, Slot};
+use crate::mesh::handle::{OrientedFace, Slot, VertexId};
 use crate::mesh::triangles::TriangleMesh;
 
 /// The mesh in the making.
@@ -25,7 +25,7 @@ pub(in crate::extract) struct Assembly<'a> {
     /// For each table point its output vertex.
     pub(in crate::extract) point_images: Vec<u32>,
     /// For each table point the first source vertex there.
-    pub(in crate::extract) names: HashMap<u32, (Slot, u32)>,
+    pub(in crate::extract) names: HashMap<u32, (Slot, VertexId)>,
     pub(in crate::extract) vertices: Vec<Corner>,
     pub(in crate::extract) triangles: Vec<[u32; 3]>,
     pub(in crate::extract) faces: Vec<OrientedFace>,
@@ -63,16 +63,16 @@ impl<'a> Assembly<'a> {
         &mut self,
         slot: Slot,
         mesh: &TriangleMesh,
-        vertex: u32,
+        vertex: VertexId,
     ) -> u32 {
-        let image = self.images[slot.place()][vertex as usize];
+        let image = self.images[slot.place()][vertex.place()];
         if let Some(Corner::Point(point)) = self.vertices.get(image as usize) {
             return *point;
         }
-        let point = self.table.number_at(mesh.vertices[vertex as usize]);
+        let point = self.table.number_at(mesh.vertices[vertex.place()]);
         self.names.entry(point).or_insert((slot, vertex));
         let image = self.image_of_point(point);
-        self.images[slot.place()][vertex as usize] = image;
+        self.images[slot.place()][vertex.place()] = image;
         point
     }
 
@@ -193,7 +193,7 @@ impl<'a> Assembly<'a> {
             Corner::Point(point) => Arc::clone(self.table.point(point)),
             Corner::Source(slot, index) => {
                 let mesh = self.sources.get(slot).mesh();
-                let place = mesh.map_or([0; 3], |m| m.vertices[index as usize]);
+                let place = mesh.map_or([0; 3], |m| m.vertices[index.place()]);
                 Arc::new(Vertex::lattice(place))
             }
         }

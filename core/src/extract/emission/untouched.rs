@@ -8,7 +8,7 @@ use crate::arith::convert::as_number;
 use crate::extract::boundary::leaves::Fate;
 use crate::geometry::side::Orientation;
 use crate::interrupt::{carried, spend};
-use crate::mesh::handle::{FaceId, OrientedFace, Slot, SourceFace};
+use crate::mesh::handle::{FaceId, OrientedFace, Slot, SourceFace, VertexId};
 use crate::mesh::tasks::{each_chunk, in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
 
@@ -109,7 +109,7 @@ impl Task<'_> {
             let Some(((triangle, origin), number)) = out.next() else {
                 break;
             };
-            let image = |v: u32| source.images[v as usize];
+            let image = |v: VertexId| source.images[v.place()];
             let (a, b, c) = (image(a), image(b), image(c));
             *triangle = match orientation {
                 Orientation::Same => [a, b, c],

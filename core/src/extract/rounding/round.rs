@@ -109,7 +109,7 @@ fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Settled {
     let on_lattice = |v: u32| match corner(v) {
         Some(Corner::Source(slot, vertex)) => {
             let mesh = solid.sources().get(*slot).mesh()?;
-            let place = Vertex::lattice(mesh.vertices[*vertex as usize]);
+            let place = Vertex::lattice(mesh.vertices[vertex.place()]);
             Some(solid.pitch().position(&place))
         }
         _ => None,
@@ -174,7 +174,7 @@ fn position(solid: &Solid, exact: &ExactMesh, corner: Corner) -> [f64; 3] {
         Corner::Point(point) => solid.pitch().position(exact.table.point(point)),
         Corner::Source(slot, vertex) => {
             let mesh = solid.sources().get(slot).mesh();
-            mesh.map_or([0.0; 3], |m| m.doubles[vertex as usize])
+            mesh.map_or([0.0; 3], |m| m.doubles[vertex.place()])
         }
     }
 }

@@ -314,7 +314,7 @@ impl Sorted {
             let mesh = run.mesh;
             if run.is_most() {
                 let codes: Vec<u32> = mesh.vertices.iter().map(|p| window.code(p)).collect();
-                let code = |f: FaceId| mesh.vertices_of(f).map(|v| codes[v as usize]);
+                let code = |f: FaceId| mesh.vertices_of(f).map(|v| codes[v.place()]);
                 sorted.add(window, run, code);
             } else {
                 sorted.add(window, run, |f| mesh.corners(f).map(|p| window.code(&p)));

@@ -143,6 +143,7 @@ pub fn doubles(mesh: &TriangleMesh, face: FaceId) -> Triangle {
 mod tests {
     use super::*;
     use crate::mesh::grid::Pitch;
+    use crate::mesh::handle::VertexId;
     use crate::mesh::source::Shape;
 
     /// A prism over a fan: the first corner of the outline sees all others.
@@ -156,7 +157,7 @@ mod tests {
         });
         TriangleMesh {
             vertices: level(0).chain(level(100)).collect(),
-            faces: caps.chain(walls).collect(),
+            faces: caps.chain(walls).map(|f| f.map(VertexId)).collect(),
             ..TriangleMesh::default()
         }
     }

@@ -47,7 +47,7 @@ impl Looked {
             corners,
             low,
             high,
-            irregular: mesh.vertices_of(face).map(|v| irregular[v as usize]),
+            irregular: mesh.vertices_of(face).map(|v| irregular[v.place()]),
             normal,
             size,
             has_area: longest(&normal) > 16.0 * f64::EPSILON * size,

@@ -191,7 +191,7 @@ fn shells(source: &Source, count: usize) -> Vec<u32> {
 fn irregular(source: &Source, mesh: &TriangleMesh) -> Vec<bool> {
     let mut marks = vec![false; mesh.vertices.len()];
     for vertex in source.irregular_vertices() {
-        marks[*vertex as usize] = true;
+        marks[vertex.place()] = true;
     }
     marks
 }

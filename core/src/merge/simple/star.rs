@@ -63,11 +63,14 @@ fn faces_ahead(mesh: &TriangleMesh, eye: &Lattice) -> Option<i32> {
 mod tests {
     use super::*;
     use crate::arith::convert::as_whole;
+    use crate::mesh::handle::VertexId;
 
     fn tetrahedron() -> TriangleMesh {
         TriangleMesh {
             vertices: vec![[0, 0, 0], [90, 0, 0], [0, 90, 0], [0, 0, 90]],
-            faces: vec![[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]],
+            faces: [[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]
+                .map(|f| f.map(VertexId))
+                .to_vec(),
             ..TriangleMesh::default()
         }
     }
@@ -85,7 +88,7 @@ mod tests {
                 .into_iter()
                 .chain((0..ring).map(corner))
                 .collect(),
-            faces: (0..ring).flat_map(faces).collect(),
+            faces: (0..ring).flat_map(faces).map(|f| f.map(VertexId)).collect(),
             ..TriangleMesh::default()
         }
     }

@@ -15,7 +15,7 @@ use crate::interrupt::poll;
 use crate::merge::kernels::problem::Listed;
 use crate::merge::lists::list::{List, Record, Sources};
 use crate::merge::pairs::Swept;
-use crate::mesh::handle::{Slot, SourceFace};
+use crate::mesh::handle::{Slot, SourceFace, VertexId};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
 
@@ -61,7 +61,7 @@ pub(super) enum Place<'a> {
 pub(super) struct Triangle<'a> {
     source: &'a Source,
     pub(super) face: SourceFace,
-    pub(super) vertices: [u32; 3],
+    pub(super) vertices: [VertexId; 3],
     pub(super) corners: [Lattice; 3],
     shape: OnceCell<Box<Face<'a>>>,
 }
@@ -130,12 +130,12 @@ impl<'a> Scene<'a> {
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Name {
     /// A vertex of a source.
-    Vertex(Slot, u32),
+    Vertex(Slot, VertexId),
     /// A corner of a part: pieces that share the corner share the object at this address.
     Corner(usize),
     /// The point in which an edge of a source leaves the cell: the edge's ends, and twice the axis
     /// of the wall, with one more for the upper one.
-    Crossing(Slot, [u32; 2], u8),
+    Crossing(Slot, [VertexId; 2], u8),
 }
 
 /// A box around elements; one that holds nothing if there are none.
@@ -156,7 +156,7 @@ impl Triangle<'_> {
     }
 
     /// The vertices at the ends of an edge that is given by its places.
-    pub(super) fn ends_of(&self, edge: [&Lattice; 2]) -> Option<[u32; 2]> {
+    pub(super) fn ends_of(&self, edge: [&Lattice; 2]) -> Option<[VertexId; 2]> {
         let at = |place: &Lattice| self.corners.iter().position(|c| c == place);
         Some([self.vertices[at(edge[0])?], self.vertices[at(edge[1])?]])
     }
