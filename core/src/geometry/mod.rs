@@ -6,6 +6,7 @@ pub mod axes;
 pub mod axis;
 pub mod cell;
 pub mod coordinates;
+pub mod covering;
 pub mod crossing;
 pub mod dim1;
 pub mod dim2;

@@ -6,6 +6,7 @@
 use rustc_hash::FxHashMap as HashMap;
 
 use super::company::{in_company, Faces};
+use super::terrains::terrains;
 use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{Point, Triangle};
@@ -14,6 +15,7 @@ use crate::geometry::meeting::{folds_over, has_no_area, interleave, meeting, pas
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, Boxed, Swept};
+use crate::mesh::topology::NONE;
 
 /// The faults that keep a mesh from being embedded.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -45,17 +47,9 @@ pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32) -> Faults
     let has_area = |t: u32| !has_no_area(&faces.corners(t));
     let mut elements = in_company(faces, some, &party);
     elements.retain(|(_, t)| has_area(*t));
-    let mut next = elements.last().map_or(0, |other| other.0 + 1);
-    elements.reserve(some.len());
-    let mut flat = Vec::new();
-    for t in some {
-        if has_area(*t) {
-            elements.push((next, *t));
-            next += 1;
-        } else {
-            flat.push(*t);
-        }
-    }
+    let next = elements.last().map_or(0, |other| other.0 + 1);
+    let (own, flat) = parties(faces, some, next);
+    elements.extend(own);
     let mut search = Search {
         faces,
         crossings: Vec::new(),
@@ -69,6 +63,19 @@ pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32) -> Faults
         crossings: search.crossings,
         flat,
     }
+}
+
+/// Some triangles by parties, from a number on, and those that have no area: each is a party of its
+/// own, but for those of one terrain, which do not cross each other.
+fn parties(faces: &Faces, some: &[u32], next: u32) -> (Vec<(u32, u32)>, Vec<u32>) {
+    let pieces = terrains(faces, some);
+    let alone = as_number(some.len());
+    let party = |(at, piece): (u32, u32)| next + if piece == NONE { at } else { alone + piece };
+    let numbered = (0u32..).zip(pieces).map(party).zip(some.iter().copied());
+    let has_area = |e: &(u32, u32)| !has_no_area(&faces.corners(e.1));
+    let (mut own, flat): (Vec<_>, Vec<_>) = numbered.partition(has_area);
+    own.sort_unstable();
+    (own, flat.into_iter().map(|e| e.1).collect())
 }
 
 /// The faults of a mesh.

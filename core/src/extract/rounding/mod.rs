@@ -5,4 +5,5 @@ pub mod crossings;
 pub mod mend;
 pub mod round;
 pub mod settle;
+mod terrains;
 pub mod unfold;

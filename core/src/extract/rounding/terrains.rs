@@ -1,0 +1,309 @@
+//! The terrains in a mesh in doubles: pieces of which each line along an axis meets at most one
+//! triangle, as the needles between a hole and the border of a face, or those of a cone.
+//!
+//! A piece is found by a guess and proved exactly: seen along the axis all its triangles turn the same
+//! way, and its outline winds at most once around each point. So its triangles cross nothing but
+//! what belongs to other pieces.
+//!
+//! # Source
+//! De Berg, Cheong, van Kreveld, Overmars, *Computational Geometry*, third edition, section 9: a
+//! polyhedral terrain is the graph of a function that is linear on triangles.
+
+use rustc_hash::FxHashMap as HashMap;
+
+use super::company::Faces;
+use crate::arith::convert::as_number;
+use crate::arith::Sign;
+use crate::geometry::covering::{winds_at_most_once, Place};
+use crate::geometry::doubles::{seen_along, turn, Facing, Point, Triangle};
+use crate::geometry::meeting::has_no_area;
+use crate::interrupt::poll;
+use crate::mesh::topology::NONE;
+
+/// Triangles this many times as long as they are high are needles. Others meet the boxes of a few
+/// only, and are compared with these sooner than terrains are found.
+const NEEDLE: f64 = 16.0;
+
+/// So few needles are compared with each other before terrains are found.
+const FEW: usize = 256;
+
+/// Pieces of fewer triangles are not worth a sweep.
+const LEAST: usize = 4;
+
+/// Mates whose normals differ by no more than an angle with this tangent belong together: more than
+/// those of any round thing, less than a corner that is meant as one.
+const BENT: f64 = 0.5;
+
+/// Return for each of some triangles the number of its terrain; `NONE` where none is proved, and for
+/// all but needles.
+///
+/// # Cost
+/// One look at each triangle; that of sorting the needles, and a sweep over the outline of each piece.
+pub fn terrains(faces: &Faces, some: &[u32]) -> Vec<u32> {
+    let is_thin = |t: &u32| is_needle(&faces.corners(*t));
+    let needles: Vec<u32> = some.iter().copied().filter(is_thin).collect();
+    let mut terrains = vec![NONE; some.len()];
+    if needles.len() <= FEW {
+        return terrains;
+    }
+    let mut found = needles_terrains(faces, &needles)
+        .into_iter()
+        .zip(&needles)
+        .peekable();
+    for (terrain, t) in terrains.iter_mut().zip(some) {
+        if let Some((number, _)) = found.next_if(|(_, needle)| *needle == t) {
+            *terrain = number;
+        }
+    }
+    terrains
+}
+
+fn needles_terrains(faces: &Faces, needles: &[u32]) -> Vec<u32> {
+    let mut search = Search::new(faces, needles);
+    let mut numbers = Vec::new();
+    for first in search.largest_first() {
+        if search.pieces[first as usize] == NONE {
+            let number = as_number(numbers.len());
+            let view = View::of(&search.corners(first));
+            let piece = search.piece_around(first, view, number);
+            let is_terrain = piece.len() >= LEAST && {
+                let outline = search.outline(&piece, view);
+                winds_at_most_once(&outline)
+            };
+            numbers.push(if is_terrain { number } else { NONE });
+        }
+    }
+    let proved = |piece: u32| numbers[piece as usize];
+    search.pieces.into_iter().map(proved).collect()
+}
+
+fn is_needle(triangle: &Triangle) -> bool {
+    let [a, b, c] = triangle;
+    let square = |p: &Point, q: &Point| (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum();
+    let longest = f64::max(f64::max(square(a, b), square(b, c)), square(c, a));
+    let n = normal(triangle);
+    longest * longest > NEEDLE * NEEDLE * dot(&n, &n)
+}
+
+/// Needles, by their places among these.
+struct Search<'a> {
+    faces: &'a Faces<'a>,
+    needles: &'a [u32],
+    /// By directed edge, the triangle that has it.
+    owners: HashMap<[u32; 2], u32>,
+    /// The number of each one's piece.
+    pieces: Vec<u32>,
+}
+
+/// The axis along which a piece is seen, and the way its triangles turn.
+#[derive(Clone, Copy)]
+struct View {
+    axis: usize,
+    way: Sign,
+}
+
+impl View {
+    /// The axis along which a triangle is seen best.
+    fn of(triangle: &Triangle) -> Self {
+        let axis = Facing::of(triangle).main_axis();
+        let way = turn(seen_along(triangle, axis));
+        Self { axis, way }
+    }
+
+    fn shows(self, triangle: &Triangle) -> bool {
+        turn(seen_along(triangle, self.axis)) == self.way
+    }
+}
+
+impl<'a> Search<'a> {
+    fn new(faces: &'a Faces, needles: &'a [u32]) -> Self {
+        let mut owners = HashMap::default();
+        owners.reserve(3 * needles.len());
+        for (at, t) in (0u32..).zip(needles) {
+            let edges = edges(faces.triangles[*t as usize]);
+            owners.extend(edges.map(|edge| (edge, at)));
+        }
+        Self {
+            faces,
+            needles,
+            owners,
+            pieces: vec![NONE; needles.len()],
+        }
+    }
+
+    fn triangle(&self, at: u32) -> [u32; 3] {
+        self.faces.triangles[self.needles[at as usize] as usize]
+    }
+
+    fn corners(&self, at: u32) -> Triangle {
+        self.faces.corners(self.needles[at as usize])
+    }
+
+    /// The triangles by their areas: rounding turned the normals of large ones least.
+    fn largest_first(&self) -> Vec<u32> {
+        let squares = (0..as_number(self.needles.len())).map(|at| {
+            let n = normal(&self.corners(at));
+            (dot(&n, &n), at)
+        });
+        let mut sorted: Vec<(f64, u32)> = squares.collect();
+        sorted.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        sorted.into_iter().map(|(_, at)| at).collect()
+    }
+
+    /// Numbers the triangles of a piece, and lists them; those without area belong to any.
+    fn piece_around(&mut self, first: u32, view: View, number: u32) -> Vec<u32> {
+        self.pieces[first as usize] = number;
+        let mut piece = vec![first];
+        let mut open = match view.way {
+            Sign::Zero => Vec::new(),
+            _ => vec![(first, normal(&self.corners(first)))],
+        };
+        while let Some((at, bearing)) = open.pop() {
+            poll();
+            for mate in self.mates_of(at).into_iter().flatten() {
+                if self.pieces[mate as usize] != NONE {
+                    continue;
+                }
+                let corners = self.corners(mate);
+                let own = normal(&corners);
+                let next = if is_smooth(&bearing, &own) && view.shows(&corners) {
+                    own
+                } else if has_no_area(&corners) {
+                    bearing
+                } else {
+                    continue;
+                };
+                self.pieces[mate as usize] = number;
+                piece.push(mate);
+                open.push((mate, next));
+            }
+        }
+        piece
+    }
+
+    fn mates_of(&self, at: u32) -> [Option<u32>; 3] {
+        edges(self.triangle(at)).map(|[from, to]| self.owners.get(&[to, from]).copied())
+    }
+
+    /// The edges that only one triangle of a piece has, seen so that all turn to the left.
+    fn outline(&self, piece: &[u32], view: View) -> Vec<[Place; 2]> {
+        let number = self.pieces[piece[0] as usize];
+        let mut outline = Vec::new();
+        for at in piece {
+            let seen = seen_along(&self.corners(*at), view.axis);
+            for (i, mate) in self.mates_of(*at).into_iter().enumerate() {
+                if mate.is_none_or(|m| self.pieces[m as usize] != number) {
+                    let [from, to] = [seen[i], seen[(i + 1) % 3]];
+                    let is_left = view.way == Sign::Positive;
+                    outline.push(if is_left { [from, to] } else { [to, from] });
+                }
+            }
+        }
+        outline
+    }
+}
+
+fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
+
+/// Return whether a surface with these normals on both sides of an edge is hardly bent there.
+fn is_smooth(a: &Point, b: &Point) -> bool {
+    let (along, across) = (dot(a, b), cross(a, b));
+    along > 0.0 && dot(&across, &across) <= BENT * BENT * along * along
+}
+
+/// A normal, rounded.
+fn normal([a, b, c]: &Triangle) -> Point {
+    let arm = |p: &Point| [0, 1, 2].map(|i| p[i] - a[i]);
+    cross(&arm(b), &arm(c))
+}
+
+fn cross(u: &Point, v: &Point) -> Point {
+    let of = |j: usize, k: usize| u[j] * v[k] - u[k] * v[j];
+    [of(1, 2), of(2, 0), of(0, 1)]
+}
+
+fn dot(a: &Point, b: &Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plate with a hole of many sides, lifted by a function: both sides of the ring around it.
+    fn ring(count: u32, height: impl Fn(f64, f64) -> f64) -> (Vec<Point>, Vec<[u32; 3]>) {
+        let mut vertices = Vec::new();
+        for radius in [1.0, 3.0] {
+            for k in 0..count {
+                let angle = std::f64::consts::TAU * f64::from(k) / f64::from(count);
+                let (x, y) = (radius * angle.cos(), radius * angle.sin());
+                vertices.push([x, y, height(x, y)]);
+            }
+        }
+        let quads = (0..count).flat_map(|k| {
+            let (p, q) = (k, (k + 1) % count);
+            [[p, count + p, q], [q, count + p, count + q]]
+        });
+        (vertices, quads.collect())
+    }
+
+    fn found(vertices: &[Point], triangles: &[[u32; 3]]) -> Vec<u32> {
+        let all: Vec<u32> = (0..as_number(triangles.len())).collect();
+        let faces = Faces {
+            vertices,
+            triangles,
+        };
+        terrains(&faces, &all)
+    }
+
+    #[test]
+    fn a_ring_is_one_piece_and_its_back_another() {
+        let (mut vertices, mut triangles) = ring(200, |x, y| 0.3 * x - 0.1 * y);
+        assert!(found(&vertices, &triangles).iter().all(|piece| *piece == 0));
+        vertices.extend_from_within(..);
+        let back = triangles
+            .iter()
+            .map(|[a, b, c]| [*a, *c, *b].map(|v| v + 400));
+        triangles.extend(back.collect::<Vec<_>>());
+        let pieces = found(&vertices, &triangles);
+        assert!(pieces[..400].iter().all(|piece| *piece == pieces[0]));
+        assert!(pieces[400..].iter().all(|piece| *piece == pieces[400]));
+        assert!(pieces[0] != NONE && pieces[400] != NONE && pieces[0] != pieces[400]);
+    }
+
+    #[test]
+    fn a_bent_ring_is_one_piece_and_a_broken_one_two() {
+        let (vertices, triangles) = ring(400, |x, y| 0.1 * x * y);
+        assert!(found(&vertices, &triangles).iter().all(|piece| *piece == 0));
+        let (vertices, triangles) = ring(400, |x, _| x.abs());
+        let pieces = found(&vertices, &triangles);
+        let side = |t: usize| vertices[triangles[t][1] as usize][0] > 0.0;
+        let right = (0..800).find(|t| side(*t)).expect("a triangle");
+        let left = (0..800).find(|t| !side(*t)).expect("a triangle");
+        let of_side = |t: usize| pieces[if side(t) { right } else { left }];
+        assert!(pieces[right] != pieces[left]);
+        let others = (0..800).filter(|t| pieces[*t] != of_side(*t)).count();
+        assert!(
+            others <= 4,
+            "{others} triangles are not on the side of their corner"
+        );
+    }
+
+    #[test]
+    fn what_overlaps_is_no_piece() {
+        let (mut vertices, mut triangles) = ring(200, |_, _| 0.0);
+        let shifted = vertices.iter().map(|[x, y, z]| [x + 4.0, *y, *z]);
+        vertices.extend(shifted.collect::<Vec<_>>());
+        let shifted = triangles.iter().map(|t| t.map(|v| v + 400));
+        triangles.extend(shifted.collect::<Vec<_>>());
+        let apart = found(&vertices, &triangles);
+        assert!(apart[0] != NONE && apart[400] != NONE && apart[0] != apart[400]);
+        // A bridge from the outer border of one to the inner border of the other makes them one.
+        triangles.extend([[201, 200, 400], [201, 400, 401]]);
+        assert!(found(&vertices, &triangles)
+            .iter()
+            .all(|piece| *piece == NONE));
+    }
+}
