@@ -1,6 +1,6 @@
 //! Answers of filters.
 
-/// What a filter says: rounded arithmetic settles a question, or leaves it to an exact computation.
+/// The answer of a filter: rounded arithmetic settles a question, or leaves it to an exact computation.
 ///
 /// # Example
 /// ```

@@ -47,7 +47,7 @@ impl Sign {
         }
     }
 
-    /// How a number of this sign compares to zero.
+    /// The order of a number of this sign and zero.
     #[inline]
     pub fn order(self) -> Ordering {
         self.cmp(&Self::Zero)

@@ -1,4 +1,4 @@
-//! How often directed outlines wind around the points of the plane: at most once, or more.
+//! Winding numbers of directed outlines in the plane: at most one, or more.
 //!
 //! Triangles that all turn to the left cover a point as often as the edges that only one of them has
 //! wind around it. If that is at most once, no two of them overlap, at the cost of their outline
@@ -18,7 +18,7 @@ pub type Place = [f64; 2];
 struct Running {
     left: Place,
     right: Place,
-    /// Whether the edge runs this way, so that the points above it are wound around once more.
+    /// True if the edge runs this way, so that the points above it are wound around once more.
     forward: bool,
 }
 
@@ -206,7 +206,7 @@ mod tests {
         assert!(!winds_at_most_once(&[left, edge].concat()));
     }
 
-    /// How often the edges wind around a point on no edge.
+    /// The winding number of the edges around a point on no edge.
     fn winding(edges: &[[Place; 2]], p: Place) -> i32 {
         let crossed = |[a, b]: &[Place; 2]| {
             let up = a[1] <= p[1] && p[1] < b[1];
@@ -218,7 +218,7 @@ mod tests {
     }
 
     proptest! {
-        /// Where the answer is yes, no point of a fine grid is wound around but once.
+        /// After a yes each point of a fine grid is wound around once or not at all.
         #[test]
         fn yes_is_right(corners in prop::collection::vec(prop::array::uniform2(0..6i32), 3..9)) {
             let edges = outline(&corners);

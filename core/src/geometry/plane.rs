@@ -21,12 +21,13 @@ pub type Lattice = [i64; 3];
 /// # Example
 /// ```
 /// use bspcsg::geometry::plane::Plane;
+/// use bspcsg::geometry::side::Side;
 ///
 /// // Counterclockwise from above: the minus side, the inside, is below.
 /// let floor = Plane::through(&[0, 0, 5], &[1, 0, 5], &[0, 1, 5]).expect("not on one line");
 /// assert_eq!(floor.normal(), &[0, 0, 1]);
-/// assert_eq!(floor.side_of_lattice(&[7, 7, 4]), -1);
-/// assert_eq!(floor.side_of_lattice(&[7, 7, 5]), 0);
+/// assert_eq!(floor.side_of_lattice(&[7, 7, 4]), Side::Minus);
+/// assert_eq!(floor.side_of_lattice(&[7, 7, 5]), Side::On);
 /// ```
 #[derive(Clone, Debug)]
 pub struct Plane {

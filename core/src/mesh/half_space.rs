@@ -19,13 +19,14 @@ use crate::geometry::plane::Plane;
 /// # Example
 /// ```
 /// use bspcsg::arith::Int;
+/// use bspcsg::geometry::side::Side;
 /// use bspcsg::mesh::grid::Pitch;
 /// use bspcsg::mesh::half_space::half_space;
 /// use bspcsg::mesh::handle::FaceId;
 ///
 /// // All points with z ≤ 7 steps.
 /// let below = half_space([0, 0, 1], &Int::from_i64(7), Pitch::DEFAULT, None)?;
-/// assert_eq!(below.plane(FaceId::ONLY).side_of_lattice(&[0, 0, 8]), 1);
+/// assert_eq!(below.plane(FaceId::ONLY).side_of_lattice(&[0, 0, 8]), Side::Plus);
 /// # Ok::<(), bspcsg::error::Error>(())
 /// ```
 pub fn half_space(

@@ -50,7 +50,7 @@ struct Check<'a> {
     overlap: AtomicBool,
 }
 
-/// What the check tells of a solid.
+/// The answer of the check of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Simplicity {
     /// Nothing overlaps, and winding numbers are 0 outside and 1 inside.
