@@ -10,6 +10,7 @@ run is added to `scripts/records/fuzz.json`; a wrong scene is made small and put
 """
 
 import argparse
+import importlib.util
 import json
 import os
 import sys
@@ -39,12 +40,15 @@ def main() -> int:
     if options.totals:
         print("\n".join(totals()))
         return 0
-    unknown = set(options.targets) - set(TARGETS)
+    targets = options.targets or TARGETS
+    unknown = set(targets) - set(TARGETS)
     if unknown:
         parser.error(f"no such target: {', '.join(sorted(unknown))}")
+    if "readers" in targets and importlib.util.find_spec("atheris") is None:
+        parser.error("the target readers needs atheris: pip install atheris")
     os.nice(10)
     found = 0
-    for name in options.targets or TARGETS:
+    for name in targets:
         outcome = run(name, options)
         print(f"{name:9} {outcome.line()}", flush=True)
         for each in outcome.found[:5]:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+import fuzz
 import fuzz_record
 from fuzz_guided import outcome_of
 from fuzz_record import Found, Outcome, add_to_record, totals
@@ -52,6 +53,17 @@ def test_runs_add_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert (second["seed"], second["coverage"], second["wrong"]) == (2, 9, 0)
     (line,) = totals()
     assert line.split() == ["scenes", "22", "executions,", "0.03", "CPU", "h,", "1", "found"]
+
+
+@pytest.mark.parametrize("targets", [["readers"], []])
+def test_what_is_missing_is_said_before_anything_runs(
+    targets: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["fuzz", *targets])
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    with pytest.raises(SystemExit) as ended:
+        fuzz.main()
+    assert ended.value.code == 2 and "readers needs atheris" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.what)
