@@ -71,12 +71,21 @@ def committed(folder: Path) -> Path:
     return folder
 
 
+def anonymous(tree: Path, environment: dict[str, str]) -> list[str]:
+    """Return the compiler's options that leave this machine's folders out of the messages."""
+    cargo = Path(environment.get("CARGO_HOME") or Path.home() / ".cargo")
+    names = {cargo / "registry" / "src": "crates", cargo: "cargo", tree: "bspcsg"}
+    # Of prefixes that fit the compiler takes the last.
+    return [f"--remap-path-prefix={path}={name}" for path, name in reversed(names.items())]
+
+
 def built(kind: str, tree: Path) -> Path:
     """Build one kind of wheel of a tree and return where it is."""
     target, tag = TARGETS[kind]
     run("rustup", "target", "add", target, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     binaries = tools()
     known = {"CARGO_TARGET_DIR": str(REPOSITORY / "core" / "target")} | dict(os.environ)
+    known |= {"CARGO_ENCODED_RUSTFLAGS": "\x1f".join(anonymous(tree, known))}
     environment = known | {"PATH": f"{binaries}:{os.environ['PATH']}"}
     options = ["--zig", "--compatibility", tag, "--target", target, "--profile", "dist"]
     command = [binaries / "maturin", "build", "--quiet", *options, "--out", tree / "dist"]

@@ -26,6 +26,12 @@ _SOURCES = ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md", "core/Carg
 #: Sections of a library that was not stripped.
 _SYMBOLS = (b".symtab\0", b".debug_info\0")
 
+#: Folders of whoever built a library, in the messages of what it is made of.
+_BUILDERS = re.compile(
+    rb"(?:/root|/home/[\w.-]+|/Users/[\w.-]+|[A-Z]:[/\\]Users[/\\][\w.-]+)[/\\][\w./\\-]*"
+    rb"|(?:/|[A-Z]:)[\w./\\-]*[/\\]registry[/\\]src[/\\][\w./\\-]*"
+)
+
 
 def package(root: Path = ROOT) -> set[str]:
     """Return the files of the package as they stand in a folder, without what is built."""
@@ -42,18 +48,29 @@ def problems_of_wheel(path: Path, root: Path) -> list[str]:
         about = archive.read(f"{info}/METADATA").decode("utf-8")
         tags = archive.read(f"{info}/WHEEL").decode("utf-8")
         cores = [name for name in names if re.fullmatch(r"bspcsg/_core\.(abi3\.so|pyd)", name)]
-        bare = all(mark not in archive.read(name) for name in cores for mark in _SYMBOLS)
+        libraries = [archive.read(name) for name in cores]
     own = {name for name in names if not name.startswith(f"{info}/")} - set(cores)
     problems = [f"{name} is missing" for name in sorted(package(root) - own)]
     problems += [f"{name} should not be there" for name in sorted(own - package(root))]
     problems += _problems_of_metadata(Parser().parsestr(about))
     if len(cores) != 1:
         problems.append(f"it has {len(cores)} native cores")
-    if not bare:
-        problems.append("the native core is not stripped")
+    for library in libraries:
+        problems += problems_of_core(library)
     if "-abi3-" not in tags:
         problems.append("it is for one version of Python only")
     return problems + _problems_of_size(path)
+
+
+def problems_of_core(library: bytes) -> list[str]:
+    """Return what is wrong with a native core."""
+    stripped = all(mark not in library for mark in _SYMBOLS)
+    problems = [] if stripped else ["the native core is not stripped"]
+    named = _BUILDERS.search(library)
+    if named:
+        folder = named[0].decode("ascii")
+        problems.append(f"the native core names a folder of its builder: {folder}")
+    return problems
 
 
 def problems_of_source(path: Path, root: Path) -> list[str]:

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import readme_for_index
+import wheel
 import wheel_contents
 from wheel_contents import ROOT, package, problems_of
 
@@ -72,6 +73,10 @@ FAULTS: dict[str, tuple[Callable[[dict[str, bytes]], object], str]] = {
         lambda files: files.update({"bspcsg/_core.abi3.so": b"\x7fELF\0.symtab\0"}),
         "the native core is not stripped",
     ),
+    "the builder's folders": (
+        lambda files: files.update({"bspcsg/_core.abi3.so": b"\x7fELF/home/ann/.cargo/x.rs"}),
+        "the native core names a folder of its builder: /home/ann/.cargo/x.rs",
+    ),
     "no core": (lambda files: files.pop("bspcsg/_core.abi3.so"), "it has 0 native cores"),
     "a relative link": (
         lambda files: files.update({"bspcsg-1.dist-info/METADATA": b"\n![a](b.png)\n"}),
@@ -88,6 +93,38 @@ FAULTS: dict[str, tuple[Callable[[dict[str, bytes]], object], str]] = {
 def test_faults_of_a_wheel_are_named(tmp_path: Path, fault: str) -> None:
     change, words = FAULTS[fault]
     assert words in "\n".join(problems_of(put_wheel(tmp_path, change)))
+
+
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        (rb"at /root/.cargo/registry/src/index/a.rs:1", "/root/.cargo/registry/src/index/a.rs"),
+        (b"\0/Users/ann/work/lib.rs\0", "/Users/ann/work/lib.rs"),
+        (rb"C:\Users\ann\.cargo\a.rs", r"C:\Users\ann\.cargo\a.rs"),
+        (rb"/opt/cargo/registry/src/index/a.rs", "/opt/cargo/registry/src/index/a.rs"),
+        (rb"crates/index.crates.io-1/rayon/src/a.rs", None),
+        (rb"/rustc/59807616/library/core/src/a.rs", None),
+        (rb"/rust/deps/hashbrown-0.15.2/src/raw.rs", None),
+    ],
+)
+def test_messages_name_no_folder_of_the_builder(text: bytes, named: str | None) -> None:
+    said = [f"the native core names a folder of its builder: {named}"] if named else []
+    assert wheel_contents.problems_of_core(text) == said
+
+
+def test_the_compiler_leaves_the_builders_folders_out(tmp_path: Path) -> None:
+    """As scripts/wheel calls it, for a crate of the registry and for the tree itself."""
+    home, tree = tmp_path / "home", tmp_path / "tree"
+    crate = home / "registry/src/index/some/a.rs"
+    for path in (crate, tree / "a.rs"):
+        path.parent.mkdir(parents=True)
+        path.write_text('#[no_mangle] pub extern "C" fn f() { panic!("here") }')
+    flags = wheel.anonymous(tree, {"CARGO_HOME": str(home)})
+    for path, name in ((crate, b"crates/index/some/a.rs"), (tree / "a.rs", b"bspcsg/a.rs")):
+        command = ["rustc", "--crate-type=cdylib", *flags, str(path), "-o", "a.so"]
+        subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+        library = (tmp_path / "a.so").read_bytes()
+        assert name in library and bytes(tmp_path) not in library
 
 
 def test_a_large_wheel_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
