@@ -3,9 +3,10 @@
     scripts/frames mesh.stl
 
 Where there is no graphics card the processor draws, so that a loaded machine tells the processor's
-time for each frame rather than the frames in a second. Beside them stands what the same triangles
-take in as many pixels and samples with bare WebGL: one call, one light, and nothing of ours. With
---record the figures are kept.
+time for each frame rather than the frames in a second. The level is how many steps rougher than
+standing still the view turns, as it has decided by the time of its pictures. Beside them stands
+what the same triangles take in as many pixels and samples with bare WebGL: one call, one light, and
+nothing of ours. With --record the figures are kept.
 """
 
 import argparse
@@ -24,28 +25,32 @@ from support.browser import Browser, started
 from support.cli import put
 from support.shapes import icosphere
 
+#: Sizes of the page, in pixels.
+_WINDOWS = ((640, 640), (1280, 900))
+
 _TURN = """
     const done = arguments[arguments.length - 1];
     const { view } = document.querySelector(".stage");
-    const gl = view.renderer.getContext();
-    const pixel = new Uint8Array(4);
+    const gl = view.screen.renderer.getContext();
     const times = [];
     const start = performance.now();
-    (function step() {
-      const began = performance.now();
+    let last = start;
+    (function step(now) {
+      if (now) times.push(now - last);
+      last = now ?? last;
       view.eye.turn(0.05, 0);
       view.move();
-      view.render();
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
-      times.push(performance.now() - began);
       if (times.length < 60) requestAnimationFrame(step);
-      else done([times, performance.now() - start]);
+      else {
+        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+        done([times, performance.now() - start, view.pace.level, view.canvas.width]);
+      }
     })();
 """
 
 _STILL = """
     const { view } = document.querySelector(".stage");
-    const gl = view.renderer.getContext();
+    const gl = view.screen.renderer.getContext();
     view.isMoving = false;
     const began = performance.now();
     view.render();
@@ -58,8 +63,7 @@ _BARE = """
     const { view } = document.querySelector(".stage");
     const canvas = document.createElement("canvas");
     [canvas.width, canvas.height] = [view.canvas.width, view.canvas.height];
-    const { antialias } = view.renderer.getContext().getContextAttributes();
-    const gl = canvas.getContext("webgl2", { antialias });
+    const gl = canvas.getContext("webgl2", { antialias: !view.screen.isHalved });
     const program = gl.createProgram();
     for (const [kind, source] of [
       [gl.VERTEX_SHADER, `#version 300 es
@@ -115,15 +119,17 @@ def measured(browser: Browser, page: Path) -> dict[str, float]:
     opened = time.perf_counter() - began
     browser.run_later(_TURN)
     spent = processor_seconds()
-    times, whole = browser.run_later(_TURN)
+    times, whole, level, width = browser.run_later(_TURN)
     spent = (processor_seconds() - spent) / len(times)
     stills, bares = [browser.run(_STILL) for _ in range(10)], browser.run(_BARE)
     figures = {
         "opened_seconds": opened,
         "turning_ms": statistics.median(times),
-        "turning_fastest_ms": min(times),
+        "turning_slowest_ms": max(times),
         "frames_a_second": 1000 * len(times) / whole,
         "turning_processor_ms": 1000 * spent,
+        "turning_level": level,
+        "turning_pixels_wide": width,
         "still_ms": statistics.median(stills),
         "still_bare_webgl_ms": statistics.median(bares),
     }
@@ -132,14 +138,21 @@ def measured(browser: Browser, page: Path) -> dict[str, float]:
     return {name: round(value, 1) for name, value in figures.items()}
 
 
-def shown(mesh: Path) -> dict[str, float]:
-    """Write the page of a mesh and measure it."""
+def shown(mesh: Path) -> dict[str, dict[str, float]]:
+    """Write the page of a mesh and measure it in windows of some sizes."""
+    found = {}
     with tempfile.TemporaryDirectory() as folder:
         page = Path(folder, "view.html")
         if run(["view", str(mesh), "-o", str(page), "--no-open"]):
             raise SystemExit(1)
-        with started(webgl=True) as browser:
-            return measured(browser, page)
+        for width, height in _WINDOWS:
+            name = f"{width} x {height}"
+            print(f"{mesh.stem}, {name}:")
+            with started(webgl=True) as browser:
+                looks = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+                browser.device(looks)
+                found[name] = measured(browser, page)
+    return found
 
 
 def balls(folder: Path) -> list[Path]:

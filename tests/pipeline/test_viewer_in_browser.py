@@ -309,7 +309,8 @@ def test_large_models_are_rough_while_they_move(browser: Browser, tmp_path: Path
     still = _looks(browser)
     # In one go, or it stands still in between.
     counts = browser.run(
-        "view.eye.turn(0.1, 0); view.move(); view.render(); const { rough, fine } = view.layers[0];"
+        "view.pace.level = 2; view.eye.turn(0.1, 0); view.move(); view.render();"
+        "const { rough, fine } = view.layers[0];"
         "return [rough.visible, fine.visible, rough.geometry.index.count / 3]"
     )
     assert counts[:2] == [True, False] and 1000 < counts[2] <= 30_000
@@ -318,5 +319,54 @@ def test_large_models_are_rough_while_they_move(browser: Browser, tmp_path: Path
     browser.wait("!view.isMoving && view.layers[0].fine.visible")
     assert _change(still, _looks(browser)) < 0.002
     browser.choose("Colours", "half")
-    assert browser.run("view.move(); view.render(); return view.layers[0].rough.visible")
+    roughly = "view.pace.level = 2; view.move(); view.render(); return view.layers[0].rough.visible"
+    assert browser.run(roughly)
     assert browser.errors() == []
+
+
+def test_the_time_of_pictures_says_how_a_view_moves(opened: Browser) -> None:
+    """In one go, or the page's own pictures count, too."""
+    levels = opened.run(
+        """
+        const { pace } = view;
+        const after = (kind, times, count = 1) => {
+          for (let i = 0; i < count; i += 1) pace[kind](times);
+          return pace.level;
+        };
+        return [
+          after("stood", 20), after("stood", 60), after("stood", 400),
+          // One pause among quick pictures is no reason.
+          after("moved", 20, 20), after("moved", 900), after("moved", 20, 20),
+          after("moved", 45, 5), after("moved", 45, 5), after("moved", 45, 50),
+          after("moved", 5, 10), after("moved", 5, 100),
+          after("stood", 60), after("stood", 20),
+        ];
+        """
+    )
+    assert levels == [0, 1, 2, 2, 2, 2, 3, 4, 4, 3, 2, 2, 0]
+
+
+def test_edges_are_smooth_where_that_is_not_too_slow(opened: Browser) -> None:
+    """Pixels on the outline are drawn in part where there are several samples."""
+    smooth, plain, coarse = opened.run(
+        """
+        const inPart = (level) => {
+          Object.assign(view, { isMoving: true });
+          view.pace.level = level;
+          view.render();
+          const copy = document.createElement("canvas");
+          Object.assign(copy, { width: view.canvas.width, height: view.canvas.height });
+          const drawn = copy.getContext("2d");
+          drawn.drawImage(view.canvas, 0, 0);
+          const { data } = drawn.getImageData(0, 0, copy.width, copy.height);
+          const alphas = data.filter((_, at) => at % 4 === 3);
+          const some = alphas.filter((alpha) => alpha > 0).length;
+          return [copy.width, some, alphas.filter((alpha) => alpha > 0 && alpha < 255).length];
+        };
+        view.drawLines("none");
+        return [0, 1, 4].map(inPart);
+        """
+    )
+    assert smooth[0] == plain[0] and coarse[0] == plain[0] // 2
+    assert 0 == plain[2] == coarse[2] < 100 < smooth[2] < smooth[1] / 10
+    assert smooth[1] == pytest.approx(plain[1], rel=0.05) == pytest.approx(4 * coarse[1], rel=0.05)

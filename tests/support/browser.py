@@ -162,6 +162,8 @@ class Browser:
 
     def pixels(self, selector: str) -> "np.ndarray[Any, np.dtype[np.uint8]]":
         """Return what an element looks like, (h, w, 3), when all that was asked for is drawn."""
+        # A view is drawn roughly while it moves.
+        self.wait("![...document.querySelectorAll('.stage')].some(e => e.view?.isMoving)")
         self._running.execute_async_script(
             "const done = arguments[0];"
             "requestAnimationFrame(() => requestAnimationFrame(() => done()))"

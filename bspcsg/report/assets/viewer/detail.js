@@ -1,7 +1,7 @@
 // A rough mesh in place of a fine one while the view moves.
 
 // Cells a side of the grid whose cells become one vertex each, fewer until few triangles are left.
-const CELLS = [128, 96, 64, 40];
+const CELLS = [128, 96, 64, 40, 24];
 
 /** The layer with the vertices in each cell made one, of so many triangles at most.
  *

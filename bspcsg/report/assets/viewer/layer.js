@@ -12,8 +12,7 @@ import { roughened } from "./detail.js";
 import { cornerLight, isSeeThrough, texturesOf } from "./paints.js";
 import { Surface } from "./topology.js";
 
-// Triangles of a layer above which a rough one is drawn while the view moves, and how many that has.
-const MOST_FINE = 60_000;
+// Triangles of all rough layers together, which stand for fine ones while the view moves.
 const MOST_ROUGH = 30_000;
 
 const INK = { light: 0x1a1c20, dark: 0xc9d1da };
@@ -67,6 +66,8 @@ export class Layer {
     this.group.visible = given.shown;
     this.opacity = 1;
     this.isCut = false;
+    // Of the triangles of the whole model.
+    this.share = 1;
     this.fine = new Mesh(geometryOf(given), this.material({}));
     this.fine.renderOrder = 100 + order;
     this.group.add(this.fine);
@@ -78,6 +79,10 @@ export class Layer {
 
   get triangles() {
     return this.given.triangles;
+  }
+
+  get mostRough() {
+    return MOST_ROUGH * this.share;
   }
 
   center() {
@@ -267,14 +272,13 @@ export class Layer {
     if (this.isCut) this.cap?.place(true);
   }
 
-  /** Draw the rough mesh or the fine one. */
-  hurry(moving) {
-    if (this.triangles <= MOST_FINE) return;
-    const isRough = moving && this.lines !== "wireframe";
+  /** Draw a rough mesh, if the layer's own share of that is smaller than it, or the fine one. */
+  hurry(isHurried) {
+    const isRough = isHurried && this.lines !== "wireframe" && this.triangles > this.mostRough;
     if (isRough) this.rough ??= this.roughMesh();
     if (this.rough) this.rough.visible = isRough;
     this.fine.visible = !isRough;
-    if (this.edges) this.edges.object.visible = !moving || this.lines === "wireframe";
+    if (this.edges) this.edges.object.visible = !isRough;
     this.cap?.use((isRough ? this.rough : this.fine).geometry);
   }
 
@@ -286,7 +290,7 @@ export class Layer {
   }
 
   roughMesh() {
-    const made = roughened(this.given, MOST_ROUGH);
+    const made = roughened(this.given, this.mostRough);
     let geometry = geometryOf(made);
     const looks = { flatShading: false };
     if (this.paint) {

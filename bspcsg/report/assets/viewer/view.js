@@ -1,9 +1,11 @@
 // The scene: its layers, the eye, and a picture whenever something changed.
 
-import { AmbientLight, DirectionalLight, Plane, Scene, Vector3, WebGLRenderer } from "three";
+import { AmbientLight, DirectionalLight, Plane, Scene, Vector3 } from "three";
 import { Eye, VIEWS } from "./eye.js";
 import { Layer } from "./layer.js";
 import { Measure } from "./measure.js";
+import { Pace, STILL } from "./pace.js";
+import { Screen } from "./screen.js";
 
 // Degrees between two faces above which their edge is sharp.
 const CREASE = 25;
@@ -14,27 +16,21 @@ const MOST_FOR_EDGES = 100_000;
 // Beyond this many, smooth normals would take seconds; faces this small look smooth anyway.
 const MOST_FOR_SMOOTH = 3_000_000;
 
-// Beyond this many, edges are smooth only when the view stands still, by drawing pixels of half the
-// size: several samples a pixel double the time of a frame where the processor draws.
-const MOST_SAMPLED = 200_000;
-
 // After so many milliseconds without a change the view stands still.
-const STILL = 180;
+const REST = 180;
 
 export class View {
   constructor(host, model) {
     this.host = host;
     this.model = model;
     this.plane = new Plane(new Vector3(0, 0, -1), 0);
-    const triangles = model.layers.reduce((sum, layer) => sum + layer.triangles, 0);
-    this.isLarge = triangles > MOST_SAMPLED;
-    this.renderer = new WebGLRenderer({ antialias: !this.isLarge, alpha: true, stencil: true });
-    this.renderer.localClippingEnabled = true;
-    this.sharpen(false);
-    this.canvas = this.renderer.domElement;
+    this.screen = new Screen(this.triangles);
+    this.pace = new Pace(this.screen.renderer.getContext());
+    this.canvas = this.screen.canvas;
     this.scene = new Scene();
     this.layers = model.layers.map((layer, order, all) => (
       new Layer(layer, order, all.length, this.plane)));
+    this.layers.forEach((layer) => { layer.share = layer.triangles / this.triangles; });
     this.layers.forEach((layer) => this.scene.add(layer.group));
     const sides = model.high.map((high, axis) => (high - model.low[axis]) / model.longest);
     this.eye = new Eye(this.canvas, new Vector3(...sides));
@@ -59,7 +55,7 @@ export class View {
   }
 
   get triangles() {
-    return this.layers.reduce((sum, layer) => sum + layer.triangles, 0);
+    return this.model.layers.reduce((sum, layer) => sum + layer.triangles, 0);
   }
 
   /** Names of the ways in which some layer can be coloured. */
@@ -86,7 +82,7 @@ export class View {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.host;
     if (!width || !height) return;
-    this.renderer.setSize(width, height);
+    this.screen.resize(width, height);
     this.eye.resize(width / height);
     this.draw();
   }
@@ -99,15 +95,8 @@ export class View {
       this.isMoving = false;
       this.draw();
       this.note();
-    }, STILL);
+    }, REST);
     this.draw();
-  }
-
-  /** Draw as many pixels as the screen has, or as it takes for a moving view. */
-  sharpen(isMoving) {
-    const own = Math.min(window.devicePixelRatio, 2);
-    const ratio = this.isLarge ? (isMoving ? 1 : 2) : own;
-    if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
   }
 
   draw() {
@@ -119,14 +108,23 @@ export class View {
   }
 
   render() {
-    const { camera } = this.eye;
-    this.layers.forEach((layer) => layer.hurry(Boolean(this.isMoving)));
-    this.sharpen(Boolean(this.isMoving));
+    const began = performance.now();
+    const { pace, eye: { camera } } = this;
+    const isMoving = Boolean(this.isMoving);
+    const way = isMoving ? pace.way : STILL;
+    this.layers.forEach((layer) => layer.hurry(way.rough));
     this.eye.enclose();
     this.lamp.position.copy(this.over).applyQuaternion(camera.quaternion);
-    this.renderer.render(this.scene, camera);
+    this.screen.draw(this.scene, camera, way);
     this.measure.draw();
-    if (this.isDressed) this.host.dataset.drawn = "yes";
+    if (this.isDressed) this.learn(began, isMoving);
+  }
+
+  /** Time a picture, for the pace of those to come; the first takes longer than any other. */
+  learn(began, isMoving) {
+    if (!this.host.dataset.drawn) this.draw();
+    else this.pace.time(began, isMoving);
+    this.host.dataset.drawn = "yes";
   }
 
   key(event) {
@@ -252,8 +250,6 @@ export class View {
     this.observer.disconnect();
     this.measure.close();
     this.eye.controls.dispose();
-    this.renderer.dispose();
-    this.renderer.forceContextLoss();
-    this.canvas.remove();
+    this.screen.close();
   }
 }
