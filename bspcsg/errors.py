@@ -160,7 +160,7 @@ def format_errors(name: str, what: str) -> Iterator[None]:
     name : str
         The file's.
     what : str
-        What it is read as, such as ``"3MF"``.
+        The format it is read as, such as ``"3MF"``.
     """
     try:
         yield
@@ -233,7 +233,7 @@ class Finding:
     where : tuple of int
         Indices of the first faces or vertices concerned.
     count : int
-        How many there are in all.
+        The number of them in all.
     """
 
     code: str

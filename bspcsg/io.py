@@ -122,7 +122,7 @@ def save(solid: Solid, path: str | os.PathLike[str], *, text: bool = False) -> t
     Returns
     -------
     tuple of Finding
-        What the format could not keep.
+        The things that the format could not keep.
 
     Raises
     ------

@@ -34,7 +34,7 @@ def register(default: bool = False) -> None:
     Parameters
     ----------
     default : bool
-        Whether operations that name no engine are to use this one.
+        True if operations that name no engine are to use this one.
 
     Raises
     ------

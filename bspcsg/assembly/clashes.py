@@ -24,9 +24,9 @@ class Clash:
     first, second : str
         Their paths.
     volume : float
-        What they have in common, in cubic model units; 0 if they are too near only.
+        The volume that they share, in cubic model units; 0 if they are too near only.
     gap : float
-        How far apart they are; 0 if they have something in common.
+        The distance between them; 0 if they have something in common.
     place : (3,) float64
         The centre of the common volume, or the middle between the nearest points.
     """

@@ -42,7 +42,7 @@ class Part:
     shape : Solid
         As it was given; instances have the same object.
     factors : tuple of Factor
-        Where it is put, outermost first.
+        The motions that put it in its place, outermost first.
     color : (4,) tuple of float or None
         Its own, or that of the assembly around it.
     density : float or None
@@ -288,7 +288,7 @@ class Assembly:
         Returns
         -------
         tuple of Finding
-            What the format could not keep.
+            The things that the format could not keep.
 
         Raises
         ------

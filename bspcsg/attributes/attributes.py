@@ -39,7 +39,7 @@ class Attributes:
     corner : dict of str to (m, 3, …) array
     face : dict of str to (m, …) array
     materials : dict of str to Material
-        What the names in the face attribute ``"material"`` stand for.
+        The materials that the face attribute ``"material"`` names.
     """
 
     faces: IndexArray

@@ -41,7 +41,7 @@ class Surface:
     source : (m, 2) int64
         Slot and number of the face that each triangle lies in.
     flips : (m,) bool
-        Whether it faces the other way.
+        True if it faces the other way.
     """
 
     vertices: FloatArray
@@ -57,7 +57,7 @@ class _Inner:
     Parameters
     ----------
     triangles, corners : (j,) int64
-        Which triangles of a lot, and which corner of each.
+        Triangles of a lot, and one corner of each.
     faces : (j,) int64
         The number of the face that each lies in.
     places : (j, 3) float64
@@ -83,11 +83,11 @@ class _Lot:
     origins : (k,) int64
         The number of the face of each.
     corners : (k, 3) int64
-        Which corner of that face each corner is, or -1.
+        The corner of that face that each corner is, or -1.
     inner : _Inner
         The corners that are none.
     flips : (k,) bool
-        Whether it faces the other way.
+        True if it faces the other way.
     """
 
     attributes: Attributes
@@ -299,7 +299,7 @@ def common_type(name: str, parts: Sequence[Values], depth: int) -> np.dtype[Any]
     name : str
     parts : sequence of arrays
     depth : int
-        How many axes say which element it is.
+        The number of axes that say which element it is.
 
     Raises
     ------

@@ -21,7 +21,7 @@ class BenchCase:
     title : str
     targets : tuple of Goal
     items : dict
-        What is timed, by label; the small forms of the same are in `small`.
+        The things timed, by label; the small forms of the same are in `small`.
     small : dict
         Items that take a second or so together.
     engines : tuple of str

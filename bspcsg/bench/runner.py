@@ -41,7 +41,7 @@ class Settings:
     runs : int
         Timed runs of each engine.
     small : bool
-        Whether small items are taken.
+        True if small items are taken.
     limit : float or None
         Seconds for one call; None for what suits the case.
     budget : float

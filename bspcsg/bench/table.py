@@ -25,7 +25,7 @@ def lines_of(record: dict[str, Any], titles: bool) -> list[list[str]]:
     record : dict
         As `bspcsg.bench.record.read` returns it.
     titles : bool
-        Whether cases stand with their titles, instead of their names.
+        True if cases stand with their titles, instead of their names.
     """
     engines = _engines_of(record)
     lines = [["case", "to reach", "reached", "met", *engines, "memory", "answers"]]

@@ -223,7 +223,7 @@ class Ratio:
         Of the medians of processor time of all threads, which other users of the machine disturb
         less.
     is_bound : bool
-        Whether the other engine was stopped before its end, so that the ratio is this or more.
+        True if the other engine was stopped before its end, so that the ratio is this or more.
     """
 
     value: float

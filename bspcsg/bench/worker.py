@@ -36,7 +36,7 @@ class Task:
     ----------
     case, item : str
     small : bool
-        Which of the case's items are meant.
+        True for the small forms of the case's items.
     engines : list of str
         In the order in which they take turns.
     runs : int

@@ -112,7 +112,7 @@ def camera_of(
     Parameters
     ----------
     settings : dict
-        What the options of `seeing` say.
+        The values of the options of `seeing`.
     points : (n, 3) float64
     aspect : float
         Width of the picture divided by its height.

@@ -38,19 +38,19 @@ class Inputs:
     Parameters
     ----------
     out : Output
-        Where findings are told.
+        The output that tells findings.
     suffix : str
         Of the format of standard input, and of files whose own suffix names none.
     unit : str or None
-        What files that do not say are in; None if the user has not said either.
+        The unit of files that do not say; None if the user has not said either.
     winding : str
     pitch : int or None
     on_invalid : {"error", "warn", "repair"}
-        What to do about a file that is not closed.
+        The treatment of a file that is not closed.
     noticed : list of Finding
-        What was told about the solids so far, which results repeat.
+        The findings about the solids so far, which results repeat.
     objects : ObjectNames
-        What the solids' triangles belong to.
+        The objects to which the solids' triangles belong.
     """
 
     out: Output
@@ -233,9 +233,9 @@ class Target:
     suffix : str
         Of the format.
     text : bool
-        Whether the form as text is asked for.
+        True if the form as text is asked for.
     overwrite : bool
-        Whether a file that is there may be replaced.
+        True if a file that is there may be replaced.
     digits : int or None
         Significant digits of coordinates, if they are to be rounded.
     """

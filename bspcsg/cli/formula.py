@@ -34,7 +34,7 @@ class FormulaError(Exception):
     ----------
     message : str
     column : int
-        Where, counted from 0.
+        The column of the error, counted from 0.
     """
 
     def __init__(self, message: str, column: int) -> None:

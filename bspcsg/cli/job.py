@@ -32,7 +32,7 @@ class Job(ABC):
     Parameters
     ----------
     op : str
-        What to call it.
+        The name of the operation.
     target : Path
     **settings
         The other options, by their names.

@@ -44,9 +44,9 @@ class ObjectNames:
         ----------
         result : Solid
         cutters : sequence of Solid
-            What was taken away, whose objects lend no names.
+            The solids taken away, whose objects lend no names.
         in_single : bool
-            Whether parts are to be such as single precision can hold.
+            True if parts are to be such as single precision can hold.
 
         Returns
         -------

@@ -225,7 +225,7 @@ def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, .
     Parameters
     ----------
     what : str
-        What an error calls the value, such as ``"normal"``.
+        The name of the value in errors, such as ``"normal"``.
     names : str
         Of the numbers, apart by commas; the first three must not all be 0, and may be an axis.
     example : str

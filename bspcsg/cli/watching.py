@@ -34,7 +34,7 @@ class Watching:
         Makes the job of one run.
     out : Output
     goes_on : bool
-        Whether to run again when the script, or a file beside it, has changed.
+        True to run again when the script, or a file beside it, has changed.
     """
 
     def __init__(
@@ -54,9 +54,9 @@ class Watching:
         Parameters
         ----------
         port : int, optional
-            Where a page of the result is served; none by default.
+            The port at which a page of the result is served; none by default.
         opens : bool
-            Whether to open that in a browser.
+            True to open that in a browser.
         """
         server = None
         try:

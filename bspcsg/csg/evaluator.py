@@ -64,8 +64,8 @@ def evaluate(
     on_polish : callable, optional
         Is told which lattice that was and how far corners moved, as a `Polish`.
     on_invalid : {"error", "warn", "repair"}
-        Whether polyhedra and imported meshes that are not closed are errors, or are left out with a
-        warning, as OpenSCAD does, or closed by `bspcsg.repair` with one.
+        The treatment of polyhedra and imported meshes that are not closed: they are errors, or left
+        out with a warning, as OpenSCAD does, or closed by `bspcsg.repair` with one.
     allow_paths : iterable of path
         Folders that ``import`` and ``surface`` may read beside the script's own. Links are
         followed before it is decided where a file lies.
@@ -145,7 +145,7 @@ class _Cache:
         combine, if no other node is around it.
     parts : list of Solid or Region
     moved : float
-        How far the corner of a part went that went farthest.
+        The distance that the corner of a part went that went farthest.
     """
 
     run: Evaluation

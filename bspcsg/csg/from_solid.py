@@ -34,7 +34,7 @@ class _Body(NamedTuple):
     node : Node or None
         None for the empty set.
     negated : bool
-        Whether it is everything outside the node.
+        True if it is everything outside the node.
     size : int
         Corners and triangles in it when it is written out.
     """

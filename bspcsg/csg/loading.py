@@ -46,7 +46,7 @@ def load(
     on_polish : callable, optional
         Is told how far corners moved.
     on_invalid : {"error", "warn", "repair"}
-        What to do about meshes that are not closed (see `bspcsg.csg.evaluate`).
+        The treatment of meshes that are not closed (see `bspcsg.csg.evaluate`).
     allow_paths : iterable of path
         Folders beside the script's own whose files it may read.
     lenient : bool

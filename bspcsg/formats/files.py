@@ -138,7 +138,7 @@ def decoded(
     data : bytes
     suffix : str
     files : dict of str to bytes, optional
-        What lies beside it, instead.
+        The files beside it, instead.
 
     Raises
     ------
@@ -201,11 +201,11 @@ class Encoded:
     ----------
     chunks : iterator of bytes
     findings : tuple of Finding
-        What the format cannot keep.
+        The things that the format cannot keep.
     prove : callable
         Takes the bytes that were written, and raises FormatError if they are not the mesh.
     files : dict of str to bytes
-        What goes beside the file: its materials and pictures.
+        The files that go beside it: its materials and pictures.
     """
 
     chunks: Iterator[bytes]

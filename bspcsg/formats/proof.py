@@ -39,12 +39,12 @@ def prove(
     path : str
         For the message.
     mesh : Mesh or RawMesh
-        What was written.
+        The mesh that was written.
     scan : callable
     called : callable, optional
         None where files do not tell objects apart.
     repeats : bool
-        Whether the format holds triangles that name a vertex twice.
+        True if the format holds triangles that name a vertex twice.
     data : bytes
         The file.
 
@@ -83,7 +83,7 @@ def prove_with_attributes(
     ----------
     path : str
     mesh : RawMesh
-        What was written.
+        The mesh that was written.
     read : callable
         Returns what the bytes of a file hold.
     called, repeats, data

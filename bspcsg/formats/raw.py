@@ -31,9 +31,9 @@ class RawMesh:
     faces : (m, 3) int64
         Indices of `vertices`, all in range.
     name : str
-        What the file calls the mesh, or the file's stem.
+        The mesh's name in the file, or the file's stem.
     findings : tuple of Finding
-        What was noteworthy about the file.
+        The noteworthy things about the file.
     objects : tuple of (str, int)
         Names of the objects in the file and how many triangles each has, in order; empty if the
         file does not tell objects apart.
@@ -42,10 +42,10 @@ class RawMesh:
     dropped : tuple of str
         Kinds of data in the file that a mesh of triangles has no room for, such as "colours".
     is_empty_set : bool
-        Whether the file is one that this package writes for the empty set. Any other file without
+        True if the file is one that this package writes for the empty set. Any other file without
         faces is no set: what should be in it may have got lost.
     attributes : Attributes, optional
-        What else is said of vertices, corners and faces.
+        The values on vertices, corners and faces.
     """
 
     vertices: FloatArray
@@ -139,7 +139,7 @@ class IndexPolygons:
     corners : (sum of counts,) int64
         Vertex indices, one polygon after another.
     counts : (p,) int64
-        How many corners each polygon has.
+        The number of corners of each polygon.
     """
 
     corners: IndexArray

@@ -30,13 +30,14 @@ class Form:
     scan : callable
         Takes a written file apart.
     called : callable, optional
-        What the name of an object becomes; None if files do not tell objects apart.
+        The function that gives an object's name in the file; None if files do not tell objects
+        apart.
     losses : callable, optional
-        What the form cannot keep; raises OverflowError if it cannot hold the numbers.
+        The function that lists losses; raises OverflowError if the form cannot hold the numbers.
     repeats : bool
-        Whether it holds triangles that name a vertex twice.
+        True if it holds triangles that name a vertex twice.
     is_single : bool
-        Whether it holds single precision only.
+        True if it holds single precision only.
     keeps : callable, optional
         Returns what it holds of attributes over vertices, as they read back; None if it holds none.
     beyond : callable, optional
@@ -68,7 +69,7 @@ class Format:
     unit : str
         ``"mm"`` if files say how long a unit is, and are read and written in millimetres.
     up : {"z", "y"}
-        Which axis is up in files; meshes in memory have z up.
+        The axis that is up in files; meshes in memory have z up.
     """
 
     read: Callable[[Source], RawMesh]

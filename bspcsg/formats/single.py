@@ -28,7 +28,7 @@ def losses(mesh: Mesh | RawMesh, format_name: str) -> tuple[Finding, ...]:
     ----------
     mesh : Mesh or RawMesh
     format_name : str
-        What to call the format in the message.
+        The name of the format in the message.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
     mesh : Mesh
         The given one if nothing had to be changed, or if single precision leaves nothing of it.
     findings : tuple of Finding
-        How many triangles were changed, and the places where surfaces still cross.
+        The number of triangles changed, and the places where surfaces still cross.
 
     Raises
     ------

@@ -23,7 +23,7 @@ def doubles(values: Any, refusal: BspcsgError) -> FloatArray:
     ----------
     values : array_like
     refusal : BspcsgError
-        What is raised if they are no numbers.
+        The error to raise if they are no numbers.
     """
     try:
         return np.asarray(values, dtype=np.float64)

@@ -50,7 +50,7 @@ class LatticeHyperplane:
     row : list of int
         The normal, then its product with each of the hyperplane's points, in lattice steps.
     moved : float or None
-        How far this is, at most, from the hyperplane that was asked for, anywhere on the lattice,
+        The most that this is off the hyperplane that was asked for, anywhere on the lattice,
         in model units; None if it is the very one.
     """
 
@@ -78,7 +78,7 @@ class Hyperplane:
         Without a common divisor.
     offset : Fraction
     exact : bool
-        Whether nothing was rounded on the way.
+        True if nothing was rounded on the way.
     """
 
     normal: tuple[int, ...]

@@ -387,7 +387,7 @@ def vector3(value: Any, name: str, *, spread: bool = False) -> FloatArray:
     value : (3,) array_like of float
     name : str
     spread : bool
-        Whether one number stands for three equal ones.
+        True if one number stands for three equal ones.
     """
     try:
         vector = np.array(value, dtype=np.float64)

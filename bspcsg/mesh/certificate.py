@@ -25,7 +25,7 @@ class Certificate:
     precision : {"double", "single"}
         The coarsest numbers that hold all coordinates.
     triangles : int
-        How many were looked at.
+        The number looked at.
     open_edges : int
         Directed edges without exactly one opposite, by index.
     crossings : tuple of (int, int)

@@ -37,7 +37,7 @@ class Mesh:
     faces : (m, 3) int64
         Indices of `vertices`.
     source : (m, 2) int64
-        Where each face came from: the number of the input mesh, counted from 0 in the order of
+        The origin of each face: the number of the input mesh, counted from 0 in the order of
         the expression, and the index of the face in that mesh.
     carried : Later, optional
         Its attributes, which are looked up when they are asked for.

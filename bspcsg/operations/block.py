@@ -101,7 +101,7 @@ class Unfilled(Solid):
     combined : callable
         Carries out the operation on a list of solids.
     full : bool
-        Whether the set is all of space, instead of the empty one.
+        True if the set is all of space, instead of the empty one.
     """
 
     __slots__ = ("_combined", "_open")

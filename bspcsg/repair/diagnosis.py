@@ -40,7 +40,7 @@ class Diagnosis:
         Every edge has as many faces one way as the other; no edge is used twice in one direction;
         no edge has more than two faces.
     self_overlapping : bool or None
-        Whether faces cross, overlap or repeat on the lattice; None if the mesh is no solid.
+        True if faces cross, overlap or repeat on the lattice; None if the mesh is no solid.
     precision : {"double", "single"} or None
         The coarsest numbers that hold all coordinates; None if the mesh is not closed.
     crossings : int or None

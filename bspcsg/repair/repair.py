@@ -34,7 +34,7 @@ class Repair:
     failed : dict of str to str
         Steps that could not be taken, and why.
     turned : int
-        How many triangles were turned round because they faced inwards.
+        The number of triangles turned round because they faced inwards.
     """
 
     mesh: RawMesh

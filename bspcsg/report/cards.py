@@ -55,9 +55,9 @@ class Card:
     tone : str
     figures : list of Figure
     model : dict or None
-        What the viewer unpacks.
+        The data that the viewer unpacks.
     note : str
-        What was left out, and why.
+        A note on what was left out, and why.
     """
 
     address: str

@@ -14,7 +14,7 @@ def departure(value: Any, kind: Any, place: str = "") -> str:
     kind : type
         A typed dictionary, or what occurs in one.
     place : str
-        What to call the value.
+        The name of the value.
     """
     if is_typeddict(kind):
         return _departure_in_dict(value, kind, place)

@@ -28,7 +28,7 @@ def junit_text(cases: Sequence[CaseRecord], runs: Sequence[RunRecord] = ()) -> s
     ----------
     cases : sequence of CaseRecord
     runs : sequence of RunRecord
-        Whose commands, versions and machine become properties.
+        The runs whose commands, versions and machine become properties.
     """
     root = Xml.Element("testsuites", _counts(cases), name="bspcsg validate")
     for operation in sorted({case["operation"] for case in cases}):

@@ -19,7 +19,7 @@ def markdown_text(cases: Sequence[CaseRecord], runs: Sequence[RunRecord] = ()) -
     ----------
     cases : sequence of CaseRecord
     runs : sequence of RunRecord
-        Whose commands, versions and machine are told.
+        The runs whose commands, versions and machine are told.
     """
     failures = [case for case in cases if is_failure(case)]
     blocks = ["# Validation", f"**{conclusion(cases)}**", _counts(cases)]

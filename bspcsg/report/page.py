@@ -43,7 +43,7 @@ def report_page(
     ----------
     results : Results
     cards : int
-        How many cases are shown with pictures and all their numbers, failures first.
+        The number of cases shown with pictures and all their numbers, failures first.
     title : str
     watch : callable
         Given the cases of the cards, yields them one by one as they are drawn.

@@ -44,7 +44,7 @@ def stored_meshes(folder: Path, name: str) -> Stored:
     Parameters
     ----------
     folder : Path
-        Where the results file is.
+        The folder of the results file.
     name : str
         Path of the meshes in that folder.
 

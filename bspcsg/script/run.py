@@ -72,7 +72,7 @@ def run_script(
     path : path
         The script sees its own folder first in ``sys.path`` and ``__name__ == "__main__"``.
     arguments : sequence of str
-        What follows the path in ``sys.argv``.
+        The words after the path in ``sys.argv``.
     defines : mapping, optional
         Values of variables by their names. Each takes the place of what the script assigns to the
         variable at its top level, wherever it does; lines keep their numbers.

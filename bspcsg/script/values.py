@@ -25,7 +25,7 @@ def compiled(source: bytes, name: str, given: Iterable[str] = ()) -> CodeType:
     ----------
     source : bytes
     name : str
-        What errors and tracebacks call the script.
+        The script's name in errors and tracebacks.
     given : iterable of str
 
     Raises

@@ -72,7 +72,7 @@ def box(
         The other two edge lengths, if `size` is the first one. A truth value as the second argument
         is `center`.
     center : bool
-        Whether the middle is at the origin, instead of the lowest corner.
+        True if the middle is at the origin, instead of the lowest corner.
 
     Examples
     --------
@@ -154,7 +154,7 @@ def cylinder(
     segments : int
         Sides around, at least 3.
     center : bool
-        Whether the middle is at z = 0, instead of the lower end.
+        True if the middle is at z = 0, instead of the lower end.
 
     Examples
     --------
@@ -233,7 +233,7 @@ def prism(sides: int, h: Scalar, r: Scalar, *, center: bool = False) -> Solid:
     r : float
         From the axis to a vertical edge; the first one is on the x axis.
     center : bool
-        Whether the middle is at z = 0, instead of the lower end.
+        True if the middle is at z = 0, instead of the lower end.
 
     Examples
     --------

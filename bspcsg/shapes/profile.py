@@ -53,7 +53,7 @@ def extrude(
     h : float
         Height.
     center : bool
-        Whether the middle is at z = 0, instead of the lower end.
+        True if the middle is at z = 0, instead of the lower end.
     twist : float
         Degrees that the upper end is turned about the z axis, clockwise seen from above, as in
         OpenSCAD.

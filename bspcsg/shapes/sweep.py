@@ -45,7 +45,7 @@ def surface_of_revolution(
     segments : int
         Sides around.
     closed : bool
-        Whether the last point is joined to the first.
+        True if the last point is joined to the first.
 
     Returns
     -------
@@ -69,7 +69,7 @@ class RingLayout:
     ----------
     profile : (n, 2) float64
     columns : int
-        How many positions around the axis each point takes.
+        The number of positions around the axis that each point takes.
     """
 
     def __init__(self, profile: FloatArray, columns: int) -> None:

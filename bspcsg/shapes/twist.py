@@ -36,7 +36,7 @@ class Rise:
     slices : int
         Levels between the ends and the upper one.
     inset : float
-        How far the walls of the upper end lie inside those of the lower one.
+        The distance of the walls of the upper end inside those of the lower one.
     """
 
     height: float

@@ -76,7 +76,7 @@ def evaluate(root: ExpressionNode) -> ExpressionLeaf:
     Raises
     ------
     BspcsgError
-        What the core or the placing of a leaf raises; the expression then stays as it was.
+        Whatever the core or the placing of a leaf raises; the expression then stays as it was.
     """
     waiting: list[tuple[ExpressionNode, Plan | None]] = [(root, None)]
     while waiting:

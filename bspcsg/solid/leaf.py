@@ -46,9 +46,9 @@ class MeshLeaf:
     trusted : bool
         The caller's word that the mesh is closed and its faces meet in edges and vertices only.
     winding : str
-        Which winding numbers are inside.
+        The winding numbers that are inside.
     attributes : Attributes, optional
-        What else is said of the mesh.
+        The values on the mesh.
     """
 
     def __init__(
@@ -146,10 +146,10 @@ class TreeLeaf:
     ----------
     result : Tree
     record : Record or None
-        What it was evaluated from, as long as that is remembered.
+        The record of its evaluation, as long as that is remembered.
     extent : Extent
     sayings : tuple of Attributes or None
-        What else is said of each source of the tree; empty if nothing is.
+        The values on each source of the tree; empty if there are none.
     """
 
     result: Tree

@@ -110,7 +110,7 @@ class Measured(ABC):
         Parameters
         ----------
         most_digits : int
-            How many decimal digits the numerator and the denominator may have.
+            The number of decimal digits that the numerator and the denominator may have.
 
         Raises
         ------

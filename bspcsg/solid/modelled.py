@@ -32,8 +32,8 @@ class Modelled:
         Returns
         -------
         Solid, Solid
-            What has ``normal . x <= offset``, and the rest. Of a cut by a solid: what is inside
-            that, and the rest. Either may be empty.
+            The part with ``normal . x <= offset``, and the rest. Of a cut by a solid: what is
+            inside that, and the rest. Either may be empty.
 
         Raises
         ------
@@ -66,7 +66,7 @@ class Modelled:
         normal : "x", "y", "z" or (3,) float
             Need not have unit length.
         offset : float
-            What has ``normal . x >= offset`` stays.
+            The part with ``normal . x >= offset`` stays.
 
         Raises
         ------
@@ -218,7 +218,8 @@ class Modelled:
             Takes all corners at once, (n, 3) float64 in model units, and returns where they go, an
             array of the same shape. It may turn the solid inside out.
         winding : {"positive", "nonzero", "even-odd"}, optional
-            What is inside a result that crosses itself. By default such a result is refused.
+            The winding numbers inside a result that crosses itself. By default such a result is
+            refused.
 
         Raises
         ------
@@ -318,7 +319,7 @@ class Modelled:
         segments : int
             As for `offset`, as are the errors.
         inside : bool
-            Whether to fill the edges that go inwards instead, where a ball outside cannot reach.
+            True to fill the edges that go inwards instead, where a ball outside cannot reach.
 
         Examples
         --------
@@ -343,8 +344,8 @@ class Modelled:
         Parameters
         ----------
         x, y, z : {"min", "center", "max"} or a pair of these, optional
-            Which place of this solid's box goes to which of the other's, along each axis; one name
-            stands for both. Without it the solid does not move along the axis.
+            The place of this solid's box and that of the other's where it goes, along each axis;
+            one name stands for both. Without it the solid does not move along the axis.
         to : (3,) float or Solid
 
         Raises

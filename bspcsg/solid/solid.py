@@ -74,7 +74,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     trusted : bool
         Your word that faces meet in common edges and vertices only, which saves a check.
     winding : {"positive", "nonzero", "even-odd"}
-        Which winding numbers are inside.
+        The winding numbers that are inside.
     vertex_attributes : dict of str to (n, …) array_like, optional
         Colours, texture coordinates, weights: one value for each of `vertices`, by names.
     corner_attributes : dict of str to (m, 3, …) array_like, optional
@@ -83,7 +83,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     face_attributes : dict of str to (m, …) array_like, optional
         One value for each triangle.
     materials : dict of str to Material, optional
-        What the names in the face attribute ``"material"`` stand for.
+        The materials that the face attribute ``"material"`` names.
 
     Raises
     ------
@@ -183,7 +183,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         format : str, optional
             Of bytes and open files: a suffix, such as ``"stl"``.
         tolerance : float
-            How far from the true surface of a CAD shape its triangles may be, in model units.
+            The most that triangles may be off the true surface of a CAD shape, in model units.
         **options
             As for `Solid`.
 
@@ -386,7 +386,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         Parameters
         ----------
         tolerance : float
-            How far the surface may move, in model units. With 0 the solid itself is returned.
+            The most that the surface may move, in model units. With 0 the solid itself is returned.
 
         Returns
         -------

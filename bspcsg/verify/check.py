@@ -97,12 +97,12 @@ def check_result(
     ----------
     result : Solid
     op : {"union", "intersection", "difference", "xor"}, optional
-        What made the result; by default the evaluation that the solid remembers.
+        The operation that made the result; by default the evaluation that the solid remembers.
     operands : sequence of Solid, optional
-        What it was made from; needed with `op`.
+        The solids it was made from; needed with `op`.
     depth : {"full", "quick"}
-        Whether to build the symmetric difference with manifold3d's mesh in any case, or only where
-        volume, area, parts, Euler number or sides of points near the seam differ.
+        The choice to build the symmetric difference with manifold3d's mesh in any case, or only
+        where volume, area, parts, Euler number or sides of points near the seam differ.
 
     Raises
     ------
@@ -166,7 +166,7 @@ def same_set_bound(pitch: int, *meshes: Mesh, snapped_by: float = 0.0) -> float:
     pitch : int
     *meshes : Mesh
     snapped_by : float
-        How far coordinates were moved onto the lattice, if that was a coarser one once.
+        The most that coordinates were moved onto the lattice, if that was a coarser one once.
     """
     step = max(10.0**pitch, 2 * snapped_by)
     reach = max((float(np.abs(mesh.vertices).max(initial=0)) for mesh in meshes), default=0.0)

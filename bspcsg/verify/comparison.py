@@ -39,7 +39,7 @@ class SetComparison:
         A lower bound of the distance of the boundaries in model units, the larger of both ways,
         from samples; None if it was not measured or one set is empty.
     samples : int
-        How many points were measured.
+        The number of points measured.
     """
 
     a: Facts
@@ -63,7 +63,7 @@ def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> SetComp
     a, b : Solid
         Bounded.
     samples : int
-        How many points of the difference to measure; 0 for none.
+        The number of points of the difference to measure; 0 for none.
     seed : int
         Of the random points.
 
@@ -104,7 +104,7 @@ def hausdorff(
         The boundary of their symmetric difference, which holds all that one has and the other has
         not; None if there is none.
     samples : int
-        How many points of its faces, and of its vertices at most.
+        The number of points of its faces, and of its vertices at most.
     seed : int
     """
     if difference is None or not all(len(one.faces) for one in (a, b, difference)):

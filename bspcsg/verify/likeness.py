@@ -34,7 +34,7 @@ def measures_differ(mesh: Mesh, other: Mesh, film: float) -> bool:
     ----------
     mesh, other : Mesh
     film : float
-        How far apart the surfaces may be, in model units.
+        The most that the surfaces may be apart, in model units.
     """
     ours, theirs = Facts.of(mesh), Facts.of(other)
     return (

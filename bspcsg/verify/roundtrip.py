@@ -32,11 +32,11 @@ class Losses:
     volume : tuple of float
         Signed, before and after.
     solid : tuple of bool
-        Whether the mesh bounds a set, before and after.
+        True where the mesh bounds a set, before and after.
     names : tuple of str
         Names of objects that are gone.
     passed_by : tuple of str
-        What the reader of the input said it left out.
+        The things that the reader of the input said it left out.
     dropped : tuple of str
         Kinds of data in the input that a mesh of triangles has no room for.
     attributes : tuple of str
@@ -98,7 +98,7 @@ def losses_between(before: RawMesh, after: RawMesh) -> Losses:
     Parameters
     ----------
     before, after : RawMesh
-        What was written, with what its own file said, and what reads back.
+        The mesh that was written, with what its own file said, and the one that reads back.
     """
     kept = {name for name, _ in after.objects} | {after.name}
     names = [name for name, _ in before.objects if name and name not in kept]

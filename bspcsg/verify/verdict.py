@@ -73,7 +73,7 @@ class CheckReport:
     operation : str
     verdict : Verdict
     reason : str
-        Why it is not `Verdict.AGREE`, or empty.
+        The reason why it is not `Verdict.AGREE`, or empty.
     ours : Facts
     theirs : Facts or None
     set_volume : float
@@ -83,7 +83,7 @@ class CheckReport:
         Thicknesses up to which sets count as the same, and as within rounding; in model units.
     oracle : str
     notes : tuple of str
-        What was done to operands before manifold3d got them.
+        The changes to operands before manifold3d got them.
     probes : int
         If measures were compared instead of sets, at how many points the sides were, too.
     """

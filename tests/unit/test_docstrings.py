@@ -1,4 +1,7 @@
-"""Docstrings and doc comments say what a thing does or is: no questions at the start."""
+"""Docstrings and doc comments say what a thing does or is: no questions at the start.
+
+Neither do the descriptions of parameters, of fields and of what is returned or raised.
+"""
 
 import ast
 import re
@@ -16,8 +19,17 @@ SOURCES = sorted(
     if "target" not in path.parts
 )
 
+SCRIPTS = sorted(
+    path
+    for folder in ("bspcsg/report/assets/viewer", "bspcsg/report/assets/lecture", "docs/site")
+    for path in (ROOT / folder).rglob("*.js")
+    if path.name != "core.js"  # wasm-bindgen writes it
+)
+
 _QUESTION = re.compile(r"(What|Whether|Which|Who|Whose|How|Where|When|Why)\b")
 _COMMENT = re.compile(r"\s*(//[/!]|#:) ?(.*)")
+_COMMENT_OF_SCRIPT = re.compile(r"\s*(//|/\*\*?) ?(.*)")
+_HEADINGS = re.compile(r"(Parameters|Attributes|Returns|Yields|Raises|Warns)\n-+\n")
 
 
 def first_words(module: str) -> Iterator[tuple[str, str]]:
@@ -33,11 +45,33 @@ def test_docstrings_say_what_things_do(module: Path) -> None:
     assert [name for name, text in found if _QUESTION.match(text)] == []
 
 
-def comments(source: str) -> Iterator[str]:
-    """Yield the first line of each doc comment of a source in Rust, or in Python."""
+def descriptions(docstring: str) -> Iterator[str]:
+    """Yield the first line of each description in the sections of a docstring."""
+    for section in _HEADINGS.split(docstring)[2::2]:
+        before = ""
+        for line in section.split("\n\n")[0].splitlines():
+            if line.startswith(" ") and not before.startswith(" "):
+                yield line.strip()
+            before = line
+
+
+def test_descriptions_of_parameters_say_what_things_are() -> None:
+    texts = {path: first_words(path.read_text(encoding="utf-8")) for path in MODULES}
+    found = [
+        (str(path.relative_to(ROOT)), name, line)
+        for path, named in texts.items()
+        for name, text in named
+        for line in descriptions(text)
+    ]
+    assert len(found) > 1000
+    assert [each for each in found if _QUESTION.match(each[2])] == []
+
+
+def comments(source: str, comment: re.Pattern[str] = _COMMENT) -> Iterator[str]:
+    """Yield the first line of each doc comment of a source in Rust, in Python or in JavaScript."""
     before = ""
     for line in source.splitlines():
-        found = _COMMENT.match(line)
+        found = comment.match(line)
         mark = found[1] if found else ""
         if found and mark != before:
             yield found[2]
@@ -54,6 +88,45 @@ def test_comments_of_rust_say_what_things_are() -> None:
     read = ((path, comments(path.read_text(encoding="utf-8"))) for path in SOURCES)
     found = [(path.name, line) for path, lines in read for line in lines if _QUESTION.match(line)]
     assert len(SOURCES) > 200 and found == []
+
+
+def test_comments_of_scripts_say_what_things_are() -> None:
+    read = ((p, comments(p.read_text(encoding="utf-8"), _COMMENT_OF_SCRIPT)) for p in SCRIPTS)
+    found = [(path.name, line) for path, lines in read for line in lines if _QUESTION.match(line)]
+    assert len(SCRIPTS) > 25 and found == []
+
+
+def test_a_question_about_a_parameter_is_noticed() -> None:
+    text = """Cut it.
+
+Parameters
+----------
+deep : bool
+    Whether to cut what lies below,
+    which takes long.
+far : float
+    The distance.
+
+Returns
+-------
+int
+    How many were cut.
+
+Notes
+-----
+Where nothing is, nothing is cut.
+"""
+    assert list(descriptions(text)) == [
+        "Whether to cut what lies below,",
+        "The distance.",
+        "How many were cut.",
+    ]
+    assert list(
+        comments("/** How far. */\n// Near,\n// which is not far.", _COMMENT_OF_SCRIPT)
+    ) == [
+        "How far. */",
+        "Near,",
+    ]
 
 
 def test_a_question_is_noticed() -> None:

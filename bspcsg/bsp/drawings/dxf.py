@@ -37,7 +37,7 @@ def load_dxf(
     tolerance : float
         Largest distance between a curve and the chords that replace it, in drawing units.
     layers : iterable of str, optional
-        Which layers to read; all by default.
+        The layers to read; all by default.
     winding : {"even-odd", "nonzero", "positive"}
         By default an outline inside another is a hole, whichever way they run.
     pitch : int, optional

@@ -62,9 +62,9 @@ class Camera:
         Parameters
         ----------
         eye, target : (3,) array_like
-            Where the viewer is, and the point in the middle of the picture, in model units.
+            The place of the viewer, and the point in the middle of the picture, in model units.
         up : (3,) array_like, optional
-            What is upwards in the picture; by default z, or y for looking along z.
+            The direction that is upwards in the picture; by default z, or y for looking along z.
         field_of_view : float
             Angle between the top and the bottom of the picture in degrees, between 0 and 180.
 
@@ -121,8 +121,8 @@ class Camera:
         ----------
         view : {"iso", "front", "back", "left", "right", "top", "bottom"}
         points : (n, 3) array_like
-            What has to be in the picture; (2, 3) are the lowest and highest corner of a box.
-            Without points the unit cube around the origin is looked at.
+            The points that must be in the picture; (2, 3) are the lowest and highest corner of a
+            box. Without points the unit cube around the origin is looked at.
         aspect : float
             Width of the picture divided by its height.
         field_of_view : float, optional

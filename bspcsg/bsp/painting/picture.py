@@ -144,7 +144,7 @@ def picture(
     background : optional
         A colour, or None for transparent.
     cull : bool, optional
-        Whether to leave out facets that turn their minus side to the viewer. By default those of
+        True to leave out facets that turn their minus side to the viewer. By default those of
         closed surfaces seen from outside their box, where they are hidden anyway.
     line_width : float
         Of drawn edges, in pixels.

@@ -102,7 +102,7 @@ class InsideSpans:
     offsets : (n + 1,) int64
         The stretches of ray i are rows ``offsets[i]`` to ``offsets[i + 1]``.
     t : (k, 2) float64
-        Where each begins and ends, rounded correctly; 0 where the ray starts inside, infinite
+        Start and end of each, rounded correctly; 0 where the ray starts inside, infinite
         where it stays there.
     facets : (k, 2) int64
         The facets there, the first of the input if there are several; -1 where the ray starts
@@ -143,7 +143,7 @@ class CasterNodes:
     parent : (n,) int64
         The node above, -1 for the root; a node has up to eight below it.
     deferred : (n,) bool
-        Whether what is below has not been divided yet.
+        True if the boxes below have not been divided yet.
     offsets : (n + 1,) int64
         Leaf v lists ``facets[offsets[v]:offsets[v + 1]]``.
     facets : (k,) int64
@@ -192,7 +192,7 @@ class RayCaster:
     pitch : int, optional
         The lattice step is ``10**pitch`` units; by default the solid's, or what the size asks for.
     deferred : bool
-        Whether to divide boxes when rays first reach them, rather than all at once now.
+        True to divide boxes when rays first reach them, rather than all at once now.
 
     Raises
     ------
@@ -340,7 +340,7 @@ class RayCaster:
         origins, directions, threads
             As for `first_hit`, as are the errors.
         merge : bool
-            What becomes of a point on several facets, as on the edge that two of them share. By
+            The fate of a point on several facets, as on the edge that two of them share. By
             default it appears once for each of them, in the order of the input; with ``merge=True``
             once, with the first of the input, as for `first_hit`. Whether points are the same is
             decided exactly. A point where a ray only touches a boundary is one, too: where it
@@ -376,7 +376,7 @@ class RayCaster:
         origins, directions, threads
             As for `first_hit`, as are the errors.
         winding : {"positive", "nonzero", "even-odd"}
-            Which winding numbers are inside; points on the line are always even-odd.
+            The winding numbers that are inside; points on the line are always even-odd.
 
         Raises
         ------

@@ -25,7 +25,7 @@ class RayTargets:
     pitch : int or None
         The solid's lattice, if they are a solid's.
     unbounded : bool
-        Whether they bound a set that reaches to infinity on all sides.
+        True if they bound a set that reaches to infinity on all sides.
     """
 
     corners: FloatArray

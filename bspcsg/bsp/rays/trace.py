@@ -25,7 +25,7 @@ class StabStep:
     node : int
         The node.
     facet : int or None
-        What is tested or hit, or whose hyperplane divides the leaf.
+        The facet that is tested or hit, or whose hyperplane divides the leaf.
     count : int
         T(v) after a visit; 1 or 0 for a test that hits or not; T(p) after a hit; of a division the
         number of the new leaf on the minus side, that on the plus side being the next.
@@ -78,7 +78,7 @@ class LeafDivision:
     node : int
         The leaf, an inner node since then.
     facet : int
-        Whose hyperplane its cut is.
+        The facet whose hyperplane its cut is.
     minus, plus : int
         The nodes made.
     """

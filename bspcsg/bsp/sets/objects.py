@@ -42,8 +42,8 @@ class ObjectTree(TreeQueries):
     pitch : int, optional
         The lattice step is ``10**pitch`` units; by default -9, or what the size asks for.
     policy : {"balanced", "random", "first", "fewest-splits"}
-        How the tree is divided. Only "balanced" keeps convex outlines from becoming chains; the
-        others are autopartitions.
+        The rule that divides the tree. Only "balanced" keeps convex outlines from becoming chains;
+        the others are autopartitions.
     seed : int
         For the random order.
     cuts : sequence of (normal, offset)

@@ -283,9 +283,9 @@ class Region(PlaneQueries):
         Parameters
         ----------
         delta : float
-            How far, in model units; inwards if it is negative.
+            The distance, in model units; inwards if it is negative.
         join : {"round", "miter", "square", "bevel"}
-            What corners become from which the outline moves away: arcs; the corners where the moved
+            The form of corners from which the outline moves away: arcs; the corners where the moved
             lines meet; corners cut off across, at the distance `delta` from the old one; or cut off
             from the end of one moved line to the next.
         segments : int

@@ -43,7 +43,7 @@ class MergePair:
     a, b : int
         Their roots, in the first and in the second operand.
     decision, because : str
-        What becomes of them, and why.
+        The decision about them, and its reason.
     """
 
     a: Root
@@ -61,8 +61,8 @@ class MergeSplit:
     root : int
         Its root.
     case : str
-        How the cut lies to it, see `ObjectTree.split_case`. In the cases of two sides the subtree
-        on the first side is split, and the root lives on in the second half.
+        The way the cut lies to it, see `ObjectTree.split_case`. In the cases of two sides the
+        subtree on the first side is split, and the root lives on in the second half.
     """
 
     root: Root
@@ -92,7 +92,7 @@ class MergeJoin:
     node : int
         The node.
     joined : str
-        What it has become.
+        Its fate in the result.
     """
 
     node: Root

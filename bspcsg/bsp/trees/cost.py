@@ -32,8 +32,8 @@ def cost(tree: "PartitionTree", query: Query = "point", margin: float | None = N
         "ray": lines of even density that meet the root's region, μ the surface area (perimeter;
         1 in 1D); no facet stops them.
     margin : float, optional
-        How far the root's region reaches beyond the facets' box, in model units; by default the
-        tree's own.
+        The distance by which the root's region exceeds the facets' box, in model units; by default
+        the tree's own.
 
     Returns
     -------
@@ -77,7 +77,7 @@ class Stats:
     fragments : int
         Fragments in all coplanar sets.
     splits : int
-        How often a node's hyperplane cut a fragment in two.
+        The number of times a node's hyperplane cut a fragment in two.
     depth : int
         Hyperplanes on the longest way from the root to a leaf.
     mean_depth : float

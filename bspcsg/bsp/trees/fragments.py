@@ -24,10 +24,10 @@ class Fragments:
     node : (k,) int64
         The tree node in whose coplanar set it lies.
     original : (n,) bool
-        Whether the edge from this corner to the next lies on an edge of the input facet. In 2D:
-        whether this end is an end of the input segment.
+        True if the edge from this corner to the next lies on an edge of the input facet. In 2D:
+        true if this end is an end of the input segment.
     flipped : (k,) bool
-        Whether the fragment faces against its node's hyperplane.
+        True if the fragment faces against its node's hyperplane.
     """
 
     vertices: FloatArray

@@ -38,7 +38,7 @@ class LeafForm:
     fragments : int
         n̄.
     stored : int
-        How many of them leaves store.
+        The number of those that leaves store.
     """
 
     inner: IndexArray

@@ -41,13 +41,13 @@ class Candidate:
     Parameters
     ----------
     piece : int
-        Whose hyperplane it is.
+        The piece whose hyperplane it is.
     minus, plus : int
-        How many pieces have parts on either side.
+        The numbers of pieces with parts on either side.
     splits : int
-        How many have parts on both.
+        The number of those with parts on both.
     score : float
-        What the policy minimises; of equal ones the first is taken.
+        The value that the policy minimises; of equal ones the first is taken.
     """
 
     piece: int
@@ -78,9 +78,9 @@ class Division:
     own : int or None
         Instead of both: the place in `PartitionTree.own_hyperplanes`.
     reason : str
-        Why this one.
+        The reason for this one.
     candidates : tuple of Candidate
-        What was compared, in its order; nothing if there was no choice.
+        The candidates compared, in their order; none if there was no choice.
     pieces : tuple of int
         The pieces in the region, in the order of its list.
     minus, plus : tuple of int
@@ -204,9 +204,9 @@ class RayStep:
         Of a visit: the side of the hyperplane on which the ray starts, which is the near child. Of
         a leaf: the side of the node on which it lies.
     piece : int or None
-        What is tested.
+        The piece that is tested.
     start, end : float or None
-        Where the ray enters and leaves the region; no end if it stays there.
+        The parameters at which the ray enters and leaves the region; no end if it stays there.
     at : float or None
         Of a visit: where the ray's line crosses the hyperplane. Of a test: where the ray meets the
         piece. None if it does not.
@@ -250,9 +250,9 @@ class RayTrace:
     Parameters
     ----------
     facet : int or None
-        What it meets first.
+        The facet that it meets first.
     t : float
-        Where, rounded correctly; inf for nothing.
+        The parameter there, rounded correctly; inf for nothing.
     steps : tuple of RayStep
         In their order: near child, what lies in the hyperplane, far child.
     """

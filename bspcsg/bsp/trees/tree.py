@@ -47,8 +47,8 @@ class PartitionTree(Ordered):
         They may cross, touch, overlap and repeat. An array without facets gives a tree without
         nodes.
     policy : str or callable
-        Whose hyperplane divides a region, see `bspcsg.bsp.trees.policy`. A callable takes a
-        `Choice`, which has the candidates and their counts, and returns the place of one of them,
+        The rule whose hyperplane divides a region, see `bspcsg.bsp.trees.policy`. A callable takes
+        a `Choice`, which has the candidates and their counts, and returns the place of one of them,
         or a hyperplane (normal, offset).
     seed : int
         For the policy "random".
@@ -56,7 +56,7 @@ class PartitionTree(Ordered):
         Regions with more facets than this are divided by axis-parallel hyperplanes; 0 for never.
         Use about 16 for surfaces: the autopartition of a convex body is a chain.
     sample : int
-        How many candidates a policy compares at each node.
+        The number of candidates that a policy compares at each node.
     alpha : float
         From 0 (least splits) to 1 (balance), for the policy "weighted".
     cuts : sequence of (normal, offset)
@@ -66,12 +66,12 @@ class PartitionTree(Ordered):
     pitch : int, optional
         The lattice step is ``10**pitch`` units. By default -9 or what the size asks for.
     non_planar : {"error", "triangulate"}
-        What to do with polygons whose corners are not in one plane after snapping.
+        The treatment of polygons whose corners are not in one plane after snapping.
     degenerate : {"error", "drop"}
-        What to do with segments without length and polygons without area after snapping.
+        The treatment of segments without length and polygons without area after snapping.
     margin : float, optional
-        How far regions reach beyond the box of the facets, in model units; by default a twentieth
-        of the largest extent. Never less than one lattice step.
+        The distance by which regions exceed the box of the facets, in model units; by default a
+        twentieth of the largest extent. Never less than one lattice step.
 
     Raises
     ------
@@ -421,7 +421,7 @@ class PartitionTree(Ordered):
             For each new axis the old one that it is, counted from 1, in the plane (2, -1) is a
             quarter turn clockwise. Motions only: a mirror image has its minus sides elsewhere.
         offset : (d,) array_like of float, optional
-            What is added after that, in model units; snapped to the lattice.
+            The vector added after that, in model units; snapped to the lattice.
         scale : int
             A positive factor about the origin, which comes first.
 

@@ -58,11 +58,11 @@ class Case:
     operation : str
     operands : tuple of Operand
     pose : str or None
-        How the second operand is placed on the first (see `bspcsg.campaign.poses`).
+        The way the second operand is placed on the first (see `bspcsg.campaign.poses`).
     seed, number : int or None
         Of the random draw, for poses.
     command : str
-        What to type for this case alone.
+        The command that runs this case alone.
     """
 
     name: str

@@ -42,7 +42,7 @@ class Draw:
     Parameters
     ----------
     count : int
-        How many pairs are drawn; 0 for all pairs of files, as they lie.
+        The number of pairs drawn; 0 for all pairs of files, as they lie.
     seed : int
     pose : str or None
         The pose of each pair, or None for half random and half coincident ones.

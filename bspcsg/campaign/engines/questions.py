@@ -30,7 +30,7 @@ class Question:
     timeout : float
         Seconds for one engine.
     snapped_by : float
-        How far coordinates of operands were moved onto a lattice, which may have been coarser.
+        The most that coordinates of operands moved onto a lattice, which may have been coarser.
     """
 
     operation: str
@@ -51,9 +51,9 @@ class EngineAnswer:
     version : str
     mesh : Mesh
     shift : float
-        How far a vertex may be from its place because of how it was written, in model units.
+        The most that a vertex may be off its place because of how it was written, in model units.
     complaint : str
-        What the engine said it could not do although it gave an answer, or empty.
+        The engine's words on what it could not do although it gave an answer, or empty.
     """
 
     version: str

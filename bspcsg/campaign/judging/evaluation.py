@@ -61,7 +61,7 @@ class EvaluationSettings:
     meshes : str or None
         Folder for the meshes of interesting cases, or None to keep none.
     relative : str
-        What the records call that folder.
+        The name that records give that folder.
     """
 
     against: tuple[str, ...] = ()

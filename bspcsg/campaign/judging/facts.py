@@ -21,7 +21,7 @@ def facts_of(mesh: Mesh, facts: Facts | None = None, crossings: bool = False) ->
     facts : Facts, optional
         Those that are known already.
     crossings : bool
-        Whether to look for faces that cross.
+        True to look for faces that cross.
     """
     known = facts or Facts.of(mesh)
     return {

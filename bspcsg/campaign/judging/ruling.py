@@ -21,7 +21,7 @@ def ruled(
     others : sequence of OracleRecord
     identity : IdentityRecord or None
     is_script : bool
-        Whether `others` is openscad about its own language.
+        True if `others` is openscad about its own language.
 
     Notes
     -----

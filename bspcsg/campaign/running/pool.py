@@ -43,7 +43,7 @@ class LocalPool:
     Parameters
     ----------
     jobs : int
-        How many at once.
+        The number of workers at a time.
     greeting : dict
         See `bspcsg.campaign.child.Child`.
     """

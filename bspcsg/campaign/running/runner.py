@@ -32,7 +32,8 @@ class CampaignPlan:
     timeout : float
         Seconds for a case.
     keep : str
-        Whose meshes are kept: "interesting", "all", "none", or a number of others besides.
+        The cases whose meshes are kept: "interesting", "all", "none", or a number of others
+        besides.
     fail_fast : bool
         Stop at the first failure.
     """
@@ -68,7 +69,7 @@ def run_cases(
     plan : CampaignPlan
     answering : Answering
     journal : Journal or None
-        Where each record goes as it comes.
+        The journal that gets each record as it comes.
     notice : callable
         Told each new record.
     """

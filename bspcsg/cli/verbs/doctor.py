@@ -64,9 +64,9 @@ class _Part:
     Parameters
     ----------
     name, found : str
-        What it is, and which version; empty if it is missing.
+        Its name, and its version; empty if it is missing.
     purpose : str
-        What needs it.
+        The things that need it.
     remedy : str
         The line to type if it is missing or incomplete, else empty.
     required : bool

@@ -32,7 +32,7 @@ def dxf_region(
     ----------
     path : Path
     layer : str
-        Which layer to read; all if empty.
+        The layer to read; all if empty.
     origin : (2,) float64
         Subtracted first.
     scale : float

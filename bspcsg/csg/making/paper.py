@@ -60,7 +60,7 @@ def svg_region(path: Path, dpi: float, centered: bool) -> Region:
     dpi : float
         Pixels per inch, for lengths without a unit.
     centered : bool
-        Whether the middle of the drawing is at the origin, rather than a corner of the page.
+        True if the middle of the drawing is at the origin, rather than a corner of the page.
     """
     region = _drawn(path)
     page = _page(path, dpi)

@@ -49,7 +49,7 @@ class Polish(NamedTuple):
     pitch : int or None
         Exponent of the step of the lattice that corners were moved to; None if none had to move.
     moved : float
-        How far the corner went that went farthest, in model units: each moves once, by half a step
+        The farthest that a corner went, in model units: each moves once, by half a step
         along each axis at most, √3/2 · 10**pitch in all.
     """
 

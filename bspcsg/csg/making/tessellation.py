@@ -77,7 +77,7 @@ class Fineness:
         Parameters
         ----------
         shift : float
-            How far the corner moves that moves farthest.
+            The farthest that a corner moves.
         height : float
         """
         if shift < _NOTHING:

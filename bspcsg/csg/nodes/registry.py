@@ -34,15 +34,16 @@ class Evaluation:
     script : str
         Its name, for errors.
     folder : Path
-        Where imported files are looked for.
+        The folder in which imported files are looked for.
     allowed : tuple of Path
         Folders beside it, links followed, in which imported files may lie.
     polish : bool
-        Whether matrices are made exact rotations where they nearly are.
+        True if matrices are made exact rotations where they nearly are.
     on_invalid : {"error", "warn", "repair"}
-        Whether polyhedra and imported meshes that are not closed are errors, left out, or closed.
+        The treatment of polyhedra and imported meshes that are not closed: error, left out, or
+        closed.
     lenient : bool
-        Whether nodes that cannot be made are left out.
+        True if nodes that cannot be made are left out.
     explained : callable
         Adds to a message that begins with a place what is known about that.
     united : dict
@@ -122,7 +123,7 @@ class Recipe:
     maker : callable
         Takes the node, its children's geometries and the evaluation.
     makes_corners : bool
-        Whether its result has corners that its children do not have.
+        True if its result has corners that its children do not have.
     """
 
     maker: NodeMaker

@@ -25,7 +25,7 @@ class _Place(NamedTuple):
     ended : tuple of bool
         Of the outer nodes around it, whether they are the last of their siblings.
     is_last : bool
-        Whether it is the last of its own.
+        True if it is the last of its own.
     """
 
     node: Node

@@ -42,9 +42,9 @@ def parse(text: str, name: str = "<csg>", folder: str | Path | None = None) -> C
     text : str
         OpenSCAD's `.csg` language.
     name : str
-        What errors call the script.
+        The script's name in errors.
     folder : path, optional
-        Where the files that it imports are looked for; the current folder by default.
+        The folder of the files that it imports; the current folder by default.
 
     Raises
     ------

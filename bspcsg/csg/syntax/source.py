@@ -16,9 +16,9 @@ class Script:
     ----------
     text : str
     name : str
-        What errors call it: the path as the caller gave it.
+        Its name in errors: the path as the caller gave it.
     folder : Path, optional
-        Where the files that it imports are looked for; the current folder by default.
+        The folder of the files that it imports; the current folder by default.
     """
 
     text: str

@@ -47,7 +47,7 @@ def tokens(script: Script) -> Iterator[Token]:
     Raises
     ------
     FormatError
-        Where something stands that is no word, such as a text without its closing quote.
+        If something is no word, such as a text without its closing quote.
     """
     text, position = script.text, 0
     while position < len(text):

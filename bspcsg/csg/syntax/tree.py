@@ -50,7 +50,7 @@ class Node:
     modifiers : str
         Some of ``#`` (kept), ``%`` and ``*`` (ignored) and ``!`` (this node alone counts).
     place : Place
-        Where its name stands; it does not count when nodes are compared.
+        The place of its name; it does not count when nodes are compared.
     """
 
     name: str
@@ -73,9 +73,9 @@ class CsgTree:
     ----------
     nodes : tuple of Node
     name : str
-        What errors call the script.
+        The script's name in errors.
     folder : Path
-        Where the files that it imports are looked for.
+        The folder of the files that it imports.
     intermediate : Intermediate, optional
         The text whose lines the nodes' places name, if that is not the script's.
     """

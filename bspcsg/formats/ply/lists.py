@@ -20,7 +20,7 @@ class ListBlock:
     Parameters
     ----------
     end : int
-        Where its data end.
+        The place at which its data end.
     polygons : IndexPolygons or None
         The lists of the wanted column, if one was wanted.
     error_at : callable

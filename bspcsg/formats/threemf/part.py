@@ -96,7 +96,7 @@ def parse_xml(source: Source, chunks: Iterable[bytes], start: Start) -> None:
     Parameters
     ----------
     source : Source
-        What errors name.
+        The source that errors name.
     chunks : iterable of bytes
         The XML.
     start : callable
@@ -140,7 +140,7 @@ class PartReader:
     Parameters
     ----------
     source : Source
-        What errors name.
+        The source that errors name.
     chunks : iterable of bytes
         The XML.
     part_name : callable

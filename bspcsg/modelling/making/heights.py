@@ -62,7 +62,7 @@ def surface(
         Height of the flat underside, below all heights. By default 0, or one below the least height
         where that is lower, as in OpenSCAD.
     center : bool
-        Whether the middle is at x = y = 0, instead of the first corner.
+        True if the middle is at x = y = 0, instead of the first corner.
 
     Raises
     ------

@@ -26,7 +26,7 @@ def loft(profiles: Sequence[Any], *, closed: bool = False) -> Solid:
         what `extrude` takes, and the height z or the (4, 4) matrix that places it; or (n, 3) points
         of a loop in space, or one such point, a tip, as the first or the last.
     closed : bool
-        Whether the last profile is joined to the first.
+        True if the last profile is joined to the first.
 
     Raises
     ------

@@ -70,7 +70,7 @@ def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArr
     segments : int
         Chords between one given point and the next.
     closed : bool
-        Whether the curve returns to its first point, smoothly; the result ends with it then.
+        True if the curve returns to its first point, smoothly; the result ends with it then.
 
     Returns
     -------

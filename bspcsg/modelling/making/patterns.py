@@ -109,7 +109,7 @@ def grid(shape: _Shape, counts: Sequence[int], steps: Vector, *, center: bool = 
     steps : (2,) or (3,) float
         From each one to the next along x, y and z, as many as `counts`.
     center : bool
-        Whether the shape is in the middle of the grid, instead of at its lowest corner.
+        True if the shape is in the middle of the grid, instead of at its lowest corner.
 
     Raises
     ------

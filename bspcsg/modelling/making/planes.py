@@ -40,7 +40,7 @@ class Planes:
         ----------
         face, sign : int
         beyond : bool
-            Whether it reaches a little beyond a face that is no plane of the lattice.
+            True if it reaches a little beyond a face that is no plane of the lattice.
         """
         key = face, sign, beyond
         if key not in self._made:

@@ -32,7 +32,7 @@ def rounded_box(
     segments : int
         Sides of a full circle, at least 4; each edge has a quarter of them, rounded up.
     center : bool
-        Whether the middle is at the origin, instead of the lowest corner of the box around it.
+        True if the middle is at the origin, instead of the lowest corner of the box around it.
 
     Raises
     ------

@@ -27,7 +27,7 @@ class Section:
     flat : list of (n, 2) float64, or None
         The same in the profile's plane; None of loops that were given in space.
     is_region : bool
-        Whether nobody has chosen where its outlines begin.
+        True if nobody has chosen where its outlines begin.
     """
 
     loops: list[FloatArray]

@@ -41,7 +41,7 @@ class Spine:
     bend : (n, 3) float64
         Unit vector towards which the path turns, or zero.
     stretch : (n,) float64
-        How much longer a mitre is along `bend` than the profile.
+        The factor by which a mitre is longer along `bend` than the profile.
     closed : bool
     """
 

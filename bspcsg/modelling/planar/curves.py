@@ -28,7 +28,7 @@ def arc(
         Directions in degrees, from the x axis on counterclockwise. The arc runs clockwise if `stop`
         is below `start`, and may go round more than once.
     tolerance : float
-        How far chords may be from the arc, in model units.
+        The most that chords may be off the arc, in model units.
 
     Returns
     -------
@@ -70,7 +70,7 @@ def bezier(points: Any, *, tolerance: Scalar = 0.01) -> FloatArray:
     points : (k, d) array_like of float
         Control points in the plane or in space: three make a quadratic, four a cubic curve.
     tolerance : float
-        How far chords may be from the curve, in model units.
+        The most that chords may be off the curve, in model units.
 
     Returns
     -------

@@ -81,7 +81,7 @@ def grown(
         Not empty.
     delta : float
     join : {"round", "square", "miter"}
-        What corners become.
+        The form of corners.
     sides : int
         Of a full circle, for round corners.
     miter_limit : float
@@ -147,9 +147,9 @@ def stroked(line: FloatArray, width: float, cap: str, join: str = "miter") -> Re
     line : (n, 2) float64
     width : float
     cap : {"butt", "square", "round"}
-        How its ends look.
+        The form of its ends.
     join : {"miter", "round", "bevel"}
-        How its corners look; bevelled ones are cut off at half the width from the corner.
+        The form of its corners; bevelled ones are cut off at half the width from the corner.
     """
     scale = min(_PEN, _scale([line], width))
     pen = pyclipper.PyclipperOffset()

@@ -1,4 +1,4 @@
-/*! bspcsg viewer, made of sources 614c176fb924edf2744cdba3b7676d5bb0007f596e6035085a6b1aadd5fe066b, with three.js 0.187.0:
+/*! bspcsg viewer, made of sources 2155979b15f9d0f097ac50f2ad14192634113ae66ad6f92f2a11925c74e8b066, with three.js 0.187.0:
 The MIT License
 
 Copyright © 2010-2026 three.js authors

@@ -40,7 +40,7 @@ def compared_page(
     solids : (Solid, Solid)
     names : (str, str)
     found : SetComparison
-        What their comparison found.
+        The result of their comparison.
     notes : sequence of str
         Sentences below the title.
     unit : str

@@ -12,11 +12,11 @@ class Landmark:
     Parameters
     ----------
     name : str
-        What is there.
+        The name of the place.
     at : (3,) float64
         In model units.
     size : float
-        How far around it is to be seen, in model units.
+        The distance around it that is to be seen, in model units.
     """
 
     name: str

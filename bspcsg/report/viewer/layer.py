@@ -31,7 +31,7 @@ class Layer:
     opacity : float
         From 0 to 1.
     shown : bool
-        Whether it is seen at first.
+        True if it is seen at first.
     paints : tuple of Paint
         Other ways to colour its faces, which the page offers.
     lines : (k, 2) int64

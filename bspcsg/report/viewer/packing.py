@@ -38,11 +38,11 @@ def packed(
     quantised : bool
         Sixteen bits for each coordinate; otherwise single precision, for looking closely.
     unit : str
-        What lengths are shown in.
+        The unit of lengths.
     paint : str
         The name of the paint that is on at first.
     landmarks : iterable of Landmark
-        What somebody may want to look at.
+        The places that somebody may want to look at.
     """
     low, high = bounds_of(layers)
     middle, side = low + (high - low) / 2, high - low

@@ -40,7 +40,7 @@ class Labels:
     labels, colours : sequence of str
         Colours as ``"#rrggbb"``, or ``"#rrggbbaa"`` with an opacity.
     uv : (m, 3, 2) float64, optional
-        Where the corners are in the picture of their label, from its left and from below.
+        The corners' places in the picture of their label, from its left and from below.
     images : sequence of bytes or None
         A PNG or JPEG file for each label, where there is one.
     """

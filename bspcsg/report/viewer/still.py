@@ -54,7 +54,7 @@ def still(
     size : (int, int)
         Width and height in pixels.
     edges : bool
-        Whether to draw those that show the shape, if they are not too many.
+        True to draw those that show the shape, if they are not too many.
     """
     if not any(len(layer.faces) for layer in layers):
         return ""

@@ -30,17 +30,17 @@ def view_page(
     layers : sequence of Layer
     title : str
     unit : str
-        What lengths are shown in.
+        The unit of lengths.
     embedded : bool
         Leave out what a notebook's cell has no room for.
     paint : str
         The name of the paint that is on at first; by default colours and materials, if there are.
     landmarks : sequence of Landmark
-        What the page offers to look at.
+        The places that the page offers to look at.
     notes : sequence of str
         Sentences below the title.
     live : str
-        Where the page asks whether it is out of date, on the server that it is from.
+        The address at which the page asks whether it is out of date, on the server that it is from.
 
     Raises
     ------

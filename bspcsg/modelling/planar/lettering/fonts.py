@@ -55,7 +55,7 @@ def font_file(name: str | os.PathLike[str], *, paths: bool = True) -> FontFile:
         comes with the package; or the path of a font file. Where a family is not there, another one
         counts that fontconfig knows to be of the same metrics.
     paths : bool
-        Whether a name may be a path.
+        True if a name may be a path.
 
     Raises
     ------

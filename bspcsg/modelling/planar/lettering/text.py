@@ -34,16 +34,16 @@ class Lettering:
         Of the font, in model units.
     halign, valign : str
     spacing : float
-        What distances from one letter to the next are multiplied by.
+        The factor of distances from one letter to the next.
     writing : Writing
     steps : int
         Straight pieces of each curve of a glyph.
     ink : float
-        How much larger than they should be glyphs are drawn.
+        The factor by which glyphs are drawn larger than they should be.
     tightness : float
-        What distances and the measures of the line are multiplied by.
+        The factor of distances and of the measures of the line.
     grid : float
-        How far the line reaches is rounded up to multiples of this, unless it is 0.
+        The reach of the line is rounded up to multiples of this, unless it is 0.
     """
 
     em: float
@@ -96,11 +96,11 @@ def text(
         the path of a font file. "Liberation Sans", regular and bold, comes with the package. One of
         equal metrics stands for a font that is not there, as fontconfig knows them.
     halign : {"left", "center", "right"}
-        Which part of the line is at x = 0.
+        The part of the line that is at x = 0.
     valign : {"baseline", "bottom", "center", "top"}
-        Which part of it is at y = 0.
+        The part of it that is at y = 0.
     spacing : float
-        What distances from one letter to the next are multiplied by, above 0.
+        The factor of distances from one letter to the next, above 0.
     direction : {"ltr", "rtl", "ttb", "btt"}, optional
         By default that of the text's own script.
     language : str
@@ -114,7 +114,7 @@ def text(
     Returns
     -------
     Region
-        What the glyphs cover, also where they overlap.
+        The region that the glyphs cover, also where they overlap.
 
     Raises
     ------

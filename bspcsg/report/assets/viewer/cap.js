@@ -9,7 +9,7 @@ import {
 // Of a lid, against the colour of its layer.
 const SHADE = 0.8;
 
-/** Where more back faces than front faces lie behind the cut, the cut is inside the solid. */
+/** The cut is inside the solid where more back faces than front faces lie behind it. */
 export class Cap {
   constructor(layer) {
     this.layer = layer;

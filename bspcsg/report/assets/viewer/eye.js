@@ -15,7 +15,7 @@ const MARGIN = 1.08;
 // Not quite along z, so that y is up in the picture.
 const STEEP = 1e-4;
 
-/** Where to look from, as in the painter's pictures. */
+/** Views to look from, as in the painter's pictures. */
 export const VIEWS = {
   iso: [1, -1, 1], front: [0, -1, 0], back: [0, 1, 0], left: [-1, 0, 0], right: [1, 0, 0],
   top: [0, -STEEP, 1], bottom: [0, STEEP, -1],
@@ -182,7 +182,7 @@ export class Eye {
     this.controls.update();
   }
 
-  /** What has to be kept to look from here again. */
+  /** The record that is kept to look from here again. */
   state() {
     return {
       parallel: this.isParallel, position: this.camera.position.toArray(),

@@ -99,7 +99,7 @@ export class Layer {
   }
 
   material(looks) {
-    // Where layers touch, the later one is seen; edges are in front of all.
+    // The later of two layers is seen where they touch; edges are in front of all.
     const offset = { polygonOffset: true, polygonOffsetFactor: this.offset / 4,
       polygonOffsetUnits: this.offset };
     return new MeshLambertMaterial({

@@ -1,4 +1,4 @@
-// What the colours of a paint mean.
+// The meaning of the colours of a paint.
 
 import { element } from "./dom.js";
 

@@ -2,7 +2,7 @@
 
 import { Raycaster, Vector2, Vector3 } from "three";
 
-/** How many points each kind takes, and what to say before. */
+/** The number of points that each kind takes, and the words before. */
 export const KINDS = {
   distance: [2, "Click two points."],
   angle: [3, "Click three points; the angle is at the second."],
@@ -201,7 +201,7 @@ export class Measure {
     if (this.kind && this.points.length < KINDS[this.kind][0]) this.drawAim();
   }
 
-  /** Where Enter takes a point. */
+  /** The place at which Enter takes a point. */
   drawAim() {
     const { clientWidth: width, clientHeight: height } = this.view.host;
     const [x, y] = [width / 2, height / 2];

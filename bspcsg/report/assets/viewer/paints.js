@@ -3,7 +3,7 @@
 import { Color, LinearMipmapLinearFilter, RepeatWrapping, SRGBColorSpace, Texture } from "three";
 import { bytesOf } from "./unpacking.js";
 
-// Where a scale has no value.
+// The colour where a scale has no value.
 const UNKNOWN = "#9aa2ab";
 
 const FULL = 65535;
@@ -52,7 +52,7 @@ export function cornerLight(paint, faces) {
   return light;
 }
 
-/** Whether something behind the faces is seen through them. */
+/** Return whether something behind the faces is seen through them. */
 export function isSeeThrough(paint) {
   if (paint.kind === "labels") return paint.colours.some((c) => c.length > 7 && !c.endsWith("ff"));
   return paint.kind === "colours" && paint.values.some((value, i) => i % 4 === 3 && value < 255);

@@ -1,4 +1,4 @@
-// Which triangles meet along an edge, where the surface bends sharply, and normals that say so.
+// The triangles that meet along an edge, sharp bends of the surface, and normals that show them.
 
 /** The side of a triangle after this one; side 3 f + k runs from corner k of face f to the next. */
 export const next = (side) => (side % 3 === 2 ? side - 2 : side + 1);
@@ -75,7 +75,7 @@ export class Surface {
     return this.foundNormals;
   }
 
-  /** Whether the faces on both sides bend by less than an angle with this cosine. */
+  /** Return whether the faces on both sides bend by less than an angle with this cosine. */
   isSmooth(side, other, cosine) {
     const n = this.normals;
     const [p, q] = [side - (side % 3), other - (other % 3)];

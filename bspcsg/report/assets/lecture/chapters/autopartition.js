@@ -2,7 +2,7 @@
 const ROOM = [420, 380];
 const WHOLE = [[0, 0], ROOM];
 
-/** How many random orders the statistics are of. */
+/** The number of random orders in the statistics. */
 const ORDERS = 400;
 
 /** Segments that can be dragged, an order, and what is drawn whenever either changes. */
@@ -37,7 +37,7 @@ class SegmentScene {
   }
 }
 
-/** What an autopartition looks like after `step` of its nodes have been made. */
+/** The look of an autopartition after `step` of its nodes have been made. */
 class Growth {
   constructor(view, step) {
     this.view = view;
@@ -226,7 +226,7 @@ function autopartitionFigure(figure) {
   stepper.go(3);
 }
 
-// Who shields whom.
+// The pairs in which one shields the other.
 function shieldFigure(figure) {
   const plane = new Plane(figure.querySelector(".room-pane"), "Segments, one of them with its line", ...ROOM);
   const scene = new SegmentScene(plane, renew);

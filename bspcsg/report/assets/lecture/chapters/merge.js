@@ -53,7 +53,7 @@ class Outline {
   }
 }
 
-/** Whether a polygon goes round counterclockwise without touching itself. */
+/** Return whether a polygon goes round counterclockwise without touching itself. */
 function isSimple(corners) {
   const n = corners.length;
   const edges = corners.map((corner, i) => [corner, corners[(i + 1) % n]]);

@@ -65,7 +65,7 @@ function painterFigure(figure) {
   });
 }
 
-/** What the eye sees all around, painted stroke by stroke: directions from west over north and east. */
+/** The view of the eye all around, painted stroke by stroke: directions from west over north and east. */
 function filmStrip(host) {
   const [width, height] = [420, 34];
   const strip = drawn("svg", { viewBox: `0 0 ${width} ${height + 18}`, class: "strip", role: "img", "aria-label": "What the eye sees all around" });

@@ -9,7 +9,7 @@ function rayFigure(figure) {
 
   const at = (t) => [0, 1].map((k) => state.from[k] + (state.through[k] - state.from[k]) * t);
 
-  /** How far a ray is drawn that meets nothing. */
+  /** The length at which a ray is drawn that meets nothing. */
   const beyond = () => 2 * Math.hypot(...ROOM) / Math.hypot(...[0, 1].map((k) => state.through[k] - state.from[k]));
 
   const reach = (event) => {

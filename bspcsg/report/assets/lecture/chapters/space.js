@@ -56,7 +56,7 @@ class Orbit {
     this.eye = this.back.map((x) => Math.round((50 + 330 * x) * 100) / 100);
   }
 
-  /** Where a point of space is in the picture. */
+  /** The place of a point of space in the picture. */
   at(point) {
     const from = minus3(point, [50, 50, 50]);
     const zoom = 860 / (330 - dot3(from, this.back));
@@ -73,7 +73,7 @@ class Orbit {
     this.picture.append(drawn("polygon", { points, ...looks }));
   }
 
-  /** How brightly a polygon is lit, from 0 to 1. */
+  /** The brightness of a polygon, from 0 to 1. */
   light(corners) {
     const normal = cross3(minus3(corners[1], corners[0]), minus3(corners[2], corners[0]));
     const length = Math.hypot(...normal) || 1;

@@ -11,7 +11,7 @@ function randomOf(seed) {
 
 const turn = (a, b, c) => Math.sign((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
 
-/** Whether two segments have a point in common. */
+/** Return whether two segments have a point in common. */
 function meet([a, b], [c, d]) {
   const overlap = [0, 1].every((k) => Math.min(a[k], b[k]) <= Math.max(c[k], d[k]) && Math.min(c[k], d[k]) <= Math.max(a[k], b[k]));
   return overlap && turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0;
