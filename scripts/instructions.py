@@ -23,6 +23,8 @@ CASES = {
     "cubes": "union of two cubes of 12 triangles, arrays to arrays, warm",
     "chain": "cube minus 200 spheres of 80 triangles, the volume read after each step",
     "expression": "union of 64 boxes in one expression",
+    "rays": "first hits of 65 536 rays at a sphere of 81 920 triangles, its boxes made on the way",
+    "visits": "4 096 rays in a tree over 1 280 triangles that grows on the way",
 }
 
 _NAME = "instructions"

@@ -1,4 +1,5 @@
-//! Five fixed cases for counting instructions: `fixed_cases pair|small|cubes|chain|expression`.
+//! Fixed cases for counting instructions:
+//! `fixed_cases pair|small|cubes|chain|expression|rays|visits`.
 //!
 //! Everything happens on the main thread, inside [`measured`], so that a profiler which counts
 //! within that function alone sees neither the making of the meshes nor idle threads.
@@ -10,12 +11,18 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use bspcsg::extract::rounding::round;
+use bspcsg::geometry::dim3::Dim3;
 use bspcsg::merge::evaluate::evaluate;
 use bspcsg::merge::expression::{Expression, Term};
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::import::import;
 use bspcsg::query::measure::volume_rounded;
+use bspcsg::query::ray::batch::Rays;
+use bspcsg::query::ray::Scene;
+use bspcsg::query::stab::batch::test_rays;
+use bspcsg::query::stab::node::Growth;
+use bspcsg::query::stab::StabTree;
 use bspcsg::tree::solid::Solid;
 
 use support::{applied, Numbers, Shape};
@@ -60,8 +67,21 @@ fn main() {
             let solids: Vec<Solid> = boxes.map(|s| s.solid()).collect();
             measured(|| expression(&solids));
         }
+        "rays" => {
+            let scene = scene(6);
+            let [origins, directions] = camera(256);
+            measured(|| hits(&scene, &origins, &directions));
+        }
+        "visits" => {
+            let tree = StabTree::<Dim3, 3>::new(scene(3), Growth::Visits(16), None);
+            let tree = tree.expect("facets on the lattice");
+            let [origins, directions] = camera(64);
+            measured(|| visits(&tree, &origins, &directions));
+        }
         _ => {
-            eprintln!("fixed_cases: name a case: pair, small, cubes, chain, or expression");
+            eprintln!(
+                "fixed_cases: name a case: pair, small, cubes, chain, expression, rays, or visits"
+            );
             std::process::exit(2);
         }
     }
@@ -121,6 +141,36 @@ fn chain(block: Solid, tools: &[Solid]) -> usize {
         black_box(volume_rounded(&solid));
     }
     triangles(&solid)
+}
+
+/// The facets of a unit sphere.
+fn scene(levels: u32) -> Scene<3> {
+    let ball = arrays(&sphere([0; 3], 1.0, levels));
+    let corner = |v: i64| ball.vertices[usize::try_from(v).expect("a vertex")];
+    let facets: Vec<_> = ball.faces.iter().map(|face| face.map(corner)).collect();
+    Scene::new(&facets, None).expect("facets on the lattice")
+}
+
+/// The rays of an eye that sees the unit sphere, so many in a row: origins and directions.
+fn camera(width: i32) -> [Vec<f64>; 2] {
+    let across = |pixel: i32| f64::from(2 * pixel + 1 - width) / f64::from(width);
+    let pixels = (0..width).flat_map(|y| (0..width).map(move |x| [x, y]));
+    let directions = pixels.flat_map(|[x, y]| [across(x) / 2.7, across(y) / 2.7, -1.0]);
+    let directions: Vec<f64> = directions.collect();
+    let origins = [0.0, 0.0, 3.0].repeat(directions.len() / 3);
+    [origins, directions]
+}
+
+/// The number of rays that hit, with the boxes divided on the way.
+fn hits(scene: &Scene<3>, origins: &[f64], heads: &[f64]) -> usize {
+    let found = Rays { origins, heads }.first(scene).expect("good rays");
+    found.iter().flatten().count()
+}
+
+/// The number of rays that hit in a tree that grows on the way.
+fn visits(tree: &StabTree<Dim3, 3>, origins: &[f64], directions: &[f64]) -> usize {
+    let (found, _) = test_rays(tree, origins, directions).expect("good rays");
+    found.iter().flatten().count()
 }
 
 /// A union of many solids in one expression.

@@ -11,6 +11,7 @@ use bspcsg::merge::generic::trace::{Because, Decision, Journal, MergeStep};
 use bspcsg::merge::{merge, merge_watched, SetOp, SplitCase};
 use bspcsg::mesh::facets::Facet;
 use bspcsg::mesh::grid::Pitch;
+use bspcsg::mesh::handle::NodeId;
 use bspcsg::query::path::{cast_ray, locate, RayEvent};
 use bspcsg::query::ray::facet::meet;
 use bspcsg::query::ray::{Ray, Scene};
@@ -63,7 +64,7 @@ fn by(policy: Policy) -> Plan<Dim2> {
     }
 }
 
-fn shape(tree: &FragmentTree<Dim2>) -> Vec<(Option<u32>, Option<u32>, usize)> {
+fn shape(tree: &FragmentTree<Dim2>) -> Vec<(Option<NodeId>, Option<NodeId>, usize)> {
     let node = |n: &bspcsg::tree::fragments::Node<Dim2>| (n.minus, n.plus, n.coplanar.len());
     tree.nodes().iter().map(node).collect()
 }
@@ -86,7 +87,7 @@ fn divisions_tell_of_every_node_and_of_the_best_candidate() {
             let parts = division.minus.len() + division.plus.len() + division.coplanar.len();
             assert_eq!(parts, division.pieces.len() + division.split.len());
             if let Some((above, half)) = division.place {
-                let above = &told[above as usize];
+                let above = &told[above.place()];
                 let side = [&above.minus, &above.plus][usize::from(half == Half::Plus)];
                 assert_eq!(&division.pieces, side);
             }

@@ -5,6 +5,7 @@ use bspcsg::geometry::affine::{Affine, Polytope, Viewpoint};
 use bspcsg::geometry::side::{Half, Side, Split};
 use bspcsg::mesh::facets::{facets, Facet, Lenience};
 use bspcsg::mesh::grid::Pitch;
+use bspcsg::mesh::handle::NodeId;
 use bspcsg::query::path::{cast_ray, RayEvent, RayPath};
 use bspcsg::query::ray::Ray;
 use bspcsg::query::stab::Cast;
@@ -37,11 +38,11 @@ pub type Walls = Vec<Vec<[f64; 3]>>;
 pub struct NodeView {
     pivot: u32,
     hyperplane: [f64; 4],
-    parent: Option<u32>,
+    parent: Option<NodeId>,
     /// The side of the parent, −1 or 1; 0 for the root.
     side: i8,
     depth: u32,
-    children: [Option<u32>; 2],
+    children: [Option<NodeId>; 2],
     /// The hyperplane inside the region.
     span: Vec<[f64; 3]>,
     /// The two parts of the region.
@@ -132,14 +133,20 @@ impl<S: Affine> Scene<S> {
         let sizes = measures(&self.tree, &self.whole);
         let room = self.whole.volume();
         let lists = self.lists();
-        let each = self.tree.nodes().iter().zip(sizes).zip(lists).zip(0..);
+        let each = self
+            .tree
+            .nodes()
+            .iter()
+            .zip(sizes)
+            .zip(lists)
+            .zip(NodeId::all());
         each.map(|(((node, size), list), number)| {
             self.node_view(node, number, size.volume / room, &list)
         })
         .collect()
     }
 
-    fn node_view(&self, node: &Node<S>, number: u32, share: f64, list: &[Piece<S>]) -> NodeView {
+    fn node_view(&self, node: &Node<S>, number: NodeId, share: f64, list: &[Piece<S>]) -> NodeView {
         let region = self.tree.region(number, &self.whole);
         let cut = &node.hyperplane;
         let span = region.as_ref().and_then(|r| r.span(cut));
@@ -188,7 +195,7 @@ impl<S: Affine> Scene<S> {
                 let [minus, plus] = parted(&piece, &node.hyperplane);
                 for (part, child) in [(minus, node.minus), (plus, node.plus)] {
                     if let (Some(part), Some(child)) = (part, child) {
-                        lists[child as usize].push(part);
+                        lists[child.place()].push(part);
                     }
                 }
             }
@@ -197,7 +204,7 @@ impl<S: Affine> Scene<S> {
     }
 
     /// The nodes from the farthest to the nearest, and the side of each on which the eye is.
-    pub fn order(&self, eye: [f64; 3]) -> (Vec<u32>, Vec<i8>) {
+    pub fn order(&self, eye: [f64; 3]) -> (Vec<NodeId>, Vec<i8>) {
         let eye = Viewpoint::point(&eye, -PITCH);
         let sides = sides(&self.tree, &eye).into_iter().map(|side| match side {
             Side::Minus => -1,
@@ -286,7 +293,7 @@ impl<S: Affine> Scene<S> {
             leaves: Vec::new(),
             spans: Vec::new(),
         };
-        for (node, number) in tree.nodes().iter().zip(0..) {
+        for (node, number) in tree.nodes().iter().zip(NodeId::all()) {
             let Some(region) = tree.region(number, &self.whole) else {
                 continue;
             };
@@ -316,7 +323,7 @@ fn pairs<S: Affine>(tree: &FragmentTree<S>) -> Vec<(usize, usize)> {
     let mut found: Vec<_> = tree
         .crossings()
         .iter()
-        .filter_map(|crossing| match tree.nodes()[crossing.node as usize].cut {
+        .filter_map(|crossing| match tree.nodes()[crossing.node.place()].cut {
             NodeCut::Pivot(cutter) => Some((cutter as usize, crossing.piece as usize)),
             NodeCut::Axis { .. } | NodeCut::Own(_) => None,
         })

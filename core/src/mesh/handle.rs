@@ -87,6 +87,44 @@ impl From<VertexId> for i64 {
     }
 }
 
+/// A node by its place in the list that holds its tree.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
+#[repr(transparent)]
+pub struct NodeId(pub u32);
+
+impl NodeId {
+    /// The root, where lists begin with it.
+    pub const ROOT: Self = Self(0);
+
+    /// The first node of a list, and all after it.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..).map(Self)
+    }
+
+    /// The node in this place of a list.
+    ///
+    /// # Panics
+    /// Never for lists of nodes: 2³² of them would fill a hundred gigabytes.
+    #[inline]
+    pub fn of(place: usize) -> Self {
+        Self(u32::try_from(place).expect("a tree of less than 2^32 nodes"))
+    }
+
+    /// The place in the list.
+    #[inline]
+    pub fn place(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl From<NodeId> for i64 {
+    fn from(node: NodeId) -> Self {
+        Self::from(node.0)
+    }
+}
+
 /// A face of one of several sources.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceFace {

@@ -202,10 +202,10 @@ fn stab_row(event: StabEvent) -> StabRow {
     match event {
         StabEvent::Visit { node, visits, leaf } => {
             let kind = if leaf { "leaf" } else { "visit" };
-            (kind, node, -1, visits, None)
+            (kind, node.0, -1, visits, None)
         }
-        StabEvent::Test { node, facet, met } => ("test", node, facet.into(), met.into(), None),
-        StabEvent::Count { node, facet, hits } => ("count", node, facet.into(), hits, None),
+        StabEvent::Test { node, facet, met } => ("test", node.0, facet.into(), met.into(), None),
+        StabEvent::Count { node, facet, hits } => ("count", node.0, facet.into(), hits, None),
         StabEvent::Divide {
             node,
             facet,
@@ -214,7 +214,7 @@ fn stab_row(event: StabEvent) -> StabRow {
             lists: [minus, plus],
         } => {
             let lists = Some([coplanar, minus, plus]);
-            ("divide", node, facet.into(), children[0].into(), lists)
+            ("divide", node.0, facet.into(), children[0].0.into(), lists)
         }
     }
 }

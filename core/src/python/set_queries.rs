@@ -28,17 +28,17 @@ impl Set {
         match self {
             Self::Line(tree) => {
                 for (node, piece) in boundary_of(tree)? {
-                    list.push(point_corners(&piece, pitch), node as i64);
+                    list.push(point_corners(&piece, pitch), node.into());
                 }
             }
             Self::Plane(set) => {
                 for (node, piece) in boundary_of(set.tree()?)? {
-                    list.push(segment_corners(&piece, pitch), node as i64);
+                    list.push(segment_corners(&piece, pitch), node.into());
                 }
             }
             Self::Space(tree) => {
                 for (node, piece) in boundary_of(tree)? {
-                    list.push(polygon_corners(&piece, pitch), node as i64);
+                    list.push(polygon_corners(&piece, pitch), node.into());
                 }
             }
         }

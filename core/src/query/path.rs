@@ -16,6 +16,7 @@ use crate::geometry::side::{Half, Side};
 use crate::interrupt::poll;
 use crate::mesh::facets::Facet;
 use crate::mesh::grid::Pitch;
+use crate::mesh::handle::NodeId;
 use crate::query::ray::facet::meet;
 use crate::query::ray::scene::parameter;
 use crate::query::ray::{Ratio, Ray};
@@ -27,7 +28,7 @@ use crate::tree::trace::Watcher;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PointStep {
     /// The node.
-    pub node: u32,
+    pub node: NodeId,
     /// The side of its hyperplane on which the point lies.
     pub side: Side,
 }
@@ -35,10 +36,10 @@ pub struct PointStep {
 /// The nodes that a point passes, down to its leaf or to the first hyperplane it lies in.
 pub fn locate<S: Affine>(tree: &FragmentTree<S>, point: &Viewpoint) -> Vec<PointStep> {
     let mut steps = Vec::new();
-    let mut next = (!tree.nodes().is_empty()).then_some(0);
+    let mut next = (!tree.nodes().is_empty()).then_some(NodeId::ROOT);
     while let Some(number) = next {
         poll();
-        let node = &tree.nodes()[number as usize];
+        let node = &tree.nodes()[number.place()];
         let side = point.side::<S>(&node.hyperplane);
         steps.push(PointStep { node: number, side });
         next = match side {
@@ -56,7 +57,7 @@ pub enum RayEvent {
     /// An inner node is visited.
     Visit {
         /// The node.
-        node: u32,
+        node: NodeId,
         /// The parameter at which the ray enters the node's region.
         from: f64,
         /// The parameter at which it leaves the region; `None` if it does not.
@@ -70,7 +71,7 @@ pub enum RayEvent {
     /// A piece in a node's hyperplane is tested.
     Test {
         /// The node.
-        node: u32,
+        node: NodeId,
         /// The piece.
         piece: u32,
         /// The parameter at which the ray meets it.
@@ -79,7 +80,7 @@ pub enum RayEvent {
     /// A leaf, which is an empty region, is stabbed.
     Leaf {
         /// The node above; `None` for a tree without nodes.
-        place: Option<(u32, Half)>,
+        place: Option<(NodeId, Half)>,
         /// The parameter at which the ray enters the region.
         from: f64,
         /// The parameter at which it leaves the region; `None` if it does not.
@@ -166,9 +167,9 @@ impl Stretch {
 
 enum Open {
     /// A child, perhaps empty, at this place.
-    Child(Option<u32>, Option<(u32, Half)>, Stretch),
+    Child(Option<NodeId>, Option<(NodeId, Half)>, Stretch),
     /// The facets in a node's hyperplane.
-    Cut(u32, Stretch),
+    Cut(NodeId, Stretch),
 }
 
 impl Open {
@@ -195,7 +196,7 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
             from: Ratio::ZERO,
             to: None,
         };
-        let root = (!self.tree.nodes().is_empty()).then_some(0);
+        let root = (!self.tree.nodes().is_empty()).then_some(NodeId::ROOT);
         let mut open = vec![Open::Child(root, None, whole)];
         while let Some(next) = open.pop() {
             poll();
@@ -212,7 +213,7 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
         }
     }
 
-    fn stab(&mut self, place: Option<(u32, Half)>, stretch: &Stretch) {
+    fn stab(&mut self, place: Option<(NodeId, Half)>, stretch: &Stretch) {
         self.path.leaves += 1;
         let (pitch, exponent) = (self.pitch, self.ray.exponent());
         self.watcher.tell(|| RayEvent::Leaf {
@@ -222,9 +223,9 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
         });
     }
 
-    fn visit(&mut self, number: u32, stretch: Stretch, open: &mut Vec<Open>) {
+    fn visit(&mut self, number: NodeId, stretch: Stretch, open: &mut Vec<Open>) {
         self.path.nodes += 1;
-        let node = &self.tree.nodes()[number as usize];
+        let node = &self.tree.nodes()[number.place()];
         let crossing = Crossing::of::<S, D>(&node.hyperplane, self.ray);
         let (pitch, exponent) = (self.pitch, self.ray.exponent());
         let units = |at: Ratio| parameter(pitch, &at, exponent);
@@ -261,8 +262,8 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
         }
     }
 
-    fn test(&mut self, number: u32) {
-        let node = &self.tree.nodes()[number as usize];
+    fn test(&mut self, number: NodeId) {
+        let node = &self.tree.nodes()[number.place()];
         let range = node.coplanar.start as usize..node.coplanar.end as usize;
         for fragment in &self.tree.fragments()[range] {
             let piece = fragment.piece.number;

@@ -10,8 +10,8 @@ use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 
 use super::case::SplitCase;
-use crate::arith::convert::as_number;
 use crate::geometry::space::Space;
+use crate::mesh::handle::NodeId;
 use crate::tree::partition::{Label, PartitionTree, Sheet};
 use crate::tree::trace::Watcher;
 
@@ -115,9 +115,9 @@ pub enum Name {
     /// An undivided region.
     Leaf(Label),
     /// The inner node of the first operand with this place in preorder, minus before plus.
-    First(u32),
+    First(NodeId),
     /// The inner node of the second operand, or a part of it.
-    Second(u32),
+    Second(NodeId),
 }
 
 /// One step of splitting or merging, in the order of the work.
@@ -165,7 +165,7 @@ pub struct Journal<S: Space> {
     steps: Vec<MergeStep>,
 }
 
-type Numbers<S> = FxHashMap<*const Sheet<S>, (u32, Arc<Sheet<S>>)>;
+type Numbers<S> = FxHashMap<*const Sheet<S>, (NodeId, Arc<Sheet<S>>)>;
 
 impl<S: Space> Journal<S> {
     /// A journal of merging two trees, or of splitting the second one.
@@ -229,11 +229,15 @@ impl<S: Space> Watcher<Seen<S>> for Journal<S> {
     }
 }
 
-fn name<S: Space>(root: &Root<S>, numbers: &Numbers<S>, make: impl Fn(u32) -> Name) -> Name {
+fn name<S: Space>(root: &Root<S>, numbers: &Numbers<S>, make: impl Fn(NodeId) -> Name) -> Name {
     match root {
         Root::Leaf(label) => Name::Leaf(*label),
         // All sheets that can come up are numbered; a strange one would get a number of no node.
-        Root::Cut(sheet) => make(numbers.get(&Arc::as_ptr(sheet)).map_or(u32::MAX, |e| e.0)),
+        Root::Cut(sheet) => make(
+            numbers
+                .get(&Arc::as_ptr(sheet))
+                .map_or(NodeId(u32::MAX), |e| e.0),
+        ),
     }
 }
 
@@ -244,7 +248,7 @@ fn numbered<S: Space>(tree: &PartitionTree<S>) -> Numbers<S> {
     while let Some(next) = pending.pop() {
         if let PartitionTree::Cut(cut) = next {
             let sheet = Arc::clone(cut.sheet());
-            let number = as_number(numbers.len());
+            let number = NodeId::of(numbers.len());
             numbers.insert(Arc::as_ptr(&sheet), (number, sheet));
             pending.extend(cut.children());
         }

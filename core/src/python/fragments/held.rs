@@ -12,6 +12,7 @@ use crate::geometry::side::{Half, Side};
 use crate::interrupt::poll;
 use crate::mesh::facets::Facet;
 use crate::mesh::grid::Pitch;
+use crate::mesh::handle::NodeId;
 use crate::python::hyperplanes::{row_of, FromRow, Row};
 use crate::query::path::{cast_ray, locate, RayEvent, RayPath};
 use crate::query::ray::scene::snap;
@@ -144,7 +145,7 @@ impl<S: FromRow> Held<S> {
     pub fn path(&self, point: &[f64; 3]) -> Vec<(u32, i8)> {
         let point = Viewpoint::point(point, -self.pitch.exponent());
         let steps = locate(&self.tree, &point).into_iter();
-        steps.map(|step| (step.node, sign(step.side))).collect()
+        steps.map(|step| (step.node.0, sign(step.side))).collect()
     }
 
     /// The first hits of rays, and what each cost.
@@ -202,8 +203,8 @@ impl<S: Affine> Held<S> {
         i64::from(self.facets[piece as usize].source)
     }
 
-    pub fn coefficients(&self, node: usize) -> Option<Vec<BigInt>> {
-        let [a, b, c, d] = S::exact(&self.tree.nodes().get(node)?.hyperplane);
+    pub fn coefficients(&self, node: NodeId) -> Option<Vec<BigInt>> {
+        let [a, b, c, d] = S::exact(&self.tree.nodes().get(node.place())?.hyperplane);
         let mut all: Vec<BigInt> = [a, b, c].into_iter().take(S::DIM).collect();
         all.push(d);
         Some(all)
@@ -244,7 +245,7 @@ impl<S: Affine> Held<S> {
     }
 
     pub fn links(&self) -> [Vec<i64>; 6] {
-        let number = |link: Option<u32>| link.map_or(-1, i64::from);
+        let number = |link: Option<NodeId>| link.map_or(-1, i64::from);
         let nodes = self.tree.nodes();
         [
             nodes.iter().map(|n| number(n.minus)).collect(),
@@ -299,7 +300,12 @@ impl<S: Affine> Held<S> {
         grown_box(&self.facets, steps)
     }
 
-    pub fn region(&self, node: Option<u32>, side: i8, margin: f64) -> Result<Vec<Vec<[f64; 3]>>> {
+    pub fn region(
+        &self,
+        node: Option<NodeId>,
+        side: i8,
+        margin: f64,
+    ) -> Result<Vec<Vec<[f64; 3]>>> {
         let whole = self.whole(margin)?;
         let region = match node {
             None => Some(whole),
@@ -307,7 +313,7 @@ impl<S: Affine> Held<S> {
                 let region = self.tree.region(node, &whole);
                 match (region, half_of(side)) {
                     (Some(region), Some(half)) => {
-                        let cut = &self.tree.nodes()[node as usize].hyperplane;
+                        let cut = &self.tree.nodes()[node.place()].hyperplane;
                         let [minus, plus] = region.divided(cut);
                         if half == Half::Minus {
                             minus
@@ -323,12 +329,12 @@ impl<S: Affine> Held<S> {
         Ok(walls.iter().map(|w| self.positions(w)).collect())
     }
 
-    pub fn span(&self, node: u32, margin: f64) -> Result<Vec<[f64; 3]>> {
+    pub fn span(&self, node: NodeId, margin: f64) -> Result<Vec<[f64; 3]>> {
         let whole = self.whole(margin)?;
         let span = self
             .tree
             .region(node, &whole)
-            .and_then(|r| r.span(&self.tree.nodes()[node as usize].hyperplane));
+            .and_then(|r| r.span(&self.tree.nodes()[node.place()].hyperplane));
         Ok(span.map_or_else(Vec::new, |s| self.positions(&s)))
     }
 }

@@ -23,6 +23,7 @@ use crate::geometry::affine::Viewpoint;
 use crate::geometry::plane::Lattice;
 use crate::mesh::facets::{check_reach, facets, snap_corners, suited_pitch};
 use crate::mesh::grid::Pitch;
+use crate::mesh::handle::NodeId;
 use crate::query::path::{RayEvent, RayPath};
 use crate::tree::fragments::{back_to_front, measures, sides, Answer, Ask, Sample};
 
@@ -348,8 +349,8 @@ impl PyFragmentTree {
     }
 
     /// The exact coefficients n, d of a node's hyperplane n·x + d = 0, in lattice steps.
-    fn coefficients(&self, node: usize) -> Option<Vec<BigInt>> {
-        each!(&self.inner, held => held.coefficients(node))
+    fn coefficients(&self, node: u32) -> Option<Vec<BigInt>> {
+        each!(&self.inner, held => held.coefficients(NodeId(node)))
     }
 
     fn fragments<'py>(&self, py: Python<'py>) -> PyResult<FragmentArrays<'py>> {
@@ -440,7 +441,7 @@ impl PyFragmentTree {
         let walls = self.run(
             py,
             0,
-            || each!(&self.inner, held => held.region(node, side, margin)),
+            || each!(&self.inner, held => held.region(node.map(NodeId), side, margin)),
         )?;
         let dimension = self.dimension();
         walls.into_iter().map(|w| rows(py, w, dimension)).collect()
@@ -451,7 +452,7 @@ impl PyFragmentTree {
         let corners = self.run(
             py,
             0,
-            || each!(&self.inner, held => held.span(node, margin)),
+            || each!(&self.inner, held => held.span(NodeId(node), margin)),
         )?;
         rows(py, corners, self.dimension())
     }

@@ -33,7 +33,7 @@ pub fn division_row(division: Division) -> DivisionRow {
         Some((parent, Half::Plus)) => (i64::from(parent), 1),
     };
     let place = (
-        division.node,
+        division.node.0,
         parent,
         side,
         division.depth,

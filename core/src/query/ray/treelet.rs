@@ -18,6 +18,7 @@ use super::cell::{Frame, Span};
 use super::divide::{divide, Item};
 use super::facet::Facet;
 use crate::interrupt::{poll, spend, Task};
+use crate::mesh::handle::NodeId;
 use crate::mesh::tasks::in_pool;
 
 /// Children of a node.
@@ -35,7 +36,7 @@ pub enum Child {
     /// Nothing.
     None,
     /// A node of the same treelet.
-    Node(u32),
+    Node(NodeId),
     /// Facets.
     Block(u32),
     /// A treelet of its own.
@@ -83,7 +84,7 @@ impl<const D: usize> Wide<D> {
     }
 }
 
-/// A small tree: node 0 is its root, and children come after their parents.
+/// A small tree: the first node is its root, and children come after their parents.
 #[derive(Debug, Default)]
 pub struct Treelet<const D: usize> {
     /// The nodes; none for an empty list.
@@ -220,7 +221,7 @@ impl<const D: usize> Treelet<D> {
             for lane in 0..WIDTH {
                 let span = match nodes[at].children[lane] {
                     Child::None => break,
-                    Child::Node(node) => nodes[node as usize].whole(),
+                    Child::Node(node) => nodes[node.place()].whole(),
                     Child::Block(block) => around(&blocks[block as usize]),
                     Child::Deferred(number) => below[number as usize].1,
                 };
@@ -300,15 +301,15 @@ impl<'a, const D: usize> Making<'a, D> {
             span: Span::around(self.items.iter().map(|item| &item.span)),
         };
         self.treelet.nodes.push(Wide::EMPTY);
-        let mut open = vec![(0, whole)];
+        let mut open = vec![(NodeId::ROOT, whole)];
         while let Some((node, part)) = open.pop() {
             for (lane, part) in self.parts(part).into_iter().enumerate() {
                 let child = self.child(&part);
                 if let Child::Node(below) = child {
                     self.treelet.nodes.push(Wide::EMPTY);
-                    open.push((below as usize, part));
+                    open.push((below, part));
                 }
-                let node = &mut self.treelet.nodes[node];
+                let node = &mut self.treelet.nodes[node.place()];
                 node.set(lane, &part.span);
                 node.children[lane] = child;
             }
@@ -353,7 +354,7 @@ impl<'a, const D: usize> Making<'a, D> {
             treelet.deferred.push(Deferred::pending(items.to_vec()));
             Child::Deferred(treelet.deferred.len() as u32 - 1)
         } else {
-            Child::Node(treelet.nodes.len() as u32)
+            Child::Node(NodeId::of(treelet.nodes.len()))
         }
     }
 }

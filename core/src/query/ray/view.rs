@@ -4,14 +4,15 @@ use super::cell::Cell;
 use super::scene::Scene;
 use super::treelet::{Child, Treelet};
 use crate::interrupt::poll;
+use crate::mesh::handle::NodeId;
 
 /// A node as it is shown.
 #[derive(Clone, Debug)]
 pub struct View<const D: usize> {
     /// Its box, in lattice steps.
     pub cell: Cell<D>,
-    /// The number of the node above.
-    pub parent: Option<u32>,
+    /// The node above, by its place in this list.
+    pub parent: Option<NodeId>,
     /// True if no ray has reached it yet.
     pub deferred: bool,
     /// The facets of a leaf.
@@ -25,19 +26,19 @@ pub fn views<const D: usize>(scene: &Scene<D>) -> Vec<View<D>> {
     let mut open = vec![(None, *scene.cell(), known, known.map_or(Child::None, root))];
     while let Some((parent, cell, treelet, child)) = open.pop() {
         poll();
-        let number = found.len() as u32;
+        let number = NodeId::of(found.len());
         let (mut deferred, mut facets) = (treelet.is_none(), Vec::new());
         if let Some(treelet) = treelet {
             let (below, node) = match child {
                 Child::Node(node) => (Some(treelet), node),
-                Child::Deferred(i) => (treelet.deferred[i as usize].known(), 0),
-                Child::None | Child::Block(_) => (None, 0),
+                Child::Deferred(i) => (treelet.deferred[i as usize].known(), NodeId::ROOT),
+                Child::None | Child::Block(_) => (None, NodeId::ROOT),
             };
             if let Child::Block(block) = child {
                 facets = treelet.blocks[block as usize].facets().to_vec();
             }
             deferred = matches!(child, Child::Deferred(_)) && below.is_none();
-            let wide = below.and_then(|below| Some((below, below.nodes.get(node as usize)?)));
+            let wide = below.and_then(|below| Some((below, below.nodes.get(node.place())?)));
             if let Some((below, wide)) = wide {
                 for (lane, child) in wide.children.iter().enumerate().rev() {
                     if *child != Child::None {
@@ -62,6 +63,6 @@ fn root<const D: usize>(treelet: &Treelet<D>) -> Child {
     if treelet.nodes.is_empty() {
         Child::None
     } else {
-        Child::Node(0)
+        Child::Node(NodeId::ROOT)
     }
 }

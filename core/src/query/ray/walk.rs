@@ -12,6 +12,7 @@ use super::filter::ROUNDING;
 use super::line::Ray;
 use super::scene::Scene;
 use super::treelet::{Child, Treelet, WIDTH};
+use crate::mesh::handle::NodeId;
 
 /// Relative error of the depth of a plane: a difference, a quotient of two rounded numbers and a
 /// product, rounded.
@@ -21,7 +22,7 @@ const SLACK: f64 = 8.0 * ROUNDING;
 #[derive(Clone, Copy)]
 struct Open<'a, const D: usize> {
     from: f32,
-    node: u32,
+    node: NodeId,
     lane: u32,
     treelet: &'a Treelet<D>,
 }
@@ -75,7 +76,7 @@ fn descend<const D: usize, const N: usize>(
     enter(
         bundle,
         scene.root().treelet(scene.facets()),
-        0,
+        NodeId::ROOT,
         limit,
         &mut open,
     );
@@ -89,13 +90,13 @@ fn descend<const D: usize, const N: usize>(
         if from > limit {
             continue;
         }
-        let wide = &treelet.nodes[node as usize];
+        let wide = &treelet.nodes[node.place()];
         match wide.children[lane as usize] {
             Child::None => {}
             Child::Node(below) => enter(bundle, treelet, below, limit, &mut open),
             Child::Deferred(below) => {
                 let below = treelet.deferred[below as usize].treelet(scene.facets());
-                enter(bundle, below, 0, limit, &mut open);
+                enter(bundle, below, NodeId::ROOT, limit, &mut open);
             }
             Child::Block(number) => {
                 let block = &treelet.blocks[number as usize];
@@ -122,11 +123,11 @@ fn descend<const D: usize, const N: usize>(
 fn enter<'a, const D: usize, const N: usize>(
     bundle: &Bundle<D, N>,
     treelet: &'a Treelet<D>,
-    node: u32,
+    node: NodeId,
     limit: f32,
     open: &mut Stack<'a, D>,
 ) {
-    let Some(wide) = treelet.nodes.get(node as usize) else {
+    let Some(wide) = treelet.nodes.get(node.place()) else {
         return;
     };
     let (from, enters) = bundle.enters(wide, limit);

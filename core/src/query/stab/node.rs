@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use super::cast::Cast;
 use super::cut::Cut;
 use super::heap::Heap;
+use crate::mesh::handle::NodeId;
 
 /// The times at which leaves are divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +45,7 @@ pub(super) enum Content<S: Cast<D>, const D: usize> {
 pub(super) struct Inner<const D: usize> {
     pub(super) cut: Cut<D>,
     pub(super) coplanar: Vec<u32>,
-    pub(super) children: [u32; 2],
+    pub(super) children: [NodeId; 2],
     /// Marks of the children of which a facet may have a point in the interior of a facet in the
     /// cut.
     pub(super) touched: [bool; 2],

@@ -9,6 +9,7 @@ use super::heap::{Entry, Heap};
 use super::node::{Content, Growth};
 use super::tree::StabTree;
 use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::handle::NodeId;
 use crate::query::ray::Scene;
 
 /// The counters of a tree and where it was cut.
@@ -29,8 +30,8 @@ struct NodeRecord {
 enum ContentRecord {
     /// Facets in the order of the heap, with their hits.
     Leaf(Vec<(u32, u64)>),
-    /// The facets in the cut, the one that gave it first, and the number of the minus child.
-    Cut(Vec<u32>, u32),
+    /// The facets in the cut, the one that gave it first, and the minus child.
+    Cut(Vec<u32>, NodeId),
 }
 
 impl<S: Cast<D>, const D: usize> StabTree<S, D> {
@@ -70,7 +71,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
     fn follow(&self, record: &Record) -> Option<()> {
         let mut nodes = self.nodes_mut();
         for (at, facets, child) in record.cuts() {
-            if child as usize != nodes.all.len() {
+            if child.place() != nodes.all.len() {
                 return None;
             }
             nodes.divide_by(self.scene(), at, *facets.first()?)?;
@@ -89,9 +90,9 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
 
 impl Record {
     /// Nodes with cuts, the facets in these, and the first child: in the order of the divisions.
-    fn cuts(&self) -> Vec<(usize, &[u32], u32)> {
+    fn cuts(&self) -> Vec<(NodeId, &[u32], NodeId)> {
         let mut cuts = Vec::new();
-        for (at, node) in self.nodes.iter().enumerate() {
+        for (at, node) in NodeId::all().zip(&self.nodes) {
             if let ContentRecord::Cut(facets, child) = &node.content {
                 cuts.push((at, facets.as_slice(), *child));
             }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::mesh::handle::NodeId;
+
 /// Counts of one ray's way through a tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Trace {
@@ -19,7 +21,7 @@ pub enum StabEvent {
     /// A node is visited, an inner one or a leaf.
     Visit {
         /// The node.
-        node: u32,
+        node: NodeId,
         /// T(v) after this visit.
         visits: u64,
         /// True if it is a leaf.
@@ -28,7 +30,7 @@ pub enum StabEvent {
     /// A facet of a leaf's list or in a cut is tested.
     Test {
         /// The node.
-        node: u32,
+        node: NodeId,
         /// The facet.
         facet: u32,
         /// True if the ray meets it.
@@ -37,7 +39,7 @@ pub enum StabEvent {
     /// A facet of a leaf is hit within the leaf.
     Count {
         /// The leaf.
-        node: u32,
+        node: NodeId,
         /// The facet.
         facet: u32,
         /// T(p) after this hit.
@@ -46,13 +48,13 @@ pub enum StabEvent {
     /// A leaf is divided.
     Divide {
         /// The leaf, an inner node from now on.
-        node: u32,
+        node: NodeId,
         /// The facet whose hyperplane is the cut.
         facet: u32,
         /// The facets in the cut.
         coplanar: Vec<u32>,
         /// The new leaves on the minus and the plus side.
-        children: [u32; 2],
+        children: [NodeId; 2],
         /// L(v) of the new leaves, in the order of their heaps.
         lists: [Vec<u32>; 2],
     },

@@ -19,6 +19,7 @@ use crate::arith::Filtered;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::{Half, Split};
 use crate::interrupt::poll;
+use crate::mesh::handle::NodeId;
 use crate::query::ray::facet::Facet;
 use crate::query::ray::first::{Found, Query};
 use crate::query::ray::walk::clip;
@@ -118,7 +119,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
                 );
                 return Err(Error::new(ErrorKind::TooLarge, text));
             }
-            nodes.divide(&self.scene, next);
+            nodes.divide(&self.scene, NodeId::of(next));
             next += 1;
         }
         Ok(())
@@ -168,7 +169,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         // Ascending in each leaf, because a count changes no later place.
         for hit in &wake.hits {
             // Another ray may have divided the leaf meanwhile.
-            let Content::Leaf(list) = &mut nodes.all[hit.node as usize].content else {
+            let Content::Leaf(list) = &mut nodes.all[hit.node.place()].content else {
                 continue;
             };
             if let Some(place) = list.place(hit.facet, hit.place) {
@@ -176,7 +177,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
             }
         }
         for leaf in &wake.due {
-            if nodes.divide(&self.scene, *leaf as usize).is_some() {
+            if nodes.divide(&self.scene, *leaf).is_some() {
                 watcher.tell(|| nodes.division(&self.scene, *leaf));
             }
         }
@@ -208,8 +209,8 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
 
 impl<S: Cast<D>, const D: usize> Nodes<S, D> {
     /// Divides a leaf at its most hit fragment; one with a single fragment stays.
-    fn divide(&mut self, scene: &Scene<D>, at: usize) -> Option<()> {
-        let Content::Leaf(list) = &self.all[at].content else {
+    fn divide(&mut self, scene: &Scene<D>, at: NodeId) -> Option<()> {
+        let Content::Leaf(list) = &self.all[at.place()].content else {
             return None;
         };
         let [top, _, ..] = list.entries() else {
@@ -220,31 +221,32 @@ impl<S: Cast<D>, const D: usize> Nodes<S, D> {
     }
 
     /// Divides a leaf at the fragment of this facet; `None` if there is no such leaf or fragment.
-    pub(super) fn divide_by(&mut self, scene: &Scene<D>, at: usize, facet: u32) -> Option<()> {
-        let (first, depth) = (self.all.len() as u32, self.all.get(at)?.depth + 1);
-        let Content::Leaf(list) = &mut self.all[at].content else {
+    pub(super) fn divide_by(&mut self, scene: &Scene<D>, at: NodeId, facet: u32) -> Option<()> {
+        let (first, depth) = (self.all.len(), self.all.get(at.place())?.depth + 1);
+        let Content::Leaf(list) = &mut self.all[at.place()].content else {
             return None;
         };
         let place = list.entries().iter().position(|e| e.facet == facet)?;
         let pivot = fragment::<S, D>(scene, &list.entries()[place])?;
+        let children = [first, first + 1].map(NodeId::of);
         let mut entries = std::mem::take(list).into_entries();
         entries.remove(place);
-        let (inner, halves) = parts::<S, D>(facet, &pivot, entries, scene, first);
-        self.all[at].content = Content::Inner(Box::new(inner));
-        self.all[at].forget_places();
+        let (inner, halves) = parts::<S, D>(facet, &pivot, entries, scene, children);
+        self.all[at.place()].content = Content::Inner(Box::new(inner));
+        self.all[at.place()].forget_places();
         self.all.extend(halves.map(|half| Node::leaf(half, depth)));
         self.subdivisions += 1;
         Some(())
     }
 
     /// The event of a leaf that was divided last.
-    fn division(&self, scene: &Scene<D>, node: u32) -> StabEvent {
+    fn division(&self, scene: &Scene<D>, node: NodeId) -> StabEvent {
         let number = |facet: &u32| scene.number(*facet);
-        let list = |child: u32| match &self.all[child as usize].content {
+        let list = |child: NodeId| match &self.all[child.place()].content {
             Content::Leaf(list) => list.entries().iter().map(|e| number(&e.facet)).collect(),
             Content::Inner(_) => Vec::new(),
         };
-        let (coplanar, children) = match &self.all[node as usize].content {
+        let (coplanar, children) = match &self.all[node.place()].content {
             Content::Inner(inner) => (inner.coplanar.iter().map(number).collect(), inner.children),
             Content::Leaf(_) => (Vec::new(), [node; 2]),
         };
@@ -273,13 +275,13 @@ fn fragment<S: Cast<D>, const D: usize>(
     }
 }
 
-/// The node that divides a list, and the lists of its children, the first to be at `first`.
+/// The node that divides a list, and the lists of its children, which are to be these nodes.
 fn parts<S: Cast<D>, const D: usize>(
     facet: u32,
     pivot: &S::Fragment,
     rest: Vec<Entry<S::Fragment>>,
     scene: &Scene<D>,
-    first: u32,
+    children: [NodeId; 2],
 ) -> (Inner<D>, [Heap<S::Fragment>; 2]) {
     let plane = S::hyperplane(pivot).clone();
     let cut = Cut::of::<S>(&plane);
@@ -326,7 +328,7 @@ fn parts<S: Cast<D>, const D: usize>(
             }
         }
     }
-    let children = [first, first + 1];
+
     let inner = Inner {
         cut,
         coplanar,

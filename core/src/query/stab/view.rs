@@ -6,6 +6,7 @@ use super::cast::Cast;
 use super::node::Content;
 use super::tree::StabTree;
 use crate::arith::Int;
+use crate::mesh::handle::NodeId;
 
 /// A node as it is now; facets by their places in the input.
 #[derive(Clone, Debug)]
@@ -16,7 +17,7 @@ pub struct View<const D: usize> {
     pub depth: u32,
     /// Normal and offset of n·x + c = 0, and the children on the minus and the plus side; `None`
     /// for a leaf.
-    pub cut: Option<([i128; D], Int<3>, [u32; 2])>,
+    pub cut: Option<([i128; D], Int<3>, [NodeId; 2])>,
     /// L(v) of a leaf in the order of its heap, or the facets in the cut, its pivot first.
     pub facets: Vec<u32>,
     /// T(p) of each of them; 0 for those in a cut.

@@ -10,6 +10,7 @@ use super::heap::Heap;
 use super::node::{Content, Growth, Inner, Node};
 use super::trace::{StabEvent, Trace};
 use crate::geometry::side::Side;
+use crate::mesh::handle::NodeId;
 use crate::query::ray::block::Block;
 use crate::query::ray::filter::{Depth, Probe};
 use crate::query::ray::first::{Candidate, Query};
@@ -19,8 +20,8 @@ use crate::tree::trace::Watcher;
 
 #[derive(Clone, Copy)]
 enum Open {
-    Node { node: u32, from: f64, to: f64 },
-    Cut { node: u32, from: f64, far: Far },
+    Node { node: NodeId, from: f64, to: f64 },
+    Cut { node: NodeId, from: f64, far: Far },
 }
 
 /// An entry of the stack: the part of a tree below a cut.
@@ -41,7 +42,7 @@ const LONG: usize = 4096;
 /// A facet that was hit within a leaf, and its place in the leaf's list.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hit {
-    pub(super) node: u32,
+    pub(super) node: NodeId,
     pub(super) facet: u32,
     pub(super) place: usize,
 }
@@ -50,7 +51,7 @@ pub(super) struct Hit {
 #[derive(Debug, Default)]
 pub(super) struct Wake {
     pub(super) hits: SmallVec<[Hit; 16]>,
-    pub(super) due: SmallVec<[u32; 16]>,
+    pub(super) due: SmallVec<[NodeId; 16]>,
 }
 
 /// One ray on its way.
@@ -72,7 +73,11 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
     /// Visits what the ray meets between two depths, nearest first.
     pub(super) fn run(&mut self, span: Option<(f64, f64)>) {
         let mut open = Stack::new();
-        open.extend(span.map(|(from, to)| Open::Node { node: 0, from, to }));
+        open.extend(span.map(|(from, to)| Open::Node {
+            node: NodeId::ROOT,
+            from,
+            to,
+        }));
         while let Some(next) = open.pop() {
             let limit = self.best.map_or(f64::INFINITY, |best| best.high());
             match next {
@@ -87,8 +92,8 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         }
     }
 
-    fn visit(&mut self, node: u32, span: (f64, f64), open: &mut Stack) {
-        let visited = &self.nodes[node as usize];
+    fn visit(&mut self, node: NodeId, span: (f64, f64), open: &mut Stack) {
+        let visited = &self.nodes[node.place()];
         let visits = visited.visits.fetch_add(1, Ordering::Relaxed) + 1;
         self.trace.nodes += 1;
         self.watcher.tell(|| StabEvent::Visit {
@@ -103,8 +108,8 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
     }
 
     /// Tests the facets in a cut; whether what lies beyond the cut cannot matter any more.
-    fn test_cut(&mut self, node: u32, far: Far) -> bool {
-        let Content::Inner(inner) = &self.nodes[node as usize].content else {
+    fn test_cut(&mut self, node: NodeId, far: Far) -> bool {
+        let Content::Inner(inner) = &self.nodes[node.place()].content else {
             return false;
         };
         for facet in &inner.coplanar {
@@ -124,7 +129,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
     }
 
     /// Tests what of L(v) the ray may hit; hits within the leaf count for its heap.
-    fn test_leaf(&mut self, node: u32, list: &Heap<S::Fragment>, visits: u64, to: f64) {
+    fn test_leaf(&mut self, node: NodeId, list: &Heap<S::Fragment>, visits: u64, to: f64) {
         self.trace.leaves += 1;
         let hits = if list.len() > LONG {
             self.search(node, list, to)
@@ -148,7 +153,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
     }
 
     /// Tests one facet after the other; the hits within the leaf.
-    fn test_all(&mut self, node: u32, list: &Heap<S::Fragment>, to: f64) -> SmallVec<[Hit; 16]> {
+    fn test_all(&mut self, node: NodeId, list: &Heap<S::Fragment>, to: f64) -> SmallVec<[Hit; 16]> {
         let mut hits = SmallVec::new();
         for (place, entry) in list.entries().iter().enumerate() {
             let facet = entry.facet;
@@ -167,12 +172,12 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
     }
 
     /// The hits within the leaf, by their places, of the facets whose boxes the ray meets.
-    fn search(&mut self, node: u32, list: &Heap<S::Fragment>, to: f64) -> SmallVec<[Hit; 16]> {
+    fn search(&mut self, node: NodeId, list: &Heap<S::Fragment>, to: f64) -> SmallVec<[Hit; 16]> {
         let met = match self.met.take() {
             Some(met) => met,
             None => self.test_boxes(node),
         };
-        let leaf = &self.nodes[node as usize];
+        let leaf = &self.nodes[node.place()];
         let within = met.iter().filter(|(_, depth)| depth.low() <= to);
         let hit = |facet: u32| {
             let place = leaf.place(list, facet)?;
@@ -185,7 +190,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
     }
 
     /// Tests the facets of the scene whose boxes the ray meets; those that it hits.
-    fn test_boxes(&mut self, node: u32) -> Vec<(u32, Depth)> {
+    fn test_boxes(&mut self, node: NodeId) -> Vec<(u32, Depth)> {
         let mut met = Vec::new();
         let (query, scene) = (self.query, self.scene);
         let (best, trace, watcher) = (&mut self.best, &mut self.trace, &mut self.watcher);
@@ -217,7 +222,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
 fn push_parts<const D: usize>(
     inner: &Inner<D>,
     ray: &Ray<D>,
-    node: u32,
+    node: NodeId,
     (from, to): (f64, f64),
     open: &mut Stack,
 ) {

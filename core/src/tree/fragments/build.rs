@@ -8,6 +8,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::affine::Affine;
 use crate::geometry::side::{Half, Orientation, Split};
 use crate::interrupt::poll;
+use crate::mesh::handle::NodeId;
 use crate::tree::partition::SplitMix;
 use crate::tree::trace::Watcher;
 
@@ -142,16 +143,16 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
         Ok(())
     }
 
-    fn next_number(&self) -> Result<u32> {
-        narrow(self.tree.nodes.len())
+    fn next_number(&self) -> Result<NodeId> {
+        narrow(self.tree.nodes.len()).map(NodeId)
     }
 
     /// Links a node to the one above.
-    fn hang(&mut self, place: Option<(u32, Half)>, node: u32) {
+    fn hang(&mut self, place: Option<(NodeId, Half)>, node: NodeId) {
         let Some((above, half)) = place else {
             return;
         };
-        let above = &mut self.tree.nodes[above as usize];
+        let above = &mut self.tree.nodes[above.place()];
         match half {
             Half::Minus => above.minus = Some(node),
             Half::Plus => above.plus = Some(node),
@@ -163,7 +164,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
         &mut self,
         pieces: Vec<Piece<S>>,
         cut: &S::Hyperplane,
-        node: u32,
+        node: NodeId,
     ) -> [Vec<Piece<S>>; 2] {
         let (mut minus, mut plus) = (Vec::new(), Vec::new());
         for piece in pieces {

@@ -11,6 +11,7 @@ use crate::geometry::affine::Affine;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
 use crate::interrupt::poll;
+use crate::mesh::handle::NodeId;
 use crate::tree::trace::Watcher;
 
 type Chosen<S> = (
@@ -53,16 +54,16 @@ impl<S: Affine> Chooser<S> {
     }
 
     /// The root of the tree that is grown.
-    pub fn root(&self) -> Option<u32> {
+    pub fn root(&self) -> Option<NodeId> {
         match self {
-            Self::Grown(tree, _) if !tree.nodes().is_empty() => Some(0),
+            Self::Grown(tree, _) if !tree.nodes().is_empty() => Some(NodeId::ROOT),
             Self::OwnFirst(rest) => rest.root(),
             _ => None,
         }
     }
 
     /// The child of a node of the tree that is grown.
-    pub fn below(&self, old: Option<u32>, half: Half) -> Option<u32> {
+    pub fn below(&self, old: Option<NodeId>, half: Half) -> Option<NodeId> {
         match self {
             Self::Grown(tree, _) => tree.child(old?, half),
             Self::OwnFirst(rest) => rest.below(old, half),
@@ -82,7 +83,7 @@ impl<S: Affine> Chooser<S> {
             Self::Policy { policy, top } => Ok(by_policy(policy, *top, open, watcher)),
             Self::Asked(ask) => asked(ask, open, own, watcher),
             Self::Lines(lines) => Ok(through_ends(lines, pieces, own)),
-            Self::Grown(tree, rest) => match open.old.and_then(|n| tree.nodes().get(n as usize)) {
+            Self::Grown(tree, rest) => match open.old.and_then(|n| tree.nodes().get(n.place())) {
                 Some(node) => Ok((node.cut, node.hyperplane.clone(), Reason::Given)),
                 None => rest.choose(open, own, watcher),
             },

@@ -3,6 +3,7 @@
 use super::node::FragmentTree;
 use crate::geometry::affine::{Affine, Polytope};
 use crate::interrupt::poll;
+use crate::mesh::handle::NodeId;
 
 /// The size of a region, in lattice steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,12 +35,12 @@ pub fn measures<S: Affine>(tree: &FragmentTree<S>, whole: &Polytope<S>) -> Vec<M
     let mut found = vec![Measure::default(); tree.nodes().len()];
     let mut pending = Vec::new();
     if !found.is_empty() {
-        pending.push((0u32, whole.clone()));
+        pending.push((NodeId::ROOT, whole.clone()));
     }
     while let Some((number, region)) = pending.pop() {
         poll();
-        found[number as usize] = Measure::of(&region);
-        let node = &tree.nodes()[number as usize];
+        found[number.place()] = Measure::of(&region);
+        let node = &tree.nodes()[number.place()];
         if node.minus.is_none() && node.plus.is_none() {
             continue;
         }

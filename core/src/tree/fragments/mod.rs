@@ -12,6 +12,7 @@
 //! ```
 //! use bspcsg::geometry::affine::{Affine, Viewpoint};
 //! use bspcsg::geometry::dim2::Dim2;
+//! use bspcsg::mesh::handle::NodeId;
 //! use bspcsg::tree::fragments::{back_to_front, build, Piece, Plan, Policy};
 //!
 //! // Two walls, one behind the other, seen from far above.
@@ -23,7 +24,7 @@
 //! let plan = Plan::Policy { policy: Policy::First, top: None, region: None };
 //! let tree = build(pieces.collect(), plan)?;
 //! let eye = Viewpoint::direction(&[0.0, 1.0, 0.0]);
-//! assert_eq!(back_to_front(&tree, &eye), [0, 1]);
+//! assert_eq!(back_to_front(&tree, &eye), [NodeId(0), NodeId(1)]);
 //! # Ok::<(), bspcsg::error::Error>(())
 //! ```
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::affine::{Affine, Polytope};
 use crate::geometry::side::Half;
+use crate::mesh::handle::NodeId;
 
 /// An input of a tree: a convex piece and its number.
 #[derive(Clone, Debug)]
@@ -51,11 +52,11 @@ pub struct Node<S: Affine> {
     /// The coplanar set S(v), as a range of the tree's fragments.
     pub coplanar: Range<u32>,
     /// The subtree on the minus side, unless no facet lies there.
-    pub minus: Option<u32>,
+    pub minus: Option<NodeId>,
     /// The subtree on the plus side, unless no facet lies there.
-    pub plus: Option<u32>,
+    pub plus: Option<NodeId>,
     /// The node above and the side of it on which this one lies.
-    pub parent: Option<(u32, Half)>,
+    pub parent: Option<(NodeId, Half)>,
     /// The number of cuts above.
     pub depth: u32,
 }
@@ -64,7 +65,7 @@ pub struct Node<S: Affine> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crossing {
     /// The node.
-    pub node: u32,
+    pub node: NodeId,
     /// The number of the piece.
     pub piece: u32,
 }
@@ -110,8 +111,8 @@ impl<S: Affine> FragmentTree<S> {
     }
 
     /// The subtree on one side of a node.
-    pub fn child(&self, node: u32, half: Half) -> Option<u32> {
-        let node = self.nodes.get(node as usize)?;
+    pub fn child(&self, node: NodeId, half: Half) -> Option<NodeId> {
+        let node = self.nodes.get(node.place())?;
         match half {
             Half::Minus => node.minus,
             Half::Plus => node.plus,
@@ -124,11 +125,11 @@ impl<S: Affine> FragmentTree<S> {
     ///
     /// # Cost
     /// One division for each cut above.
-    pub fn region(&self, node: u32, whole: &Polytope<S>) -> Option<Polytope<S>> {
+    pub fn region(&self, node: NodeId, whole: &Polytope<S>) -> Option<Polytope<S>> {
         let mut way = Vec::new();
-        let mut next = self.nodes.get(node as usize)?.parent;
+        let mut next = self.nodes.get(node.place())?.parent;
         while let Some((above, half)) = next {
-            let above = self.nodes.get(above as usize)?;
+            let above = self.nodes.get(above.place())?;
             way.push((&above.hyperplane, half));
             next = above.parent;
         }

@@ -3,6 +3,7 @@
 use super::node::FragmentTree;
 use crate::geometry::affine::{Affine, Viewpoint};
 use crate::geometry::side::Side;
+use crate::mesh::handle::NodeId;
 
 /// The side of each node's hyperplane on which the viewpoint lies.
 pub fn sides<S: Affine>(tree: &FragmentTree<S>, eye: &Viewpoint) -> Vec<Side> {
@@ -20,11 +21,11 @@ pub fn sides<S: Affine>(tree: &FragmentTree<S>, eye: &Viewpoint) -> Vec<Side> {
 ///
 /// # Source
 /// Fuchs, Kedem, Naylor 1980.
-pub fn back_to_front<S: Affine>(tree: &FragmentTree<S>, eye: &Viewpoint) -> Vec<u32> {
+pub fn back_to_front<S: Affine>(tree: &FragmentTree<S>, eye: &Viewpoint) -> Vec<NodeId> {
     let mut order = Vec::with_capacity(tree.nodes().len());
     let mut pending = Vec::new();
     if !tree.nodes().is_empty() {
-        pending.push(Step::Enter(0));
+        pending.push(Step::Enter(NodeId::ROOT));
     }
     while let Some(step) = pending.pop() {
         let number = match step {
@@ -34,7 +35,7 @@ pub fn back_to_front<S: Affine>(tree: &FragmentTree<S>, eye: &Viewpoint) -> Vec<
             }
             Step::Enter(number) => number,
         };
-        let node = &tree.nodes()[number as usize];
+        let node = &tree.nodes()[number.place()];
         let (far, near) = match eye.side::<S>(&node.hyperplane) {
             Side::Plus => (node.minus, node.plus),
             Side::Minus | Side::On => (node.plus, node.minus),
@@ -47,6 +48,6 @@ pub fn back_to_front<S: Affine>(tree: &FragmentTree<S>, eye: &Viewpoint) -> Vec<
 }
 
 enum Step {
-    Enter(u32),
-    Emit(u32),
+    Enter(NodeId),
+    Emit(NodeId),
 }

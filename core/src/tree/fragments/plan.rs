@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::geometry::affine::{Affine, Polytope};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
+use crate::mesh::handle::NodeId;
 
 /// The plan by which a tree is to be built.
 pub enum Plan<S: Affine> {
@@ -85,9 +86,9 @@ pub struct Lines {
 /// A region that is still to be divided, if there are pieces in it.
 pub(super) struct Open<S: Affine> {
     pub(super) pieces: Vec<Piece<S>>,
-    pub(super) place: Option<(u32, Half)>,
+    pub(super) place: Option<(NodeId, Half)>,
     pub(super) depth: u32,
     pub(super) region: Option<Polytope<S>>,
     /// The node of the tree that is grown with the same region.
-    pub(super) old: Option<u32>,
+    pub(super) old: Option<NodeId>,
 }

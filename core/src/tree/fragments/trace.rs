@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::node::NodeCut;
 use crate::geometry::side::Half;
+use crate::mesh::handle::NodeId;
 
 /// A region was divided.
 ///
@@ -11,9 +12,9 @@ use crate::geometry::side::Half;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Division {
     /// The node made.
-    pub node: u32,
+    pub node: NodeId,
     /// The node above and the side of it; `None` for the root.
-    pub place: Option<(u32, Half)>,
+    pub place: Option<(NodeId, Half)>,
     /// The number of cuts above.
     pub depth: u32,
     /// The owner of the hyperplane.

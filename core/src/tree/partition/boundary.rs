@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::geometry::side::{Half, Orientation, Split};
 use crate::geometry::space::{overlay, Space};
 use crate::interrupt::poll;
+use crate::mesh::handle::NodeId;
 
 /// The boundary of a tree's set, in convex pieces with In on their minus sides.
 ///
@@ -24,20 +25,21 @@ pub fn boundary<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<S::Fragment>> {
     Ok(pieces)
 }
 
-/// The boundary in convex pieces, each with the preorder number of the inner node it lies in.
+/// The boundary in convex pieces, each with the inner node it lies in, by its place
+/// among the inner nodes in preorder.
 ///
 /// # Order
 /// That of the numbers.
 ///
 /// # Errors
 /// `Internal` if a cut lies in the border of its own region.
-pub fn boundary_of<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<(usize, S::Fragment)>> {
+pub fn boundary_of<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<(NodeId, S::Fragment)>> {
     let mut pieces = Vec::new();
-    let mut node = 0;
+    let mut nodes = NodeId::all();
     for_each_cut(tree, |cut| {
         let found = walls(cut, cut.sheet().span.clone())?;
+        let node = nodes.next().unwrap_or_default();
         pieces.extend(found.into_iter().map(|piece| (node, piece)));
-        node += 1;
         Ok(())
     })?;
     Ok(pieces)

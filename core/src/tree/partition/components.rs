@@ -5,22 +5,23 @@ use super::node::{Label, PartitionTree};
 use crate::error::Result;
 use crate::geometry::space::Space;
 use crate::interrupt::poll;
+use crate::mesh::handle::NodeId;
 
 /// A piece of the boundary and the parts on its two sides.
 #[derive(Clone, Debug)]
 pub struct Wall<S: Space> {
     /// The piece, the set on its minus side.
     pub fragment: S::Fragment,
-    /// The number of the set's part on the minus side.
-    pub inside: usize,
-    /// The number of the complement's part on the plus side.
-    pub outside: usize,
+    /// The set's part on the minus side.
+    pub inside: NodeId,
+    /// The complement's part on the plus side.
+    pub outside: NodeId,
 }
 
 /// The boundary of a tree's set, each piece with the connected parts that it separates.
 ///
 /// Parts are open: places that touch in less than a piece of a hyperplane are not connected. The
-/// numbers of parts are those of their first leaves, and have no meaning beyond telling parts apart.
+/// name of a part is its first leaf, and has no meaning beyond telling parts apart.
 ///
 /// # Order
 /// That of the nodes, breadth first.
@@ -52,35 +53,35 @@ pub fn walls<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<Wall<S>>> {
 
 /// Disjoint sets of leaves, each named by its smallest member.
 struct Parts {
-    parent: Vec<usize>,
+    parent: Vec<NodeId>,
 }
 
 impl Parts {
     fn new(count: usize) -> Self {
         Self {
-            parent: (0..count).collect(),
+            parent: NodeId::all().take(count).collect(),
         }
     }
 
-    fn of(&self, leaf: usize) -> usize {
+    fn of(&self, leaf: NodeId) -> NodeId {
         let mut at = leaf;
-        while self.parent[at] != at {
-            at = self.parent[at];
+        while self.parent[at.place()] != at {
+            at = self.parent[at.place()];
         }
         at
     }
 
-    fn join(&mut self, a: usize, b: usize) {
+    fn join(&mut self, a: NodeId, b: NodeId) {
         let (a, b) = (self.halved(a), self.halved(b));
-        self.parent[a.max(b)] = a.min(b);
+        self.parent[a.max(b).place()] = a.min(b);
     }
 
     /// The name of a leaf's set, the way there shortened for the next question.
-    fn halved(&mut self, leaf: usize) -> usize {
+    fn halved(&mut self, leaf: NodeId) -> NodeId {
         let mut at = leaf;
-        while self.parent[at] != at {
-            self.parent[at] = self.parent[self.parent[at]];
-            at = self.parent[at];
+        while self.parent[at.place()] != at {
+            self.parent[at.place()] = self.parent[self.parent[at.place()].place()];
+            at = self.parent[at.place()];
         }
         at
     }

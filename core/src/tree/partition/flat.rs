@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::geometry::side::{Half, Split};
 use crate::geometry::space::Space;
 use crate::interrupt::poll;
+use crate::mesh::handle::NodeId;
 
 /// A tree as a list, parents before children.
 pub struct Flat<S: Space> {
@@ -18,14 +19,14 @@ enum FlatNode<S: Space> {
     Cut(FlatCut<S>),
 }
 
-/// An inner node and the numbers of its children.
+/// An inner node and its children.
 pub struct FlatCut<S: Space> {
     /// The node.
     pub cut: Cut<S>,
-    /// The number of the minus child.
-    pub minus: usize,
-    /// The number of the plus child.
-    pub plus: usize,
+    /// The minus child.
+    pub minus: NodeId,
+    /// The plus child.
+    pub plus: NodeId,
 }
 
 /// A piece of a cut between two leaves.
@@ -33,9 +34,9 @@ pub struct Contact<S: Space> {
     /// The piece, oriented as the cut.
     pub fragment: S::Fragment,
     /// The leaf on the cut's minus side.
-    pub minus: usize,
+    pub minus: NodeId,
     /// The leaf on its plus side.
-    pub plus: usize,
+    pub plus: NodeId,
 }
 
 impl<S: Space> Flat<S> {
@@ -48,9 +49,9 @@ impl<S: Space> Flat<S> {
             nodes.push(match next {
                 PartitionTree::Leaf(label) => FlatNode::Leaf(label),
                 PartitionTree::Cut(cut) => {
-                    let minus = nodes.len() + 1 + pending.len();
+                    let next = nodes.len() + 1 + pending.len();
                     pending.extend([cut.child(Half::Minus), cut.child(Half::Plus)]);
-                    let plus = minus + 1;
+                    let [minus, plus] = [next, next + 1].map(NodeId::of);
                     FlatNode::Cut(FlatCut { cut, minus, plus })
                 }
             });
@@ -63,9 +64,10 @@ impl<S: Space> Flat<S> {
         self.nodes.len()
     }
 
-    /// The numbers of the leaves.
-    pub fn leaves(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.len()).filter(|&i| self.label(i).is_some())
+    /// The leaves.
+    pub fn leaves(&self) -> impl Iterator<Item = NodeId> + '_ {
+        let nodes = NodeId::all().take(self.len());
+        nodes.filter(|&node| self.label(node).is_some())
     }
 
     /// The inner nodes in order.
@@ -77,17 +79,17 @@ impl<S: Space> Flat<S> {
     }
 
     /// Return the label of a leaf; `None` for an inner node.
-    pub fn label(&self, node: usize) -> Option<Label> {
-        match &self.nodes[node] {
+    pub fn label(&self, node: NodeId) -> Option<Label> {
+        match &self.nodes[node.place()] {
             FlatNode::Leaf(label) => Some(*label),
             FlatNode::Cut(_) => None,
         }
     }
 
     /// The leaf that a rule of sides leads to.
-    pub fn leaf_at(&self, reference: impl Fn(&S::Hyperplane) -> Half) -> usize {
-        let mut at = 0;
-        while let FlatNode::Cut(node) = &self.nodes[at] {
+    pub fn leaf_at(&self, reference: impl Fn(&S::Hyperplane) -> Half) -> NodeId {
+        let mut at = NodeId::ROOT;
+        while let FlatNode::Cut(node) = &self.nodes[at.place()] {
             at = match reference(node.cut.hyperplane()) {
                 Half::Minus => node.minus,
                 Half::Plus => node.plus,
@@ -100,12 +102,12 @@ impl<S: Space> Flat<S> {
     ///
     /// # Errors
     /// `Internal` if a cut lies in the border of its own region.
-    pub fn beside(&self, node: usize, piece: S::Fragment) -> Result<Vec<(S::Fragment, usize)>> {
+    pub fn beside(&self, node: NodeId, piece: S::Fragment) -> Result<Vec<(S::Fragment, NodeId)>> {
         let mut found = Vec::new();
         let mut pending = vec![(node, piece)];
         while let Some((at, piece)) = pending.pop() {
             poll();
-            let FlatNode::Cut(node) = &self.nodes[at] else {
+            let FlatNode::Cut(node) = &self.nodes[at.place()] else {
                 found.push((piece, at));
                 continue;
             };
@@ -149,14 +151,14 @@ impl<S: Space> Flat<S> {
     }
 
     /// The tree with other labels.
-    pub fn relabelled(&self, label: impl Fn(usize) -> Label) -> PartitionTree<S> {
+    pub fn relabelled(&self, label: impl Fn(NodeId) -> Label) -> PartitionTree<S> {
         let mut trees: Vec<PartitionTree<S>> = Vec::new();
         trees.resize(self.len(), PartitionTree::EMPTY);
         for (i, node) in self.nodes.iter().enumerate().rev() {
             trees[i] = match node {
-                FlatNode::Leaf(_) => PartitionTree::Leaf(label(i)),
+                FlatNode::Leaf(_) => PartitionTree::Leaf(label(NodeId::of(i))),
                 FlatNode::Cut(node) => {
-                    let [minus, plus] = [node.minus, node.plus].map(|at| trees[at].clone());
+                    let [minus, plus] = [node.minus, node.plus].map(|at| trees[at.place()].clone());
                     node.cut.with_children(minus, plus)
                 }
             };

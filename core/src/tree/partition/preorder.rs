@@ -7,6 +7,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::{Half, Split};
 use crate::geometry::space::{Region, Space};
 use crate::interrupt::poll;
+use crate::mesh::handle::NodeId;
 
 /// A node in preorder: what divides its region, or what its region is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,7 +52,7 @@ pub fn from_preorder<S: Space>(
         entries,
         plus: &plus,
         region: Region::new(frame),
-        steps: vec![Step::Visit(0, None)],
+        steps: vec![Step::Visit(NodeId::ROOT, None)],
         done: Vec::new(),
     };
     while let Some(step) = maker.steps.pop() {
@@ -68,10 +69,10 @@ fn bad_list() -> Error {
     )
 }
 
-/// For each inner node the position of its plus child.
-fn plus_children<H>(entries: &[Entry<H>]) -> Result<Vec<usize>> {
-    let mut plus = vec![0; entries.len()];
-    let mut roots: Vec<usize> = Vec::new();
+/// For each inner node the place of its plus child.
+fn plus_children<H>(entries: &[Entry<H>]) -> Result<Vec<NodeId>> {
+    let mut plus = vec![NodeId::ROOT; entries.len()];
+    let mut roots: Vec<NodeId> = Vec::new();
     for (i, entry) in entries.iter().enumerate().rev() {
         if let Entry::Cut(_) = entry {
             let (minus, other) = (roots.pop(), roots.pop());
@@ -80,7 +81,7 @@ fn plus_children<H>(entries: &[Entry<H>]) -> Result<Vec<usize>> {
             };
             plus[i] = other;
         }
-        roots.push(i);
+        roots.push(NodeId::of(i));
     }
     if roots.len() == 1 {
         Ok(plus)
@@ -91,7 +92,7 @@ fn plus_children<H>(entries: &[Entry<H>]) -> Result<Vec<usize>> {
 
 struct Maker<'a, S: Space> {
     entries: &'a [Entry<S::Hyperplane>],
-    plus: &'a [usize],
+    plus: &'a [NodeId],
     region: Region<S>,
     steps: Vec<Step<S>>,
     done: Vec<PartitionTree<S>>,
@@ -101,7 +102,7 @@ struct Maker<'a, S: Space> {
 type Above<S> = Option<(Arc<Sheet<S>>, Half, usize)>;
 
 enum Step<S: Space> {
-    Visit(usize, Above<S>),
+    Visit(NodeId, Above<S>),
     Join(Arc<Sheet<S>>),
 }
 
@@ -115,7 +116,7 @@ impl<S: Space> Maker<'_, S> {
                 self.done.push(PartitionTree::cut(sheet, minus, plus));
                 Ok(())
             }
-            Step::Visit(at, above) => match &self.entries[at] {
+            Step::Visit(at, above) => match &self.entries[at.place()] {
                 Entry::Leaf(label) => {
                     self.done.push(PartitionTree::Leaf(*label));
                     Ok(())
@@ -125,15 +126,16 @@ impl<S: Space> Maker<'_, S> {
         }
     }
 
-    fn divide(&mut self, at: usize, cut: &S::Hyperplane, above: Above<S>) -> Result<()> {
+    fn divide(&mut self, at: NodeId, cut: &S::Hyperplane, above: Above<S>) -> Result<()> {
         if let Some((sheet, half, depth)) = &above {
             self.region.truncate(*depth);
             self.region.push(S::hyperplane(&sheet.span).clone(), *half);
         }
+        let minus = NodeId::of(at.place() + 1);
         let Some(span) = self.region.span(cut) else {
             let only = match side_of_region::<S>(cut, above.as_ref())? {
-                Half::Minus => at + 1,
-                Half::Plus => self.plus[at],
+                Half::Minus => minus,
+                Half::Plus => self.plus[at.place()],
             };
             self.steps.push(Step::Visit(only, above));
             return Ok(());
@@ -144,8 +146,8 @@ impl<S: Space> Maker<'_, S> {
         let below = |half| Some((Arc::clone(&sheet), half, depth));
         self.steps.push(Step::Join(Arc::clone(&sheet)));
         self.steps
-            .push(Step::Visit(self.plus[at], below(Half::Plus)));
-        self.steps.push(Step::Visit(at + 1, below(Half::Minus)));
+            .push(Step::Visit(self.plus[at.place()], below(Half::Plus)));
+        self.steps.push(Step::Visit(minus, below(Half::Minus)));
         Ok(())
     }
 }

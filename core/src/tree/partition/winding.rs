@@ -10,6 +10,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::{Half, Orientation};
 use crate::geometry::space::{overlay, Space};
 use crate::interrupt::poll;
+use crate::mesh::handle::NodeId;
 
 /// A tree labelled by winding numbers.
 #[derive(Clone, Debug)]
@@ -36,15 +37,18 @@ pub fn winding_tree<S: Space>(
     let flat = Flat::new(tree);
     let (jumps, disjoint) = flat.jumps()?;
     let numbers = flat.numbers(&jumps, flat.leaf_at(reference), number)?;
-    let simple = disjoint && flat.leaves().all(|leaf| matches!(numbers[leaf], 0 | 1));
-    let tree = flat.relabelled(|leaf| Label::from_inside(inside(numbers[leaf])));
+    let simple = disjoint
+        && flat
+            .leaves()
+            .all(|leaf| matches!(numbers[leaf.place()], 0 | 1));
+    let tree = flat.relabelled(|leaf| Label::from_inside(inside(numbers[leaf.place()])));
     Ok(Winding { tree, simple })
 }
 
 /// Two leaves on the sides of a piece of a cut, and the number on the minus side minus the other.
 struct Jump {
-    minus: usize,
-    plus: usize,
+    minus: NodeId,
+    plus: NodeId,
     rise: i32,
 }
 
@@ -73,23 +77,23 @@ impl<S: Space> Flat<S> {
         Ok(())
     }
 
-    /// The winding number of each leaf, by node index; zero for inner nodes.
-    fn numbers(&self, jumps: &[Jump], start: usize, number: i32) -> Result<Vec<i32>> {
+    /// The winding number of each leaf, by node; zero for inner nodes.
+    fn numbers(&self, jumps: &[Jump], start: NodeId, number: i32) -> Result<Vec<i32>> {
         let mut neighbours = vec![Vec::new(); self.len()];
         for jump in jumps {
-            neighbours[jump.minus].push((jump.plus, -jump.rise));
-            neighbours[jump.plus].push((jump.minus, jump.rise));
+            neighbours[jump.minus.place()].push((jump.plus, -jump.rise));
+            neighbours[jump.plus.place()].push((jump.minus, jump.rise));
         }
         let mut numbers = vec![None; self.len()];
-        numbers[start] = Some(number);
+        numbers[start.place()] = Some(number);
         let mut pending = vec![(start, number)];
         while let Some((leaf, number)) = pending.pop() {
             poll();
-            for &(next, rise) in &neighbours[leaf] {
+            for &(next, rise) in &neighbours[leaf.place()] {
                 let expected = number + rise;
-                match numbers[next] {
+                match numbers[next.place()] {
                     None => {
-                        numbers[next] = Some(expected);
+                        numbers[next.place()] = Some(expected);
                         pending.push((next, expected));
                     }
                     Some(known) if known != expected => return Err(not_closed()),

@@ -111,8 +111,8 @@ impl Boundary {
         let edge = |wall: &Wall<Dim2>| Edge {
             line: *wall.fragment.line(),
             ends: wall.fragment.points().map(|p| number(&p)),
-            inside: as_number(wall.inside),
-            outside: as_number(wall.outside),
+            inside: wall.inside.0,
+            outside: wall.outside.0,
         };
         let edges = joined.iter().map(edge).collect();
         Ok(Self::sorted(classify_corner(tree), corners, edges))

@@ -21,6 +21,7 @@ use crate::geometry::polygon::{straddle, Chord, Corner, Polygon, Sides};
 use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
+use crate::mesh::handle::NodeId;
 
 /// A convex polygon and the planes that bound it within its own, once somebody asks for them.
 #[derive(Debug)]
@@ -99,7 +100,7 @@ pub struct Cutting {
 
 #[derive(Clone, Copy)]
 enum Child {
-    Knot(u32),
+    Knot(NodeId),
     Piece(u32),
 }
 
@@ -114,7 +115,7 @@ type Cutters = SmallVec<[u32; 8]>;
 struct Task {
     polygon: Polygon,
     cutters: Cutters,
-    parent: Option<(u32, usize)>,
+    parent: Option<(NodeId, usize)>,
 }
 
 /// A cutter that divides a piece.
@@ -152,7 +153,7 @@ pub fn cut_up(polygon: Polygon, cutters: &[Cutter]) -> Option<Cutting> {
         let parent = task.parent;
         let child = partition.grow(task, &mut open)?;
         if let Some((knot, side)) = parent {
-            partition.knots[knot as usize].children[side] = child;
+            partition.knots[knot.place()].children[side] = child;
         }
     }
     let ties = partition.ties()?;
@@ -176,7 +177,7 @@ impl Partition<'_> {
         self.leave_coplanar(&found, &mut rest)?;
         let cut = self.plane(found.cutter);
         let (minus, plus) = task.polygon.divided(cut, &found.sides, &found.chord);
-        let knot = as_number(self.knots.len());
+        let knot = NodeId::of(self.knots.len());
         self.knots.push(Knot {
             children: [Child::Piece(0); 2],
             chord: found.chord,
@@ -303,7 +304,7 @@ impl Partition<'_> {
             poll();
             let knot = match at {
                 Child::Piece(piece) => return Some((piece, link)),
-                Child::Knot(knot) => &self.knots[knot as usize],
+                Child::Knot(knot) => &self.knots[knot.place()],
             };
             let cut = self.plane(knot.cutter);
             let sides = [link[0].side_of(cut), link[1].side_of(cut)];

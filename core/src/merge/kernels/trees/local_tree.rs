@@ -14,6 +14,7 @@ use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Polygon, PolygonSplit};
 use crate::geometry::side::{Half, Orientation, Side};
 use crate::interrupt::poll;
+use crate::mesh::handle::NodeId;
 
 /// A convex piece of boundary with its multiplicity.
 ///
@@ -38,11 +39,21 @@ pub struct Sided {
     pub plus: i32,
 }
 
+/// A leaf by the place of its label.
+#[derive(Clone, Copy, Debug)]
+struct Region(u32);
+
+impl Region {
+    fn place(self) -> usize {
+        self.0 as usize
+    }
+}
+
 /// A subtree: a node, or a leaf.
 #[derive(Clone, Copy, Debug)]
 enum Child {
-    Node(u32),
-    Leaf(u32),
+    Node(NodeId),
+    Leaf(Region),
 }
 
 #[derive(Debug)]
@@ -66,7 +77,7 @@ struct Link {
 
 struct Task {
     pieces: Vec<Weighted>,
-    parent: Option<(u32, usize)>,
+    parent: Option<(NodeId, usize)>,
 }
 
 impl LocalTree {
@@ -87,12 +98,12 @@ impl LocalTree {
             poll();
             let child = if task.pieces.is_empty() {
                 tree.labels.push(0);
-                Child::Leaf(as_number(tree.labels.len()) - 1)
+                Child::Leaf(Region(as_number(tree.labels.len()) - 1))
             } else {
                 tree.grow(task.pieces, &mut links, &mut open)
             };
             if let Some((node, side)) = task.parent {
-                tree.nodes[node as usize].children[side] = child;
+                tree.nodes[node.place()].children[side] = child;
             }
         }
         tree.spread_labels(links, corner, label);
@@ -114,9 +125,9 @@ impl LocalTree {
 
     fn root(&self) -> Child {
         if self.nodes.is_empty() {
-            Child::Leaf(0)
+            Child::Leaf(Region(0))
         } else {
-            Child::Node(0)
+            Child::Node(NodeId::ROOT)
         }
     }
 
@@ -126,7 +137,7 @@ impl LocalTree {
         links: &mut Vec<Link>,
         open: &mut Vec<Task>,
     ) -> Child {
-        let node = as_number(self.nodes.len());
+        let node = NodeId::of(self.nodes.len());
         let pivot = pieces.swap_remove(pieces.len() / 2);
         let cut = Arc::clone(pivot.polygon.support());
         let (mut minus, mut plus) = (Vec::new(), Vec::new());
@@ -141,7 +152,7 @@ impl LocalTree {
         });
         self.nodes.push(LocalNode {
             cut,
-            children: [Child::Leaf(0); 2],
+            children: [Child::Leaf(Region(0)); 2],
         });
         open.push(Task {
             pieces: plus,
@@ -159,25 +170,25 @@ impl LocalTree {
     /// The links connect all regions: each ties a region of a node's minus subtree to one of its
     /// plus subtree, and there is one link for every node.
     fn spread_labels(&mut self, links: Vec<Link>, corner: &Lattice, label: i32) {
-        let mut neighbours: Vec<Vec<(u32, i32)>> = vec![Vec::new(); self.labels.len()];
+        let mut neighbours: Vec<Vec<(Region, i32)>> = vec![Vec::new(); self.labels.len()];
         for (node, link) in links.into_iter().enumerate() {
             poll();
             let [minus, plus] = self.nodes[node].children;
             let (below, polygon) = self.any_leaf(minus, link.polygon);
             let (above, _) = self.any_leaf(plus, polygon);
-            neighbours[below as usize].push((above, -link.weight));
-            neighbours[above as usize].push((below, link.weight));
+            neighbours[below.place()].push((above, -link.weight));
+            neighbours[above.place()].push((below, link.weight));
         }
         let start = self.leaf_at(corner);
         let mut known = vec![false; self.labels.len()];
-        known[start as usize] = true;
-        self.labels[start as usize] = label;
+        known[start.place()] = true;
+        self.labels[start.place()] = label;
         let mut open = vec![start];
         while let Some(leaf) = open.pop() {
-            let here = self.labels[leaf as usize];
-            for (next, change) in &neighbours[leaf as usize] {
-                if !std::mem::replace(&mut known[*next as usize], true) {
-                    self.labels[*next as usize] = here + change;
+            let here = self.labels[leaf.place()];
+            for (next, change) in &neighbours[leaf.place()] {
+                if !std::mem::replace(&mut known[next.place()], true) {
+                    self.labels[next.place()] = here + change;
                     open.push(*next);
                 }
             }
@@ -185,13 +196,13 @@ impl LocalTree {
     }
 
     /// A leaf that some piece of the polygon borders or lies in, and that piece.
-    fn any_leaf(&self, from: Child, polygon: Polygon) -> (u32, Polygon) {
+    fn any_leaf(&self, from: Child, polygon: Polygon) -> (Region, Polygon) {
         let (mut at, mut polygon) = (from, polygon);
         loop {
             poll();
             let node = match at {
                 Child::Leaf(leaf) => return (leaf, polygon),
-                Child::Node(node) => &self.nodes[node as usize],
+                Child::Node(node) => &self.nodes[node.place()],
             };
             at = match polygon.split(&node.cut) {
                 PolygonSplit::Plus => node.children[1],
@@ -204,13 +215,13 @@ impl LocalTree {
         }
     }
 
-    fn leaf_at(&self, corner: &Lattice) -> u32 {
+    fn leaf_at(&self, corner: &Lattice) -> Region {
         let mut at = self.root();
         loop {
             match at {
                 Child::Leaf(leaf) => return leaf,
                 Child::Node(node) => {
-                    let node = &self.nodes[node as usize];
+                    let node = &self.nodes[node.place()];
                     at = node.children[usize::from(node.cut.side_of_corner(corner) == Half::Plus)];
                 }
             }
@@ -222,9 +233,9 @@ impl LocalTree {
         let mut at = self.root();
         loop {
             match at {
-                Child::Leaf(leaf) => return self.labels[leaf as usize],
+                Child::Leaf(leaf) => return self.labels[leaf.place()],
                 Child::Node(node) => {
-                    let node = &self.nodes[node as usize];
+                    let node = &self.nodes[node.place()];
                     at = node.children[usize::from(node.cut.side_of_lattice(point) == Side::Plus)];
                 }
             }
@@ -239,7 +250,7 @@ impl LocalTree {
             poll();
             let node = match at {
                 Child::Leaf(leaf) => {
-                    let label = self.labels[leaf as usize];
+                    let label = self.labels[leaf.place()];
                     found.push(Sided {
                         polygon,
                         minus: label,
@@ -247,7 +258,7 @@ impl LocalTree {
                     });
                     continue;
                 }
-                Child::Node(node) => &self.nodes[node as usize],
+                Child::Node(node) => &self.nodes[node.place()],
             };
             if let Some(orientation) = polygon.support().coincides(&node.cut) {
                 self.coplanar_sides(node, polygon, orientation, &mut found);
@@ -288,8 +299,8 @@ impl LocalTree {
         let mut open = vec![(from, polygon)];
         while let Some((at, polygon)) = open.pop() {
             match at {
-                Child::Leaf(leaf) => found.push((polygon, self.labels[leaf as usize])),
-                Child::Node(node) => descend(polygon, &self.nodes[node as usize], &mut open),
+                Child::Leaf(leaf) => found.push((polygon, self.labels[leaf.place()])),
+                Child::Node(node) => descend(polygon, &self.nodes[node.place()], &mut open),
             }
         }
         found

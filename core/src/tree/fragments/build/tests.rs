@@ -33,10 +33,23 @@ fn by_policy<S: Affine>(pieces: Vec<Piece<S>>, policy: Policy) -> FragmentTree<S
 fn crossing_segments_make_three_fragments() {
     let tree = by_policy(cross(), Policy::First);
     assert_eq!(tree.fragments().len(), 3);
-    assert_eq!(tree.crossings(), [Crossing { node: 0, piece: 1 }]);
+    assert_eq!(
+        tree.crossings(),
+        [Crossing {
+            node: NodeId::ROOT,
+            piece: 1
+        }]
+    );
     let links: Vec<_> = tree.nodes().iter().map(|n| (n.minus, n.plus)).collect();
-    assert_eq!(links, [(Some(1), Some(2)), (None, None), (None, None)]);
-    assert_eq!(tree.nodes()[2].parent, Some((0, Half::Plus)));
+    assert_eq!(
+        links,
+        [
+            (Some(NodeId(1)), Some(NodeId(2))),
+            (None, None),
+            (None, None)
+        ]
+    );
+    assert_eq!(tree.nodes()[2].parent, Some((NodeId::ROOT, Half::Plus)));
 }
 
 #[test]
