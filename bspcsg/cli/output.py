@@ -74,13 +74,13 @@ class Output:
                 click.echo(json.dumps({"schema": SCHEMA, **document}, allow_nan=False))
         elif line and not (self.taken and self.verbosity < 0):
             with status.hidden():
-                click.echo(line, err=self.taken)
+                click.echo(terminal.harmless(line), err=self.taken)
 
     def detail(self, line: str) -> None:
         """Say on standard error what only ``--verbose`` asks for."""
         if self.verbosity > 0:
             with status.hidden():
-                click.echo(line, err=True)
+                click.echo(terminal.harmless(line), err=True)
 
     @property
     def advises(self) -> bool:

@@ -26,7 +26,7 @@ def table_text(
     right : sequence of str
         Columns to align at the right.
     """
-    listed = [list(row) for row in rows]
+    columns, *listed = [[terminal.harmless(entry) for entry in row] for row in (columns, *rows)]
     entries = list(zip(columns, *listed, strict=True))
     width = terminal.width()
     # A table in a pipe or a log must not lose letters.

@@ -1,6 +1,7 @@
 """The look of the terminal: colours and widths by the conventions of the command line."""
 
 import os
+import re
 import shutil
 import sys
 from typing import TextIO
@@ -11,6 +12,9 @@ from . import status
 
 #: Colours of what a line begins with.
 _COLOURS = {"error": "red", "warning": "yellow", "note": "cyan"}
+
+#: Characters that a terminal takes for commands; lines and columns may be broken.
+_CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 #: The least width that a table is fitted to.
 _NARROWEST = 40
@@ -26,6 +30,11 @@ def wants_colour(stream: TextIO) -> bool:
     return os.environ.get("TERM") != "dumb" and stream.isatty()
 
 
+def harmless(text: str) -> str:
+    """Return a text in which names of files cannot steer the terminal."""
+    return _CONTROLS.sub("\N{REPLACEMENT CHARACTER}", text)
+
+
 def labelled(label: str, line: str) -> str:
     """Return a line after a label such as "note", for standard error."""
     if wants_colour(sys.stderr):
@@ -37,7 +46,8 @@ def labelled(label: str, line: str) -> str:
 def say(label: str, line: str, before: str = "") -> None:
     """Say a line with its label on standard error."""
     with status.hidden():
-        click.echo(before + labelled(label, line), err=True, color=wants_colour(sys.stderr))
+        told = before + labelled(label, harmless(line))
+        click.echo(told, err=True, color=wants_colour(sys.stderr))
 
 
 def say_error(message: str) -> None:

@@ -28,7 +28,7 @@ def describe(node: ExpressionNode, factors: Factors, mesh: Mesh | None) -> str:
     if isinstance(content, ConstantLeaf):
         return "all of space" if content.full else "empty"
     # Its bounds are not known before a mesh is made.
-    return ("empty" if content.result.is_empty else "evaluated") + moved
+    return ("empty" if content.result.is_empty else "evaluated, without a mesh") + moved
 
 
 def _size(faces: int, bounds: Any) -> str:

@@ -299,3 +299,35 @@ def test_nothing_is_under_way_in_pipes(folder: Path, monkeypatch: pytest.MonkeyP
         monkeypatch.setenv("TERM", name)
         with status.watched("work", quiet):
             assert status._line is None
+
+
+@POSIX
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [
+        ("info", 0),
+        ("check", 0),
+        ("convert --to stl --outdir new", 0),
+        ("compare a.off", 1),
+        ("union a.off --unit in -o x.3mf", 0),
+        ("repair -o x.ply", 0),
+        ("view --no-open -o x.html", 0),
+    ],
+)
+def test_names_do_not_steer_the_terminal(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch, line: str, code: int
+) -> None:
+    """Names of files that are there, and of those that are not: neither title nor cursor moves."""
+    name = "\x1b]0;title\x07\x9b2J b.stl"
+    verb, *words = line.split()
+    at_terminal(monkeypatch, 80)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    put(name, cuboid((0, 0, 0), (0.1, 0.2, 0.3)))
+    found, out, err = ran(capsys, verb, name, *words, "-v")
+    missing, _, refusal = ran(capsys, verb, f"no{name}", *words)
+    assert (found, missing) == (code, 3), err + refusal
+    for told in (out + err, refusal):
+        assert not re.search(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]", re.sub(r"\x1b\[\d+m", "", told))
+    shown = "\ufffd]0;title\ufffd\ufffd2J b."
+    # Where the name is no part of the result, only the missing file is named.
+    assert shown in refusal and (shown in out + err or verb in {"union", "repair", "view"})

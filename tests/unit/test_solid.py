@@ -293,7 +293,7 @@ def test_arrays_in_arrays_out(op: Any) -> None:
 def test_repr_of_large_results_makes_no_mesh() -> None:
     large = b.sphere(1, segments=256) - b.cube(3)
     assert large.volume > 0
-    assert repr(large) == "Solid(evaluated)"
+    assert repr(large) == "Solid(evaluated, without a mesh)"
     assert large.faces is large.to_mesh().faces and "triangles" in repr(large)
 
 
@@ -306,14 +306,14 @@ def test_repr_tells_what_is_known_and_evaluates_nothing() -> None:
     assert difference.volume == 7
     count = len((b.cube(2) - a).faces)
     assert repr(difference) == f"Solid({count} triangles, bounds (0, 0, 0) to (2, 2, 2))"
-    assert repr(difference.rotate(30)) == "Solid(evaluated, transformed)"
+    assert repr(difference.rotate(30)) == "Solid(evaluated, without a mesh, transformed)"
     moved = difference.translate(1, 0, 0)
     assert moved.volume == difference.volume
     assert repr(moved) == f"Solid({count} triangles, bounds (1, 0, 0) to (3, 2, 2))"
     assert repr(pickle.loads(pickle.dumps(difference))) == repr(difference)
     endless = b.half_space((0, 0, 1)) - a
     assert endless.classify([(0.5, 0.5, 0.5)])[0] == -1
-    assert repr(endless) == "Solid(evaluated)"
+    assert repr(endless) == "Solid(evaluated, without a mesh)"
     assert repr(~a) == "Solid(pending: 1 operand)"
     assert repr(b.half_space((0, 0, 1))) == "Solid(half-space)"
     assert repr(b.Solid.empty()) == "Solid(empty)"
