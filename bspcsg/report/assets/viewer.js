@@ -1,4 +1,4 @@
-/*! bspcsg viewer, made of sources 2155979b15f9d0f097ac50f2ad14192634113ae66ad6f92f2a11925c74e8b066, with three.js 0.187.0:
+/*! bspcsg viewer, made of sources 4ee33bb5df64a58cf12e7e930415d88bd38fde95b014c4dfffbc5fb1fc82ab52, with three.js 0.187.0:
 The MIT License
 
 Copyright © 2010-2026 three.js authors

@@ -1,4 +1,4 @@
-// How roughly a moving view is drawn: by the time of its pictures, whatever draws them.
+// The roughness with which a moving view is drawn: by the time of its pictures, whatever draws them.
 
 // Milliseconds that a picture of a moving view may take: thirty pictures a second.
 const MOST = 33;
@@ -38,7 +38,7 @@ export class Pace {
     this.done = 0;
   }
 
-  /** How to draw while the view moves. */
+  /** The way to draw while the view moves. */
   get way() {
     return WAYS[this.level];
   }
