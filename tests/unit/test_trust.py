@@ -3,13 +3,19 @@
 import dataclasses
 import re
 import shlex
+import tomllib
 from collections.abc import Callable
+from importlib import metadata
+from itertools import takewhile
 from pathlib import Path
 
+import click
 import pytest
 
 import peers
+from bspcsg.bench.cases import CASES
 from bspcsg.bench.engines import ENGINES, Engine
+from bspcsg.cli.main import commands
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/trust.md").read_text(encoding="utf-8")
@@ -35,6 +41,62 @@ def test_commands_name_what_exists(line: str) -> None:
     else:
         paths = [word for word in words if word.startswith(("scripts/", "tests/"))]
         assert paths and all((ROOT / path).exists() for path in paths)
+
+
+@pytest.mark.parametrize("line", re.findall(r"`\.venv/bin/bspcsg ([^`]*)`", PAGE))
+def test_lines_for_the_program_are_understood(line: str) -> None:
+    """Options, cases and engines are such that the program has; files are there."""
+    verb, *words = shlex.split(line)
+    command = commands.get_command(click.Context(commands), verb)
+    assert command is not None
+    known = {option for parameter in command.params for option in parameter.opts}
+    assert {word for word in words if word.startswith("--")} <= known
+    asked = words[words.index("--against") + 1].split(",") if "--against" in words else []
+    assert set(asked) <= ({*ENGINES} if verb == "bench" else {"pymeshlab", "openscad"})
+    names = list(takewhile(lambda word: not word.startswith("--"), words))
+    assert all(name in CASES or (ROOT / name).is_file() for name in names)
+
+
+def rows_of_engines() -> list[list[str]]:
+    lines = PAGE.partition("| exactness |")[2].splitlines()
+    return [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines if "`" in line]
+
+
+def test_every_engine_has_a_line_that_shows_it() -> None:
+    rows = rows_of_engines()
+    assert [len(row) for row in rows] == [6] * 8 and all(all(row) for row in rows)
+    named = " ".join(row[0] for row in rows)
+    engines = ("bspcsg", "manifold3d", "CGAL", "libigl", "trueform", "MeshLib", "OpenSCAD")
+    assert all(name in named for name in engines)
+    assert all(row[-1].startswith(("`scripts/", "`.venv/bin/bspcsg ")) for row in rows)
+
+
+@pytest.mark.parametrize(
+    ("package", "row", "told", "own"),
+    [
+        ("manifold3d", "manifold3d", "Apache-2.0", "Apache"),
+        ("libigl", "libigl", "MPL-2.0", "Mozilla Public License 2.0"),
+        ("pymeshlab", "CGAL, as", "pymeshlab GPL-3.0", "GPL3"),
+        ("trueform", "trueform", "noncommercial or paid", "Noncommercial"),
+        ("meshlib", "MeshLib", "noncommercial or paid", "NON-COMMERCIAL"),
+    ],
+)
+def test_licences_are_those_that_packages_state(
+    package: str, row: str, told: str, own: str
+) -> None:
+    assert any(cells[0].startswith(row) and told in cells[3] for cells in rows_of_engines())
+    try:
+        about = metadata.distribution(package)
+    except metadata.PackageNotFoundError:
+        pytest.skip(f"{package} is not installed")
+    texts = [file.read_text() for file in about.files or () if file.name == "LICENSE"]
+    assert any(own in text for text in (about.read_text("METADATA") or "", *texts))
+
+
+def test_our_licence_is_the_one_that_the_page_tells() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert rows_of_engines()[0][:4:3] == ["bspcsg", project["license"]]
+    assert (ROOT / "LICENSE").read_text(encoding="utf-8").split()[:2] == ["Apache", "License"]
 
 
 def test_our_answers_are_right() -> None:
