@@ -30,21 +30,11 @@ const FACES: [[i64; 3]; 12] = [
 ];
 
 fn main() -> Result<()> {
-    let operands = [
-        cuboid([0.0; 3], [0.3, 0.2, 0.1])?,
-        cuboid([0.1, 0.1, 0.0], [0.2; 3])?,
-    ];
-    // Operand 0 and not operand 1; each line names earlier ones, the last is the value.
-    let lines = vec![
-        Term::Operand(0),
-        Term::Operand(1),
-        Term::Not(1),
-        Term::And(vec![0, 2]),
-    ];
-    let (part, _) = evaluate(&Expression::new(lines)?, &operands)?;
-
-    let exact = volume(&part)?;
-    eprintln!("volume {}/{}", exact.numerator, exact.denominator);
+    let (whole, hole) = (
+        corners([0.0; 3], [0.3, 0.2, 0.1]),
+        corners([0.1, 0.1, 0.0], [0.2; 3]),
+    );
+    let part = difference((&whole, &FACES), (&hole, &FACES))?;
     for point in [[0.05, 0.05, 0.05], [0.15, 0.15, 0.05], [0.1, 0.15, 0.05]] {
         let place = classify(&part, &[snap_point(part.pitch(), &point)?])?;
         eprintln!("{point:?} is {:?}", place[0]);
@@ -61,9 +51,28 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-fn cuboid(low: [f64; 3], high: [f64; 3]) -> Result<Solid> {
+/// A minus B, of two closed triangle meshes.
+fn difference(a: (&[[f64; 3]], &[[i64; 3]]), b: (&[[f64; 3]], &[[i64; 3]])) -> Result<Solid> {
+    let solid = |(vertices, faces)| {
+        let source = import(vertices, faces, None)?;
+        Ok(Solid::of_source(Arc::new(source), false))
+    };
+    let operands = [solid(a)?, solid(b)?];
+    // Operand 0 and not operand 1; each line names earlier ones, the last is the value.
+    let lines = vec![
+        Term::Operand(0),
+        Term::Operand(1),
+        Term::Not(1),
+        Term::And(vec![0, 2]),
+    ];
+    let (part, _) = evaluate(&Expression::new(lines)?, &operands)?;
+    let exact = volume(&part)?;
+    eprintln!("volume {}/{}", exact.numerator, exact.denominator);
+    Ok(part)
+}
+
+/// The corners of a box, the lowest first.
+fn corners(low: [f64; 3], high: [f64; 3]) -> Vec<[f64; 3]> {
     let corner = |k: usize| [0, 1, 2].map(|axis| [low, high][k >> axis & 1][axis]);
-    let vertices: Vec<[f64; 3]> = (0..8).map(corner).collect();
-    let source = import(&vertices, &FACES, None)?;
-    Ok(Solid::of_source(Arc::new(source), false))
+    (0..8).map(corner).collect()
 }

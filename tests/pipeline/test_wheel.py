@@ -155,6 +155,28 @@ def test_the_metadata_say_who_and_where(source: Path) -> None:
     assert "\nProvides-Extra: all\n" in about
 
 
+def test_the_crate_has_what_an_index_shows_and_a_build_needs() -> None:
+    command = ["cargo", "package", "--list", "--allow-dirty", "--offline"]
+    done = subprocess.run(command, cwd=ROOT / "core", check=True, capture_output=True, text=True)
+    names = set(done.stdout.split())
+    sources = {f.relative_to(ROOT / "core").as_posix() for f in (ROOT / "core/src").rglob("*.rs")}
+    wanted = {"LICENSE", "README.md", "ARCHITECTURE.md", "Cargo.lock", "examples/two_boxes.rs"}
+    assert {*wanted, *sources} <= names and not any("target/" in name for name in names)
+    about = tomllib.loads((ROOT / "core/Cargo.toml").read_text(encoding="utf-8"))["package"]
+    fields = ("description", "license", "repository", "documentation", "readme", "keywords")
+    assert all(about[field] for field in (*fields, "categories", "rust-version"))
+    assert (ROOT / "core/LICENSE").read_bytes() == (ROOT / "LICENSE").read_bytes()
+
+
+def test_the_page_of_the_crate_shows_code_that_is_compiled() -> None:
+    page = (ROOT / "core/README.md").read_text(encoding="utf-8")
+    example = (ROOT / "core/examples/two_boxes.rs").read_text(encoding="utf-8")
+    shown = page.partition("```rust\n")[2].partition("```")[0]
+    uses, _, function = shown.partition("///")
+    assert len(function.splitlines()) > 10 and function in example
+    assert all(line in example for line in uses.splitlines())
+
+
 def test_links_become_absolute() -> None:
     text = "![a](b/c.png) [d](e.md#f) [g](#h) [i](https://j)"
     assert readme_for_index.absolute(text, "https://x/y") == (
