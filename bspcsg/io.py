@@ -46,6 +46,10 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
+
 @counted
 def load(path: str | os.PathLike[str], **options: Any) -> Solid:
     """Read a mesh file or a script as a solid; the suffix names the format.

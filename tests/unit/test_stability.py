@@ -19,18 +19,38 @@ from support.cli import Capture, ran
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/stability.md").read_text(encoding="utf-8")
 
-#: A command for each kind of document, on the files of `folder`.
+#: A command for each verb that has documents, and one that fails, on the files of `folder`.
 COMMANDS = {
     "any failure": "info none.stl none.obj",
     "union": "union a.stl b.stl -o c.stl",
+    "difference": "difference a.stl b.stl -o c.stl",
+    "intersection": "intersection a.stl b.stl -o c.stl",
+    "xor": "xor a.stl b.stl -o c.stl",
+    "eval": "eval 'a.stl - b.stl' -o c.stl",
+    "run": "run m.csg -o c.stl",
+    "hull": "hull a.stl b.stl -o c.stl",
+    "simplify": "simplify a.stl --tolerance 0.1 -o c.stl",
     "info": "info a.stl",
+    "check": "check a.stl",
     "convert": "convert a.stl -o a.ply",
+    "split": "split two.stl -o part.stl",
+    "explode": "explode two.stl -o part.stl",
+    "repair": "repair a.stl -o c.stl",
     "compare": "compare a.stl b.stl --samples 10",
     "slice": "slice a.stl --z 1 -o a.svg",
+    "project": "project a.stl -o a.svg",
     "clash": "clash a.stl b.stl",
+    "tree": "tree m.csg",
+    "render": "render a.stl -o a.png",
+    "view": "view a.stl -o a.html --no-open",
+    "lecture": "lecture -o lecture.html",
     "doctor": "doctor",
-    "validate": "validate a.stl b.stl",
+    "validate": "validate a.stl b.stl --op difference --results cases.jsonl",
+    "report": "report kept.jsonl -o report.html",
+    "bench": "bench --from kept.json",
 }
+
+KEPT = ROOT / "tests/corpus/kept/1.0.0"
 
 
 def rows(heading: str) -> list[list[str]]:
@@ -66,12 +86,21 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("stability")
     b.cube(2).save(place / "a.stl")
     b.cube(2).translate(1, 1, 1).save(place / "b.stl")
+    (b.cube(2) | b.cube(1).translate(5, 0, 0)).save(place / "two.stl")
+    (place / "m.csg").write_text("cube(2);")
+    (place / "kept.jsonl").write_bytes((KEPT / "cases.jsonl").read_bytes())
+    (place / "kept.json").write_bytes((KEPT / "bench.json").read_bytes())
     return place
 
 
-def test_every_document_has_a_command() -> None:
-    named = {re.sub("`", "", row[0].split(",")[0]) for row in rows("Documents of `--json`")}
-    assert set(COMMANDS) <= named
+def documents() -> dict[str, list[str]]:
+    """Return the schema and the fields of each kind of document."""
+    found = [row for row in rows("Documents of `--json`")[1:] if len(row) == 3]
+    return {name: row[1:] for row in found for name in row[0].replace("`", "").split(", ")}
+
+
+def test_every_verb_has_a_document_and_a_command() -> None:
+    assert set(COMMANDS) == set(documents()) == {*main._VERBS, "any failure"}
 
 
 @pytest.mark.parametrize("what", COMMANDS)
@@ -79,23 +108,20 @@ def test_documents_have_their_fields(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch, what: str
 ) -> None:
     monkeypatch.chdir(folder)
-    row = next(
-        row
-        for row in rows("Documents of `--json`")
-        if row[0].replace("`", "").split(",")[0] == what and len(row) == 3
-    )
+    schema, fields = documents()[what]
     said = ran(capsys, *shlex.split(COMMANDS[what]), "--json")[1]
     document = json.loads(said)
-    assert document["schema"] == int(row[1]) == output.SCHEMA
-    top, _, inner = row[2].partition(";")
+    assert document["schema"] == int(schema) == output.SCHEMA
+    top, _, inner = fields.partition(";")
     if what == "any failure":
         error = json.loads(ran(capsys, "union", "none.stl", "b.stl", "-o", "c.stl", "--json")[1])
         assert set(re.findall("`(.*?)`", top)) <= set(error)
         assert set(re.findall("`(.*?)`", inner)) <= set(error["error"])
         return
-    assert set(re.findall("`(.*?)`", top)) <= set(document)
+    named = re.findall("`(.*?)`", top)
+    assert set(named) <= set(document)
     for name in re.findall("`(.*?)`", inner):
-        assert all(name in one for one in document["files"])
+        assert all(name in one for one in document[named[-1]])
 
 
 def test_versions_of_files_are_those_of_the_code() -> None:

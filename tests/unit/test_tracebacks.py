@@ -106,3 +106,4 @@ def test_dir_shows_public_names_only() -> None:
     assert set(b.__all__) <= set(names)
     leaked = {"Any", "import_module", "TYPE_CHECKING", "above", "conveniences"}
     assert not leaked & set(names)
+    assert dir(b.io) == sorted(b.io.__all__)
