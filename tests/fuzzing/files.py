@@ -289,10 +289,15 @@ def _zipped(members: dict[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> by
     return packed.getvalue()
 
 
+#: What zipfile raises for archives that earlier damage made unreadable; RuntimeError where a flag
+#: says that a member is encrypted.
+_UNREADABLE = (zipfile.BadZipFile, zlib.error, ValueError, OSError, RuntimeError, EOFError)
+
+
 def _damaged_member(rng: Rng, data: bytes) -> bytes:
     try:
         members = _members(data)
-    except (zipfile.BadZipFile, zlib.error, ValueError, OSError, NotImplementedError, EOFError):
+    except _UNREADABLE:
         return _damaged_bytes(rng, data)
     if not members:
         return _damaged_bytes(rng, data)

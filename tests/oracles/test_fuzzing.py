@@ -11,7 +11,15 @@ import pytest
 
 import bspcsg as b
 from corpus.test_corpus import compare, evaluate
-from fuzzing.files import FORMATS, File, judge_file, random_file, same_meaning
+from fuzzing.files import (
+    FORMATS,
+    File,
+    damaged,
+    good_file,
+    judge_file,
+    random_file,
+    same_meaning,
+)
 from fuzzing.judge import Kernel, judge
 from fuzzing.models import random_model
 from fuzzing.places import Balls, Below, Point, Surface, Triangle, location, windings
@@ -128,6 +136,15 @@ def test_scenes_ask_about_the_boundary() -> None:
         scene = random_scene(np.random.default_rng([0, k]))
         found += [location(scene.known(), scene.value, point) for point in scene.points]
     assert {side: found.count(side) > 50 for side in (-1, 0, 1)} == {-1: True, 0: True, 1: True}
+
+
+def test_an_archive_that_says_it_is_encrypted_is_damaged_further() -> None:
+    good = good_file(np.random.default_rng(1), ".3mf").data
+    # The flags of a member stand 8 bytes after the mark of the directory's entry.
+    at = good.index(b"PK\x01\x02") + 8
+    locked = good[:at] + bytes([good[at] | 1]) + good[at + 1 :]
+    for seed in range(20):
+        assert isinstance(damaged(np.random.default_rng(seed), ".3mf", locked), bytes)
 
 
 @pytest.mark.parametrize("kind", FORMATS)

@@ -14,6 +14,10 @@ from support.scripts import moved
 @pytest.mark.parametrize(
     ("text", "says"),
     [
+        (
+            "multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1e-320]]) cube(1);",
+            "its matrix has an entry beyond ±1e100",
+        ),
         ('cube(size = "a");', 'size must be 3 numbers within ±1e100, not "a"'),
         ("cube(size = [1, 2]);", "size must be 3 numbers"),
         ("cube(1e300);", "size must be 3 numbers"),

@@ -57,11 +57,13 @@ def _matrix(arguments: Arguments) -> FloatArray | None:
     matrix[: len(rows)] = [list(_numbers(row)) for row in rows]
     if not np.isfinite(matrix).all():
         return None
-    if np.abs(matrix).max() > LARGEST:
-        raise arguments.error("its matrix has an entry beyond ±1e100.")
     if matrix[3, :3].any() or matrix[3, 3] == 0:
         raise arguments.error("the last row of its matrix must be 0, 0, 0, 1.")
-    return matrix / matrix[3, 3] if matrix[3, 3] != 1 else matrix
+    with np.errstate(over="ignore"):
+        matrix = matrix / matrix[3, 3]
+    if np.abs(matrix).max() > LARGEST:
+        raise arguments.error("its matrix has an entry beyond ±1e100.")
+    return matrix
 
 
 def _is_row(row: object) -> bool:
