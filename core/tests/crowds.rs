@@ -38,6 +38,62 @@ fn any_terms(numbers: &mut Numbers, count: u32) -> Vec<Term> {
     terms
 }
 
+/// The same for lists of operands of which some are one set.
+fn with_twins(numbers: &mut Numbers, count: u32) -> (Expression, Vec<u32>) {
+    let expression = Expression::new(any_terms(numbers, count)).expect("well formed");
+    let kinds = 1 + numbers.below(i64::from(count));
+    let kind_of: Vec<i64> = (0..count).map(|_| numbers.below(kinds)).collect();
+    let first = |kind| kind_of.iter().position(|k| *k == kind).expect("its own");
+    let firsts = kind_of.iter().map(|kind| first(*kind));
+    let firsts = firsts.map(|k| u32::try_from(k).expect("few")).collect();
+    (expression, firsts)
+}
+
+#[test]
+fn an_expression_of_twins_is_one_of_the_first_of_them() {
+    let mut numbers = Numbers::new(37);
+    let mut merged = 0;
+    for count in 2..9 {
+        for _ in 0..60 {
+            let (expression, firsts) = with_twins(&mut numbers, count);
+            let Some(fewer) = expression.merged(|k| firsts[k as usize]) else {
+                continue;
+            };
+            merged += 1;
+            for inside in 0..1 << count {
+                let of_first = |k: u32| inside >> firsts[k as usize] & 1 == 1;
+                let expected = expression.value(of_first, &mut Vec::new());
+                assert_eq!(fewer.value(of_first, &mut Vec::new()), expected);
+            }
+        }
+    }
+    assert!(merged > 100, "{merged}");
+}
+
+#[test]
+fn copies_of_meshes_change_no_byte() {
+    let mut numbers = Numbers::new(41);
+    for _ in 0..20 {
+        let shapes: Vec<Shape> = (0..6).map(|_| Shape::any_cuboid(&mut numbers, 4)).collect();
+        let solids: Vec<Solid> = shapes.iter().map(Shape::solid).collect();
+        let copies: Vec<Solid> = shapes.iter().cycle().take(70).map(Shape::solid).collect();
+        for list in [Term::And as fn(Vec<u32>) -> Term, Term::Or] {
+            let once = listed(&solids, list);
+            assert_eq!(listed(&copies, list), once);
+        }
+        let twice: Vec<Solid> = shapes.iter().chain(&shapes).map(Shape::solid).collect();
+        assert!(listed(&twice, Term::Xor).1.is_empty());
+    }
+}
+
+/// The mesh of one list of all operands.
+fn listed(solids: &[Solid], list: fn(Vec<u32>) -> Term) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    let count = u32::try_from(solids.len()).expect("few");
+    let lines = vec![list((0..count).collect())];
+    let made = manifold_mesh(&combined(solids, lines), "copies");
+    (made.vertices, made.triangles)
+}
+
 /// The value of an expression for operands that are inside where a bit is set.
 fn value(expression: &Expression, inside: u32) -> bool {
     expression.value(|k| inside >> k & 1 == 1, &mut Vec::new())

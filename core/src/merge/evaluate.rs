@@ -7,6 +7,7 @@ use super::expression::{Expression, Term};
 use super::lists::list::Sources;
 use super::rule::Rule;
 use super::simple::{simple_shells, simplicity, Simplicity};
+use super::twins::without_twins;
 use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grid::Pitch;
@@ -52,6 +53,8 @@ use crate::tree::table::Table;
 /// ```
 pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Counters)> {
     let pitch = common_pitch(expression, solids)?;
+    let merged = without_twins(expression, solids);
+    let expression = merged.as_ref().unwrap_or(expression);
     let mut operands = solids.to_vec();
     loop {
         let sources = Sources::new(joint_table(&operands));

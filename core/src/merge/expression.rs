@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+
 use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt::poll;
@@ -118,6 +120,32 @@ impl Expression {
         list.sort_unstable();
         list.dedup();
         list
+    }
+
+    /// The same set, where of the operands of one list that stand for one set only the first is
+    /// named: `first` maps an operand to the first that is equal. `None` if nothing changes.
+    ///
+    /// ```
+    /// use bspcsg::merge::expression::{Expression, Residual, Term};
+    ///
+    /// let [a, b, c] = [0, 1, 2].map(Term::Operand);
+    /// let union = Expression::new(vec![a, b, c, Term::Or(vec![0, 1, 2])])?;
+    /// let merged = union.merged(|k| k.min(1)).expect("operand 2 is operand 1");
+    /// assert!(matches!(merged.residual(|k| (k == 0).then_some(false)), Residual::Literal(1, false)));
+    /// # Ok::<(), bspcsg::error::Error>(())
+    /// ```
+    pub fn merged(&self, first: impl Fn(u32) -> u32) -> Option<Self> {
+        let mut terms: Vec<Term> = Vec::with_capacity(self.terms.len());
+        let mut image = Vec::with_capacity(self.terms.len());
+        let mut changed = false;
+        for term in &self.terms {
+            let term = renumbered(term.clone(), &image);
+            let list = merged_list(&term, &mut terms, &first);
+            changed |= list.is_some();
+            terms.push(list.map_or_else(|| term.clone(), |list| term.with(list)));
+            image.push(as_number(terms.len()) - 1);
+        }
+        changed.then_some(Self { terms })
     }
 
     /// The expression as one of two others, each with about half of the operands; `None` if its
@@ -243,6 +271,52 @@ fn fold(
     }
 }
 
+/// A list that names the line of the first of equal operands for each of them, and in unions and
+/// intersections only once; `None` if no two are equal. Complements of these lines may be added.
+fn merged_list(
+    term: &Term,
+    terms: &mut Vec<Term>,
+    first: &impl Fn(u32) -> u32,
+) -> Option<Vec<u32>> {
+    let (Term::And(list) | Term::Or(list) | Term::Xor(list)) = term else {
+        return None;
+    };
+    let counts_all = matches!(term, Term::Xor(_));
+    let mut lines: HashMap<u32, u32> = HashMap::default();
+    let mut named: HashSet<(u32, bool)> = HashSet::default();
+    let mut merged = Vec::with_capacity(list.len());
+    let mut changed = false;
+    for line in list {
+        let Some((operand, at, negate)) = literal(terms, *line) else {
+            merged.push(*line);
+            continue;
+        };
+        let twin = *lines.entry(first(operand)).or_insert(at);
+        changed |= twin != at;
+        if named.insert((twin, negate)) || counts_all {
+            merged.push(if twin == at {
+                *line
+            } else {
+                signed(twin, negate, terms)
+            });
+        }
+    }
+    changed.then_some(merged)
+}
+
+/// The operand that a line names, itself or as its complement; the operand's line, and whether it
+/// is the complement.
+fn literal(terms: &[Term], line: u32) -> Option<(u32, u32, bool)> {
+    match &terms[line as usize] {
+        Term::Operand(k) => Some((*k, line, false)),
+        Term::Not(at) => match &terms[*at as usize] {
+            Term::Operand(k) => Some((*k, *at, true)),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
 fn append(terms: &mut Vec<Term>, term: Term) -> Known {
     terms.push(term);
     Known::Line(as_number(terms.len()) - 1, false)
@@ -313,16 +387,17 @@ fn fold_xor(list: &[u32], folded: &[Known], terms: &mut Vec<Term>) -> Known {
 }
 
 fn positive(open: &[(u32, bool)], terms: &mut Vec<Term>) -> Vec<u32> {
-    open.iter()
-        .map(|(line, negate)| {
-            if *negate {
-                terms.push(Term::Not(*line));
-                as_number(terms.len()) - 1
-            } else {
-                *line
-            }
-        })
-        .collect()
+    let lines = open.iter();
+    lines.map(|(line, no)| signed(*line, *no, terms)).collect()
+}
+
+/// A line, or a new one for its complement.
+fn signed(line: u32, negate: bool, terms: &mut Vec<Term>) -> u32 {
+    if !negate {
+        return line;
+    }
+    terms.push(Term::Not(line));
+    as_number(terms.len()) - 1
 }
 
 /// Keeps the lines the value depends on.

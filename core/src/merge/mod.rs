@@ -11,6 +11,7 @@ pub mod pairs;
 pub mod plane;
 pub mod rule;
 pub mod simple;
+mod twins;
 
 pub use generic::case::SplitCase;
 pub use generic::merge_trees::{merge, merge_watched};

@@ -10,7 +10,6 @@ use crate::geometry::cell::Cell;
 use crate::geometry::side::{Half, Orientation};
 use crate::mesh::cached::Cached;
 use crate::mesh::grid::Pitch;
-use crate::mesh::handle::Slot;
 use crate::mesh::source::{Shape, Source};
 
 /// Sources a table may hold beyond twice those that are named, so that operands of short
@@ -89,7 +88,7 @@ impl Solid {
         let open: Vec<&Self> = operands.iter().filter(|o| !o.is_reduced()).collect();
         self.reduced = open.is_empty();
         self.claimed = self.reduced && operands.iter().any(|o| o.claimed);
-        if !self.reduced && open.iter().all(|o| o.doubts.is_some() || o.is_whole_mesh()) {
+        if !self.reduced && open.iter().all(|o| o.is_settled_by_meshes()) {
             let doubts = open
                 .iter()
                 .flat_map(|o| o.doubts.as_deref().unwrap_or(std::slice::from_ref(*o)));
@@ -108,11 +107,24 @@ impl Solid {
         self.doubts.as_deref()
     }
 
-    /// Return whether this is a mesh as it was given.
-    fn is_whole_mesh(&self) -> bool {
-        self.sources.len() == 1
-            && self.sources.get(Slot(0)).mesh().is_some()
-            && matches!(&*self.root.node, Node::Deferred(leaf) if leaf.parts.is_empty() && leaf.len() == self.sources.get(Slot(0)).face_count())
+    /// Return whether meshes are known that decide whether the solid is reduced.
+    fn is_settled_by_meshes(&self) -> bool {
+        self.doubts.is_some() || self.whole_mesh().is_some()
+    }
+
+    /// The mesh, if the solid is one as it was given.
+    pub fn whole_mesh(&self) -> Option<&Arc<Source>> {
+        let Node::Deferred(leaf) = &*self.root.node else {
+            return None;
+        };
+        let [group] = leaf.groups.as_slice() else {
+            return None;
+        };
+        let whole = leaf.parts.is_empty()
+            && leaf.corner == 0
+            && group.orientation == Orientation::Same
+            && group.faces.len() == group.source.face_count();
+        (whole && group.source.mesh().is_some()).then_some(&group.source)
     }
 
     /// A solid made of operands of which none named more than `named` sources.
