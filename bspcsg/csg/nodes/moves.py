@@ -60,7 +60,7 @@ def _matrix(arguments: Arguments) -> FloatArray | None:
     if matrix[3, :3].any() or matrix[3, 3] == 0:
         raise arguments.error("the last row of its matrix must be 0, 0, 0, 1.")
     with np.errstate(over="ignore"):
-        matrix = matrix / matrix[3, 3]
+        matrix /= matrix[3, 3]
     if np.abs(matrix).max() > LARGEST:
         raise arguments.error("its matrix has an entry beyond ±1e100.")
     return matrix
