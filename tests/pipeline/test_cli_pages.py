@@ -106,6 +106,24 @@ def test_marks_are_drawn(folder: Path, capsys: Capture, browser: Browser) -> Non
     assert browser.errors() == []
 
 
+def test_differences_are_coloured_and_laid_over_each_other(
+    folder: Path, capsys: Capture, browser: Browser
+) -> None:
+    put("b.off", cuboid((0, 0, 0), (2, 2, 3)))
+    ran(capsys, "compare", "a.off", "b.off", "--html", "x.html")
+    browser.open(folder / "x.html")
+    browser.wait("document.querySelector('.stage[data-drawn]')")
+    seen = browser.pixels("canvas").astype(int)
+    assert browser.texts(".layers button") == ["a.off", "b.off", "only in b.off"]
+    browser.choose("Colours", "difference")
+    assert browser.texts(".legend > span")[0] == "difference"
+    coloured = browser.pixels("canvas").astype(int)
+    assert (np.abs(seen - coloured).max(axis=2) > 12).mean() > 0.02
+    browser.click(".layers button", 1)
+    assert (np.abs(coloured - browser.pixels("canvas")).max(axis=2) > 12).mean() > 0.02
+    assert browser.errors() == []
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "words"),
     [

@@ -94,6 +94,50 @@ def test_points_are_taken_from_the_keyboard(opened: Browser) -> None:
     assert opened.texts(".told")[0].startswith("Distance ")
 
 
+def _eye(browser: Browser) -> "tuple[np.ndarray[Any, Any], float, np.ndarray[Any, Any]]":
+    """Return the direction and the distance of the eye, and what it looks at."""
+    arm, target = browser.run(
+        "return [view.eye.arm.toArray(), view.eye.controls.target.toArray()]",
+    )
+    distance = float(np.linalg.norm(arm))
+    return np.array(arm) / distance, distance, np.array(target)
+
+
+def test_mouse_and_fingers_turn_zoom_and_move(opened: Browser) -> None:
+    x, y = opened.run(
+        "const box = view.canvas.getBoundingClientRect();"
+        "return [box.left + box.width / 2, box.top + box.height / 2]"
+    )
+    home = _eye(opened)
+
+    def is_changed(now: Any) -> list[bool]:
+        found = [
+            np.abs(now[0] - home[0]).max() > 0.05,
+            abs(now[1] / home[1] - 1) > 0.05,
+            np.abs(now[2] - home[2]).max() > 0.02,
+        ]
+        opened.press_button("reset")
+        return found
+
+    turned, zoomed, moved = [True, False, False], [False, True, False], [False, False, True]
+    path = [(x, y), (x + 20, y), (x + 60, y), (x + 60, y)]
+    opened.drag(*path)
+    assert is_changed(_eye(opened)) == turned
+    opened.drag(*path, button="right")
+    assert is_changed(_eye(opened)) == moved
+    opened.wheel(x, y, 200)
+    opened.wait(f"Math.abs(view.eye.arm.length() / {home[1]} - 1) > 0.05")
+    assert is_changed(_eye(opened)) == zoomed
+    opened.touch([(x, y)], [(x + 30, y)], [(x + 70, y)])
+    assert is_changed(_eye(opened)) == turned
+    # Two fingers zoom and move at once.
+    opened.touch(*([(x - d, y), (x + d, y)] for d in (30, 50, 90)))
+    assert is_changed(_eye(opened))[:2] == zoomed[:2]
+    opened.touch(*([(x + d - 30, y), (x + d + 30, y)] for d in (0, 20, 60)))
+    assert is_changed(_eye(opened))[::2] == moved[::2]
+    assert opened.errors() == []
+
+
 def test_projections_and_sides(opened: Browser) -> None:
     first = _looks(opened)
     opened.type("canvas", "p")

@@ -3,7 +3,7 @@
 import io
 import json
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib.resources import files
 from pathlib import Path
@@ -125,6 +125,27 @@ class Browser:
             x,
             y,
         )
+
+    def drag(self, *path: tuple[float, float], button: str = "left") -> None:
+        """Move the mouse along places of the page with a button pressed."""
+        steps = ["mousePressed", *["mouseMoved"] * (len(path) - 2), "mouseReleased"]
+        pressed = {"left": 1, "right": 2}[button]
+        for kind, (x, y) in zip(steps, path, strict=True):
+            event = {"type": kind, "x": x, "y": y, "button": button, "buttons": pressed}
+            self._running.execute_cdp_cmd("Input.dispatchMouseEvent", event | {"clickCount": 1})
+
+    def wheel(self, x: float, y: float, turn: float) -> None:
+        """Turn the mouse's wheel at a place of the page."""
+        event = {"type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": turn}
+        self._running.execute_cdp_cmd("Input.dispatchMouseEvent", event)
+
+    def touch(self, *steps: Sequence[tuple[float, float]]) -> None:
+        """Lay fingers on places of the page, move them along steps, and lift them."""
+        kinds = ["touchStart", *["touchMove"] * (len(steps) - 1)]
+        for kind, places in (*zip(kinds, steps, strict=True), ("touchEnd", ())):
+            points = [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(places)]
+            event = {"type": kind, "touchPoints": points}
+            self._running.execute_cdp_cmd("Input.dispatchTouchEvent", event)
 
     def prefer(self, theme: str) -> None:
         """Say that the system is "light" or "dark"."""
