@@ -254,7 +254,7 @@ def test_a_section_is_filled(browser: Browser, tmp_path: Path) -> None:
     # Around the middle lies the disk of the cut, in one colour; below it the ball, shaded.
     disk = cut[height // 2 - 20 : height // 2 + 20, width // 2 - 60 : width // 2 + 60]
     assert (np.ptp(disk, axis=(0, 1)) <= 2).all()
-    below = cut[int(height * 0.68) : int(height * 0.72), width // 2 - 60 : width // 2 + 60]
+    below = cut[int(height * 0.84) : int(height * 0.88), width // 2 - 60 : width // 2 + 60]
     assert (np.ptp(below, axis=(0, 1)) > 8).any()
 
 

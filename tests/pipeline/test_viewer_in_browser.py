@@ -150,6 +150,29 @@ def test_projections_and_sides(opened: Browser) -> None:
     assert _change(first, _looks(opened)) < 0.02
 
 
+@pytest.mark.parametrize("keys", ["", "p"], ids=["perspective", "parallel"])
+def test_the_model_fills_the_picture_from_every_side(opened: Browser, keys: str) -> None:
+    for key in ("Home", *keys):
+        opened.type("canvas", getattr(Keys, key.upper(), key))
+    sides = ("iso", "front", "back", "left", "right", "top", "bottom")
+    for side in sides:
+        reached = opened.run(
+            "view.look(arguments[0]); view.eye.enclose();"
+            "const { camera } = view.eye; camera.updateMatrixWorld();"
+            "const reach = [0, 0]; const point = view.eye.arm;"
+            "for (const { positions } of view.model.layers)"
+            " for (let at = 0; at < positions.length; at += 3) {"
+            "  point.fromArray(positions, at).project(camera);"
+            "  reach[0] = Math.max(reach[0], Math.abs(point.x));"
+            "  reach[1] = Math.max(reach[1], Math.abs(point.y));"
+            " }"
+            "return reach",
+            side,
+        )
+        assert max(reached) == pytest.approx(1 / 1.08, abs=0.002), side
+    assert opened.errors() == []
+
+
 def test_shading_follows_the_angle(opened: Browser) -> None:
     opened.choose("Edges", "none")
     smooth = _looks(opened)

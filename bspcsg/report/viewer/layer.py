@@ -77,9 +77,14 @@ class Layer:
         )
 
 
-def bounds_of(layers: Sequence[Layer]) -> tuple[FloatArray, FloatArray]:
-    """Return lowest and highest coordinates, (3,) each, of all vertices that are drawn."""
+def drawn_points(layers: Sequence[Layer]) -> FloatArray:
+    """Return the vertices that are drawn, (n, 3) float64; of layers without any the origin."""
     drawn = [np.union1d(layer.faces, layer.lines) for layer in layers]
     used = [layer.vertices[some] for layer, some in zip(layers, drawn, strict=True) if len(some)]
-    points = np.concatenate(used) if used else np.zeros((1, 3))
+    return np.concatenate(used) if used else np.zeros((1, 3))
+
+
+def bounds_of(layers: Sequence[Layer]) -> tuple[FloatArray, FloatArray]:
+    """Return lowest and highest coordinates, (3,) each, of all vertices that are drawn."""
+    points = drawn_points(layers)
     return points.min(axis=0), points.max(axis=0)

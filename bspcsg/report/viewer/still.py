@@ -11,7 +11,7 @@ from ...bsp import Camera, Picture
 from ...bsp.painting.camera import View
 from ...bsp.painting.picture import picture
 from .faces import face_colours, joined
-from .layer import DIFFERENCE, Layer, bounds_of
+from .layer import DIFFERENCE, Layer, drawn_points
 
 #: Triangles above which a mesh is simplified first, to so many cells a side: more are smaller than
 #: a pixel.
@@ -33,9 +33,7 @@ _QUALITY, _EFFORT = 66, 3
 
 def camera_for(layers: Sequence[Layer], size: tuple[int, int], view: View = "iso") -> Camera:
     """Return a camera that sees all layers, by default from the right front top."""
-    low, high = bounds_of(layers)
-    corners = np.array([[low, high][k >> a & 1][a] for k in range(8) for a in range(3)])
-    return Camera.named(view, corners.reshape(8, 3), size[0] / size[1])
+    return Camera.named(view, drawn_points(layers), size[0] / size[1])
 
 
 def still(

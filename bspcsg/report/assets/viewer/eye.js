@@ -22,9 +22,10 @@ export const VIEWS = {
 };
 
 export class Eye {
-  /** `box` holds half the sides of the model's box, around the origin. */
-  constructor(canvas, box) {
+  /** `box` holds half the sides of the model's box, around the origin, `clouds` its vertices. */
+  constructor(canvas, box, clouds) {
     this.box = box;
+    this.clouds = clouds;
     this.radius = box.length() || 1;
     this.spread = 1;
     this.aspect = 1;
@@ -96,24 +97,42 @@ export class Eye {
     this.fitted = name;
   }
 
-  /** The corners of the box as the camera sees them: right, up and towards it. */
-  corners() {
+  /** The most that a function of a point gives, over all that may be seen.
+   *
+   * Points are as the camera sees them: right, up and towards it.
+   */
+  most(measure) {
     const turn = this.camera.quaternion.clone().invert();
-    return Array.from({ length: 8 }, (_, corner) => this.box.clone()
-      .multiply(new Vector3(...[1, 2, 4].map((bit) => (corner & bit ? 1 : -1))))
-      .multiplyScalar(this.spread).applyQuaternion(turn));
+    const point = new Vector3();
+    let most = -Infinity;
+    for (const cloud of this.spread > 1 ? [this.corners()] : this.clouds) {
+      for (let at = 0; at < cloud.length; at += 3) {
+        point.fromArray(cloud, at).multiplyScalar(this.spread).applyQuaternion(turn);
+        most = Math.max(most, measure(point));
+      }
+    }
+    return most;
+  }
+
+  /** The corners of the box, between which parts may move apart. */
+  corners() {
+    const { x, y, z } = this.box;
+    return Array.from({ length: 8 }, (_, corner) => (
+      [x, y, z].map((half, axis) => ((corner >> axis) & 1 ? half : -half)))).flat();
+  }
+
+  /** Half of the picture's height that a point takes, seen without perspective. */
+  share({ x, y }) {
+    return MARGIN * Math.max(Math.abs(x) / this.aspect, Math.abs(y));
   }
 
   neededHalf() {
-    const halves = this.corners().map(({ x, y }) => (
-      Math.max(Math.abs(x) / this.aspect, Math.abs(y))));
-    return MARGIN * (Math.max(...halves) || this.radius);
+    return Math.max(this.most((point) => this.share(point)), this.radius / 100);
   }
 
   neededDistance() {
-    const distances = this.corners().map(({ x, y, z }) => (
-      z + (MARGIN * Math.max(Math.abs(x) / this.aspect, Math.abs(y))) / HALF_TANGENT));
-    return Math.max(...distances, this.radius / 100);
+    const distance = this.most((point) => point.z + this.share(point) / HALF_TANGENT);
+    return Math.max(distance, this.radius / 100);
   }
 
   /** Look at a place closely, from where the eye is. */

@@ -33,7 +33,8 @@ export class View {
     this.layers.forEach((layer) => { layer.share = layer.triangles / this.triangles; });
     this.layers.forEach((layer) => this.scene.add(layer.group));
     const sides = model.high.map((high, axis) => (high - model.low[axis]) / model.longest);
-    this.eye = new Eye(this.canvas, new Vector3(...sides));
+    const clouds = model.layers.map(({ positions }) => positions);
+    this.eye = new Eye(this.canvas, new Vector3(...sides), clouds);
     this.light();
     host.append(this.canvas);
     this.settings = this.initial();
