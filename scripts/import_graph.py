@@ -6,6 +6,7 @@ is no arrow.
 """
 
 import re
+import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterator
@@ -21,35 +22,37 @@ ROOT = Path(__file__).resolve().parent.parent
 Floors: TypeAlias = list[list[str]]
 
 
-def python_floors() -> Floors:
+def python_floors(root: Path = ROOT) -> Floors:
     """Return the floors of the package."""
-    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    settings = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
     layers = settings["tool"]["importlinter"]["contracts"][0]["layers"]
     return [re.split(r" *[|:] *", layer) for layer in layers]
 
 
-def rust_floors() -> Floors:
+def rust_floors(root: Path = ROOT) -> Floors:
     """Return the floors of the crate."""
-    text = (ROOT / "core" / "tests" / "layering.rs").read_text(encoding="utf-8")
+    text = (root / "core" / "tests" / "layering.rs").read_text(encoding="utf-8")
     listed = re.search(r"const LAYERS[^=]*= \[(.*?)\]", text, re.S)
     return [] if listed is None else [[name] for name in re.findall(r'"(\w+)"', listed[1])[::-1]]
 
 
-def python_graph() -> nx.DiGraph:
+def python_graph(root: Path = ROOT) -> nx.DiGraph:
     """Return the imports among the package's files, named as modules."""
+    sys.path.insert(0, str(root))
     imports = grimp.build_graph("bspcsg", exclude_type_checking_imports=True, cache_dir=None)
+    del sys.path[0]
     graph = nx.DiGraph()
-    for path in sorted((ROOT / "bspcsg").rglob("*.py")):
-        name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+    for path in sorted((root / "bspcsg").rglob("*.py")):
+        name = ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
         graph.add_node(name, lines=_lines(path))
         used = imports.find_modules_directly_imported_by(name)
         graph.add_edges_from((name, other) for other in sorted(used))
     return graph
 
 
-def rust_graph() -> nx.DiGraph:
+def rust_graph(root: Path = ROOT) -> nx.DiGraph:
     """Return which of the crate's files names which, tests in them left out."""
-    source = ROOT / "core" / "src"
+    source = root / "core" / "src"
     modules = {
         tuple(
             p for p in path.relative_to(source).with_suffix("").parts if p not in ("mod", "lib")

@@ -52,6 +52,10 @@ def test_no_path_of_the_crate_leads_upwards(rust: nx.DiGraph) -> None:
     assert upward(rust, rust_floors()) == []
 
 
+def test_no_files_of_the_crate_need_each_other(rust: nx.DiGraph) -> None:
+    assert circles(rust) == []
+
+
 def test_a_circle_and_an_upward_arrow_are_found() -> None:
     graph = nx.DiGraph([("low.a", "low.b"), ("low.b", "low.a"), ("low.b", "high.c")])
     assert circles(graph) == [["low.a", "low.b"]]

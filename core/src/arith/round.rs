@@ -1,9 +1,7 @@
-//! Correctly rounded conversion of integers and ratios to doubles.
+//! Correctly rounded conversion of limbs and their ratios to doubles.
 
 use super::convert::{as_double, as_number, low_limb};
 use super::limbs::{any_bit_below, bit_length, limb_at};
-use super::Int;
-use crate::arith::Sign;
 
 /// The exponent of the least positive double, 2^-1074.
 const LEAST_EXPONENT: i32 = -1074;
@@ -24,40 +22,8 @@ pub fn mantissa_and_exponent(x: f64) -> (i64, i32) {
     (if x < 0.0 { -size } else { size }, exponent)
 }
 
-/// The double nearest to `numerator / denominator`, ties to even; `denominator > 0`.
-///
-/// Subnormal results are rounded once, like all others; ratios beyond the largest double
-/// give an infinity. A zero numerator gives +0.
-///
-/// # Example
-/// ```
-/// use bspcsg::arith::{ratio_to_f64, Int};
-///
-/// let third = ratio_to_f64(&Int::<1>::from_i64(1), &Int::<1>::from_i64(3));
-/// assert_eq!(third, 1.0 / 3.0);
-/// ```
-#[inline]
-pub fn ratio_to_f64<const A: usize, const B: usize>(
-    numerator: &Int<A>,
-    denominator: &Int<B>,
-) -> f64 {
-    debug_assert!(
-        denominator.sign() == Sign::Positive,
-        "the denominator is not positive"
-    );
-    if numerator.is_zero() {
-        return 0.0;
-    }
-    let nearest = magnitudes_to_f64(&numerator.magnitude(), &denominator.magnitude());
-    if numerator.is_negative() {
-        -nearest
-    } else {
-        nearest
-    }
-}
-
 /// The double nearest to a ratio of positive numbers.
-fn magnitudes_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]) -> f64 {
+pub(super) fn magnitudes_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]) -> f64 {
     leading_to_f64(num, den).unwrap_or_else(|| all_to_f64(num, den))
 }
 

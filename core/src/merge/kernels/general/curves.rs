@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::segment::{Doubt, End, Segment};
+use super::cutting::Special;
+use super::segment::{End, Segment};
 use crate::arith::convert::as_double;
 use crate::geometry::polygon::{bounds, Polygon};
 use crate::geometry::side::Side;
@@ -13,7 +14,7 @@ pub(super) struct Joints(Vec<Option<usize>>);
 
 impl Joints {
     /// Each end inside the element must be where exactly one other segment begins.
-    pub(super) fn of(segments: &[Segment]) -> Result<Self, Doubt> {
+    pub(super) fn of(segments: &[Segment]) -> Result<Self, Special> {
         let address = |end: &End| Arc::as_ptr(&end.at) as usize;
         let inner = |end: &&End| end.edge.is_none();
         let mut begins: Vec<(usize, usize)> = Vec::with_capacity(segments.len());
@@ -26,20 +27,20 @@ impl Joints {
         begins.sort_unstable();
         let ending = segments.iter().filter(|s| inner(&&s.to)).count();
         if ending != begins.len() || begins.windows(2).any(|w| w[0].0 == w[1].0) {
-            return Err(Doubt);
+            return Err(Special);
         }
         let next = |segment: &Segment| {
             if segment.to.edge.is_some() {
                 return Ok(None);
             }
             let found = begins.binary_search_by_key(&address(&segment.to), |b| b.0);
-            found.map(|at| Some(begins[at].1)).map_err(|_| Doubt)
+            found.map(|at| Some(begins[at].1)).map_err(|_| Special)
         };
         let next: Vec<Option<usize>> = segments.iter().map(next).collect::<Result<_, _>>()?;
         let mut taken = vec![false; segments.len()];
         let twice = |i: &usize| std::mem::replace(&mut taken[*i], true);
         if next.iter().flatten().any(twice) {
-            return Err(Doubt);
+            return Err(Special);
         }
         Ok(Self(next))
     }
@@ -67,7 +68,7 @@ impl Joints {
     }
 
     /// The segments with those joined that continue each other on one line.
-    pub(super) fn joined(self, segments: Vec<Segment>) -> Result<Vec<Segment>, Doubt> {
+    pub(super) fn joined(self, segments: Vec<Segment>) -> Result<Vec<Segment>, Special> {
         let mut continued = vec![false; segments.len()];
         let mut any = false;
         for (i, next) in self.0.iter().enumerate() {
@@ -80,7 +81,7 @@ impl Joints {
                     continued[next] = true;
                     any = true;
                 }
-                Some(_) => return Err(Doubt),
+                Some(_) => return Err(Special),
             }
         }
         if !any {
@@ -164,7 +165,7 @@ impl Segment {
 
 /// Return whether a closed curve of segments turns left around what it encloses, as seen from the
 /// plus side of the polygon's plane.
-pub(super) fn turns_left(polygon: &Polygon, segments: &[Segment]) -> Result<bool, Doubt> {
+pub(super) fn turns_left(polygon: &Polygon, segments: &[Segment]) -> Result<bool, Special> {
     let axis = polygon.support().main_axis();
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let origin = segments[0].from.at.approx();
@@ -187,7 +188,7 @@ pub(super) fn turns_left(polygon: &Polygon, segments: &[Segment]) -> Result<bool
     let n = as_double(segments.len());
     let doubt = n * (n + 32.0) * 4.0 * f64::EPSILON * reach * size;
     if area.abs() <= doubt {
-        return Err(Doubt);
+        return Err(Special);
     }
     Ok((area > 0.0) == (polygon.support().normal()[axis] > 0))
 }

@@ -125,8 +125,12 @@ struct Crossing {
     chord: Chord,
 }
 
-/// A face runs along a cut that another one made.
-struct Special;
+/// A special position, for which there is no rule here: a corner lies in another plane, a face runs
+/// along a cut that another one made, or curves may touch themselves.
+///
+/// This is exact, unlike `Filtered::Doubtful`, and about places rather than a solid, unlike
+/// `Simplicity`: no further digits settle it, only a way that needs no rule.
+pub(super) struct Special;
 
 struct Partition<'a> {
     support: Arc<Plane>,

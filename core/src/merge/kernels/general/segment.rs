@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::cutting::{Cutter, Face};
+use super::cutting::{Cutter, Face, Special};
 use super::points::Points;
 use crate::arith::Sign;
 use crate::geometry::axes::each_axis;
@@ -55,9 +55,6 @@ impl<'a> Crosser<'a> {
     }
 }
 
-/// A corner lies in the other plane, or curves are not certain to be simple.
-pub(super) struct Doubt;
-
 /// An element that is crossed.
 pub(super) struct Crossed<'a> {
     pub(super) polygon: &'a Polygon,
@@ -74,9 +71,9 @@ impl Crossed<'_> {
         &self,
         other: &Crosser,
         points: &mut Points,
-    ) -> Result<Option<Segment>, Doubt> {
+    ) -> Result<Option<Segment>, Special> {
         if other.ours.contains(&Side::On) || other.theirs.contains(&Side::On) {
-            return Err(Doubt);
+            return Err(Special);
         }
         let face = &other.face.polygon;
         let [x, x_end] = [rise(&other.ours)?, fall(&other.ours)?];
@@ -96,7 +93,7 @@ impl Crossed<'_> {
                 points.at((face, theirs), (self.polygon.support(), self.number))
             };
             let edge = here.then_some(own);
-            at.map(|at| End { at, edge }).ok_or(Doubt)
+            at.map(|at| End { at, edge }).ok_or(Special)
         };
         let (from, to) = (end(starts_here, x, y)?, end(ends_here, x_end, y_end)?);
         let plus = other.weight < 0;
@@ -119,7 +116,7 @@ impl Crossed<'_> {
         other: &Crosser,
         rim: usize,
         points: &mut Points,
-    ) -> Result<Sign, Doubt> {
+    ) -> Result<Sign, Special> {
         let face = &other.face.polygon;
         let carriers = (
             &self.polygon.corners()[edge].edge,
@@ -130,25 +127,25 @@ impl Crossed<'_> {
             return Ok(if rises { turn } else { -turn });
         }
         let plane = (face.support(), other.number);
-        let at = points.at((self.polygon, edge), plane).ok_or(Doubt)?;
+        let at = points.at((self.polygon, edge), plane).ok_or(Special)?;
         Ok(-at.side_of(&other.face.rims()[rim]).sign())
     }
 }
 
 /// The edge on which a polygon with corners on these sides changes to the plus side.
-fn rise(sides: &[Side]) -> Result<usize, Doubt> {
+fn rise(sides: &[Side]) -> Result<usize, Special> {
     change(sides, (Side::Minus, Side::Plus))
 }
 
 /// The edge on which it changes back.
-fn fall(sides: &[Side]) -> Result<usize, Doubt> {
+fn fall(sides: &[Side]) -> Result<usize, Special> {
     change(sides, (Side::Plus, Side::Minus))
 }
 
-fn change(sides: &[Side], wanted: (Side, Side)) -> Result<usize, Doubt> {
+fn change(sides: &[Side], wanted: (Side, Side)) -> Result<usize, Special> {
     let n = sides.len();
     let found = (0..n).find(|i| (sides[*i], sides[(i + 1) % n]) == wanted);
-    found.ok_or(Doubt)
+    found.ok_or(Special)
 }
 
 /// On which side of a directed edge another one passes: positive if it rises on its left.

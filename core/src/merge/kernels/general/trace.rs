@@ -10,8 +10,9 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use super::curves::{may_cross, turns_left, Joints};
+use super::cutting::Special;
 use super::points::Points;
-use super::segment::{Crossed, Crosser, Doubt, Segment};
+use super::segment::{Crossed, Crosser, Segment};
 use crate::geometry::outline::{order_along, BareEdge};
 use crate::geometry::polygon::{Carrier, Polygon};
 use crate::geometry::vertex::Vertex;
@@ -108,9 +109,13 @@ impl Segment {
 
 type Divided = (Vec<Segment>, Vec<BorderEnd>, SmallVec<[bool; 6]>);
 
-fn divided(crossed: &Crossed, crossers: &[Crosser], points: &mut Points) -> Result<Divided, Doubt> {
+fn divided(
+    crossed: &Crossed,
+    crossers: &[Crosser],
+    points: &mut Points,
+) -> Result<Divided, Special> {
     if crossers.iter().any(|c| c.operand != crossers[0].operand) {
-        return Err(Doubt);
+        return Err(Special);
     }
     let mut segments = Vec::with_capacity(crossers.len());
     for crosser in crossers {
@@ -118,13 +123,13 @@ fn divided(crossed: &Crossed, crossers: &[Crosser], points: &mut Points) -> Resu
         segments.extend(crossed.segment(crosser, points)?);
     }
     if segments.is_empty() {
-        return Err(Doubt);
+        return Err(Special);
     }
     let ends = border_ends(crossed.polygon, &segments)?;
     let joints = Joints::of(&segments)?;
     let loops = joints.loops(&segments);
     if loops > usize::from(ends.is_empty()) || may_cross(&segments) {
-        return Err(Doubt);
+        return Err(Special);
     }
     let first = match ends.first() {
         Some(end) => !end.enters,
@@ -135,7 +140,7 @@ fn divided(crossed: &Crossed, crossers: &[Crosser], points: &mut Points) -> Resu
 }
 
 /// The ends on the border, counterclockwise; they must enter and leave by turns.
-fn border_ends(polygon: &Polygon, segments: &[Segment]) -> Result<Vec<BorderEnd>, Doubt> {
+fn border_ends(polygon: &Polygon, segments: &[Segment]) -> Result<Vec<BorderEnd>, Special> {
     let mut ends = Vec::new();
     for segment in segments {
         for (end, enters) in [(&segment.from, false), (&segment.to, true)] {
@@ -157,7 +162,7 @@ fn border_ends(polygon: &Polygon, segments: &[Segment]) -> Result<Vec<BorderEnd>
     if by_turns && (1..n).all(|i| apart(i - 1)) {
         Ok(ends)
     } else {
-        Err(Doubt)
+        Err(Special)
     }
 }
 
