@@ -23,7 +23,10 @@ pub fn mantissa_and_exponent(x: f64) -> (i64, i32) {
 }
 
 /// The double nearest to a ratio of positive numbers.
-pub(super) fn magnitudes_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]) -> f64 {
+pub(super) fn magnitudes_to_f64<const A: usize, const B: usize>(
+    num: &[u64; A],
+    den: &[u64; B],
+) -> f64 {
     leading_to_f64(num, den).unwrap_or_else(|| all_to_f64(num, den))
 }
 

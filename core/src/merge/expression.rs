@@ -444,3 +444,26 @@ fn renumbered(term: Term, image: &[u32]) -> Term {
         Term::Xor(l) => Term::Xor(list(l)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_known_folds_away() {
+        let terms = vec![Term::Operand(0), Term::Operand(1), Term::And(vec![0, 1])];
+        let both = Expression::new(terms).expect("well formed");
+        let with_first = |value: bool| both.residual(|k| (k == 0).then_some(value));
+        assert!(matches!(with_first(false), Residual::Constant(false)));
+        assert!(matches!(with_first(true), Residual::Literal(1, false)));
+        assert!(matches!(both.residual(|_| None), Residual::Open(_)));
+    }
+
+    #[test]
+    fn words_hold_64_places_at_once() {
+        let terms = vec![Term::Operand(0), Term::Operand(1), Term::Xor(vec![0, 1])];
+        let differ = Expression::new(terms).expect("well formed");
+        let word = |k: u32| [0b0011, 0b0101][k as usize];
+        assert_eq!(differ.words(word, &mut Vec::new()), 0b0110);
+    }
+}

@@ -10,6 +10,8 @@ pub mod op;
 pub mod pairs;
 pub mod plane;
 pub mod rule;
+#[cfg(test)]
+pub(crate) mod scenes;
 pub mod simple;
 mod twins;
 

@@ -161,3 +161,30 @@ fn mixed(cell: &Cell, states: &States, total: usize) -> f64 {
     }
     as_double(mixed) / as_double(all.max(1))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::crossing;
+
+    #[test]
+    fn three_halvings_that_keep_nearly_all_elements_are_stuck() {
+        let after = |round: Round, total| (0..ROUND).fold(round, |r, _| r.next(total, 2));
+        let first = after(Round::START, 100);
+        assert!(!first.stuck);
+        assert!(after(first, 95).stuck);
+        assert!(!after(first, 80).stuck);
+    }
+
+    #[test]
+    fn a_kernel_that_refused_is_asked_again_when_few_elements_are_left() {
+        let scene = crossing();
+        let listed = scene.lists.iter().cloned().map(State::List);
+        let states: States = (0..).zip(listed).collect();
+        let suits = |round: Round| round.suits_general_position(&scene.cell, &states, 8);
+        let mut round = Round::START;
+        assert!(suits(round));
+        round.refused(8);
+        assert!(!suits(round));
+    }
+}

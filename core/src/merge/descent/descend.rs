@@ -393,3 +393,42 @@ impl<'a> Descent<'a> {
         Some(Branch::of_node(cell, solution.node))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{both, cuboid, cuboids};
+    use crate::tree::node::Node;
+    use crate::tree::solid::Solid;
+
+    fn run(
+        solids: &[Solid; 2],
+        combined: fn(Vec<u32>) -> Term,
+    ) -> (Branch, [(&'static str, u64); 5]) {
+        let sources = Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect());
+        let descent = Descent::new(&sources, Rule::Positive, true, 2);
+        let roots = solids.iter().map(|s| s.root().clone()).collect();
+        let root = descent.run(both(combined), roots).expect("not stopped");
+        (root, descent.counters.named())
+    }
+
+    #[test]
+    fn what_is_far_apart_is_shared_and_costs_no_kernel() {
+        // More faces than a kernel takes at once.
+        let row = |first: i64| cuboids((0..4).map(|i| [1, 3].map(|c| [first + c + 4 * i; 3])));
+        let solids = [row(0), row(64)];
+        let (common, _) = run(&solids, Term::And);
+        assert_eq!(common.constant(), Some(0));
+        let (union, counters) = run(&solids, Term::Or);
+        assert!(matches!(*union.node, Node::Cut(_)));
+        assert_eq!(counters[3], ("kernels", 0));
+    }
+
+    #[test]
+    fn what_crosses_is_for_a_kernel() {
+        let solids = [cuboid([1; 3], [9; 3]), cuboid([5; 3], [13; 3])];
+        let (_, counters) = run(&solids, Term::Or);
+        assert!(counters[3].0 == "kernels" && counters[3].1 >= 1);
+    }
+}

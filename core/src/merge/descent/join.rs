@@ -243,3 +243,44 @@ fn grouped(faces: Vec<Listed>) -> Vec<Group> {
     }
     groups
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::lists::list::List;
+    use crate::merge::scenes::{counts, cuboid, Shared};
+
+    #[test]
+    fn halves_of_few_faces_become_one_leaf_again() {
+        let scene = Shared::of(&[cuboid([1; 3], [3; 3])]);
+        let cut = scene.cell.cut().expect("more than one point");
+        let (minus, plus) = scene.lists[0]
+            .clone()
+            .divide(&scene.cell, cut, &scene.sources);
+        let leaf = |half, list: List| {
+            let node = list.close(false, &scene.sources);
+            Branch::of_node(scene.cell.half(cut, half), node)
+        };
+        let halves = [leaf(Half::Minus, minus), leaf(Half::Plus, plus)];
+        let [minus, plus] = halves;
+        let whole = branch(scene.cell, cut, minus, plus, &scene.sources);
+        assert_eq!((whole.cell, counts(&whole.node)), (scene.cell, (12, 0)));
+    }
+
+    #[test]
+    fn uniform_halves_are_left_out_where_nothing_changes() {
+        let scene = Shared::of(&[cuboid([1; 3], [3; 3])]);
+        let cell = Cell::around(&[0; 3], &[15; 3]);
+        let cut = cell.cut().expect("more than one point");
+        let around = |w: i32| Branch::uniform(cell.half(cut, Half::Plus), w);
+        let inner = Branch::of_node(
+            scene.cell,
+            scene.lists[0].clone().close(false, &scene.sources),
+        );
+        let kept = branch(cell, cut, inner.clone(), around(0), &scene.sources);
+        assert_eq!(kept.cell, scene.cell);
+        let divided = branch(cell, cut, inner, around(1), &scene.sources);
+        assert_eq!(divided.cell, cell);
+        assert!(matches!(*divided.node, Node::Cut(_)));
+    }
+}

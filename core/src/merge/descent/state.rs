@@ -254,3 +254,42 @@ fn divide_tree(branch: Branch, cell: &Cell, cut: Cut) -> (State, State) {
         (around, State::Tree(branch))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::{crossing, cuboid};
+
+    #[test]
+    fn a_tree_in_one_half_leaves_the_other_uniform() {
+        let solid = cuboid([1; 3], [3; 3]);
+        let sources = Sources::new(solid.sources().clone());
+        let cell = Cell::around(&[0; 3], &[15; 3]);
+        let cut = cell.cut().expect("more than one point");
+        let state = State::Tree(solid.root().clone());
+        let (minus, plus) = state.divided(&cell, cut, &sources);
+        assert!(matches!(minus, State::Tree(_)));
+        assert!(matches!(plus, State::Constant(0)));
+    }
+
+    #[test]
+    fn a_list_without_elements_settles_to_its_corner() {
+        let scene = crossing();
+        let mut list = scene.lists[0].clone();
+        list.records.clear();
+        list.corner = 1;
+        let mut state = State::List(list);
+        state.settle(&scene.cell);
+        assert!(matches!(state, State::Constant(1)));
+    }
+
+    #[test]
+    fn the_descent_starts_around_the_boundaries() {
+        let solids = [cuboid([1; 3], [3; 3]), cuboid([9; 3], [11; 3])];
+        let tree = |s: &crate::tree::solid::Solid| State::Tree(s.root().clone());
+        let states: States = (0..).zip(solids.iter().map(tree)).collect();
+        assert!(find(&states, 1).is_some() && find(&states, 2).is_none());
+        let inner = nested(&Cell::UNIVERSE, &states);
+        assert_eq!(inner, Some(Cell::around(&[0; 3], &[15; 3])));
+    }
+}

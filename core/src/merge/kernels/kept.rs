@@ -279,3 +279,59 @@ fn border_lines(plane: &Plane, cell: &Cell) -> Vec<LineKey> {
         .map(|w| LineKey::of_planes(plane, w))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::polygon::PolygonSplit;
+    use crate::merge::scenes::{counts, crossing, Shared};
+    use crate::mesh::handle::Slot;
+
+    fn assembled(scene: &Shared, kept: Vec<Kept>) -> Node {
+        assemble(kept, 1, Work::General, &scene.cell, &scene.sources)
+    }
+
+    #[test]
+    fn without_faces_the_cell_is_uniform() {
+        assert!(matches!(assembled(&crossing(), Vec::new()), Node::Leaf(1)));
+    }
+
+    #[test]
+    fn whole_faces_stand_in_groups_by_source_and_orientation() {
+        let whole = |slot: u32, face: u32, orientation| {
+            Kept::whole(SourceFace::new(Slot(slot), FaceId(face)), orientation)
+        };
+        let (same, turned) = (Orientation::Same, Orientation::Opposite);
+        let kept = vec![
+            whole(1, 2, same),
+            whole(0, 3, same),
+            whole(0, 1, same),
+            whole(0, 0, turned),
+        ];
+        let Node::Deferred(leaf) = assembled(&crossing(), kept) else {
+            panic!("faces stay");
+        };
+        let faces: Vec<Vec<u32>> = leaf
+            .groups
+            .iter()
+            .map(|g| g.faces.iter().map(|f| f.0).collect())
+            .collect();
+        assert_eq!(faces, [vec![1, 3], vec![0], vec![2]]);
+    }
+
+    #[test]
+    fn pieces_that_make_all_of_a_face_are_the_face_again() {
+        let scene = crossing();
+        let face = SourceFace::default();
+        let polygon = scene.sources.get(face.slot).clip(face.id, &scene.cell);
+        let polygon = polygon.expect("it is in the cell");
+        let cut = Arc::new(Plane::through(&[4, 0, 0], &[4, 1, 0], &[4, 0, 1]).expect("a plane"));
+        let PolygonSplit::Both(minus, plus) = polygon.split(&cut) else {
+            panic!("the plane crosses the face");
+        };
+        let pieces = |some: &[Polygon]| vec![Kept::pieces(face, Orientation::Same, some.to_vec())];
+        let all = assembled(&scene, pieces(&[minus.clone(), plus]));
+        assert_eq!(counts(&all), (1, 0));
+        assert_eq!(counts(&assembled(&scene, pieces(&[minus]))), (0, 1));
+    }
+}

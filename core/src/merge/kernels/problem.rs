@@ -66,3 +66,35 @@ impl From<Node> for Solution {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{both, crossing};
+
+    struct Refuses;
+
+    struct Answers(i32);
+
+    impl Kernel for Refuses {
+        fn solve(&self, _: &CellProblem) -> Option<Solution> {
+            None
+        }
+    }
+
+    impl Kernel for Answers {
+        fn solve(&self, _: &CellProblem) -> Option<Solution> {
+            Some(Node::Leaf(self.0).into())
+        }
+    }
+
+    #[test]
+    fn the_first_kernel_that_takes_a_cell_answers() {
+        let (scene, expression) = (crossing(), both(Term::And));
+        let problem = scene.problem(&expression);
+        let solution = problem.solve_by(&[&Refuses, &Answers(1), &Answers(0)]);
+        assert!(matches!(solution.expect("answered").node, Node::Leaf(1)));
+        assert!(problem.solve_by(&[&Refuses]).is_none());
+    }
+}

@@ -114,3 +114,41 @@ fn kept_part(
     let some = !(polygons.is_empty() && edges.is_empty());
     some.then(|| Kept::joined(face, orientation, polygons, edges))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::kept::assemble;
+    use super::*;
+    use crate::merge::scenes::crossing;
+    use crate::mesh::handle::FaceId;
+    use crate::tree::node::{Node, Work};
+
+    #[test]
+    fn a_part_of_which_all_pieces_stay_is_kept_as_it_is() {
+        let scene = crossing();
+        let source = scene.sources.get(Slot(0));
+        let polygon = source
+            .clip(FaceId(0), &scene.cell)
+            .expect("it is in the cell");
+        let edges = BareEdge::all_of(&polygon).collect();
+        let part = Arc::new(Part::new(Arc::clone(source), FaceId(0), scene.cell, edges));
+        let parts = [(&part, Slot(0))];
+        let left = |second: Stays| {
+            let of_part = |i: usize, stays| (i, Owner::Part(0), [stays, Stays::Nothing]);
+            let settled = [of_part(0, Stays::All), of_part(1, second)];
+            let kept = kept(settled.into_iter(), &parts, |_| Some(polygon.clone()));
+            assemble(kept, 0, Work::General, &scene.cell, &scene.sources)
+        };
+        let shared = |node: &Node| match node {
+            Node::Deferred(leaf) => leaf.parts.iter().any(|p| Arc::ptr_eq(&p.part, &part)),
+            Node::Leaf(_) | Node::Cut(_) => false,
+        };
+        assert!(shared(&left(Stays::All)));
+        assert!(!shared(&left(Stays::Nothing)));
+    }
+
+    #[test]
+    fn no_pieces_are_nothing() {
+        assert!(matches!(Stays::of(Vec::new()), Stays::Nothing));
+    }
+}

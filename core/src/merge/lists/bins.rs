@@ -452,3 +452,52 @@ fn integral(window: &Window, starts: &[u32]) -> Vec<u32> {
     }
     below
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::cuboids;
+    use crate::mesh::handle::Slot;
+    use crate::tree::solid::Solid;
+
+    /// 64 boxes in rows, each in a cell of 16 points, and one around all of them.
+    fn boxes_in_a_box() -> Solid {
+        let places = (0..64).map(|i| [16 * (i & 3), 16 * (i >> 2 & 3), 16 * (i >> 4)]);
+        let small = places.map(|p| [2, 13].map(|c| p.map(|x| x + c)));
+        cuboids(small.chain([[[1; 3], [62; 3]]]))
+    }
+
+    #[test]
+    fn a_cell_finds_its_faces_and_its_corner_by_its_place() {
+        let solid = boxes_in_a_box();
+        let bins = Bins::new(solid.root()).expect("many small faces");
+        let mesh = solid.sources().get(Slot(0)).mesh().expect("a mesh");
+        let is_small = |face: &FaceId| face.0 < 64 * 12;
+        for place in (0..4).flat_map(|x| (0..4).map(move |y| [16 * x, 16 * y, 32])) {
+            let cell = Cell::around(&place, &place.map(|c| c + 15));
+            let inside = place.iter().all(|c| *c > 0);
+            assert_eq!(bins.corner_of(&cell), i32::from(inside), "{place:?}");
+            let held = |face: &FaceId| {
+                let (low, high) = mesh.face_box(*face);
+                cell.holds_box(&low, &high)
+            };
+            let small: Vec<FaceId> = mesh.face_ids().filter(held).collect();
+            let faces = bins.groups_in(&cell).into_iter().flat_map(|g| g.faces);
+            let (found, large): (Vec<FaceId>, Vec<FaceId>) = faces.partition(is_small);
+            assert_eq!((found.len(), found), (12, small));
+            let on_rim = place.iter().any(|c| [0, 48].contains(c));
+            assert_eq!(!large.is_empty(), on_rim, "{place:?}");
+        }
+    }
+
+    #[test]
+    fn few_faces_are_not_worth_the_sorting() {
+        assert!(Bins::new(cuboids([[[0; 3], [9; 3]]]).root()).is_none());
+    }
+
+    #[test]
+    fn numbers_are_sorted_by_comparing_or_by_marking() {
+        assert_eq!(ascending(vec![9, 2, 9], 1000), [2, 9]);
+        assert_eq!(ascending(vec![9, 2, 9], 10), [2, 9]);
+    }
+}

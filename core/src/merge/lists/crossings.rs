@@ -161,3 +161,31 @@ fn crossing(
     }
     (total != 0).then_some((low, total))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::cuboid;
+    use crate::mesh::handle::{FaceId, Slot};
+
+    #[test]
+    fn the_way_to_a_corner_in_a_box_crosses_its_surface_once() {
+        let solid = cuboid([4; 3], [28; 3]);
+        let mesh = solid.sources().get(Slot(0)).mesh().expect("a mesh");
+        let window = Window::around(&[0; 3], &[31; 3], 3).expect("few cells");
+        let span = |face: FaceId| {
+            let codes = mesh.corners(face).map(|p| window.code(&p));
+            Span::new(face.0, codes)
+        };
+        let spans: Vec<Span> = mesh.face_ids().map(span).collect();
+        let corners = |element: u32| (mesh.corners(FaceId(element)), Orientation::Same);
+        let crossings = Crossings::new(window, &spans, corners);
+        // Corners lie at -1/2, 15/2, 31/2, 47/2 and 63/2.
+        for (x, y, z) in
+            (0..5).flat_map(|x| (0..5).flat_map(move |y| (0..5).map(move |z| (x, y, z))))
+        {
+            let inside = [x, y, z].iter().all(|i| (1..4).contains(i));
+            assert_eq!(crossings.up_to([x, y, z]), i32::from(inside));
+        }
+    }
+}

@@ -415,3 +415,37 @@ impl Frame {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::{cuboid, Shared};
+
+    #[test]
+    fn halving_keeps_what_meets_a_half_and_counts_to_its_corner() {
+        let scene = Shared::of(&[cuboid([0; 3], [20; 3])]);
+        let (mut cell, mut list) = (scene.cell, scene.lists[0].clone());
+        assert_eq!((list.len(), list.corner), (12, 0));
+        for _ in 0..3 {
+            let cut = cell.cut().expect("more than one point");
+            list = list.divide(&cell, cut, &scene.sources).1;
+            cell = cell.half(cut, Half::Plus);
+        }
+        // The cell from 16 up: its low corner lies in the box, as do no faces at zero.
+        assert_eq!((*cell.low(), list.corner), ([16; 3], 1));
+        let mesh = scene.sources.get(Slot(0)).mesh().expect("a mesh");
+        let meets = |f: FaceId| mesh.face_box(f).1.iter().all(|c| *c == 20);
+        assert!(!list.is_empty() && list.records.iter().all(|r| meets(r.face)));
+    }
+
+    #[test]
+    fn a_closed_list_opens_again() {
+        let scene = Shared::of(&[cuboid([0; 3], [20; 3])]);
+        let node = scene.lists[0].clone().close(true, &scene.sources);
+        let Node::Deferred(leaf) = &node else {
+            panic!("faces are listed");
+        };
+        assert_eq!((leaf.len(), leaf.corner), (12, 1));
+        assert!(leaf.groups.iter().all(|g| g.orientation.is_opposite()));
+    }
+}

@@ -85,3 +85,24 @@ fn apart(p: &[[f64; 3]; 3], half: &[f64; 3], axis: &[f64; 3]) -> bool {
         .fold(reach, f64::max);
     low > reach + size * SLACK || high < -reach - size * SLACK
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A triangle across the corner of space, and boxes that its bounds meet.
+    #[test]
+    fn boxes_on_one_side_of_the_plane_are_missed() {
+        let corners = [[30, 0, 0], [0, 30, 0], [0, 0, 30]];
+        assert!(triangle_misses(&corners, &[0; 3], &[8; 3]));
+        assert!(triangle_misses(&corners, &[12; 3], &[20; 3]));
+        assert!(!triangle_misses(&corners, &[8; 3], &[12; 3]));
+    }
+
+    #[test]
+    fn boxes_beside_an_edge_are_missed() {
+        let corners = [[0, 0, 0], [40, 40, 0], [40, 41, 0]];
+        assert!(triangle_misses(&corners, &[20, 0, -5], &[30, 10, 5]));
+        assert!(!triangle_misses(&corners, &[20, 20, -5], &[30, 30, 5]));
+    }
+}

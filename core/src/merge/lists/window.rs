@@ -163,3 +163,32 @@ impl Window {
         (0..3).all(|i| low[i] <= high[i]).then_some((low, high))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_of_a_cell_have_its_code() {
+        let window = Window::around(&[0; 3], &[31; 3], 3).expect("few cells");
+        assert_eq!((window.count(), window.len()), ([4; 3], 64));
+        let code = window.code(&[8, 0, 31]);
+        assert_eq!(code, window.code(&[15, 7, 24]));
+        assert_eq!(
+            window.index_of(code),
+            Some(as_number(window.index([1, 0, 3])))
+        );
+        assert_eq!(window.index_of(window.code(&[-1, 0, 0])), None);
+        // Between the points 7 and 8, in half steps.
+        assert_eq!(window.line(0, 1), 15);
+    }
+
+    #[test]
+    fn a_span_lies_across_the_lines_between_its_corners() {
+        let window = Window::around(&[0; 3], &[31; 3], 3).expect("few cells");
+        let codes = [[1, 1, 1], [20, 2, 2], [2, 9, 3]].map(|p| window.code(&p));
+        let span = Span::new(0, codes);
+        assert_eq!([0, 1, 2].map(|axis| span.lines(axis)), [1..3, 1..2, 1..1]);
+        assert_eq!(window.within(&span), Some(([0; 3], [2, 1, 0])));
+    }
+}

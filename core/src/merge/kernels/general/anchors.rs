@@ -103,3 +103,33 @@ fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
     let ((least, most), low, high) = (vertex.bounds(), cell.low(), cell.high());
     (0..3).all(|i| least[i] >= as_double(low[i]) && most[i] <= as_double(high[i]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::kernels::general::scene::Scene;
+    use crate::merge::scenes::crossing;
+
+    /// In a small cell at its corner a solid has that corner, and edges that leave the cell.
+    #[test]
+    fn neighbours_share_the_points_in_which_edges_leave_the_cell() {
+        let shared = crossing();
+        let (operands, cell) = (shared.operands(), Cell::around(&[0; 3], &[3; 3]));
+        let scene = Scene::new(&cell, &operands[..1], &shared.sources);
+        let faces = &scene.elements[..3];
+        assert!(faces.iter().all(|face| face.anchors(&cell).len() == 1));
+        let at_walls = |face: &Element| {
+            let clipped = face.polygon_in(&cell).expect("it meets the cell");
+            face.anchors_at_walls(&clipped)
+        };
+        let walls: Vec<Vec<Anchor>> = faces.iter().map(at_walls).collect();
+        assert!(walls.iter().all(|anchors| anchors.len() == 2));
+        let shared = |a: &[Anchor], b: &[Anchor]| {
+            a.iter()
+                .filter(|x| b.iter().any(|y| x.name == y.name))
+                .count()
+        };
+        assert_eq!(shared(&walls[0], &walls[1]), 1);
+        assert_eq!(shared(&walls[1], &walls[2]), 1);
+    }
+}

@@ -192,3 +192,62 @@ pub(super) fn turns_left(polygon: &Polygon, segments: &[Segment]) -> Result<bool
     }
     Ok((area > 0.0) == (polygon.support().normal()[axis] > 0))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::plane::{Lattice, Plane};
+    use crate::geometry::vertex::Vertex;
+    use crate::merge::scenes::triangle;
+
+    /// The segments from each of some points in a plane to the next.
+    fn path(points: &[Lattice]) -> Vec<Segment> {
+        let vertices: Vec<_> = points
+            .iter()
+            .map(|p| Arc::new(Vertex::lattice(*p)))
+            .collect();
+        let end = |at: &Arc<Vertex>| End {
+            at: Arc::clone(at),
+            edge: None,
+        };
+        let segment = |i: usize| {
+            let next = (i + 1) % points.len();
+            let [a, b] = [points[i], points[next]];
+            let plane = Plane::through(&a, &b, &[a[0], a[1], a[2] + 1]);
+            Segment {
+                from: end(&vertices[i]),
+                to: end(&vertices[next]),
+                plane: Arc::new(plane.expect("two points and one above")),
+                plus: false,
+            }
+        };
+        (0..points.len()).map(segment).collect()
+    }
+
+    const SQUARE: [Lattice; 4] = [[1, 1, 0], [3, 1, 0], [3, 3, 0], [1, 3, 0]];
+
+    #[test]
+    fn a_ring_is_one_closed_curve_and_a_gap_in_it_is_special() {
+        let mut ring = path(&SQUARE);
+        let joints = Joints::of(&ring).ok().expect("all are continued");
+        assert_eq!(joints.loops(&ring), 1);
+        ring.pop();
+        assert!(Joints::of(&ring).is_err());
+    }
+
+    #[test]
+    fn curves_turn_left_or_right_as_seen_from_above() {
+        let floor = triangle([[0, 0, 0], [9, 0, 0], [0, 9, 0]]);
+        let mut corners = SQUARE;
+        assert_eq!(turns_left(&floor, &path(&corners)).ok(), Some(true));
+        corners.reverse();
+        assert_eq!(turns_left(&floor, &path(&corners)).ok(), Some(false));
+    }
+
+    #[test]
+    fn a_bow_tie_may_cross_itself_and_a_square_does_not() {
+        let [a, b, c, d] = SQUARE;
+        assert!(!may_cross(&path(&SQUARE)));
+        assert!(may_cross(&path(&[a, c, b, d])));
+    }
+}

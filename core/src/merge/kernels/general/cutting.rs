@@ -355,3 +355,55 @@ pub fn contact(polygon: &Polygon, face: &Face<'_>) -> Contact {
     }
     Contact::None
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::triangle;
+
+    fn cut_by(walls: &[[Lattice; 3]]) -> Option<Cutting> {
+        let faces: Vec<Face> = walls
+            .iter()
+            .map(|c| Face::new(Cow::Owned(triangle(*c))))
+            .collect();
+        let cutter = |face| Cutter {
+            face,
+            operand: 1,
+            weight: 1,
+        };
+        let cutters: Vec<Cutter> = faces.iter().map(cutter).collect();
+        cut_up(triangle([[0, 0, 0], [16, 0, 0], [0, 16, 0]]), &cutters)
+    }
+
+    /// A face through the middle of the triangle.
+    const WALL: [Lattice; 3] = [[4, -9, -9], [4, 30, 1], [4, -9, 30]];
+
+    #[test]
+    fn a_face_that_crosses_makes_two_pieces_and_a_tie() {
+        let cutting = cut_by(&[WALL]).expect("general position");
+        assert_eq!((cutting.pieces.len(), cutting.ties.len()), (2, 1));
+        assert_eq!(cutting.ties[0].change, -1);
+    }
+
+    #[test]
+    fn ties_connect_all_pieces() {
+        let across = [[-9, 3, -9], [30, 3, 1], [-9, 3, 30]];
+        let cutting = cut_by(&[WALL, across]).expect("general position");
+        let mut known = vec![false; cutting.pieces.len()];
+        known[0] = true;
+        for _ in &cutting.pieces {
+            for tie in &cutting.ties {
+                let both = known[tie.minus as usize] || known[tie.plus as usize];
+                (known[tie.minus as usize], known[tie.plus as usize]) = (both, both);
+            }
+        }
+        assert!(known.len() == 4 && known.iter().all(|k| *k));
+    }
+
+    #[test]
+    fn a_face_in_the_plane_of_the_polygon_is_special() {
+        let polygon = triangle([[0, 0, 0], [8, 0, 0], [0, 8, 0]]);
+        let flat = Face::new(Cow::Owned(triangle([[1, 1, 0], [2, 1, 0], [1, 2, 0]])));
+        assert!(matches!(contact(&polygon, &flat), Contact::Special));
+    }
+}

@@ -193,3 +193,25 @@ impl Cut {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::crossing;
+
+    #[test]
+    fn faces_that_nothing_crosses_stay_whole() {
+        let shared = crossing();
+        let operands = shared.operands();
+        let scene = Scene::new(&shared.cell, &operands, &shared.sources);
+        let fates = scene.fates(usize::MAX).expect("general position");
+        let cut =
+            |fate: &Fate| matches!(fate, Fate::Cut(cut) if matches!(cut.parts, Parts::Sides(_)));
+        let cut: Vec<bool> = fates.iter().map(cut).collect();
+        // The face across from the origin, and those at the corner inside.
+        assert_eq!(cut, [false, false, false, true, true, true, true, false]);
+        let alone = Scene::new(&shared.cell, &operands[..1], &shared.sources);
+        let fates = alone.fates(usize::MAX).expect("nothing meets");
+        assert!(fates.iter().all(|fate| matches!(fate, Fate::Untouched)));
+    }
+}

@@ -127,3 +127,21 @@ fn stays_of_parts(fate: Fate, sides: &[Option<usize>]) -> [Stays; 2] {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_expression_is_asked_once_for_the_same_labels() {
+        let mut asked = Vec::new();
+        let mut values = Values::of(|labels: Labels| {
+            asked.push(labels);
+            labels == 0b11
+        });
+        assert_eq!(values.on_sides(0b01, 0b00), [false, false]);
+        assert_eq!(values.on_sides(0b01, 0b10), [true, false]);
+        assert_eq!(values.on_sides(0b10, 0b01), [true, false]);
+        assert_eq!(asked, [0b01, 0b00, 0b11, 0b10]);
+    }
+}

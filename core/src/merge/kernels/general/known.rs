@@ -156,3 +156,26 @@ impl Known {
         *known
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::crossing;
+    use crate::mesh::handle::{Slot, VertexId};
+
+    #[test]
+    fn what_is_known_at_a_vertex_is_known_at_all_that_nothing_separates() {
+        let shared = crossing();
+        let operands = shared.operands();
+        let roots = |count: usize| {
+            let scene = Scene::new(&shared.cell, &operands[..count], &shared.sources);
+            let fates = scene.fates(usize::MAX).expect("general position");
+            let mut known = Known::new(&scene, &fates);
+            let vertex = |v: u32| Name::Vertex(Slot(0), VertexId(v));
+            [0, 1, 2, 3].map(|v| known.root_of(0, vertex(v)))
+        };
+        assert_eq!(roots(1), [0; 4]);
+        // Three faces of the first tetrahedron stay whole beside the second.
+        assert_eq!(roots(2), [0; 4]);
+    }
+}

@@ -179,3 +179,39 @@ fn across(tie: &Tie, labels: Labels, onward: bool) -> Option<Labels> {
     let rises = (tie.change > 0) == onward;
     ((labels & bit == 0) == rises).then_some(labels ^ bit)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::{crossing, triangle};
+
+    #[test]
+    fn a_cut_face_lies_outside_and_inside_the_solid_that_cuts_it() {
+        let shared = crossing();
+        let operands = shared.operands();
+        let scene = Scene::new(&shared.cell, &operands, &shared.sources);
+        let fates = scene.fates(usize::MAX).expect("general position");
+        let labels = scene.labels(&fates).expect("labels agree");
+        let labels: Vec<&[Labels]> = labels.iter().map(|l| &l[..]).collect();
+        let (of_first, of_second): (&[Labels], &[Labels]) = (&[0, 0b10], &[0, 0b01]);
+        assert_eq!(labels[..4], [&[0][..], &[0], &[0], of_first]);
+        assert_eq!(labels[4..], [of_second, of_second, of_second, &[0]]);
+    }
+
+    #[test]
+    fn ties_that_contradict_each_other_give_no_labels() {
+        let tie = |change: i32| Tie {
+            minus: 0,
+            plus: 1,
+            operand: 1,
+            change,
+        };
+        let piece = || triangle([[0, 0, 0], [8, 0, 0], [0, 8, 0]]);
+        let spread = |ties: Vec<Tie>| {
+            let pieces = vec![piece(), piece()];
+            spread_along_ties(&Cutting { pieces, ties }, 0, 0)
+        };
+        assert_eq!(spread(vec![tie(1)]).as_deref(), Some(&[0, 0b10][..]));
+        assert!(spread(vec![tie(1), tie(-1)]).is_none());
+    }
+}

@@ -87,3 +87,32 @@ fn kept_and_corner(problem: &CellProblem, cutters: usize) -> Option<(Vec<Kept>, 
     let kept = scene.keep(fates, &labels, &mut value);
     Some((kept, corner))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{both, counts, crossing, cuboid, Shared};
+
+    /// Three faces of the second solid and one of the first cross.
+    #[test]
+    fn only_faces_that_cross_are_divided() {
+        let scene = crossing();
+        let left = |combined| {
+            let expression = both(combined);
+            let solution = GeneralPosition::LAST.solve(&scene.problem(&expression));
+            counts(&solution.expect("general position").node)
+        };
+        assert_eq!(left(Term::And), (0, 4));
+        assert_eq!(left(Term::Or), (4, 4));
+    }
+
+    #[test]
+    fn faces_in_one_plane_are_left_to_others() {
+        let boxes = [[[0; 3], [4; 3]], [[4, 0, 0], [8, 4, 4]]];
+        let scene = Shared::of(&boxes.map(|[low, high]| cuboid(low, high)));
+        let expression = both(Term::Or);
+        let problem = scene.problem(&expression);
+        assert!(GeneralPosition::LAST.solve(&problem).is_none());
+    }
+}

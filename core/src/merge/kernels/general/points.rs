@@ -69,3 +69,26 @@ impl Points {
         Some(at)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::triangle;
+
+    #[test]
+    fn faces_at_an_edge_share_the_point_in_which_it_crosses_an_element() {
+        let crossed = triangle([[0, 0, 0], [8, 0, 0], [0, 8, 0]]);
+        let faces = [
+            triangle([[2, 2, -4], [2, 2, 4], [9, 3, 0]]),
+            triangle([[2, 2, 4], [2, 2, -4], [-9, 5, 0]]),
+        ];
+        let mut points = Points::default();
+        let mut at = |face: usize, number: u32| {
+            let point = points.at((&faces[face], 0), (crossed.support(), number));
+            point.expect("not parallel")
+        };
+        assert_eq!(at(0, 7).as_lattice(), Some(&[2, 2, 0]));
+        assert!(Arc::ptr_eq(&at(0, 7), &at(1, 7)));
+        assert!(!Arc::ptr_eq(&at(0, 7), &at(0, 8)));
+    }
+}

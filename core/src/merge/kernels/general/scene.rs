@@ -247,3 +247,23 @@ impl<'a> Element<'a> {
         polygon.clipped(cell)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::crossing;
+
+    #[test]
+    fn elements_stand_by_operand_in_a_box_around_them() {
+        let mut shared = crossing();
+        shared.lists[1].corner = 1;
+        let operands = shared.operands();
+        let scene = Scene::new(&shared.cell, &operands, &shared.sources);
+        assert_eq!(scene.elements.len(), 8);
+        assert!(scene.of_operand(1).iter().all(|e| e.operand == 1));
+        assert_eq!(scene.of_operand(1).len(), 4);
+        assert_eq!(scene.boxes[0], [[0; 3], [16; 3]]);
+        // Only the second is inside at the corner.
+        assert_eq!(scene.at_corner(), 0b10);
+    }
+}

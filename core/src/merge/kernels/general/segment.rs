@@ -153,3 +153,47 @@ fn passes((a, b): (&Lattice, &Lattice), (c, d): (&Lattice, &Lattice)) -> Sign {
     let from = |p: &Lattice| each_axis(|i| p[i] - c[i]);
     determinant(&from(d), &from(a), &from(b))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::cutting::{contact, Contact};
+    use super::*;
+    use crate::merge::scenes::triangle;
+    use std::borrow::Cow;
+
+    #[test]
+    fn a_segment_is_what_both_have_of_the_line_in_which_their_planes_meet() {
+        let crossed = triangle([[0, 0, 0], [8, 0, 0], [0, 8, 0]]);
+        let face = Face::new(Cow::Owned(triangle([[1, 1, -4], [1, 1, 4], [1, 20, 1]])));
+        let Contact::Crossing(ours, theirs) = contact(&crossed, &face) else {
+            panic!("the face crosses the element");
+        };
+        let crosser = Crosser {
+            face: &face,
+            number: 1,
+            operand: 1,
+            weight: 1,
+            ours,
+            theirs,
+        };
+        let element = Crossed {
+            polygon: &crossed,
+            number: 0,
+        };
+        let found = element.segment(&crosser, &mut Points::default()).ok();
+        let segment = found.flatten().expect("they cross");
+        let ends = [&segment.from, &segment.to];
+        // It begins on the face's own edge, inside the element, and ends on the element's border.
+        let [inner, outer] = [[1, 1, 0], [1, 7, 0]].map(Vertex::lattice);
+        let at_outer = ends.map(|end| end.at.same(&outer));
+        assert!(ends.iter().any(|end| end.at.same(&inner)) && at_outer.contains(&true));
+        assert_eq!(ends.map(|end| end.edge.is_some()), at_outer);
+    }
+
+    #[test]
+    fn a_polygon_changes_sides_twice_or_is_special() {
+        let sides = [Side::Minus, Side::Plus, Side::Plus];
+        assert_eq!((rise(&sides).ok(), fall(&sides).ok()), (Some(0), Some(2)));
+        assert!(rise(&[Side::Plus; 3]).is_err());
+    }
+}

@@ -37,3 +37,23 @@ impl Facet<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::facet::Facets;
+    use super::*;
+    use crate::merge::scenes::{cuboid, Shared};
+
+    #[test]
+    fn facets_of_a_box_lie_in_the_middle_of_its_grid() {
+        let scene = Shared::of(&[cuboid([1; 3], [3; 3])]);
+        let operands = scene.operands();
+        let facets = Facets::new(&scene.cell, &operands, &scene.sources).expect("upright");
+        let grid = Grid::new(&scene.cell, &facets).expect("a coarse grid");
+        for facet in &facets.all {
+            let extent = facet.extent(&grid);
+            assert_eq!(extent.line, if facet.at == 1 { 1 } else { 2 });
+            assert_eq!((extent.rows.touched, extent.bits.touched), (1..2, 1..2));
+        }
+    }
+}

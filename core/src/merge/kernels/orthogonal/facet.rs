@@ -277,3 +277,31 @@ impl Slant {
         turn(&self.from, &self.to, &[row, bit]) > 0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::{cuboid, Shared};
+
+    #[test]
+    fn the_winding_number_rises_behind_lower_facets_and_falls_behind_upper_ones() {
+        let scene = Shared::of(&[cuboid([1; 3], [3; 3])]);
+        let operands = scene.operands();
+        let facets = Facets::new(&scene.cell, &operands, &scene.sources).expect("upright");
+        assert_eq!(facets.all.len(), 12);
+        let change = |f: &Facet| if f.at == 1 { 1 } else { -1 };
+        assert!(facets.all.iter().all(|f| f.change() == change(f)));
+    }
+
+    #[test]
+    fn each_place_beside_a_diagonal_is_held_by_one_of_its_triangles() {
+        let scene = Shared::of(&[cuboid([0; 3], [4; 3])]);
+        let operands = scene.operands();
+        let facets = Facets::new(&scene.cell, &operands, &scene.sources).expect("upright");
+        for pair in facets.all.chunks(2) {
+            for corner in (0..8).flat_map(|row| (0..8).map(move |bit| [row, bit])) {
+                assert_eq!(pair.iter().filter(|f| f.holds(corner)).count(), 1);
+            }
+        }
+    }
+}

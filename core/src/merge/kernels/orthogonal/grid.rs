@@ -168,3 +168,29 @@ pub(super) fn mask(range: &Range<usize>) -> u64 {
     }
     (u64::MAX >> (64 - range.len())) << range.start
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::{cuboid, Shared};
+
+    #[test]
+    fn planes_of_facets_and_walls_of_the_cell_are_lines() {
+        let scene = Shared::of(&[cuboid([1; 3], [3; 3])]);
+        let operands = scene.operands();
+        let facets = Facets::new(&scene.cell, &operands, &scene.sources).expect("upright");
+        let grid = Grid::new(&scene.cell, &facets).expect("a coarse grid");
+        let lines: Vec<i64> = (0..4).map(|line| grid.line(0, line)).collect();
+        assert_eq!(lines, [-1, 2, 6, 7]);
+        assert_eq!((grid.count(0), grid.columns(), grid.find(0, 3)), (3, 9, 2));
+        assert_eq!(grid.between(0, 2, 6).touched, 1..2);
+    }
+
+    #[test]
+    fn masks_have_the_bits_of_a_range() {
+        assert_eq!(
+            (mask(&(2..5)), mask(&(3..3)), mask(&(0..64))),
+            (0b11100, 0, u64::MAX)
+        );
+    }
+}

@@ -166,3 +166,15 @@ fn all_alike(owned: &[[u64; 2]], side: usize, mask: u64) -> Option<bool> {
     let alike = (first == 0 || first == mask) && bits.all(|b| b == first);
     alike.then_some(first != 0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_side_is_alike_if_all_rows_hold_all_of_the_mask_or_nothing() {
+        assert_eq!(all_alike(&[[0b110, 0b001]; 2], 0, 0b110), Some(true));
+        assert_eq!(all_alike(&[[0b110, 0b001]; 2], 1, 0b110), Some(false));
+        assert_eq!(all_alike(&[[0b110, 0], [0b010, 0]], 0, 0b110), None);
+    }
+}

@@ -139,3 +139,23 @@ impl<'a> Own<'a> {
         field
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::facet::Facets;
+    use super::*;
+    use crate::merge::scenes::{cuboid, Shared};
+
+    #[test]
+    fn a_box_is_inside_in_the_middle_of_its_grid() {
+        let scene = Shared::of(&[cuboid([1; 3], [3; 3])]);
+        let operands = scene.operands();
+        let facets = Facets::new(&scene.cell, &operands, &scene.sources).expect("upright");
+        let grid = Grid::new(&scene.cell, &facets).expect("a coarse grid");
+        let extents: Vec<Extent> = facets.all.iter().map(|f| f.extent(&grid)).collect();
+        let field = |corner: i32| field(&grid, facets.all.iter().zip(&extents), corner);
+        assert_eq!(field(0), Some(vec![0, 0, 0, 0, 0b010, 0, 0, 0, 0]));
+        // Inside of what is inside: no number that this kernel knows.
+        assert_eq!(field(1), None);
+    }
+}

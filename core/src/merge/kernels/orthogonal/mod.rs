@@ -96,3 +96,30 @@ fn value(
     };
     (0..columns).map(|i| word(i, scratch)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{both, counts, crossing, cuboid, Shared};
+
+    /// Two boxes side by side lose the walls between them.
+    #[test]
+    fn faces_in_one_plane_need_no_care() {
+        let boxes = [[[0; 3], [4; 3]], [[4, 0, 0], [8, 4, 4]]];
+        let scene = Shared::of(&boxes.map(|[low, high]| cuboid(low, high)));
+        let left = |combined| {
+            let expression = both(combined);
+            let solution = Orthogonal.solve(&scene.problem(&expression));
+            counts(&solution.expect("upright faces").node)
+        };
+        assert_eq!(left(Term::Or), (20, 0));
+        assert_eq!(left(Term::And), (0, 0));
+    }
+
+    #[test]
+    fn slanted_faces_are_left_to_others() {
+        let (scene, expression) = (crossing(), both(Term::Or));
+        assert!(Orthogonal.solve(&scene.problem(&expression)).is_none());
+    }
+}

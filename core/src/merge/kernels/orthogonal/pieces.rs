@@ -119,3 +119,21 @@ fn take_below(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_are_alike_make_one_slab() {
+        let slab = Slab::new(&[0b111; 3], &[0b011, 0b011, 0b110]);
+        assert_eq!((slab.rows, slab.stay, slab.go), (2, 0b011, 0b100));
+        assert_eq!((slab.run(0), slab.run(2)), (Some((0, 2)), None));
+    }
+
+    #[test]
+    fn rectangles_that_the_facet_does_not_touch_may_be_on_either_side() {
+        let slab = Slab::new(&[0b101, 0b010], &[0b001, 0b010]);
+        assert_eq!((slab.rows, slab.stay, slab.go), (2, 0b011, 0b100));
+    }
+}

@@ -337,3 +337,52 @@ fn divide(piece: Weighted, cut: &Arc<Plane>, minus: &mut Vec<Weighted>, plus: &m
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::cell::Cell;
+    use crate::merge::scenes::{cuboid, triangle};
+    use crate::mesh::handle::Slot;
+
+    /// The faces of boxes, each with the weight of its box.
+    fn tree(boxes: &[([Lattice; 2], i32)]) -> LocalTree {
+        let mut fragments = Vec::new();
+        let cell = Cell::around(&[0; 3], &[15; 3]);
+        for ([low, high], weight) in boxes {
+            let solid = cuboid(*low, *high);
+            let source = solid.sources().get(Slot(0));
+            let clipped = source
+                .face_ids()
+                .filter_map(|face| source.clip(face, &cell));
+            fragments.extend(clipped.map(|polygon| Weighted {
+                polygon,
+                weight: *weight,
+            }));
+        }
+        LocalTree::build(fragments, &cell.corner(), 0)
+    }
+
+    #[test]
+    fn boxes_in_boxes_count_and_holes_take_away() {
+        let (outer, inner) = ([[1; 3], [9; 3]], [[3; 3], [6; 3]]);
+        let labels = |weight| {
+            let tree = tree(&[(outer, 1), (inner, weight)]);
+            [[0; 3], [2; 3], [4; 3]].map(|p| tree.label_at(&p))
+        };
+        assert_eq!(labels(1), [0, 1, 2]);
+        assert_eq!(labels(-1), [0, 1, 0]);
+    }
+
+    #[test]
+    fn a_polygon_is_cut_where_labels_change() {
+        let tree = tree(&[([[1; 3], [9; 3]], 1)]);
+        let across = triangle([[2, 2, 5], [14, 2, 5], [2, 4, 5]]);
+        let sides = tree.sides(across);
+        assert!(sides.iter().all(|s| s.minus == s.plus));
+        let inside = |s: &&Sided| s.minus == 1;
+        assert!(sides.iter().any(|s| inside(&s)) && sides.iter().any(|s| s.minus == 0));
+        let beyond = |s: &Sided| s.polygon.bounds().1[0] > 9.5;
+        assert!(sides.iter().filter(inside).all(|s| !beyond(s)));
+    }
+}

@@ -152,3 +152,45 @@ fn keep(
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{both, counts, crossing, cuboid, Shared};
+    use crate::mesh::handle::Slot;
+    use crate::tree::node::Node;
+
+    #[test]
+    fn every_cell_is_taken() {
+        let scene = crossing();
+        let left = |combined| {
+            let expression = both(combined);
+            let solution = LocalTrees.solve(&scene.problem(&expression));
+            counts(&solution.expect("every cell").node)
+        };
+        assert_eq!(left(Term::And), (0, 4));
+        assert_eq!(left(Term::Or), (4, 4));
+    }
+
+    #[test]
+    fn where_faces_coincide_the_first_operand_owns_them() {
+        let scene = Shared::of(&[cuboid([0; 3], [4; 3]), cuboid([0; 3], [4; 3])]);
+        let solve = |combined| {
+            let expression = both(combined);
+            LocalTrees
+                .solve(&scene.problem(&expression))
+                .expect("every cell")
+                .node
+        };
+        assert!(matches!(solve(Term::Xor), Node::Leaf(0)));
+        let Node::Deferred(leaf) = solve(Term::And) else {
+            panic!("a box");
+        };
+        assert_eq!(leaf.groups.len(), 1);
+        assert!(std::sync::Arc::ptr_eq(
+            &leaf.groups[0].source,
+            scene.sources.get(Slot(0))
+        ));
+    }
+}

@@ -111,3 +111,23 @@ impl LeafTree {
         self.0.tree.label_at(point)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::{cuboid, Shared};
+
+    #[test]
+    fn faces_that_are_listed_twice_are_no_simple_boundary() {
+        let mut scene = Shared::of(&[cuboid([1; 3], [3; 3])]);
+        let operand =
+            |scene: &Shared| Operand::new(0, &scene.lists[0], &scene.cell, &scene.sources);
+        let once = operand(&scene);
+        assert!(once.simple && once.fragments.len() == 12);
+        let again = scene.lists[0].records.clone();
+        scene.lists[0].records.extend(again);
+        let twice = operand(&scene);
+        assert!(!twice.simple && twice.fragments.len() == 12);
+        assert!(twice.fragments.iter().all(|f| f.weight == 2));
+    }
+}

@@ -146,3 +146,37 @@ fn carve(polygon: &Polygon, by: &Polygon) -> (Option<Polygon>, Vec<Polygon>) {
     }
     (Some(inside), outside)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::triangle;
+
+    fn fragment(polygon: Polygon) -> Fragment {
+        Fragment {
+            polygon,
+            weight: 1,
+            face: SourceFace::default(),
+            intact: true,
+        }
+    }
+
+    fn weights(polygons: [Polygon; 2]) -> (Vec<i32>, bool) {
+        let (fragments, overlap) = disjoint(polygons.map(fragment).into());
+        let mut weights: Vec<i32> = fragments.iter().map(|f| f.weight).collect();
+        weights.sort_unstable();
+        (weights, overlap)
+    }
+
+    #[test]
+    fn multiplicities_add_up_where_fragments_overlap() {
+        let one = triangle([[0, 0, 0], [8, 0, 0], [0, 8, 0]]);
+        let beside = triangle([[8, 8, 0], [8, 0, 0], [0, 8, 0]]).flipped();
+        let moved = triangle([[2, 0, 0], [10, 0, 0], [2, 8, 0]]);
+        assert_eq!(weights([one.clone(), beside]), (vec![1, 1], false));
+        assert_eq!(weights([one.clone(), one.clone()]), (vec![2], true));
+        assert_eq!(weights([one.clone(), one.flipped()]), (vec![], true));
+        let (weights, overlap) = weights([one, moved]);
+        assert!(overlap && weights.contains(&1) && weights.last() == Some(&2));
+    }
+}

@@ -1,0 +1,141 @@
+//! Small solids that share a cell, for the tests beside the stages of an evaluation.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use super::expression::{Expression, Term};
+use super::kernels::problem::{CellProblem, Listed};
+use super::lists::list::{List, Sources};
+use super::rule::Rule;
+use crate::arith::convert::{as_double, as_number};
+use crate::geometry::axes::each_axis;
+use crate::geometry::cell::Cell;
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::polygon::Polygon;
+use crate::mesh::grid::Pitch;
+use crate::mesh::handle::VertexId;
+use crate::mesh::source::{Shape, Source};
+use crate::mesh::triangles::TriangleMesh;
+use crate::tree::node::Node;
+use crate::tree::solid::Solid;
+
+/// A triangle as a polygon.
+pub fn triangle(corners: [Lattice; 3]) -> Polygon {
+    let [a, b, c] = &corners;
+    let plane = Plane::through(a, b, c).expect("a triangle with an area");
+    Polygon::triangle(&corners, Arc::new(plane))
+}
+
+/// The tetrahedron with these corners, the last above the triangle of the others.
+pub fn tetrahedron(corners: [Lattice; 4]) -> Solid {
+    let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    solid(corners.to_vec(), faces.to_vec())
+}
+
+/// The box between two points.
+pub fn cuboid(low: Lattice, high: Lattice) -> Solid {
+    cuboids([[low, high]])
+}
+
+/// Boxes as one solid.
+pub fn cuboids(boxes: impl IntoIterator<Item = [Lattice; 2]>) -> Solid {
+    const QUADS: [[u32; 4]; 6] = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    for [low, high] in boxes {
+        let first = as_number(vertices.len());
+        let corner = |i: usize| each_axis(|k| if i >> k & 1 == 1 { high[k] } else { low[k] });
+        vertices.extend((0..8).map(corner));
+        let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+        faces.extend(
+            QUADS
+                .map(|quad| quad.map(|v| first + v))
+                .into_iter()
+                .flat_map(halves),
+        );
+    }
+    solid(vertices, faces)
+}
+
+fn solid(vertices: Vec<Lattice>, faces: Vec<[u32; 3]>) -> Solid {
+    let mesh = TriangleMesh {
+        doubles: vertices.iter().map(|p| p.map(as_double)).collect(),
+        vertices,
+        faces: faces.into_iter().map(|f| f.map(VertexId)).collect(),
+        numbers: None,
+    };
+    let pitch = Pitch::new(0).expect("ten to the zero");
+    let source = Source::new(pitch, Shape::Mesh(mesh), Vec::new());
+    Solid::of_source(Arc::new(source), false)
+}
+
+/// Two tetrahedra of which a corner of the second lies in the first: three of its faces cross the
+/// last face of that.
+pub fn crossing() -> Shared {
+    let a = [[0, 0, 0], [16, 0, 0], [0, 16, 0], [0, 0, 16]];
+    let b = [[5, 4, 3], [25, 5, 4], [6, 27, 2], [4, 6, 24]];
+    Shared::of(&[tetrahedron(a), tetrahedron(b)])
+}
+
+/// Solids in the smallest cell that holds all of them.
+pub struct Shared {
+    pub cell: Cell,
+    pub sources: Sources,
+    pub lists: Vec<List>,
+}
+
+impl Shared {
+    pub fn of(solids: &[Solid]) -> Self {
+        let cells = solids.iter().map(|s| s.root().cell);
+        let cell = cells.reduce(|a, b| a.join(&b)).expect("at least one solid");
+        let sources = Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect());
+        let list = |s: &Solid| List::lifted(s.root(), &cell, &sources).expect("a leaf");
+        let lists = solids.iter().map(list).collect();
+        Self {
+            cell,
+            sources,
+            lists,
+        }
+    }
+
+    pub fn operands(&self) -> Vec<Listed<'_>> {
+        let listed = |(number, list)| Listed {
+            number,
+            list: Cow::Borrowed(list),
+        };
+        (0..).zip(&self.lists).map(listed).collect()
+    }
+
+    pub fn problem<'a>(&'a self, expression: &'a Expression) -> CellProblem<'a> {
+        CellProblem {
+            cell: &self.cell,
+            expression,
+            rule: Rule::Positive,
+            operands: self.operands(),
+            sources: &self.sources,
+        }
+    }
+}
+
+/// Operands 0 and 1, combined.
+pub fn both(combined: fn(Vec<u32>) -> Term) -> Expression {
+    let terms = vec![Term::Operand(0), Term::Operand(1), combined(vec![0, 1])];
+    Expression::new(terms).expect("well formed")
+}
+
+/// The numbers of whole faces and of parts that a node lists.
+pub fn counts(node: &Node) -> (usize, usize) {
+    match node {
+        Node::Deferred(leaf) => {
+            let whole = leaf.groups.iter().map(|g| g.faces.len()).sum();
+            (whole, leaf.parts.len())
+        }
+        Node::Leaf(_) | Node::Cut(_) => (0, 0),
+    }
+}
