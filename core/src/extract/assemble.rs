@@ -327,3 +327,57 @@ fn split_faces(
     }
     split
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{cuboid, made_of, tetrahedra};
+
+    /// The directed edges of a mesh, sorted.
+    fn edges(mesh: &ExactMesh) -> Vec<[u32; 2]> {
+        let edge = |t: &[u32; 3]| [0, 1, 2].map(|i| [t[i], t[(i + 1) % 3]]);
+        let mut edges: Vec<[u32; 2]> = mesh.triangles.iter().flat_map(edge).collect();
+        edges.sort_unstable();
+        edges
+    }
+
+    fn assert_closed(mesh: &ExactMesh) {
+        let edges = edges(mesh);
+        assert!(edges.windows(2).all(|pair| pair[0] != pair[1]));
+        let has_mate = |[a, b]: &[u32; 2]| edges.binary_search(&[*b, *a]).is_ok();
+        assert!(edges.iter().all(has_mate));
+    }
+
+    #[test]
+    fn untouched_faces_come_first_and_the_mesh_is_closed() {
+        let mesh = assemble(&made_of(&tetrahedra(), Term::Or)).expect("bounded");
+        assert_closed(&mesh);
+        assert_eq!(mesh.untouched, 4);
+        let is_source = |v: &u32| matches!(mesh.vertices[*v as usize], Corner::Source(..));
+        assert!(mesh.triangles[..4].iter().flatten().all(is_source));
+        // The corner inside is gone; its three edges meet the first one's last face.
+        assert_eq!(mesh.vertices.len(), 4 + 3 + 3);
+    }
+
+    #[test]
+    fn solids_that_touch_in_an_edge_have_it_twice() {
+        let boxes = [cuboid([0; 3], [4; 3]), cuboid([4, 4, 0], [8, 8, 4])];
+        let mesh = assemble(&made_of(&boxes, Term::Or)).expect("bounded");
+        assert_closed(&mesh);
+        assert_eq!(mesh.vertices.len(), 16);
+    }
+
+    #[test]
+    fn the_complement_of_a_box_has_no_mesh() {
+        let all = cuboid([0; 3], [4; 3]);
+        let outside = Solid::new(
+            all.root().complemented(),
+            all.pitch(),
+            all.sources().clone(),
+            true,
+        );
+        let refused = assemble(&outside).expect_err("unbounded");
+        assert_eq!(refused.kind(), ErrorKind::Unbounded);
+    }
+}

@@ -287,3 +287,34 @@ fn wide_orient(points: &[&Vertex; 3], u: usize, v: usize) -> Sign {
 pub fn direction(a: &Vertex, b: &Vertex) -> [Sign; 3] {
     [0, 1, 2].map(|axis| Sign::from_order(b.compare(a, axis)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_has_one_number_however_it_is_made() {
+        let mut table = VertexTable::default();
+        let wall = |axis: usize, at: i64| Arc::new(Plane::axis_cut(axis, at));
+        // Where three planes meet, and the same as a lattice point.
+        let met = Vertex::meet(&wall(0, 6), &wall(1, 4), &wall(2, 2)).expect("a corner");
+        let first = table.number(&Arc::new(met));
+        assert_eq!(table.number_at([3, 2, 1]), first);
+        assert_ne!(table.number_at([3, 2, 2]), first);
+        assert_eq!(
+            (table.len(), table.find(&Vertex::lattice([0; 3]))),
+            (2, None)
+        );
+    }
+
+    #[test]
+    fn between_and_across_are_exact_in_the_view_from_above() {
+        let mut table = VertexTable::default();
+        let [a, b, c, d] = [[0, 0, 0], [9, 9, 0], [3, 3, 0], [9, 0, 0]].map(|p| table.number_at(p));
+        let e = table.number_at([0, 9, 0]);
+        let floor = Plane::through(&[0, 0, 0], &[1, 0, 0], &[0, 1, 0]).expect("a plane");
+        let view = Projection::onto(&floor, &table);
+        assert!(view.is_between(a, c, b) && !view.is_between(a, d, b));
+        assert!(view.crosses([a, b], [d, e]) && !view.crosses([a, c], [d, e]));
+    }
+}

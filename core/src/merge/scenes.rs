@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use super::evaluate::evaluate;
 use super::expression::{Expression, Term};
 use super::kernels::problem::{CellProblem, Listed};
 use super::lists::list::{List, Sources};
@@ -77,10 +78,20 @@ fn solid(vertices: Vec<Lattice>, faces: Vec<[u32; 3]>) -> Solid {
 
 /// Two tetrahedra of which a corner of the second lies in the first: three of its faces cross the
 /// last face of that.
-pub fn crossing() -> Shared {
+pub fn tetrahedra() -> [Solid; 2] {
     let a = [[0, 0, 0], [16, 0, 0], [0, 16, 0], [0, 0, 16]];
     let b = [[5, 4, 3], [25, 5, 4], [6, 27, 2], [4, 6, 24]];
-    Shared::of(&[tetrahedron(a), tetrahedron(b)])
+    [tetrahedron(a), tetrahedron(b)]
+}
+
+/// These tetrahedra in one cell.
+pub fn crossing() -> Shared {
+    Shared::of(&tetrahedra())
+}
+
+/// Two solids, combined.
+pub fn made_of(solids: &[Solid; 2], combined: fn(Vec<u32>) -> Term) -> Solid {
+    evaluate(&both(combined), solids).expect("bounded solids").0
 }
 
 /// Solids in the smallest cell that holds all of them.

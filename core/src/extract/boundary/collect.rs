@@ -303,3 +303,32 @@ pub fn has_no_boundary(solid: &Solid) -> bool {
     let gone = |(_, fates): (_, &[Fate])| fates.iter().all(|f| !matches!(f, Fate::Whole(_)));
     boundary.cut.is_empty() && boundary.fates.by_slot().all(gone)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{made_of, tetrahedra};
+
+    fn fates(combined: fn(Vec<u32>) -> Term) -> [usize; 3] {
+        let solid = made_of(&tetrahedra(), combined);
+        let sources = Sources::new(solid.sources().clone());
+        let boundary = collect(&solid, &sources);
+        let all: Vec<Fate> = boundary
+            .fates
+            .by_slot()
+            .flat_map(|f| f.1.to_vec())
+            .collect();
+        let count = |is: fn(&Fate) -> bool| all.iter().filter(|f| is(f)).count();
+        let whole = count(|f| matches!(f, Fate::Whole(_)));
+        let gone = count(|f| *f == Fate::Gone);
+        assert_eq!(boundary.cut.len(), count(|f| *f == Fate::Cut));
+        [whole, boundary.cut.len(), gone]
+    }
+
+    #[test]
+    fn faces_are_whole_or_cut_or_gone() {
+        assert_eq!(fates(Term::Or), [4, 4, 0]);
+        assert_eq!(fates(Term::And), [0, 4, 4]);
+    }
+}

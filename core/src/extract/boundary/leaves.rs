@@ -446,3 +446,19 @@ fn part_edges(part: &Part, cell: &Cell) -> Vec<OutlineEdge> {
             .collect(),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::side::Half;
+
+    #[test]
+    fn cells_that_make_up_a_box_fill_it() {
+        let whole = Cell::around(&[0; 3], &[7; 3]);
+        let cut = whole.cut().expect("more than one point");
+        let halves = Half::BOTH.map(|half| whole.half(cut, half));
+        let fills = |leaves: &[u32]| fill(([1; 3], [6; 3]), leaves.iter().copied(), &halves);
+        assert!(fills(&[0, 1]));
+        assert!(!fills(&[0]) && !fills(&[1]));
+    }
+}

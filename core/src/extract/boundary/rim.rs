@@ -309,3 +309,35 @@ pub fn half_edge_ends(mesh: &TriangleMesh, half: u32) -> [VertexId; 2] {
     let corner = half as usize % 3;
     [face[corner], face[(corner + 1) % 3]]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extract::boundary::collect::collect;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{cuboid, made_of, tetrahedra};
+
+    #[test]
+    fn whole_faces_end_where_their_neighbours_are_cut() {
+        let solid = made_of(&tetrahedra(), Term::Or);
+        let sources = Sources::new(solid.sources().clone());
+        let boundary = collect(&solid, &sources);
+        let rims = Rims::of(&boundary.fates, &sources);
+        let frontier = rims.frontier(&boundary.fates, &sources);
+        // The last face of each has three edges, beside whole faces and beside cut ones.
+        assert_eq!(frontier.len(), 6);
+        let is_whole = |e: &FrontierEdge| matches!(boundary.fates[e.face()], Fate::Whole(_));
+        assert!(frontier.iter().all(is_whole));
+    }
+
+    #[test]
+    fn half_edges_run_around_their_face() {
+        let solid = cuboid([0; 3], [1; 3]);
+        let mesh = solid.sources().get(Slot(0)).mesh().expect("a mesh");
+        let [a, b, c] = mesh.vertices_of(FaceId(5));
+        let ends = FaceId(5)
+            .half_edges()
+            .map(|half| half_edge_ends(mesh, half));
+        assert_eq!(ends.collect::<Vec<_>>(), [[a, b], [b, c], [c, a]]);
+    }
+}

@@ -306,3 +306,35 @@ struct Candidate {
     edge: FrontierEdge,
     face: OrientedFace,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extract::boundary::collect::collect;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{cuboid, made_of, tetrahedra};
+    use crate::tree::solid::Solid;
+
+    /// The groups of a union: the numbers of faces of each.
+    fn sizes(solids: &[Solid; 2], join: bool) -> Vec<usize> {
+        let solid = made_of(solids, Term::Or);
+        let sources = Sources::new(solid.sources().clone());
+        let boundary = collect(&solid, &sources);
+        let (_, groups, _) = group(boundary, &sources, &Patches::default(), join);
+        groups.iter().map(|g| g.faces.len()).collect()
+    }
+
+    #[test]
+    fn cut_faces_of_different_planes_stay_apart() {
+        assert_eq!(sizes(&tetrahedra(), true), [1; 4]);
+    }
+
+    #[test]
+    fn cut_faces_of_one_plane_are_joined() {
+        // Side by side with common floors and ceilings, one reaching into the other.
+        let boxes = [cuboid([0; 3], [6, 4, 4]), cuboid([3, 0, 0], [9, 4, 4])];
+        let joined = sizes(&boxes, true);
+        assert!(joined.len() < sizes(&boxes, false).len());
+        assert!(joined.iter().all(|faces| *faces > 1));
+    }
+}

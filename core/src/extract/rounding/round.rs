@@ -235,3 +235,26 @@ fn is_collapsed(mesh: &Mesh, triangle: u64) -> bool {
     let [a, b, c] = mesh.triangles[as_place(triangle)].map(|v| mesh.vertices[v as usize]);
     a == b || b == c || c == a
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{made_of, tetrahedra};
+    use crate::mesh::handle::Slot;
+
+    #[test]
+    fn what_was_not_cut_keeps_its_doubles_and_is_not_compared() {
+        let solids = tetrahedra();
+        let mesh = mesh(&made_of(&solids, Term::Or)).expect("bounded");
+        for solid in &solids {
+            let given = solid.sources().get(Slot(0)).mesh().expect("a mesh");
+            // The corner inside the other one is gone.
+            let kept = given.doubles.iter().filter(|p| mesh.vertices.contains(p));
+            assert!(kept.count() >= 3);
+        }
+        assert_eq!(mesh.compared, mesh.triangles.len() as u64 - 4);
+        assert_eq!(mesh.origins[..4], [[0, 0], [0, 1], [0, 2], [1, 3]]);
+        assert!(mesh.findings.is_empty() && !mesh.flips.contains(&true));
+    }
+}

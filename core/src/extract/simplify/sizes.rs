@@ -79,3 +79,25 @@ pub fn is_small(corners: &Triangle, tolerance: f64) -> bool {
 pub fn swept(from: &Point, to: &Point, [p, q]: [&Point; 2]) -> f64 {
     dot(&less(to, from), &cross(&less(p, from), &less(q, from))).abs()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_height_stands_on_the_longest_edge() {
+        let right = [[0.0; 3], [3.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+        assert!((height(&right) - 2.4).abs() < 1e-12);
+        assert!(!is_small(&right, 2.0) && is_small(&right, 3.0));
+        let needle = [[0.0; 3], [100.0, 0.0, 0.0], [50.0, 0.1, 0.0]];
+        assert!(is_small(&needle, 0.2));
+    }
+
+    #[test]
+    fn distances_are_never_too_short() {
+        let tiny = f64::from_bits(1);
+        assert!(distance_above(&[0.0; 3], &[tiny; 3]) >= 3.0f64.sqrt() * tiny);
+        assert!(distance_above(&[0.0; 3], &[3.0, 4.0, 0.0]) >= 5.0);
+        assert!(distance_above(&[1.0; 3], &[1.0; 3]) <= 0.0);
+    }
+}

@@ -101,3 +101,25 @@ impl<'a> Surface<'a> {
 pub fn place_of(v: u32, corners: &[u32; 3]) -> usize {
     corners.iter().position(|c| *c == v).unwrap_or(0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TRIANGLES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+
+    #[test]
+    fn a_vertex_knows_its_triangles_and_an_edge_the_one_on_its_left() {
+        let places = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let surface = Surface::of(&places, &TRIANGLES);
+        assert_eq!(surface.star(3), [1, 2, 3]);
+        let mut around: Vec<u32> = surface.neighbours(3).collect();
+        around.sort_unstable();
+        assert_eq!(around, [0, 1, 2]);
+        assert_eq!(
+            (surface.left_of(1, 3), surface.left_of(3, 1)),
+            (Some(1), Some(3))
+        );
+        assert!(surface.are_joined(0, 3));
+    }
+}

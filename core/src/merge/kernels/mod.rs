@@ -1,7 +1,8 @@
 //! Leaf kernels: what an expression leaves of its operands in a cell that is not halved any more.
 //!
 //! A kernel is a folder with a type that implements [`problem::Kernel`], and a place in [`ALL`].
-//! Which cells are asked about before they are small is decided in `merge/descent/choice.rs`.
+//! `merge/descent/descend.rs` asks some about larger cells, too, which `merge/descent/choice.rs`
+//! chooses.
 
 pub mod general;
 pub(super) mod kept;

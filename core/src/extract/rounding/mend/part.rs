@@ -190,3 +190,22 @@ pub(super) fn distance(p: &Point, q: &Point) -> f64 {
     let square = |i: usize| (p[i] - q[i]) * (p[i] - q[i]);
     (square(0) + square(1) + square(2)).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn single_numbers_lie_farther_apart_than_doubles() {
+        assert!(Precision::Double.round(0.1).to_bits() == 0.1f64.to_bits());
+        assert!(Precision::Single.round(0.1).to_bits() == f64::from(0.1f32).to_bits());
+        let spacings = [Precision::Double, Precision::Single].map(|p| p.spacing(-1.0));
+        assert!(spacings[0].to_bits() == f64::EPSILON.to_bits());
+        assert!(spacings[1].to_bits() == f64::from(f32::EPSILON).to_bits());
+    }
+
+    #[test]
+    fn a_triangle_has_its_edges_in_its_direction() {
+        assert_eq!(edges(&[4, 7, 9]), [[4, 7], [7, 9], [9, 4]]);
+    }
+}

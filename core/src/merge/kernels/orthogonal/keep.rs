@@ -175,6 +175,7 @@ mod tests {
     fn a_side_is_alike_if_all_rows_hold_all_of_the_mask_or_nothing() {
         assert_eq!(all_alike(&[[0b110, 0b001]; 2], 0, 0b110), Some(true));
         assert_eq!(all_alike(&[[0b110, 0b001]; 2], 1, 0b110), Some(false));
-        assert_eq!(all_alike(&[[0b110, 0], [0b010, 0]], 0, 0b110), None);
+        assert_eq!(all_alike(&[[0b110, 0], [0, 0]], 0, 0b110), None);
+        assert_eq!(all_alike(&[[0b010, 0]; 2], 0, 0b110), None);
     }
 }
