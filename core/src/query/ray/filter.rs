@@ -27,6 +27,9 @@ use super::line::Ray;
 pub const ROUNDING: f64 = f64::EPSILON / 2.0;
 
 /// The answer of doubles about a ray and a facet.
+///
+/// No `Filtered`: a hit is certain, but its depth is known only up to an error, which may still ask
+/// for integers.
 #[derive(Clone, Copy, Debug)]
 pub enum Probe {
     /// The ray does not meet the facet.
