@@ -18,32 +18,83 @@ type Short = [u16; 2 * ROOM];
 
 /// The vertices of a closed surface whose link is not one cycle, sorted.
 pub fn irregular(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<VertexId> {
-    irregular_among(&doubtful(faces, vertex_count), faces, vertex_count)
+    let doubtful = doubtful(faces, vertex_count, |vertex| Some(vertex.place()));
+    let vertices = doubtful.into_iter().map(VertexId).collect();
+    without_cycle(&Asked::new(vertices, vertex_count), faces)
 }
 
 /// Those of some vertices of a closed surface whose link is not one cycle, sorted.
 ///
-/// One pass over the faces, and a sort of the corners at these vertices.
+/// `vertices` ascend. One pass over the faces, and memory for the links of these vertices only.
 pub fn irregular_among(
-    vertices: &[VertexId],
+    vertices: Vec<VertexId>,
     faces: &[[VertexId; 3]],
     vertex_count: usize,
 ) -> Vec<VertexId> {
-    let mut wanted = vec![0u64; vertex_count.div_ceil(64)];
-    for vertex in vertices {
-        wanted[vertex.place() / 64] |= 1 << (vertex.place() % 64);
-    }
-    let is_wanted = |v: VertexId| wanted[v.place() / 64] >> (v.place() % 64) & 1 == 1;
-    let at_wanted = |_, faces: &[[VertexId; 3]]| {
-        let corners = faces
-            .iter()
-            .flat_map(|&[a, b, c]| [[a, b, c], [b, c, a], [c, a, b]]);
-        corners.filter(|c| is_wanted(c[0])).collect::<Vec<_>>()
-    };
     if vertices.is_empty() {
         return Vec::new();
     }
-    let mut corners = each_chunk(faces, at_wanted).concat();
+    let asked = Asked::new(vertices, vertex_count);
+    let doubtful = doubtful(faces, asked.vertices.len(), |vertex| asked.place(vertex));
+    let vertices = doubtful.into_iter().map(|at| asked.vertices[at as usize]);
+    without_cycle(&Asked::new(vertices.collect(), vertex_count), faces)
+}
+
+/// Some vertices of a mesh, and their places among each other.
+struct Asked {
+    /// Ascending.
+    vertices: Vec<VertexId>,
+    /// A bit for each vertex of the mesh.
+    words: Vec<u64>,
+    /// How many come before each word.
+    before: Vec<u32>,
+}
+
+impl Asked {
+    fn new(vertices: Vec<VertexId>, vertex_count: usize) -> Self {
+        let mut words = vec![0u64; vertex_count.div_ceil(64)];
+        for vertex in &vertices {
+            words[vertex.place() / 64] |= 1 << (vertex.place() % 64);
+        }
+        let sum = |sum: &mut u32, word: &u64| {
+            let before = *sum;
+            *sum += word.count_ones();
+            Some(before)
+        };
+        let before = words.iter().scan(0, sum).collect();
+        Self {
+            vertices,
+            words,
+            before,
+        }
+    }
+
+    #[inline]
+    fn has(&self, vertex: VertexId) -> bool {
+        self.words[vertex.place() / 64] >> (vertex.place() % 64) & 1 == 1
+    }
+
+    #[inline]
+    fn place(&self, vertex: VertexId) -> Option<usize> {
+        let word = vertex.place() / 64;
+        let lower = self.words[word] & ((1 << (vertex.place() % 64)) - 1);
+        let place = || self.before[word] as usize + lower.count_ones() as usize;
+        self.has(vertex).then(place)
+    }
+}
+
+/// Those of some vertices whose link is not one cycle, by a sort of the corners there.
+fn without_cycle(asked: &Asked, faces: &[[VertexId; 3]]) -> Vec<VertexId> {
+    if asked.vertices.is_empty() {
+        return Vec::new();
+    }
+    let at_asked = |_, faces: &[[VertexId; 3]]| {
+        let corners = faces
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, b, c], [b, c, a], [c, a, b]]);
+        corners.filter(|c| asked.has(c[0])).collect::<Vec<_>>()
+    };
+    let mut corners = each_chunk(faces, at_asked).concat();
     corners.sort_unstable();
     let links = corners.chunk_by(|a, b| a[0] == b[0]);
     links
@@ -52,17 +103,26 @@ pub fn irregular_among(
         .collect()
 }
 
-/// Vertices whose short link does not show that they are regular.
-fn doubtful(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<VertexId> {
-    let mut links: Vec<Short> = vec![[0; 2 * ROOM]; vertex_count];
-    let mut counts = vec![0u8; vertex_count];
+/// The places of those vertices whose short link does not show that they are regular.
+///
+/// `place` says which of `count` vertices are looked at.
+fn doubtful(
+    faces: &[[VertexId; 3]],
+    count: usize,
+    place: impl Fn(VertexId) -> Option<usize>,
+) -> Vec<u32> {
+    let mut links: Vec<Short> = vec![[0; 2 * ROOM]; count];
+    let mut counts = vec![0u8; count];
     for &[a, b, c] in faces {
         poll();
         for (vertex, from, to) in [(a, b, c), (b, c, a), (c, a, b)] {
-            let count = &mut counts[vertex.place()];
+            let Some(place) = place(vertex) else {
+                continue;
+            };
+            let count = &mut counts[place];
             let at = usize::from(*count);
             if at < ROOM {
-                let link = &mut links[vertex.place()];
+                let link = &mut links[place];
                 link[at] = label(from);
                 link[ROOM + at] = label(to);
             }
@@ -70,13 +130,11 @@ fn doubtful(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<VertexId> {
         }
     }
     let doubtful = |first: usize, links: &[Short]| {
-        let rows = (as_number(first)..)
-            .map(VertexId)
-            .zip(links.iter().zip(&counts[first..]));
-        let doubt = |(vertex, (link, count)): (VertexId, (&Short, &u8))| {
-            (*count > 0 && !is_short_cycle(link, usize::from(*count))).then_some(vertex)
+        let rows = (as_number(first)..).zip(links.iter().zip(&counts[first..]));
+        let doubt = |(place, (link, count)): (u32, (&Short, &u8))| {
+            (*count > 0 && !is_short_cycle(link, usize::from(*count))).then_some(place)
         };
-        rows.filter_map(doubt).collect::<Vec<VertexId>>()
+        rows.filter_map(doubt).collect::<Vec<u32>>()
     };
     each_chunk(&links, doubtful).concat()
 }
@@ -172,7 +230,7 @@ mod tests {
             let is_asked = |v: &VertexId| v.0 % 3 == third;
             let asked: Vec<VertexId> = VertexId::all().take(count).filter(is_asked).collect();
             let expected: Vec<VertexId> = irregular(&faces, count).into_iter().filter(is_asked).collect();
-            prop_assert_eq!(irregular_among(&asked, &faces, count), expected);
+            prop_assert_eq!(irregular_among(asked, &faces, count), expected);
         }
     }
 

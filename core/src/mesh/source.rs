@@ -39,8 +39,8 @@ pub enum Shape {
     HalfSpace(Arc<Plane>),
 }
 
-/// One vertex in so many, or fewer, is looked at alone: sorting the corners at a vertex costs some
-/// three times what the table of all short links does.
+/// One vertex in so many, or fewer, is looked at alone; of more all are looked at, which is kept for
+/// the next operation.
 const FEW: usize = 4;
 
 /// The code of the finding that vertices were welded.
@@ -174,8 +174,8 @@ impl Source {
         match self.mesh() {
             Some(mesh) if !known && used < mesh.vertices.len() / FEW => {
                 let all = VertexId::all().take(mesh.vertices.len());
-                let used: Vec<VertexId> = all.filter(|v| is_used(*v)).collect();
-                links::irregular_among(&used, &mesh.faces, mesh.vertices.len())
+                let used = all.filter(|v| is_used(*v)).collect();
+                links::irregular_among(used, &mesh.faces, mesh.vertices.len())
             }
             _ => {
                 let all = self.irregular_vertices().iter().copied();

@@ -25,7 +25,8 @@ impl Faces<'_> {
     }
 }
 
-/// The most cells along an axis: the grid then fits into a cache.
+/// The most cells along an axis: the grid then fits into a cache, and the number of a cell into
+/// sixteen bits.
 const FINEST: usize = 32;
 
 /// So few triangles are compared all with all: telling them apart costs as much.
@@ -71,24 +72,23 @@ impl<'a> Others<'a> {
 
     /// Those in a cell with one that is left out, or with one of another party.
     fn near(self, faces: &Faces, party: impl Fn(u32) -> u32) -> Vec<(u32, u32)> {
-        let Some(mut grid) = Grid::around(faces) else {
+        let Some(grid) = Grid::around(faces) else {
             return Vec::new();
         };
-        let mut cells = vec![Cell::default(); faces.vertices.len()];
+        let mut marks = grid.marks();
+        let mut cells = vec![0; faces.vertices.len()];
         fill_chunks(faces.vertices, &mut cells, |_, places, cells| {
             for (place, cell) in places.iter().zip(cells) {
                 *cell = grid.cell(place);
             }
         });
-        let block = |t: u32| {
-            let [a, b, c] = faces.triangles[t as usize];
-            Block::of(cells[a as usize], cells[b as usize], cells[c as usize])
-        };
+        let corners = |t: u32| faces.triangles[t as usize].map(|v| cells[v as usize]);
         for t in self.some {
-            grid.mark(block(*t), SHARED);
+            marks.mark(corners(*t), SHARED);
         }
-        self.each().for_each(|t| grid.mark(block(t), party(t) + 1));
-        let near = self.each().filter(|t| grid.is_shared(block(*t)));
+        self.each()
+            .for_each(|t| marks.mark(corners(t), party(t) + 1));
+        let near = self.each().filter(|t| marks.is_shared(corners(*t)));
         near.map(|t| (party(t), t)).collect()
     }
 }
@@ -97,29 +97,43 @@ impl<'a> Others<'a> {
 const SHARED: u32 = u32::MAX;
 
 /// Cells over a mesh, each with the party whose triangles it holds, from 1 on.
+struct Marks {
+    grid: Grid,
+    of_cells: Vec<u32>,
+}
+
+impl Marks {
+    fn mark(&mut self, corners: [Cell; 3], party: u32) {
+        let of_cells = &mut self.of_cells;
+        self.grid.visit(corners, |cell| {
+            let mark = &mut of_cells[cell];
+            let own = *mark == 0 || *mark == party;
+            *mark = if own { party } else { SHARED };
+            true
+        });
+    }
+
+    fn is_shared(&self, corners: [Cell; 3]) -> bool {
+        let mut shared = false;
+        self.grid.visit(corners, |cell| {
+            shared = self.of_cells[cell] == SHARED;
+            !shared
+        });
+        shared
+    }
+}
+
+/// Equal cells over a mesh.
+#[derive(Clone, Copy)]
 struct Grid {
     low: Point,
     factor: Point,
-    /// Cells along an axis.
-    size: usize,
-    marks: Vec<u32>,
+    /// Bits of the number of cells along an axis.
+    bits: u32,
 }
 
-/// A cell of the grid, on each axis.
-type Cell = [u8; 3];
-
-/// The lowest and the highest cell that a triangle may meet, on each axis.
-#[derive(Clone, Copy)]
-struct Block(Cell, Cell);
-
-impl Block {
-    fn of(a: Cell, b: Cell, c: Cell) -> Self {
-        Self(
-            each_axis(|i| a[i].min(b[i]).min(c[i])),
-            each_axis(|i| a[i].max(b[i]).max(c[i])),
-        )
-    }
-}
+/// The number of a cell of the grid, so many bits for each axis.
+type Cell = u16;
 
 impl Grid {
     fn around(faces: &Faces) -> Option<Self> {
@@ -132,13 +146,22 @@ impl Grid {
             }
         }
         let size = (faces.triangles.len() / 24).isqrt().clamp(2, FINEST);
-        let factor = |i: usize| as_double(size) / (high[i] - low[i]).max(f64::MIN_POSITIVE);
+        let bits = size.next_power_of_two().ilog2();
+        let factor =
+            |i: usize| as_double(1usize << bits) / (high[i] - low[i]).max(f64::MIN_POSITIVE);
         Some(Self {
             low,
             factor: each_axis(factor),
-            size,
-            marks: vec![0; size * size * size],
+            bits,
         })
+    }
+
+    /// A mark for each cell, none set.
+    fn marks(self) -> Marks {
+        Marks {
+            grid: self,
+            of_cells: vec![0; 1 << (3 * self.bits)],
+        }
     }
 
     #[allow(
@@ -146,46 +169,36 @@ impl Grid {
         clippy::cast_possible_truncation,
         reason = "no place is below the lowest, and none beyond the size"
     )]
-    fn cell(&self, p: &Point) -> Cell {
-        let last = self.size - 1;
-        each_axis(|i| {
-            let place = (p[i] - self.low[i]) * self.factor[i];
-            (place as usize).min(last) as u8
-        })
+    fn cell(self, p: &Point) -> Cell {
+        let last = (1 << self.bits) - 1;
+        let place = |i: usize| (((p[i] - self.low[i]) * self.factor[i]) as Cell).min(last);
+        self.number([place(0), place(1), place(2)])
     }
 
-    /// The first mark of a column of cells.
-    fn start(&self, x: u8, y: u8) -> usize {
-        (usize::from(x) * self.size + usize::from(y)) * self.size
+    fn number(self, [x, y, z]: [Cell; 3]) -> Cell {
+        (x << self.bits | y) << self.bits | z
     }
 
-    fn mark(&mut self, Block(low, high): Block, party: u32) {
-        let marked = |mark: &mut u32| {
-            let own = *mark == 0 || *mark == party;
-            *mark = if own { party } else { SHARED };
-        };
-        for x in low[0]..=high[0] {
-            for y in low[1]..=high[1] {
-                let start = self.start(x, y);
-                for z in low[2]..=high[2] {
-                    marked(&mut self.marks[start + usize::from(z)]);
+    /// Call a function with each cell that a triangle may meet, until it says no.
+    #[inline]
+    fn visit(self, corners: [Cell; 3], mut visit: impl FnMut(usize) -> bool) {
+        let [a, b, c] = corners;
+        if a == b && b == c {
+            visit(usize::from(a));
+            return;
+        }
+        let last = (1 << self.bits) - 1;
+        let [x, y, z] = [2, 1, 0].map(|above| {
+            let [a, b, c] = corners.map(|cell| cell >> (above * self.bits) & last);
+            a.min(b).min(c)..=a.max(b).max(c)
+        });
+        for (x, y) in x.flat_map(|x| y.clone().map(move |y| (x, y))) {
+            for z in z.clone() {
+                if !visit(usize::from(self.number([x, y, z]))) {
+                    return;
                 }
             }
         }
-    }
-
-    fn is_shared(&self, Block(low, high): Block) -> bool {
-        for x in low[0]..=high[0] {
-            for y in low[1]..=high[1] {
-                let start = self.start(x, y);
-                for z in low[2]..=high[2] {
-                    if self.marks[start + usize::from(z)] == SHARED {
-                        return true;
-                    }
-                }
-            }
-        }
-        false
     }
 }
 
