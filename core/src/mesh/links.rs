@@ -46,7 +46,7 @@ struct Asked {
     vertices: Vec<VertexId>,
     /// A bit for each vertex of the mesh.
     words: Vec<u64>,
-    /// How many come before each word.
+    /// The number of those before each word.
     before: Vec<u32>,
 }
 
