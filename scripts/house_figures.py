@@ -100,12 +100,20 @@ def rust_lines(path: Path) -> Lines:
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     said = [line for line in lines if line.startswith("//")]
     fences = re.findall(r"^\s*//[/!] ```(\w*)$", text, re.MULTILINE)
-    if path.name == "tests.rs":
+    if _is_test(path):
         return Counter(tests=len(lines))
     tested = sum(bool(line.strip()) for part in tests for line in part.splitlines())
     examples = sum(language in ("", "rust") for language in fences[::2])
     code = len(lines) - len(said)
     return Counter(code=code, comments=len(said), tests=tested, examples=examples)
+
+
+def _is_test(path: Path) -> bool:
+    """Say whether the folder's file includes a file only when tests are built."""
+    folder = path.parent / "mod.rs"
+    text = folder.read_text(encoding="utf-8") if folder.exists() else ""
+    included = rf"#\[cfg\(test\)\]\s*(pub(\(\w+\))? )?mod {path.stem};"
+    return path.name == "tests.rs" or re.search(included, text) is not None
 
 
 def code_in(folder: Path, pattern: str) -> int:

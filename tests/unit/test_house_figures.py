@@ -21,6 +21,14 @@ def test_tests_of_a_rust_file_are_counted_apart(tmp_path: Path) -> None:
     assert rust_lines(file) == {"code": 1, "comments": 7, "tests": 4, "examples": 1}
 
 
+def test_files_for_tests_alone_are_tests(tmp_path: Path) -> None:
+    (tmp_path / "mod.rs").write_text("pub mod one;\n#[cfg(test)]\npub(crate) mod scenes;\n")
+    for name in ("one.rs", "scenes.rs"):
+        (tmp_path / name).write_text("fn f() {}\n")
+    assert rust_lines(tmp_path / "one.rs")["tests"] == 0
+    assert rust_lines(tmp_path / "scenes.rs") == {"tests": 1}
+
+
 def test_names_of_classes_below_are_counted(tmp_path: Path) -> None:
     (tmp_path / "low.py").write_text(
         "class Low:\n    def low(self): ...\n    def _own(self): ...\n"

@@ -174,3 +174,24 @@ impl Radial for Geometry<'_, '_> {
         direction(&self.0.position(a), &self.0.position(b))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::extract::assemble::assemble;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{cuboid, made_of};
+    use crate::tree::solid::Solid;
+
+    fn findings(second: Solid) -> Vec<String> {
+        let solid = made_of(&[cuboid([0; 3], [4; 3]), second], Term::Or);
+        let mesh = assemble(&solid).expect("bounded");
+        mesh.findings.iter().map(|f| f.code.to_string()).collect()
+    }
+
+    #[test]
+    fn contacts_along_edges_and_at_vertices_are_told_apart() {
+        assert_eq!(findings(cuboid([4, 4, 0], [8, 8, 4])), ["edge_contact"]);
+        assert_eq!(findings(cuboid([4; 3], [8; 3])), ["vertex_contact"]);
+        assert!(findings(cuboid([9; 3], [12; 3])).is_empty());
+    }
+}

@@ -84,3 +84,31 @@ impl Owner {
         turns.iter().all(|t| *t >= 0.0) || turns.iter().all(|t| *t <= 0.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::extract::assemble::assemble;
+    use crate::extract::mesh::Corner;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{cuboid, made_of};
+    use crate::mesh::handle::Slot;
+
+    #[test]
+    fn a_new_triangle_names_a_face_that_holds_its_centre() {
+        let boxes = [cuboid([0; 3], [6, 4, 4]), cuboid([3, 0, 0], [9, 4, 4])];
+        let mesh = assemble(&made_of(&boxes, Term::Or)).expect("bounded");
+        let reach = [[0, 6], [3, 9]];
+        for (triangle, face) in mesh.triangles.iter().zip(&mesh.faces) {
+            let x = triangle.map(|v| match mesh.vertices[v as usize] {
+                Corner::Source(slot, id) => {
+                    let source = boxes[slot.place()].sources().get(Slot(0));
+                    source.mesh().expect("a mesh").vertices[id.place()][0]
+                }
+                Corner::Point(id) => mesh.table.point(id).as_lattice().expect("a corner")[0],
+            });
+            let [low, high] = reach[face.slot().place()];
+            let sum: i64 = x.iter().sum();
+            assert!((3 * low..=3 * high).contains(&sum));
+        }
+    }
+}

@@ -221,3 +221,27 @@ fn subdivide_line(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_edge_is_divided_where_the_short_ones_across_meet() {
+        let mut table = VertexTable::default();
+        let places = [[0, 0, 0], [8, 0, 0], [4, 0, 0], [0, 8, 0]];
+        let [a, b, middle, c] = places.map(|p| table.number_at(p));
+        let edge = |from: u32, to: u32| Edge { from, to };
+        let edges = [
+            edge(a, b),
+            edge(b, middle),
+            edge(middle, a),
+            edge(a, c),
+            edge(c, a),
+        ];
+        let at = |id: u32| *table.point(id).as_lattice().expect("a lattice point");
+        let line = |i: usize| LineKey::of_edge(&at(edges[i].from), &at(edges[i].to));
+        let inner = subdivisions(&edges, line, &LinePoints::default(), &table);
+        assert_eq!(inner.into_iter().collect::<Vec<_>>(), [(0, vec![middle])]);
+    }
+}

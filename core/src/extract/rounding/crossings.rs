@@ -261,3 +261,40 @@ impl Scale {
         (whole(&extent.low), whole(&extent.high))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+
+    /// The faults of two tetrahedra, the second moved up.
+    fn faults_of_two(up: f64) -> Faults {
+        let places = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, 4.0]];
+        let above = places.map(|[x, y, z]| [x + 0.25, y + 0.25, z + up]);
+        let second = TETRAHEDRON.map(|t| t.map(|v| v + 4));
+        let faces = Faces {
+            vertices: &[places, above].concat(),
+            triangles: &[TETRAHEDRON, second].concat(),
+        };
+        all_faults(&faces)
+    }
+
+    #[test]
+    fn pairs_that_cross_are_found_and_neighbours_are_not() {
+        let found = faults_of_two(2.0);
+        assert!(found.flat.is_empty() && !found.crossings.is_empty());
+        assert!(found.crossings.iter().all(|[t, u]| *t < 4 && *u >= 4));
+        assert!(faults_of_two(9.0).is_empty());
+    }
+
+    #[test]
+    fn triangles_without_area_are_faults_of_their_own() {
+        let vertices = [[0.0; 3], [2.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
+        let faces = Faces {
+            vertices: &vertices,
+            triangles: &[[0, 1, 2], [2, 1, 0]],
+        };
+        assert_eq!(all_faults(&faces).flat, [0, 1]);
+    }
+}

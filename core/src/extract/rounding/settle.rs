@@ -270,3 +270,38 @@ fn merged(a: &[u32], b: &[u32]) -> Vec<u32> {
     all.dedup();
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tip that rounding put a little below a face, although it lies above.
+    #[test]
+    fn a_corner_goes_to_its_exact_place_if_rounding_makes_surfaces_cross() {
+        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let floor = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, -4.0]];
+        let tip = [
+            [1.0, 1.0, -0.01],
+            [3.0, 1.0, 3.0],
+            [1.0, 3.0, 3.0],
+            [-1.0, -1.0, 3.0],
+        ];
+        let mut mesh = Rounded {
+            vertices: [floor, tip].concat(),
+            triangles: [faces, faces.map(|t| t.map(|v| v + 4))].concat(),
+        };
+        let exact = |v: u32| (v == 4).then_some([1.0, 1.0, 0.5]);
+        let changed = (4..8).collect();
+        let settled = settle(
+            &mut mesh,
+            changed,
+            Precision::Double,
+            exact,
+            |_| false,
+            |t| t / 4,
+        );
+        assert_eq!(settled.moved, [4]);
+        assert!(settled.left.is_empty() && settled.mended.is_empty());
+        assert!(mesh.vertices[4][2] > 0.0);
+    }
+}

@@ -151,3 +151,47 @@ fn lock(surface: &Surface, locks: &mut [Lock], act: &Act) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::drift::Drift;
+    use super::*;
+
+    /// A tetrahedron, one of whose edges a vertex divides a hair beside its end.
+    const PLACES: [[f64; 3]; 5] = [
+        [0.0; 3],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [0.001, 0.0, 0.0],
+    ];
+    const FACES: [[u32; 3]; 6] = [
+        [0, 2, 4],
+        [4, 2, 1],
+        [0, 4, 3],
+        [4, 1, 3],
+        [0, 3, 2],
+        [1, 2, 3],
+    ];
+
+    #[test]
+    fn a_short_edge_is_collapsed_first_and_only_where_vertices_are_awake() {
+        let surface = Surface::of(&PLACES, &FACES);
+        let acts = surface.acts(&[true; 5], 0.01);
+        assert_eq!(acts[0], Act::Collapse([0, 4]));
+        assert!(surface.acts(&[false; 5], 0.01).is_empty());
+    }
+
+    #[test]
+    fn what_was_refused_is_not_chosen_again() {
+        let surface = Surface::of(&PLACES, &FACES);
+        let limits = Limits {
+            surface: &surface,
+            drift: &Drift::new(&PLACES),
+            tolerance: 0.01,
+        };
+        let wanted = [Act::Collapse([0, 4])];
+        assert_eq!(chosen(&limits, &wanted, |_| false).edits.len(), 1);
+        assert!(chosen(&limits, &wanted, |_| true).edits.is_empty());
+    }
+}

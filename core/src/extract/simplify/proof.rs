@@ -121,3 +121,64 @@ impl<'a> Trial<'a> {
         restored
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::drift::Drift;
+    use super::super::edit::Limits;
+    use super::super::surface::Surface;
+    use super::*;
+
+    /// An octahedron, and room for a tetrahedron beside it or in it.
+    const PLACES: [Point; 6] = [
+        [0.9, 0.0, 0.5],
+        [0.1, 0.0, -2.0],
+        [1.0, 0.0, 0.1],
+        [0.0, 1.0, 0.0],
+        [-1.0, 0.1, 0.0],
+        [0.0, -1.0, -0.1],
+    ];
+
+    /// Collapses an edge of the octahedron beside a tiny tetrahedron; returns the numbers of changes
+    /// that stay and that are taken back.
+    fn kept_beside(tiny: impl Fn(&Edit) -> Point) -> [usize; 2] {
+        let around = [[2, 3], [3, 4], [4, 5], [5, 2]];
+        let mut triangles = around.map(|[a, b]| [[0, a, b], [1, b, a]]).concat();
+        let mut vertices = PLACES.to_vec();
+        let edit = |vertices: &[Point], triangles: &[[u32; 3]]| {
+            let limits = Limits {
+                surface: &Surface::of(vertices, triangles),
+                drift: &Drift::new(vertices),
+                tolerance: 9.0,
+            };
+            let edit = limits.edit(Act::Collapse([0, 2]), |_| false);
+            edit.expect("the link condition holds")
+        };
+        let at = tiny(&edit(&vertices, &triangles));
+        let size = 1e-3;
+        let corners = [
+            [0.0; 3],
+            [size, 0.0, 0.0],
+            [0.0, size, 0.0],
+            [0.0, 0.0, size],
+        ];
+        vertices.extend(corners.map(|c| [0, 1, 2].map(|i| at[i] + c[i])));
+        triangles.extend([[6, 8, 7], [6, 7, 9], [6, 9, 8], [7, 8, 9]]);
+        let edits = vec![edit(&vertices, &triangles)];
+        let shells = Shells::of(&vertices, &triangles);
+        let before = triangles.clone();
+        let (kept, gone) = proved(&vertices, &mut triangles, edits, &shells);
+        assert_eq!(before == triangles, kept.is_empty());
+        [kept.len(), gone.len()]
+    }
+
+    #[test]
+    fn a_change_that_sweeps_over_another_shell_is_taken_back() {
+        assert_eq!(kept_beside(|_| [9.0; 3]), [1, 0]);
+        let inside = |edit: &Edit| {
+            let body = edit.bodies()[0].map(|v| PLACES[v as usize]);
+            [0, 1, 2].map(|i| body.iter().map(|p| p[i]).sum::<f64>() / 4.0)
+        };
+        assert_eq!(kept_beside(inside), [0, 1]);
+    }
+}

@@ -71,3 +71,27 @@ fn findings(mesh: &Simplified, before: usize) -> Vec<Finding> {
 
 const LEFT: &str = "an edge or a height of these triangles is within the tolerance still: without \
     them the surface would move farther, cross itself, or vanish in part";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{cuboid, made_of};
+
+    #[test]
+    fn a_solid_without_short_edges_is_left_alone() {
+        let found = simplified(&cuboid([0; 3], [4; 3]), 0.5).expect("bounded");
+        assert!(found.is_none());
+    }
+
+    #[test]
+    fn steps_below_the_tolerance_go() {
+        let boxes = [cuboid([0; 3], [1000; 3]), cuboid([1; 3], [1001; 3])];
+        let solid = made_of(&boxes, Term::Or);
+        let made = simplified(&solid, 2.0)
+            .expect("bounded")
+            .expect("short edges");
+        let count = |solid: &Solid| mesh(solid).expect("bounded").triangles.len();
+        assert!(count(&made) < count(&solid));
+    }
+}
