@@ -1,13 +1,15 @@
 """`scripts/fuzz` reads libFuzzer's words, and runs add up in its record."""
 
 import json
+import sys
+import time
 from pathlib import Path
 
 import pytest
 
 import fuzz
 import fuzz_record
-from fuzz_guided import outcome_of
+from fuzz_guided import Guided, outcome_of
 from fuzz_record import Found, Outcome, add_to_record, totals
 from mutants import MUTANTS, Mutant
 from recording import REPOSITORY
@@ -41,6 +43,29 @@ def test_findings_have_kinds(words: str, kind: str) -> None:
     said = f"{SAID}{words}\nartifact_prefix='x/'; Test unit written to x/crash-12\n"
     [found] = outcome_of(said.replace("\\\n", "\n"), 77).found
     assert (found.kind, found.place) == (kind, "x/crash-12")
+
+
+@pytest.mark.parametrize(("work", "count"), [("time.sleep(0.3)", 0), ("spin(0.3)", 1)])
+def test_an_input_hangs_by_processor_time(
+    work: str, count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program that stops for an input at once, and has its work to do when asked alone."""
+    program = tmp_path / "target.py"
+    program.write_text(
+        f"""import sys, time
+def spin(seconds):
+    while time.process_time() < seconds:
+        pass
+if sys.argv[-1].endswith("slow"):
+    {work}
+else:
+    sys.exit("libFuzzer: timeout; Test unit written to {tmp_path}/slow")
+"""
+    )
+    monkeypatch.setattr("fuzz_guided.SECONDS", 0.2)
+    monkeypatch.setattr("fuzz_guided.ENOUGH", 1)
+    target = Guided("any", [sys.executable, str(program)], tmp_path)
+    assert len(target.run(1, time.monotonic() + 60).found) == count
 
 
 def test_runs_add_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
