@@ -161,7 +161,7 @@ export class View {
       this.plane.constant = (-way * (share * 2 - 1) * side) / this.model.longest;
     }
     this.layers.forEach((layer) => layer.cut(axis >= 0));
-    this.draw();
+    this.move();
   }
 
   /** The coordinate of the section, in the model's unit. */
@@ -189,7 +189,7 @@ export class View {
   fade(opacity) {
     this.settings.opacity = opacity;
     this.layers.forEach((layer) => layer.fade(opacity));
-    this.draw();
+    this.move();
   }
 
   explode(share) {
@@ -197,7 +197,7 @@ export class View {
     this.eye.spread = 1 + share;
     this.layers.forEach((layer) => layer.explode(share));
     this.measure.clear();
-    this.draw();
+    this.move();
   }
 
   show(index, shown) {
