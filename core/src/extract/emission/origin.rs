@@ -95,9 +95,9 @@ mod tests {
 
     #[test]
     fn a_new_triangle_names_a_face_that_holds_its_centre() {
-        let boxes = [cuboid([0; 3], [6, 4, 4]), cuboid([3, 0, 0], [9, 4, 4])];
+        let boxes = [cuboid([0; 3], [6, 4, 4]), cuboid([3, 0, 0], [30, 4, 4])];
         let mesh = assemble(&made_of(&boxes, Term::Or)).expect("bounded");
-        let reach = [[0, 6], [3, 9]];
+        let reach = [[0, 6], [3, 30]];
         for (triangle, face) in mesh.triangles.iter().zip(&mesh.faces) {
             let x = triangle.map(|v| match mesh.vertices[v as usize] {
                 Corner::Source(slot, id) => {
