@@ -1,6 +1,7 @@
 """The changes of a mesh by single precision: binary STL and GLB hold no more."""
 
 import numpy as np
+import numpy.typing as npt
 
 from .._core import mesh_in_single
 from .._types import FloatArray, IndexArray
@@ -144,11 +145,21 @@ _CROSSING = "in single precision {} triangles cross or overlap others"
 
 
 def _merged(vertices: FloatArray, rounded: FloatArray) -> tuple[Finding, ...]:
-    lost = distinct(vertices) - distinct(rounded)
+    near = _beside_moved(vertices, rounded)
+    lost = distinct(vertices[near]) - distinct(rounded[near])
     if not lost:
         return ()
     message = f"single precision merges {lost} vertices with others{_REMEDY}"
     return (Finding("merged_by_rounding", "warning", message, (), lost),)
+
+
+def _beside_moved(vertices: FloatArray, rounded: FloatArray) -> npt.NDArray[np.bool_]:
+    """Say which vertices have a coordinate x that rounding has given to some: no others merge."""
+    x = rounded[:, 0]
+    taken = np.sort(x[(rounded != vertices).any(axis=1)])
+    place = np.minimum(np.searchsorted(taken, x), len(taken) - 1)
+    beside: npt.NDArray[np.bool_] = taken[place] == x
+    return beside
 
 
 _REMEDY = "; write PLY, OBJ, OFF or 3MF to keep the mesh as it is."
@@ -178,13 +189,15 @@ def _flat_and_turned(
     vertices: FloatArray, rounded: FloatArray, faces: IndexArray
 ) -> tuple[IndexArray, IndexArray]:
     """Return the numbers of the triangles that lose their area, and of those that turn over."""
+    moved = (rounded != vertices).any(axis=1)
+    numbers = np.flatnonzero(moved[faces].any(axis=1))
     flat, turned = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
-    for block in blocks(len(faces)):
-        some, start = faces[block], block.start
-        before, after = vertices[some], rounded[some]
+    for block in blocks(len(numbers)):
+        some = numbers[block]
+        before, after = vertices[faces[some]], rounded[faces[some]]
         is_flat = are_flat(after)
         lost = np.flatnonzero(is_flat)
-        flat.append(start + lost[~are_flat(before[lost])])
+        flat.append(some[lost[~are_flat(before[lost])]])
         kept = np.flatnonzero(~is_flat)
-        turned.append(start + kept[are_turned(before[kept], after[kept])])
+        turned.append(some[kept[are_turned(before[kept], after[kept])]])
     return np.concatenate(flat), np.concatenate(turned)
