@@ -380,7 +380,7 @@ def test_large_models_are_rough_while_they_move(browser: Browser, tmp_path: Path
         "const { rough, fine } = view.layers[0];"
         "return [rough.visible, fine.visible, rough.geometry.index.count / 3]"
     )
-    assert counts[:2] == [True, False] and 1000 < counts[2] <= 30_000
+    assert counts[:2] == [True, False] and 1000 < counts[2] <= 20_000
     browser.wait("view.layers[0].fine.visible")
     browser.run("view.eye.turn(-0.1, 0); view.move()")
     browser.wait("!view.isMoving && view.layers[0].fine.visible")

@@ -13,7 +13,7 @@ import { cornerLight, isSeeThrough, texturesOf } from "./paints.js";
 import { Surface } from "./topology.js";
 
 // Triangles of all rough layers together, which stand for fine ones while the view moves.
-const MOST_ROUGH = 30_000;
+const MOST_ROUGH = 20_000;
 
 const INK = { light: 0x1a1c20, dark: 0xc9d1da };
 
