@@ -307,8 +307,10 @@ pub fn has_no_boundary(solid: &Solid) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::side::Orientation;
     use crate::merge::expression::Term;
-    use crate::merge::scenes::{made_of, tetrahedra};
+    use crate::merge::scenes::{cuboid, cuboids, made_of, tetrahedra};
+    use crate::mesh::handle::Slot;
 
     fn fates(combined: fn(Vec<u32>) -> Term) -> [usize; 3] {
         let solid = made_of(&tetrahedra(), combined);
@@ -330,5 +332,20 @@ mod tests {
     fn faces_are_whole_or_cut_or_gone() {
         assert_eq!(fates(Term::Or), [4, 4, 0]);
         assert_eq!(fates(Term::And), [0, 4, 4]);
+    }
+
+    /// Small boxes cross one side of a large one, whose other sides span many leaves.
+    #[test]
+    fn faces_that_span_leaves_are_whole_where_nothing_crosses_them() {
+        let large = cuboid([0; 3], [64; 3]);
+        let places = (0..16).map(|i| [60, 3 + 15 * (i & 3), 3 + 15 * (i >> 2)]);
+        let small = cuboids(places.map(|p| [p, p.map(|c| c + 9)]));
+        let solid = made_of(&[large, small], Term::Or);
+        let sources = Sources::new(solid.sources().clone());
+        let boundary = collect(&solid, &sources);
+        let of_large = boundary.fates.of(Slot(0));
+        let whole = Fate::Whole(Orientation::Same);
+        assert_eq!(of_large.iter().filter(|f| **f == whole).count(), 10);
+        assert_eq!(of_large.iter().filter(|f| **f == Fate::Cut).count(), 2);
     }
 }
