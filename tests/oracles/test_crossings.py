@@ -1,6 +1,7 @@
 """Crossings of triangles, recounted with fractions; and no delivered mesh has any."""
 
 import random
+from fractions import Fraction
 from itertools import combinations
 
 import numpy as np
@@ -13,7 +14,16 @@ from bspcsg.formats.single import _rounded, settled
 from support import DEEP
 from support.checks import assert_closed
 from support.degenerate import scene
-from support.fractions import Corners, common_dimension, exact, is_flat, is_on_both_sides
+from support.fractions import (
+    Corners,
+    Vector,
+    common_dimension,
+    cross,
+    dot,
+    exact,
+    is_flat,
+    is_on_both_sides,
+)
 
 SCENES = 10_000 if DEEP else 250
 
@@ -157,7 +167,7 @@ def test_delivered_meshes_do_not_cross(
             assert own <= {tuple(pair) for pair in pairs}, seed
         # Corners move by a step at most; rounding adds spacings of the largest coordinate.
         bound = STEP + 16 * np.spacing(np.abs(mesh.vertices).max())
-        assert abs(mesh.volume - float(solid.volume_exact)) <= bound * (mesh.area + bound), seed
+        assert has_volume(mesh, solid.volume_exact, bound * (mesh.area + bound)), seed
     assert count > 0.7 * SCENES and mended > 0.05 * count and checked > 0.1 * count
     assert reported == crossing and crossing <= 0.01 * count
 
@@ -187,6 +197,20 @@ def test_meshes_in_single_precision_do_not_cross(
     # Local changes leave some two in a hundred of these scenes; these are cut where they cross.
     assert 0 < crossing <= 0.03 * count
     assert united == crossing
+
+
+def has_volume(mesh: "b.Mesh", expected: Fraction, most: float) -> bool:
+    """Say whether a mesh has a volume within a bound, in fractions where doubles err."""
+    return (
+        abs(mesh.volume - float(expected)) <= most
+        or abs(enclosed(exact(mesh.vertices), mesh.faces) - expected) <= most
+    )
+
+
+def enclosed(corners: list[Vector], faces: np.ndarray) -> Fraction:
+    rows = faces.tolist()
+    six = sum((dot(corners[p], cross(corners[q], corners[r])) for p, q, r in rows), Fraction(0))
+    return six / 6
 
 
 def uses_all_vertices(mesh: "b.Mesh") -> bool:
@@ -227,6 +251,8 @@ def distances(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     nearest = np.full(len(points), np.inf)
     for triangle in triangles:
         many = np.tile(triangle, (len(points), 1, 1))
-        foot = trimesh.triangles.closest_point(many, points)  # type: ignore[no-untyped-call]
-        np.minimum(nearest, np.linalg.norm(foot - points, axis=1), out=nearest)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            foot = trimesh.triangles.closest_point(many, points)  # type: ignore[no-untyped-call]
+        # trimesh finds no foot on some needles; their neighbours then have to be near enough.
+        np.fmin(nearest, np.linalg.norm(foot - points, axis=1), out=nearest)
     return nearest
