@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from .._core import mesh_in_single
+from .._core import mesh_faults, mesh_in_single
 from .._types import FloatArray, IndexArray
 from ..attributes.attributes import made
 from ..errors import Finding, core_errors
@@ -85,7 +85,8 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
         if not len(crossing) or not len(result.faces):
             break
         mended += len(crossing)
-        result, more, crossing = _rounded(_united(result))
+        result, more, _ = _rounded(_united(result))
+        crossing = _faulty(result)
         mended += more
     if not len(result.faces):
         return mesh, ()
@@ -118,6 +119,17 @@ def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
     result = Mesh(found["vertices"][used], faces, mesh.source[kept], carried)
     faulty = np.searchsorted(kept, _either(found["crossings"], found["flat"]))
     return result, found["mended"], faulty
+
+
+def _faulty(mesh: Mesh) -> IndexArray:
+    """Return the triangles that cross others or have no area; all are looked at.
+
+    The lattice on which surfaces are united holds no single precision, so that faces which it
+    leaves as they were may cross.
+    """
+    with core_errors():
+        found = mesh_faults(mesh.vertices, mesh.faces)
+    return _either(found["crossings"], found["flat"])
 
 
 def _either(some: IndexArray, others: IndexArray) -> IndexArray:

@@ -27,6 +27,10 @@ from support.fractions import (
 
 SCENES = 10_000 if DEEP else 250
 
+#: Scenes beyond these that failed once: slivers by volume, crossings at vertices that were welded,
+#: and faces that cross once they are united in single precision.
+FOUND = (2354, 4777, 5732, 5925)
+
 #: So many of the scenes are rounded once, and no more.
 ROUNDED = 100
 
@@ -136,7 +140,7 @@ def fraction_faults(vertices: np.ndarray, faces: np.ndarray) -> set[tuple[int, i
 def delivered() -> dict[int, tuple["b.Solid", "b.Mesh"]]:
     """Return what scenes make, with their meshes, by their seeds."""
     found = {}
-    for seed in range(SCENES):
+    for seed in sorted({*range(SCENES), *FOUND}):
         try:
             solid = scene(seed).normalized()
             mesh = solid.to_mesh()
@@ -175,9 +179,10 @@ def test_delivered_meshes_do_not_cross(
 def test_meshes_in_single_precision_do_not_cross(
     delivered: dict[int, tuple["b.Solid", "b.Mesh"]],
 ) -> None:
-    count = crossing = mended = united = 0
+    count = mended = united = 0
+    crossing = []
     for seed, (_, mesh) in delivered.items():
-        count += 1
+        count += seed < SCENES
         found = mesh_in_single(mesh.vertices, mesh.faces)
         vertices, faces = found["vertices"], found["triangles"]
         assert (vertices == vertices.astype(np.float32)).all()
@@ -187,7 +192,7 @@ def test_meshes_in_single_precision_do_not_cross(
         again = mesh_faults(vertices, faces)
         left = len(again["crossings"]) + len(again["flat"])
         assert (left > 0) == (len(found["crossings"]) + len(found["flat"]) > 0), seed
-        crossing += left > 0
+        crossing += [seed] if left else []
         mended += found["mended"] > 0
         rounded = b.Mesh(vertices, faces, mesh.source[found["kept"]])
         reach = MOST * float(np.spacing(np.float32(np.abs(mesh.vertices).max())))
@@ -195,8 +200,8 @@ def test_meshes_in_single_precision_do_not_cross(
         united += left > 0 and is_mended_by_uniting(mesh, reach)
     assert mended > 0.1 * count
     # Local changes leave some two in a hundred of these scenes; these are cut where they cross.
-    assert 0 < crossing <= 0.03 * count
-    assert united == crossing
+    assert 0 < sum(seed < SCENES for seed in crossing) <= 0.03 * count
+    assert united == len(crossing)
 
 
 def has_volume(mesh: "b.Mesh", expected: Fraction, most: float) -> bool:

@@ -1,7 +1,5 @@
 //! From arrays of doubles to a source: snapping, judging, welding.
 
-use rustc_hash::FxHashMap as HashMap;
-
 use super::chain::is_closed;
 use super::finding::{Finding, Severity};
 use super::grid::{snap_point, Pitch};
@@ -341,12 +339,7 @@ fn rounded(number: f64) -> String {
 
 /// The faces with vertices at one lattice point made one; `None` if there are no such vertices.
 fn weld(mesh: &TriangleMesh) -> Option<Vec<[VertexId; 3]>> {
-    let mut first: HashMap<Lattice, VertexId> =
-        HashMap::with_capacity_and_hasher(mesh.vertices.len(), rustc_hash::FxBuildHasher);
-    let image: Vec<VertexId> = VertexId::all()
-        .zip(&mesh.vertices)
-        .map(|(i, p)| *first.entry(*p).or_insert(i))
-        .collect();
+    let image = mesh.firsts();
     let changed = VertexId::all().zip(&image).any(|(i, v)| i != *v);
     let weld = |face: &[VertexId; 3]| face.map(|v| image[v.place()]);
     changed.then(|| mesh.faces.iter().map(weld).collect())

@@ -25,6 +25,7 @@ pub struct Source {
     shape: Shape,
     open: Cached<Vec<VertexId>>,
     irregular: Cached<Vec<VertexId>>,
+    blurred: Cached<Vec<VertexId>>,
     topology: Cached<Topology>,
     cell: Cached<Option<Cell>>,
     findings: Vec<Finding>,
@@ -57,6 +58,7 @@ impl Source {
             shape,
             open: Cached::new(),
             irregular: Cached::new(),
+            blurred: Cached::new(),
             topology: Cached::new(),
             cell: Cached::new(),
             findings,
@@ -195,8 +197,20 @@ impl Source {
 
     /// Return whether no face was left out and no vertex welded at import.
     pub fn is_as_given(&self) -> bool {
-        let welded = self.findings.iter().any(|f| f.code == WELDED);
-        !welded && self.mesh().is_some_and(|m| m.numbers.is_none())
+        !self.is_welded() && self.mesh().is_some_and(|m| m.numbers.is_none())
+    }
+
+    fn is_welded(&self) -> bool {
+        self.findings.iter().any(|f| f.code == WELDED)
+    }
+
+    /// Vertices that were welded with others of which the doubles differ, sorted: around them the
+    /// faces do not have the corners that were given.
+    pub fn blurred_vertices(&self) -> &[VertexId] {
+        match self.mesh() {
+            Some(mesh) if self.is_welded() => self.blurred.get_or_make(|| mesh.blurred()),
+            _ => &[],
+        }
     }
 
     /// The half-edges' mates, paired on first use; `None` for a half-space.

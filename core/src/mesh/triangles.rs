@@ -1,5 +1,7 @@
 //! Triangles on the lattice.
 
+use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
+
 use super::grid::Pitch;
 use super::handle::{FaceId, VertexId};
 use crate::geometry::axes::each_axis;
@@ -46,6 +48,27 @@ impl TriangleMesh {
         ([least(0), least(1), least(2)], [most(0), most(1), most(2)])
     }
 
+    /// For each vertex the first at its place on the lattice.
+    pub fn firsts(&self) -> Vec<VertexId> {
+        let mut first: HashMap<Lattice, VertexId> =
+            HashMap::with_capacity_and_hasher(self.vertices.len(), FxBuildHasher);
+        let places = VertexId::all().zip(&self.vertices);
+        places
+            .map(|(vertex, place)| *first.entry(*place).or_insert(vertex))
+            .collect()
+    }
+
+    /// Vertices that are the first at their place, where others have other doubles, sorted.
+    pub fn blurred(&self) -> Vec<VertexId> {
+        let firsts = VertexId::all().zip(self.firsts());
+        let bits = |v: VertexId| self.doubles[v.place()].map(f64::to_bits);
+        let differ = |(v, first): &(VertexId, VertexId)| bits(*v) != bits(*first);
+        let mut blurred: Vec<VertexId> = firsts.filter(differ).map(|(_, first)| first).collect();
+        blurred.sort_unstable();
+        blurred.dedup();
+        blurred
+    }
+
     /// The farthest that a coordinate is from the double it came from, rounded.
     ///
     /// More than half a step if the lattice was refined since.
@@ -65,5 +88,23 @@ impl TriangleMesh {
             )
         };
         Some(self.vertices.iter().fold((first, first), grow))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_of_a_place_is_blurred_where_others_have_other_doubles() {
+        let places = [0, 7, 0, 7, 9];
+        let doubles = [0.0, 7.0, 0.1, 7.0, 9.2];
+        let mesh = TriangleMesh {
+            vertices: places.map(|x| [x, 0, 0]).to_vec(),
+            doubles: doubles.map(|x| [x, 0.0, 0.0]).to_vec(),
+            ..TriangleMesh::default()
+        };
+        assert_eq!(mesh.firsts(), [0, 1, 0, 1, 4].map(VertexId));
+        assert_eq!(mesh.blurred(), [VertexId(0)]);
     }
 }

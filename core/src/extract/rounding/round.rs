@@ -11,7 +11,7 @@ use crate::extract::mesh::{Corner, ExactMesh, Mesh};
 use crate::geometry::vertex::Vertex;
 use crate::merge::lists::list::Sources;
 use crate::mesh::finding::{Finding, Severity};
-use crate::mesh::handle::OrientedFace;
+use crate::mesh::handle::{OrientedFace, VertexId};
 use crate::mesh::tasks::fill_chunks;
 use crate::tree::solid::Solid;
 
@@ -103,7 +103,8 @@ fn origins(faces: &[OrientedFace], sources: &Sources) -> Vec<[u32; 2]> {
 /// Triangles that are not as they came are compared with all near them, and faces of different
 /// inputs with each other: on the lattice they do not cross, but their given doubles may.
 fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Settled {
-    let changed: Vec<u32> = (as_number(exact.untouched)..as_number(mesh.triangles.len())).collect();
+    let mut changed = at_blurred(solid, exact);
+    changed.extend(as_number(exact.untouched)..as_number(mesh.triangles.len()));
     let party = |t: u32| exact.faces[t as usize].slot().0;
     let corner = |v: u32| exact.vertices.get(v as usize);
     let on_lattice = |v: u32| match corner(v) {
@@ -124,6 +125,28 @@ fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Settled {
     mesh.vertices = rounded.vertices;
     mesh.triangles = rounded.triangles;
     settled
+}
+
+/// The triangles that are faces as they came, but for a corner that was welded with one of other
+/// doubles, ascending.
+fn at_blurred(solid: &Solid, exact: &ExactMesh) -> Vec<u32> {
+    let mut found = Vec::new();
+    let mut first = 0;
+    for run in exact.faces[..exact.untouched].chunk_by(|a, b| a.slot() == b.slot()) {
+        let source = solid.sources().get(run[0].slot());
+        let blurred = source.blurred_vertices();
+        let at_blurred = |face: &OrientedFace| {
+            let is_blurred = |v: &VertexId| blurred.binary_search(v).is_ok();
+            let mesh = source.mesh();
+            mesh.is_some_and(|mesh| mesh.vertices_of(face.id()).iter().any(is_blurred))
+        };
+        if !blurred.is_empty() {
+            let numbered = (first..).zip(run).filter(|(_, face)| at_blurred(face));
+            found.extend(numbered.map(|(triangle, _)| triangle));
+        }
+        first += as_number(run.len());
+    }
+    found
 }
 
 /// Leaves out the triangles that mending removed, and vertices that no triangle uses any more;
