@@ -7,6 +7,7 @@ is measured, then scripts/smoke.py and the demo run. With --record the figures a
 """
 
 import argparse
+import json
 import os
 import platform
 import resource
@@ -19,9 +20,13 @@ import time
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
+from typing import TypeAlias
 
-from recording import REPOSITORY, keep, machine
+from recording import RECORDS, REPOSITORY, keep, machine
 from wheel_contents import problems_of
+
+#: What a wheel weighs and how long it took to use, by name.
+Figures: TypeAlias = dict[str, str | float]
 
 OUT = REPOSITORY / "out" / "wheel"
 DIST = REPOSITORY / "dist"
@@ -204,11 +209,19 @@ def main() -> int:
             path = there.get(kind) or (source(tree) if kind == "sdist" else built(kind, tree))
             found[kind] = examined(kind, path, tree)
     if options.record:
-        print(f"kept in {keep('wheel', {'machine': here, 'wheels': found})}")
+        kept = with_earlier(found, str(here["commit"]))
+        print(f"kept in {keep('wheel', {'machine': here, 'wheels': kept})}")
     return 0
 
 
-def examined(kind: str, path: Path, tree: Path) -> dict[str, str | float]:
+def with_earlier(found: dict[str, Figures], commit: str) -> dict[str, Figures]:
+    """Return the figures of what a commit made, and of other kinds those on record."""
+    path = RECORDS / "wheel.json"
+    earlier = json.loads(path.read_text("utf-8"))["wheels"] if path.is_file() else {}
+    return earlier | {kind: {**figures, "commit": commit} for kind, figures in found.items()}
+
+
+def examined(kind: str, path: Path, tree: Path) -> Figures:
     """Look into a distribution, try it if it runs here, and return the figures."""
     megabytes, problems = path.stat().st_size / 1e6, problems_of(path, tree)
     print(f"{path.name}: {megabytes:.2f} MB", *problems, sep="\n  ", flush=True)

@@ -205,6 +205,18 @@ def test_the_smoke_test_passes(tmp_path: Path) -> None:
     assert done.stdout.count("ok: ") == 5
 
 
+def test_a_record_keeps_other_kinds_with_their_commits(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(wheel, "RECORDS", tmp_path)
+    first = wheel.with_earlier({"sdist": {"megabytes": 2.0}, "manylinux": {"megabytes": 5.0}}, "a")
+    (tmp_path / "wheel.json").write_text(json.dumps({"wheels": first}))
+    assert wheel.with_earlier({"manylinux": {"megabytes": 4.0}}, "b") == {
+        "sdist": {"megabytes": 2.0, "commit": "a"},
+        "manylinux": {"megabytes": 4.0, "commit": "b"},
+    }
+
+
 def test_the_recorded_wheels_are_small_and_quick() -> None:
     wheels = json.loads((ROOT / "scripts/records/wheel.json").read_text("utf-8"))["wheels"]
     assert all(wheel["megabytes"] < 8 for wheel in wheels.values())
