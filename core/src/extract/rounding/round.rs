@@ -128,9 +128,12 @@ fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Settled {
 }
 
 /// The triangles that are faces as they came, but for a corner that was welded with one of other
-/// doubles, ascending.
+/// doubles, ascending. None where surfaces may cross on the lattice, too: that is not for us to mend.
 fn at_blurred(solid: &Solid, exact: &ExactMesh) -> Vec<u32> {
     let mut found = Vec::new();
+    if !solid.is_reduced() {
+        return found;
+    }
     let mut first = 0;
     for run in exact.faces[..exact.untouched].chunk_by(|a, b| a.slot() == b.slot()) {
         let source = solid.sources().get(run[0].slot());
