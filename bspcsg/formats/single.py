@@ -1,10 +1,9 @@
 """The changes of a mesh by single precision: binary STL and GLB hold no more."""
 
 import numpy as np
-import numpy.typing as npt
 
-from .._core import mesh_faults, mesh_in_single
-from .._types import FloatArray, IndexArray
+from .._core import mesh_in_single
+from .._types import BoolArray, FloatArray, IndexArray
 from ..attributes.attributes import made
 from ..errors import Finding, core_errors
 from ..mesh.mesh import Mesh
@@ -43,14 +42,15 @@ def losses(mesh: Mesh | RawMesh, format_name: str) -> tuple[Finding, ...]:
     shift = float(np.abs(rounded - mesh.vertices).max(initial=0.0))
     if shift == 0:
         return ()
+    moved = (rounded != mesh.vertices).any(axis=1)
     message = (
         f"{format_name} holds single precision: coordinates moved by up to {shift:.2g}."
         " PLY, OBJ, OFF, 3MF and ASCII STL keep every digit."
     )
     return (
         Finding("single_precision", "note", message, (), 1),
-        *_merged(mesh.vertices, rounded),
-        *_changed(mesh, rounded),
+        *_merged(mesh.vertices, rounded, moved),
+        *_changed(mesh, rounded, moved),
     )
 
 
@@ -86,7 +86,10 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
             break
         mended += len(crossing)
         result, more, _ = _rounded(_united(result))
-        crossing = _faulty(result)
+        # The lattice on which surfaces are united does not hold single precision. Faces that it
+        # leaves as they were may cross, so all are looked at.
+        proof = result.certificate
+        crossing = _either(np.array(proof.crossings), np.array(proof.flat))
         mended += more
     if not len(result.faces):
         return mesh, ()
@@ -121,17 +124,6 @@ def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
     return result, found["mended"], faulty
 
 
-def _faulty(mesh: Mesh) -> IndexArray:
-    """Return the triangles that cross others or have no area; all are looked at.
-
-    The lattice on which surfaces are united holds no single precision, so that faces which it
-    leaves as they were may cross.
-    """
-    with core_errors():
-        found = mesh_faults(mesh.vertices, mesh.faces)
-    return _either(found["crossings"], found["flat"])
-
-
 def _either(some: IndexArray, others: IndexArray) -> IndexArray:
     """Return the numbers that are in one of two lists, rising."""
     # Not numpy.unique, which imports numpy.ma: a tenth of a small boolean's time.
@@ -156,8 +148,8 @@ _MENDED = (
 _CROSSING = "in single precision {} triangles cross or overlap others"
 
 
-def _merged(vertices: FloatArray, rounded: FloatArray) -> tuple[Finding, ...]:
-    near = _beside_moved(vertices, rounded)
+def _merged(vertices: FloatArray, rounded: FloatArray, moved: BoolArray) -> tuple[Finding, ...]:
+    near = _beside_moved(rounded, moved)
     lost = distinct(vertices[near]) - distinct(rounded[near])
     if not lost:
         return ()
@@ -165,21 +157,21 @@ def _merged(vertices: FloatArray, rounded: FloatArray) -> tuple[Finding, ...]:
     return (Finding("merged_by_rounding", "warning", message, (), lost),)
 
 
-def _beside_moved(vertices: FloatArray, rounded: FloatArray) -> npt.NDArray[np.bool_]:
+def _beside_moved(rounded: FloatArray, moved: BoolArray) -> BoolArray:
     """Say which vertices have a coordinate x that rounding has given to some: no others merge."""
     x = rounded[:, 0]
-    taken = np.sort(x[(rounded != vertices).any(axis=1)])
+    taken = np.sort(x[moved])
     place = np.minimum(np.searchsorted(taken, x), len(taken) - 1)
-    beside: npt.NDArray[np.bool_] = taken[place] == x
+    beside: BoolArray = taken[place] == x
     return beside
 
 
 _REMEDY = "; write PLY, OBJ, OFF or 3MF to keep the mesh as it is."
 
 
-def _changed(mesh: Mesh | RawMesh, rounded: FloatArray) -> tuple[Finding, ...]:
+def _changed(mesh: Mesh | RawMesh, rounded: FloatArray, moved: BoolArray) -> tuple[Finding, ...]:
     """Return the findings about triangles that lose their area or turn over."""
-    flat, turned = _flat_and_turned(mesh.vertices, rounded, mesh.faces)
+    flat, turned = _flat_and_turned(mesh.vertices, rounded, mesh.faces, moved)
     told = (
         ("flattened_by_rounding", "takes the area of", flat),
         ("turned_by_rounding", "turns over", turned),
@@ -198,10 +190,9 @@ def _changed(mesh: Mesh | RawMesh, rounded: FloatArray) -> tuple[Finding, ...]:
 
 
 def _flat_and_turned(
-    vertices: FloatArray, rounded: FloatArray, faces: IndexArray
+    vertices: FloatArray, rounded: FloatArray, faces: IndexArray, moved: BoolArray
 ) -> tuple[IndexArray, IndexArray]:
     """Return the numbers of the triangles that lose their area, and of those that turn over."""
-    moved = (rounded != vertices).any(axis=1)
     numbers = np.flatnonzero(moved[faces].any(axis=1))
     flat, turned = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
     for block in blocks(len(numbers)):

@@ -14,16 +14,8 @@ from bspcsg.formats.single import _rounded, settled
 from support import DEEP
 from support.checks import assert_closed
 from support.degenerate import scene
-from support.fractions import (
-    Corners,
-    Vector,
-    common_dimension,
-    cross,
-    dot,
-    exact,
-    is_flat,
-    is_on_both_sides,
-)
+from support.fractions import Corners, common_dimension, exact, is_flat, is_on_both_sides
+from support.shapes import exact_volume
 
 SCENES = 10_000 if DEEP else 250
 
@@ -36,6 +28,9 @@ ROUNDED = 100
 
 #: Meshes of so many faces are looked through in fractions, pair by pair.
 FRACTIONS = 40 if DEEP else 24
+
+#: A step far below the spacing of the doubles here: 10 to this power.
+FINER = -40
 
 #: Of the coarsest operand: given doubles lie up to half of it off the lattice, on each axis.
 STEP = 1e-9
@@ -208,14 +203,8 @@ def has_volume(mesh: "b.Mesh", expected: Fraction, most: float) -> bool:
     """Say whether a mesh has a volume within a bound, in fractions where doubles err."""
     return (
         abs(mesh.volume - float(expected)) <= most
-        or abs(enclosed(exact(mesh.vertices), mesh.faces) - expected) <= most
+        or abs(exact_volume((mesh.vertices, mesh.faces), FINER) - expected) <= most
     )
-
-
-def enclosed(corners: list[Vector], faces: np.ndarray) -> Fraction:
-    rows = faces.tolist()
-    six = sum((dot(corners[p], cross(corners[q], corners[r])) for p, q, r in rows), Fraction(0))
-    return six / 6
 
 
 def uses_all_vertices(mesh: "b.Mesh") -> bool:

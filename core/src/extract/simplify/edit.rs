@@ -195,11 +195,11 @@ impl Limits<'_> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    /// Points in general position.
-    const PLACES: [[f64; 3]; 6] = [
+    /// The corners of an octahedron in general position: two tips, and the ring between them.
+    pub(in crate::extract::simplify) const PLACES: [[f64; 3]; 6] = [
         [0.9, 0.0, 0.5],
         [0.1, 0.0, -2.0],
         [1.0, 0.0, 0.1],

@@ -125,19 +125,10 @@ impl<'a> Trial<'a> {
 #[cfg(test)]
 mod tests {
     use super::super::drift::Drift;
+    use super::super::edit::tests::PLACES;
     use super::super::edit::Limits;
     use super::super::surface::Surface;
     use super::*;
-
-    /// An octahedron, and room for a tetrahedron beside it or in it.
-    const PLACES: [Point; 6] = [
-        [0.9, 0.0, 0.5],
-        [0.1, 0.0, -2.0],
-        [1.0, 0.0, 0.1],
-        [0.0, 1.0, 0.0],
-        [-1.0, 0.1, 0.0],
-        [0.0, -1.0, -0.1],
-    ];
 
     /// Collapses an edge of the octahedron beside a tiny tetrahedron; returns the numbers of changes
     /// that stay and that are taken back.
