@@ -15,7 +15,7 @@ from support import DEEP
 from support.checks import assert_closed
 from support.degenerate import scene
 from support.fractions import Corners, common_dimension, exact, is_flat, is_on_both_sides
-from support.shapes import exact_volume
+from support.shapes import exact_volume, icosphere
 
 SCENES = 10_000 if DEEP else 250
 
@@ -111,6 +111,34 @@ def test_surfaces_that_cross_at_an_edge_are_found() -> None:
     assert faults(mesh) == ([], [])
     whole = (quarter | turned).to_mesh()
     assert faults(whole) == ([], [])
+
+
+def with_a_flat_face(
+    vertices: np.ndarray, faces: np.ndarray, face: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return a mesh with a corner more in the middle of an edge, which one of two faces has not."""
+    start, end, apex = faces[face]
+    middle = len(vertices)
+    parted = [[start, middle, apex], [middle, end, apex], [start, end, middle]]
+    centre = (vertices[start] + vertices[end]) / 2
+    return np.vstack([vertices, centre]), np.vstack([np.delete(faces, face, 0), parted])
+
+
+def test_what_crosses_by_itself_is_not_taken_for_rounding() -> None:
+    # Whole and even thousandths, so that the face without area is flat on the lattice; the doubles
+    # lie a spacing beside it. The face that is made anew crosses the other ball.
+    points, faces = icosphere(2)
+    ball = np.round(points * 500) * 2
+    shift = np.array([700.0, 310.0, 170.0])
+    nearest = np.argmin(abs(np.linalg.norm(ball[faces].mean(axis=1) - shift, axis=1) - 1000))
+    both = np.vstack([ball, ball + shift]), np.vstack([faces, faces + len(ball)])
+    vertices, rows = with_a_flat_face(*both, int(nearest))
+    given = np.nextafter(vertices / 1000, np.inf)
+    solid = b.Solid.from_mesh((given, rows))
+    mesh = solid.to_mesh()
+    assert {finding.code for finding in solid.findings} == {"zero_area"}
+    assert {tuple(p) for p in mesh.vertices.tolist()} <= {tuple(p) for p in given.tolist()}
+    assert not solid.normalized().to_mesh().certificate.crossings
 
 
 def pierce_or_overlap(first: Corners, second: Corners) -> bool:

@@ -137,9 +137,16 @@ fn wrong_source(operand: &Solid, number: usize) -> Option<Error> {
 /// # Errors
 /// `Internal`.
 pub fn overlaps_itself(source: &Arc<Source>) -> Result<bool> {
-    let solid = Solid::of_source(Arc::clone(source), false);
-    normalize(&solid, Rule::Positive)?;
-    Ok(!solid.is_reduced())
+    Ok(!is_simple(&Solid::of_source(Arc::clone(source), false))?)
+}
+
+/// Return whether the elements of a solid are its reduced boundary; looks, if nobody has.
+///
+/// # Errors
+/// `Internal`.
+pub fn is_simple(solid: &Solid) -> Result<bool> {
+    normalize(solid, Rule::Positive)?;
+    Ok(solid.is_reduced())
 }
 
 /// The solid united with itself: the reduced boundary of the points that a rule calls inside.

@@ -9,6 +9,7 @@ use crate::extract::assemble::assemble_patches;
 use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::{Corner, ExactMesh, Mesh};
 use crate::geometry::vertex::Vertex;
+use crate::merge::evaluate::is_simple;
 use crate::merge::lists::list::Sources;
 use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::handle::{OrientedFace, VertexId};
@@ -64,7 +65,7 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
     };
     let sources = Sources::new(solid.sources().clone());
     let unfolded = unfold(&mut mesh, &exact, &sources);
-    let settled = settle_mesh(&mut mesh, solid, &exact);
+    let settled = settle_mesh(&mut mesh, solid, &exact)?;
     let left = if unfolded.left.is_empty() && settled.mended.is_empty() {
         Vec::new()
     } else {
@@ -101,8 +102,9 @@ fn origins(faces: &[OrientedFace], sources: &Sources) -> Vec<[u32; 2]> {
 /// Mends the crossings that rounding made.
 ///
 /// Triangles that are not as they came are compared with all near them, and faces of different
-/// inputs with each other: on the lattice they do not cross, but their given doubles may.
-fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Settled {
+/// inputs with each other: on the lattice they do not cross, but their given doubles may. Where they
+/// do cross on the lattice, because an input overlaps itself, the mesh stays as it is.
+fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Result<Settled> {
     let mut changed = at_blurred(solid, exact);
     changed.extend(as_number(exact.untouched)..as_number(mesh.triangles.len()));
     let party = |t: u32| exact.faces[t as usize].slot().0;
@@ -120,20 +122,30 @@ fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Settled {
         vertices: std::mem::take(&mut mesh.vertices),
         triangles: std::mem::take(&mut mesh.triangles),
     };
-    let precision = Precision::Double;
-    let settled = settle(&mut rounded, changed, precision, on_lattice, given, party);
+    let found = rounded.faults(&changed, party);
+    let double = Precision::Double;
+    let settled = if found.is_empty() || is_simple(solid)? {
+        settle(
+            &mut rounded,
+            changed,
+            found,
+            double,
+            on_lattice,
+            given,
+            party,
+        )
+    } else {
+        Settled::default()
+    };
     mesh.vertices = rounded.vertices;
     mesh.triangles = rounded.triangles;
-    settled
+    Ok(settled)
 }
 
 /// The triangles that are faces as they came, but for a corner that was welded with one of other
-/// doubles, ascending. None where surfaces may cross on the lattice, too: that is not for us to mend.
+/// doubles, ascending.
 fn at_blurred(solid: &Solid, exact: &ExactMesh) -> Vec<u32> {
     let mut found = Vec::new();
-    if !solid.is_reduced() {
-        return found;
-    }
     let mut first = 0;
     for run in exact.faces[..exact.untouched].chunk_by(|a, b| a.slot() == b.slot()) {
         let source = solid.sources().get(run[0].slot());

@@ -33,23 +33,20 @@ pub struct Settled {
     pub left: Faults,
 }
 
-/// Finds the faults of changed triangles, ascending, and mends what can be mended.
+/// Mends what can be mended of the faults found of changed triangles, ascending.
 ///
 /// `exact` gives the place of a vertex on the lattice, if its input had it elsewhere: there the
 /// surfaces do not cross. `given` tells vertices of inputs.
 pub fn settle(
     mesh: &mut Rounded,
     mut changed: Vec<u32>,
+    mut found: Faults,
     precision: Precision,
     exact: impl Fn(u32) -> Option<Point>,
     given: impl Fn(u32) -> bool,
     party: impl Fn(u32) -> u32,
 ) -> Settled {
     let mut settled = Settled::default();
-    if changed.is_empty() && mesh.is_of_one(&party) {
-        return settled;
-    }
-    let mut found = faults(&mesh.faces(), &changed, &party);
     while !found.is_empty() {
         let moved = mesh.move_corners(&found, &exact);
         if moved.is_empty() {
@@ -91,10 +88,11 @@ pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
             .iter()
             .any(|v| moved[*v as usize])
     };
-    let changed = (0..as_number(mesh.triangles.len()))
+    let changed: Vec<u32> = (0..as_number(mesh.triangles.len()))
         .filter(is_changed)
         .collect();
-    settle(mesh, changed, single, |_| None, |_| false, |_| 0)
+    let found = mesh.faults(&changed, |_| 0);
+    settle(mesh, changed, found, single, |_| None, |_| false, |_| 0)
 }
 
 impl Rounded {
@@ -103,6 +101,14 @@ impl Rounded {
             vertices: &self.vertices,
             triangles: &self.triangles,
         }
+    }
+
+    /// Return the faults of changed triangles, ascending, and those between parties.
+    pub fn faults(&self, changed: &[u32], party: impl Fn(u32) -> u32) -> Faults {
+        if changed.is_empty() && self.is_of_one(&party) {
+            return Faults::default();
+        }
+        faults(&self.faces(), changed, &party)
     }
 
     /// Return whether all triangles are of one party.
@@ -291,15 +297,11 @@ mod tests {
             triangles: [faces, faces.map(|t| t.map(|v| v + 4))].concat(),
         };
         let exact = |v: u32| (v == 4).then_some([1.0, 1.0, 0.5]);
-        let changed = (4..8).collect();
-        let settled = settle(
-            &mut mesh,
-            changed,
-            Precision::Double,
-            exact,
-            |_| false,
-            |t| t / 4,
-        );
+        let changed: Vec<u32> = (4..8).collect();
+        let party = |t| t / 4;
+        let found = mesh.faults(&changed, party);
+        let double = Precision::Double;
+        let settled = settle(&mut mesh, changed, found, double, exact, |_| false, party);
         assert_eq!(settled.moved, [4]);
         assert!(settled.left.is_empty() && settled.mended.is_empty());
         assert!(mesh.vertices[4][2] > 0.0);

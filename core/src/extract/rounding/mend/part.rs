@@ -53,6 +53,9 @@ const FARTHEST: f64 = 4.0;
 /// Comparisons of boxes, at about a nanosecond each, after which mending gives up.
 const WORK: usize = 4_000_000_000;
 
+/// The comparisons of boxes that take as long as one of triangles.
+pub(super) const MEETING: usize = 100;
+
 /// The triangles around a vertex.
 pub(super) type Star = SmallVec<[u32; 8]>;
 

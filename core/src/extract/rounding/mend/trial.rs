@@ -1,6 +1,6 @@
 //! Changes carried out and taken back, and the faults that are left.
 
-use super::part::{edges, Edit, Mending, Star};
+use super::part::{edges, Edit, Mending, Star, MEETING};
 use crate::extract::rounding::crossings::crosses_at;
 use crate::geometry::extent::Extent;
 use crate::geometry::meeting::{has_no_area, meeting, Meeting};
@@ -96,6 +96,7 @@ impl Mending {
             self.work = self.work.saturating_sub(self.blocks.count() + near.len());
             near.retain(|u| !extent.misses(&self.extents[*u as usize]));
             near.retain(|u| *u > t || *u < t && some.binary_search(u).is_err());
+            self.work = self.work.saturating_sub(MEETING * near.len());
             for u in near {
                 if self.cross(t, u, &flat) {
                     crossings.push([t.min(u), t.max(u)]);
