@@ -9,6 +9,7 @@ already is not asked again, so an interrupted campaign goes on where it stopped.
 
 import argparse
 import sys
+from os.path import relpath
 from pathlib import Path
 
 from bspcsg.campaign.record import read_results
@@ -32,10 +33,11 @@ def main() -> int:
         "--poses": options.poses,
         "--seed": options.seed,
         "--max-triangles": options.max_triangles,
-        "--results": options.results,
+        "--results": relpath(options.results),
     }
     given = [str(word) for pair in settings.items() for word in pair]
-    folders = [str(folder) for folder in (options.meshes, scripts) if folder.is_dir()]
+    # Reports name files as they were given, and are read elsewhere.
+    folders = [relpath(folder) for folder in (options.meshes, scripts) if folder.is_dir()]
     code = run(["validate", *folders, *given, "--resume", *more])
     if options.record:
         record(options.results, settings)
