@@ -19,7 +19,7 @@ from support.browser import Browser, started
 
 _MOST_BYTES = 2_000_000
 _READY = "document.documentElement.dataset.ready === 'yes'"
-_PHONE = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
+_PHONE = {"width": 375, "height": 844, "deviceScaleFactor": 1, "mobile": True}
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +95,15 @@ def test_no_crossing_covers_the_number_of_a_segment(browser: Browser) -> None:
     crossings, badges = (np.array(found) for found in places)
     assert len(crossings) == 4 and len(badges) == 8
     assert np.linalg.norm(crossings[:, None] - badges, axis=2).min() > 15
+
+
+def test_the_names_of_edges_do_not_cover_each_other(browser: Browser) -> None:
+    places = browser.run(
+        "return [...document.querySelectorAll('#fig-merge circle.badge')]"
+        ".map(e => [e.cx.baseVal.value, e.cy.baseVal.value])"
+    )
+    apart = np.linalg.norm(np.array(places)[:, None] - places, axis=2)
+    assert len(places) == 9 and apart[~np.eye(9, dtype=bool)].min() > 18
 
 
 def test_equal_costs_are_equally_good(browser: Browser) -> None:
@@ -395,6 +404,12 @@ def test_a_phone_shows_it_all_without_scrolling_sideways(browser: Browser) -> No
     browser.device(_PHONE)
     wide = "return document.documentElement.scrollWidth"
     assert browser.run(wide) <= _PHONE["width"]
+    cut = browser.run(
+        "return [...document.querySelectorAll('math[display=block], #fig-shield td')].filter(e =>"
+        " e.scrollWidth > e.clientWidth + 1 || e.getBoundingClientRect().right > innerWidth)"
+        ".map(e => e.textContent)"
+    )
+    assert cut == []
     small = browser.run(
         "return [...document.querySelectorAll('figure button')].filter(e =>"
         " e.offsetParent && e.getBoundingClientRect().height < 28).length"

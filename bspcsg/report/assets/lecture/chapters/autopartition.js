@@ -274,7 +274,6 @@ function shieldFigure(figure) {
     });
   }
 
-  const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
   /** The middle of a segment, or a place where no crossing covers its number. */
   const beside = (segment, crossing) => {
     const middle = between(...segment);

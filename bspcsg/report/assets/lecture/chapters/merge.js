@@ -21,6 +21,18 @@ const CASE_WORDS = {
 const caseName = (found) => (typeof found === "string" ? found : found.OneSided.deep + found.OneSided.home);
 const caseWords = (found) => CASE_WORDS[typeof found === "string" ? found : "OneSided"];
 
+/** Shares of an edge at which its name may stand, the best first. */
+const NAME_PLACES = [0.5, 0.38, 0.62, 0.26, 0.74];
+
+/** The least distance of two names: badges have a radius of 9. */
+const NAMES_APART = 20;
+
+/** Return where the name of an edge covers none of those that stand, or the middle if it must. */
+function freePlace(a, b, taken) {
+  const isFree = (p) => taken.every((q) => distance(p, q) >= NAMES_APART);
+  return NAME_PLACES.map((share) => between(a, b, share)).find(isFree) ?? between(a, b);
+}
+
 /** A set's tree as a picture; `mark` gives a node by its place in preorder a look and a note. */
 function setTree(nodes, mark = () => ({}), leafMark = () => ({})) {
   let next = 0;
@@ -178,8 +190,12 @@ function mergeFigure(figure) {
     }
     plane.polygon(shapes.a.corners, { class: "shape a" });
     plane.polygon(shapes.b.corners, { class: "shape b" });
+    const taken = [];
     for (const [name, { corners }] of Object.entries(shapes)) {
-      corners.forEach((corner, i) => plane.badge(between(corner, corners[(i + 1) % corners.length]), `${name}${i + 1}`, { class: `of-${name}` }));
+      corners.forEach((corner, i) => {
+        taken.push(freePlace(corner, corners[(i + 1) % corners.length], taken));
+        plane.badge(taken.at(-1), `${name}${i + 1}`, { class: `of-${name}` });
+      });
     }
     const place = step ? places[step - 1] : null;
     if (place && place.length && !done) plane.region(place, { class: "focus" });

@@ -38,6 +38,8 @@ function centre(points) {
 
 const between = (a, b, share = 0.5) => [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share];
 
+const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 
 /** A picture of a room of the plane, with handles that stay while the picture is drawn anew. */
