@@ -101,7 +101,7 @@ fn faces_of_different_patches_are_not_joined() {
         let source = cut.sources().get(Slot(*slot)).mesh().expect("a mesh");
         let corners = source.faces[*face as usize].map(|v| source.doubles[v.place()]);
         for v in triangle {
-            let p = mesh.vertices[*v as usize];
+            let p = mesh.vertices[v.place()];
             let inside = |i: usize| {
                 let bounds = corners.map(|c| c[i]);
                 let low = bounds.iter().copied().fold(f64::INFINITY, f64::min);

@@ -10,6 +10,7 @@ use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::half_space::half_space;
+use bspcsg::mesh::handle::VertexId;
 use bspcsg::tree::solid::Solid;
 
 use support::{
@@ -87,7 +88,7 @@ fn copies_of_meshes_change_no_byte() {
 }
 
 /// The mesh of one list of all operands.
-fn listed(solids: &[Solid], list: fn(Vec<u32>) -> Term) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+fn listed(solids: &[Solid], list: fn(Vec<u32>) -> Term) -> (Vec<[f64; 3]>, Vec<[VertexId; 3]>) {
     let count = u32::try_from(solids.len()).expect("few");
     let lines = vec![list((0..count).collect())];
     let made = manifold_mesh(&combined(solids, lines), "copies");

@@ -18,6 +18,7 @@ use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::half_space::half_space;
+use bspcsg::mesh::handle::VertexId;
 use bspcsg::query::classify::classify;
 use bspcsg::query::measure;
 use bspcsg::store::snapshot::Snapshot;
@@ -30,7 +31,7 @@ use support::{
 };
 
 /// Return what must not depend on the number of threads: the boundary and the mesh, byte for byte.
-fn fingerprint() -> (Vec<u8>, Vec<[u64; 3]>, Vec<[u32; 3]>) {
+fn fingerprint() -> (Vec<u8>, Vec<[u64; 3]>, Vec<[VertexId; 3]>) {
     let ball = |x: i64| Shape::sphere([x, 900, 900], 800.0, 3).solid();
     let tool = Shape::any_cuboid(&mut Numbers::new(8), 1500).solid();
     let operands = [ball(900), ball(1300), tool];

@@ -7,6 +7,7 @@ mod support;
 
 use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
+use bspcsg::mesh::handle::VertexId;
 use bspcsg::store::snapshot::Snapshot;
 use bspcsg::tree::solid::Solid;
 use rayon::ThreadPoolBuilder;
@@ -20,7 +21,7 @@ const RADIUS: i64 = 1 << 20;
 const BALL: f64 = (1u32 << 20) as f64;
 
 /// The bytes that must not depend on threads: the tree, and the doubles and triangles of the mesh.
-type Bytes = (Vec<u8>, Vec<[u64; 3]>, Vec<[u32; 3]>);
+type Bytes = (Vec<u8>, Vec<[u64; 3]>, Vec<[VertexId; 3]>);
 
 fn bytes(solid: &Solid, context: &str) -> Bytes {
     let mesh = manifold_mesh(solid, context);

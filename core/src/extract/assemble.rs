@@ -16,7 +16,6 @@ use super::joining::patches::Patches;
 use super::joining::planes::{group, PlaneGroup};
 use super::joining::seams::{find_touching, subdivisions, Edge, InnerPoints, LinePoints};
 use super::mesh::{Corner, ExactMesh};
-use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::outline::BareEdge;
 use crate::geometry::side::Orientation;
@@ -260,18 +259,18 @@ impl Assembly<'_> {
 
     /// Emits the whole faces, and the vertices that only they have.
     fn emit_whole(&mut self, fates: &Fates, rims: &Rims) {
-        let first = as_number(self.vertices.len());
+        let first = VertexId::of(self.vertices.len());
         for (slot, images) in Slot::all().zip(&mut self.images) {
             spend(images.len());
             let vertices = images.iter_mut().zip(rims.get(slot).used());
             for (vertex, (image, is_used)) in VertexId::all().zip(vertices) {
                 if *image == NONE && is_used {
-                    *image = as_number(self.vertices.len());
+                    *image = VertexId::of(self.vertices.len());
                     self.vertices.push(Corner::Source(slot, vertex));
                 }
             }
         }
-        self.untouched = Untouched::new(first..as_number(self.vertices.len()));
+        self.untouched = Untouched::new(first..VertexId::of(self.vertices.len()));
         for (slot, fates) in fates.by_slot() {
             let source = self.sources.get(slot);
             let (Some(mesh), images) = (source.mesh(), &self.images[slot.place()]) else {
@@ -335,9 +334,9 @@ mod tests {
     use crate::merge::scenes::{cuboid, made_of, tetrahedra};
 
     /// The directed edges of a mesh, sorted.
-    fn edges(mesh: &ExactMesh) -> Vec<[u32; 2]> {
-        let edge = |t: &[u32; 3]| [0, 1, 2].map(|i| [t[i], t[(i + 1) % 3]]);
-        let mut edges: Vec<[u32; 2]> = mesh.triangles.iter().flat_map(edge).collect();
+    fn edges(mesh: &ExactMesh) -> Vec<[VertexId; 2]> {
+        let edge = |t: &[VertexId; 3]| [0, 1, 2].map(|i| [t[i], t[(i + 1) % 3]]);
+        let mut edges: Vec<[VertexId; 2]> = mesh.triangles.iter().flat_map(edge).collect();
         edges.sort_unstable();
         edges
     }
@@ -345,7 +344,7 @@ mod tests {
     fn assert_closed(mesh: &ExactMesh) {
         let edges = edges(mesh);
         assert!(edges.windows(2).all(|pair| pair[0] != pair[1]));
-        let has_mate = |[a, b]: &[u32; 2]| edges.binary_search(&[*b, *a]).is_ok();
+        let has_mate = |[a, b]: &[VertexId; 2]| edges.binary_search(&[*b, *a]).is_ok();
         assert!(edges.iter().all(has_mate));
     }
 
@@ -354,7 +353,7 @@ mod tests {
         let mesh = assemble(&made_of(&tetrahedra(), Term::Or)).expect("bounded");
         assert_closed(&mesh);
         assert_eq!(mesh.untouched, 4);
-        let is_source = |v: &u32| matches!(mesh.vertices[*v as usize], Corner::Source(..));
+        let is_source = |v: &VertexId| matches!(mesh.vertices[v.place()], Corner::Source(..));
         assert!(mesh.triangles[..4].iter().flatten().all(is_source));
         // The corner inside is gone; its three edges meet the first one's last face.
         assert_eq!(mesh.vertices.len(), 4 + 3 + 3);

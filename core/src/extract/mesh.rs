@@ -13,7 +13,7 @@ pub struct ExactMesh {
     /// The places of the vertices.
     pub vertices: Vec<Corner>,
     /// Triangles, counterclockwise as seen from outside.
-    pub triangles: Vec<[u32; 3]>,
+    pub triangles: Vec<[VertexId; 3]>,
     /// For each triangle the face it lies in.
     pub faces: Vec<OrientedFace>,
     /// The number of triangles at the start that are faces of sources as they came.
@@ -45,13 +45,22 @@ pub fn outward_normal(face: OrientedFace, sources: &Sources) -> [i128; 3] {
     normal.map(|c| face.orientation.signed(c))
 }
 
+/// The numbers of vertices once those that are not used are left out; the others keep their order.
+pub fn numbers_left(used: &[bool]) -> Vec<VertexId> {
+    let number = |next: &mut u32, used: &bool| {
+        *next += u32::from(*used);
+        Some(VertexId(*next - u32::from(*used)))
+    };
+    used.iter().scan(0, number).collect()
+}
+
 /// A triangle mesh in doubles.
 #[derive(Debug, Default)]
 pub struct Mesh {
     /// Vertices in model units.
     pub vertices: Vec<[f64; 3]>,
     /// Triangles, counterclockwise as seen from outside.
-    pub triangles: Vec<[u32; 3]>,
+    pub triangles: Vec<[VertexId; 3]>,
     /// For each triangle the source's slot and the number of the face in its input.
     pub origins: Vec<[u32; 2]>,
     /// For each triangle whether it faces the other way than that face.

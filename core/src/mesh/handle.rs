@@ -1,7 +1,10 @@
 //! Handles: numbers that say what they number.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
+use crate::arith::convert::as_number;
 use crate::geometry::side::Orientation;
 
 /// A source by its place in the table of a solid or an evaluation.
@@ -74,6 +77,17 @@ impl VertexId {
         (0..).map(Self)
     }
 
+    /// The vertex in this place of a list.
+    #[inline]
+    pub fn of(place: usize) -> Self {
+        Self(as_number(place))
+    }
+
+    /// Triangles or other rows of plain numbers, as rows of vertices.
+    pub fn rows<const N: usize>(rows: impl IntoIterator<Item = [u32; N]>) -> Vec<[Self; N]> {
+        rows.into_iter().map(|row| row.map(Self)).collect()
+    }
+
     /// The place in a list of all vertices.
     #[inline]
     pub fn place(self) -> usize {
@@ -84,6 +98,18 @@ impl VertexId {
 impl From<VertexId> for i64 {
     fn from(vertex: VertexId) -> Self {
         Self::from(vertex.0)
+    }
+}
+
+impl From<VertexId> for u64 {
+    fn from(vertex: VertexId) -> Self {
+        Self::from(vertex.0)
+    }
+}
+
+impl fmt::Display for VertexId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
     }
 }
 

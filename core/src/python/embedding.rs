@@ -11,6 +11,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::extract::rounding::company::Faces;
 use crate::extract::rounding::crossings::{all_faults, Faults};
 use crate::extract::rounding::settle::{settle_in_single, Rounded};
+use crate::mesh::handle::VertexId;
 
 /// The pairs of triangles that cross or overlap, and the triangles without area.
 #[pyfunction]
@@ -43,7 +44,8 @@ pub fn mesh_in_single<'py>(
         Ok(settle_in_single(&mut mesh))
     })?;
     let numbers = (0..).zip(&mesh.triangles);
-    let (kept, left): (Vec<i64>, Vec<[u32; 3]>) = numbers.filter(|(_, t)| t[0] != t[1]).unzip();
+    let (kept, left): (Vec<i64>, Vec<[VertexId; 3]>) =
+        numbers.filter(|(_, t)| t[0] != t[1]).unzip();
     let dict = PyDict::new(py);
     dict.set_item("vertices", array(py, mesh.vertices)?)?;
     dict.set_item("triangles", array(py, wide(&left))?)?;
@@ -70,10 +72,8 @@ fn given(
         let text = "a coordinate is not a finite number";
         return Err(Error::new(ErrorKind::NonFinite, text));
     }
-    let triangles = triangles_of(triangles, vertices.len())?;
-    let triangles = triangles.into_iter().map(|t| t.map(|v| v.0)).collect();
     Ok(Rounded {
+        triangles: triangles_of(triangles, vertices.len())?,
         vertices,
-        triangles,
     })
 }

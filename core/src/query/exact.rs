@@ -7,11 +7,12 @@ use crate::arith::Int;
 use crate::extract::mesh::{Corner, ExactMesh};
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::{Homogeneous, Vertex};
+use crate::mesh::handle::VertexId;
 use crate::tree::solid::Solid;
 
 /// The place of a vertex, if it is a lattice point.
-pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Option<Lattice> {
-    match mesh.vertices[vertex as usize] {
+pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: VertexId) -> Option<Lattice> {
+    match mesh.vertices[vertex.place()] {
         Corner::Source(slot, index) => {
             Some(solid.sources().get(slot).mesh()?.vertices[index.place()])
         }
@@ -20,15 +21,15 @@ pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Option<La
 }
 
 /// A vertex as a point of space.
-pub(super) fn vertex(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Vertex {
-    match mesh.vertices[vertex as usize] {
+pub(super) fn vertex(solid: &Solid, mesh: &ExactMesh, vertex: VertexId) -> Vertex {
+    match mesh.vertices[vertex.place()] {
         Corner::Point(point) => Vertex::clone(mesh.table.point(point)),
         Corner::Source(..) => Vertex::lattice(lattice(solid, mesh, vertex).unwrap_or_default()),
     }
 }
 
 /// The place of a vertex.
-pub(super) fn homogeneous(solid: &Solid, mesh: &ExactMesh, number: u32) -> Homogeneous {
+pub(super) fn homogeneous(solid: &Solid, mesh: &ExactMesh, number: VertexId) -> Homogeneous {
     vertex(solid, mesh, number).coordinates()
 }
 

@@ -15,6 +15,7 @@ use crate::arith::{inv_mod, mul_mod, Int};
 use crate::extract::mesh::ExactMesh;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::{poll, spend};
+use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::both;
 use crate::tree::solid::Solid;
 
@@ -83,7 +84,7 @@ impl Shares {
                 continue;
             }
             let numbers = [0, 1, 2].map(|i| {
-                let number = &mut known[triangle[i] as usize];
+                let number = &mut known[triangle[i].place()];
                 *number.get_or_insert_with(|| {
                     points.push(Point::of(solid, mesh, triangle[i]));
                     points.len() as u32 - 1
@@ -240,7 +241,7 @@ impl Share {
 }
 
 impl Point {
-    fn of(solid: &Solid, mesh: &ExactMesh, vertex: u32) -> Self {
+    fn of(solid: &Solid, mesh: &ExactMesh, vertex: VertexId) -> Self {
         let h = homogeneous(solid, mesh, vertex);
         let [x, y, z, w] = h.approx();
         let common = h.x.iter().fold(big(&h.w), |g, x| {

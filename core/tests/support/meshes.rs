@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 use bspcsg::extract::mesh::Mesh;
 use bspcsg::extract::rounding::round;
 use bspcsg::merge::SetOp;
+use bspcsg::mesh::handle::VertexId;
 use bspcsg::tree::solid::Solid;
 
 use super::{applied, is_empty};
@@ -16,7 +17,7 @@ pub fn manifold_mesh(solid: &Solid, context: &str) -> Mesh {
     let after = corners(&mesh, context);
     let closed = after.keys().all(|(a, b)| after.contains_key(&(*b, *a)));
     assert!(closed, "{context}: an edge has no opposite");
-    let used: HashSet<u32> = mesh.triangles.iter().flatten().copied().collect();
+    let used: HashSet<VertexId> = mesh.triangles.iter().flatten().copied().collect();
     assert_eq!(
         used.len(),
         mesh.vertices.len(),
@@ -26,7 +27,7 @@ pub fn manifold_mesh(solid: &Solid, context: &str) -> Mesh {
 }
 
 /// For each vertex and edge that leaves it the end of the next edge around the vertex.
-fn corners(mesh: &Mesh, context: &str) -> HashMap<(u32, u32), u32> {
+fn corners(mesh: &Mesh, context: &str) -> HashMap<(VertexId, VertexId), VertexId> {
     let mut after = HashMap::new();
     for &[a, b, c] in &mesh.triangles {
         for (v, from, to) in [(a, b, c), (b, c, a), (c, a, b)] {
@@ -38,8 +39,8 @@ fn corners(mesh: &Mesh, context: &str) -> HashMap<(u32, u32), u32> {
 }
 
 /// Count the closed fans that the corners make, given what comes after each edge around its start.
-fn fans(after: &HashMap<(u32, u32), u32>) -> usize {
-    let mut seen: HashSet<(u32, u32)> = HashSet::with_capacity(after.len());
+fn fans(after: &HashMap<(VertexId, VertexId), VertexId>) -> usize {
+    let mut seen: HashSet<(VertexId, VertexId)> = HashSet::with_capacity(after.len());
     let mut count = 0;
     for &(vertex, start) in after.keys() {
         let mut spoke = start;
@@ -53,7 +54,7 @@ fn fans(after: &HashMap<(u32, u32), u32>) -> usize {
 
 /// The triangles by the doubles of their corners, the smallest corner first, sorted.
 fn triangle_set(mesh: &Mesh) -> Vec<[[u64; 3]; 3]> {
-    let corner = |v: u32| mesh.vertices[v as usize].map(f64::to_bits);
+    let corner = |v: VertexId| mesh.vertices[v.place()].map(f64::to_bits);
     let mut set: Vec<_> = mesh
         .triangles
         .iter()

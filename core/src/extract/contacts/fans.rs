@@ -12,6 +12,7 @@ use std::fmt;
 
 use crate::arith::Sign;
 use crate::interrupt::poll;
+use crate::mesh::handle::VertexId;
 
 /// The fan of a corner not yet visited.
 const NONE: usize = usize::MAX;
@@ -22,20 +23,20 @@ pub trait Radial {
     fn normal(&self, triangle: u32) -> [i128; 3];
 
     /// Signs of the three coordinates of b − a, exact.
-    fn direction(&self, a: u32, b: u32) -> [Sign; 3];
+    fn direction(&self, a: VertexId, b: VertexId) -> [Sign; 3];
 }
 
 /// A surface with one vertex for every fan of triangles.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Split {
     /// The triangles, in the given order, with the new vertices.
-    pub corners: Vec<[u32; 3]>,
+    pub corners: Vec<[VertexId; 3]>,
     /// New vertex to old vertex. Each old vertex keeps its number as its first copy; further copies follow.
-    pub origin: Vec<u32>,
+    pub origin: Vec<VertexId>,
     /// Edges with more than two triangles: old vertices, the lower first, in increasing order.
-    pub split_edges: Vec<[u32; 2]>,
+    pub split_edges: Vec<[VertexId; 2]>,
     /// Old vertices with more than one copy, in increasing order.
-    pub split_vertices: Vec<u32>,
+    pub split_vertices: Vec<VertexId>,
 }
 
 /// The reasons why triangles are not a closed oriented surface.
@@ -49,7 +50,7 @@ pub enum Error {
     /// The edge is not used equally often in both directions.
     Open {
         /// The edge's vertices, the lower first.
-        edge: [u32; 2],
+        edge: [VertexId; 2],
     },
     /// Triangles or copies of vertices cannot be counted in 32 bits.
     TooMany,
@@ -85,7 +86,7 @@ impl std::error::Error for Error {}
 /// # Errors
 /// [`Error`] when the triangles are not closed, or not triangles of `vertex_count` vertices.
 pub fn split_fans<R: Radial>(
-    triangles: &[[u32; 3]],
+    triangles: &[[VertexId; 3]],
     vertex_count: u32,
     radial: &R,
 ) -> Result<Split, Error> {
@@ -104,9 +105,9 @@ pub fn split_fans<R: Radial>(
     fans.number(&surface, vertex_count, split_edges)
 }
 
-fn check_triangles(triangles: &[[u32; 3]], vertex_count: u32) -> Result<(), Error> {
+fn check_triangles(triangles: &[[VertexId; 3]], vertex_count: u32) -> Result<(), Error> {
     let is_good =
-        |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a && a.max(b).max(c) < vertex_count;
+        |&[a, b, c]: &[VertexId; 3]| a != b && b != c && c != a && a.max(b).max(c).0 < vertex_count;
     u32::try_from(triangles.len()).map_err(|_| Error::TooMany)?;
     match triangles.iter().position(|corners| !is_good(corners)) {
         Some(triangle) => Err(Error::BadTriangle { triangle }),
@@ -116,14 +117,14 @@ fn check_triangles(triangles: &[[u32; 3]], vertex_count: u32) -> Result<(), Erro
 
 /// Triangles and, for every half-edge, the opposite one across the surface.
 struct Surface<'a> {
-    triangles: &'a [[u32; 3]],
+    triangles: &'a [[VertexId; 3]],
     mates: Vec<usize>,
 }
 
 /// An edge of more than two triangles.
 struct Crowded {
     /// The lower vertex first.
-    ends: [u32; 2],
+    ends: [VertexId; 2],
     /// The half-edges from the lower to the higher vertex.
     forward: Vec<usize>,
 }
@@ -155,7 +156,7 @@ impl Surface<'_> {
 
     /// Half-edges grouped by the lower of their vertices, and where each group starts.
     fn halves_by_lower_end(&self, vertex_count: u32) -> (Vec<usize>, Vec<usize>) {
-        let group = |half: usize| ends(self.triangles, half)[0] as usize;
+        let group = |half: usize| ends(self.triangles, half)[0].place();
         let mut starts = vec![0; vertex_count as usize + 1];
         for half in 0..self.mates.len() {
             poll();
@@ -180,7 +181,7 @@ impl Surface<'_> {
     }
 
     /// Orders half-edges by edge, forward ones first.
-    fn edge_key(&self, half: usize) -> (u32, bool, usize) {
+    fn edge_key(&self, half: usize) -> (VertexId, bool, usize) {
         (ends(self.triangles, half)[1], !self.is_forward(half), half)
     }
 
@@ -218,12 +219,12 @@ impl Surface<'_> {
     }
 }
 
-fn origin(triangles: &[[u32; 3]], half: usize) -> u32 {
+fn origin(triangles: &[[VertexId; 3]], half: usize) -> VertexId {
     triangles[half / 3][half % 3]
 }
 
 /// The vertices of a half-edge, the lower first.
-fn ends(triangles: &[[u32; 3]], half: usize) -> [u32; 2] {
+fn ends(triangles: &[[VertexId; 3]], half: usize) -> [VertexId; 2] {
     let (a, b) = (origin(triangles, half), origin(triangles, next(half)));
     [a.min(b), a.max(b)]
 }
@@ -291,19 +292,20 @@ impl Fans {
         &self,
         surface: &Surface,
         vertex_count: u32,
-        split_edges: Vec<[u32; 2]>,
+        split_edges: Vec<[VertexId; 2]>,
     ) -> Result<Split, Error> {
-        let mut copies: Vec<Option<u32>> = vec![None; self.count];
+        let mut copies: Vec<Option<VertexId>> = vec![None; self.count];
         let mut is_used = vec![false; vertex_count as usize];
-        let mut origin: Vec<u32> = (0..vertex_count).collect();
+        let mut origin: Vec<VertexId> = (0..vertex_count).map(VertexId).collect();
         let mut corners = surface.triangles.to_vec();
         for (corner, &fan) in self.of.iter().enumerate() {
             let vertex = &mut corners[corner / 3][corner % 3];
             let copy = match copies[fan] {
                 Some(copy) => copy,
-                None if !std::mem::replace(&mut is_used[*vertex as usize], true) => *vertex,
+                None if !std::mem::replace(&mut is_used[vertex.place()], true) => *vertex,
                 None => {
                     let copy = u32::try_from(origin.len()).map_err(|_| Error::TooMany)?;
+                    let copy = VertexId(copy);
                     origin.push(*vertex);
                     copy
                 }

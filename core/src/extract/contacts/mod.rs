@@ -14,6 +14,7 @@ use crate::arith::Sign;
 use crate::error::Error;
 use crate::interrupt::poll;
 use crate::mesh::finding::{Finding, Severity};
+use crate::mesh::handle::VertexId;
 
 /// Splits contacts, so that every directed edge has exactly one opposite by index and every vertex
 /// one fan; reports them.
@@ -25,8 +26,8 @@ pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>, Failure> {
     let count = as_number(assembly.vertices.len());
     let split = split_fans(&assembly.triangles, count, &Geometry(assembly))
         .map_err(|e| Error::internal(format!("contacts could not be split: {e}")))?;
-    let place = |ids: &[u32]| ids.iter().map(|v| u64::from(*v)).collect::<Vec<_>>();
-    let edges: Vec<u32> = split.split_edges.iter().map(|e| e[0]).collect();
+    let place = |ids: &[VertexId]| ids.iter().map(|v| u64::from(*v)).collect::<Vec<_>>();
+    let edges: Vec<VertexId> = split.split_edges.iter().map(|e| e[0]).collect();
     let mut findings = Vec::new();
     if !edges.is_empty() {
         let text = "the solid touches itself along edges, here split (start vertices)";
@@ -37,8 +38,8 @@ pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>, Failure> {
             text,
         ));
     }
-    let ends: HashSet<u32> = split.split_edges.iter().flatten().copied().collect();
-    let alone: Vec<u32> = split
+    let ends: HashSet<VertexId> = split.split_edges.iter().flatten().copied().collect();
+    let alone: Vec<VertexId> = split
         .split_vertices
         .iter()
         .copied()
@@ -57,7 +58,7 @@ pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>, Failure> {
     assembly.vertices = split
         .origin
         .iter()
-        .map(|v| assembly.vertices[*v as usize])
+        .map(|v| assembly.vertices[v.place()])
         .collect();
     assembly.triangles = split.corners;
     Ok(findings)
@@ -75,7 +76,7 @@ fn is_manifold(assembly: &Assembly, triangles: &[u32]) -> Result<bool, Failure> 
         let fan = &mut fans.corners[fans.starts[place]..fans.starts[place + 1]];
         if !is_single_fan(fan) {
             if !is_balanced(fan) {
-                let vertex = assembly.special_vertex(as_number(place));
+                let vertex = assembly.special_vertex(place);
                 return Err(Failure::Overlap(Overlap {
                     sign: format!("the assembled boundary is open at vertex {vertex}"),
                     faces: assembly.faces_at(vertex),
@@ -90,18 +91,18 @@ fn is_manifold(assembly: &Assembly, triangles: &[u32]) -> Result<bool, Failure> 
 /// The corners at special vertices, by vertex: where their triangles go on, and come from.
 struct Fans {
     starts: Vec<usize>,
-    corners: Vec<[u32; 2]>,
+    corners: Vec<[VertexId; 2]>,
     /// Directed edges between other vertices, of triangles that have a special one.
-    apart: Vec<[u32; 2]>,
+    apart: Vec<[VertexId; 2]>,
 }
 
 impl Fans {
     fn of(assembly: &Assembly, triangles: &[u32]) -> Self {
         let mut starts = vec![0; assembly.special_count() + 1];
         let corners = || triangles.iter().map(|t| assembly.triangles[*t as usize]);
-        let places = |t: [u32; 3]| t.map(|v| assembly.special_place(v));
+        let places = |t: [VertexId; 3]| t.map(|v| assembly.special_place(v));
         for place in corners().flat_map(places).flatten() {
-            starts[place as usize] += 1;
+            starts[place] += 1;
         }
         let mut sum = 0;
         for start in &mut starts {
@@ -109,7 +110,7 @@ impl Fans {
             *start = sum;
         }
         let mut fans = Self {
-            corners: vec![[0; 2]; sum],
+            corners: vec![[VertexId(0); 2]; sum],
             apart: Vec::new(),
             starts,
         };
@@ -118,8 +119,8 @@ impl Fans {
             for i in 0..3 {
                 let (b, c) = ((i + 1) % 3, (i + 2) % 3);
                 if let Some(a) = place[i] {
-                    fans.starts[a as usize] -= 1;
-                    fans.corners[fans.starts[a as usize]] = [t[b], t[c]];
+                    fans.starts[a] -= 1;
+                    fans.corners[fans.starts[a]] = [t[b], t[c]];
                 } else if place[b].is_none() {
                     fans.apart.push([t[i], t[b]]);
                 }
@@ -136,16 +137,16 @@ impl Fans {
 }
 
 /// Return whether as many triangles leave along each edge at a vertex as arrive.
-fn is_balanced(fan: &[[u32; 2]]) -> bool {
-    let mut starts: Vec<u32> = fan.iter().map(|c| c[0]).collect();
-    let mut ends: Vec<u32> = fan.iter().map(|c| c[1]).collect();
+fn is_balanced(fan: &[[VertexId; 2]]) -> bool {
+    let mut starts: Vec<VertexId> = fan.iter().map(|c| c[0]).collect();
+    let mut ends: Vec<VertexId> = fan.iter().map(|c| c[1]).collect();
     starts.sort_unstable();
     ends.sort_unstable();
     starts == ends
 }
 
 /// Return whether corners are one closed fan that leaves along each edge once; sorts them.
-fn is_single_fan(fan: &mut [[u32; 2]]) -> bool {
+fn is_single_fan(fan: &mut [[VertexId; 2]]) -> bool {
     fan.sort_unstable();
     if fan.windows(2).any(|pair| pair[0][0] == pair[1][0]) {
         return false;
@@ -170,7 +171,7 @@ impl Radial for Geometry<'_, '_> {
         outward_normal(self.0.faces[triangle as usize], self.0.sources)
     }
 
-    fn direction(&self, a: u32, b: u32) -> [Sign; 3] {
+    fn direction(&self, a: VertexId, b: VertexId) -> [Sign; 3] {
         direction(&self.0.position(a), &self.0.position(b))
     }
 }

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap as HashMap;
 use super::untouched::Untouched;
 use crate::arith::convert::as_number;
 use crate::extract::boundary::leaves::{Fate, Fates};
-use crate::extract::mesh::{Corner, ExactMesh};
+use crate::extract::mesh::{numbers_left, Corner, ExactMesh};
 use crate::extract::vertices::VertexTable;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
@@ -21,13 +21,13 @@ pub(in crate::extract) struct Assembly<'a> {
     pub(in crate::extract) sources: &'a Sources,
     pub(in crate::extract) table: VertexTable,
     /// For each slot the output vertex of each of its vertices.
-    pub(in crate::extract) images: Vec<Vec<u32>>,
+    pub(in crate::extract) images: Vec<Vec<VertexId>>,
     /// For each table point its output vertex.
-    pub(in crate::extract) point_images: Vec<u32>,
+    pub(in crate::extract) point_images: Vec<VertexId>,
     /// For each table point the first source vertex there.
     pub(in crate::extract) names: HashMap<u32, (Slot, VertexId)>,
     pub(in crate::extract) vertices: Vec<Corner>,
-    pub(in crate::extract) triangles: Vec<[u32; 3]>,
+    pub(in crate::extract) triangles: Vec<[VertexId; 3]>,
     pub(in crate::extract) faces: Vec<OrientedFace>,
     /// The triangles, at the start, that are faces of sources as they came.
     pub(in crate::extract) untouched: Untouched,
@@ -36,7 +36,7 @@ pub(in crate::extract) struct Assembly<'a> {
 }
 
 /// Of a vertex that has no number yet.
-pub(in crate::extract) const NONE: u32 = u32::MAX;
+pub(in crate::extract) const NONE: VertexId = VertexId(u32::MAX);
 
 impl<'a> Assembly<'a> {
     pub(in crate::extract) fn new(sources: &'a Sources, fates: &Fates) -> Self {
@@ -66,7 +66,7 @@ impl<'a> Assembly<'a> {
         vertex: VertexId,
     ) -> u32 {
         let image = self.images[slot.place()][vertex.place()];
-        if let Some(Corner::Point(point)) = self.vertices.get(image as usize) {
+        if let Some(Corner::Point(point)) = self.vertices.get(image.place()) {
             return *point;
         }
         let point = self.table.number_at(mesh.vertices[vertex.place()]);
@@ -76,13 +76,13 @@ impl<'a> Assembly<'a> {
         point
     }
 
-    pub(in crate::extract) fn image_of_point(&mut self, point: u32) -> u32 {
+    pub(in crate::extract) fn image_of_point(&mut self, point: u32) -> VertexId {
         if self.point_images.len() < self.table.len() {
             self.point_images.resize(self.table.len(), NONE);
         }
         let image = &mut self.point_images[point as usize];
         if *image == NONE {
-            *image = as_number(self.vertices.len());
+            *image = VertexId::of(self.vertices.len());
             self.vertices.push(Corner::Point(point));
         }
         *image
@@ -95,37 +95,37 @@ impl<'a> Assembly<'a> {
     }
 
     /// Return whether an output vertex lies where something was cut or may touch.
-    fn is_special(&self, vertex: u32) -> bool {
+    fn is_special(&self, vertex: VertexId) -> bool {
         !self.untouched.vertices.contains(&vertex)
     }
 
     /// Return the number of special vertices.
     pub(in crate::extract) fn special_count(&self) -> usize {
-        self.vertices.len() - self.untouched.vertices.len()
+        self.vertices.len() - self.untouched.own_count()
     }
 
     /// The place of a vertex among the special ones, if it is one.
-    pub(in crate::extract) fn special_place(&self, vertex: u32) -> Option<u32> {
+    pub(in crate::extract) fn special_place(&self, vertex: VertexId) -> Option<usize> {
         let others = &self.untouched.vertices;
         if vertex < others.start {
-            Some(vertex)
+            Some(vertex.place())
         } else {
-            (vertex >= others.end).then(|| vertex - as_number(others.len()))
+            (vertex >= others.end).then(|| vertex.place() - self.untouched.own_count())
         }
     }
 
     /// The special vertex in a place.
-    pub(in crate::extract) fn special_vertex(&self, place: u32) -> u32 {
-        let others = &self.untouched.vertices;
-        if place < others.start {
+    pub(in crate::extract) fn special_vertex(&self, place: usize) -> VertexId {
+        let before = place < self.untouched.vertices.start.place();
+        VertexId::of(if before {
             place
         } else {
-            place + as_number(others.len())
-        }
+            place + self.untouched.own_count()
+        })
     }
 
     /// The faces of the triangles at a vertex.
-    pub(in crate::extract) fn faces_at(&self, vertex: u32) -> Vec<OrientedFace> {
+    pub(in crate::extract) fn faces_at(&self, vertex: VertexId) -> Vec<OrientedFace> {
         let around = self.triangles.iter().zip(&self.faces);
         let around = around.filter(|(triangle, _)| triangle.contains(&vertex));
         around.map(|(_, face)| *face).collect()
@@ -159,37 +159,29 @@ impl<'a> Assembly<'a> {
 
     /// Leaves out vertices that no triangle uses; the others keep their order.
     fn drop_unused(&mut self) {
-        let mut used: Vec<bool> = (0..as_number(self.vertices.len()))
-            .map(|v| !self.is_special(v))
-            .collect();
+        let all = VertexId::all().take(self.vertices.len());
+        let mut used: Vec<bool> = all.map(|v| !self.is_special(v)).collect();
         for triangle in self.special_triangles() {
             poll();
             for vertex in self.triangles[triangle as usize] {
-                used[vertex as usize] = true;
+                used[vertex.place()] = true;
             }
         }
         if used.iter().all(|u| *u) {
             return;
         }
-        let mut next = 0;
-        let image: Vec<u32> = used
-            .iter()
-            .map(|u| {
-                next += u32::from(*u);
-                next - u32::from(*u)
-            })
-            .collect();
+        let image = numbers_left(&used);
         let mut keep = used.iter();
         self.vertices
             .retain(|_| keep.next().copied().unwrap_or(false));
         for vertex in self.triangles.iter_mut().flatten() {
-            *vertex = image[*vertex as usize];
+            *vertex = image[vertex.place()];
         }
     }
 
     /// The exact position of an output vertex.
-    pub(in crate::extract) fn position(&self, vertex: u32) -> Arc<Vertex> {
-        match self.vertices[vertex as usize] {
+    pub(in crate::extract) fn position(&self, vertex: VertexId) -> Arc<Vertex> {
+        match self.vertices[vertex.place()] {
             Corner::Point(point) => Arc::clone(self.table.point(point)),
             Corner::Source(slot, index) => {
                 let mesh = self.sources.get(slot).mesh();

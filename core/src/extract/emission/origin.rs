@@ -99,7 +99,7 @@ mod tests {
         let mesh = assemble(&made_of(&boxes, Term::Or)).expect("bounded");
         let reach = [[0, 6], [3, 30]];
         for (triangle, face) in mesh.triangles.iter().zip(&mesh.faces) {
-            let x = triangle.map(|v| match mesh.vertices[v as usize] {
+            let x = triangle.map(|v| match mesh.vertices[v.place()] {
                 Corner::Source(slot, id) => {
                     let source = boxes[slot.place()].sources().get(Slot(0));
                     source.mesh().expect("a mesh").vertices[id.place()][0]

@@ -16,7 +16,7 @@ use crate::mesh::triangles::TriangleMesh;
 #[derive(Debug, Default)]
 pub struct Untouched {
     /// The vertices that only such triangles have.
-    pub vertices: Range<u32>,
+    pub vertices: Range<VertexId>,
     /// The number of triangles.
     pub count: usize,
     /// Those with other vertices, too, ascending.
@@ -28,7 +28,7 @@ struct Task<'a> {
     first_face: usize,
     first_triangle: u32,
     fates: &'a [Fate],
-    triangles: &'a mut [[u32; 3]],
+    triangles: &'a mut [[VertexId; 3]],
     faces: &'a mut [OrientedFace],
 }
 
@@ -39,16 +39,21 @@ pub struct Emitted<'a> {
     /// Its faces.
     pub mesh: &'a TriangleMesh,
     /// The number of each of its vertices.
-    pub images: &'a [u32],
+    pub images: &'a [VertexId],
 }
 
 impl Untouched {
     /// No triangles yet; these are the vertices they have for themselves.
-    pub fn new(vertices: Range<u32>) -> Self {
+    pub fn new(vertices: Range<VertexId>) -> Self {
         Self {
             vertices,
             ..Self::default()
         }
+    }
+
+    /// The number of those vertices.
+    pub fn own_count(&self) -> usize {
+        self.vertices.end.place() - self.vertices.start.place()
     }
 
     /// Appends the whole faces of a source.
@@ -56,14 +61,14 @@ impl Untouched {
         &mut self,
         source: &Emitted,
         fates: &[Fate],
-        triangles: &mut Vec<[u32; 3]>,
+        triangles: &mut Vec<[VertexId; 3]>,
         faces: &mut Vec<OrientedFace>,
     ) {
         let is_whole = |fate: &&Fate| matches!(fate, Fate::Whole(_));
         let counts = each_chunk(fates, |_, fates| fates.iter().filter(is_whole).count());
         let start = triangles.len();
         self.count = start + counts.iter().sum::<usize>();
-        triangles.resize(self.count, [0; 3]);
+        triangles.resize(self.count, [VertexId(0); 3]);
         faces.resize(self.count, OrientedFace::default());
         let mut tasks = Vec::with_capacity(counts.len());
         let mut rest = (&mut triangles[start..], &mut faces[start..]);
@@ -97,7 +102,7 @@ impl Untouched {
 
 impl Task<'_> {
     /// Fills in the triangles; returns the numbers of those with other vertices than `own`.
-    fn run(self, source: &Emitted, own: &Range<u32>) -> Vec<u32> {
+    fn run(self, source: &Emitted, own: &Range<VertexId>) -> Vec<u32> {
         let mut special = Vec::new();
         let out = self.triangles.iter_mut().zip(self.faces.iter_mut());
         let mut out = out.zip(self.first_triangle..);

@@ -3,7 +3,7 @@
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{Point, Triangle};
-
+use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::fill_chunks;
 
 /// A mesh in doubles, closed by index.
@@ -12,7 +12,7 @@ pub struct Faces<'a> {
     /// The vertices.
     pub vertices: &'a [Point],
     /// The triangles, each directed edge with one opposite.
-    pub triangles: &'a [[u32; 3]],
+    pub triangles: &'a [[VertexId; 3]],
 }
 
 impl Faces<'_> {
@@ -20,7 +20,7 @@ impl Faces<'_> {
     #[inline]
     pub fn corners(&self, triangle: u32) -> Triangle {
         let [a, b, c] = self.triangles[triangle as usize];
-        let at = |vertex: u32| self.vertices[vertex as usize];
+        let at = |vertex: VertexId| self.vertices[vertex.place()];
         [at(a), at(b), at(c)]
     }
 }
@@ -82,7 +82,7 @@ impl<'a> Others<'a> {
                 *cell = grid.cell(place);
             }
         });
-        let corners = |t: u32| faces.triangles[t as usize].map(|v| cells[v as usize]);
+        let corners = |t: u32| faces.triangles[t as usize].map(|v| cells[v.place()]);
         for t in self.some {
             marks.mark(corners(*t), SHARED);
         }
@@ -208,7 +208,7 @@ mod tests {
     use crate::geometry::extent::Extent;
 
     /// Small triangles in a cube, their places taken from numbers that look random.
-    fn scattered(count: u32) -> (Vec<Point>, Vec<[u32; 3]>) {
+    fn scattered(count: u32) -> (Vec<Point>, Vec<[VertexId; 3]>) {
         let next = |x: &u32| Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
         let mut numbers = std::iter::successors(Some(7), next).map(|x| f64::from(x >> 8) / 2e7);
         let mut number = || numbers.next().unwrap_or(0.0);
@@ -220,7 +220,7 @@ mod tests {
             }
         }
         let triangles = (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
-        (vertices, triangles.collect())
+        (vertices, VertexId::rows(triangles))
     }
 
     #[test]

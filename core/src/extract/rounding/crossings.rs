@@ -15,6 +15,7 @@ use crate::geometry::meeting::{folds_over, has_no_area, interleave, meeting, pas
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, Boxed, Swept};
+use crate::mesh::handle::VertexId;
 use crate::mesh::topology::NONE;
 
 /// The faults that keep a mesh from being embedded.
@@ -84,6 +85,9 @@ pub fn all_faults(faces: &Faces) -> Faults {
     faults(faces, &all, |_| 0)
 }
 
+/// For directed edges the third corner of the triangle there, if there is one.
+type Apexes = HashMap<[VertexId; 2], Option<VertexId>>;
+
 /// A search for crossings.
 struct Search<'a> {
     faces: &'a Faces<'a>,
@@ -114,7 +118,7 @@ impl Search<'_> {
     fn common_edge(&self, [t, u]: [u32; 2]) -> Option<usize> {
         let [a, b, c] = self.faces.triangles[t as usize];
         let [d, e, f] = self.faces.triangles[u as usize];
-        let own = |from: u32, to: u32| {
+        let own = |from: VertexId, to: VertexId| {
             from == a && to == b || from == b && to == c || from == c && to == a
         };
         if own(e, d) {
@@ -126,7 +130,7 @@ impl Search<'_> {
         }
     }
 
-    fn ends(&self, triangle: u32, edge: usize) -> [u32; 2] {
+    fn ends(&self, triangle: u32, edge: usize) -> [VertexId; 2] {
         let corners = &self.faces.triangles[triangle as usize];
         [corners[edge], corners[(edge + 1) % 3]]
     }
@@ -146,7 +150,7 @@ impl Search<'_> {
             let mate = |which: usize, edge: usize| {
                 let [a, b] = self.ends(pair[which], edge);
                 let apex = apexes.get(&[b, a]).copied().flatten()?;
-                Some(self.faces.vertices[apex as usize])
+                Some(self.faces.vertices[apex.place()])
             };
             let corners = pair.map(|t| self.faces.corners(t));
             if crosses_at(meeting, &corners, mate) {
@@ -156,18 +160,18 @@ impl Search<'_> {
     }
 
     /// The apexes of the triangles at some directed edges.
-    fn apexes(&self, mut at: HashMap<[u32; 2], Option<u32>>) -> HashMap<[u32; 2], Option<u32>> {
+    fn apexes(&self, mut at: Apexes) -> Apexes {
         if at.is_empty() {
             return at;
         }
         let mut is_end = vec![false; self.faces.vertices.len()];
         for v in at.keys().flatten() {
-            is_end[*v as usize] = true;
+            is_end[v.place()] = true;
         }
         for &[a, b, c] in self.faces.triangles {
             for [from, to, apex] in [[a, b, c], [b, c, a], [c, a, b]] {
-                if is_end[from as usize]
-                    && is_end[to as usize]
+                if is_end[from.place()]
+                    && is_end[to.place()]
                     && let Some(found) = at.get_mut(&[from, to])
                 {
                     *found = Some(apex);
@@ -275,7 +279,7 @@ mod tests {
         let second = TETRAHEDRON.map(|t| t.map(|v| v + 4));
         let faces = Faces {
             vertices: &[places, above].concat(),
-            triangles: &[TETRAHEDRON, second].concat(),
+            triangles: &VertexId::rows([TETRAHEDRON, second].concat()),
         };
         all_faults(&faces)
     }
@@ -293,7 +297,7 @@ mod tests {
         let vertices = [[0.0; 3], [2.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
         let faces = Faces {
             vertices: &vertices,
-            triangles: &[[0, 1, 2], [2, 1, 0]],
+            triangles: &VertexId::rows([[0, 1, 2], [2, 1, 0]]),
         };
         assert_eq!(all_faults(&faces).flat, [0, 1]);
     }

@@ -7,7 +7,7 @@ use crate::arith::convert::{as_number, as_place};
 use crate::error::Result;
 use crate::extract::assemble::assemble_patches;
 use crate::extract::joining::patches::Patches;
-use crate::extract::mesh::{Corner, ExactMesh, Mesh};
+use crate::extract::mesh::{numbers_left, Corner, ExactMesh, Mesh};
 use crate::geometry::vertex::Vertex;
 use crate::merge::evaluate::is_simple;
 use crate::merge::lists::list::Sources;
@@ -108,8 +108,8 @@ fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Result<Sett
     let mut changed = at_blurred(solid, exact);
     changed.extend(as_number(exact.untouched)..as_number(mesh.triangles.len()));
     let party = |t: u32| exact.faces[t as usize].slot().0;
-    let corner = |v: u32| exact.vertices.get(v as usize);
-    let on_lattice = |v: u32| match corner(v) {
+    let corner = |v: VertexId| exact.vertices.get(v.place());
+    let on_lattice = |v: VertexId| match corner(v) {
         Some(Corner::Source(slot, vertex)) => {
             let mesh = solid.sources().get(*slot).mesh()?;
             let place = Vertex::lattice(mesh.vertices[vertex.place()]);
@@ -117,7 +117,7 @@ fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Result<Sett
         }
         _ => None,
     };
-    let given = |v: u32| matches!(corner(v), Some(Corner::Source(..)));
+    let given = |v: VertexId| matches!(corner(v), Some(Corner::Source(..)));
     let mut rounded = Rounded {
         vertices: std::mem::take(&mut mesh.vertices),
         triangles: std::mem::take(&mut mesh.triangles),
@@ -167,8 +167,8 @@ fn at_blurred(solid: &Solid, exact: &ExactMesh) -> Vec<u32> {
 /// Leaves out the triangles that mending removed, and vertices that no triangle uses any more;
 /// returns the new numbers of triangles.
 fn drop_removed(mesh: &mut Mesh) -> Vec<u64> {
-    let is_left = |t: &[u32; 3]| t[0] != t[1];
-    let next = |next: &mut u64, t: &[u32; 3]| {
+    let is_left = |t: &[VertexId; 3]| t[0] != t[1];
+    let next = |next: &mut u64, t: &[VertexId; 3]| {
         *next += u64::from(is_left(t));
         Some(*next - u64::from(is_left(t)))
     };
@@ -185,15 +185,11 @@ fn drop_removed(mesh: &mut Mesh) -> Vec<u64> {
 fn drop_unused(mesh: &mut Mesh) {
     let mut used = vec![false; mesh.vertices.len()];
     for v in mesh.triangles.iter().flatten() {
-        used[*v as usize] = true;
+        used[v.place()] = true;
     }
-    let count = |next: &mut u32, used: &bool| {
-        *next += u32::from(*used);
-        Some(*next - u32::from(*used))
-    };
-    let numbers: Vec<u32> = used.iter().scan(0, count).collect();
+    let numbers = numbers_left(&used);
     for v in mesh.triangles.iter_mut().flatten() {
-        *v = numbers[*v as usize];
+        *v = numbers[v.place()];
     }
     // So far findings name vertices only: where the solid touches itself, and corners that were moved.
     for finding in &mut mesh.findings {
@@ -218,7 +214,7 @@ fn position(solid: &Solid, exact: &ExactMesh, corner: Corner) -> [f64; 3] {
 }
 
 /// Reports the corners that were put on the lattice.
-fn tell_moved(mesh: &mut Mesh, moved: &[u32]) {
+fn tell_moved(mesh: &mut Mesh, moved: &[VertexId]) {
     if !moved.is_empty() {
         let places: Vec<u64> = moved.iter().map(|v| u64::from(*v)).collect();
         let finding = Finding::about("moved", Severity::Note, &places, MOVED);
@@ -270,7 +266,7 @@ const CROSSING: &str = "rounding to doubles makes these triangles cross or overl
 /// Return whether two corners of a triangle were rounded to the same place.
 #[allow(clippy::float_cmp)]
 fn is_collapsed(mesh: &Mesh, triangle: u64) -> bool {
-    let [a, b, c] = mesh.triangles[as_place(triangle)].map(|v| mesh.vertices[v as usize]);
+    let [a, b, c] = mesh.triangles[as_place(triangle)].map(|v| mesh.vertices[v.place()]);
     a == b || b == c || c == a
 }
 

@@ -7,6 +7,7 @@ use super::crossings::{faults, Faults};
 use super::mend::{Mending, Precision};
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::Point;
+use crate::mesh::handle::VertexId;
 
 /// Rounds of finding and mending: each mends what it found, and the next looks at what that moved.
 const ROUNDS: usize = 4;
@@ -17,7 +18,7 @@ pub struct Rounded {
     /// The vertices.
     pub vertices: Vec<Point>,
     /// The triangles; those removed have one corner three times.
-    pub triangles: Vec<[u32; 3]>,
+    pub triangles: Vec<[VertexId; 3]>,
 }
 
 /// A mesh that was settled, and what is known of it.
@@ -28,7 +29,7 @@ pub struct Settled {
     /// The triangles that were changed, ascending; removed ones, too.
     pub mended: Vec<u32>,
     /// Vertices put where the exact surface has them, ascending.
-    pub moved: Vec<u32>,
+    pub moved: Vec<VertexId>,
     /// The faults that could not be mended.
     pub left: Faults,
 }
@@ -42,8 +43,8 @@ pub fn settle(
     mut changed: Vec<u32>,
     mut found: Faults,
     precision: Precision,
-    exact: impl Fn(u32) -> Option<Point>,
-    given: impl Fn(u32) -> bool,
+    exact: impl Fn(VertexId) -> Option<Point>,
+    given: impl Fn(VertexId) -> bool,
     party: impl Fn(u32) -> u32,
 ) -> Settled {
     let mut settled = Settled::default();
@@ -83,11 +84,7 @@ pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
         *moved = differ(&rounded, place);
         *place = rounded;
     }
-    let is_changed = |t: &u32| {
-        mesh.triangles[*t as usize]
-            .iter()
-            .any(|v| moved[*v as usize])
-    };
+    let is_changed = |t: &u32| mesh.triangles[*t as usize].iter().any(|v| moved[v.place()]);
     let changed: Vec<u32> = (0..as_number(mesh.triangles.len()))
         .filter(is_changed)
         .collect();
@@ -123,16 +120,20 @@ impl Rounded {
     }
 
     /// Moves the corners of faulty triangles to where the exact surface has them.
-    fn move_corners(&mut self, found: &Faults, exact: impl Fn(u32) -> Option<Point>) -> Vec<u32> {
-        let mut corners: Vec<u32> = members(found)
+    fn move_corners(
+        &mut self,
+        found: &Faults,
+        exact: impl Fn(VertexId) -> Option<Point>,
+    ) -> Vec<VertexId> {
+        let mut corners: Vec<VertexId> = members(found)
             .flat_map(|t| self.triangles[t as usize])
             .collect();
         corners.sort_unstable();
         corners.dedup();
         corners.retain(|&v| {
-            let place = exact(v).filter(|p| differ(p, &self.vertices[v as usize]));
+            let place = exact(v).filter(|p| differ(p, &self.vertices[v.place()]));
             if let Some(place) = place {
-                self.vertices[v as usize] = place;
+                self.vertices[v.place()] = place;
             }
             place.is_some()
         });
@@ -140,8 +141,8 @@ impl Rounded {
     }
 
     /// The triangles at some vertices, ascending.
-    fn stars(&self, vertices: &[u32]) -> Vec<u32> {
-        let wanted: HashSet<u32> = vertices.iter().copied().collect();
+    fn stars(&self, vertices: &[VertexId]) -> Vec<u32> {
+        let wanted: HashSet<VertexId> = vertices.iter().copied().collect();
         let has = |t: &u32| {
             self.triangles[*t as usize]
                 .iter()
@@ -156,10 +157,10 @@ impl Rounded {
         &mut self,
         found: &Faults,
         precision: Precision,
-        given: impl Fn(u32) -> bool,
+        given: impl Fn(VertexId) -> bool,
     ) -> Vec<u32> {
         let corners = members(found).flat_map(|t| self.triangles[t as usize]);
-        let core = self.stars(&corners.collect::<Vec<u32>>());
+        let core = self.stars(&corners.collect::<Vec<VertexId>>());
         let near = in_company(&self.faces(), &core, |_| 0);
         let some = merged(&core, &near.into_iter().map(|o| o.1).collect::<Vec<u32>>());
         let part = Part::of(self, &some);
@@ -172,7 +173,7 @@ impl Rounded {
                 .collect(),
             flat: found.flat.iter().map(local).collect(),
         };
-        let vertices = part.globals.iter().map(|v| self.vertices[*v as usize]);
+        let vertices = part.globals.iter().map(|v| self.vertices[v.place()]);
         let marks = [
             part.is_cut_off(self),
             part.globals.iter().map(|v| given(*v)).collect(),
@@ -189,21 +190,21 @@ impl Rounded {
         let first = self.vertices.len() - globals.len();
         for (v, place) in mending.vertices.iter().enumerate() {
             if let Some(global) = globals.get(v) {
-                self.vertices[*global as usize] = *place;
+                self.vertices[global.place()] = *place;
             } else {
-                globals.push(as_number(first + v));
+                globals.push(VertexId::of(first + v));
                 self.vertices.push(*place);
             }
         }
         let mut touched = Vec::new();
         for ((t, new), old) in some.iter().zip(&mending.triangles).zip(&part.triangles) {
-            let moved = |v: &u32| mending.is_moved(*v);
+            let moved = |v: &VertexId| mending.is_moved(*v);
             if new.as_ref() != Some(old) || old.iter().any(moved) {
                 touched.push(*t);
             }
             self.triangles[*t as usize] = match new {
-                Some(corners) => corners.map(|v| globals[v as usize]),
-                None => [globals[old[0] as usize]; 3],
+                Some(corners) => corners.map(|v| globals[v.place()]),
+                None => [globals[old[0].place()]; 3],
             };
         }
         touched
@@ -213,19 +214,19 @@ impl Rounded {
 /// Some triangles with vertices of their own.
 struct Part {
     /// The vertices by their numbers in the whole mesh.
-    globals: Vec<u32>,
-    triangles: Vec<[u32; 3]>,
+    globals: Vec<VertexId>,
+    triangles: Vec<[VertexId; 3]>,
 }
 
 impl Part {
     fn of(mesh: &Rounded, some: &[u32]) -> Self {
-        let mut numbers: HashMap<u32, u32> = HashMap::default();
+        let mut numbers: HashMap<VertexId, VertexId> = HashMap::default();
         let mut globals = Vec::new();
         let triangles = some.iter().map(|t| {
             mesh.triangles[*t as usize].map(|v| {
                 *numbers.entry(v).or_insert_with(|| {
                     globals.push(v);
-                    as_number(globals.len()) - 1
+                    VertexId::of(globals.len() - 1)
                 })
             })
         });
@@ -235,9 +236,9 @@ impl Part {
 
     /// For each vertex whether some of its triangles lie outside.
     fn is_cut_off(&self, mesh: &Rounded) -> Vec<bool> {
-        let mut missing: HashMap<u32, usize> = HashMap::default();
+        let mut missing: HashMap<VertexId, usize> = HashMap::default();
         for v in self.triangles.iter().flatten() {
-            *missing.entry(self.globals[*v as usize]).or_default() += 1;
+            *missing.entry(self.globals[v.place()]).or_default() += 1;
         }
         let mut whole = missing.clone();
         for count in whole.values_mut() {
@@ -270,7 +271,7 @@ fn members(found: &Faults) -> impl Iterator<Item = u32> + '_ {
 }
 
 /// Two ascending lists as one.
-fn merged(a: &[u32], b: &[u32]) -> Vec<u32> {
+fn merged<T: Copy + Ord>(a: &[T], b: &[T]) -> Vec<T> {
     let mut all = [a, b].concat();
     all.sort_unstable();
     all.dedup();
@@ -285,6 +286,7 @@ mod tests {
     #[test]
     fn a_corner_goes_to_its_exact_place_if_rounding_makes_surfaces_cross() {
         let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let both = [faces, faces.map(|t| t.map(|v| v + 4))].concat();
         let floor = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, -4.0]];
         let tip = [
             [1.0, 1.0, -0.01],
@@ -294,15 +296,15 @@ mod tests {
         ];
         let mut mesh = Rounded {
             vertices: [floor, tip].concat(),
-            triangles: [faces, faces.map(|t| t.map(|v| v + 4))].concat(),
+            triangles: VertexId::rows(both),
         };
-        let exact = |v: u32| (v == 4).then_some([1.0, 1.0, 0.5]);
+        let exact = |v: VertexId| (v == VertexId(4)).then_some([1.0, 1.0, 0.5]);
         let changed: Vec<u32> = (4..8).collect();
         let party = |t| t / 4;
         let found = mesh.faults(&changed, party);
         let double = Precision::Double;
         let settled = settle(&mut mesh, changed, found, double, exact, |_| false, party);
-        assert_eq!(settled.moved, [4]);
+        assert_eq!(settled.moved, [VertexId(4)]);
         assert!(settled.left.is_empty() && settled.mended.is_empty());
         assert!(mesh.vertices[4][2] > 0.0);
     }

@@ -18,6 +18,7 @@ use crate::geometry::covering::{winds_at_most_once, Place};
 use crate::geometry::doubles::{seen_along, turn, Facing, Point, Triangle};
 use crate::geometry::meeting::has_no_area;
 use crate::interrupt::poll;
+use crate::mesh::handle::VertexId;
 use crate::mesh::topology::NONE;
 
 /// Triangles this many times as long as they are high are needles. Others meet the boxes of a few
@@ -90,7 +91,7 @@ struct Search<'a> {
     faces: &'a Faces<'a>,
     needles: &'a [u32],
     /// By directed edge, the triangle that has it.
-    owners: HashMap<[u32; 2], u32>,
+    owners: HashMap<[VertexId; 2], u32>,
     /// The number of each one's piece.
     pieces: Vec<u32>,
 }
@@ -131,7 +132,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn triangle(&self, at: u32) -> [u32; 3] {
+    fn triangle(&self, at: u32) -> [VertexId; 3] {
         self.faces.triangles[self.needles[at as usize] as usize]
     }
 
@@ -203,7 +204,7 @@ impl<'a> Search<'a> {
     }
 }
 
-fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+fn edges([a, b, c]: [VertexId; 3]) -> [[VertexId; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }
 
@@ -233,7 +234,7 @@ mod tests {
     use super::*;
 
     /// A plate with a hole of many sides, lifted by a function: both sides of the ring around it.
-    fn ring(count: u32, height: impl Fn(f64, f64) -> f64) -> (Vec<Point>, Vec<[u32; 3]>) {
+    fn ring(count: u32, height: impl Fn(f64, f64) -> f64) -> (Vec<Point>, Vec<[VertexId; 3]>) {
         let mut vertices = Vec::new();
         for radius in [1.0, 3.0] {
             for k in 0..count {
@@ -246,10 +247,10 @@ mod tests {
             let (p, q) = (k, (k + 1) % count);
             [[p, count + p, q], [q, count + p, count + q]]
         });
-        (vertices, quads.collect())
+        (vertices, VertexId::rows(quads))
     }
 
-    fn found(vertices: &[Point], triangles: &[[u32; 3]]) -> Vec<u32> {
+    fn found(vertices: &[Point], triangles: &[[VertexId; 3]]) -> Vec<u32> {
         let all: Vec<u32> = (0..as_number(triangles.len())).collect();
         let faces = Faces {
             vertices,
@@ -265,7 +266,7 @@ mod tests {
         vertices.extend_from_within(..);
         let back = triangles
             .iter()
-            .map(|[a, b, c]| [*a, *c, *b].map(|v| v + 400));
+            .map(|[a, b, c]| [*a, *c, *b].map(|v| VertexId(v.0 + 400)));
         triangles.extend(back.collect::<Vec<_>>());
         let pieces = found(&vertices, &triangles);
         assert!(pieces[..400].iter().all(|piece| *piece == pieces[0]));
@@ -279,7 +280,7 @@ mod tests {
         assert!(found(&vertices, &triangles).iter().all(|piece| *piece == 0));
         let (vertices, triangles) = ring(400, |x, _| x.abs());
         let pieces = found(&vertices, &triangles);
-        let side = |t: usize| vertices[triangles[t][1] as usize][0] > 0.0;
+        let side = |t: usize| vertices[triangles[t][1].place()][0] > 0.0;
         let right = (0..800).find(|t| side(*t)).expect("a triangle");
         let left = (0..800).find(|t| !side(*t)).expect("a triangle");
         let of_side = |t: usize| pieces[if side(t) { right } else { left }];
@@ -296,12 +297,12 @@ mod tests {
         let (mut vertices, mut triangles) = ring(200, |_, _| 0.0);
         let shifted = vertices.iter().map(|[x, y, z]| [x + 4.0, *y, *z]);
         vertices.extend(shifted.collect::<Vec<_>>());
-        let shifted = triangles.iter().map(|t| t.map(|v| v + 400));
+        let shifted = triangles.iter().map(|t| t.map(|v| VertexId(v.0 + 400)));
         triangles.extend(shifted.collect::<Vec<_>>());
         let apart = found(&vertices, &triangles);
         assert!(apart[0] != NONE && apart[400] != NONE && apart[0] != apart[400]);
         // A bridge from the outer border of one to the inner border of the other makes them one.
-        triangles.extend([[201, 200, 400], [201, 400, 401]]);
+        triangles.extend(VertexId::rows([[201, 200, 400], [201, 400, 401]]));
         assert!(found(&vertices, &triangles)
             .iter()
             .all(|piece| *piece == NONE));

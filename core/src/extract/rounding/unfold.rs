@@ -13,6 +13,7 @@ use crate::geometry::doubles::{seen_along, turn};
 use crate::geometry::plane::Plane;
 use crate::geometry::side::Orientation;
 use crate::merge::lists::list::Sources;
+use crate::mesh::handle::VertexId;
 
 /// Swaps tried per triangle found turned over; each lowers the number of such triangles.
 const TRIES: usize = 8;
@@ -60,8 +61,8 @@ pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded
 /// The triangles with a constructed corner that do not face as their planes do, ascending.
 pub fn turned(mesh: &Mesh, exact: &ExactMesh, sources: &Sources) -> Vec<u64> {
     let planes = Planes { exact, sources };
-    let is_given = |v: &u32| matches!(exact.vertices.get(*v as usize), Some(Corner::Source(..)));
-    let is_left = |t: &[u32; 3]| t[0] != t[1];
+    let is_given = |v: &VertexId| matches!(exact.vertices.get(v.place()), Some(Corner::Source(..)));
+    let is_left = |t: &[VertexId; 3]| t[0] != t[1];
     let late = mesh.triangles.iter().enumerate().skip(exact.untouched);
     late.filter(|(_, t)| is_left(t) && !t.iter().all(is_given))
         .filter(|(t, _)| planes.is_turned(mesh, *t))
@@ -92,10 +93,10 @@ impl Planes<'_> {
 }
 
 /// Return whether a rounded triangle does not face as its plane does, seen along its main axis.
-fn is_turned(mesh: &Mesh, corners: &[u32; 3], normal: &[i128; 3]) -> bool {
+fn is_turned(mesh: &Mesh, corners: &[VertexId; 3], normal: &[i128; 3]) -> bool {
     let axis = (0..3).rev().max_by_key(|i| normal[*i].unsigned_abs());
     let axis = axis.unwrap_or(0);
-    let corners = corners.map(|c| mesh.vertices[c as usize]);
+    let corners = corners.map(|c| mesh.vertices[c.place()]);
     let facing = Sign::of(normal[axis]);
     turn(seen_along(&corners, axis)) != facing
 }
@@ -104,12 +105,12 @@ fn is_turned(mesh: &Mesh, corners: &[u32; 3], normal: &[i128; 3]) -> bool {
 struct Surface<'a> {
     mesh: &'a mut Mesh,
     planes: Planes<'a>,
-    halves: HashMap<(u32, u32), usize>,
+    halves: HashMap<(VertexId, VertexId), usize>,
 }
 
 impl<'a> Surface<'a> {
     fn new(mesh: &'a mut Mesh, planes: Planes<'a>) -> Self {
-        let ends = |(t, c): (usize, &[u32; 3])| {
+        let ends = |(t, c): (usize, &[VertexId; 3])| {
             let c = *c;
             (0..3).map(move |i| ((c[i], c[(i + 1) % 3]), 3 * t + i))
         };
@@ -147,7 +148,7 @@ impl<'a> Surface<'a> {
         (after < before).then(|| self.replace(pair, made))
     }
 
-    fn replace(&mut self, pair: [usize; 2], made: [[u32; 3]; 2]) -> [usize; 2] {
+    fn replace(&mut self, pair: [usize; 2], made: [[VertexId; 3]; 2]) -> [usize; 2] {
         for t in pair {
             for edge in edges(&self.mesh.triangles[t]) {
                 self.halves.remove(&edge);
@@ -163,6 +164,6 @@ impl<'a> Surface<'a> {
     }
 }
 
-fn edges(corners: &[u32; 3]) -> [(u32, u32); 3] {
+fn edges(corners: &[VertexId; 3]) -> [(VertexId, VertexId); 3] {
     [0, 1, 2].map(|i| (corners[i], corners[(i + 1) % 3]))
 }

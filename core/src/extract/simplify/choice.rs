@@ -5,6 +5,7 @@ use super::sizes::{height, lengths};
 use super::surface::Surface;
 use crate::arith::convert::as_number;
 use crate::interrupt::poll;
+use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::each_chunk;
 
 /// Something to do, after the length or the height it is about.
@@ -13,9 +14,9 @@ type Wanted = (f64, Act);
 impl Surface<'_> {
     /// List the changes where vertices are awake: collapses before flips, the smallest first.
     pub fn acts(&self, awake: &[bool], tolerance: f64) -> Vec<Act> {
-        let of = |first: usize, triangles: &[[u32; 3]]| {
+        let of = |first: usize, triangles: &[[VertexId; 3]]| {
             let some = (as_number(first)..).zip(triangles);
-            let near = some.filter(|(_, t)| t.iter().any(|v| awake[*v as usize]));
+            let near = some.filter(|(_, t)| t.iter().any(|v| awake[v.place()]));
             let all = near.flat_map(|(t, _)| self.acts_at(t, tolerance));
             all.collect::<Vec<Wanted>>()
         };
@@ -49,8 +50,8 @@ impl Surface<'_> {
         all
     }
 
-    fn flip_of(&self, [a, b]: [u32; 2]) -> Option<Act> {
-        let apex = |from: u32, to: u32| {
+    fn flip_of(&self, [a, b]: [VertexId; 2]) -> Option<Act> {
+        let apex = |from: VertexId, to: VertexId| {
             let corners = &self.triangles[self.left_of(from, to)? as usize];
             corners.iter().copied().find(|v| *v != from && *v != to)
         };
@@ -116,10 +117,10 @@ struct Lock {
 /// reads its two triangles, whether their apexes are joined, and what came to its corners. Neither
 /// may change for another's sake.
 fn is_locked(surface: &Surface, locks: &[Lock], act: &Act) -> bool {
-    let at = |v: &u32| locks[*v as usize];
+    let at = |v: &VertexId| locks[v.place()];
     match act {
         Act::Collapse(ends) => {
-            let taken = |v: &u32| at(v).ends || at(v).beside || at(v).turns;
+            let taken = |v: &VertexId| at(v).ends || at(v).beside || at(v).turns;
             let may_go = ends
                 .iter()
                 .filter(|v| surface.star(**v).len() <= MOST_AROUND);
@@ -138,15 +139,15 @@ fn lock(surface: &Surface, locks: &mut [Lock], act: &Act) {
     match act {
         Act::Collapse(ends) => {
             for v in ends {
-                locks[*v as usize].ends = true;
+                locks[v.place()].ends = true;
             }
             for v in surface.neighbours(ends[0]) {
-                locks[v as usize].beside = true;
+                locks[v.place()].beside = true;
             }
         }
         Act::Flip(corners) => {
             for v in corners {
-                locks[*v as usize].turns = true;
+                locks[v.place()].turns = true;
             }
         }
     }
@@ -176,21 +177,23 @@ mod tests {
 
     #[test]
     fn a_short_edge_is_collapsed_first_and_only_where_vertices_are_awake() {
-        let surface = Surface::of(&PLACES, &FACES);
+        let faces = VertexId::rows(FACES);
+        let surface = Surface::of(&PLACES, &faces);
         let acts = surface.acts(&[true; 5], 0.01);
-        assert_eq!(acts[0], Act::Collapse([0, 4]));
+        assert_eq!(acts[0], Act::Collapse([0, 4].map(VertexId)));
         assert!(surface.acts(&[false; 5], 0.01).is_empty());
     }
 
     #[test]
     fn what_was_refused_is_not_chosen_again() {
-        let surface = Surface::of(&PLACES, &FACES);
+        let faces = VertexId::rows(FACES);
+        let surface = Surface::of(&PLACES, &faces);
         let limits = Limits {
             surface: &surface,
             drift: &Drift::new(&PLACES),
             tolerance: 0.01,
         };
-        let wanted = [Act::Collapse([0, 4])];
+        let wanted = [Act::Collapse([0, 4].map(VertexId))];
         assert_eq!(chosen(&limits, &wanted, |_| false).edits.len(), 1);
         assert!(chosen(&limits, &wanted, |_| true).edits.is_empty());
     }

@@ -12,6 +12,7 @@
 use super::sizes::distance_above;
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::Point;
+use crate::mesh::handle::VertexId;
 
 /// The drift of each vertex: what has come to it.
 pub struct Drift {
@@ -33,7 +34,7 @@ struct Witness {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Coming {
     /// All that came to another vertex.
-    Vertex(u32),
+    Vertex(VertexId),
     /// A point of an edge, by its place and slack.
     Point(Point, f64),
 }
@@ -53,12 +54,12 @@ impl Drift {
     }
 
     /// Return a bound of the distance of what came to a vertex from it.
-    pub fn at(&self, v: u32) -> f64 {
-        self.bounds[v as usize]
+    pub fn at(&self, v: VertexId) -> f64 {
+        self.bounds[v.place()]
     }
 
     /// Return the bound at this vertex once more comes; `None` beyond a limit.
-    pub fn with(&self, (to, place): (u32, &Point), coming: Coming, limit: f64) -> Option<f64> {
+    pub fn with(&self, (to, place): (VertexId, &Point), coming: Coming, limit: f64) -> Option<f64> {
         let far = match coming {
             Coming::Vertex(v) => self.farthest(v, place, limit)?,
             Coming::Point(p, slack) => above(distance_above(&p, place), slack),
@@ -67,9 +68,9 @@ impl Drift {
     }
 
     /// Return the largest distance of what came to a vertex from a place; `None` beyond a limit.
-    fn farthest(&self, v: u32, place: &Point, limit: f64) -> Option<f64> {
+    fn farthest(&self, v: VertexId, place: &Point, limit: f64) -> Option<f64> {
         let mut farthest = 0.0f64;
-        let mut at = v;
+        let mut at = v.0;
         loop {
             let witness = &self.witnesses[at as usize];
             farthest = farthest.max(above(distance_above(&witness.place, place), witness.slack));
@@ -77,17 +78,17 @@ impl Drift {
             if farthest > limit {
                 return None;
             }
-            if at == v {
+            if at == v.0 {
                 return Some(farthest);
             }
         }
     }
 
     /// Has something come to a vertex, which may then be so far from it.
-    pub fn follow(&mut self, to: u32, coming: Coming, bound: f64) {
-        let to = to as usize;
+    pub fn follow(&mut self, to: VertexId, coming: Coming, bound: f64) {
+        let to = to.place();
         let from = match coming {
-            Coming::Vertex(v) => v as usize,
+            Coming::Vertex(v) => v.place(),
             Coming::Point(place, slack) => {
                 let next = as_number(self.witnesses.len());
                 self.witnesses.push(Witness { place, slack, next });
@@ -132,31 +133,52 @@ mod tests {
     #[test]
     fn the_farthest_that_came_counts() {
         let mut drift = Drift::new(&ROW);
-        assert!(near(drift.with((1, &ROW[1]), Coming::Vertex(0), 9.0), 1.0));
-        drift.follow(1, Coming::Vertex(0), 1.0);
+        assert!(near(
+            drift.with((VertexId(1), &ROW[1]), Coming::Vertex(VertexId(0)), 9.0),
+            1.0
+        ));
+        drift.follow(VertexId(1), Coming::Vertex(VertexId(0)), 1.0);
         // Not the sum of the ways, 1 + 2, but where the first vertex came from.
-        assert!(near(drift.with((2, &ROW[2]), Coming::Vertex(1), 9.0), 3.0));
-        drift.follow(2, Coming::Vertex(1), 3.0);
-        assert!(near(drift.with((3, &ROW[3]), Coming::Vertex(2), 9.0), 5.0));
-        assert_eq!(drift.with((3, &ROW[3]), Coming::Vertex(2), 4.9), None);
+        assert!(near(
+            drift.with((VertexId(2), &ROW[2]), Coming::Vertex(VertexId(1)), 9.0),
+            3.0
+        ));
+        drift.follow(VertexId(2), Coming::Vertex(VertexId(1)), 3.0);
+        assert!(near(
+            drift.with((VertexId(3), &ROW[3]), Coming::Vertex(VertexId(2)), 9.0),
+            5.0
+        ));
+        assert_eq!(
+            drift.with((VertexId(3), &ROW[3]), Coming::Vertex(VertexId(2)), 4.9),
+            None
+        );
     }
 
     #[test]
     fn what_came_before_stays() {
         let mut drift = Drift::new(&ROW);
-        drift.follow(2, Coming::Vertex(3), 4.0);
-        assert!(near(drift.with((2, &ROW[2]), Coming::Vertex(1), 9.0), 4.0));
-        drift.follow(2, Coming::Vertex(1), 4.0);
+        drift.follow(VertexId(2), Coming::Vertex(VertexId(3)), 4.0);
+        assert!(near(
+            drift.with((VertexId(2), &ROW[2]), Coming::Vertex(VertexId(1)), 9.0),
+            4.0
+        ));
+        drift.follow(VertexId(2), Coming::Vertex(VertexId(1)), 4.0);
         assert!(drift.bound().to_bits() == 4.0f64.to_bits());
-        assert!(near(drift.with((0, &ROW[0]), Coming::Vertex(2), 9.0), 5.0));
+        assert!(near(
+            drift.with((VertexId(0), &ROW[0]), Coming::Vertex(VertexId(2)), 9.0),
+            5.0
+        ));
     }
 
     #[test]
     fn points_of_edges_bring_their_slack() {
         let mut drift = Drift::new(&ROW);
         let middle = Coming::Point([2.0, 0.0, 0.0], 0.5);
-        assert!(near(drift.with((1, &ROW[1]), middle, 9.0), 1.5));
-        drift.follow(1, middle, 1.5);
-        assert!(near(drift.with((0, &ROW[0]), Coming::Vertex(1), 9.0), 2.5));
+        assert!(near(drift.with((VertexId(1), &ROW[1]), middle, 9.0), 1.5));
+        drift.follow(VertexId(1), middle, 1.5);
+        assert!(near(
+            drift.with((VertexId(0), &ROW[0]), Coming::Vertex(VertexId(1)), 9.0),
+            2.5
+        ));
     }
 }

@@ -4,6 +4,7 @@ use super::drift::{Coming, Drift};
 use super::sizes::{dot, height, less, normal, rounding_of, swept};
 use super::surface::{place_of, Surface};
 use crate::geometry::doubles::{is_flat, Triangle};
+use crate::mesh::handle::VertexId;
 
 /// A vertex of more triangles stays: looking at each edge of a hub costs as much as the hub has.
 pub const MOST_AROUND: usize = 64;
@@ -16,9 +17,9 @@ const LEAST_HEIGHT: f64 = 0.25;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Act {
     /// An edge becomes one of its ends.
-    Collapse([u32; 2]),
+    Collapse([VertexId; 2]),
     /// An edge a → b with the triangles a b c and b a d becomes the edge c d.
-    Flip([u32; 4]),
+    Flip([VertexId; 4]),
 }
 
 /// A change that keeps the surface closed, with one fan at each vertex, and near.
@@ -27,9 +28,9 @@ pub struct Edit {
     /// The change.
     pub act: Act,
     /// The triangles, with what becomes of them; those that vanish have one corner three times.
-    pub changes: Vec<(u32, [u32; 3])>,
+    pub changes: Vec<(u32, [VertexId; 3])>,
     /// The vertex to which a part of the surface comes.
-    pub target: u32,
+    pub target: VertexId,
     /// The old point that comes to it.
     pub coming: Coming,
     /// The bound of the old surface's distance afterwards.
@@ -40,7 +41,7 @@ pub struct Edit {
 
 impl Act {
     /// Its vertices.
-    pub fn corners(&self) -> impl Iterator<Item = u32> + '_ {
+    pub fn corners(&self) -> impl Iterator<Item = VertexId> + '_ {
         match self {
             Self::Collapse(ends) => ends.iter().copied(),
             Self::Flip(corners) => corners.iter().copied(),
@@ -50,13 +51,13 @@ impl Act {
 
 impl Edit {
     /// The corners of the triangles that are left.
-    pub fn corners(&self) -> impl Iterator<Item = u32> + '_ {
+    pub fn corners(&self) -> impl Iterator<Item = VertexId> + '_ {
         let left = self.changes.iter().map(|c| c.1).filter(|c| c[0] != c[1]);
         left.flatten()
     }
 
     /// The vertex that goes, if one does.
-    pub fn going(&self) -> Option<u32> {
+    pub fn going(&self) -> Option<VertexId> {
         match self.act {
             Act::Collapse([from, _]) => Some(from),
             Act::Flip(_) => None,
@@ -64,7 +65,7 @@ impl Edit {
     }
 
     /// The tetrahedra between the surface as it was and as it will be.
-    pub fn bodies(&self) -> Vec<[u32; 4]> {
+    pub fn bodies(&self) -> Vec<[VertexId; 4]> {
         let left = self.changes.iter().map(|c| c.1).filter(|c| c[0] != c[1]);
         match self.act {
             Act::Collapse([from, _]) => left.map(|[p, q, r]| [from, p, q, r]).collect(),
@@ -126,7 +127,7 @@ impl Limits<'_> {
     }
 
     /// Adds what becomes of a triangle; returns its height, `None` if it may not become that.
-    fn change(&self, edit: &mut Edit, t: u32, [from, to]: [u32; 2]) -> Option<f64> {
+    fn change(&self, edit: &mut Edit, t: u32, [from, to]: [VertexId; 2]) -> Option<f64> {
         let old = self.surface.triangles[t as usize];
         if old.contains(&to) {
             edit.changes.push((t, [to; 3]));
@@ -143,7 +144,7 @@ impl Limits<'_> {
 
     /// The link condition: two vertices that are ends of an edge have no other neighbours in common
     /// than the third corners of the two triangles there, and more than these.
-    fn may_be_joined(&self, from: u32, to: u32) -> bool {
+    fn may_be_joined(&self, from: VertexId, to: VertexId) -> bool {
         let surface = self.surface;
         let others = surface.neighbours(from).filter(|v| *v != to);
         let common = others.filter(|v| surface.are_joined(*v, to)).take(3);
@@ -159,7 +160,7 @@ impl Limits<'_> {
     }
 
     /// The other diagonal of two triangles, one of them a sliver.
-    fn flip(&self, [a, b, c, d]: [u32; 4]) -> Option<Edit> {
+    fn flip(&self, [a, b, c, d]: [VertexId; 4]) -> Option<Edit> {
         let surface = self.surface;
         if c == d || surface.are_joined(c, d) {
             return None;
@@ -184,7 +185,7 @@ impl Limits<'_> {
     }
 
     /// The point of the edge a → b next to c, if it is inside.
-    fn beside(&self, [a, b, c]: [u32; 3]) -> Option<Coming> {
+    fn beside(&self, [a, b, c]: [VertexId; 3]) -> Option<Coming> {
         let [p, q, r] = [a, b, c].map(|v| self.surface.place(v));
         let along = less(q, p);
         let share = dot(&less(r, p), &along) / dot(&along, &along);
@@ -209,7 +210,8 @@ pub(super) mod tests {
     ];
 
     fn collapse(triangles: &[[u32; 3]], ends: [u32; 2]) -> Option<Edit> {
-        let surface = Surface::of(&PLACES, triangles);
+        let triangles = VertexId::rows(triangles.iter().copied());
+        let (surface, ends) = (Surface::of(&PLACES, &triangles), ends.map(VertexId));
         let limits = Limits {
             surface: &surface,
             drift: &Drift::new(&PLACES),

@@ -7,6 +7,7 @@ use super::shells::Shells;
 use crate::extract::rounding::company::Faces;
 use crate::extract::rounding::crossings::faults;
 use crate::geometry::doubles::Point;
+use crate::mesh::handle::VertexId;
 
 /// Makes changes; returns those that stay, and what had to be taken back.
 ///
@@ -14,7 +15,7 @@ use crate::geometry::doubles::Point;
 /// of the loop takes back at least one change.
 pub fn proved(
     vertices: &[Point],
-    triangles: &mut [[u32; 3]],
+    triangles: &mut [[VertexId; 3]],
     edits: Vec<Edit>,
     shells: &Shells,
 ) -> (Vec<Edit>, Vec<Act>) {
@@ -39,10 +40,10 @@ pub fn proved(
 /// Changes that are being tried.
 struct Trial<'a> {
     vertices: &'a [Point],
-    triangles: &'a mut [[u32; 3]],
+    triangles: &'a mut [[VertexId; 3]],
     edits: &'a [Edit],
     /// For each change the triangles as they were.
-    before: Vec<Vec<[u32; 3]>>,
+    before: Vec<Vec<[VertexId; 3]>>,
     /// The change that each triangle is part of.
     owners: HashMap<u32, usize>,
     stays: Vec<bool>,
@@ -51,7 +52,7 @@ struct Trial<'a> {
 impl<'a> Trial<'a> {
     fn of(
         vertices: &'a [Point],
-        triangles: &'a mut [[u32; 3]],
+        triangles: &'a mut [[VertexId; 3]],
         edits: &'a [Edit],
         stays: Vec<bool>,
     ) -> Self {
@@ -134,15 +135,15 @@ mod tests {
     /// that stay and that are taken back.
     fn kept_beside(tiny: impl Fn(&Edit) -> Point) -> [usize; 2] {
         let around = [[2, 3], [3, 4], [4, 5], [5, 2]];
-        let mut triangles = around.map(|[a, b]| [[0, a, b], [1, b, a]]).concat();
+        let mut triangles = VertexId::rows(around.map(|[a, b]| [[0, a, b], [1, b, a]]).concat());
         let mut vertices = PLACES.to_vec();
-        let edit = |vertices: &[Point], triangles: &[[u32; 3]]| {
+        let edit = |vertices: &[Point], triangles: &[[VertexId; 3]]| {
             let limits = Limits {
                 surface: &Surface::of(vertices, triangles),
                 drift: &Drift::new(vertices),
                 tolerance: 9.0,
             };
-            let edit = limits.edit(Act::Collapse([0, 2]), |_| false);
+            let edit = limits.edit(Act::Collapse([0, 2].map(VertexId)), |_| false);
             edit.expect("the link condition holds")
         };
         let at = tiny(&edit(&vertices, &triangles));
@@ -154,7 +155,7 @@ mod tests {
             [0.0, 0.0, size],
         ];
         vertices.extend(corners.map(|c| [0, 1, 2].map(|i| at[i] + c[i])));
-        triangles.extend([[6, 8, 7], [6, 7, 9], [6, 9, 8], [7, 8, 9]]);
+        triangles.extend(VertexId::rows([[6, 8, 7], [6, 7, 9], [6, 9, 8], [7, 8, 9]]));
         let edits = vec![edit(&vertices, &triangles)];
         let shells = Shells::of(&vertices, &triangles);
         let before = triangles.clone();
@@ -167,7 +168,7 @@ mod tests {
     fn a_change_that_sweeps_over_another_shell_is_taken_back() {
         assert_eq!(kept_beside(|_| [9.0; 3]), [1, 0]);
         let inside = |edit: &Edit| {
-            let body = edit.bodies()[0].map(|v| PLACES[v as usize]);
+            let body = edit.bodies()[0].map(|v| PLACES[v.place()]);
             [0, 1, 2].map(|i| body.iter().map(|p| p[i]).sum::<f64>() / 4.0)
         };
         assert_eq!(kept_beside(inside), [0, 1]);

@@ -10,7 +10,9 @@ use super::shells::Shells;
 use super::sizes::is_small;
 use super::surface::Surface;
 use crate::arith::convert::as_number;
+use crate::extract::mesh::numbers_left;
 use crate::geometry::doubles::Point;
+use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::each_chunk;
 
 /// Rounds after which what still waits is left. A vertex has six neighbours on average, so that a
@@ -23,7 +25,7 @@ pub struct Simplified {
     /// The vertices that are left, in their old order and places.
     pub vertices: Vec<Point>,
     /// The triangles that are left.
-    pub triangles: Vec<[u32; 3]>,
+    pub triangles: Vec<[VertexId; 3]>,
     /// No point of either surface is farther than this from the other.
     pub bound: f64,
     /// Triangles that are slivers or have a short edge still, ascending.
@@ -37,15 +39,16 @@ pub struct Simplified {
 /// # Example
 /// ```
 /// use bspcsg::extract::simplify::rounds::simplify;
+/// use bspcsg::mesh::handle::VertexId;
 ///
 /// // A tetrahedron, one of whose edges a vertex divides a hair beside its end.
 /// let hair = [0.001, 0.0, 0.0];
 /// let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], hair];
 /// let faces = vec![[0, 2, 4], [4, 2, 1], [0, 4, 3], [4, 1, 3], [0, 3, 2], [1, 2, 3]];
-/// let simple = simplify(vertices, faces, 0.01);
+/// let simple = simplify(vertices, VertexId::rows(faces), 0.01);
 /// assert_eq!(simple.triangles.len(), 4);
 /// ```
-pub fn simplify(vertices: Vec<Point>, triangles: Vec<[u32; 3]>, tolerance: f64) -> Simplified {
+pub fn simplify(vertices: Vec<Point>, triangles: Vec<[VertexId; 3]>, tolerance: f64) -> Simplified {
     let mut simplifying = Simplifying::new(vertices, triangles, tolerance);
     for _ in 0..ROUNDS {
         if !simplifying.round() {
@@ -58,7 +61,7 @@ pub fn simplify(vertices: Vec<Point>, triangles: Vec<[u32; 3]>, tolerance: f64) 
 /// The state between two rounds.
 struct Simplifying {
     vertices: Vec<Point>,
-    triangles: Vec<[u32; 3]>,
+    triangles: Vec<[VertexId; 3]>,
     tolerance: f64,
     drift: Drift,
     shells: Shells,
@@ -70,7 +73,7 @@ struct Simplifying {
 }
 
 impl Simplifying {
-    fn new(vertices: Vec<Point>, triangles: Vec<[u32; 3]>, tolerance: f64) -> Self {
+    fn new(vertices: Vec<Point>, triangles: Vec<[VertexId; 3]>, tolerance: f64) -> Self {
         Self {
             drift: Drift::new(&vertices),
             shells: Shells::of(&vertices, &triangles),
@@ -97,10 +100,10 @@ impl Simplifying {
         let tried = !edits.is_empty();
         let (kept, refused) = proved(&self.vertices, &mut self.triangles, edits, &self.shells);
         for act in &waiting {
-            act.corners().for_each(|v| self.awake[v as usize] = true);
+            act.corners().for_each(|v| self.awake[v.place()] = true);
         }
         for edit in &kept {
-            edit.corners().for_each(|v| self.awake[v as usize] = true);
+            edit.corners().for_each(|v| self.awake[v.place()] = true);
             self.drift.follow(edit.target, edit.coming, edit.bound);
         }
         self.changed |= !kept.is_empty();
@@ -111,9 +114,9 @@ impl Simplifying {
 
     fn finished(self) -> Simplified {
         let tolerance = self.tolerance;
-        let corners = |t: &[u32; 3]| t.map(|v| self.vertices[v as usize]);
-        let is_left = |t: &[u32; 3]| is_small(&corners(t), tolerance);
-        let numbered = |first: usize, triangles: &[[u32; 3]]| {
+        let corners = |t: &[VertexId; 3]| t.map(|v| self.vertices[v.place()]);
+        let is_left = |t: &[VertexId; 3]| is_small(&corners(t), tolerance);
+        let numbered = |first: usize, triangles: &[[VertexId; 3]]| {
             let small = (as_number(first)..)
                 .zip(triangles)
                 .filter(|(_, t)| is_left(t));
@@ -132,19 +135,18 @@ impl Simplifying {
 }
 
 /// A mesh without the vertices that no triangle uses.
-fn without_unused(vertices: &[Point], triangles: &[[u32; 3]]) -> (Vec<Point>, Vec<[u32; 3]>) {
-    let mut numbers = vec![0; vertices.len()];
+fn without_unused(
+    vertices: &[Point],
+    triangles: &[[VertexId; 3]],
+) -> (Vec<Point>, Vec<[VertexId; 3]>) {
+    let mut used = vec![false; vertices.len()];
     for v in triangles.iter().flatten() {
-        numbers[*v as usize] = 1;
+        used[v.place()] = true;
     }
-    let mut kept = Vec::new();
-    for (number, place) in numbers.iter_mut().zip(vertices) {
-        if *number == 1 {
-            *number = as_number(kept.len());
-            kept.push(*place);
-        }
-    }
-    let renumbered = |t: &[u32; 3]| t.map(|v| numbers[v as usize]);
+    let numbers = numbers_left(&used);
+    let kept = vertices.iter().zip(used).filter(|(_, used)| *used);
+    let kept = kept.map(|(place, _)| *place).collect();
+    let renumbered = |t: &[VertexId; 3]| t.map(|v| numbers[v.place()]);
     (kept, triangles.iter().map(renumbered).collect())
 }
 
@@ -155,7 +157,7 @@ mod tests {
     use crate::extract::rounding::crossings::all_faults;
 
     /// A cube of edge 1 whose top, z = 1, is divided by more vertices.
-    fn cube(more: &[Point], top: &[[u32; 3]]) -> (Vec<Point>, Vec<[u32; 3]>) {
+    fn cube(more: &[Point], top: &[[u32; 3]]) -> (Vec<Point>, Vec<[VertexId; 3]>) {
         let corner = |k: u32| [k & 1, k >> 1 & 1, k >> 2].map(f64::from);
         let vertices = (0..8).map(corner).chain(more.iter().copied());
         let rest = [
@@ -171,18 +173,18 @@ mod tests {
             [3, 7, 5],
         ];
         let triangles = rest.into_iter().chain(top.iter().copied());
-        (vertices.collect(), triangles.collect())
+        (vertices.collect(), VertexId::rows(triangles))
     }
 
     fn is_sound(mesh: &Simplified) -> bool {
-        let mut edges: Vec<[u32; 2]> = mesh
+        let mut edges: Vec<[VertexId; 2]> = mesh
             .triangles
             .iter()
             .flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]])
             .collect();
         edges.sort_unstable();
         let is_single = edges.windows(2).all(|pair| pair[0] != pair[1]);
-        let has_mate = |e: &[u32; 2]| edges.binary_search(&[e[1], e[0]]).is_ok();
+        let has_mate = |e: &[VertexId; 2]| edges.binary_search(&[e[1], e[0]]).is_ok();
         let faces = Faces {
             vertices: &mesh.vertices,
             triangles: &mesh.triangles,
@@ -224,8 +226,8 @@ mod tests {
     fn nothing_vanishes_or_turns_inside_out() {
         let (vertices, triangles) = cube(&[], &[[4, 5, 6], [5, 7, 6]]);
         for turned in [false, true] {
-            let facing = |t: &[u32; 3]| if turned { [t[0], t[2], t[1]] } else { *t };
-            let triangles: Vec<[u32; 3]> = triangles.iter().map(facing).collect();
+            let facing = |t: &[VertexId; 3]| if turned { [t[0], t[2], t[1]] } else { *t };
+            let triangles: Vec<[VertexId; 3]> = triangles.iter().map(facing).collect();
             let before = Shells::of(&vertices, &triangles);
             let made = simplify(vertices.clone(), triangles, 100.0);
             assert!(made.triangles.len() >= 4 && made.bound <= 100.0 && is_sound(&made));

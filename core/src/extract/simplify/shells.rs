@@ -5,11 +5,11 @@
 
 use super::edit::Edit;
 use super::sizes::{dot, less, normal};
-use crate::arith::convert::as_number;
 use crate::arith::{Filtered, Sign};
 use crate::geometry::doubles::{side, Point};
 use crate::geometry::side::Side;
 use crate::interrupt::{poll, spend};
+use crate::mesh::handle::VertexId;
 
 /// The shell of a vertex without triangles.
 const NONE: u32 = u32::MAX;
@@ -24,7 +24,7 @@ pub struct Shells {
 
 impl Shells {
     /// The shells of a mesh.
-    pub fn of(vertices: &[Point], triangles: &[[u32; 3]]) -> Self {
+    pub fn of(vertices: &[Point], triangles: &[[VertexId; 3]]) -> Self {
         let numbers = connected(vertices.len(), triangles);
         let mut shells = Self {
             sides: Vec::new(),
@@ -41,21 +41,21 @@ impl Shells {
     }
 
     /// Mark the shells that are not turned as they were.
-    pub fn turned(&self, vertices: &[Point], triangles: &[[u32; 3]]) -> Vec<bool> {
+    pub fn turned(&self, vertices: &[Point], triangles: &[[VertexId; 3]]) -> Vec<bool> {
         let now = self.sides_of(vertices, triangles);
         now.iter().zip(&self.sides).map(|(a, b)| a != b).collect()
     }
 
     /// The shell of a change.
     pub fn of_edit(&self, edit: &Edit) -> usize {
-        self.numbers[edit.target as usize] as usize
+        self.numbers[edit.target.place()] as usize
     }
 
     /// For each change whether another shell may lie in what it sweeps.
     pub fn are_swept(
         &self,
         vertices: &[Point],
-        triangles: &[[u32; 3]],
+        triangles: &[[VertexId; 3]],
         edits: &[Edit],
     ) -> Vec<bool> {
         if self.sides.len() < 2 {
@@ -66,7 +66,7 @@ impl Shells {
             let own = self.of_edit(edit);
             edit.bodies().iter().any(|body| {
                 poll();
-                let body = body.map(|v| &vertices[v as usize]);
+                let body = body.map(|v| &vertices[v.place()]);
                 let others = resting.beside(&body).iter().filter(|r| r.0 != own);
                 others.into_iter().any(|(_, p)| may_hold(&body, p))
             })
@@ -75,18 +75,14 @@ impl Shells {
     }
 
     /// A vertex of each shell that does not go in this round.
-    fn resting(&self, vertices: &[Point], triangles: &[[u32; 3]], edits: &[Edit]) -> Resting {
+    fn resting(&self, vertices: &[Point], triangles: &[[VertexId; 3]], edits: &[Edit]) -> Resting {
         let mut goes = vec![false; vertices.len()];
         for v in edits.iter().filter_map(Edit::going) {
-            goes[v as usize] = true;
+            goes[v.place()] = true;
         }
         let mut found: Vec<Option<Point>> = vec![None; self.sides.len()];
-        for &v in triangles
-            .as_flattened()
-            .iter()
-            .filter(|v| !goes[**v as usize])
-        {
-            found[self.numbers[v as usize] as usize].get_or_insert(vertices[v as usize]);
+        for &v in triangles.as_flattened().iter().filter(|v| !goes[v.place()]) {
+            found[self.numbers[v.place()] as usize].get_or_insert(vertices[v.place()]);
         }
         let numbered = (0..).zip(found);
         let mut points: Vec<(usize, Point)> = numbered.filter_map(|(k, p)| Some((k, p?))).collect();
@@ -95,14 +91,14 @@ impl Shells {
     }
 
     /// The sign of each shell's volume.
-    fn sides_of(&self, vertices: &[Point], triangles: &[[u32; 3]]) -> Vec<Filtered<Sign>> {
+    fn sides_of(&self, vertices: &[Point], triangles: &[[VertexId; 3]]) -> Vec<Filtered<Sign>> {
         spend(triangles.len());
         let used = self.numbers.iter().filter(|n| **n != NONE);
         let count = used.max().map_or(0, |m| *m as usize + 1);
         let mut sums = vec![Sum::default(); count];
         for t in triangles.iter().filter(|t| t[0] != t[1]) {
-            let corners = t.map(|v| vertices[v as usize]);
-            sums[self.numbers[t[0] as usize] as usize].add(&corners);
+            let corners = t.map(|v| vertices[v.place()]);
+            sums[self.numbers[t[0].place()] as usize].add(&corners);
         }
         sums.iter().map(Sum::sign).collect()
     }
@@ -168,9 +164,9 @@ fn may_hold(body: &[&Point; 4], point: &Point) -> bool {
 }
 
 /// For each vertex the number of the connected part that it belongs to.
-fn connected(count: usize, triangles: &[[u32; 3]]) -> Vec<u32> {
+fn connected(count: usize, triangles: &[[VertexId; 3]]) -> Vec<u32> {
     spend(triangles.len());
-    let mut parents: Vec<u32> = (0..as_number(count)).collect();
+    let mut parents: Vec<VertexId> = VertexId::all().take(count).collect();
     for [a, b, c] in triangles {
         join(&mut parents, *a, *b);
         join(&mut parents, *b, *c);
@@ -178,27 +174,27 @@ fn connected(count: usize, triangles: &[[u32; 3]]) -> Vec<u32> {
     let mut numbers = vec![NONE; count];
     let mut next = 0;
     for v in triangles.as_flattened() {
-        let root = root(&mut parents, *v) as usize;
+        let root = root(&mut parents, *v).place();
         if numbers[root] == NONE {
             numbers[root] = next;
             next += 1;
         }
-        numbers[*v as usize] = numbers[root];
+        numbers[v.place()] = numbers[root];
     }
     numbers
 }
 
 /// Links two vertices; the lower root becomes that of both.
-fn join(parents: &mut [u32], v: u32, w: u32) {
+fn join(parents: &mut [VertexId], v: VertexId, w: VertexId) {
     let (p, q) = (root(parents, v), root(parents, w));
-    parents[p.max(q) as usize] = p.min(q);
+    parents[p.max(q).place()] = p.min(q);
 }
 
 /// The vertex that stands for all linked to one; halves the way there.
-fn root(parents: &mut [u32], mut v: u32) -> u32 {
-    while parents[v as usize] != v {
-        parents[v as usize] = parents[parents[v as usize] as usize];
-        v = parents[v as usize];
+fn root(parents: &mut [VertexId], mut v: VertexId) -> VertexId {
+    while parents[v.place()] != v {
+        parents[v.place()] = parents[parents[v.place()].place()];
+        v = parents[v.place()];
     }
     v
 }
@@ -223,7 +219,7 @@ mod tests {
 
     #[test]
     fn parts_are_numbered_in_order() {
-        let triangles = [[5, 1, 2], [0, 3, 4], [2, 1, 6]];
+        let triangles = VertexId::rows([[5, 1, 2], [0, 3, 4], [2, 1, 6]]);
         assert_eq!(connected(7, &triangles), [1, 0, 0, 1, 1, 0, 0]);
     }
 }

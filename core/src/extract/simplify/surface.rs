@@ -2,13 +2,14 @@
 
 use crate::geometry::doubles::{Point, Triangle};
 use crate::interrupt::spend;
+use crate::mesh::handle::VertexId;
 
 /// A mesh closed by index, with one fan at each vertex.
 pub struct Surface<'a> {
     /// The vertices.
     pub vertices: &'a [Point],
     /// The triangles.
-    pub triangles: &'a [[u32; 3]],
+    pub triangles: &'a [[VertexId; 3]],
     /// The places in `around` where the triangles of each vertex begin.
     starts: Vec<u32>,
     stars: Vec<u32>,
@@ -16,11 +17,11 @@ pub struct Surface<'a> {
 
 impl<'a> Surface<'a> {
     /// The surface of a mesh.
-    pub fn of(vertices: &'a [Point], triangles: &'a [[u32; 3]]) -> Self {
+    pub fn of(vertices: &'a [Point], triangles: &'a [[VertexId; 3]]) -> Self {
         spend(triangles.len());
         let mut starts = vec![0u32; vertices.len() + 1];
         for v in triangles.as_flattened() {
-            starts[*v as usize + 1] += 1;
+            starts[v.place() + 1] += 1;
         }
         for v in 0..vertices.len() {
             starts[v + 1] += starts[v];
@@ -29,7 +30,7 @@ impl<'a> Surface<'a> {
         let mut stars = vec![0; 3 * triangles.len()];
         for (t, corners) in (0..).zip(triangles) {
             for v in corners {
-                let end = &mut ends[*v as usize];
+                let end = &mut ends[v.place()];
                 stars[*end as usize] = t;
                 *end += 1;
             }
@@ -43,13 +44,13 @@ impl<'a> Surface<'a> {
     }
 
     /// The triangles around a vertex.
-    pub fn star(&self, v: u32) -> &[u32] {
-        let [start, end] = [v, v + 1].map(|v| self.starts[v as usize] as usize);
+    pub fn star(&self, v: VertexId) -> &[u32] {
+        let [start, end] = [0, 1].map(|next| self.starts[v.place() + next] as usize);
         &self.stars[start..end]
     }
 
     /// The neighbours of a vertex, each once: the next corner of each triangle around.
-    pub fn neighbours(&self, v: u32) -> impl Iterator<Item = u32> + '_ {
+    pub fn neighbours(&self, v: VertexId) -> impl Iterator<Item = VertexId> + '_ {
         self.star(v).iter().map(move |t| {
             let corners = &self.triangles[*t as usize];
             corners[(place_of(v, corners) + 1) % 3]
@@ -57,13 +58,13 @@ impl<'a> Surface<'a> {
     }
 
     /// Return whether an edge joins two vertices.
-    pub fn are_joined(&self, v: u32, w: u32) -> bool {
+    pub fn are_joined(&self, v: VertexId, w: VertexId) -> bool {
         let [few, other] = self.rarer_first(v, w);
         self.neighbours(few).any(|n| n == other)
     }
 
     /// Two vertices, that with fewer triangles first.
-    fn rarer_first(&self, v: u32, w: u32) -> [u32; 2] {
+    fn rarer_first(&self, v: VertexId, w: VertexId) -> [VertexId; 2] {
         if self.star(v).len() <= self.star(w).len() {
             [v, w]
         } else {
@@ -72,8 +73,8 @@ impl<'a> Surface<'a> {
     }
 
     /// The place of a vertex.
-    pub fn place(&self, v: u32) -> &'a Point {
-        &self.vertices[v as usize]
+    pub fn place(&self, v: VertexId) -> &'a Point {
+        &self.vertices[v.place()]
     }
 
     /// The corners of a triangle.
@@ -82,12 +83,12 @@ impl<'a> Surface<'a> {
     }
 
     /// The places of three vertices.
-    pub fn places(&self, corners: &[u32; 3]) -> Triangle {
+    pub fn places(&self, corners: &[VertexId; 3]) -> Triangle {
         corners.map(|v| *self.place(v))
     }
 
     /// The triangle on the left of a directed edge.
-    pub fn left_of(&self, from: u32, to: u32) -> Option<u32> {
+    pub fn left_of(&self, from: VertexId, to: VertexId) -> Option<u32> {
         let follows = |t: &&u32| {
             let corners = &self.triangles[**t as usize];
             (0..3).any(|i| corners[i] == from && corners[(i + 1) % 3] == to)
@@ -98,7 +99,7 @@ impl<'a> Surface<'a> {
 }
 
 /// Return the corner of its triangle that a vertex is.
-pub fn place_of(v: u32, corners: &[u32; 3]) -> usize {
+pub fn place_of(v: VertexId, corners: &[VertexId; 3]) -> usize {
     corners.iter().position(|c| *c == v).unwrap_or(0)
 }
 
@@ -111,15 +112,17 @@ mod tests {
     #[test]
     fn a_vertex_knows_its_triangles_and_an_edge_the_one_on_its_left() {
         let places = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let surface = Surface::of(&places, &TRIANGLES);
-        assert_eq!(surface.star(3), [1, 2, 3]);
-        let mut around: Vec<u32> = surface.neighbours(3).collect();
+        let triangles = VertexId::rows(TRIANGLES);
+        let surface = Surface::of(&places, &triangles);
+        let [a, b, c, d] = [0, 1, 2, 3].map(VertexId);
+        assert_eq!(surface.star(d), [1, 2, 3]);
+        let mut around: Vec<VertexId> = surface.neighbours(d).collect();
         around.sort_unstable();
-        assert_eq!(around, [0, 1, 2]);
+        assert_eq!(around, [a, b, c]);
         assert_eq!(
-            (surface.left_of(1, 3), surface.left_of(3, 1)),
+            (surface.left_of(b, d), surface.left_of(d, b)),
             (Some(1), Some(3))
         );
-        assert!(surface.are_joined(0, 3));
+        assert!(surface.are_joined(a, d));
     }
 }

@@ -13,6 +13,7 @@ use crate::geometry::plane::{Lattice, Plane, ShortPlane, FILTER};
 use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
+use crate::mesh::handle::VertexId;
 use crate::query::exact::{big, vertex};
 use crate::tree::solid::Solid;
 
@@ -21,7 +22,7 @@ pub struct Sections {
     points: Vec<Vertex>,
     /// The coordinates of lattice points; of others no numbers.
     near: Vec<[f64; 3]>,
-    triangles: Vec<[u32; 3]>,
+    triangles: Vec<[VertexId; 3]>,
 }
 
 impl Sections {
@@ -31,7 +32,7 @@ impl Sections {
     /// `Unbounded`.
     pub fn of(solid: &Solid) -> Result<Self> {
         let mesh = assemble(solid)?;
-        let numbered = (0u32..).zip(&mesh.vertices);
+        let numbered = VertexId::all().zip(&mesh.vertices);
         let points: Vec<Vertex> = numbered.map(|(i, _)| vertex(solid, &mesh, i)).collect();
         let near = |p: &Vertex| p.as_lattice().map_or([f64::NAN; 3], |p| p.map(as_double));
         Ok(Self {
@@ -61,7 +62,7 @@ impl Sections {
         let crossings: Vec<Crossing> = self
             .triangles
             .iter()
-            .map(|triangle| triangle.map(|v| v as usize))
+            .map(|triangle| triangle.map(VertexId::place))
             .filter(|[a, b, c]| below[*a] != below[*b] || below[*b] != below[*c])
             .filter_map(|corners| Crossing::of(corners, &below))
             .collect();

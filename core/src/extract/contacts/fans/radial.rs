@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use crate::arith::{Int, Sign};
+use crate::mesh::handle::VertexId;
 
 use super::Radial;
 
@@ -36,7 +37,7 @@ struct Axis {
 /// Depends on the half-edges' numbers only among triangles in one half-plane.
 pub(super) fn wedges<R: Radial>(
     radial: &R,
-    [a, b]: [u32; 2],
+    [a, b]: [VertexId; 2],
     forward: &[usize],
     backward: &[usize],
 ) -> Vec<(usize, usize)> {

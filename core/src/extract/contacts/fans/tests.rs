@@ -6,17 +6,18 @@ use proptest::prelude::*;
 
 use super::{split_fans, Error, Radial, Split};
 use crate::arith::Sign;
+use crate::mesh::handle::VertexId;
 
 #[derive(Clone, Debug, Default)]
 struct Surface {
     points: Vec<[i64; 3]>,
-    triangles: Vec<[u32; 3]>,
+    triangles: Vec<[VertexId; 3]>,
 }
 
 impl Radial for Surface {
     fn normal(&self, triangle: u32) -> [i128; 3] {
         let [a, b, c] =
-            self.triangles[triangle as usize].map(|v| self.points[v as usize].map(i128::from));
+            self.triangles[triangle as usize].map(|v| self.points[v.place()].map(i128::from));
         let (u, v) = (
             [0, 1, 2].map(|k| b[k] - a[k]),
             [0, 1, 2].map(|k| c[k] - a[k]),
@@ -25,24 +26,23 @@ impl Radial for Surface {
         [(1, 2), (2, 0), (0, 1)].map(|(j, k)| (u[j] * v[k] - u[k] * v[j]) << 100)
     }
 
-    fn direction(&self, a: u32, b: u32) -> [Sign; 3] {
-        let (p, q) = (self.points[a as usize], self.points[b as usize]);
+    fn direction(&self, a: VertexId, b: VertexId) -> [Sign; 3] {
+        let (p, q) = (self.points[a.place()], self.points[b.place()]);
         [0, 1, 2].map(|k| Sign::of(q[k] - p[k]))
     }
 }
 
 impl Surface {
-    fn vertex(&mut self, point: [i64; 3]) -> u32 {
+    fn vertex(&mut self, point: [i64; 3]) -> VertexId {
         let known = self.points.iter().position(|&other| other == point);
-        u32::try_from(known.unwrap_or_else(|| {
+        VertexId::of(known.unwrap_or_else(|| {
             self.points.push(point);
             self.points.len() - 1
         }))
-        .unwrap()
     }
 
     fn push_polygon(&mut self, corners: &[[i64; 3]]) {
-        let ids: Vec<u32> = corners.iter().map(|&point| self.vertex(point)).collect();
+        let ids: Vec<VertexId> = corners.iter().map(|&point| self.vertex(point)).collect();
         self.triangles
             .extend(ids[1..].windows(2).map(|pair| [ids[0], pair[0], pair[1]]));
     }
@@ -66,7 +66,7 @@ impl Surface {
         let count = u32::try_from(self.points.len()).unwrap();
         let split = split_fans(&self.triangles, count, self).unwrap();
         check_manifold(&split.corners);
-        let old = |corners: [u32; 3]| corners.map(|v| split.origin[v as usize]);
+        let old = |corners: [VertexId; 3]| corners.map(|v| split.origin[v.place()]);
         assert!(split
             .corners
             .iter()
@@ -77,15 +77,16 @@ impl Surface {
             .iter()
             .copied()
             .take(self.points.len())
-            .eq(0..count));
-        let copied: BTreeSet<u32> = split.origin[self.points.len()..].iter().copied().collect();
+            .eq((0..count).map(VertexId)));
+        let copied: BTreeSet<VertexId> =
+            split.origin[self.points.len()..].iter().copied().collect();
         assert!(split.split_vertices.iter().copied().eq(copied));
         assert!(split.split_edges.is_sorted() && split.split_edges.iter().all(|[a, b]| a < b));
         split
     }
 }
 
-fn check_manifold(triangles: &[[u32; 3]]) {
+fn check_manifold(triangles: &[[VertexId; 3]]) {
     let mut next_around = BTreeMap::new();
     let mut halves = BTreeSet::new();
     for &[a, b, c] in triangles {
@@ -112,17 +113,17 @@ fn bodies(split: &Split) -> usize {
     while changed {
         changed = false;
         for corners in &split.corners {
-            let lowest = corners.iter().map(|&v| body[v as usize]).min().unwrap();
+            let lowest = corners.iter().map(|&v| body[v.place()]).min().unwrap();
             for &v in corners {
-                changed |= body[v as usize] != lowest;
-                body[v as usize] = lowest;
+                changed |= body[v.place()] != lowest;
+                body[v.place()] = lowest;
             }
         }
     }
     split
         .corners
         .iter()
-        .map(|corners| body[corners[0] as usize])
+        .map(|corners| body[corners[0].place()])
         .collect::<BTreeSet<_>>()
         .len()
 }
@@ -215,7 +216,10 @@ fn a_cube_passes_unchanged() {
     let split = cube.split();
     assert_eq!(split.corners, cube.triangles);
     assert!(split.split_edges.is_empty() && split.split_vertices.is_empty());
-    assert_eq!(split_fans(&[], 3, &cube).unwrap().origin, [0, 1, 2]);
+    assert_eq!(
+        split_fans(&[], 3, &cube).unwrap().origin,
+        [0, 1, 2].map(VertexId)
+    );
 }
 
 #[test]
@@ -302,7 +306,7 @@ fn doubled_walls_separate() {
     let mut touching = cells(&BTreeSet::from([[0, 0, 0]]));
     for corners in cells(&BTreeSet::from([[1, 0, 0]])).triangles {
         let other = cells(&BTreeSet::from([[1, 0, 0]]));
-        touching.push_polygon(&corners.map(|v| other.points[v as usize]));
+        touching.push_polygon(&corners.map(|v| other.points[v.place()]));
     }
     assert_eq!(bodies(&touching.split()), 2);
     let mut sheet = Surface::default();
@@ -338,11 +342,11 @@ fn bad_triangles_are_named() {
     let open = split_fans(&cube.triangles[..11], count, &cube);
     assert!(matches!(open, Err(Error::Open { edge }) if edge.iter().any(|v| [a, b].contains(v))));
     assert_eq!(
-        split_fans(&[[0, 1, 1]], count, &cube),
+        split_fans(&VertexId::rows([[0, 1, 1]]), count, &cube),
         Err(Error::BadTriangle { triangle: 0 })
     );
     assert_eq!(
-        split_fans(&[[0, 1, count]], count, &cube),
+        split_fans(&VertexId::rows([[0, 1, count]]), count, &cube),
         Err(Error::BadTriangle { triangle: 0 })
     );
 }

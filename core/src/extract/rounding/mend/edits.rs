@@ -1,9 +1,9 @@
 //! Small changes of a mesh that may take a fault out.
 
 use super::part::{distance, edges, Edit, Mending};
-use crate::arith::convert::as_number;
 use crate::arith::Sign;
 use crate::geometry::doubles::{seen_along, turn, Point, Triangle};
+use crate::mesh::handle::VertexId;
 
 /// Directions in which a vertex is moved, in spacings of the largest coordinate.
 const STEPS: [[f64; 3]; 14] = [
@@ -26,12 +26,12 @@ const STEPS: [[f64; 3]; 14] = [
 impl Mending {
     /// Changes that may help, the gentlest first.
     pub(super) fn edits(&self, fault: [u32; 2]) -> Vec<Edit> {
-        let mut corners: Vec<u32> = fault
+        let mut corners: Vec<VertexId> = fault
             .iter()
             .filter_map(|t| self.triangles[*t as usize])
             .flatten()
             .collect();
-        corners.sort_unstable_by_key(|v| (self.given[*v as usize], *v));
+        corners.sort_unstable_by_key(|v| (self.given[v.place()], *v));
         corners.dedup();
         let mut edits = self.merges(&corners);
         edits.extend(
@@ -44,22 +44,22 @@ impl Mending {
     }
 
     /// Two vertices put in one place, the nearest pairs first.
-    fn merges(&self, corners: &[u32]) -> Vec<Edit> {
-        let place = |v: u32| &self.vertices[v as usize];
-        let mut pairs: Vec<(f64, u32, u32)> = Vec::new();
+    fn merges(&self, corners: &[VertexId]) -> Vec<Edit> {
+        let place = |v: VertexId| &self.vertices[v.place()];
+        let mut pairs: Vec<(f64, VertexId, VertexId)> = Vec::new();
         for (k, &v) in corners.iter().enumerate() {
             for &w in &corners[..k] {
                 let gap = distance(place(v), place(w));
                 if gap <= self.reach() {
-                    let stays = self.given[v as usize] && !self.given[w as usize];
+                    let stays = self.given[v.place()] && !self.given[w.place()];
                     let (from, to) = if stays { (w, v) } else { (v, w) };
                     pairs.extend([(gap, from, to), (gap, to, from)]);
                 }
             }
         }
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let near = |p: &&(f64, u32, u32)| self.drift(p.1, place(p.2)) <= self.reach();
-        let free = pairs.iter().filter(|p| !self.fixed[p.1 as usize]);
+        let near = |p: &&(f64, VertexId, VertexId)| self.drift(p.1, place(p.2)) <= self.reach();
+        let free = pairs.iter().filter(|p| !self.fixed[p.1.place()]);
         free.filter(near)
             .filter_map(|&(_, from, to)| self.merge(from, to))
             .collect()
@@ -67,10 +67,10 @@ impl Mending {
 
     /// One vertex goes where another is. Triangles that have both vanish, and so do such as then are
     /// each other's opposites. `None` if the surface would not stay closed.
-    fn merge(&self, from: u32, to: u32) -> Option<Edit> {
+    fn merge(&self, from: VertexId, to: VertexId) -> Option<Edit> {
         let star = self.star(from);
-        let renamed = |t: [u32; 3]| t.map(|v| if v == from { to } else { v });
-        let mut made: Vec<(u32, Option<[u32; 3]>)> = star
+        let renamed = |t: [VertexId; 3]| t.map(|v| if v == from { to } else { v });
+        let mut made: Vec<(u32, Option<[VertexId; 3]>)> = star
             .iter()
             .filter_map(|&t| {
                 let corners = renamed(self.triangles[t as usize]?);
@@ -81,14 +81,14 @@ impl Mending {
         made.extend(old.map(|t| (t, self.triangles[t as usize])));
         cancel_opposites(&mut made);
         let left = || made.iter().filter_map(|m| m.1);
-        let mut ends: Vec<[u32; 2]> = left().flat_map(|t| edges(&t)).collect();
+        let mut ends: Vec<[VertexId; 2]> = left().flat_map(|t| edges(&t)).collect();
         ends.sort_unstable();
         if ends.windows(2).any(|pair| pair[0] == pair[1]) {
             return None;
         }
         let mut edit = Edit {
             triangles: made,
-            drift: Some((to, self.drift(from, &self.vertices[to as usize]))),
+            drift: Some((to, self.drift(from, &self.vertices[to.place()]))),
             ..Edit::default()
         };
         self.part_fans(&mut edit, to)?;
@@ -96,9 +96,9 @@ impl Mending {
     }
 
     /// Gives each closed fan around vertices whose triangles were removed a vertex of its own.
-    fn part_fans(&self, edit: &mut Edit, to: u32) -> Option<()> {
+    fn part_fans(&self, edit: &mut Edit, to: VertexId) -> Option<()> {
         let gone = edit.triangles.iter().filter(|m| m.1.is_none());
-        let mut loose: Vec<u32> = gone
+        let mut loose: Vec<VertexId> = gone
             .filter_map(|m| self.triangles[m.0 as usize])
             .flatten()
             .chain([to])
@@ -118,11 +118,11 @@ impl Mending {
             if around.is_empty() {
                 continue;
             }
-            if self.fixed[v as usize] && !self.is_whole(v) {
+            if self.fixed[v.place()] && !self.is_whole(v) {
                 continue;
             }
             for fan in fans(v, around)?.into_iter().skip(1) {
-                let copy = as_number(self.vertices.len() + edit.copies.len());
+                let copy = VertexId::of(self.vertices.len() + edit.copies.len());
                 edit.copies.push(v);
                 for (t, corners) in fan {
                     let renamed = corners.map(|c| if c == v { copy } else { c });
@@ -137,7 +137,7 @@ impl Mending {
     }
 
     /// Return whether all triangles around a vertex are in this part.
-    fn is_whole(&self, v: u32) -> bool {
+    fn is_whole(&self, v: VertexId) -> bool {
         self.star(v).iter().all(|t| {
             let corners = self.triangles[*t as usize].unwrap_or_default();
             edges(&corners)
@@ -159,7 +159,7 @@ impl Mending {
         let others = self.triangles[mate as usize]?;
         let d = *others.iter().find(|v| **v != a && **v != b)?;
         let taken = self.halves.contains_key(&[c, d]) || self.halves.contains_key(&[d, c]);
-        let [p, q, r, s] = [a, b, c, d].map(|v| &self.vertices[v as usize]);
+        let [p, q, r, s] = [a, b, c, d].map(|v| &self.vertices[v.place()]);
         if c == d || taken || !diagonals_meet([p, q, r, s], self.reach()) {
             return None;
         }
@@ -170,11 +170,11 @@ impl Mending {
     }
 
     /// A vertex a spacing aside.
-    fn moves(&self, v: u32) -> Vec<Edit> {
-        if self.fixed[v as usize] {
+    fn moves(&self, v: VertexId) -> Vec<Edit> {
+        if self.fixed[v.place()] {
             return Vec::new();
         }
-        let place = self.vertices[v as usize];
+        let place = self.vertices[v.place()];
         let moved = |step: &[f64; 3]| {
             let place = [0, 1, 2].map(|i| self.precision.round(place[i] + step[i] * self.spacing));
             Edit {
@@ -188,15 +188,15 @@ impl Mending {
 }
 
 /// A triangle with its number.
-type Numbered = (u32, [u32; 3]);
+type Numbered = (u32, [VertexId; 3]);
 
-fn has_three([a, b, c]: &[u32; 3]) -> bool {
+fn has_three([a, b, c]: &[VertexId; 3]) -> bool {
     a != b && b != c && c != a
 }
 
 /// Removes pairs of triangles that are each other's opposites.
-fn cancel_opposites(made: &mut [(u32, Option<[u32; 3]>)]) {
-    let from_least = |t: [u32; 3]| {
+fn cancel_opposites(made: &mut [(u32, Option<[VertexId; 3]>)]) {
+    let from_least = |t: [VertexId; 3]| {
         let first = (0..3).min_by_key(|i| t[*i]).unwrap_or(0);
         [t[first], t[(first + 1) % 3], t[(first + 2) % 3]]
     };
@@ -215,8 +215,8 @@ fn cancel_opposites(made: &mut [(u32, Option<[u32; 3]>)]) {
 
 /// The triangles around a vertex as closed fans, that of the first triangle first; `None` if one is
 /// open.
-fn fans(v: u32, around: Vec<Numbered>) -> Option<Vec<Vec<Numbered>>> {
-    let turned = |t: &[u32; 3]| {
+fn fans(v: VertexId, around: Vec<Numbered>) -> Option<Vec<Vec<Numbered>>> {
+    let turned = |t: &[VertexId; 3]| {
         let at = t.iter().position(|c| *c == v).unwrap_or(0);
         [t[(at + 1) % 3], t[(at + 2) % 3]]
     };

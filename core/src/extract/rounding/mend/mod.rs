@@ -76,10 +76,10 @@ impl Mending {
             self.flat.extend(flat);
             for (v, old) in &undo.moves {
                 self.moved.insert(*v);
-                self.drifts[*v as usize] += distance(old, &self.vertices[*v as usize]);
+                self.drifts[v.place()] += distance(old, &self.vertices[v.place()]);
             }
             if let Some((v, drift)) = edit.drift {
-                self.drifts[v as usize] = self.drifts[v as usize].max(drift);
+                self.drifts[v.place()] = self.drifts[v.place()].max(drift);
             }
             return true;
         }

@@ -10,6 +10,7 @@ use crate::arith::convert::as_number;
 use crate::extract::rounding::crossings::Faults;
 use crate::geometry::doubles::{Point, Triangle};
 use crate::geometry::extent::Extent;
+use crate::mesh::handle::VertexId;
 
 /// The numbers in which coordinates are delivered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,7 +65,7 @@ pub struct Mending {
     /// The vertices; copies are added at the end.
     pub vertices: Vec<Point>,
     /// The triangles.
-    pub triangles: Vec<Option<[u32; 3]>>,
+    pub triangles: Vec<Option<[VertexId; 3]>>,
     /// Vertices that stay: not all of their triangles are in this part.
     pub(super) fixed: Vec<bool>,
     /// Vertices of inputs, which others go to.
@@ -76,32 +77,32 @@ pub struct Mending {
     pub(super) flat: BTreeSet<u32>,
     /// Each pair both ways round, so that those of a triangle are a range.
     pub(super) crossings: BTreeSet<[u32; 2]>,
-    pub(super) halves: HashMap<[u32; 2], u32>,
+    pub(super) halves: HashMap<[VertexId; 2], u32>,
     pub(super) precision: Precision,
     /// Of the largest coordinate.
     pub(super) spacing: f64,
     /// For each vertex how far it, and those merged with it, were moved at most.
     pub(super) drifts: Vec<f64>,
     pub(super) work: usize,
-    pub(super) moved: HashSet<u32>,
+    pub(super) moved: HashSet<VertexId>,
 }
 
 /// A change that is tried: where vertices go, and what becomes of triangles.
 #[derive(Debug, Default)]
 pub(super) struct Edit {
-    pub(super) moves: Vec<(u32, Point)>,
-    pub(super) triangles: Vec<(u32, Option<[u32; 3]>)>,
+    pub(super) moves: Vec<(VertexId, Point)>,
+    pub(super) triangles: Vec<(u32, Option<[VertexId; 3]>)>,
     /// The vertex that another was merged with, and the distance by which that has moved it.
-    pub(super) drift: Option<(u32, f64)>,
+    pub(super) drift: Option<(VertexId, f64)>,
     /// Copies of vertices, in order, made for surfaces that no longer hang together.
-    pub(super) copies: Vec<u32>,
+    pub(super) copies: Vec<VertexId>,
 }
 
 impl Mending {
     /// The part, all faults of which are known.
     pub fn new(
         vertices: Vec<Point>,
-        triangles: Vec<[u32; 3]>,
+        triangles: Vec<[VertexId; 3]>,
         [fixed, given]: [Vec<bool>; 2],
         precision: Precision,
         faults: &Faults,
@@ -110,16 +111,16 @@ impl Mending {
             .iter()
             .flatten()
             .fold(0.0f64, |m, x| m.max(x.abs()));
-        let corners = |t: &[u32; 3]| t.map(|v| vertices[v as usize]);
+        let corners = |t: &[VertexId; 3]| t.map(|v| vertices[v.place()]);
         let extents: Vec<Extent> = triangles.iter().map(|t| Extent::of(&corners(t))).collect();
         let mut stars = vec![Star::new(); vertices.len()];
         for (t, &v) in (0u32..)
             .zip(&triangles)
             .flat_map(|(t, c)| c.iter().map(move |v| (t, v)))
         {
-            stars[v as usize].push(t);
+            stars[v.place()].push(t);
         }
-        let ends = |(t, c): (usize, &[u32; 3])| edges(c).map(|e| (e, as_number(t)));
+        let ends = |(t, c): (usize, &[VertexId; 3])| edges(c).map(|e| (e, as_number(t)));
         let drifts = vec![0.0; vertices.len()];
         let halves = triangles.iter().enumerate().flat_map(ends).collect();
         Self {
@@ -142,7 +143,7 @@ impl Mending {
     }
 
     /// Return whether a vertex was moved.
-    pub fn is_moved(&self, vertex: u32) -> bool {
+    pub fn is_moved(&self, vertex: VertexId) -> bool {
         self.moved.contains(&vertex)
     }
 
@@ -155,8 +156,8 @@ impl Mending {
 
     /// Return the distance of a vertex, when it is here, from where it or one that was merged with
     /// it came.
-    pub(super) fn drift(&self, v: u32, place: &Point) -> f64 {
-        self.drifts[v as usize] + distance(&self.vertices[v as usize], place)
+    pub(super) fn drift(&self, v: VertexId, place: &Point) -> f64 {
+        self.drifts[v.place()] + distance(&self.vertices[v.place()], place)
     }
 
     pub(super) fn reach(&self) -> f64 {
@@ -164,8 +165,8 @@ impl Mending {
     }
 
     /// The triangles around a vertex, ascending.
-    pub(super) fn star(&self, v: u32) -> Star {
-        self.stars[v as usize].clone()
+    pub(super) fn star(&self, v: VertexId) -> Star {
+        self.stars[v.place()].clone()
     }
 
     /// The crossings of a triangle, each pair ascending.
@@ -176,7 +177,7 @@ impl Mending {
 
     pub(super) fn corners(&self, t: u32) -> Option<Triangle> {
         let corners = self.triangles[t as usize]?;
-        Some(corners.map(|v| self.vertices[v as usize]))
+        Some(corners.map(|v| self.vertices[v.place()]))
     }
 }
 
@@ -185,7 +186,7 @@ pub(super) fn both([t, u]: [u32; 2]) -> [[u32; 2]; 2] {
     [[t, u], [u, t]]
 }
 
-pub(super) fn edges(corners: &[u32; 3]) -> [[u32; 2]; 3] {
+pub(super) fn edges(corners: &[VertexId; 3]) -> [[VertexId; 2]; 3] {
     [0, 1, 2].map(|i| [corners[i], corners[(i + 1) % 3]])
 }
 
@@ -209,6 +210,7 @@ mod tests {
 
     #[test]
     fn a_triangle_has_its_edges_in_its_direction() {
-        assert_eq!(edges(&[4, 7, 9]), [[4, 7], [7, 9], [9, 4]]);
+        let edges = edges(&[4, 7, 9].map(VertexId));
+        assert_eq!(edges.map(|e| e.map(|v| v.0)), [[4, 7], [7, 9], [9, 4]]);
     }
 }

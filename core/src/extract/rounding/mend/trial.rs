@@ -4,21 +4,22 @@ use super::part::{edges, Edit, Mending, Star, MEETING};
 use crate::extract::rounding::crossings::crosses_at;
 use crate::geometry::extent::Extent;
 use crate::geometry::meeting::{has_no_area, meeting, Meeting};
+use crate::mesh::handle::VertexId;
 
 impl Mending {
     /// Carries a change out; returns the change back.
     pub(super) fn apply(&mut self, edit: &Edit) -> Edit {
         let mut undo = Edit::default();
         for &v in &edit.copies {
-            self.vertices.push(self.vertices[v as usize]);
-            self.fixed.push(self.fixed[v as usize]);
-            self.given.push(self.given[v as usize]);
-            self.drifts.push(self.drifts[v as usize]);
+            self.vertices.push(self.vertices[v.place()]);
+            self.fixed.push(self.fixed[v.place()]);
+            self.given.push(self.given[v.place()]);
+            self.drifts.push(self.drifts[v.place()]);
             self.stars.push(Star::new());
         }
         for &(v, place) in &edit.moves {
-            undo.moves.push((v, self.vertices[v as usize]));
-            self.vertices[v as usize] = place;
+            undo.moves.push((v, self.vertices[v.place()]));
+            self.vertices[v.place()] = place;
         }
         self.exchange(&edit.triangles, &mut undo);
         let moved: Vec<u32> = edit.moves.iter().flat_map(|m| self.star(m.0)).collect();
@@ -31,7 +32,7 @@ impl Mending {
     pub(super) fn revert(&mut self, edit: &Edit, undo: &Edit) {
         let mut nothing = Edit::default();
         for &(v, place) in undo.moves.iter().rev() {
-            self.vertices[v as usize] = place;
+            self.vertices[v.place()] = place;
         }
         self.exchange(&undo.triangles, &mut nothing);
         let moved: Vec<u32> = edit.moves.iter().flat_map(|m| self.star(m.0)).collect();
@@ -46,7 +47,7 @@ impl Mending {
         self.stars.truncate(count);
     }
 
-    fn exchange(&mut self, triangles: &[(u32, Option<[u32; 3]>)], undo: &mut Edit) {
+    fn exchange(&mut self, triangles: &[(u32, Option<[VertexId; 3]>)], undo: &mut Edit) {
         for (t, _) in triangles {
             let old = self.triangles[*t as usize].take();
             undo.triangles.push((*t, old));
@@ -54,7 +55,7 @@ impl Mending {
                 self.halves.remove(&edge);
             }
             for v in old.into_iter().flatten() {
-                self.stars[v as usize].retain(|other| *other != *t);
+                self.stars[v.place()].retain(|other| *other != *t);
             }
         }
         for &(t, corners) in triangles {
@@ -63,7 +64,7 @@ impl Mending {
                 self.halves.insert(edge, t);
             }
             for v in corners.into_iter().flatten() {
-                let star = &mut self.stars[v as usize];
+                let star = &mut self.stars[v.place()];
                 star.insert(star.partition_point(|other| *other < t), t);
             }
             self.measure(t);
@@ -128,12 +129,12 @@ impl Mending {
             let [a, b] = self.ends(pair[which], edge)?;
             let mate = self.triangles[*self.halves.get(&[b, a])? as usize]?;
             let apex = mate.iter().find(|v| **v != a && **v != b)?;
-            Some(self.vertices[*apex as usize])
+            Some(self.vertices[apex.place()])
         };
         crosses_at(met, &[p, q], mate)
     }
 
-    fn ends(&self, t: u32, edge: usize) -> Option<[u32; 2]> {
+    fn ends(&self, t: u32, edge: usize) -> Option<[VertexId; 2]> {
         let corners = self.triangles[t as usize]?;
         Some([corners[edge], corners[(edge + 1) % 3]])
     }
