@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import FormatError
-from . import clock, output
-from .files import STREAM, Inputs, is_dropped, put, refuse_unwritable, shown
-from .output import Output
+from .console import clock, output
+from .console.output import Output
+from .inputs.files import STREAM, Inputs, is_dropped, put, refuse_unwritable, shown
 
 if TYPE_CHECKING:
     from ..bsp import Region

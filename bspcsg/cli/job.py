@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import clock, output, status
-from .files import Inputs, Target, shown
-from .output import Output, counted
+from .console import clock, output, status
+from .console.output import Output, counted
+from .inputs.files import Inputs, Target, shown
 
 if TYPE_CHECKING:
     from ..errors import Finding

@@ -12,7 +12,7 @@ import click
 
 from .._core import __version__
 from ..errors import BspcsgError, FormatError, InternalError
-from . import clock, output, status, terminal
+from .console import clock, output, status, terminal
 
 _EPILOG = """\b
 Exit codes:

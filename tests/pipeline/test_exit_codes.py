@@ -377,8 +377,8 @@ def test_code_5_when_standard_output_is_full(
     def full(*_: Any, **__: Any) -> None:
         raise OSError(number, "no more")
 
-    monkeypatch.setattr("bspcsg.cli.output.click.echo", full)
-    monkeypatch.setattr("bspcsg.cli.output.discard_output", monkeypatch.undo)
+    monkeypatch.setattr("bspcsg.cli.console.output.click.echo", full)
+    monkeypatch.setattr("bspcsg.cli.console.output.discard_output", monkeypatch.undo)
     assert run(["info", "a.off"]) == 5
     assert "standard output: cannot write: no more." in capsys.readouterr().err
 
@@ -390,7 +390,7 @@ def test_the_codes_of_errors_are_those_of_the_help(capsys: Capture) -> None:
 
 
 def test_errors_of_the_library_have_codes() -> None:
-    from bspcsg.cli.output import exit_code_of
+    from bspcsg.cli.console.output import exit_code_of
 
     assert exit_code_of(missing_part("x", "for y", "z")) == 6
     assert exit_code_of(b.InternalError("x")) == 70

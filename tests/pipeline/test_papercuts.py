@@ -12,7 +12,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg.cli import status
-from bspcsg.cli.tables import table_text
+from bspcsg.cli.console.tables import table_text
 from support.cli import Capture, finished, process, put, ran
 from support.shapes import cuboid, icosphere
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bspcsg.cli.formula import FormulaError, evaluated, files_of, parse
+from bspcsg.cli.options.formula import FormulaError, evaluated, files_of, parse
 
 SETS = {"a": {1, 2, 3, 4}, "b": {3, 4, 5, 6}, "c": {2, 4, 6, 8}}
 EVERYTHING = set(range(10))

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import FormatError
-from .. import output, status
-from ..files import STREAM, refuse_folder
-from ..tables import table_text
+from ..console import output, status
+from ..console.tables import table_text
+from ..inputs.files import STREAM, refuse_folder
 
 if TYPE_CHECKING:
     from ...bench.runner import Settings

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import BspcsgError, FormatError, MissingPartError
-from .. import output, terminal
-from ..files import STREAM, Inputs, repair_command, shown
-from ..lengths import as_length
-from ..options import common, reading
-from ..output import Output, counted, grouped
-from ..pages import PAGE, refuse_page, write_page
-from ..patterns import files_argument
-from ..tables import table_text
+from ..console import output, terminal
+from ..console.output import Output, counted, grouped
+from ..console.tables import table_text
+from ..inputs.files import STREAM, Inputs, repair_command, shown
+from ..inputs.lengths import as_length
+from ..options.patterns import files_argument
+from ..options.shared import common, reading
+from ..pages.written import PAGE, refuse_page, write_page
 
 if TYPE_CHECKING:
     from ...formats.raw import RawMesh

@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .. import output
-from ..files import STREAM, Inputs, shown
-from ..lengths import MILLIMETRES, as_length
-from ..options import common, reading, sets
-from ..output import Output, counted
-from ..patterns import files_argument
-from ..tables import table_text
+from ..console import output
+from ..console.output import Output, counted
+from ..console.tables import table_text
+from ..inputs.files import STREAM, Inputs, shown
+from ..inputs.lengths import MILLIMETRES, as_length
+from ..options.patterns import files_argument
+from ..options.shared import common, reading, sets
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

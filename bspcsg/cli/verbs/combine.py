@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..job import Job
-from ..options import from_files
-from ..patterns import files_argument
+from ..options.patterns import files_argument
+from ..options.shared import from_files
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid

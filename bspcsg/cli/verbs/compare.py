@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .. import output
-from ..files import Inputs, shown
-from ..options import common, reading, sets
-from ..output import Output, grouped
-from ..pages import PAGE, refuse_page, write_page
-from ..patterns import file_argument
-from ..tables import table_text
+from ..console import output
+from ..console.output import Output, grouped
+from ..console.tables import table_text
+from ..inputs.files import Inputs, shown
+from ..options.patterns import file_argument
+from ..options.shared import common, reading, sets
+from ..pages.written import PAGE, refuse_page, write_page
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import BspcsgError, Finding
-from .. import output, status, terminal
-from ..files import STREAM, Inputs, Target, expanded, is_dropped, make_folder, put, shown
-from ..lengths import MILLIMETRES
-from ..options import PATH, SIMPLIFY, common, reading, writing
-from ..output import Output, counted
-from ..patterns import files_argument
+from ..console import output, status, terminal
+from ..console.output import Output, counted
+from ..inputs.files import STREAM, Inputs, Target, expanded, is_dropped, make_folder, put, shown
+from ..inputs.lengths import MILLIMETRES
+from ..options.patterns import files_argument
+from ..options.shared import PATH, SIMPLIFY, common, reading, writing
 
 if TYPE_CHECKING:
     from ...formats.raw import RawMesh

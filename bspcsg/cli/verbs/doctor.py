@@ -13,10 +13,10 @@ import click
 
 from ..._core import __version__
 from ...machine import system
-from .. import output
-from ..options import common
-from ..output import Output
-from ..tables import table_text
+from ..console import output
+from ..console.output import Output
+from ..console.tables import table_text
+from ..options.shared import common
 
 _EPILOG = """\b
 Example:

@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .. import output
-from ..files import Inputs, Target, expanded, is_dropped, shown
+from ..console import output
+from ..console.output import Output
+from ..inputs.files import Inputs, Target, expanded, is_dropped, shown
 from ..job import mesh_values, summary
-from ..options import PATH, common, reading, sets, writing
-from ..output import Output
-from ..patterns import files_argument
+from ..options.patterns import files_argument
+from ..options.shared import PATH, common, reading, sets, writing
 
 if TYPE_CHECKING:
     from ...mesh.mesh import Mesh

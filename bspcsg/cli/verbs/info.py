@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import BspcsgError
-from .. import output, terminal
-from ..files import Inputs, shown
-from ..options import common, reading
-from ..output import Output, counted, grouped
-from ..patterns import files_argument
-from ..tables import table_text
+from ..console import output, terminal
+from ..console.output import Output, counted, grouped
+from ..console.tables import table_text
+from ..inputs.files import Inputs, shown
+from ..options.patterns import files_argument
+from ..options.shared import common, reading
 
 if TYPE_CHECKING:
     from ...formats.raw import RawMesh

@@ -6,10 +6,10 @@ from typing import Any
 import click
 
 from ...errors import FormatError
-from .. import output
-from ..files import refuse_folder, shown
-from ..options import common
-from ..output import Output
+from ..console import output
+from ..console.output import Output
+from ..inputs.files import refuse_folder, shown
+from ..options.shared import common
 
 _EPILOG = """\b
 Example:

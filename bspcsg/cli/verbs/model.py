@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..inputs.lengths import as_length
 from ..job import Job
-from ..lengths import as_length
-from ..options import ALLOW_EMPTY, OUTPUT, SIMPLIFY, common, reading, sets, writing
-from ..patterns import file_argument, files_argument
+from ..options.patterns import file_argument, files_argument
+from ..options.shared import ALLOW_EMPTY, OUTPUT, SIMPLIFY, common, reading, sets, writing
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid

@@ -5,12 +5,12 @@ from typing import Any
 
 import click
 
-from .. import output
+from ..console import output
+from ..console.output import counted
 from ..drawing import Drawing
-from ..files import shown
-from ..options import common, drawing, reading, sets
-from ..output import counted
-from ..patterns import file_argument
+from ..inputs.files import shown
+from ..options.patterns import file_argument
+from ..options.shared import common, drawing, reading, sets
 
 _EPILOG = """\b
 Example:

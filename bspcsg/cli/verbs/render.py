@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import BspcsgError
-from ..camera import camera_of, refuse_contradictions, seeing
+from ..console.output import counted
 from ..drawing import Drawing
-from ..options import common, drawing, numbers, reading
-from ..output import counted
-from ..patterns import files_argument
-from ..seen import layers_of
+from ..options.camera import camera_of, refuse_contradictions, seeing
+from ..options.patterns import files_argument
+from ..options.shared import common, drawing, numbers, reading
+from ..pages.seen import layers_of
 
 if TYPE_CHECKING:
     from ..._types import FloatArray

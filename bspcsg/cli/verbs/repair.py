@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .. import output
-from ..files import Inputs, Target, shown
-from ..options import OUTPUT, TIMEOUT, common, reading, writing
-from ..output import Output, counted, grouped
-from ..patterns import file_argument
-from ..tables import table_text
+from ..console import output
+from ..console.output import Output, counted, grouped
+from ..console.tables import table_text
+from ..inputs.files import Inputs, Target, shown
+from ..options.patterns import file_argument
+from ..options.shared import OUTPUT, TIMEOUT, common, reading, writing
 
 if TYPE_CHECKING:
     from ...errors import Finding

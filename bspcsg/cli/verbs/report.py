@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import FormatError
-from .. import clock, output, status
-from ..files import STREAM, is_among, is_dropped, refuse_folder, shown
-from ..options import PATH, common
-from ..output import Output, counted
-from ..patterns import files_argument
+from ..console import clock, output, status
+from ..console.output import Output, counted
+from ..inputs.files import STREAM, is_among, is_dropped, refuse_folder, shown
+from ..options.patterns import files_argument
+from ..options.shared import PATH, common
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence

@@ -11,13 +11,13 @@ import click
 from click.core import ParameterSource
 
 from ...errors import FormatError, InvalidMeshError
-from ..files import ON_INVALID, STREAM, shown, stream_text
+from ..console.output import Output
+from ..inputs.files import ON_INVALID, STREAM, shown, stream_text
+from ..inputs.scripts import SUFFIXES, made_by
 from ..job import Job
-from ..options import PORT, TIMEOUT, common, making_or_showing
-from ..output import Output
-from ..patterns import file_argument
-from ..scripts import SUFFIXES, made_by
-from ..watching import NOWHERE, Watching
+from ..options.patterns import file_argument
+from ..options.shared import PORT, TIMEOUT, common, making_or_showing
+from ..pages.watching import NOWHERE, Watching
 
 if TYPE_CHECKING:
     from ...csg import Polish

@@ -7,12 +7,12 @@ from typing import Any
 import click
 
 from ...errors import Finding
-from .. import output
+from ..console import output
+from ..console.output import counted
 from ..drawing import Drawing
-from ..files import shown
-from ..options import common, drawing, numbers, reading, sets
-from ..output import counted
-from ..patterns import file_argument
+from ..inputs.files import shown
+from ..options.patterns import file_argument
+from ..options.shared import common, drawing, numbers, reading, sets
 
 _EPILOG = """\b
 Example:

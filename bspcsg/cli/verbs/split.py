@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import Finding
-from .. import output
-from ..files import Inputs, Target, expanded, shown
+from ..console import output
+from ..console.output import Output
+from ..inputs.files import Inputs, Target, expanded, shown
 from ..job import mesh_values, summary
-from ..options import PATH, SIMPLIFY, check_depth, common, numbers, reading, sets, writing
-from ..output import Output
-from ..patterns import file_argument
+from ..options.patterns import file_argument
+from ..options.shared import PATH, SIMPLIFY, check_depth, common, numbers, reading, sets, writing
 
 if TYPE_CHECKING:
     from ...mesh.mesh import Mesh

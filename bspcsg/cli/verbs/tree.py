@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import FormatError
-from .. import output
-from ..files import STREAM, is_dropped, put, refuse_unwritable, shown, stream_text
-from ..options import OVERWRITE, PATH, TIMEOUT, common
-from ..output import Output, counted
-from ..patterns import file_argument
+from ..console import output
+from ..console.output import Output, counted
+from ..inputs.files import STREAM, is_dropped, put, refuse_unwritable, shown, stream_text
+from ..options.patterns import file_argument
+from ..options.shared import OVERWRITE, PATH, TIMEOUT, common
 
 if TYPE_CHECKING:
     from ...csg import CsgTree

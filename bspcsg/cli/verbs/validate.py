@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .. import output, status
-from ..campaign_options import (
+from ..console import output, status
+from ..console.output import Output, counted
+from ..console.tables import table_text
+from ..inputs.files import STREAM, is_among, refuse_folder, shown
+from ..options.campaign import (
     OPERATIONS,
     POSES,
     as_bytes,
@@ -21,11 +24,8 @@ from ..campaign_options import (
     as_poses,
     as_shard,
 )
-from ..files import STREAM, is_among, refuse_folder, shown
-from ..options import telling
-from ..output import Output, counted
-from ..patterns import files_argument
-from ..tables import table_text
+from ..options.patterns import files_argument
+from ..options.shared import telling
 
 if TYPE_CHECKING:
     from ...campaign.cases.case import Case

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .. import output
-from ..files import STREAM, Inputs, is_dropped, shown
-from ..options import PORT, common, reading
-from ..output import Output, counted
-from ..pages import refuse_page, write_page
-from ..patterns import files_argument
-from ..screen import has_screen
-from ..seen import layers_of
+from ..console import output
+from ..console.output import Output, counted
+from ..console.screen import has_screen
+from ..inputs.files import STREAM, Inputs, is_dropped, shown
+from ..options.patterns import files_argument
+from ..options.shared import PORT, common, reading
+from ..pages.seen import layers_of
+from ..pages.written import refuse_page, write_page
 
 if TYPE_CHECKING:
     from ...report.viewer.layer import Layer
@@ -111,8 +111,8 @@ class _Viewing:
 
     def _served(self) -> int:
         """Show the files until Ctrl-C."""
-        from ..live import LiveServer
-        from ..showing import site_of_files, site_of_folder
+        from ..pages.live import LiveServer
+        from ..pages.showing import site_of_files, site_of_folder
 
         folder = self._folder
         site = (

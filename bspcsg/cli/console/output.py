@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from ..errors import BspcsgError, Finding, FormatError, InternalError, MissingPartError
+from ...errors import BspcsgError, Finding, FormatError, InternalError, MissingPartError
 from . import status, terminal
 
 #: Version of the JSON documents.

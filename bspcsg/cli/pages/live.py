@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-from ..errors import FormatError
+from ...errors import FormatError
 
 #: The only address that is listened at.
 _HERE = "127.0.0.1"

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import click
 
-from ..errors import FormatError
-from .files import is_dropped, refuse_folder, shown
+from ...errors import FormatError
+from ..inputs.files import is_dropped, refuse_folder, shown
 
 _SUFFIXES = (".html", ".htm")
 
@@ -35,7 +35,7 @@ def refuse_page(path: Path) -> None:
 
 def write_page(path: Path, text: str) -> int:
     """Write a page, and return how many bytes it has."""
-    from ..formats.atomic import write_file
+    from ...formats.atomic import write_file
 
     data = text.encode("utf-8")
     write_file(path, [data])

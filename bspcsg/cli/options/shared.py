@@ -7,9 +7,9 @@ from typing import Any, TypeVar
 
 import click
 
-from ..parameters import MOST_PITCH, MOST_THREADS
-from .lengths import MILLIMETRES, as_length
-from .scripts import STREAMED, SUFFIXES
+from ...parameters import MOST_PITCH, MOST_THREADS
+from ..inputs.lengths import MILLIMETRES, as_length
+from ..inputs.scripts import STREAMED, SUFFIXES
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
@@ -39,7 +39,7 @@ _COMMON = [
 
 def _formats(context: click.Context, option: click.Parameter, begun: str) -> list[str]:
     """Return the formats whose names begin so, for whoever completes a line."""
-    from ..formats.registry import FORMATS
+    from ...formats.registry import FORMATS
 
     known = (*FORMATS, *(STREAMED if option.name == "from_format" else ()))
     names = sorted(suffix.removeprefix(".") for suffix in known)
@@ -54,7 +54,7 @@ def _as_source(context: click.Context, option: click.Parameter, value: str | Non
 
 def _as_suffix(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
     """Return the suffix of a format given with or without its dot."""
-    from ..formats.registry import FORMATS
+    from ...formats.registry import FORMATS
 
     if value is None:
         return None

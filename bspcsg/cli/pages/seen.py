@@ -5,10 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .files import Inputs, shown
+from ..inputs.files import Inputs, shown
 
 if TYPE_CHECKING:
-    from ..report.viewer.layer import Layer
+    from ...report.viewer.layer import Layer
 
 
 def layers_of(
@@ -19,7 +19,7 @@ def layers_of(
     What was noteworthy about the files is told; meshes need not be closed, unless a section is
     given: then only what has nx x + ny y + nz z up to d is there.
     """
-    from ..report.viewer.parts import told_apart
+    from ...report.viewer.parts import told_apart
 
     found: list[tuple[Path, list[Layer]]] = []
     units = set()
@@ -41,7 +41,7 @@ def layers_of(
 def _layers_of(
     inputs: Inputs, path: Path, section: Sequence[float] | None
 ) -> "tuple[list[Layer], str]":
-    from ..report.viewer.parts import layers_of_file, layers_of_solid, with_origin
+    from ...report.viewer.parts import layers_of_file, layers_of_solid, with_origin
 
     name = shown(path) if shown(path) == "-" else path.name
     unit = "" if inputs.unit is None else "mm"

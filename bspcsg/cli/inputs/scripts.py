@@ -4,11 +4,11 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from . import status
-from .output import Output
+from ..console import status
+from ..console.output import Output
 
 if TYPE_CHECKING:
-    from ..solid.solid import Solid
+    from ...solid.solid import Solid
 
 #: OpenSCAD's tree and its JSON form, its language, and Python.
 SUFFIXES = (".csg", ".json", ".scad", ".py")
@@ -34,12 +34,12 @@ def made_by(
         As for `run_script` or `csg.load`.
     """
     if (suffix or path.suffix.lower()) == ".py":
-        from ..script.run import run_script
+        from ...script.run import run_script
 
         # What it prints has the terminal.
         status.end()
         return run_script(path, **options)
-    from .. import csg
+    from ... import csg
 
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", csg.CsgWarning)

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from ..errors import BspcsgError
-from .options import finite_numbers, numbers
+from ...errors import BspcsgError
+from .shared import finite_numbers, numbers
 
 if TYPE_CHECKING:
-    from .._types import FloatArray
-    from ..bsp import Camera
+    from ..._types import FloatArray
+    from ...bsp import Camera
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
@@ -119,7 +119,7 @@ def camera_of(
     turn : float
         Degrees around z by which it goes on from there.
     """
-    from ..bsp import Camera
+    from ...bsp import Camera
 
     field, up = settings["field_of_view"], settings["up"]
     try:
@@ -135,7 +135,7 @@ def camera_of(
 
 
 def _from_eye(settings: dict[str, Any], points: "FloatArray", turn: float) -> "Camera":
-    from ..bsp import Camera
+    from ...bsp import Camera
 
     middle = (points.min(axis=0) + points.max(axis=0)) / 2 if len(points) else (0, 0, 0)
     target = middle if settings["aim"] is None else settings["aim"]

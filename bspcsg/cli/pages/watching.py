@@ -8,17 +8,17 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import BspcsgError
-from . import clock, output
-from .job import Job
+from ...errors import BspcsgError
+from ..console import clock, output
+from ..console.output import Output
+from ..console.screen import has_screen
+from ..job import Job
 from .live import LiveServer, Site, stamp
-from .output import Output
-from .screen import has_screen
 from .showing import folders_of, page_of
 
 if TYPE_CHECKING:
-    from ..report.viewer.layer import Layer
-    from ..solid.solid import Solid
+    from ...report.viewer.layer import Layer
+    from ...solid.solid import Solid
 
 #: Seconds between two looks at the files.
 _LOOK = 0.2
@@ -108,7 +108,7 @@ class Watching:
         return page_of([self._script], self._scene) if path == "/" else None
 
     def _scene(self, files: Sequence[Path]) -> "tuple[list[Layer], str]":
-        from ..report.viewer.parts import layers_of_solid, told_apart
+        from ...report.viewer.parts import layers_of_solid, told_apart
 
         if isinstance(self._made, BspcsgError):
             raise self._made

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..errors import Finding, FormatError, InvalidMeshError
+from ...errors import Finding, FormatError, InvalidMeshError
+from ..console.output import Output, counted, discard_output
 from .lengths import MILLIMETRES
 from .objects import ObjectNames
-from .output import Output, counted, discard_output
 from .scripts import STREAMED, SUFFIXES, made_by
 
 if TYPE_CHECKING:
-    from ..formats.raw import RawMesh
-    from ..mesh.mesh import Mesh
-    from ..solid.solid import Solid
+    from ...formats.raw import RawMesh
+    from ...mesh.mesh import Mesh
+    from ...solid.solid import Solid
 
 #: The name that stands for standard input or standard output.
 STREAM = "-"
@@ -71,7 +71,7 @@ class Inputs:
 
     def refuse_early(self, paths: Sequence[Path]) -> None:
         """Refuse what can be known to fail before anything is read."""
-        from ..formats.files import format_of
+        from ...formats.files import format_of
 
         if sum(str(path) == STREAM for path in paths) > 1:
             raise click.UsageError("standard input can be read only once; name “-” once.")
@@ -94,7 +94,7 @@ class Inputs:
 
     def tell_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
         """Say once which inputs have no unit although their outputs state one."""
-        from ..formats.registry import FORMATS
+        from ...formats.registry import FORMATS
 
         unknown = [
             path
@@ -111,7 +111,7 @@ class Inputs:
 
     def suffix_of(self, path: Path) -> str:
         """Return the suffix of the format that a file is read as."""
-        from ..formats.registry import FORMATS
+        from ...formats.registry import FORMATS
 
         own = path.suffix.lower()
         return own if own in FORMATS or own in SUFFIXES or not self.suffix else self.suffix
@@ -122,13 +122,13 @@ class Inputs:
 
     def up_of(self, path: Path) -> str:
         """Return the axis that is up in a file, as is usual for its format."""
-        from ..formats.registry import FORMATS
+        from ...formats.registry import FORMATS
 
         return "z" if self.is_script(path) else FORMATS[self.suffix_of(path)].up
 
     def raw(self, path: Path) -> "RawMesh":
         """Read a mesh, or make that of a script, in millimetres if a unit is known or said."""
-        from ..formats.files import decoded, read_as
+        from ...formats.files import decoded, read_as
 
         if self.is_script(path):
             raw = self._mesh_of_script(path)
@@ -149,7 +149,7 @@ class Inputs:
         return made_by(path, self.out, _text_of(path), self.suffix)
 
     def _mesh_of_script(self, path: Path) -> "RawMesh":
-        from ..formats.said import said_of, saying
+        from ...formats.said import said_of, saying
 
         mesh = self._made_by(path).normalized().to_mesh()
         raw = saying(mesh, said_of(mesh))
@@ -184,18 +184,18 @@ class Inputs:
             raise InvalidMeshError(message, error.code, error.where) from error
 
     def _solid_of(self, raw: "RawMesh", path: Path) -> "Solid":
-        from ..formats.solids import solid_of
+        from ...formats.solids import solid_of
 
         return solid_of(raw, shown(path), winding=self.winding, pitch=self.pitch)
 
     def _left_out(self, error: InvalidMeshError) -> "Solid":
-        from ..solid.solid import Solid
+        from ...solid.solid import Solid
 
         self.out.warning(f"{error.message} It is left out.")
         return Solid.empty()
 
     def _repaired(self, raw: "RawMesh", path: Path) -> "Solid":
-        from ..repair.repair import repair
+        from ...repair.repair import repair
 
         made = repair(raw)
         try:
@@ -267,7 +267,7 @@ class Target:
         FormatError
             If the format is unknown or the folder cannot be written to.
         """
-        from ..formats.files import form_of
+        from ...formats.files import form_of
 
         if self.is_stream and not self.suffix:
             raise click.UsageError("to write to standard output, say the format: --to stl.")
@@ -280,26 +280,26 @@ class Target:
     @property
     def names_objects(self) -> bool:
         """True if files of this form tell objects apart by names."""
-        from ..formats.files import form_of
+        from ...formats.files import form_of
 
         return form_of(f"mesh{self.suffix}", self.text).called is not None
 
     @property
     def is_single(self) -> bool:
         """True if files of this form hold single precision only."""
-        from ..formats.files import form_of
+        from ...formats.files import form_of
 
         return form_of(f"mesh{self.suffix}", self.text).is_single
 
     def rounded(self, mesh: "Mesh | RawMesh") -> "tuple[Mesh | RawMesh, tuple[Finding, ...]]":
         """Return the mesh with the digits asked for, and what that did."""
-        from ..formats.rounding import rounded
+        from ...formats.rounding import rounded
 
         return (mesh, ()) if self.digits is None else rounded(mesh, self.digits)
 
     def write(self, mesh: "Mesh | RawMesh") -> tuple[Finding, ...]:
         """Write a mesh, and return what the format or the number of digits could not keep."""
-        from ..formats.files import encoded
+        from ...formats.files import encoded
 
         shortened, moved = self.rounded(mesh)
         made = encoded(shortened, shown(self.path), self.suffix, self.text)
@@ -309,7 +309,7 @@ class Target:
 
     def put_beside(self, files: Mapping[str, bytes]) -> None:
         """Write the files that go beside the one that was written; a stream has none."""
-        from ..formats.files import write_beside
+        from ...formats.files import write_beside
 
         if not self.is_stream and not is_dropped(self.path):
             write_beside(self.path, files)
@@ -325,7 +325,7 @@ def put(
 
     What `prove` refuses is written to neither.
     """
-    from ..formats.atomic import write_file
+    from ...formats.atomic import write_file
 
     if str(path) != STREAM:
         refuse_unwritable(path, overwrite)
@@ -360,7 +360,7 @@ def stream_text() -> str:
 
 def _text_of(path: Path) -> str:
     """Read a file or standard input as text."""
-    from ..formats.source import limited_content
+    from ...formats.source import limited_content
 
     if str(path) == STREAM:
         return stream_text()

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ..errors import Finding
-    from ..formats.raw import RawMesh
-    from ..mesh.mesh import Mesh
-    from ..solid.solid import Solid
+    from ...errors import Finding
+    from ...formats.raw import RawMesh
+    from ...mesh.mesh import Mesh
+    from ...solid.solid import Solid
 
 #: Between the names of objects that became one part, and how many are named.
 _AND, _FEW = " + ", 3
@@ -53,8 +53,8 @@ class ObjectNames:
         tuple of RawMesh and findings, or None
             None if no object of the files has a name that is left.
         """
-        from ..formats.raw import joined
-        from ..operations.parts import connected_parts
+        from ...formats.raw import joined
+        from ...operations.parts import connected_parts
 
         if not self._has_names:
             return None
@@ -84,14 +84,14 @@ class ObjectNames:
 
 
 def _raw(part: "Mesh", name: str) -> "RawMesh":
-    from ..formats.raw import RawMesh
+    from ...formats.raw import RawMesh
 
     said = None if part.carried is None else part.attributes
     return RawMesh(part.vertices, part.faces, name, attributes=said)
 
 
 def _settled(part: "Mesh") -> "tuple[Mesh, tuple[Finding, ...]]":
-    from ..formats.single import settled
+    from ...formats.single import settled
 
     try:
         return settled(part)

@@ -5,12 +5,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 from urllib.parse import quote, unquote
 
-from ..errors import BspcsgError
+from ...errors import BspcsgError
+from ..inputs.scripts import SUFFIXES
 from .live import Site, stamp
-from .scripts import SUFFIXES
 
 if TYPE_CHECKING:
-    from ..report.viewer.layer import Layer
+    from ...report.viewer.layer import Layer
 
 #: The view of some files, made anew whenever it is asked for: layers and their unit.
 Showing: TypeAlias = Callable[[Sequence[Path]], "tuple[list[Layer], str]"]
@@ -20,8 +20,8 @@ _PART = "/part/"
 
 def page_of(files: Sequence[Path], scene: Showing) -> str:
     """Return the page of some files that is loaded again when they change, or of what failed."""
-    from ..report.assets import rendered
-    from ..report.viewer.view import view_page
+    from ...report.assets import rendered
+    from ...report.viewer.view import view_page
 
     title = ", ".join(path.name for path in files)
     try:
@@ -59,7 +59,7 @@ def site_of_folder(folder: Path, scene: Showing) -> Site:
 
 def seen_in(folder: Path) -> list[str]:
     """Return the names of the files in a folder that can be seen."""
-    from ..formats.registry import FORMATS
+    from ...formats.registry import FORMATS
 
     try:
         found = [path for path in folder.iterdir() if path.is_file()]
@@ -74,7 +74,7 @@ def folders_of(files: Sequence[Path]) -> list[Path]:
 
 
 def _list(folder: Path, names: Sequence[str]) -> str:
-    from ..report.assets import rendered
+    from ...report.assets import rendered
 
     files = [(name, _PART + quote(name)) for name in names]
     title = folder.resolve().name or str(folder)

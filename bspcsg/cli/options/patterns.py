@@ -8,8 +8,8 @@ from typing import Any
 
 import click
 
-from ..errors import FormatError
-from .options import PATH
+from ...errors import FormatError
+from .shared import PATH
 
 
 def files_argument(metavar: str, name: str = "files") -> Callable[..., Any]:

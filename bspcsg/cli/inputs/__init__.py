@@ -1,0 +1,1 @@
+"""Files, streams and scripts as what a verb works on."""

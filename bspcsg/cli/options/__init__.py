@@ -1,0 +1,1 @@
+"""Options, arguments and formulas as they are typed."""
