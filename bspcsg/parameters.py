@@ -14,7 +14,7 @@ from ._core import set_threads as _set_threads
 from .errors import LimitError, invalid_parameter
 
 if TYPE_CHECKING:
-    from ._types import WindingRule
+    from ._types import SetOp, WindingRule
 
 #: The largest exponent of the lattice step, either way: 10**22 is the last power of ten that is a
 #: double.
@@ -40,6 +40,9 @@ _LONGEST = 80
 _SEEDS = 2**64
 
 _Kind = TypeVar("_Kind")
+
+#: The set operations on any number of operands, in the order in which cases of them are made.
+SET_OPS: "tuple[SetOp, ...]" = ("union", "difference", "intersection", "xor")
 
 _WINDING_RULES: "tuple[WindingRule, ...]" = ("positive", "nonzero", "even-odd")
 

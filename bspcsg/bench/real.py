@@ -38,13 +38,6 @@ def posed_pair(shared: Path, number: int) -> tuple[MeshArrays, MeshArrays]:
     return posed[0], moved(posed[1], _APART * unit_vector(random))
 
 
-def pair_names(shared: Path, number: int) -> tuple[str, str]:
-    """Return which meshes a pair is made of."""
-    names = solid_names(shared)
-    first, second = generator(number).choice(len(names), size=2, replace=False)
-    return names[first], names[second]
-
-
 @cache
 def solid_names(shared: Path) -> list[str]:
     """Return the meshes that every engine should take: closed, and free of self-intersection."""

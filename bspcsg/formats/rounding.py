@@ -8,9 +8,6 @@ from ..errors import Finding
 from ..mesh.mesh import Mesh
 from .raw import RawMesh
 
-#: Digits that tell any two doubles apart.
-MOST_DIGITS = 17
-
 
 def rounded(mesh: Mesh | RawMesh, digits: int) -> tuple[Mesh | RawMesh, tuple[Finding, ...]]:
     """Return a mesh whose coordinates have so many significant digits, and how far that moved them.

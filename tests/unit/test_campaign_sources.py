@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 import bspcsg as b
-from bspcsg.campaign.cases.case import OPERATIONS
 from bspcsg.campaign.cases.sources import Draw, cases_of, inputs_in
+from bspcsg.parameters import SET_OPS
 from support.cli import put
 from support.shapes import cube
 
@@ -45,12 +45,12 @@ def test_cases_are_called_by_their_files(parts: Path) -> None:
 
 
 def test_draws_are_the_same_each_time(parts: Path) -> None:
-    draws = [cases_of(inputs_in([parts]), OPERATIONS, Draw(20, seed)) for seed in (1, 1, 2)]
+    draws = [cases_of(inputs_in([parts]), SET_OPS, Draw(20, seed)) for seed in (1, 1, 2)]
     assert draws[0] == draws[1] and [case.key for case in draws[0]] == [c.key for c in draws[1]]
     assert draws[0] != draws[2]
     poses = Counter(case.pose for case in draws[0] if case.kind == "pose")
     assert poses["random"] == 40 and sum(poses.values()) == 80 and len(poses) > 3
-    longer = cases_of(inputs_in([parts]), OPERATIONS, Draw(30, 1))
+    longer = cases_of(inputs_in([parts]), SET_OPS, Draw(30, 1))
     assert longer[:80] == draws[0][:80]
 
 
@@ -85,7 +85,7 @@ def test_other_files_of_cases_are_refused(tmp_path: Path, document: Any) -> None
     path = tmp_path / "cases.json"
     path.write_text(document if isinstance(document, str) else json.dumps(document))
     with pytest.raises(b.FormatError, match=r"cases\.json: this is no file of cases") as caught:
-        cases_of(inputs_in([path]), OPERATIONS, Draw())
+        cases_of(inputs_in([path]), SET_OPS, Draw())
     assert '{"cases": [{"operation"' in caught.value.message
 
 
@@ -93,4 +93,4 @@ def test_missing_operand_is_named(tmp_path: Path) -> None:
     path = tmp_path / "cases.json"
     path.write_text(json.dumps({"cases": [{"operands": [{"file": "gone.stl"}]}]}))
     with pytest.raises(b.FormatError, match=r"gone\.stl: cannot read"):
-        cases_of(inputs_in([path]), OPERATIONS, Draw())
+        cases_of(inputs_in([path]), SET_OPS, Draw())

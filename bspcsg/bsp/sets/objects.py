@@ -14,7 +14,7 @@ from ..._core import ObjectTree as CoreTree
 from ..._types import Scalar, SetOp, WindingRule
 from ...errors import core_errors, invalid_parameter
 from ...mesh import interop
-from ...parameters import at_least, pitch_exponent, seed_number, winding_rule
+from ...parameters import SET_OPS, at_least, pitch_exponent, seed_number, winding_rule
 from ..trees.facets import chosen_pitch
 from .boundary import boundary_arrays
 from .pieces import BuildPolicy, NormalAndOffset, SplitCase
@@ -197,7 +197,7 @@ class ObjectTree(TreeQueries):
         operands on one lattice. Results of set operations on regions have a tree of their boundary;
         ``trace.result`` is what merging leaves.
         """
-        if op not in ("union", "intersection", "difference", "xor"):
+        if op not in SET_OPS:
             raise invalid_parameter(f"There is no operation {op!r}.")
         a, b = self._aligned(other)
         with core_errors():

@@ -11,9 +11,6 @@ from typing import Any
 from ..._core import __version__
 from ..record import Kind
 
-#: Operations on solids, in the order in which they are asked.
-OPERATIONS = ("union", "difference", "intersection", "xor")
-
 #: The name of the operation that runs a whole script.
 SCRIPT = "csg"
 

@@ -11,7 +11,8 @@ import numpy as np
 
 from ...errors import FormatError
 from ...formats.registry import FORMATS
-from .case import OPERATIONS, SCRIPT, Case, Operand, command_for, digest_of, digest_of_mesh
+from ...parameters import SET_OPS
+from .case import SCRIPT, Case, Operand, command_for, digest_of, digest_of_mesh
 from .poses import COINCIDENT
 
 _SCRIPTS = frozenset({".csg", ".scad"})
@@ -215,11 +216,11 @@ def _listed(path: Path) -> Iterator[Case]:
 
 
 def _operations_in(entry: dict[str, Any]) -> Iterable[str]:
-    given = entry.get("operation", list(OPERATIONS))
+    given = entry.get("operation", list(SET_OPS))
     operations = [given] if isinstance(given, str) else list(given)
     for op in operations:
-        if op not in OPERATIONS:
-            raise ValueError(f"unknown operation {op!r}; one of {', '.join(OPERATIONS)}")
+        if op not in SET_OPS:
+            raise ValueError(f"unknown operation {op!r}; one of {', '.join(SET_OPS)}")
     return operations
 
 

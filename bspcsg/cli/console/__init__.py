@@ -1,1 +1,1 @@
-"""What the terminal shows: streams, tables, colours, and the line that says what is under way."""
+"""The terminal: its streams, tables and colours, and the line that says what is under way."""

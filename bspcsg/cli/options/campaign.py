@@ -2,7 +2,6 @@
 
 import click
 
-OPERATIONS = ("union", "difference", "intersection", "xor")
 ENGINES = ("manifold3d", "pymeshlab", "openscad")
 POSES = ("random", "corner", "beside", "copy", "mirror", "turned", "same")
 

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ...parameters import SET_OPS
 from ..console import output, status
 from ..console.output import Output, counted
 from ..console.tables import table_text
 from ..inputs.files import STREAM, is_among, refuse_folder, shown
 from ..options.campaign import (
-    OPERATIONS,
     POSES,
     as_bytes,
     as_engines,
@@ -55,7 +55,7 @@ _FILE = click.Path(path_type=Path, readable=False)
     "--op",
     "operations",
     multiple=True,
-    type=click.Choice(OPERATIONS),
+    type=click.Choice(SET_OPS),
     help="Operation on each pair; may be repeated, by default all four.",
 )
 @click.option(
@@ -231,7 +231,7 @@ class _Validation:
         asked = self._settings["pose"] or [(None, None)]
         draws = [Draw(count, seed, pose, number) for pose, number in asked]
         inputs = self._usable(inputs_in(self._paths), answering)
-        operations = self._settings["operations"] or OPERATIONS
+        operations = self._settings["operations"] or SET_OPS
         cases = cases_of(inputs, tuple(dict.fromkeys(operations)), *draws)
         if not cases:
             raise click.UsageError(
