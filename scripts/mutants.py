@@ -39,7 +39,7 @@ class Mutant(NamedTuple):
 MUTANTS = [
     Mutant(
         "a triangle that a path crosses counts with the other sign",
-        "geometry/crossing.rs",
+        "geometry/winding/crossing.rs",
         "        return i32::from(-sign);\n",
         "        return i32::from(sign);\n",
         ("laws_solids",),

@@ -7,9 +7,9 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use bspcsg::extract::rounding::round;
-use bspcsg::geometry::dim3::Dim3;
 use bspcsg::geometry::plane::{Lattice, Plane};
 use bspcsg::geometry::polygon::{straddle, Polygon};
+use bspcsg::geometry::spaces::dim3::Dim3;
 use bspcsg::geometry::vertex::Vertex;
 use bspcsg::merge::{split_tree, SetOp};
 use bspcsg::mesh::triangles::TriangleMesh;

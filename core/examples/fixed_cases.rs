@@ -11,7 +11,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use bspcsg::extract::rounding::round;
-use bspcsg::geometry::dim3::Dim3;
+use bspcsg::geometry::spaces::dim3::Dim3;
 use bspcsg::merge::evaluate::evaluate;
 use bspcsg::merge::expression::{Expression, Term};
 use bspcsg::merge::SetOp;

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 use std::thread;
 
-use bspcsg::geometry::dim1::{Dim1, Direction, Point1};
-use bspcsg::geometry::dim2::{Dim2, Line2, Point2, Square};
 use bspcsg::geometry::side::Half;
-use bspcsg::geometry::space::Space;
+use bspcsg::geometry::spaces::dim1::{Dim1, Direction, Point1};
+use bspcsg::geometry::spaces::dim2::{Dim2, Line2, Point2, Square};
+use bspcsg::geometry::spaces::space::Space;
 use bspcsg::merge::{merge, split_tree, SetOp};
 use bspcsg::tree::partition::{
     autopartition, boundary, check, classify, owned_boundary, stats, winding_tree, Facet, Label,
@@ -103,7 +103,7 @@ fn autopartition_of_a_convex_polygon_is_a_chain() {
             .iter()
             .zip(corners.iter().cycle().skip(1))
             .map(|(a, b)| Facet {
-                fragment: bspcsg::geometry::dim2::Segment2::between(*a, *b).unwrap(),
+                fragment: bspcsg::geometry::spaces::dim2::Segment2::between(*a, *b).unwrap(),
                 source: 0,
             })
             .collect();

@@ -1,8 +1,8 @@
 //! Exhaustive laws on the line: the sets of seven cells between six points, against bit arithmetic.
 
-use bspcsg::geometry::dim1::{Dim1, Direction, Point1};
 use bspcsg::geometry::side::{Half, Side};
-use bspcsg::geometry::space::Space;
+use bspcsg::geometry::spaces::dim1::{Dim1, Direction, Point1};
+use bspcsg::geometry::spaces::space::Space;
 use bspcsg::merge::{merge, partition_tree, split_tree, SetOp};
 use bspcsg::tree::partition::{
     autopartition, boundary, check, classify, owned_boundary, winding_tree, Facet, Label, Location,

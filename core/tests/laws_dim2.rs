@@ -1,8 +1,8 @@
 //! Laws in the plane: squares of a 3×3 lattice against bit masks, and random polygons.
 
-use bspcsg::geometry::dim2::{Dim2, Point2, Segment2, Square};
 use bspcsg::geometry::side::{Half, Side};
-use bspcsg::geometry::space::Space;
+use bspcsg::geometry::spaces::dim2::{Dim2, Point2, Segment2, Square};
+use bspcsg::geometry::spaces::space::Space;
 use bspcsg::merge::{merge, SetOp};
 use bspcsg::query::exact::big;
 use bspcsg::tree::partition::{

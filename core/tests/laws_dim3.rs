@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use bspcsg::geometry::cell::Cell;
-use bspcsg::geometry::dim3::Dim3;
 use bspcsg::geometry::plane::{Lattice, Plane};
 use bspcsg::geometry::polygon::Polygon;
 use bspcsg::geometry::side::{Half, Side};
+use bspcsg::geometry::spaces::dim3::Dim3;
 use bspcsg::geometry::vertex::Vertex;
 use bspcsg::merge::{merge, partition_tree, SetOp};
 use bspcsg::tree::partition::{
@@ -308,7 +308,7 @@ fn tetrahedra_obey_the_laws() {
 /// A random plane put into the root of a tree changes neither the set nor its invariants.
 #[test]
 fn any_plane_can_become_the_root() {
-    use bspcsg::geometry::space::Space;
+    use bspcsg::geometry::spaces::space::Space;
     let mut numbers = Numbers::new(5);
     for reach in [3, 30] {
         for round in 0..60 {

@@ -11,10 +11,10 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use bspcsg::geometry::cell::{Cell, Cut};
-use bspcsg::geometry::dim3::Dim3;
 use bspcsg::geometry::plane::{Lattice, Plane};
 use bspcsg::geometry::polygon::Polygon;
 use bspcsg::geometry::side::{Half, Orientation};
+use bspcsg::geometry::spaces::dim3::Dim3;
 use bspcsg::geometry::vertex::Vertex;
 use bspcsg::merge::expression::{Expression, Term};
 use bspcsg::merge::kernels::general::GeneralPosition;

@@ -1,20 +1,20 @@
 //! Sets built from crossing outlines: invariants of their trees, and what is read off them.
 
 use bspcsg::arith::bounds::REACH;
-use bspcsg::geometry::axis::AxisSpace;
-use bspcsg::geometry::dim1::{Dim1, Direction, Point1};
-use bspcsg::geometry::dim2::{Dim2, Line2, Point2, Segment2, Square};
-use bspcsg::geometry::dim3::Dim3;
 use bspcsg::geometry::side::{Half, Side};
-use bspcsg::geometry::space::Space;
+use bspcsg::geometry::spaces::axis::AxisSpace;
+use bspcsg::geometry::spaces::dim1::{Dim1, Direction, Point1};
+use bspcsg::geometry::spaces::dim2::{Dim2, Line2, Point2, Segment2, Square};
+use bspcsg::geometry::spaces::dim3::Dim3;
+use bspcsg::geometry::spaces::space::Space;
 use bspcsg::merge::{merge, SetOp};
-use bspcsg::query::region::condense::{condensed_line, condensed_plane};
+use bspcsg::query::region::condense::condensed_line;
 use bspcsg::query::region::outlines::outlines;
 use bspcsg::tree::partition::{
     check, enclosed, from_preorder, is_bounded, preorder, stats, Entry, Facet, Label,
     PartitionTree, PivotPolicy, Plan,
 };
-use bspcsg::tree::plane::Boundary;
+use bspcsg::tree::plane::{tree_of, Boundary};
 
 mod support;
 use support::Numbers;
@@ -53,10 +53,10 @@ fn trees_with_axis_cuts_keep_the_invariants() {
         check(&tree, &Square).unwrap();
         assert!(is_bounded(&tree));
         assert!(!is_bounded(&tree.complement()));
-        let again = condensed_plane(&tree).unwrap();
+        let again = tree_of(&Boundary::of(&tree).unwrap()).unwrap();
         check(&again, &Square).unwrap();
         assert!(same(&tree, &again), "seed {seed}");
-        let outside = condensed_plane(&tree.complement()).unwrap();
+        let outside = tree_of(&Boundary::of(&tree.complement()).unwrap()).unwrap();
         assert!(same(&tree.complement(), &outside), "seed {seed}");
     }
 }

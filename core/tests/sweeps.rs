@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use bspcsg::arith::bounds::REACH;
 use bspcsg::error::ErrorKind;
-use bspcsg::geometry::dim2::{Dim2, Point2, Segment2, Square};
-use bspcsg::geometry::motion::Motion;
+use bspcsg::geometry::spaces::dim2::{Dim2, Point2, Segment2, Square};
+use bspcsg::geometry::spaces::motion::Motion;
 use bspcsg::merge::plane::{bounded, combined, composed, located, Outlines};
 use bspcsg::merge::{merge, SetOp};
 use bspcsg::query::region::outlines::outlines;

@@ -4,9 +4,9 @@
 
 mod support;
 
-use bspcsg::geometry::affine::{Affine, Viewpoint};
-use bspcsg::geometry::dim2::Dim2;
 use bspcsg::geometry::side::{Half, Side};
+use bspcsg::geometry::spaces::affine::{Affine, Viewpoint};
+use bspcsg::geometry::spaces::dim2::Dim2;
 use bspcsg::merge::generic::trace::{Because, Decision, Journal, MergeStep};
 use bspcsg::merge::{merge, merge_watched, SetOp, SplitCase};
 use bspcsg::mesh::facets::Facet;
@@ -177,7 +177,7 @@ impl Plain {
     /// Of a tree, its cuts numbered by their places in a list of known hyperplanes.
     fn of(tree: &PartitionTree<Dim2>, numbers: &mut impl FnMut() -> usize) -> Self {
         fn next(
-            entries: &mut impl Iterator<Item = Entry<bspcsg::geometry::dim2::Line2>>,
+            entries: &mut impl Iterator<Item = Entry<bspcsg::geometry::spaces::dim2::Line2>>,
             numbers: &mut impl FnMut() -> usize,
         ) -> Plain {
             match entries.next().expect("a node") {

@@ -1,9 +1,9 @@
 //! The tree that counts: visits of nodes, hits of facets, and divisions where rays go.
 
 use bspcsg::error::Result;
-use bspcsg::geometry::affine::Polytope;
-use bspcsg::geometry::dim2::{Dim2, Segment2};
-use bspcsg::geometry::space::Space;
+use bspcsg::geometry::spaces::affine::Polytope;
+use bspcsg::geometry::spaces::dim2::{Dim2, Segment2};
+use bspcsg::geometry::spaces::space::Space;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::query::ray::answer::hit;
 use bspcsg::query::ray::{Ray, Scene};

@@ -10,10 +10,10 @@ mod shield;
 mod units;
 
 use bspcsg::error::{Error, ErrorKind, Result};
-use bspcsg::geometry::affine::Affine;
-use bspcsg::geometry::dim1::Dim1;
-use bspcsg::geometry::dim2::Dim2;
-use bspcsg::geometry::dim3::Dim3;
+use bspcsg::geometry::spaces::affine::Affine;
+use bspcsg::geometry::spaces::dim1::Dim1;
+use bspcsg::geometry::spaces::dim2::Dim2;
+use bspcsg::geometry::spaces::dim3::Dim3;
 use serde::Serialize;
 use wasm_bindgen::prelude::*;
 

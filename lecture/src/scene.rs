@@ -1,8 +1,8 @@
 //! Facets, their partition tree, and all that the page draws of it.
 
 use bspcsg::error::{Error, ErrorKind, Result};
-use bspcsg::geometry::affine::{Affine, Polytope, Viewpoint};
 use bspcsg::geometry::side::{Half, Side, Split};
+use bspcsg::geometry::spaces::affine::{Affine, Polytope, Viewpoint};
 use bspcsg::mesh::facets::{facets, Facet, Lenience};
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::handle::NodeId;

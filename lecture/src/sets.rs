@@ -1,9 +1,9 @@
 //! Sets as labelled trees: their parts for the page, splitting and merging with every step.
 
 use bspcsg::error::{Error, ErrorKind, Result};
-use bspcsg::geometry::affine::{Affine, Polytope};
-use bspcsg::geometry::axis::AxisSpace;
 use bspcsg::geometry::side::Half;
+use bspcsg::geometry::spaces::affine::{Affine, Polytope};
+use bspcsg::geometry::spaces::axis::AxisSpace;
 use bspcsg::merge::generic::merge_trees::merge_watched;
 use bspcsg::merge::generic::split_tree::split_tree_watched;
 use bspcsg::merge::generic::trace::{Decision, Journal, MergeStep, Name};
@@ -261,7 +261,7 @@ fn places<S: AxisSpace + Affine>(
 }
 
 type Divided<S> = (
-    <S as bspcsg::geometry::space::Space>::Hyperplane,
+    <S as bspcsg::geometry::spaces::space::Space>::Hyperplane,
     Option<Polytope<S>>,
 );
 

@@ -1,8 +1,8 @@
 //! The distance of the notes: how many segments shield one from the line of another.
 
-use bspcsg::geometry::dim2::{Dim2, Point2, Segment2};
 use bspcsg::geometry::side::Split;
-use bspcsg::geometry::space::Space;
+use bspcsg::geometry::spaces::dim2::{Dim2, Point2, Segment2};
+use bspcsg::geometry::spaces::space::Space;
 use std::cmp::Ordering;
 
 /// For each segment the number that the line of segment `i` crosses before it gets there, and

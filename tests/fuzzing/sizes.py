@@ -33,7 +33,7 @@ from .scenes import (
 )
 
 _CORE = Path(__file__).parents[2] / "core" / "src"
-_ROOMS = ("mesh", "tree", "merge", "extract", "query", "python/run.rs")
+_ROOMS = ("mesh", "tree", "merge", "extract", "query", "python/calls/run.rs")
 _SIZE = re.compile(r"const [A-Z_]+: usize = (\d+)(?:_(\d+))?(?: << (\d+))?;")
 
 #: Sizes outside of these are met by all scenes, or would take minutes.

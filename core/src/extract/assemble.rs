@@ -40,6 +40,22 @@ const SMALL: usize = 16;
 /// Untouched faces leave as they came, same triangle; cut faces and their coplanar neighbours are
 /// triangulated anew; every directed edge has exactly one opposite.
 ///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::extract::assemble::assemble;
+/// use bspcsg::mesh::import::import;
+/// use bspcsg::tree::solid::Solid;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let solid = Solid::of_source(Arc::new(import(&vertices, &faces, None)?), false);
+/// let mesh = assemble(&solid)?;
+/// assert_eq!((mesh.vertices.len(), mesh.untouched), (4, 4));
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
+///
 /// # Errors
 /// `Unbounded` if the solid reaches infinity; `NotReduced` if a mesh that was trusted overlaps itself.
 pub fn assemble(solid: &Solid) -> Result<ExactMesh> {
@@ -330,19 +346,19 @@ fn split_faces(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::extract::mesh::edges;
     use crate::merge::expression::Term;
     use crate::merge::scenes::{cuboid, made_of, tetrahedra};
 
     /// The directed edges of a mesh, sorted.
-    fn edges(mesh: &ExactMesh) -> Vec<[VertexId; 2]> {
-        let edge = |t: &[VertexId; 3]| [0, 1, 2].map(|i| [t[i], t[(i + 1) % 3]]);
-        let mut edges: Vec<[VertexId; 2]> = mesh.triangles.iter().flat_map(edge).collect();
-        edges.sort_unstable();
-        edges
+    fn sorted_edges(mesh: &ExactMesh) -> Vec<[VertexId; 2]> {
+        let mut all: Vec<_> = mesh.triangles.iter().flat_map(|t| edges(*t)).collect();
+        all.sort_unstable();
+        all
     }
 
     fn assert_closed(mesh: &ExactMesh) {
-        let edges = edges(mesh);
+        let edges = sorted_edges(mesh);
         assert!(edges.windows(2).all(|pair| pair[0] != pair[1]));
         let has_mate = |[a, b]: &[VertexId; 2]| edges.binary_search(&[*b, *a]).is_ok();
         assert!(edges.iter().all(has_mate));

@@ -1,8 +1,8 @@
 //! The test whether two triangles keep clear of each other, by signs of determinants in doubles.
 
-use super::path::{near_determinant, NearCross};
 use super::plane::Lattice;
 use crate::arith::{Filtered, Sign};
+use crate::geometry::winding::path::{near_determinant, NearCross};
 
 type Triangle = [Lattice; 3];
 

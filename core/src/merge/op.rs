@@ -1,6 +1,6 @@
 //! The set operations and their leaf table.
 
-use crate::geometry::space::Space;
+use crate::geometry::spaces::space::Space;
 use crate::tree::partition::{Label, PartitionTree};
 
 /// A regularized set operation of two operands.

@@ -4,8 +4,8 @@ use crate::arith::bounds::COORDINATE_BITS;
 use crate::arith::convert::{as_double, as_whole};
 use crate::arith::{ratio_to_f64, Int};
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::dim2::Point2;
 use crate::geometry::plane::Lattice;
+use crate::geometry::spaces::dim2::Point2;
 use crate::geometry::vertex::Vertex;
 
 /// The lattice step 10^exponent, in model units.

@@ -5,8 +5,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::arrays::{array, rows, triangles_of, wide};
-use super::errors::to_python;
-use super::run::run;
+use super::calls::errors::to_python;
+use super::calls::run::run;
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::rounding::company::Faces;
 use crate::extract::rounding::crossings::{all_faults, Faults};

@@ -4,10 +4,10 @@ use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use super::arrays::{array, rows};
-use super::errors::to_python;
-use super::run::run;
+use super::calls::errors::to_python;
+use super::calls::run::run;
+use crate::geometry::doubles::hull::hull;
 use crate::geometry::doubles::Point;
-use crate::geometry::hull::hull;
 use crate::mesh::grid::Pitch;
 use crate::mesh::snap::snap_all;
 

@@ -6,11 +6,11 @@ use num_bigint::{BigInt, Sign};
 
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::affine::Affine;
-use crate::geometry::dim1::{Dim1, Point1};
-use crate::geometry::dim2::{Dim2, Line2};
-use crate::geometry::dim3::Dim3;
 use crate::geometry::plane::Plane;
+use crate::geometry::spaces::affine::Affine;
+use crate::geometry::spaces::dim1::{Dim1, Point1};
+use crate::geometry::spaces::dim2::{Dim2, Line2};
+use crate::geometry::spaces::dim3::Dim3;
 use crate::mesh::half_space::out_of_reach;
 use crate::query::region::hyperplane::{line, plane, point};
 

@@ -9,26 +9,13 @@
 )]
 
 mod arrays;
-mod each;
+mod calls;
 mod embedding;
-mod errors;
-mod forking;
 mod fragments;
 mod hulls;
 mod hyperplanes;
-mod in_use;
 mod numbers;
-mod objects;
-mod pieces;
-mod pool;
-mod ray_store;
-mod ray_tree;
 mod rays;
-mod run;
-mod set_input;
-mod set_queries;
-mod set_store;
-mod set_traces;
 mod sets;
 mod surfaces;
 mod tree;
@@ -36,6 +23,10 @@ mod tree;
 use pyo3::panic::PanicException;
 use pyo3::prelude::*;
 
+use self::calls::{errors, forking, pool, run};
+use self::rays::scene::RayScene;
+use self::rays::tree::RayTree;
+use self::sets::objects::ObjectTree;
 use crate::error::{panics, Error};
 use crate::mesh::grid::Pitch;
 
@@ -80,9 +71,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("PanicException", panic)?;
     module.add_class::<tree::Tree>()?;
     module.add_class::<fragments::PyFragmentTree>()?;
-    module.add_class::<objects::ObjectTree>()?;
-    module.add_class::<ray_tree::RayTree>()?;
-    module.add_class::<rays::RayScene>()?;
+    module.add_class::<ObjectTree>()?;
+    module.add_class::<RayTree>()?;
+    module.add_class::<RayScene>()?;
     module.add_function(wrap_pyfunction!(embedding::mesh_faults, module)?)?;
     module.add_function(wrap_pyfunction!(embedding::mesh_in_single, module)?)?;
     module.add_function(wrap_pyfunction!(hulls::hull_faces, module)?)?;

@@ -4,8 +4,8 @@ use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use super::arrays::{array, rows, triangles_of};
-use super::errors::to_python;
-use super::run::run;
+use super::calls::errors::to_python;
+use super::calls::run::run;
 use crate::error::{Error, ErrorKind};
 use crate::mesh::measures::measures;
 use crate::mesh::surfaces::{counts, surfaces};

@@ -7,7 +7,7 @@ use super::shares::Shares;
 use crate::arith::{ratio_to_f64, Int, P1, P2};
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::assemble::assemble;
-use crate::geometry::fixed::FLUX_PLACES;
+use crate::geometry::flux::fixed::FLUX_PLACES;
 use crate::tree::flux::share;
 use crate::tree::solid::Solid;
 

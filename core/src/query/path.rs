@@ -11,8 +11,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::arith::Int;
-use crate::geometry::affine::{Affine, Viewpoint};
 use crate::geometry::side::{Half, Side};
+use crate::geometry::spaces::affine::{Affine, Viewpoint};
 use crate::interrupt::poll;
 use crate::mesh::facets::Facet;
 use crate::mesh::grid::Pitch;

@@ -12,13 +12,13 @@ use super::node::{Branch, Deferred, Node, Part};
 use super::share::Share;
 use crate::arith::Int;
 use crate::geometry::cell::Cell;
-use crate::geometry::fixed::{
+use crate::geometry::flux::fixed::{
     minor, of_cubic_steps, of_vertex, sixfold_flux, through, through_ring, Fixed, Flux, Reach,
     Ring, Triangle, Walls,
 };
+use crate::geometry::flux::trim::{trimmed, Rest};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Orientation;
-use crate::geometry::trim::{trimmed, Rest};
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::mesh::handle::FaceId;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::share::Share;
 use crate::geometry::cell::Cell;
-use crate::geometry::fixed::Flux;
+use crate::geometry::flux::fixed::Flux;
 use crate::geometry::outline;
 use crate::geometry::outline::{BareEdge, OutlineEdge};
 use crate::geometry::polygon::{bounds, Polygon};

@@ -1,6 +1,6 @@
 //! The share of a part of a boundary in the volume.
 
-use crate::geometry::fixed::Flux;
+use crate::geometry::flux::fixed::Flux;
 use crate::geometry::side::Orientation;
 
 /// The share of a node's boundary in the volume.

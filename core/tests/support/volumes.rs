@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use bspcsg::arith::{inv_mod, mantissa_and_exponent, mul_mod, Int, P1, P2};
-use bspcsg::geometry::fixed::FLUX_PLACES;
+use bspcsg::geometry::flux::fixed::FLUX_PLACES;
 use bspcsg::geometry::vertex::Homogeneous;
 use bspcsg::query::measure::{self, Fraction};
 use bspcsg::tree::flux::share;

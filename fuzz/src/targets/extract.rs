@@ -1,8 +1,8 @@
 //! Scenes, taken out of the tree, stored and moved.
 
 use arbitrary::{Arbitrary, Unstructured};
-use bspcsg::geometry::motion::Motion;
 use bspcsg::geometry::plane::Lattice;
+use bspcsg::geometry::spaces::motion::Motion;
 use bspcsg::merge::rule::Rule;
 use bspcsg::store::snapshot::Snapshot;
 

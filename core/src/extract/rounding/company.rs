@@ -205,7 +205,7 @@ impl Grid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::extent::Extent;
+    use crate::geometry::doubles::extent::Extent;
 
     /// Small triangles in a cube, their places taken from numbers that look random.
     fn scattered(count: u32) -> (Vec<Point>, Vec<[VertexId; 3]>) {

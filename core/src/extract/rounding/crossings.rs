@@ -9,9 +9,11 @@ use super::company::{in_company, Faces};
 use super::terrains::terrains;
 use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::extent::Extent;
+use crate::geometry::doubles::meeting::{
+    folds_over, has_no_area, interleave, meeting, passes, Meeting,
+};
 use crate::geometry::doubles::{Point, Triangle};
-use crate::geometry::extent::Extent;
-use crate::geometry::meeting::{folds_over, has_no_area, interleave, meeting, passes, Meeting};
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, Boxed, Swept};

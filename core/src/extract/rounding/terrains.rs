@@ -14,9 +14,11 @@ use rustc_hash::FxHashMap as HashMap;
 use super::company::Faces;
 use crate::arith::convert::as_number;
 use crate::arith::Sign;
-use crate::geometry::covering::{winds_at_most_once, Place};
+use crate::extract::mesh::edges;
+use crate::geometry::doubles::meeting::has_no_area;
+use crate::geometry::doubles::vector::{cross, dot, normal};
 use crate::geometry::doubles::{seen_along, turn, Facing, Point, Triangle};
-use crate::geometry::meeting::has_no_area;
+use crate::geometry::winding::covering::{winds_at_most_once, Place};
 use crate::interrupt::poll;
 use crate::mesh::handle::VertexId;
 use crate::mesh::topology::NONE;
@@ -204,29 +206,10 @@ impl<'a> Search<'a> {
     }
 }
 
-fn edges([a, b, c]: [VertexId; 3]) -> [[VertexId; 2]; 3] {
-    [[a, b], [b, c], [c, a]]
-}
-
 /// Return whether a surface with these normals on both sides of an edge is hardly bent there.
 fn is_smooth(a: &Point, b: &Point) -> bool {
     let (along, across) = (dot(a, b), cross(a, b));
     along > 0.0 && dot(&across, &across) <= BENT * BENT * along * along
-}
-
-/// A normal, rounded.
-fn normal([a, b, c]: &Triangle) -> Point {
-    let arm = |p: &Point| [0, 1, 2].map(|i| p[i] - a[i]);
-    cross(&arm(b), &arm(c))
-}
-
-fn cross(u: &Point, v: &Point) -> Point {
-    let of = |j: usize, k: usize| u[j] * v[k] - u[k] * v[j];
-    [of(1, 2), of(2, 0), of(0, 1)]
-}
-
-fn dot(a: &Point, b: &Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap as HashMap;
 
 use crate::arith::convert::as_place;
 use crate::arith::Sign;
-use crate::extract::mesh::{outward_normal, Corner, ExactMesh, Mesh};
+use crate::extract::mesh::{edges, outward_normal, Corner, ExactMesh, Mesh};
 use crate::geometry::doubles::{seen_along, turn};
 use crate::geometry::plane::Plane;
 use crate::geometry::side::Orientation;
@@ -105,15 +105,12 @@ fn is_turned(mesh: &Mesh, corners: &[VertexId; 3], normal: &[i128; 3]) -> bool {
 struct Surface<'a> {
     mesh: &'a mut Mesh,
     planes: Planes<'a>,
-    halves: HashMap<(VertexId, VertexId), usize>,
+    halves: HashMap<[VertexId; 2], usize>,
 }
 
 impl<'a> Surface<'a> {
     fn new(mesh: &'a mut Mesh, planes: Planes<'a>) -> Self {
-        let ends = |(t, c): (usize, &[VertexId; 3])| {
-            let c = *c;
-            (0..3).map(move |i| ((c[i], c[(i + 1) % 3]), 3 * t + i))
-        };
+        let ends = |(t, c): (usize, &[VertexId; 3])| edges(*c).into_iter().zip(3 * t..);
         let halves = mesh.triangles.iter().enumerate().flat_map(ends).collect();
         Self {
             mesh,
@@ -131,11 +128,11 @@ impl<'a> Surface<'a> {
         let corner = |h: usize| self.mesh.triangles[h / 3][h % 3];
         let next = |h: usize| h - h % 3 + (h % 3 + 1) % 3;
         let (a, b, c) = (corner(half), corner(next(half)), corner(next(next(half))));
-        let mate = *self.halves.get(&(b, a))?;
+        let mate = *self.halves.get(&[b, a])?;
         let d = corner(next(next(mate)));
         let pair = [half / 3, mate / 3];
         let plane = self.planes.of(pair[0]);
-        let taken = [(c, d), (d, c)].iter().any(|e| self.halves.contains_key(e));
+        let taken = [[c, d], [d, c]].iter().any(|e| self.halves.contains_key(e));
         if c == d || taken || plane != self.planes.of(pair[1]) {
             return None;
         }
@@ -150,20 +147,14 @@ impl<'a> Surface<'a> {
 
     fn replace(&mut self, pair: [usize; 2], made: [[VertexId; 3]; 2]) -> [usize; 2] {
         for t in pair {
-            for edge in edges(&self.mesh.triangles[t]) {
+            for edge in edges(self.mesh.triangles[t]) {
                 self.halves.remove(&edge);
             }
         }
         for (t, corners) in pair.into_iter().zip(made) {
-            for (i, edge) in edges(&corners).into_iter().enumerate() {
-                self.halves.insert(edge, 3 * t + i);
-            }
+            self.halves.extend(edges(corners).into_iter().zip(3 * t..));
             self.mesh.triangles[t] = corners;
         }
         pair
     }
-}
-
-fn edges(corners: &[VertexId; 3]) -> [(VertexId, VertexId); 3] {
-    [0, 1, 2].map(|i| (corners[i], corners[(i + 1) % 3]))
 }

@@ -4,6 +4,7 @@ use super::edit::{Act, Edit, Limits, MOST_AROUND};
 use super::sizes::{height, lengths};
 use super::surface::Surface;
 use crate::arith::convert::as_number;
+use crate::extract::mesh::edges;
 use crate::interrupt::poll;
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::each_chunk;
@@ -33,19 +34,18 @@ impl Surface<'_> {
     fn acts_at(&self, t: u32, tolerance: f64) -> Vec<Wanted> {
         let corners = self.corners(t);
         let lengths = lengths(&corners);
-        let numbers = self.triangles[t as usize];
-        let edge = |i: usize| [numbers[i], numbers[(i + 1) % 3]];
+        let edges = edges(self.triangles[t as usize]);
         let short = (0..3).filter(|i| lengths[*i] <= tolerance);
         let mut all: Vec<Wanted> = short
             .map(|i| {
-                let [a, b] = edge(i);
+                let [a, b] = edges[i];
                 (lengths[i], Act::Collapse([a.min(b), a.max(b)]))
             })
             .collect();
         let height = height(&corners);
         if height <= tolerance && lengths.iter().any(|l| *l > tolerance) {
             let longest = (1..3).fold(0, |m, i| if lengths[i] > lengths[m] { i } else { m });
-            all.extend(self.flip_of(edge(longest)).map(|act| (height, act)));
+            all.extend(self.flip_of(edges[longest]).map(|act| (height, act)));
         }
         all
     }

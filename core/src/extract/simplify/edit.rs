@@ -1,8 +1,9 @@
 //! Changes that mend a short edge or a sliver, and whether they may be made.
 
 use super::drift::{Coming, Drift};
-use super::sizes::{dot, height, less, normal, rounding_of, swept};
+use super::sizes::{height, rounding_of, swept};
 use super::surface::{place_of, Surface};
+use crate::geometry::doubles::vector::{dot, less, normal};
 use crate::geometry::doubles::{is_flat, Triangle};
 use crate::mesh::handle::VertexId;
 

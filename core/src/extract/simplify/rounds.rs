@@ -153,6 +153,7 @@ fn without_unused(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::extract::mesh::edges;
     use crate::extract::rounding::company::Faces;
     use crate::extract::rounding::crossings::all_faults;
 
@@ -177,11 +178,7 @@ mod tests {
     }
 
     fn is_sound(mesh: &Simplified) -> bool {
-        let mut edges: Vec<[VertexId; 2]> = mesh
-            .triangles
-            .iter()
-            .flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]])
-            .collect();
+        let mut edges: Vec<[VertexId; 2]> = mesh.triangles.iter().flat_map(|t| edges(*t)).collect();
         edges.sort_unstable();
         let is_single = edges.windows(2).all(|pair| pair[0] != pair[1]);
         let has_mate = |e: &[VertexId; 2]| edges.binary_search(&[e[1], e[0]]).is_ok();

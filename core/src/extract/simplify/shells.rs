@@ -4,8 +4,8 @@
 //! another meanwhile: only whole parts can, by lying in what a change sweeps.
 
 use super::edit::Edit;
-use super::sizes::{dot, less, normal};
 use crate::arith::{Filtered, Sign};
+use crate::geometry::doubles::vector::{dot, less, normal};
 use crate::geometry::doubles::{side, Point};
 use crate::geometry::side::Side;
 use crate::interrupt::{poll, spend};

@@ -1,5 +1,6 @@
 //! Sizes of triangles, in doubles; they never decide whether a change is right.
 
+use crate::geometry::doubles::vector::{cross, dot, less, normal};
 use crate::geometry::doubles::{Point, Triangle};
 
 /// The roundings of a sum of three squares and its root, in units of the last place, and room.
@@ -7,24 +8,6 @@ const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
 
 /// Rounding errors of three coordinates, and of the point itself, in units of the largest one.
 const PLACES: f64 = 16.0 * f64::EPSILON;
-
-/// The difference of two points.
-pub fn less(p: &Point, q: &Point) -> Point {
-    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
-}
-
-/// The scalar product.
-pub fn dot(u: &Point, v: &Point) -> f64 {
-    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-}
-
-fn cross(u: &Point, v: &Point) -> Point {
-    [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ]
-}
 
 /// The distance of two points, rounded up.
 ///
@@ -44,11 +27,6 @@ pub fn distance_above(p: &Point, q: &Point) -> f64 {
 pub fn rounding_of(p: &Point, q: &Point) -> f64 {
     let largest = p.iter().chain(q).fold(0.0f64, |m, x| m.max(x.abs()));
     PLACES * largest
-}
-
-/// The normal of a triangle, as long as twice its area.
-pub fn normal([a, b, c]: &Triangle) -> Point {
-    cross(&less(b, a), &less(c, a))
 }
 
 /// The edge lengths, each from a corner to the next.

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::geometry::cell::{Cell, Cut};
-use crate::geometry::crossing::{plane_change, triangle_change, Segment};
 use crate::geometry::outline::{cancel, OutlineEdge};
 use crate::geometry::side::{Half, Orientation};
+use crate::geometry::winding::crossing::{plane_change, triangle_change, Segment};
 use crate::interrupt::poll;
 use crate::merge::kernels::kept::is_whole;
 use crate::merge::lists::list::Sources;

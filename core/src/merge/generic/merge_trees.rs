@@ -6,7 +6,7 @@ use super::split_tree::split_tree_watched;
 use super::trace::{Because, Decision, Joined, Root, Seen};
 use crate::error::{Error, Result};
 use crate::geometry::side::Half;
-use crate::geometry::space::Space;
+use crate::geometry::spaces::space::Space;
 use crate::interrupt::poll;
 use crate::merge::op::{Outcome, SetOp};
 use crate::tree::partition::{Cut, Facet, PartitionTree, Sheet};
@@ -32,7 +32,7 @@ use crate::tree::trace::Watcher;
 ///
 /// # Example
 /// ```
-/// use bspcsg::geometry::dim1::{Dim1, Direction, Point1};
+/// use bspcsg::geometry::spaces::dim1::{Dim1, Direction, Point1};
 /// use bspcsg::merge::{merge, SetOp};
 /// use bspcsg::tree::partition::{
 ///     autopartition, classify, Facet, Label, Location, PartitionTree, PivotPolicy,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::split_tree::split_tree;
 use crate::error::Result;
-use crate::geometry::space::Space;
+use crate::geometry::spaces::space::Space;
 use crate::tree::partition::{PartitionTree, Sheet};
 
 /// The same set as a tree whose root is cut by the hyperplane of `span`.

@@ -13,7 +13,7 @@ use super::case::SplitCase;
 use super::trace::{Root, Seen};
 use crate::error::{Error, Result};
 use crate::geometry::side::{Half, Orientation, Split};
-use crate::geometry::space::Space;
+use crate::geometry::spaces::space::Space;
 use crate::interrupt::poll;
 use crate::tree::partition::{Cut, Facet, PartitionTree, Sheet};
 use crate::tree::trace::Watcher;

@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 
 use super::case::SplitCase;
-use crate::geometry::space::Space;
+use crate::geometry::spaces::space::Space;
 use crate::mesh::handle::NodeId;
 use crate::tree::partition::{Label, PartitionTree, Sheet};
 use crate::tree::trace::Watcher;

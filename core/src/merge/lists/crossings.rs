@@ -6,9 +6,9 @@
 
 use super::window::{Span, Window};
 use crate::geometry::axes::each_axis;
-use crate::geometry::crossing::{triangle_change, Segment};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Orientation;
+use crate::geometry::winding::crossing::{triangle_change, Segment};
 use crate::interrupt::poll;
 
 /// A line along an axis and a place on it in one word, ordered by line.

@@ -1,6 +1,7 @@
 //! Directions in doubles, and how far coordinates reach.
 
 use super::Swept;
+use crate::geometry::doubles::vector::{cross, dot};
 
 /// Projections are widened by this share of the largest coordinate, far above their rounding.
 pub const SLACK: f64 = 1e-14;
@@ -23,20 +24,7 @@ pub fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
     (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
 }
 
-/// The product of two vectors.
-pub fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// The vector across two.
-pub fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
+/// The largest coordinate of all corners, at least 1.
 pub fn largest_coordinate(elements: &[&Swept]) -> f64 {
     let corners = elements.iter().filter_map(|e| e.corners.as_ref());
     let coordinates = corners.flatten().flatten();

@@ -1,10 +1,11 @@
 //! Lines to sweep along, and how elements lie along them.
 
-use super::direction::{cross, dot, frame, unit, Span, SLACK};
+use super::direction::{frame, unit, Span, SLACK};
 use super::view::{views, View, OFF};
 use super::Swept;
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::vector::{cross, dot};
 
 /// Among fewer elements than this other lines than the axes are not worth finding.
 pub const MANY: usize = 512;

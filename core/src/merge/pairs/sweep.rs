@@ -7,11 +7,12 @@
 
 use rayon::prelude::*;
 
-use super::direction::{dot, largest_coordinate, Span};
+use super::direction::{largest_coordinate, Span};
 use super::line::{longest_edge, Line, MANY};
 use super::rim::{rims, HalfPlane};
 use super::Swept;
 use crate::arith::convert::as_double;
+use crate::geometry::doubles::vector::dot;
 use crate::interrupt::{carried, spend};
 use crate::mesh::tasks::in_pool;
 

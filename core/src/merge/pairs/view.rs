@@ -5,9 +5,10 @@
 
 use rustc_hash::FxHashMap;
 
-use super::direction::{dot, frame, largest_coordinate, unit, Span, SLACK};
+use super::direction::{frame, largest_coordinate, unit, Span, SLACK};
 use super::Swept;
 use crate::arith::convert::as_double;
+use crate::geometry::doubles::vector::{dot, less};
 
 /// An operand's elements are a fan if one in so many has the apex.
 const FAN: usize = 4;
@@ -118,10 +119,6 @@ fn middle(elements: &[&Swept], eye: &[f64; 3]) -> Option<[f64; 3]> {
         }
     }
     unit(&sum)
-}
-
-fn less(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
-    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
 }
 
 impl View {

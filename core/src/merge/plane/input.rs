@@ -2,7 +2,7 @@
 
 use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::dim2::{Lattice2, Line2};
+use crate::geometry::spaces::dim2::{Lattice2, Line2};
 use crate::tree::partition::Label;
 use crate::tree::plane::{Boundary, Corner};
 

@@ -4,7 +4,7 @@ use super::input::Outlines;
 use super::sweep::Sweep;
 use crate::arith::convert::as_whole;
 use crate::error::Result;
-use crate::geometry::dim2::{Lattice2, Point2};
+use crate::geometry::spaces::dim2::{Lattice2, Point2};
 use crate::interrupt::poll;
 use crate::tree::partition::{classify, Label, Location};
 use crate::tree::plane::{Boundary, PlaneSet};

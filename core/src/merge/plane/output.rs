@@ -1,7 +1,7 @@
 //! The output of a sweep: the boundary as far as it has come.
 
 use crate::arith::convert::as_number;
-use crate::geometry::dim2::Line2;
+use crate::geometry::spaces::dim2::Line2;
 use crate::tree::partition::Label;
 use crate::tree::plane::{Boundary, Corner, Edge};
 

@@ -2,8 +2,8 @@
 
 use smallvec::SmallVec;
 
-use crate::geometry::dim2::{Point2, RoundedLine};
 use crate::geometry::side::Side;
+use crate::geometry::spaces::dim2::{Point2, RoundedLine};
 
 /// A stretch of a line in which one or more strands lie, from the last stop on it to the next.
 #[derive(Clone, Debug)]

@@ -18,7 +18,7 @@ use super::lists::list::{List, Sources};
 use crate::arith::{Int, Sign};
 use crate::error::Result;
 use crate::geometry::cell::Cell;
-use crate::geometry::fixed::sixfold_flux;
+use crate::geometry::flux::fixed::sixfold_flux;
 use crate::geometry::side::{Half, Orientation};
 use crate::interrupt::{poll, spend};
 use crate::mesh::handle::{FaceId, Slot};
@@ -62,6 +62,23 @@ pub enum Simplicity {
 }
 
 /// Check whether a solid made of one mesh is simple.
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::merge::lists::list::Sources;
+/// use bspcsg::merge::simple::{simplicity, Simplicity};
+/// use bspcsg::mesh::import::import;
+/// use bspcsg::tree::solid::Solid;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let solid = Solid::of_source(Arc::new(import(&vertices, &faces, None)?), false);
+/// let sources = Sources::new(solid.sources().clone());
+/// assert_eq!(simplicity(&solid, &sources)?, Simplicity::Simple);
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 ///
 /// # Errors
 /// `Cancelled`.

@@ -16,9 +16,9 @@
 
 use crate::arith::{Filtered, Sign};
 use crate::geometry::axes::each_axis;
-use crate::geometry::crossing::{triangle_change, Segment};
-use crate::geometry::path::near_determinant;
 use crate::geometry::plane::Lattice;
+use crate::geometry::winding::crossing::{triangle_change, Segment};
+use crate::geometry::winding::path::near_determinant;
 use crate::mesh::triangles::TriangleMesh;
 
 /// Return whether a mesh that closes by index is star-shaped about the mean of its vertices; errs

@@ -4,11 +4,11 @@ use num_bigint::BigInt;
 
 use super::convert::{Recipe, Wish};
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::affine::{Affine, Polytope, Viewpoint};
-use crate::geometry::dim1::Dim1;
-use crate::geometry::dim2::Dim2;
-use crate::geometry::dim3::Dim3;
 use crate::geometry::side::{Half, Side};
+use crate::geometry::spaces::affine::{Affine, Polytope, Viewpoint};
+use crate::geometry::spaces::dim1::Dim1;
+use crate::geometry::spaces::dim2::Dim2;
+use crate::geometry::spaces::dim3::Dim3;
 use crate::interrupt::poll;
 use crate::mesh::facets::Facet;
 use crate::mesh::grid::Pitch;

@@ -1,9 +1,9 @@
 //! The stretches of a line inside a region.
 
 use crate::error::Result;
-use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2, Square};
 use crate::geometry::side::{Half, Split};
-use crate::geometry::space::Space;
+use crate::geometry::spaces::dim2::{Dim2, Line2, Point2, Segment2, Square};
+use crate::geometry::spaces::space::Space;
 use crate::interrupt::poll;
 use crate::tree::partition::{classify, Cut, Label, Location, PartitionTree};
 

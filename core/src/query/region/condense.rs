@@ -1,10 +1,8 @@
 //! A set built anew from its own boundary: a tree of a size that the boundary asks for.
 
 use crate::error::Result;
-use crate::geometry::dim1::Dim1;
-use crate::geometry::dim2::Dim2;
+use crate::geometry::spaces::dim1::Dim1;
 use crate::tree::partition::{classify_corner, enclosed, walls, Facet, Label, PartitionTree, Plan};
-use crate::tree::plane::{tree_of, Boundary};
 
 /// The same set on the line as a balanced tree.
 ///
@@ -16,12 +14,4 @@ pub fn condensed_line(tree: &PartitionTree<Dim1>) -> Result<PartitionTree<Dim1>>
     let pieces = walls(tree)?.into_iter().map(|wall| wall.fragment);
     let facets = (0..).zip(pieces).map(facet).collect();
     enclosed(facets, base, |number| number > 0, &Plan::BALANCED)
-}
-
-/// The same region as a tree of its maximal edges.
-///
-/// # Errors
-/// `Internal` for a broken tree.
-pub fn condensed_plane(tree: &PartitionTree<Dim2>) -> Result<PartitionTree<Dim2>> {
-    tree_of(&Boundary::of(tree)?)
 }

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use crate::arith::bounds::is_coordinate;
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::dim1::{Direction, Point1};
-use crate::geometry::dim2::Line2;
 use crate::geometry::plane::Plane;
+use crate::geometry::spaces::dim1::{Direction, Point1};
+use crate::geometry::spaces::dim2::Line2;
 use crate::mesh::half_space::{bounding_plane, out_of_reach};
 
 /// The point normal·x = offset with its minus side where normal·x is smaller.

@@ -2,7 +2,7 @@
 //!
 //! # Example
 //! ```
-//! use bspcsg::geometry::dim2::{Dim2, Segment2};
+//! use bspcsg::geometry::spaces::dim2::{Dim2, Segment2};
 //! use bspcsg::mesh::grid::Pitch;
 //! use bspcsg::query::region::moments::area;
 //! use bspcsg::query::region::outlines::outlines;

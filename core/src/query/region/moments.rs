@@ -4,10 +4,10 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::dim1::{Dim1, Direction};
-use crate::geometry::dim2::{Lattice2, Point2};
-use crate::geometry::dim3::Dim3;
 use crate::geometry::polygon::Polygon;
+use crate::geometry::spaces::dim1::{Dim1, Direction};
+use crate::geometry::spaces::dim2::{Lattice2, Point2};
+use crate::geometry::spaces::dim3::Dim3;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::mesh::grid::Pitch;

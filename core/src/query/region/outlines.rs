@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap as HashMap;
 
 use crate::arith::Sign;
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::dim2::Point2;
+use crate::geometry::spaces::dim2::Point2;
 use crate::interrupt::poll;
 use crate::tree::partition::Label;
 use crate::tree::plane::{Boundary, Edge};

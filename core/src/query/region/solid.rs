@@ -1,8 +1,8 @@
 //! Sets in space from meshes and to polygons.
 
 use crate::error::Result;
-use crate::geometry::dim3::Dim3;
 use crate::geometry::polygon::Polygon;
+use crate::geometry::spaces::dim3::Dim3;
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::Source;
 use crate::tree::partition::Facet;

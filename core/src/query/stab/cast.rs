@@ -3,13 +3,13 @@
 use crate::arith::bounds::REACH;
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::dim1::{Dim1, Direction, Point1};
-use crate::geometry::dim2::{Dim2, Line2, Point2, Segment2};
-use crate::geometry::dim3::Dim3;
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::side::Side;
-use crate::geometry::space::Space;
+use crate::geometry::spaces::dim1::{Dim1, Direction, Point1};
+use crate::geometry::spaces::dim2::{Dim2, Line2, Point2, Segment2};
+use crate::geometry::spaces::dim3::Dim3;
+use crate::geometry::spaces::space::Space;
 use std::sync::Arc;
 
 /// A space of `D` dimensions whose facets have `D` lattice corners.

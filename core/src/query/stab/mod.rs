@@ -6,7 +6,7 @@
 //!
 //! # Example
 //! ```
-//! use bspcsg::geometry::dim2::Dim2;
+//! use bspcsg::geometry::spaces::dim2::Dim2;
 //! use bspcsg::mesh::grid::Pitch;
 //! use bspcsg::query::ray::{Ray, Scene};
 //! use bspcsg::query::stab::node::Growth;

@@ -4,9 +4,9 @@
 //! The notes' general partition. A convex body, which autopartition makes a chain, becomes a tree
 //! of logarithmic depth; surface meshes are cut a constant number of times per facet in practice.
 
-use super::choice::Tally;
 use super::node::{NodeCut, Piece};
-use crate::geometry::affine::Affine;
+use super::policy::Tally;
+use crate::geometry::spaces::affine::Affine;
 
 /// The cut at the median of the ends of the pieces' boxes, across the axis of the widest spread.
 ///

@@ -2,21 +2,21 @@
 //! asked.
 
 use super::axis::median_cut;
-use super::choice::{Policy, Sample, Tally};
 use super::node::{FragmentTree, NodeCut, Piece};
 use super::plan::{Answer, Ask, Lines, Open, Plan};
+use super::policy::{Policy, Sample, Tally};
 use super::trace::{Candidate, Reason};
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::affine::Affine;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
+use crate::geometry::spaces::affine::Affine;
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 use crate::tree::trace::Watcher;
 
 type Chosen<S> = (
     NodeCut,
-    <S as crate::geometry::space::Space>::Hyperplane,
+    <S as crate::geometry::spaces::space::Space>::Hyperplane,
     Reason,
 );
 

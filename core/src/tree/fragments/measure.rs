@@ -1,7 +1,7 @@
 //! Sizes of all regions of a tree.
 
 use super::node::FragmentTree;
-use crate::geometry::affine::{Affine, Polytope};
+use crate::geometry::spaces::affine::{Affine, Polytope};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 

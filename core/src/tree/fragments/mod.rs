@@ -10,8 +10,8 @@
 //!
 //! # Example
 //! ```
-//! use bspcsg::geometry::affine::{Affine, Viewpoint};
-//! use bspcsg::geometry::dim2::Dim2;
+//! use bspcsg::geometry::spaces::affine::{Affine, Viewpoint};
+//! use bspcsg::geometry::spaces::dim2::Dim2;
 //! use bspcsg::mesh::handle::NodeId;
 //! use bspcsg::tree::fragments::{back_to_front, build, Piece, Plan, Policy};
 //!
@@ -36,20 +36,20 @@
 
 mod axis;
 mod build;
-mod choice;
 mod choosing;
 mod measure;
 mod node;
 mod order;
 mod perfect;
 mod plan;
+mod policy;
 mod trace;
 
 pub use build::{build, build_watched};
-pub use choice::{Policy, Sample};
 pub use measure::{measures, Measure};
 pub use node::{Crossing, Fragment, FragmentTree, Node, NodeCut, Piece};
 pub use order::{back_to_front, sides};
 pub use perfect::{perfect, PERFECT_LIMIT};
 pub use plan::{Answer, Answering, Ask, Lines, Plan};
+pub use policy::{Policy, Sample};
 pub use trace::{Candidate, Division, Reason};

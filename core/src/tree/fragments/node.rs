@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::affine::{Affine, Polytope};
 use crate::geometry::side::Half;
+use crate::geometry::spaces::affine::{Affine, Polytope};
 use crate::mesh::handle::NodeId;
 
 /// An input of a tree: a convex piece and its number.

@@ -1,8 +1,8 @@
 //! The painter's order: no fragment hides one that comes after it.
 
 use super::node::FragmentTree;
-use crate::geometry::affine::{Affine, Viewpoint};
 use crate::geometry::side::Side;
+use crate::geometry::spaces::affine::{Affine, Viewpoint};
 use crate::mesh::handle::NodeId;
 
 /// The side of each node's hyperplane on which the viewpoint lies.

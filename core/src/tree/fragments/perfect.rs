@@ -11,8 +11,8 @@ use rustc_hash::FxHashMap;
 
 use super::node::{NodeCut, Piece};
 use crate::error::{Error, ErrorKind, Result};
-use crate::geometry::affine::Affine;
 use crate::geometry::side::Split;
+use crate::geometry::spaces::affine::Affine;
 use crate::interrupt::poll;
 
 /// The largest number of pieces for which the search is allowed: 2^24 sets at most.
@@ -109,7 +109,7 @@ fn members(set: u32) -> impl Iterator<Item = usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::dim2::Dim2;
+    use crate::geometry::spaces::dim2::Dim2;
 
     fn segments(ends: &[[i64; 4]]) -> Vec<Piece<Dim2>> {
         let piece = |(number, [a, b, c, d]): (u32, &[i64; 4])| Piece {

@@ -1,12 +1,12 @@
 //! The plan by which a tree is to be built, and what of it is still to be divided.
 
-use super::choice::{Policy, Sample};
 use super::node::{FragmentTree, NodeCut, Piece};
+use super::policy::{Policy, Sample};
 use super::trace::Candidate;
 use crate::error::Result;
-use crate::geometry::affine::{Affine, Polytope};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
+use crate::geometry::spaces::affine::{Affine, Polytope};
 use crate::mesh::handle::NodeId;
 
 /// The plan by which a tree is to be built.

@@ -3,7 +3,7 @@
 use super::node::{Cut, Facet, Label, PartitionTree};
 use crate::error::{Error, Result};
 use crate::geometry::side::{Half, Orientation, Split};
-use crate::geometry::space::{overlay, Space};
+use crate::geometry::spaces::space::{overlay, Space};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 

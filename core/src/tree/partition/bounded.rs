@@ -1,8 +1,8 @@
 //! Does a set reach the border of the frame?
 
 use super::node::{Label, PartitionTree};
-use crate::geometry::axis::AxisSpace;
 use crate::geometry::side::{Half, Split};
+use crate::geometry::spaces::axis::AxisSpace;
 use crate::interrupt::poll;
 
 /// Return whether the set stays clear of the frame's border, that is, fits into some box.

@@ -7,22 +7,11 @@
 use std::sync::Arc;
 
 use super::node::{Facet, Label, PartitionTree, Sheet};
-use super::random::SplitMix;
+use super::policy::{Choice, PivotPolicy};
 use crate::error::{Error, Result};
 use crate::geometry::side::{Half, Orientation, Split};
-use crate::geometry::space::{Region, Space};
+use crate::geometry::spaces::space::{Region, Space};
 use crate::interrupt::poll;
-
-/// The rule by which a node's cut is chosen among the hyperplanes of its facets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PivotPolicy {
-    /// The first facet in the order given.
-    First,
-    /// A random facet; the seed makes the tree reproducible.
-    Random(u64),
-    /// Of this many candidates, evenly spaced in the list, the first that cuts the fewest facets.
-    FewestSplits(usize),
-}
 
 /// A tree and whether its facets looked like the boundary of one set.
 #[derive(Clone, Debug)]
@@ -211,49 +200,4 @@ fn distribute<S: Space>(facets: Vec<Facet<S>>, cut: &S::Hyperplane) -> [Vec<Face
         }
     }
     lists
-}
-
-/// A pivot policy and the state it needs.
-pub(super) struct Choice {
-    policy: PivotPolicy,
-    random: SplitMix,
-}
-
-impl Choice {
-    pub(super) fn new(policy: PivotPolicy) -> Self {
-        let seed = match policy {
-            PivotPolicy::Random(seed) => seed,
-            _ => 0,
-        };
-        let random = SplitMix::new(seed);
-        Self { policy, random }
-    }
-
-    /// The hyperplane of the facet that the policy picks; the list is not empty.
-    pub(super) fn cut<S: Space>(&mut self, facets: &[Facet<S>]) -> S::Hyperplane {
-        S::hyperplane(&facets[self.pivot(facets)].fragment).clone()
-    }
-
-    /// The index of the facet whose hyperplane becomes the cut; the list is not empty.
-    fn pivot<S: Space>(&mut self, facets: &[Facet<S>]) -> usize {
-        match self.policy {
-            PivotPolicy::First => 0,
-            PivotPolicy::Random(_) => self.random.below(facets.len()),
-            PivotPolicy::FewestSplits(sample) => fewest_splits(facets, sample),
-        }
-    }
-}
-
-fn fewest_splits<S: Space>(facets: &[Facet<S>], sample: usize) -> usize {
-    let stride = facets.len().div_ceil(sample.max(1)).max(1);
-    (0..facets.len())
-        .step_by(stride)
-        .min_by_key(|&candidate| splits_by(facets, candidate))
-        .unwrap_or(0)
-}
-
-fn splits_by<S: Space>(facets: &[Facet<S>], candidate: usize) -> usize {
-    let cut = S::hyperplane(&facets[candidate].fragment);
-    let crossed = |facet: &&Facet<S>| matches!(S::split(&facet.fragment, cut), Split::Both { .. });
-    facets.iter().filter(crossed).count()
 }

@@ -2,7 +2,7 @@
 
 use super::node::{Label, PartitionTree};
 use crate::geometry::side::Half;
-use crate::geometry::space::{Region, Space};
+use crate::geometry::spaces::space::{Region, Space};
 use crate::interrupt::poll;
 
 /// The faces of each In leaf's region, the region on their minus sides.

@@ -1,9 +1,9 @@
 //! The location of a point.
 
 use super::node::{Label, PartitionTree};
-use crate::geometry::axis::AxisSpace;
 use crate::geometry::side::{Half, Side};
-use crate::geometry::space::Space;
+use crate::geometry::spaces::axis::AxisSpace;
+use crate::geometry::spaces::space::Space;
 use crate::interrupt::poll;
 
 /// The location of a point relative to a set.

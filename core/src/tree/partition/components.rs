@@ -3,7 +3,7 @@
 use super::flat::Flat;
 use super::node::{Label, PartitionTree};
 use crate::error::Result;
-use crate::geometry::space::Space;
+use crate::geometry::spaces::space::Space;
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 

@@ -3,13 +3,14 @@
 //! An autopartition of a convex outline is a chain. Cuts through the middle of long lists, which
 //! support no facet (a free partition), keep the depth logarithmic as long as they divide the list.
 
-use super::build::{partition, Choice, PivotPolicy};
+use super::build::partition;
 use super::node::{Facet, Label, PartitionTree};
+use super::policy::{Choice, PivotPolicy};
 use super::winding::winding_tree;
 use crate::error::Result;
-use crate::geometry::axis::AxisSpace;
 use crate::geometry::side::Split;
-use crate::geometry::space::Region;
+use crate::geometry::spaces::axis::AxisSpace;
+use crate::geometry::spaces::space::Region;
 use crate::interrupt::poll;
 
 /// Lists of at most this many facets get no axis-parallel cut.

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use super::node::{Cut, Label, PartitionTree};
 use crate::error::{Error, Result};
 use crate::geometry::side::{Half, Split};
-use crate::geometry::space::Space;
+use crate::geometry::spaces::space::Space;
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 

@@ -10,7 +10,7 @@
 //!
 //! # Example
 //! ```
-//! use bspcsg::geometry::dim1::{Dim1, Direction, Point1};
+//! use bspcsg::geometry::spaces::dim1::{Dim1, Direction, Point1};
 //! use bspcsg::tree::partition::{
 //!     autopartition, classify, Facet, Label, Location, PartitionTree, PivotPolicy,
 //! };
@@ -34,6 +34,7 @@ mod components;
 mod enclose;
 mod flat;
 mod node;
+mod policy;
 mod preorder;
 mod random;
 mod stats;
@@ -41,12 +42,13 @@ mod winding;
 
 pub use boundary::{boundary, boundary_of, owned_boundary};
 pub use bounded::is_bounded;
-pub use build::{autopartition, partition, Built, PivotPolicy};
+pub use build::{autopartition, partition, Built};
 pub use cells::cells;
 pub use classify::{classify, classify_corner, Location};
 pub use components::{walls, Wall};
 pub use enclose::{enclosed, Plan};
 pub use node::{Cut, Facet, Label, PartitionTree, Sheet};
+pub use policy::PivotPolicy;
 pub use preorder::{from_preorder, preorder, Entry};
 pub use random::SplitMix;
 pub use stats::{check, stats, TreeStats};

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::side::{Half, Split};
-use crate::geometry::space::Space;
+use crate::geometry::spaces::space::Space;
 
 /// The label of a leaf: what it says about its region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::node::{Label, PartitionTree, Sheet};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::{Half, Split};
-use crate::geometry::space::{Region, Space};
+use crate::geometry::spaces::space::{Region, Space};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 

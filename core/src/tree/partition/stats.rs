@@ -3,7 +3,7 @@
 use super::node::{Cut, PartitionTree};
 use crate::error::{Error, Result};
 use crate::geometry::side::Half;
-use crate::geometry::space::{overlay, Region, Space};
+use crate::geometry::spaces::space::{overlay, Region, Space};
 use crate::interrupt::poll;
 
 /// Size figures of a tree; shared subtrees count once for each place where they occur.

@@ -8,7 +8,7 @@ use super::flat::{Flat, FlatCut};
 use super::node::{Cut, Facet, Label, PartitionTree};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::{Half, Orientation};
-use crate::geometry::space::{overlay, Space};
+use crate::geometry::spaces::space::{overlay, Space};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 

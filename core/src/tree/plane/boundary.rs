@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use crate::arith::convert::as_number;
 use crate::error::Result;
-use crate::geometry::dim2::{Dim2, Lattice2, Line2, Point2, Segment2};
+use crate::geometry::spaces::dim2::{Dim2, Lattice2, Line2, Point2, Segment2};
 use crate::interrupt::poll;
 use crate::tree::partition::{classify_corner, walls, Label, PartitionTree, Wall};
 

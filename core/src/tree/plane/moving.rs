@@ -2,8 +2,8 @@
 
 use crate::arith::bounds::REACH;
 use crate::arith::convert::as_number;
-use crate::geometry::dim2::Point2;
-use crate::geometry::motion::Motion;
+use crate::geometry::spaces::dim2::Point2;
+use crate::geometry::spaces::motion::Motion;
 use crate::interrupt::poll;
 
 use super::boundary::{Boundary, Corner, Edge};

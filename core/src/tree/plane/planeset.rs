@@ -7,7 +7,7 @@ use once_cell::sync::OnceCell;
 
 use super::boundary::Boundary;
 use crate::error::Result;
-use crate::geometry::dim2::Dim2;
+use crate::geometry::spaces::dim2::Dim2;
 use crate::tree::partition::{enclosed, is_bounded, stats, Facet, Label, PartitionTree, Plan};
 
 /// An immutable set of the plane.

@@ -1,7 +1,7 @@
 //! Triangles in blocks of neighbours, so that few are looked at for each question.
 
 use crate::arith::convert::as_number;
-use crate::geometry::extent::Extent;
+use crate::geometry::doubles::extent::Extent;
 
 /// Triangles in one block: looking at a block costs about as much as at a triangle.
 const ROOM: usize = 32;
@@ -84,7 +84,7 @@ fn longest(extent: &Extent) -> usize {
 #[cfg(test)]
 mod tests {
     use super::Blocks;
-    use crate::geometry::extent::Extent;
+    use crate::geometry::doubles::extent::Extent;
 
     #[test]
     fn every_triangle_that_meets_a_box_is_near_it() {

@@ -1,7 +1,8 @@
 //! Small changes of a mesh that may take a fault out.
 
-use super::part::{distance, edges, Edit, Mending};
+use super::part::{distance, Edit, Mending};
 use crate::arith::Sign;
+use crate::extract::mesh::edges;
 use crate::geometry::doubles::{seen_along, turn, Point, Triangle};
 use crate::mesh::handle::VertexId;
 
@@ -81,7 +82,7 @@ impl Mending {
         made.extend(old.map(|t| (t, self.triangles[t as usize])));
         cancel_opposites(&mut made);
         let left = || made.iter().filter_map(|m| m.1);
-        let mut ends: Vec<[VertexId; 2]> = left().flat_map(|t| edges(&t)).collect();
+        let mut ends: Vec<[VertexId; 2]> = left().flat_map(edges).collect();
         ends.sort_unstable();
         if ends.windows(2).any(|pair| pair[0] == pair[1]) {
             return None;
@@ -140,7 +141,7 @@ impl Mending {
     fn is_whole(&self, v: VertexId) -> bool {
         self.star(v).iter().all(|t| {
             let corners = self.triangles[*t as usize].unwrap_or_default();
-            edges(&corners)
+            edges(corners)
                 .iter()
                 .filter(|e| e.contains(&v))
                 .all(|[a, b]| self.halves.contains_key(&[*b, *a]))

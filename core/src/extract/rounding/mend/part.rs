@@ -7,9 +7,10 @@ use smallvec::SmallVec;
 
 use super::blocks::Blocks;
 use crate::arith::convert::as_number;
+use crate::extract::mesh::edges;
 use crate::extract::rounding::crossings::Faults;
+use crate::geometry::doubles::extent::Extent;
 use crate::geometry::doubles::{Point, Triangle};
-use crate::geometry::extent::Extent;
 use crate::mesh::handle::VertexId;
 
 /// The numbers in which coordinates are delivered.
@@ -120,7 +121,7 @@ impl Mending {
         {
             stars[v.place()].push(t);
         }
-        let ends = |(t, c): (usize, &[VertexId; 3])| edges(c).map(|e| (e, as_number(t)));
+        let ends = |(t, c): (usize, &[VertexId; 3])| edges(*c).map(|e| (e, as_number(t)));
         let drifts = vec![0.0; vertices.len()];
         let halves = triangles.iter().enumerate().flat_map(ends).collect();
         Self {
@@ -186,10 +187,6 @@ pub(super) fn both([t, u]: [u32; 2]) -> [[u32; 2]; 2] {
     [[t, u], [u, t]]
 }
 
-pub(super) fn edges(corners: &[VertexId; 3]) -> [[VertexId; 2]; 3] {
-    [0, 1, 2].map(|i| [corners[i], corners[(i + 1) % 3]])
-}
-
 pub(super) fn distance(p: &Point, q: &Point) -> f64 {
     let square = |i: usize| (p[i] - q[i]) * (p[i] - q[i]);
     (square(0) + square(1) + square(2)).sqrt()
@@ -206,11 +203,5 @@ mod tests {
         let spacings = [Precision::Double, Precision::Single].map(|p| p.spacing(-1.0));
         assert!(spacings[0].to_bits() == f64::EPSILON.to_bits());
         assert!(spacings[1].to_bits() == f64::from(f32::EPSILON).to_bits());
-    }
-
-    #[test]
-    fn a_triangle_has_its_edges_in_its_direction() {
-        let edges = edges(&[4, 7, 9].map(VertexId));
-        assert_eq!(edges.map(|e| e.map(|v| v.0)), [[4, 7], [7, 9], [9, 4]]);
     }
 }

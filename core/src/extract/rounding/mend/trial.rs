@@ -1,9 +1,10 @@
 //! Changes carried out and taken back, and the faults that are left.
 
-use super::part::{edges, Edit, Mending, Star, MEETING};
+use super::part::{Edit, Mending, Star, MEETING};
+use crate::extract::mesh::edges;
 use crate::extract::rounding::crossings::crosses_at;
-use crate::geometry::extent::Extent;
-use crate::geometry::meeting::{has_no_area, meeting, Meeting};
+use crate::geometry::doubles::extent::Extent;
+use crate::geometry::doubles::meeting::{has_no_area, meeting, Meeting};
 use crate::mesh::handle::VertexId;
 
 impl Mending {
@@ -51,7 +52,7 @@ impl Mending {
         for (t, _) in triangles {
             let old = self.triangles[*t as usize].take();
             undo.triangles.push((*t, old));
-            for edge in old.iter().flat_map(edges) {
+            for edge in old.into_iter().flat_map(edges) {
                 self.halves.remove(&edge);
             }
             for v in old.into_iter().flatten() {
@@ -60,7 +61,7 @@ impl Mending {
         }
         for &(t, corners) in triangles {
             self.triangles[t as usize] = corners;
-            for edge in corners.iter().flat_map(edges) {
+            for edge in corners.into_iter().flat_map(edges) {
                 self.halves.insert(edge, t);
             }
             for v in corners.into_iter().flatten() {

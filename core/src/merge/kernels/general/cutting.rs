@@ -15,11 +15,11 @@ use smallvec::SmallVec;
 
 use crate::arith::convert::as_number;
 use crate::arith::Filtered;
-use crate::geometry::path::polygon_on_path;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{straddle, Chord, Corner, Polygon, Sides};
 use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
+use crate::geometry::winding::path::polygon_on_path;
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 
@@ -45,7 +45,7 @@ impl<'a> Face<'a> {
             .get_or_init(|| self.polygon.corners().iter().map(rim).collect())
     }
 
-    /// The change of the winding number across the face along a path; see `geometry::path`.
+    /// The change of the winding number across the face along a path; see `geometry::winding::path`.
     pub fn on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
         polygon_on_path(self.polygon.support(), || self.rims(), from, to)
     }

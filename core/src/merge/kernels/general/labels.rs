@@ -13,9 +13,9 @@ use super::scene::{Element, Place, Scene};
 use super::{Labels, OnPieces};
 use crate::arith::convert::as_double;
 use crate::arith::Filtered;
-use crate::geometry::path::{triangle_on_path, Way};
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
+use crate::geometry::winding::path::{triangle_on_path, Way};
 use crate::interrupt::poll;
 
 impl Scene<'_> {

@@ -6,11 +6,11 @@ use super::cutting::{Cutter, Face, Special};
 use super::points::Points;
 use crate::arith::Sign;
 use crate::geometry::axes::each_axis;
-use crate::geometry::path::determinant;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon, Sides};
 use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
+use crate::geometry::winding::path::determinant;
 
 /// A directed segment on an element, with the inside of another operand on its left.
 pub(super) struct Segment {

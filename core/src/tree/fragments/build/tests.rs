@@ -1,8 +1,8 @@
 use super::*;
-use crate::geometry::affine::Polytope;
-use crate::geometry::dim1::Dim1;
-use crate::geometry::dim2::Dim2;
 use crate::geometry::plane::Lattice;
+use crate::geometry::spaces::affine::Polytope;
+use crate::geometry::spaces::dim1::Dim1;
+use crate::geometry::spaces::dim2::Dim2;
 use crate::tree::fragments::{NodeCut, Policy, Sample};
 
 fn pieces<S: Affine>(facets: &[&[Lattice]]) -> Vec<Piece<S>> {

@@ -1,0 +1,38 @@
+//! Boxes around points in doubles.
+
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::{Point, Triangle};
+
+/// A box in doubles.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// The lowest coordinates.
+    pub low: Point,
+    /// The highest coordinates.
+    pub high: Point,
+}
+
+impl Extent {
+    /// The box of a triangle.
+    pub fn of(triangle: &Triangle) -> Self {
+        let [a, b, c] = triangle;
+        Self {
+            low: each_axis(|i| a[i].min(b[i]).min(c[i])),
+            high: each_axis(|i| a[i].max(b[i]).max(c[i])),
+        }
+    }
+
+    /// The smallest box that holds both.
+    #[must_use]
+    pub fn joined(&self, other: &Self) -> Self {
+        Self {
+            low: each_axis(|i| self.low[i].min(other.low[i])),
+            high: each_axis(|i| self.high[i].max(other.high[i])),
+        }
+    }
+
+    /// Return whether the two have no point in common.
+    pub fn misses(&self, other: &Self) -> bool {
+        (0..3).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i])
+    }
+}

@@ -1,0 +1,336 @@
+//! The points that two triangles in doubles have in common, exactly.
+//!
+//! Points that surfaces share never make them cross: where two surfaces pass through each other
+//! they do so along lines. So common points count as nothing, and a common stretch of a line is
+//! told apart by whether it runs inside the triangles or along their edges.
+#![allow(clippy::float_cmp, reason = "equal corners are meant to the last bit")]
+
+use crate::arith::{Filtered, Sign};
+use crate::geometry::doubles::{
+    clear_turn, is_flat, seen_along, side, turn, Facing, Point, Triangle,
+};
+use crate::geometry::polygon::straddle;
+use crate::geometry::side::Side;
+
+/// The kinds of points that two triangles have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Meeting {
+    /// Nothing, or points.
+    Clear,
+    /// A stretch of this edge of the first, inside the second.
+    FirstEdge(usize),
+    /// A stretch of this edge of the second, inside the first.
+    SecondEdge(usize),
+    /// A stretch of an edge of each.
+    Edges(usize, usize),
+    /// A stretch that runs inside both.
+    Crossing,
+    /// An area.
+    Overlap,
+}
+
+/// Return what two triangles that have area have in common.
+pub fn meeting(p: &Triangle, q: &Triangle) -> Meeting {
+    if are_clear(p, q) {
+        Meeting::Clear
+    } else {
+        meeting_by_sides(p, q)
+    }
+}
+
+fn meeting_by_sides(p: &Triangle, q: &Triangle) -> Meeting {
+    let of_p = sides(p, q);
+    let first = reach(of_p);
+    if first == Reach::Point {
+        return Meeting::Clear;
+    }
+    let of_q = sides(q, p);
+    match (first, reach(of_q)) {
+        (_, Reach::Point) => Meeting::Clear,
+        (Reach::All, _) | (_, Reach::All) if overlap(p, q) => Meeting::Overlap,
+        (Reach::All, _) | (_, Reach::All) => Meeting::Clear,
+        (Reach::Edge(i), Reach::Edge(j)) if is_same_edge(p, i, q, j) => Meeting::Edges(i, j),
+        (first, second) if has_common_stretch(p, alone(of_p), q, alone(of_q)) => {
+            match (first, second) {
+                (Reach::Edge(i), Reach::Edge(j)) => Meeting::Edges(i, j),
+                (Reach::Edge(i), _) => Meeting::FirstEdge(i),
+                (_, Reach::Edge(j)) => Meeting::SecondEdge(j),
+                _ => Meeting::Crossing,
+            }
+        }
+        _ => Meeting::Clear,
+    }
+}
+
+/// Return whether doubles alone show that two triangles have nothing or one corner in common: most
+/// pairs.
+fn are_clear(p: &Triangle, q: &Triangle) -> bool {
+    if p.iter().filter(|c| has_corner(q, c)).count() > 1 {
+        return false;
+    }
+    let plane = Facing::of(q);
+    if lies_beside(p, &plane, q) || lies_beside(q, &Facing::of(p), p) {
+        return true;
+    }
+    let axis = plane.main_axis();
+    lies_outside(p, q, axis) || lies_outside(q, p, axis)
+}
+
+/// Return whether a triangle is clearly on one side of the plane of another, but for common
+/// corners.
+fn lies_beside(t: &Triangle, plane: &Facing, other: &Triangle) -> bool {
+    let mut own = Side::On;
+    for c in t.iter().filter(|c| !has_corner(other, c)) {
+        match plane.clear_side(c) {
+            Filtered::Certain(side) if side != Side::On && side != own.opposite() => own = side,
+            _ => return false,
+        }
+    }
+    true
+}
+
+/// Return whether a triangle, seen along an axis, is clearly beyond an edge of another, but for a
+/// corner that is an end of the edge: seen so, each point of the other is one point.
+fn lies_outside(t: &Triangle, other: &Triangle, axis: usize) -> bool {
+    let (t_seen, other_seen) = (seen_along(t, axis), seen_along(other, axis));
+    let Filtered::Certain(inner) = clear_turn(other_seen) else {
+        return false;
+    };
+    (0..3).any(|i| {
+        let next = (i + 1) % 3;
+        (0..3).all(|k| {
+            let turn = || clear_turn([other_seen[i], other_seen[next], t_seen[k]]);
+            is_same(&t[k], &other[i])
+                || is_same(&t[k], &other[next])
+                || turn() == Filtered::Certain(-inner)
+        })
+    })
+}
+
+/// Return whether a triangle lies on another that is its mate at an edge, given by its number in
+/// the second; both have area. If not, they have nothing but the edge in common.
+pub fn folds_over(p: &Triangle, q: &Triangle, edge: usize) -> bool {
+    // Seen so that both face one way, they lie on different sides of the edge.
+    let clear = |t: &Triangle, axis: usize| clear_turn(seen_along(t, axis));
+    let is_spread = |axis: usize| {
+        let own = clear(p, axis);
+        own.is_certain() && clear(q, axis) == own
+    };
+    if is_spread(0) || is_spread(1) || is_spread(2) || side(p, &q[(edge + 2) % 3]) != Side::On {
+        return false;
+    }
+    let facing = |t: &Triangle, axis: usize| turn(seen_along(t, axis));
+    (0..3).all(|axis| facing(p, axis) == -facing(q, axis))
+}
+
+/// On which sides of a triangle's plane the corners of another lie.
+fn sides(triangle: &Triangle, plane: &Triangle) -> [Side; 3] {
+    let facing = Facing::of(plane);
+    let side = |p: &Point| {
+        if has_corner(plane, p) {
+            Side::On
+        } else {
+            facing.side(p)
+        }
+    };
+    let [a, b, c] = triangle;
+    [side(a), side(b), side(c)]
+}
+
+/// Return whether a point is a corner of a triangle.
+#[inline]
+fn has_corner([a, b, c]: &Triangle, p: &Point) -> bool {
+    is_same(p, a) || is_same(p, b) || is_same(p, c)
+}
+
+/// Return whether two points are one; arrays would be compared as slices, which takes longer.
+#[inline]
+fn is_same(p: &Point, q: &Point) -> bool {
+    p[0] == q[0] && p[1] == q[1] && p[2] == q[2]
+}
+
+/// The part of a triangle in the plane of another.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Reach {
+    /// A corner at most.
+    Point,
+    /// An edge, by its number.
+    Edge(usize),
+    /// A stretch of its inside.
+    Inside,
+    /// All of it.
+    All,
+}
+
+fn reach(sides: [Side; 3]) -> Reach {
+    let zeros = sides.iter().filter(|s| **s == Side::On).count();
+    let passes = straddle(&sides) == (true, true);
+    match (zeros, passes) {
+        (3, _) => Reach::All,
+        (2, _) => Reach::Edge((alone(sides) + 1) % 3),
+        (_, true) => Reach::Inside,
+        _ => Reach::Point,
+    }
+}
+
+fn is_same_edge(p: &Triangle, i: usize, q: &Triangle, j: usize) -> bool {
+    let ends = |t: &Triangle, at: usize| [t[at], t[(at + 1) % 3]];
+    let ([a, b], [c, d]) = (ends(p, i), ends(q, j));
+    a == d && b == c || a == c && b == d
+}
+
+/// The corner that is alone on its side, and not in the plane where another can be.
+fn alone(sides: [Side; 3]) -> usize {
+    let single = |i: &usize| {
+        let others = sides.iter().filter(|s| **s == sides[*i]).count();
+        others == 1 && sides[*i] != Side::On
+    };
+    (0..3).find(single).unwrap_or(0)
+}
+
+/// Return whether the stretches in which two triangles cover the line that their planes share have
+/// more than a point in common.
+///
+/// The edges at the lone corners `p[i]` and `q[k]` end the stretches. Which of two such edges comes
+/// first on the line is the sign of the volume they span, up to a sign that is the same for all
+/// four pairs; `On` says that they meet there.
+fn has_common_stretch(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
+    let ends = |t: &Triangle, at: usize| [t[(at + 1) % 3], t[(at + 2) % 3]];
+    let order = |our: &Point, their: &Point| side(&[p[i], *our, q[k]], their);
+    let (ours, theirs) = (ends(p, i), ends(q, k));
+    let pairs = [(0, 0), (0, 1), (1, 0), (1, 1)];
+    let orders = pairs.map(|(a, b)| order(&ours[a], &theirs[b]));
+    straddle(&orders) == (true, true)
+}
+
+/// Return whether two triangles of one plane have an area in common: no edge's line separates them.
+fn overlap(p: &Triangle, q: &Triangle) -> bool {
+    let facing = |axis: usize| turn(seen_along(p, axis));
+    let Some(axis) = (0..3).find(|axis| facing(*axis) != Sign::Zero) else {
+        return false;
+    };
+    let (p, q) = (seen_along(p, axis), seen_along(q, axis));
+    !lie_apart(&p, &q) && !separates(&p, &q) && !separates(&q, &p)
+}
+
+/// Return whether the boxes around two triangles have no area in common.
+fn lie_apart(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
+    let low = |t: &[[f64; 2]; 3], i: usize| t[0][i].min(t[1][i]).min(t[2][i]);
+    let high = |t: &[[f64; 2]; 3], i: usize| t[0][i].max(t[1][i]).max(t[2][i]);
+    (0..2).any(|i| high(p, i) <= low(q, i) || high(q, i) <= low(p, i))
+}
+
+/// Return whether one triangle lies on the outer side of an edge of another, or on its line.
+fn separates(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
+    let inner = turn(*p);
+    (0..3).any(|i| {
+        let (a, b) = (p[i], p[(i + 1) % 3]);
+        let beyond = |c: &[f64; 2]| *c == a || *c == b || turn([a, b, *c]) != inner;
+        q.iter().all(beyond)
+    })
+}
+
+/// Return whether the surface that bends from `p` to `p_mate` over their common edge a → b passes
+/// through the one that bends from `q` to `q_mate` over an edge on the same line, each given by its
+/// apex.
+///
+/// Half-planes that coincide have an area in common, which is found elsewhere; here they count as
+/// not passing.
+pub fn interleave(axis: [&Point; 2], [p, p_mate]: [&Point; 2], [q, q_mate]: [&Point; 2]) -> bool {
+    let turn = |u: &Point, v: &Point| side(&[*axis[0], *axis[1], *u], v);
+    // The sector counterclockwise from p to its mate, by what lies strictly inside it.
+    let inside = |x: &Point| match turn(p, p_mate) {
+        Side::Plus => turn(p, x) == Side::Plus && turn(x, p_mate) == Side::Plus,
+        Side::Minus => turn(p_mate, x) == Side::Minus || turn(x, p) == Side::Minus,
+        Side::On => turn(p, x) == Side::Plus,
+    };
+    let beside = |x: &Point| {
+        let same = |y: &Point| turn(y, x) == Side::On && is_same_half(axis, y, x);
+        same(p) || same(p_mate)
+    };
+    !beside(q) && !beside(q_mate) && inside(q) != inside(q_mate)
+}
+
+/// Return whether two points of one plane with a line lie on the same side of it.
+fn is_same_half(axis: [&Point; 2], x: &Point, y: &Point) -> bool {
+    let first = [*axis[0], *axis[1], *x];
+    let second = [*axis[0], *axis[1], *y];
+    (0..3).any(|along| {
+        let turns = [
+            turn(seen_along(&first, along)),
+            turn(seen_along(&second, along)),
+        ];
+        turns[0] != Sign::Zero && turns[0] == turns[1]
+    })
+}
+
+/// Return whether a surface that bends over an edge, given by the apexes of its two triangles,
+/// passes through the plane of a triangle in which the edge lies.
+pub fn passes(plane: &Triangle, [apex, mate]: [&Point; 2]) -> bool {
+    side(plane, apex).is_across_from(side(plane, mate))
+}
+
+/// Return whether a triangle has no area, so that its points all lie on its neighbours' edges.
+pub fn has_no_area(triangle: &Triangle) -> bool {
+    let [a, b, c] = triangle;
+    a == b || b == c || c == a || is_flat(triangle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A corner of a small grid, by a number; there triangles touch in every way.
+    fn corner(number: u32, step: f64) -> Point {
+        [1, 3, 9].map(|place| f64::from(number / place % 3) * step)
+    }
+
+    /// Numbers that look random, below a bound.
+    fn numbers(bound: u32) -> impl Iterator<Item = u32> {
+        let next = |x: &u32| Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+        std::iter::successors(Some(7), next).map(move |x| (x >> 8) % bound)
+    }
+
+    #[test]
+    fn what_doubles_show_holds_exactly() {
+        // Thirds are rounded, so that triangles of one plane are not quite so.
+        for step in [1.0, 1.0 / 3.0, 0.1] {
+            let (mut corners, mut clear, mut met) = (numbers(27), 0, 0);
+            for _ in 0..20_000 {
+                let mut next = || [(); 3].map(|()| corner(corners.next().unwrap_or(0), step));
+                let (p, q) = (next(), next());
+                if has_no_area(&p) || has_no_area(&q) {
+                    continue;
+                }
+                let exact = meeting_by_sides(&p, &q);
+                assert_eq!(meeting(&p, &q), exact, "{p:?} {q:?}");
+                clear += usize::from(are_clear(&p, &q));
+                met += usize::from(exact != Meeting::Clear);
+            }
+            assert!(clear > 4000 && met > 4000, "{clear} {met}");
+        }
+    }
+
+    #[test]
+    fn mates_fold_over_where_they_overlap() {
+        for step in [1.0, 1.0 / 3.0] {
+            let (mut corners, mut folded, mut flat) = (numbers(27), 0, 0);
+            for _ in 0..20_000 {
+                let mut next = || corner(corners.next().unwrap_or(0), step);
+                let (a, b, c, d) = (next(), next(), next(), next());
+                let (p, q) = ([a, b, c], [b, a, d]);
+                if has_no_area(&p) || has_no_area(&q) {
+                    continue;
+                }
+                let exact = meeting_by_sides(&p, &q);
+                for (turned, edge) in [(q, 0), ([d, b, a], 1), ([a, d, b], 2)] {
+                    let folds = folds_over(&p, &turned, edge);
+                    assert_eq!(folds, exact == Meeting::Overlap, "{p:?} {turned:?}");
+                }
+                folded += usize::from(exact == Meeting::Overlap);
+                flat += usize::from(exact == Meeting::Clear);
+            }
+            assert!(folded > 100 && flat > 100, "{folded} {flat}");
+        }
+    }
+}

@@ -1,0 +1,335 @@
+//! Exact questions about points given in doubles.
+//!
+//! A filter in doubles settles what is clear; the rest is computed in integers: the coordinates
+//! times a power of two, in fixed width where their exponents lie close together.
+#![allow(
+    clippy::float_cmp,
+    reason = "equal coordinates are meant to the last bit"
+)]
+
+pub mod extent;
+pub mod hull;
+pub mod meeting;
+pub mod vector;
+
+use num_bigint::BigInt;
+
+use super::axes::each_axis;
+use super::side::Side;
+use crate::arith::{mantissa_and_exponent, Filtered, Int, Sign};
+
+/// A point of space in doubles; finite.
+pub type Point = [f64; 3];
+
+/// A triangle by its corners.
+pub type Triangle = [Point; 3];
+
+/// Half a unit in the last place of 1.
+const ROUNDING: f64 = f64::EPSILON / 2.0;
+
+/// Shewchuk 1997, "Adaptive precision floating-point arithmetic", the bound A of orient3d.
+const SIDE_BOUND: f64 = (7.0 + 56.0 * ROUNDING) * ROUNDING;
+
+/// The same paper, the bound A of orient2d.
+const TURN_BOUND: f64 = (3.0 + 16.0 * ROUNDING) * ROUNDING;
+
+/// Sums of products beyond these may have lost digits to underflow, or overflowed: the filter's
+/// bounds suppose that neither happened. A product of three differences below 1e100 that lost
+/// 2^-1074 in one step is off by 1e-223 at most, far less than the bound at 1e-200.
+const TRUSTED: std::ops::Range<f64> = 1e-200..1e200;
+
+/// Exponents this far apart still fit: 53 + 70 bits a coordinate, 124 a difference, 249 a minor of
+/// two rows, 375 a determinant of three.
+const SPAN: i32 = 70;
+
+/// The plane of a triangle, prepared for questions about sides.
+pub struct Facing<'a> {
+    triangle: &'a Triangle,
+    minors: Point,
+    sizes: Point,
+}
+
+impl<'a> Facing<'a> {
+    /// The plane through a triangle's corners.
+    #[inline]
+    pub fn of(triangle: &'a Triangle) -> Self {
+        let [a, b, c] = triangle;
+        let (u, v) = (difference(b, a), difference(c, a));
+        let products = |j: usize, k: usize| (u[j] * v[k], u[k] * v[j]);
+        let (x, y, z) = (products(1, 2), products(2, 0), products(0, 1));
+        let size = |(left, right): (f64, f64)| left.abs() + right.abs();
+        Self {
+            triangle,
+            minors: [x.0 - x.1, y.0 - y.1, z.0 - z.1],
+            sizes: [size(x), size(y), size(z)],
+        }
+    }
+
+    /// The side on which a point lies: `Plus` is where the normal by the right-hand rule points;
+    /// exact.
+    #[inline]
+    pub fn side(&self, d: &Point) -> Side {
+        let [a, b, c] = self.triangle;
+        self.clear_side(d).or_exact(|| exact_side([a, b, c, d]))
+    }
+
+    /// The side on which a point lies, where doubles settle it.
+    #[inline]
+    pub fn clear_side(&self, d: &Point) -> Filtered<Side> {
+        let [a, b, c] = self.triangle;
+        let level = |i: usize| a[i] == d[i] && b[i] == d[i] && c[i] == d[i];
+        if level(0) || level(1) || level(2) {
+            return Filtered::Certain(Side::On);
+        }
+        let (m, s) = (&self.minors, &self.sizes);
+        let w = difference(d, a);
+        let value = m[0] * w[0] + m[1] * w[1] + m[2] * w[2];
+        let size = s[0] * w[0].abs() + s[1] * w[1].abs() + s[2] * w[2].abs();
+        let clear = value.abs() > SIDE_BOUND * size && TRUSTED.contains(&size);
+        let side = if value > 0.0 { Side::Plus } else { Side::Minus };
+        Filtered::when(clear, side)
+    }
+
+    /// The axis along which the triangle is seen best.
+    pub fn main_axis(&self) -> usize {
+        let [x, y, z] = self.minors;
+        let (x, y, z) = (x.abs(), y.abs(), z.abs());
+        if x >= y && x >= z {
+            0
+        } else {
+            1 + usize::from(z > y)
+        }
+    }
+}
+
+#[inline]
+fn difference(p: &Point, q: &Point) -> Point {
+    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
+}
+
+/// The side of the plane through a triangle's corners on which a point lies; exact.
+///
+/// # Example
+/// ```
+/// use bspcsg::geometry::doubles::side;
+/// use bspcsg::geometry::side::Side;
+///
+/// let floor = [[0.0, 0.0, 0.1], [1.0, 0.0, 0.1], [0.0, 1.0, 0.1]];
+/// // The sum of these doubles is a little more than the double 0.3.
+/// assert_eq!(side(&floor, &[0.2, 0.2, 0.1 + 0.2 - 0.2]), Side::Plus);
+/// assert_eq!(side(&floor, &[0.2, 0.2, 0.1]), Side::On);
+/// ```
+#[inline]
+pub fn side(triangle: &Triangle, d: &Point) -> Side {
+    Facing::of(triangle).side(d)
+}
+
+fn exact_side(points: [&Point; 4]) -> Side {
+    let parts = points.map(|p| p.map(mantissa_and_exponent));
+    if let Some(grid) = on_common_grid(parts.as_flattened()) {
+        let from = |p: usize, i: usize| Int::<2>::from_i128(grid[3 * p + i] - grid[i]);
+        let [u, v, w] = [1, 2, 3].map(|p| each_axis(|i| from(p, i)));
+        let minor = |j: usize, k: usize| u[j].mul::<2, 4>(&v[k]) - u[k].mul::<2, 4>(&v[j]);
+        let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3).mul::<2, 6>(&w[i]);
+        Side::from_sign((term(0) + term(1) + term(2)).sign())
+    } else {
+        let grid = on_big_grid(parts.as_flattened());
+        let from = |p: usize, i: usize| &grid[3 * p + i] - &grid[i];
+        let [u, v, w] = [1, 2, 3].map(|p| each_axis(|i| from(p, i)));
+        let minor = |j: usize, k: usize| &u[j] * &v[k] - &u[k] * &v[j];
+        let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3) * &w[i];
+        Side::from_order((term(0) + term(1) + term(2)).cmp(&BigInt::ZERO))
+    }
+}
+
+/// Sign of the turn a → b → c in the plane, positive to the left; exact.
+#[inline]
+pub fn turn(points: [[f64; 2]; 3]) -> Sign {
+    clear_turn(points)
+        .or_else(|| turn_by_parts(points))
+        .or_exact(|| exact_turn(points))
+}
+
+/// Sign of the turn a → b → c in the plane, where doubles settle that there is one.
+#[inline]
+pub fn clear_turn([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
+    let left = (b[0] - a[0]) * (c[1] - a[1]);
+    let right = (b[1] - a[1]) * (c[0] - a[0]);
+    let (value, size) = (left - right, left.abs() + right.abs());
+    let clear = value.abs() > TURN_BOUND * size && TRUSTED.contains(&size);
+    Filtered::when(clear, Sign::of(value))
+}
+
+/// The turn where the differences of coordinates are doubles, so that two products decide: points
+/// of one plane along the axes, most of all.
+fn turn_by_parts([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
+    let [u, v] = [b, c].map(|p| [0, 1].map(|i| exact_difference(p[i], a[i])));
+    // Rounding keeps the order of products; equal ones differ by what was cut off.
+    let order = || {
+        let [left, right] = [exact_product(u[0]?, v[1]?)?, exact_product(u[1]?, v[0]?)?];
+        left.partial_cmp(&right)
+    };
+    match order() {
+        Some(order) => Filtered::Certain(Sign::from_order(order)),
+        None => Filtered::Doubtful,
+    }
+}
+
+/// a − b, if a double holds it (Knuth's sum of two).
+fn exact_difference(a: f64, b: f64) -> Option<f64> {
+    let difference = a - b;
+    let of_b = a - difference;
+    let lost = (a - (difference + of_b)) + (of_b - b);
+    (lost == 0.0).then_some(difference)
+}
+
+/// A product as its rounded value and the rest, which is a double (Veltkamp and Dekker).
+fn exact_product(a: f64, b: f64) -> Option<(f64, f64)> {
+    let product = a * b;
+    if product == 0.0 {
+        return (a == 0.0 || b == 0.0).then_some((0.0, 0.0));
+    }
+    if [a, b, product].iter().any(|x| !TRUSTED.contains(&x.abs())) {
+        return None;
+    }
+    let ([a, a_tail], [b, b_tail]) = (halves(a), halves(b));
+    let rest = a_tail * b_tail - (((product - a * b) - a_tail * b) - a * b_tail);
+    Some((product, rest))
+}
+
+/// The leading 26 bits of a double, and the others.
+fn halves(x: f64) -> [f64; 2] {
+    const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
+    let scaled = SPLITTER * x;
+    let leading = scaled - (scaled - x);
+    [leading, x - leading]
+}
+
+fn exact_turn(points: [[f64; 2]; 3]) -> Sign {
+    let parts = points.map(|p| p.map(mantissa_and_exponent));
+    if let Some(grid) = on_common_grid(parts.as_flattened()) {
+        let from = |p: usize, i: usize| Int::<2>::from_i128(grid[2 * p + i] - grid[i]);
+        let [u, v] = [1, 2].map(|p| [from(p, 0), from(p, 1)]);
+        (u[0].mul::<2, 4>(&v[1]) - u[1].mul::<2, 4>(&v[0])).sign()
+    } else {
+        let grid = on_big_grid(parts.as_flattened());
+        let from = |p: usize, i: usize| &grid[2 * p + i] - &grid[i];
+        let [u, v] = [1, 2].map(|p| [from(p, 0), from(p, 1)]);
+        Sign::from_order((&u[0] * &v[1]).cmp(&(&u[1] * &v[0])))
+    }
+}
+
+/// The numbers as multiples of the least power of two among them, if they fit.
+fn on_common_grid(parts: &[(i64, i32)]) -> Option<[i128; 12]> {
+    let exponents = || parts.iter().filter(|p| p.0 != 0).map(|p| p.1);
+    let (least, most) = (
+        exponents().min().unwrap_or(0),
+        exponents().max().unwrap_or(0),
+    );
+    if most - least > SPAN {
+        return None;
+    }
+    let mut grid = [0; 12];
+    for (place, (mantissa, exponent)) in grid.iter_mut().zip(parts) {
+        if *mantissa != 0 {
+            *place = i128::from(*mantissa) << (exponent - least);
+        }
+    }
+    Some(grid)
+}
+
+fn on_big_grid(parts: &[(i64, i32)]) -> Vec<BigInt> {
+    let exponents = parts.iter().filter(|p| p.0 != 0).map(|p| p.1);
+    let least = exponents.min().unwrap_or(0);
+    let scaled = |(m, e): &(i64, i32)| BigInt::from(*m) << (e - least).max(0).unsigned_abs();
+    parts.iter().map(scaled).collect()
+}
+
+/// Return whether the corners of a triangle lie on one line, or in one place; exact.
+pub fn is_flat(triangle: &Triangle) -> bool {
+    (0..3).all(|axis| turn(seen_along(triangle, axis)) == Sign::Zero)
+}
+
+/// A triangle as seen against the direction of an axis.
+#[inline]
+pub fn seen_along([a, b, c]: &Triangle, axis: usize) -> [[f64; 2]; 3] {
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    [[a[u], a[v]], [b[u], b[v]], [c[u], c[v]]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_are_exact_in_the_last_place() {
+        let step = f64::EPSILON;
+        let (a, b) = ([0.0, 0.0], [1.0 + step, 1.0 + step]);
+        assert_eq!(turn([a, b, [2.0, 2.0]]), Sign::Zero);
+        assert_eq!(turn([a, b, [2.0, 2.0 + 2.0 * step]]), Sign::Positive);
+        assert_eq!(turn([a, b, [2.0, 2.0 - step]]), Sign::Negative);
+        assert_eq!(turn([a, [1e-300, 1e-300], [1e300, 1e300]]), Sign::Zero);
+        assert_eq!(
+            turn([[-1.0, 0.5], [0.0, 0.5], [0.5, 0.5 + step]]),
+            Sign::Positive
+        );
+    }
+
+    #[test]
+    fn turns_by_parts_agree_with_integers() {
+        let mut decided = 0;
+        for seed in 0..4000u32 {
+            let next = |k: u32| f64::from((seed * 8 + k).wrapping_mul(2_654_435_761) >> 8);
+            let scale = [1.0, 0.1, 1e-90, 1e80][seed as usize % 4];
+            let [a, u] = [[next(0), next(1)], [next(2), next(3)]].map(|p| p.map(|x| x * scale));
+            let along = |t: f64| [a[0] + t * u[0], a[1] + t * u[1]];
+            let points = [a, along(2.0), along(f64::from(seed % 3) - 0.5)];
+            if let Filtered::Certain(sign) = turn_by_parts(points) {
+                assert_eq!(sign, exact_turn(points), "seed {seed}");
+                decided += 1;
+            }
+        }
+        assert!(decided > 1000, "{decided}");
+    }
+
+    #[test]
+    fn sides_are_exact_in_the_last_place() {
+        let step = f64::EPSILON;
+        let plane = [[0.0, 0.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
+        assert_eq!(side(&plane, &[0.25, 0.5, 0.75]), Side::On);
+        assert_eq!(side(&plane, &[0.5, 0.25, 0.75 + step]), Side::Plus);
+        assert_eq!(side(&plane, &[0.5, 0.25, 0.75 - step]), Side::Minus);
+        let far = [[0.0, 0.0, 0.0], [1e300, 0.0, 1e300], [0.0, 1e-300, 1e-300]];
+        assert_eq!(side(&far, &[1.0, 1.0, 2.0]), Side::On);
+        assert_eq!(side(&far, &[1.0, 1.0, 2.0 + 2.0 * step]), Side::Plus);
+    }
+
+    #[test]
+    fn integers_of_fixed_width_and_big_ones_agree() {
+        // Near-coplanar points, once within the span of the fixed width and once beyond.
+        for seed in 0..2000u32 {
+            let next = |k: u32| f64::from((seed * 12 + k).wrapping_mul(2_654_435_761)) / 4e9;
+            let mut points = [0, 1, 2, 3].map(|p| [0, 1, 2].map(|i| next(3 * p + i) + 1.0));
+            points[3] = each_axis(|i| (points[0][i] + points[1][i]) * 0.5);
+            let parts = points.map(|p| p.map(mantissa_and_exponent));
+            let grid = on_big_grid(parts.as_flattened());
+            let from = |p: usize, i: usize| &grid[3 * p + i] - &grid[i];
+            let minor = |j: usize, k: usize| from(1, j) * from(2, k) - from(1, k) * from(2, j);
+            let term = |i: usize| minor((i + 1) % 3, (i + 2) % 3) * from(3, i);
+            let [a, b, c, d] = &points;
+            let expected = Side::from_order((term(0) + term(1) + term(2)).cmp(&BigInt::ZERO));
+            assert_eq!(side(&[*a, *b, *c], d), expected, "seed {seed}");
+        }
+    }
+
+    #[test]
+    fn triangles_on_a_line_are_flat() {
+        assert!(is_flat(&[[0.0; 3], [1.0, 1.0, 1.0], [3.0, 3.0, 3.0]]));
+        assert!(is_flat(&[[1.0; 3], [1.0; 3], [3.0, 1.0, 3.0]]));
+        assert!(!is_flat(&[
+            [0.0; 3],
+            [1.0, 1.0, 1.0],
+            [3.0, 3.0, 3.0 + 1e-15]
+        ]));
+    }
+}

@@ -1,0 +1,37 @@
+//! Vectors in doubles: differences and products, rounded.
+
+use super::{Point, Triangle};
+
+/// The vector from the second point to the first.
+#[inline]
+pub fn less(p: &Point, q: &Point) -> Point {
+    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
+}
+
+/// The scalar product.
+#[inline]
+pub fn dot(u: &Point, v: &Point) -> f64 {
+    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+}
+
+/// The vector across two, as long as the parallelogram between them is large.
+///
+/// # Example
+/// ```
+/// use bspcsg::geometry::doubles::vector::{cross, dot};
+///
+/// let (x, y) = ([2.0, 0.0, 0.0], [0.0, 3.0, 0.0]);
+/// assert_eq!(cross(&x, &y), [0.0, 0.0, 6.0]);
+/// assert_eq!(dot(&cross(&x, &y), &x), 0.0);
+/// ```
+#[inline]
+pub fn cross(u: &Point, v: &Point) -> Point {
+    let minor = |j: usize, k: usize| u[j] * v[k] - u[k] * v[j];
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
+
+/// The normal of a triangle, as long as twice its area.
+#[inline]
+pub fn normal([a, b, c]: &Triangle) -> Point {
+    cross(&less(b, a), &less(c, a))
+}

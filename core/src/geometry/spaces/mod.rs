@@ -1,0 +1,9 @@
+//! One to three dimensions behind one trait, and the motions that keep their lattices.
+
+pub mod affine;
+pub mod axis;
+pub mod dim1;
+pub mod dim2;
+pub mod dim3;
+pub mod motion;
+pub mod space;

@@ -1,0 +1,170 @@
+//! The few questions a partition tree asks of a dimension.
+//!
+//! Everything in `tree::partition` and `merge` is written against [`Space`] and nothing else, so
+//! that a law tested exhaustively on the line holds for the plane and for space as far as the tree
+//! goes. Invariant: a fragment never is empty and never is lower-dimensional than its hyperplane.
+//!
+//! # Example
+//! ```
+//! use bspcsg::geometry::spaces::dim1::{Dim1, Direction, Point1};
+//! use bspcsg::geometry::spaces::dim2::{Dim2, Line2, Segment2};
+//! use bspcsg::geometry::side::{Side, Split};
+//! use bspcsg::geometry::spaces::space::Space;
+//!
+//! // On the line a hyperplane is a point, with the inside on one side of it.
+//! assert_eq!(Dim1::side(&Point1::new(3, Direction::Below), &2), Side::Minus);
+//! // In the plane it is a line, and cuts segments.
+//! let segment = Segment2::between([0, 0], [4, 0]).expect("two points");
+//! let line = Line2::through([1, 0], [1, 1]).expect("two points");
+//! assert!(matches!(Dim2::split(&segment, &line), Split::Both { .. }));
+//! ```
+
+use std::fmt::Debug;
+use std::hash::Hash;
+
+use crate::geometry::side::{Half, Orientation, Side, Split};
+
+/// A space of fixed dimension, as a partition tree sees it.
+///
+/// Four exact questions (`side`, `coincide`, `split`, `span`) and three ways to take a fragment
+/// apart (`hyperplane`, `reversed`, `rims`). The minus side of a hyperplane is its inside.
+pub trait Space: Copy + Debug + Send + Sync + 'static {
+    /// The dimension.
+    const DIM: usize;
+
+    /// A point whose side can be asked for.
+    type Point: Clone + Debug + Send + Sync;
+
+    /// An oriented flat of one dimension less.
+    type Hyperplane: Clone + Eq + Hash + Debug + Send + Sync;
+
+    /// A convex piece of one hyperplane: a point (1D), a segment (2D), a convex polygon (3D).
+    type Fragment: Clone + Debug + Send + Sync;
+
+    /// The convex body in which everything takes place; its border bounds no set.
+    type Frame: Clone + Debug + Send + Sync;
+
+    /// The side of `cut` on which a point lies.
+    fn side(cut: &Self::Hyperplane, point: &Self::Point) -> Side;
+
+    /// The orientation of `a` relative to `b` if they are the same set of points.
+    fn coincide(a: &Self::Hyperplane, b: &Self::Hyperplane) -> Option<Orientation>;
+
+    /// Split `piece` by `cut`: return the side it lies on, or its two parts if it crosses.
+    fn split(piece: &Self::Fragment, cut: &Self::Hyperplane) -> Split<Self::Fragment>;
+
+    /// The part of `cut` inside `frame`, if that has a relative interior in the frame's interior.
+    fn span(cut: &Self::Hyperplane, frame: &Self::Frame) -> Option<Self::Fragment>;
+
+    /// The hyperplane in which a fragment lies, oriented as the fragment is.
+    fn hyperplane(piece: &Self::Fragment) -> &Self::Hyperplane;
+
+    /// The same piece in the hyperplane with its sides exchanged.
+    fn reversed(piece: &Self::Fragment) -> Self::Fragment;
+
+    /// Hyperplanes that bound a fragment within its own, the fragment on their minus sides.
+    ///
+    /// Coplanar fragments can only be compared by these: `split` by the common hyperplane says
+    /// nothing about them.
+    fn rims(piece: &Self::Fragment) -> Vec<Self::Hyperplane>;
+}
+
+/// The part of `piece` on one side of `cut`, if it has a relative interior.
+pub fn clip<S: Space>(piece: S::Fragment, cut: &S::Hyperplane, half: Half) -> Option<S::Fragment> {
+    match (S::split(&piece, cut), half) {
+        (Split::Minus, Half::Minus) | (Split::Plus, Half::Plus) => Some(piece),
+        (Split::Both { minus, .. }, Half::Minus) => Some(minus),
+        (Split::Both { plus, .. }, Half::Plus) => Some(plus),
+        _ => None,
+    }
+}
+
+/// Splits `piece` by the outline of a coplanar `mask` into its part inside and the parts outside.
+///
+/// # Order
+/// The outside parts come in the order of the mask's rims.
+pub fn overlay<S: Space>(
+    piece: S::Fragment,
+    mask: &S::Fragment,
+) -> (Option<S::Fragment>, Vec<S::Fragment>) {
+    let mut outside = Vec::new();
+    let mut rest = piece;
+    for rim in S::rims(mask) {
+        match S::split(&rest, &rim) {
+            Split::Minus => {}
+            Split::Both { minus, plus } => {
+                outside.push(plus);
+                rest = minus;
+            }
+            // A rim's hyperplane is never the mask's own, so nothing coplanar is left to keep.
+            Split::Plus | Split::Coplanar(_) => return (None, vec_with(outside, rest)),
+        }
+    }
+    (Some(rest), outside)
+}
+
+fn vec_with<T>(mut list: Vec<T>, last: T) -> Vec<T> {
+    list.push(last);
+    list
+}
+
+/// The region of a node: a frame, and the half-spaces cut from it on the way from the root.
+#[derive(Clone, Debug)]
+pub struct Region<S: Space> {
+    frame: S::Frame,
+    bounds: Vec<(S::Hyperplane, Half)>,
+}
+
+impl<S: Space> Region<S> {
+    /// The whole frame: the region of a root.
+    pub fn new(frame: S::Frame) -> Self {
+        let bounds = Vec::new();
+        Self { frame, bounds }
+    }
+
+    /// The number of half-spaces.
+    pub fn depth(&self) -> usize {
+        self.bounds.len()
+    }
+
+    /// Steps down to one side of a cut.
+    pub fn push(&mut self, cut: S::Hyperplane, half: Half) {
+        self.bounds.push((cut, half));
+    }
+
+    /// Steps back up to the region at `depth` half-spaces.
+    pub fn truncate(&mut self, depth: usize) {
+        self.bounds.truncate(depth);
+    }
+
+    /// The sub-hyperplane of `cut`: its part inside this region, if the cut crosses the interior.
+    ///
+    /// # Cost
+    /// One split per half-space.
+    pub fn span(&self, cut: &S::Hyperplane) -> Option<S::Fragment> {
+        self.clip(S::span(cut, &self.frame)?)
+    }
+
+    /// The faces of this region, itself on their minus sides; the frame's border is none.
+    pub fn faces(&self) -> Vec<S::Fragment> {
+        let face = |i: usize| {
+            let (cut, half) = &self.bounds[i];
+            let others = self.bounds.iter().enumerate().filter(|(j, _)| *j != i);
+            let whole = S::span(cut, &self.frame)?;
+            let mut sides = others.map(|(_, (other, side))| (other, *side));
+            let face = sides.try_fold(whole, |rest, (other, side)| clip::<S>(rest, other, side))?;
+            Some(match half {
+                Half::Minus => face,
+                Half::Plus => S::reversed(&face),
+            })
+        };
+        (0..self.bounds.len()).filter_map(face).collect()
+    }
+
+    /// The part of a fragment inside this region's half-spaces.
+    pub fn clip(&self, piece: S::Fragment) -> Option<S::Fragment> {
+        self.bounds
+            .iter()
+            .try_fold(piece, |rest, (cut, half)| clip::<S>(rest, cut, *half))
+    }
+}

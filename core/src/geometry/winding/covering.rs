@@ -1,0 +1,253 @@
+//! Winding numbers of directed outlines in the plane: at most one, or more.
+//!
+//! Triangles that all turn to the left cover a point as often as the edges that only one of them has
+//! wind around it. If that is at most once, no two of them overlap, at the cost of their outline
+//! instead of all pairs.
+
+use std::cmp::Ordering;
+
+use crate::arith::Sign;
+use crate::geometry::doubles::turn;
+use crate::interrupt::poll;
+
+/// A point of the plane in doubles; finite.
+pub type Place = [f64; 2];
+
+/// An edge as a sweep to the right sees it, vertical ones as running upwards.
+#[derive(Clone, Copy, Debug)]
+struct Running {
+    left: Place,
+    right: Place,
+    /// True if the edge runs this way, so that the points above it are wound around once more.
+    forward: bool,
+}
+
+/// Return whether closed outlines wind around each point of the plane once or not at all.
+///
+/// Errs on no: where outlines touch each other elsewhere than in ends of their edges.
+///
+/// # Source
+/// Shamos, Hoey 1976, "Geometric intersection problems": a sweep that ends at the first crossing.
+///
+/// # Cost
+/// n log n comparisons for n edges, and as many moves as edges lie above each other.
+///
+/// # Example
+/// ```
+/// use bspcsg::geometry::winding::covering::winds_at_most_once;
+///
+/// let around = |p: [[f64; 2]; 3]| [[p[0], p[1]], [p[1], p[2]], [p[2], p[0]]];
+/// let low = around([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+/// let beside = around([[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+/// let above = around([[0.2, 0.2], [1.2, 0.2], [0.2, 1.2]]);
+/// assert!(winds_at_most_once(&low));
+/// assert!(!winds_at_most_once(&[low, above].concat()));
+/// // The edges in between run both ways, and overlap: leave them out.
+/// assert!(!winds_at_most_once(&[low, beside].concat()));
+/// assert!(winds_at_most_once(&[low[0], low[2], beside[0], beside[1]]));
+/// ```
+pub fn winds_at_most_once(edges: &[[Place; 2]]) -> bool {
+    let edges: Vec<Running> = edges.iter().map(Running::of).collect();
+    let mut starts: Vec<u32> = (0u32..).zip(&edges).map(|(k, _)| k).collect();
+    starts.sort_unstable_by(|a, b| {
+        let [a, b] = [a, b].map(|k| &edges[*k as usize]);
+        compare(&a.left, &b.left)
+    });
+    let mut stops: Vec<Place> = edges.iter().flat_map(|e| [e.left, e.right]).collect();
+    stops.sort_unstable_by(compare);
+    stops.dedup_by(|a, b| is_same(a, b));
+    let mut sweep = Sweep {
+        edges: &edges,
+        starts: &starts,
+        above: Vec::new(),
+    };
+    stops.iter().all(|stop| sweep.passes(stop))
+}
+
+impl Running {
+    fn of([from, to]: &[Place; 2]) -> Self {
+        let forward = compare(from, to) == Ordering::Less;
+        let (left, right) = if forward { (*from, *to) } else { (*to, *from) };
+        Self {
+            left,
+            right,
+            forward,
+        }
+    }
+
+    /// The side on which a point lies: positive above.
+    fn turn_to(&self, p: &Place) -> Sign {
+        turn([self.left, self.right, *p])
+    }
+}
+
+/// A sweep on its way.
+struct Sweep<'a> {
+    edges: &'a [Running],
+    /// The edges that are still to come, by their left ends.
+    starts: &'a [u32],
+    /// The edges across the line of the sweep, upwards.
+    above: Vec<u32>,
+}
+
+impl Sweep<'_> {
+    fn edge(&self, number: u32) -> &Running {
+        &self.edges[number as usize]
+    }
+
+    /// Goes over the next stop; returns whether all is well there, and up to the next one.
+    fn passes(&mut self, stop: &Place) -> bool {
+        poll();
+        let first = self
+            .above
+            .partition_point(|k| self.edge(*k).turn_to(stop) == Sign::Positive);
+        let through = self.above[first..].iter();
+        let count = through
+            .take_while(|k| self.edge(**k).turn_to(stop) == Sign::Zero)
+            .count();
+        let ending = &self.above[first..first + count];
+        if ending.iter().any(|k| !is_same(&self.edge(*k).right, stop)) {
+            return false;
+        }
+        let beginning = self.beginning_at(stop);
+        let mut beginning = beginning.to_vec();
+        beginning.sort_unstable_by(|a, b| self.order(*a, *b));
+        let is_apart = |w: &[u32]| self.order(w[0], w[1]) == Ordering::Less;
+        if !beginning.windows(2).all(is_apart) {
+            return false;
+        }
+        let after = first + beginning.len();
+        self.above.splice(first..first + count, beginning);
+        self.takes_turns(first, after, count) && self.stays_apart(first, after)
+    }
+
+    /// Takes the edges that begin at a stop.
+    fn beginning_at(&mut self, stop: &Place) -> &[u32] {
+        let begins = |k: &u32| is_same(&self.edges[*k as usize].left, stop);
+        let count = self.starts.iter().take_while(|k| begins(k)).count();
+        let (beginning, later) = self.starts.split_at(count);
+        self.starts = later;
+        beginning
+    }
+
+    /// The order upwards of two edges with the same left end; equal if they overlap.
+    fn order(&self, a: u32, b: u32) -> Ordering {
+        let turn = self.edge(a).turn_to(&self.edge(b).right);
+        turn.order().reverse()
+    }
+
+    /// Return whether edges in these places lie between points that are wound around once and not at
+    /// all in turns, as do those above: as many begin as end, but for an even number.
+    fn takes_turns(&self, first: usize, after: usize, ended: usize) -> bool {
+        let in_turn = |at: usize| self.edge(self.above[at]).forward == at.is_multiple_of(2);
+        (ended + after - first).is_multiple_of(2) && (first..after).all(in_turn)
+    }
+
+    /// Return whether new neighbours do not meet further on, but in a common end.
+    fn stays_apart(&self, first: usize, after: usize) -> bool {
+        let below = first.checked_sub(1).is_none_or(|k| self.is_below(k));
+        below && (first == after || self.is_below(after - 1))
+    }
+
+    /// Return whether the edge in a place stays below the next one.
+    fn is_below(&self, at: usize) -> bool {
+        let Some(pair) = self.above.get(at..at + 2) else {
+            return true;
+        };
+        let [a, b] = [pair[0], pair[1]].map(|k| self.edge(k));
+        match compare(&a.right, &b.right) {
+            Ordering::Equal => true,
+            Ordering::Less => b.turn_to(&a.right) == Sign::Negative,
+            Ordering::Greater => a.turn_to(&b.right) == Sign::Positive,
+        }
+    }
+}
+
+/// The order in which a sweep to the right stops at points, of those above each other upwards.
+fn compare(a: &Place, b: &Place) -> Ordering {
+    let order = |i: usize| a[i].partial_cmp(&b[i]).unwrap_or(Ordering::Equal);
+    order(0).then_with(|| order(1))
+}
+
+fn is_same(a: &Place, b: &Place) -> bool {
+    compare(a, b) == Ordering::Equal
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn outline(corners: &[[i32; 2]]) -> Vec<[Place; 2]> {
+        let place = |k: usize| corners[k % corners.len()].map(f64::from);
+        (0..corners.len())
+            .map(|k| [place(k), place(k + 1)])
+            .collect()
+    }
+
+    #[test]
+    fn a_ring_winds_once_and_two_rings_in_each_other_do_not() {
+        let outer = outline(&[[0, 0], [9, 0], [9, 9], [0, 9]]);
+        let hole = outline(&[[3, 3], [3, 6], [6, 6], [6, 3]]);
+        let inner = outline(&[[3, 3], [6, 3], [6, 6], [3, 6]]);
+        assert!(winds_at_most_once(&[outer.clone(), hole.clone()].concat()));
+        assert!(!winds_at_most_once(&[outer.clone(), inner].concat()));
+        assert!(!winds_at_most_once(&hole));
+        assert!(winds_at_most_once(&outer));
+    }
+
+    #[test]
+    fn corners_may_touch_and_edges_may_not() {
+        let left = outline(&[[0, 0], [4, 0], [4, 4], [0, 4]]);
+        let corner = outline(&[[4, 4], [8, 4], [8, 8], [4, 8]]);
+        let edge = outline(&[[4, 1], [8, 1], [8, 3], [4, 3]]);
+        assert!(winds_at_most_once(&[left.clone(), corner].concat()));
+        assert!(!winds_at_most_once(&[left, edge].concat()));
+    }
+
+    /// The winding number of the edges around a point on no edge.
+    fn winding(edges: &[[Place; 2]], p: Place) -> i32 {
+        let crossed = |[a, b]: &[Place; 2]| {
+            let up = a[1] <= p[1] && p[1] < b[1];
+            let down = b[1] <= p[1] && p[1] < a[1];
+            let left = turn([*a, *b, p]);
+            i32::from(up && left == Sign::Positive) - i32::from(down && left == Sign::Negative)
+        };
+        edges.iter().map(crossed).sum()
+    }
+
+    proptest! {
+        /// After a yes each point of a fine grid is wound around once or not at all.
+        #[test]
+        fn yes_is_right(corners in prop::collection::vec(prop::array::uniform2(0..6i32), 3..9)) {
+            let edges = outline(&corners);
+            let edges: Vec<_> = edges.into_iter().filter(|e| !is_same(&e[0], &e[1])).collect();
+            if winds_at_most_once(&edges) {
+                for k in 0..70 * 70 {
+                    let p = [k / 70, k % 70].map(|i| f64::from(i) / 11.0 - 0.2037);
+                    let number = winding(&edges, p);
+                    prop_assert!(number == 0 || number == 1, "{number} around {p:?}");
+                }
+            }
+        }
+
+        /// A star around a point winds once: the sweep says so whatever way its corners are given.
+        #[test]
+        fn stars_wind_once(radii in prop::collection::vec(1..40i32, 3..40), turned in 0..9i32) {
+            let count = f64::from(u32::try_from(radii.len()).unwrap());
+            let edges: Vec<[Place; 2]> = {
+                let place = |k: usize| {
+                    let turns = f64::from(u32::try_from(k % radii.len()).unwrap()) / count;
+                    let angle = std::f64::consts::TAU * turns + f64::from(turned);
+                    let radius = f64::from(radii[k % radii.len()]);
+                    [radius * angle.cos(), radius * angle.sin()]
+                };
+                (0..radii.len()).map(|k| [place(k), place(k + 1)]).collect()
+            };
+            prop_assert!(winds_at_most_once(&edges));
+            let back: Vec<_> = edges.iter().map(|[a, b]| [*b, *a]).collect();
+            prop_assert!(!winds_at_most_once(&back));
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! The input that a set is made from: names, rows of doubles, hyperplanes.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::spaces::axis::AxisSpace;
+use crate::geometry::spaces::dim1::{Dim1, Direction, Point1};
+use crate::geometry::spaces::dim2::{Dim2, Segment2};
+use crate::geometry::spaces::dim3::Dim3;
+use crate::geometry::spaces::motion::Motion;
+use crate::merge::plane::Outlines;
+use crate::merge::SetOp;
+use crate::mesh::grid::Pitch;
+use crate::mesh::import::import;
+use crate::python::hyperplanes::{shape, Row};
+use crate::query::region::solid;
+use crate::tree::partition::{enclosed, Facet, PartitionTree, PivotPolicy, Plan};
+
+/// A rule by which winding numbers are inside.
+pub type Rule = fn(i32) -> bool;
+
+/// The choice of the facets' hyperplanes, and whether axis-parallel cuts come above them.
+pub type Policy = (PivotPolicy, bool);
+
+/// The input that a set is built from.
+#[derive(Debug)]
+pub struct Input {
+    /// Points with orientations (1D), ends of segments (2D), or vertices (3D).
+    pub facets: Vec<Vec<f64>>,
+    /// Triangles, in space.
+    pub faces: Vec<[i64; 3]>,
+    /// Hyperplanes to be cut along first.
+    pub cuts: Vec<Row>,
+    /// The rule by which winding numbers are inside.
+    pub rule: Rule,
+    /// The policy by which the rest is divided.
+    pub policy: Policy,
+}
+
+/// The rule of this name.
+pub fn rule(name: &str) -> Result<Rule> {
+    match name {
+        "positive" => Ok(|number| number > 0),
+        "nonzero" => Ok(|number| number != 0),
+        "even-odd" => Ok(|number| number % 2 != 0),
+        _ => Err(unknown(
+            name,
+            "a winding rule",
+            "positive, nonzero or even-odd",
+        )),
+    }
+}
+
+/// The policy of this name.
+pub fn policy(name: &str, seed: u64) -> Result<Policy> {
+    match name {
+        "balanced" => Ok((PivotPolicy::Random(seed), true)),
+        "random" => Ok((PivotPolicy::Random(seed), false)),
+        "first" => Ok((PivotPolicy::First, false)),
+        "fewest-splits" => Ok((PivotPolicy::FewestSplits(16), false)),
+        _ => {
+            let known = "balanced, random, first or fewest-splits";
+            Err(unknown(name, "a policy", known))
+        }
+    }
+}
+
+/// The set operation of this name.
+pub fn operation(name: &str) -> Result<SetOp> {
+    match name {
+        "union" => Ok(SetOp::Union),
+        "intersection" => Ok(SetOp::Intersection),
+        "difference" => Ok(SetOp::Difference),
+        "xor" => Ok(SetOp::SymmetricDifference),
+        _ => {
+            let known = "union, intersection, difference or xor";
+            Err(unknown(name, "an operation", known))
+        }
+    }
+}
+
+fn unknown(name: &str, what: &str, known: &str) -> Error {
+    shape(format!("'{name}' is not {what}; use {known}"))
+}
+
+/// Refuses operands of different pitch.
+pub fn same_lattice(a: Pitch, b: Pitch) -> Result<()> {
+    if a == b {
+        return Ok(());
+    }
+    let text = format!(
+        "the sets live on lattices of pitch 10^{} and 10^{}",
+        a.exponent(),
+        b.exponent()
+    );
+    Err(Error::new(ErrorKind::PitchMismatch, text))
+}
+
+/// The map of the lattice that signed axis numbers from 1, a shift and a scale describe.
+pub fn lattice_map(dimension: usize, axes: &[i64], shift: &[i64], scale: i64) -> Result<Motion> {
+    let found = Motion::of_axes(axes, shift, scale).filter(|_| axes.len() == dimension);
+    found.ok_or_else(|| shape("the axes, shift and scale are no map of the lattice"))
+}
+
+/// Rows made into something, the first failure if there is one.
+pub fn all<N, T>(rows: &[Vec<N>], make: impl Fn(&[N]) -> Result<T>) -> Result<Vec<T>> {
+    rows.iter().map(|row| make(row)).collect()
+}
+
+fn numbers<const N: usize>(row: &[f64]) -> Result<[f64; N]> {
+    row.try_into()
+        .map_err(|_| shape(format!("a row must have {N} numbers, not {}", row.len())))
+}
+
+/// The set inside facets.
+pub fn inside_of<S: AxisSpace>(
+    facets: Vec<Facet<S>>,
+    input: &Input,
+    cuts: &[S::Hyperplane],
+) -> Result<PartitionTree<S>> {
+    let (policy, axis_cuts) = input.policy;
+    let plan = Plan {
+        cuts,
+        axis_cuts,
+        policy,
+    };
+    enclosed(facets, 0, input.rule, &plan)
+}
+
+/// Facets with the numbers of their rows; rows without a facet are left out.
+fn facets<S: AxisSpace>(
+    input: &Input,
+    make: impl Fn(&[f64]) -> Result<Option<S::Fragment>>,
+) -> Result<Vec<Facet<S>>> {
+    let mut facets = Vec::new();
+    for (source, row) in (0..).zip(&input.facets) {
+        let fragment = make(row).map_err(|e| Error::at(e.kind(), vec![source], e.message()))?;
+        facets.extend(fragment.map(|fragment| Facet { fragment, source }));
+    }
+    Ok(facets)
+}
+
+/// Rows (x, ±1): +1 where the inside begins, −1 where it ends.
+pub fn points(input: &Input, pitch: Pitch) -> Result<Vec<Facet<Dim1>>> {
+    facets(input, |row| {
+        let [x, sign] = numbers(row)?;
+        let inside = if sign > 0.0 {
+            Direction::Above
+        } else {
+            Direction::Below
+        };
+        Ok(Some(Point1::new(pitch.snap(x)?, inside)))
+    })
+}
+
+/// Rows (x, y, x', y'), the inside on the left; those the lattice shrinks to a point are left out.
+pub fn segments(input: &Input, pitch: Pitch) -> Result<Vec<Facet<Dim2>>> {
+    facets(input, |row| {
+        let [a, b, c, d] = numbers(row)?;
+        let from = [pitch.snap(a)?, pitch.snap(b)?];
+        let to = [pitch.snap(c)?, pitch.snap(d)?];
+        Ok(Segment2::between(from, to))
+    })
+}
+
+/// Rows (x, y, x', y') of segments that close, the inside on the left.
+pub fn outlines(rows: &[[f64; 4]], pitch: Pitch) -> Result<Outlines> {
+    let mut outlines = Outlines::default();
+    for (source, row) in (0..).zip(rows) {
+        let [a, b, c, d] = row.map(|x| pitch.snap(x));
+        let push = || outlines.push([a?, b?], [c?, d?], 1);
+        push().map_err(|e| Error::at(e.kind(), vec![source], e.message()))?;
+    }
+    Ok(outlines)
+}
+
+/// The faces of a closed mesh.
+pub fn triangles(input: &Input, pitch: Pitch) -> Result<Vec<Facet<Dim3>>> {
+    let vertices = all(&input.facets, numbers)?;
+    solid::facets(&import(&vertices, &input.faces, Some(pitch))?)
+}

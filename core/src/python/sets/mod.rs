@@ -1,0 +1,10 @@
+//! The class `ObjectTree`: sets of points of any dimension.
+
+pub mod each;
+pub mod held;
+pub mod input;
+pub mod objects;
+pub mod pieces;
+pub mod queries;
+pub mod store;
+pub mod traces;
