@@ -92,11 +92,13 @@ def python_lines(path: Path) -> Lines:
     return Counter(code=len(full - said), comments=len(full & said), examples=examples)
 
 
+#: Where the tests in a file begin; tests in a file of their own are only named.
+_TESTS = r"#\[cfg\(test\)\]\s*(?=(?:pub(?:\([\w: ]+\))? )?mod \w+ \{)"
+
+
 def rust_lines(path: Path) -> Lines:
     """Count the lines of a file, with the tests at its end apart."""
-    text, *tests = re.split(
-        r"#\[cfg\(test\)\]\s*mod ", path.read_text(encoding="utf-8"), maxsplit=1
-    )
+    text, *tests = re.split(_TESTS, path.read_text(encoding="utf-8"), maxsplit=1)
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     said = [line for line in lines if line.startswith("//")]
     fences = re.findall(r"^\s*//[/!] ```(\w*)$", text, re.MULTILINE)

@@ -21,6 +21,12 @@ def test_tests_of_a_rust_file_are_counted_apart(tmp_path: Path) -> None:
     assert rust_lines(file) == {"code": 1, "comments": 7, "tests": 4, "examples": 1}
 
 
+def test_what_follows_the_name_of_a_file_of_tests_is_code(tmp_path: Path) -> None:
+    file = tmp_path / "one.rs"
+    file.write_text("//! One.\n\n#[cfg(test)]\nmod tests;\n\n/// Do.\nfn f() {}\n")
+    assert rust_lines(file) == {"code": 3, "comments": 2, "tests": 0, "examples": 0}
+
+
 def test_files_for_tests_alone_are_tests(tmp_path: Path) -> None:
     (tmp_path / "mod.rs").write_text("pub mod one;\n#[cfg(test)]\npub(crate) mod scenes;\n")
     for name in ("one.rs", "scenes.rs"):
