@@ -11,9 +11,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from bspcsg.cli.pages.written.live import LiveServer, Site, stamp
 
 import bspcsg as b
+from bspcsg.cli.pages.live import LiveServer, Site, stamp
 from support.cli import Capture, process, put, ran
 from support.shapes import cuboid
 

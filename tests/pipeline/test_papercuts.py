@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import bspcsg as b
-from bspcsg.cli import status
+from bspcsg.cli.console import status
 from bspcsg.cli.console.tables import table_text
 from support.cli import Capture, finished, process, put, ran
 from support.shapes import cuboid, icosphere

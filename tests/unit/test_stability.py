@@ -12,7 +12,8 @@ import bspcsg as b
 from bspcsg.bench import record as bench_record
 from bspcsg.bsp.trees import dump
 from bspcsg.campaign import record as campaign_record
-from bspcsg.cli import main, output
+from bspcsg.cli import main
+from bspcsg.cli.console import output
 from bspcsg.csg.syntax import json_form
 from support.cli import Capture, ran
 
