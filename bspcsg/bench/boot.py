@@ -1,5 +1,7 @@
 """Starts a worker, on another build of the core if one is named: ``boot.py ROOT CORE TASK``.
 
+With ``--`` and arguments in place of the task it starts the command line.
+
 The package loads its core when it is first imported, so that this must not be a part of it.
 """
 
@@ -20,10 +22,16 @@ def put_in_place(core: str) -> None:
 
 
 if __name__ == "__main__":
-    root, core, task = sys.argv[1:]
+    root, core, task, *arguments = sys.argv[1:]
     sys.path.insert(0, root)
     if core:
         put_in_place(core)
-    from bspcsg.bench.worker import main
+    if task == "--":
+        from bspcsg.cli.entry import main as program
 
-    main(task)
+        sys.argv = ["bspcsg", *arguments]
+        program()
+    else:
+        from bspcsg.bench.worker import main
+
+        main(task)

@@ -1,7 +1,7 @@
 """A case of the bench: one row of its table."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeAlias
 
@@ -36,6 +36,10 @@ class BenchCase:
         Seconds after which a call is stopped, unless another limit is asked for.
     checked_at_once : bool
         If no other engine finishes the chain, manifold3d is asked for the same as one expression.
+    needs_gb : dict of str to float
+        Items for which a machine must have so much memory, in 10^9 bytes.
+    other_sets : bool
+        Other engines understand the operands as other sets, so that answers are not compared.
     """
 
     title: str
@@ -48,3 +52,5 @@ class BenchCase:
     needs: str = ""
     limit: float = 300.0
     checked_at_once: bool = False
+    needs_gb: Mapping[str, float] = field(default_factory=dict)
+    other_sets: bool = False

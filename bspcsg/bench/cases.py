@@ -1,25 +1,46 @@
 """The cases: what is done, how large, by whom, and what is to be reached."""
 
+from math import pi
 from pathlib import Path
 
 from .._types import MeshArrays
 from . import real, shapes
 from .case import BenchCase, WorkMaker
 from .cliffs import CLIFFS
+from .program import CommandLine
 from .targets import (
+    MAIN_RIVAL,
+    OURS,
     Faster,
     Goal,
     GrowthTarget,
     MeanFaster,
     MemoryWithin,
+    ScratchWithin,
     SteadySteps,
+    StepWithin,
     Within,
+    WorkWithin,
 )
-from .work import BuiltPair, Carving, Chain, Expression, Pair, Work
+from .work import (
+    BuiltPair,
+    Carving,
+    Chain,
+    Expression,
+    OverlappingPair,
+    Pair,
+    PairAsBalls,
+    Work,
+)
 
 #: Engines that take part in large pairs and in long chains, beside those that are asked for.
 QUICK_ENGINES = ("bspcsg", "manifold3d", "trueform", "meshlib")
 CHAIN_ENGINES = ("bspcsg", "manifold3d")
+
+#: Engines for pairs that are to be reached beside the main rival.
+_OTHERS = ("meshlib", "trueform")
+
+_MESHES = "meshes/MANIFEST.tsv"
 
 
 def _spheres(level: int) -> WorkMaker:
@@ -89,19 +110,75 @@ def _real_pair(number: int) -> WorkMaker:
     return lambda shared: Pair(*real.posed_pair(shared, number))
 
 
-_SPHERE_TARGETS: tuple[Goal, ...] = (Faster(15), Faster(2.5, "trueform"))
+def _small_pair(number: int) -> WorkMaker:
+    return lambda shared: Pair(*real.posed_pair(shared, number, real.SMALL))
+
+
+def _overlapping_pair(number: int) -> WorkMaker:
+    return lambda shared: OverlappingPair(*real.overlapping_pair(shared, number))
+
+
+def _milled_by_balls(count: int) -> WorkMaker:
+    return lambda _: Chain(*shapes.milled_by_balls(count))
+
+
+def _milled_by_cylinders(count: int) -> WorkMaker:
+    return lambda _: Chain(*shapes.milled_by_cylinders(count))
+
+
+def _files(level: int, *options: str) -> WorkMaker:
+    return lambda _: CommandLine(*shapes.spheres_apart(shapes.icosphere(level)), options)
+
+
+#: Volume of a unit ball without another one around a point of its surface.
+_BALL_WITHOUT_BALL = 11 * pi / 12
+
+
+def _huge_spheres(n: int) -> WorkMaker:
+    # An edge of the octahedron is √2 / n long, and at most √3 times that on the ball. A point of a
+    # triangle with corners on the unit ball and edges up to e is at most e² / 3 within it.
+    depth = 2 / n**2
+    balls = shapes.spheres_apart
+    return lambda _: PairAsBalls(
+        *balls(shapes.octasphere(n)), volume=_BALL_WITHOUT_BALL, depth=depth
+    )
+
+
+def _huge_label(n: int) -> str:
+    return f"2 × {8 * n * n // 10**6} M"
+
+
+def _sphere_targets(factor: float) -> tuple[Goal, ...]:
+    return Faster(factor), Faster(4, "trueform"), Faster(4, "meshlib")
+
+
+def _none_below(factor: float, *engines: str) -> tuple[Goal, ...]:
+    return tuple(Faster(factor, engine) for engine in engines)
+
+
 _SIZES = (36, 72, 144, 288, 576, 708)
 
+#: Sizes of spheres that few machines hold, and the memory that the larger ones need in all.
+_HUGE = (500, 1000, 1582)
+_HUGE_GB = (2.5, 8.0, 18.0)
+
 CASES: dict[str, BenchCase] = {
+    "spheres-82k": BenchCase(
+        "sphere pair difference, 82 k triangles each",
+        _sphere_targets(15),
+        {"2 × 81 920": _spheres(6)},
+        {"2 × 1 280": _spheres(3)},
+        QUICK_ENGINES,
+    ),
     "spheres-328k": BenchCase(
         "sphere pair difference, 328 k triangles each",
-        _SPHERE_TARGETS,
+        _sphere_targets(20),
         {"2 × 327 680": _spheres(7)},
         {"2 × 5 120": _spheres(4)},
     ),
     "spheres-1310k": BenchCase(
         "sphere pair difference, 1.31 M triangles each",
-        _SPHERE_TARGETS,
+        (*_sphere_targets(25), WorkWithin(0.18)),
         {"2 × 1 310 720": _spheres(8)},
         {"2 × 20 480": _spheres(5)},
         QUICK_ENGINES,
@@ -124,29 +201,54 @@ CASES: dict[str, BenchCase] = {
     ),
     "built-328k": BenchCase(
         "the same, 328 k, operands already built",
-        (Faster(6),),
+        (Faster(8),),
         {"2 × 327 680": _built_spheres(7)},
         {"2 × 5 120": _built_spheres(4)},
         QUICK_ENGINES,
     ),
     "built-1310k": BenchCase(
         "the same, 1.31 M, operands already built",
-        (Faster(6),),
+        (Faster(12),),
         {"2 × 1 310 720": _built_spheres(8)},
         {"2 × 20 480": _built_spheres(5)},
         QUICK_ENGINES,
     ),
     "real-pairs": BenchCase(
         "real pairs in random poses",
-        (MeanFaster(5), Faster(1)),
+        (
+            MeanFaster(7),
+            *(MeanFaster(1.5, name) for name in _OTHERS),
+            *_none_below(1.3, MAIN_RIVAL, *_OTHERS),
+        ),
         {f"pair {k}": _real_pair(k) for k in range(16)},
         {f"pair {k}": _real_pair(k) for k in range(2)},
         QUICK_ENGINES,
-        needs="meshes/MANIFEST.tsv",
+        needs=_MESHES,
+    ),
+    "small-pairs": BenchCase(
+        "small real pairs in random poses, meshes of 10 to 30 000 triangles",
+        (
+            MeanFaster(4),
+            MeanFaster(1.5, "meshlib"),
+            *_none_below(1, MAIN_RIVAL, "meshlib"),
+        ),
+        {f"pair {k}": _small_pair(k) for k in range(24)},
+        {f"pair {k}": _small_pair(k) for k in range(2)},
+        QUICK_ENGINES,
+        needs=_MESHES,
+    ),
+    "overlapping-pairs": BenchCase(
+        "the same, the first of which overlaps itself, as a set",
+        (MeanFaster(2), Faster(0.7)),
+        {f"pair {k}": _overlapping_pair(k) for k in range(16)},
+        {f"pair {k}": _overlapping_pair(k) for k in range(2)},
+        CHAIN_ENGINES,
+        needs=_MESHES,
+        other_sets=True,
     ),
     "drilled-steps": BenchCase(
         "cube minus 1 000 spheres, every step evaluated",
-        (Within(0.2), Faster(100)),
+        (Faster(100), StepWithin(0.25e-3)),
         {"1 000 steps": _drilled_steps(1000)},
         {"8 steps": _drilled_steps(8)},
         CHAIN_ENGINES,
@@ -154,14 +256,14 @@ CASES: dict[str, BenchCase] = {
     ),
     "drilled-expression": BenchCase(
         "the same as one expression",
-        (Faster(4),),
+        (Faster(6),),
         {"1 000 spheres": _drilled_at_once(1000)},
         {"20 spheres": _drilled_at_once(20)},
         ("bspcsg", "manifold3d", "trueform"),
     ),
     "plate-steps": BenchCase(
         "plate minus 400 cylinders, every step evaluated",
-        (Faster(50),),
+        (Faster(30),),
         {"400 steps": _plate(20)},
         {"4 steps": _plate(2)},
         CHAIN_ENGINES,
@@ -169,27 +271,43 @@ CASES: dict[str, BenchCase] = {
     ),
     "boxes-steps": BenchCase(
         "union of 1 000 random boxes, every step evaluated",
-        (Faster(50),),
+        (Faster(20),),
         {"1 000 boxes": _boxes(1000)},
         {"20 boxes": _boxes(20)},
         CHAIN_ENGINES,
         checked_at_once=True,
     ),
+    "milled-cylinders": BenchCase(
+        "block minus 227 swept cylinders, every step evaluated",
+        (Faster(5),),
+        {"227 steps": _milled_by_cylinders(227)},
+        {"8 steps": _milled_by_cylinders(8)},
+        CHAIN_ENGINES,
+        checked_at_once=True,
+    ),
+    "milled-capsules": BenchCase(
+        "block minus 1 000 swept capsules, every step evaluated",
+        (Faster(10),),
+        {"1 000 steps": _milled_by_balls(1000)},
+        {"8 steps": _milled_by_balls(8)},
+        CHAIN_ENGINES,
+        checked_at_once=True,
+    ),
     "menger-3": BenchCase(
         "Menger sponge of depth 3, one expression",
-        (Faster(5),),
+        (Faster(8),),
         {"depth 3": _menger(3)},
         {"depth 1": _menger(1)},
         CHAIN_ENGINES,
     ),
     "menger-4": BenchCase(
         "Menger sponge of depth 4, one expression",
-        (Faster(5),),
+        (Faster(10),),
         {"depth 4": _menger(4)},
         {"depth 2": _menger(2)},
         CHAIN_ENGINES,
     ),
-    "cubes": BenchCase("two cubes", (Faster(1),), {"2 × 12": _cubes}, {"2 × 12": _cubes}),
+    "cubes": BenchCase("two cubes", (Within(40e-6),), {"2 × 12": _cubes}, {"2 × 12": _cubes}),
     "coincident": BenchCase(
         "nearly coincident spheres, 1.31 M triangles each",
         (Faster(3),),
@@ -215,7 +333,7 @@ CASES: dict[str, BenchCase] = {
     ),
     "dome": BenchCase(
         "dome carved out of a block, 100 000 steps evaluated",
-        (Within(600.0), MemoryWithin(6144), SteadySteps(2)),
+        (Within(200.0), MemoryWithin(6144), SteadySteps(2)),
         {"100 000 steps": dome(shapes.DOME_STEPS)},
         {"20 steps": dome(20)},
         ("bspcsg",),
@@ -238,5 +356,40 @@ CASES: dict[str, BenchCase] = {
         QUICK_ENGINES,
         alone=True,
     ),
+    "huge": BenchCase(
+        "sphere pair difference, 2, 8 and 20 M triangles each",
+        (GrowthTarget(1.02), ScratchWithin(70)),
+        {_huge_label(n): _huge_spheres(n) for n in _HUGE},
+        {f"2 × {8 * n * n}": _huge_spheres(n) for n in (16, 32)},
+        (OURS,),
+        alone=True,
+        needs_gb={_huge_label(n): gb for n, gb in zip(_HUGE, _HUGE_GB, strict=True)},
+    ),
+    "files-checked": BenchCase(
+        "command line, two STL files of 1.31 M triangles, checked",
+        (WorkWithin(4), MemoryWithin(800)),
+        {"2 × 1 310 720": _files(8)},
+        {"2 × 5 120": _files(4)},
+        (OURS,),
+        alone=True,
+    ),
+    "files-unchecked": BenchCase(
+        "the same without the check",
+        (WorkWithin(1.5), MemoryWithin(800)),
+        {"2 × 1 310 720": _files(8, "--check=off")},
+        {"2 × 5 120": _files(4, "--check=off")},
+        (OURS,),
+        alone=True,
+    ),
     **CLIFFS,
 }
+
+#: The cases that are measured if none is named: a minute or two.
+SHORT = (
+    "spheres-82k",
+    "small-pairs",
+    "drilled-expression",
+    "milled-cylinders",
+    "menger-3",
+    "cubes",
+)

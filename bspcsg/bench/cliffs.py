@@ -7,7 +7,7 @@ from .._types import MeshArrays
 from . import dense
 from .case import BenchCase
 from .targets import DoublingTarget, Faster
-from .work import Expression, Pair, Work
+from .work import Expression, OneMesh, Pair, Work
 
 #: Makes the work of an item from its size.
 _Maker = Callable[[int], Work]
@@ -35,6 +35,10 @@ def _intersection(meshes: Callable[[int], list[MeshArrays]]) -> _Maker:
         return Expression(first, [[mesh] for mesh in others], "intersection")
 
     return make
+
+
+def _one_mesh(meshes: Callable[[int], list[MeshArrays]]) -> _Maker:
+    return lambda count: OneMesh(meshes(count))
 
 
 def _pair(meshes: Callable[[int], tuple[MeshArrays, MeshArrays]]) -> _Maker:
@@ -110,6 +114,29 @@ CLIFFS: dict[str, BenchCase] = {
     ),
     "dense-soup": _doubled(
         "turned cubes all over a room, united", _union(dense.cubes_in_room), 500, 8
+    ),
+    "dense-tetrahedra": _doubled(
+        "turned tetrahedra all over a room, united", _union(dense.tetrahedra_in_room), 500, 8
+    ),
+    "dense-combs": _doubled("two combs across each other, by teeth", _pair(dense.combs), 20, 3),
+    "dense-bar": _doubled(
+        "bar with a round end in single precision, reduced, by sides",
+        _one_mesh(dense.bar),
+        300,
+        12,
+    ),
+    "dense-bars": _doubled("two such bars across each other", _pair(dense.bars), 300, 12),
+    "dense-one-mesh-of-cubes": _doubled(
+        "turned cubes at one place in one mesh, reduced", _one_mesh(dense.turned_cubes), 40, 3
+    ),
+    "dense-one-mesh-of-boxes": _doubled(
+        "aligned boxes that overlap in one mesh, reduced", _one_mesh(dense.aligned_boxes), 200, 8
+    ),
+    "dense-one-mesh-of-copies": _doubled(
+        "copies of a ball in one mesh, reduced", _one_mesh(dense.copies), 30, 3
+    ),
+    "dense-one-mesh-of-touching-cubes": _doubled(
+        "cubes that touch in one mesh, reduced", _one_mesh(dense.touching_cubes), 1000, 8
     ),
     "dense-spikes": _doubled("spikes from one point, united", _union(dense.spikes), 250, 4),
 }

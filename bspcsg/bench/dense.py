@@ -8,8 +8,10 @@ from .shapes import (
     cylinder,
     generator,
     icosphere,
+    joined,
     moved,
     octasphere,
+    prism,
     random_rotation,
     rotation,
     scaled,
@@ -51,7 +53,7 @@ def bundles(count: int) -> tuple[MeshArrays, MeshArrays]:
     needle = np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0.03, 0.03, 10 / pitch]]) * pitch
     places = [(k // rows, k % rows) for k in range(count)]
     starts = [(x * pitch - 1, y * pitch - 1, -5 + 0.1 * random.random()) for x, y in places]
-    bundle = _joined([(needle + start, _TETRAHEDRON) for start in starts])
+    bundle = joined([(needle + start, _TETRAHEDRON) for start in starts])
     return bundle, turned(bundle, random_rotation(random))
 
 
@@ -97,7 +99,7 @@ def drilled_plate(count: int) -> list[MeshArrays]:
 def drilled_at_once(count: int) -> tuple[MeshArrays, MeshArrays]:
     """Return the plate of `drilled_plate` and its cylinders as one mesh."""
     plate, *holes = drilled_plate(count)
-    return plate, _joined(holes)
+    return plate, joined(holes)
 
 
 def slab_and_column(sides: int) -> tuple[MeshArrays, MeshArrays]:
@@ -152,6 +154,45 @@ def cubes_in_room(count: int) -> list[MeshArrays]:
     ]
 
 
+def tetrahedra_in_room(count: int) -> list[MeshArrays]:
+    """Return tetrahedra turned at random, one for each unit of the room."""
+    random = generator(11)
+    shape = np.vstack([np.zeros(3), np.eye(3)]) - 0.25, _TETRAHEDRON
+    side = count ** (1 / 3)
+    return [
+        moved(turned(shape, random_rotation(random)), side * random.random(3)) for _ in range(count)
+    ]
+
+
+def combs(teeth: int) -> tuple[MeshArrays, MeshArrays]:
+    """Return two combs across each other, teeth apart; all askew."""
+    slabs = [box((k / teeth, 0, 0), ((k + 0.5) / teeth, 1, 0.2)) for k in range(teeth)]
+    comb = joined(slabs)
+    other = moved(turned(comb, rotation((0, 0, 1), np.pi / 2)), (1.0, 0.0, 0.1))
+    return turned(comb, _ASKEW), turned(other, _ASKEW)
+
+
+def bar(sides: int) -> list[MeshArrays]:
+    """Return a long bar with a round end as STL files hold it: caps are fans of needles."""
+    return [_in_single_precision(turned(_round_bar(sides), rotation((3, 1, 2), 0.7)))]
+
+
+def bars(sides: int) -> tuple[MeshArrays, MeshArrays]:
+    """Return two such bars across each other."""
+    [first] = bar(sides)
+    return first, _in_single_precision(turned(first, rotation((1, 2, -1), 0.3)))
+
+
+def _round_bar(sides: int) -> MeshArrays:
+    angles = np.pi * np.arange(sides) / (sides - 1) - np.pi / 2
+    round_end = np.column_stack([9 + 0.05 * np.cos(angles), 0.05 * np.sin(angles)])
+    return prism(np.concatenate([[[0, 0.05], [0, -0.05]], round_end]), -0.01, 0.01)
+
+
+def _in_single_precision(mesh: MeshArrays) -> MeshArrays:
+    return mesh[0].astype(np.float32).astype(np.float64), mesh[1]
+
+
 def spikes(count: int) -> list[MeshArrays]:
     """Return thin tetrahedra with one corner at the origin."""
     random = generator(10)
@@ -173,10 +214,3 @@ def cone(sides: int) -> MeshArrays:
     walls = np.column_stack([i, j, np.full(sides, sides)])
     base = np.column_stack([j, i, np.full(sides, sides + 1)])
     return points, np.concatenate([walls, base])
-
-
-def _joined(meshes: list[MeshArrays]) -> MeshArrays:
-    """Return one mesh of several."""
-    starts = np.cumsum([0, *(len(vertices) for vertices, _ in meshes)])
-    faces = [mesh[1] + start for mesh, start in zip(meshes, starts, strict=False)]
-    return np.concatenate([vertices for vertices, _ in meshes]), np.concatenate(faces)

@@ -12,6 +12,7 @@ import numpy as np
 
 from .._types import MeshArrays
 from .facts import mesh_volume
+from .shapes import joined
 
 #: The operations of engines; the first operand is the one that the others are taken from.
 Operation: TypeAlias = Literal["union", "difference", "intersection"]
@@ -57,6 +58,10 @@ class Engine(ABC):
         """Combine two meshes, arrays in to arrays out, in the way that the engine advises."""
         return self.arrays(self.combine(operation, [self.solid(first), self.solid(second)]))
 
+    def united(self, parts: Sequence[MeshArrays]) -> Any:
+        """Return the union of meshes, in one mesh if the engine takes such that overlap."""
+        return self.combine("union", [self.solid(part) for part in parts])
+
     def counters(self, solid: Any) -> dict[str, int]:
         """Return what the engine counted while it made a solid."""
         return {}
@@ -93,6 +98,9 @@ class _Bspcsg(Engine):
 
     def boolean(self, first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
         return self._setops.boolean(*first, *second, operation)
+
+    def united(self, parts: Sequence[MeshArrays]) -> Any:
+        return self._solid(*joined(parts)).normalized()
 
     def counters(self, solid: Any) -> dict[str, int]:
         return dict(solid.tree.stats())

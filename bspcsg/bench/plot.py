@@ -5,8 +5,8 @@ from html import escape
 from math import ceil, floor, log10
 from typing import Any
 
-from .record import seconds_text
 from .targets import OURS, exponent
+from .times import seconds_text
 
 #: The case that is drawn.
 _CASE = "sizes"

@@ -9,8 +9,8 @@ import numpy as np
 from .._types import MeshArrays
 from .shapes import generator, moved, random_rotation, scaled, turned, unit_vector
 
-#: Triangles of the meshes that are paired.
-_LEAST, _MOST = 10_000, 500_000
+#: Triangles of the meshes that are paired, of large and of small pairs.
+LARGE, SMALL = (10_000, 500_000), (10, 30_000)
 
 #: The distance between the middles of two meshes, in halves of their diagonals.
 _APART = 0.3
@@ -26,30 +26,55 @@ def swept_capsules(shared: Path) -> tuple[MeshArrays, list[MeshArrays]]:
     return base, [(points, triangles[:, ::-1].copy()) for points, triangles in tools]
 
 
-def posed_pair(shared: Path, number: int) -> tuple[MeshArrays, MeshArrays]:
+def posed_pair(
+    shared: Path, number: int, sizes: tuple[int, int] = LARGE
+) -> tuple[MeshArrays, MeshArrays]:
     """Return two of the meshes, both of half diagonal 1, turned and moved at random."""
     random = generator(number)
-    names = solid_names(shared)
+    names = solid_names(shared, sizes)
     first, second = random.choice(len(names), size=2, replace=False)
-    posed = [
-        turned(_unit(shared / "meshes" / names[k]), random_rotation(random))
-        for k in (first, second)
-    ]
+    return _posed(shared, (names[first], names[second]), random)
+
+
+def overlapping_pair(shared: Path, number: int) -> tuple[MeshArrays, MeshArrays]:
+    """Return two small meshes, the first of which overlaps itself, in such a pose."""
+    random = generator(number)
+    overlapping = solid_names(shared, SMALL, overlapping=True)
+    first = overlapping[random.integers(len(overlapping))]
+    others = [name for name in (*overlapping, *solid_names(shared, SMALL)) if name != first]
+    return _posed(shared, (first, others[random.integers(len(others))]), random)
+
+
+def _posed(
+    shared: Path, names: tuple[str, str], random: np.random.Generator
+) -> tuple[MeshArrays, MeshArrays]:
+    posed = [turned(_unit(shared / "meshes" / name), random_rotation(random)) for name in names]
     return posed[0], moved(posed[1], _APART * unit_vector(random))
 
 
 @cache
-def solid_names(shared: Path) -> list[str]:
-    """Return the meshes that every engine should take: closed, and free of self-intersection."""
+def solid_names(
+    shared: Path, sizes: tuple[int, int] = LARGE, *, overlapping: bool = False
+) -> list[str]:
+    """Return closed meshes that every engine takes, such as overlap themselves or such as do not.
+
+    Parameters
+    ----------
+    shared : Path
+    sizes : (int, int)
+        The least and the largest number of triangles.
+    overlapping : bool
+    """
     with (shared / "meshes" / "MANIFEST.tsv").open(newline="") as lines:
         rows = list(csv.DictReader(lines, delimiter="\t"))
     return sorted(
         row["file"]
         for row in rows
         if row["is_volume"] == "yes"
-        and row["self_intersecting"] == "0"
+        and row["self_intersecting"].isdigit()
+        and (int(row["self_intersecting"]) > 0) == overlapping
         and row["manifold_status"] == "NoError"
-        and _LEAST <= int(row["n_triangles"]) <= _MOST
+        and sizes[0] <= int(row["n_triangles"]) <= sizes[1]
     )
 
 

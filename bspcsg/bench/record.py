@@ -31,6 +31,14 @@ def record_of(rows: list[dict[str, Any]], runs: int, command: str) -> dict[str, 
     }
 
 
+def other_place(record: dict[str, Any]) -> str:
+    """Return in which way a record is not from this machine and these versions, or nothing."""
+    ours = record_of([], 0, "")
+    if {**ours["machine"], "load": 0} != {**record["machine"], "load": 0}:
+        return "another machine"
+    return "" if ours["versions"] == record["versions"] else "other versions of the engines"
+
+
 def write(record: dict[str, Any], path: Path) -> None:
     """Write a record.
 
@@ -67,10 +75,3 @@ def read(path: Path) -> dict[str, Any]:
         said = f"schema {record.get('schema')}, and this version reads {SCHEMA}"
         raise FormatError(f"{path}: {said}; measure it again.", "unreadable")
     return record
-
-
-def seconds_text(seconds: float) -> str:
-    """Return a time with three digits and a unit that suits it."""
-    if seconds < 1e-3:
-        return f"{seconds * 1e6:.3g} µs"
-    return f"{seconds * 1e3:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"

@@ -6,21 +6,20 @@ import select
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from statistics import median
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from ..errors import held
+from ..machine import machine
 from .case import BenchCase
 from .cases import CASES
 from .engines import ENGINES
-from .targets import OURS
+from .targets import MAIN_RIVAL, OURS
 from .worker import Task
-
-#: The engine whose word is asked first.
-_REFEREE = "manifold3d"
 
 #: Seconds for making operands before the first call, and for ending after the last.
 _GRACE = 120.0
@@ -77,11 +76,27 @@ def run_case(key: str, settings: Settings, progress: Progress) -> dict[str, Any]
     if case.needs and not (settings.shared / case.needs).exists():
         missing = f"{settings.shared / case.needs} does not exist"
         return {"case": key, "title": case.title, "left_out": missing, "items": []}
-    labels = case.small if settings.small else case.items
+    too_large = _too_large(case, settings)
+    labels = [label for label in _items_of(case, settings) if label not in too_large]
     items = [_item(key, label, settings, progress) for label in labels]
     # What is less than the whole says nothing about the targets.
     small = settings.small or _is_cut(key, settings)
-    return {"case": key, "title": case.title, "small": small, "items": items}
+    row = {"case": key, "title": case.title, "small": small, "items": items}
+    return row | {"too_large": too_large} if too_large else row
+
+
+def _items_of(case: BenchCase, settings: Settings) -> Iterable[str]:
+    return case.small if settings.small else case.items
+
+
+def _too_large(case: BenchCase, settings: Settings) -> dict[str, str]:
+    """Return why items are left out that this machine has no memory for, by their labels."""
+    has = machine()["memory_gb"]
+    return {
+        label: f"needs {case.needs_gb[label]:g} GB of memory, this machine has {has:g}"
+        for label in _items_of(case, settings)
+        if has and case.needs_gb.get(label, 0) > has
+    }
 
 
 def _is_cut(key: str, settings: Settings) -> bool:
@@ -100,7 +115,7 @@ def _item(key: str, label: str, settings: Settings, progress: Progress) -> dict[
         budget=settings.budget,
         shared=str(settings.shared),
         cores=case.cores,
-        memory_gb=settings.memory_gb,
+        memory_gb=_bound_of_memory(case, label, settings),
         steps=settings.steps,
     )
     gathered = Gathered(f"{settings.steps} steps" if _is_cut(key, settings) else label)
@@ -109,7 +124,14 @@ def _item(key: str, label: str, settings: Settings, progress: Progress) -> dict[
     row = gathered.row()
     if case.checked_at_once and not _checked(row):
         row["at_once"] = _at_once(task, settings, progress)
-    return judged(row)
+    return row if case.other_sets else judged(row)
+
+
+def _bound_of_memory(case: BenchCase, label: str, settings: Settings) -> float:
+    """Return the GiB of addresses for an item: at least what it is known to need."""
+    if not settings.memory_gb:
+        return 0.0
+    return max(settings.memory_gb, case.needs_gb.get(label, 0.0) * 1e9 / 2**30)
 
 
 def _parts(case: BenchCase, task: Task) -> list[Task]:
@@ -126,9 +148,9 @@ def _checked(row: dict[str, Any]) -> bool:
 def _at_once(task: Task, settings: Settings, progress: Progress) -> dict[str, Any]:
     """Ask the referee for the set of a chain as one expression."""
     gathered = Gathered(task.item)
-    asked = replace(task, engines=[_REFEREE], runs=0, at_once=True, cores=0)
+    asked = replace(task, engines=[MAIN_RIVAL], runs=0, at_once=True, cores=0)
     _until_done(asked, settings, gathered, progress)
-    found: dict[str, Any] = gathered.row()["engines"].get(_REFEREE, {})
+    found: dict[str, Any] = gathered.row()["engines"].get(MAIN_RIVAL, {})
     return found
 
 
@@ -148,13 +170,16 @@ def _work(task: Task, settings: Settings, gathered: "Gathered", progress: Progre
     limit = CASES[task.case].limit if settings.limit is None else settings.limit
     core = str(settings.core.resolve()) if settings.core else ""
     command = [sys.executable, "-P", str(_BOOT), str(_PACKAGE.parent), core]
-    with subprocess.Popen(
-        [*command, json.dumps(asdict(task))],
-        stdout=subprocess.PIPE,
-        # Engines write there what they like; what is wrong is said on standard output.
-        stderr=subprocess.DEVNULL,
-        env={**os.environ, "PYTHONHASHSEED": "0"},
-    ) as child:
+    with (
+        TemporaryDirectory(ignore_cleanup_errors=True) as scratch,
+        subprocess.Popen(
+            [*command, json.dumps(asdict(task))],
+            stdout=subprocess.PIPE,
+            # Engines write there what they like; what is wrong is said on standard output.
+            stderr=subprocess.DEVNULL,
+            env={**os.environ, "PYTHONHASHSEED": "0", "TMPDIR": scratch},
+        ) as child,
+    ):
         try:
             under_way, reason = _listen(child, task, limit, gathered, progress)
         finally:
@@ -244,7 +269,8 @@ class Gathered:
         found["memory_mb"] = max(found["memory_mb"], said["memory_mb"] or 0.0)
         found["peak_mb"] = max(found.get("peak_mb", 0.0), said["peak_mb"])
         found.setdefault("volumes", []).append(said["facts"]["volume"])
-        for name in ("parts", "windows", "counters", "facts"):
+        found.setdefault("faults_each", []).append(said.get("faults", 0))
+        for name in ("parts", "windows", "counters", "facts", "answer_mb", "steps", "proof"):
             if name in said:
                 found[name] = said[name]
 
@@ -269,6 +295,8 @@ class Gathered:
         for found in self._engines.values():
             found["median"] = _warm_median(found["seconds"])
             found["cpu"] = _warm_median(found["cpu_seconds"])
+            found["cold"] = next(iter(found["seconds"]), None)
+            found["faults"] = _warm_median(found.pop("faults_each", []))
             found["runs"] = max(len(found["seconds"]) - 1, min(len(found["seconds"]), 1))
             if "state" not in found:
                 found["state"] = "ok"
@@ -292,7 +320,7 @@ def judged(row: dict[str, Any]) -> dict[str, Any]:
     if "facts" not in ours:
         return row
     others = {name: found for name, found in row["engines"].items() if name != OURS}
-    others |= {f"{_REFEREE}": row["at_once"]} if "facts" in row.get("at_once", {}) else {}
+    others |= {MAIN_RIVAL: row["at_once"]} if "facts" in row.get("at_once", {}) else {}
     for name, found in others.items():
         if "facts" in found:
             found["difference"] = max(

@@ -1,6 +1,7 @@
 """Meshes of the bench, as plain arrays that any engine takes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -53,6 +54,13 @@ def unit_vector(random: np.random.Generator) -> FloatArray:
     """Return a direction, all equally likely."""
     direction = random.normal(size=3)
     return np.asarray(direction / np.linalg.norm(direction))
+
+
+def joined(meshes: Sequence[MeshArrays]) -> MeshArrays:
+    """Return one mesh of several."""
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in meshes)])
+    faces = [mesh[1] + start for mesh, start in zip(meshes, starts, strict=False)]
+    return np.concatenate([vertices for vertices, _ in meshes]), np.concatenate(faces)
 
 
 def _creation() -> Any:
@@ -132,9 +140,15 @@ def _quadrant(
 
 
 def cylinder(sides: int, radius: float, low: float, high: float) -> MeshArrays:
-    """Return a prism along z over a regular polygon, its caps divided as fans from a corner."""
+    """Return a prism along z over a regular polygon."""
     angles = 2 * np.pi * np.arange(sides) / sides
     ring = np.column_stack([radius * np.cos(angles), radius * np.sin(angles)])
+    return prism(ring, low, high)
+
+
+def prism(ring: FloatArray, low: float, high: float) -> MeshArrays:
+    """Return a prism along z over a convex polygon, its caps divided as fans from a corner."""
+    sides = len(ring)
     points = np.concatenate([np.column_stack([ring, np.full(sides, z)]) for z in (low, high)])
     i = np.arange(sides)
     j = (i + 1) % sides
@@ -220,6 +234,79 @@ def _squares(u: int, v: int, side: int) -> Iterator[tuple[int, int, int]]:
         for j in range(3):
             if (i, j) != (1, 1):
                 yield from _squares(u + i * third, v + j * third, third)
+
+
+def milled_by_cylinders(count: int) -> tuple[MeshArrays, list[MeshArrays]]:
+    """Return a block, and what a flat mill of 32 sides leaves empty on a spiral down into it.
+
+    Each step is a prism over a slot; neighbours share half a cylinder, and floors lie in planes.
+    """
+    radius, windings = 0.08, 8
+    turns = np.linspace(0, 2 * np.pi * windings, count + 1)
+    out = 0.1 + 0.3 * turns / turns[-1]
+    path = np.column_stack([out * np.cos(turns), out * np.sin(turns)])
+    depths = 0.3 - 0.05 * (turns[:-1] // (2 * np.pi))
+    tools = [
+        prism(_slot(a, b, radius, 32), depth, 0.6)
+        for a, b, depth in zip(path[:-1], path[1:], depths, strict=True)
+    ]
+    return box((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5)), tools
+
+
+def _slot(start: FloatArray, end: FloatArray, radius: float, sides: int) -> FloatArray:
+    """Return the convex polygon that a regular one covers on its way."""
+    along = end - start
+    angles = np.arctan2(along[1], along[0]) + np.pi * (0.5 + np.arange(sides // 2 + 1) * 2 / sides)
+    half = radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    return np.concatenate([start + half, end - half])
+
+
+def milled_by_balls(count: int) -> tuple[MeshArrays, list[MeshArrays]]:
+    """Return a block, and what a ball leaves empty in each step of a curve through it: capsules."""
+    t = np.linspace(0, 2 * np.pi, count + 1)
+    path = 0.42 * np.column_stack([np.sin(5 * t), np.sin(7 * t + 1), np.sin(4 * t + 2)])
+    tools = [_capsule(a, b, 0.1) for a, b in pairwise(path)]
+    return box((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5)), tools
+
+
+#: Sides and rings of the halves of a capsule, which has 360 triangles then.
+_CAPSULE_SIDES, _CAPSULE_RINGS = 18, 5
+
+
+def _capsule(start: FloatArray, end: FloatArray, radius: float) -> MeshArrays:
+    """Return the hull of two balls; vertices lie on them."""
+    length = float(np.linalg.norm(end - start))
+    rise = np.pi / 2 * np.arange(_CAPSULE_RINGS) / _CAPSULE_RINGS
+    upper = np.column_stack([np.cos(rise), np.sin(rise)]) * radius
+    profile = np.concatenate([upper[::-1] * (1, -1), upper + (0, length)])
+    angles = 2 * np.pi * np.arange(_CAPSULE_SIDES) / _CAPSULE_SIDES
+    around = np.column_stack([np.cos(angles), np.sin(angles)])
+    rings = [np.column_stack([r * around, np.full(len(around), z)]) for r, z in profile]
+    poles = [[(0.0, 0.0, -radius)], [(0.0, 0.0, length + radius)]]
+    points = np.concatenate([*rings, *poles])
+    return points @ _frame((end - start) / length).T + start, _lathe_faces(len(profile))
+
+
+def _frame(axis: FloatArray) -> FloatArray:
+    """Return a rotation that takes z to a direction."""
+    least = np.eye(3)[np.argmin(np.abs(axis))]
+    x = np.cross(least, axis)
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(axis, x), axis])
+
+
+def _lathe_faces(rings: int) -> IndexArray:
+    """Return the triangles between rings from below to above, and to a pole at each end."""
+    i = np.arange(_CAPSULE_SIDES)
+    j = (i + 1) % _CAPSULE_SIDES
+    below, above = rings * _CAPSULE_SIDES, rings * _CAPSULE_SIDES + 1
+    parts = [np.column_stack([j, i, np.full_like(i, below)])]
+    for start in range(0, (rings - 1) * _CAPSULE_SIDES, _CAPSULE_SIDES):
+        a, b, c, d = i + start, j + start, j + start + _CAPSULE_SIDES, i + start + _CAPSULE_SIDES
+        parts += [np.column_stack([a, b, c]), np.column_stack([a, c, d])]
+    last = (rings - 1) * _CAPSULE_SIDES
+    parts.append(np.column_stack([i + last, j + last, np.full_like(i, above)]))
+    return np.concatenate(parts)
 
 
 #: Steps of the whole dome; a shorter run carves the beginning of the same spiral.

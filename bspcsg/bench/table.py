@@ -3,8 +3,8 @@
 from typing import Any
 
 from .cases import CASES
-from .record import seconds_text
-from .targets import OURS
+from .targets import MAIN_RIVAL, OURS, DoublingTarget, Faster
+from .times import seconds_text
 
 Row = dict[str, Any]
 
@@ -33,6 +33,90 @@ def lines_of(record: dict[str, Any], titles: bool) -> list[list[str]]:
         name = _title(row) if titles else row["case"]
         lines += _lines_of_row(row, name, engines)
     return lines
+
+
+def detail_lines(record: dict[str, Any]) -> list[list[str]]:
+    """Return a table of all figures: a line of columns' names, and one for each item and engine."""
+    head = ["case", "item", "engine", "first", "wall", "processor", "page faults", "peak"]
+    found = [
+        [row["case"], item["item"], name, *_figures(result)]
+        for row in record["cases"]
+        for item in row["items"]
+        for name, result in item["engines"].items()
+    ]
+    return [head, *found]
+
+
+def _figures(found: Row) -> list[str]:
+    times = [_or_nothing(found.get(name)) for name in ("cold", "median", "cpu")]
+    faults, peak = found.get("faults"), found.get("peak_mb")
+    return [
+        *times,
+        _NOTHING if faults is None else f"{faults:.0f}",
+        f"{peak:.0f} MB" if peak else _NOTHING,
+    ]
+
+
+def _or_nothing(seconds: float | None) -> str:
+    return seconds_text(seconds) if seconds else _NOTHING
+
+
+def remarks(record: dict[str, Any]) -> list[str]:
+    """Return sentences about the whole: what was reached and missed, and what was left out."""
+    met = [
+        (row["case"], target.reached(row["items"]).met)
+        for row in record["cases"]
+        if not row.get("small") and "left_out" not in row
+        for target in CASES[row["case"]].targets
+    ]
+    said = [_counted(met)] if met else []
+    dense = [
+        row for row in record["cases"] if _doubling(row) and row["items"] and not row.get("small")
+    ]
+    said += _of_dense_places(dense) if dense else []
+    return said + [
+        f"{row['case']}, {label}: left out, {reason}."
+        for row in record["cases"]
+        for label, reason in row.get("too_large", {}).items()
+    ]
+
+
+def _counted(met: list[tuple[str, bool | None]]) -> str:
+    missed = list(dict.fromkeys(name for name, found in met if found is False))
+    unknown = list(dict.fromkeys(name for name, found in met if found is None))
+    said = f"Reached: {sum(found is True for _, found in met)} of {len(met)} targets."
+    said += f" Missed: {', '.join(missed)}." if missed else ""
+    return said + (f" No figure: {', '.join(unknown)}." if unknown else "")
+
+
+def _of_dense_places(rows: list[Row]) -> list[str]:
+    """Say which dense places cost more than they should, by name."""
+    slow = [row["case"] for row in rows if _least_ratio(row) is False]
+    grown = [row["case"] for row in rows if has_cliff(row)]
+    return [
+        f"Dense places: {len(rows)}. Slower than {MAIN_RIVAL}: {_named(slow)}."
+        f" Cost grows more than allowed: {_named(grown)}."
+    ]
+
+
+def _named(names: list[str]) -> str:
+    return f"{len(names)} ({', '.join(names)})" if names else "none"
+
+
+def _least_ratio(row: Row) -> bool | None:
+    """Say whether each item of a row takes us no longer than the main rival."""
+    return Faster(1).reached(row["items"]).met
+
+
+def _doubling(row: Row) -> DoublingTarget | None:
+    found = (goal for goal in CASES[row["case"]].targets if isinstance(goal, DoublingTarget))
+    return next(found, None)
+
+
+def has_cliff(row: Row) -> bool:
+    """Say whether our cost grows too fast in a row of full size that bounds its growth."""
+    target = _doubling(row)
+    return bool(target and not row.get("small") and target.reached(row["items"]).met is False)
 
 
 def _engines_of(record: dict[str, Any]) -> list[str]:
@@ -66,7 +150,8 @@ def markdown(record: dict[str, Any]) -> str:
     """Return the table as Markdown, with a line about the machine."""
     head, *lines = lines_of(record, titles=True)
     drawn = [f"| {' | '.join(line)} |" for line in [head, ["---"] * len(head), *lines]]
-    return "\n".join([about(record), "", *drawn, ""])
+    said = [line for remark in remarks(record) for line in ("", remark)]
+    return "\n".join([about(record), "", *drawn, *said, ""])
 
 
 def counter_lines(record: dict[str, Any]) -> list[list[str]]:
@@ -89,18 +174,24 @@ def about(record: dict[str, Any]) -> str:
     return (
         f"{machine['processor']}, {machine['cores']} cores, {machine['memory_gb']} GB,"
         f" {machine['system']}; {versions}. Medians of {record['runs']} runs in alternation in one"
-        " process, fewer where the number stands in brackets."
+        " process, after one that warms up, wall / processor time; fewer where the number stands in"
+        " brackets."
     )
 
 
 def _times(row: Row, engine: str) -> str:
     """Return the median of an engine, or from the least to the greatest of several items."""
     found = [item["engines"].get(engine) for item in row["items"]]
-    known = [result["median"] for result in found if result and result["median"]]
-    if len(found) == 1 or not known:
-        return _time(found[0])
+    known = [result for result in found if result and result["median"]]
+    if len(found) < 2 or not known:
+        return _time(found[0] if found else None)
     missing = f", {len(found) - len(known)} missing" if len(known) < len(found) else ""
-    return f"{seconds_text(min(known))} … {seconds_text(max(known))}{missing}"
+    both = [_range([result[name] for result in known]) for name in ("median", "cpu")]
+    return f"{' / '.join(both)}{missing}"
+
+
+def _range(times: list[float]) -> str:
+    return f"{seconds_text(min(times))} … {seconds_text(max(times))}"
 
 
 def _time(found: Row | None) -> str:
@@ -112,7 +203,7 @@ def _time(found: Row | None) -> str:
     if found["state"] != "ok":
         return str(found["state"])
     fewer = "" if found["runs"] >= _ENOUGH else f" ({found['runs']})"
-    return f"{seconds_text(found['median'])}{fewer}"
+    return f"{seconds_text(found['median'])} / {seconds_text(found['cpu'])}{fewer}"
 
 
 def _memory(row: Row) -> str:
@@ -125,7 +216,7 @@ def _memory(row: Row) -> str:
 def _answers(row: Row) -> str:
     """Say whether all other answers are ours within rounding, and who differs if not."""
     words = {name for item in row["items"] for name in _differing(item)}
-    compared = any("agrees" in found for item in row["items"] for found in _all_others(item))
+    compared = any("agrees" in found for item in row["items"] for found in _all_answers(item))
     if not compared:
         return "not compared"
     return "agree" if not words else "; ".join(sorted(words))
@@ -140,10 +231,14 @@ def _differing(item: Row) -> list[str]:
     if item.get("at_once", {}).get("agrees") is False:
         words.append(f"manifold3d at once differs by {item['at_once']['difference']:.1e}")
     ours = item["engines"].get(OURS, {})
+    if ours.get("proof", {}).get("agrees") is False:
+        words.append(f"{OURS}: {ours['proof']['text']} ({item['item']})")
     if ours.get("facts", {}).get("open_edges"):
         words.append(f"{OURS}: open edges ({item['item']})")
     return words
 
 
-def _all_others(item: Row) -> list[Row]:
-    return [*(f for name, f in item["engines"].items() if name != OURS), item.get("at_once", {})]
+def _all_answers(item: Row) -> list[Row]:
+    """Return everything that may say whether an answer agrees."""
+    proof = item["engines"].get(OURS, {}).get("proof", {})
+    return [*item["engines"].values(), item.get("at_once", {}), proof]

@@ -9,8 +9,13 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from .times import seconds_text
+
 #: The engine that the others are measured against.
 OURS = "bspcsg"
+
+#: The engine that has to be reached where a row names none.
+MAIN_RIVAL = "manifold3d"
 
 #: Results by item and engine, as in the records.
 Items = Sequence[dict[str, Any]]
@@ -50,7 +55,7 @@ class Faster:
     """So many times faster than another engine, on each item."""
 
     factor: float
-    engine: str = "manifold3d"
+    engine: str = MAIN_RIVAL
 
     @property
     def text(self) -> str:
@@ -72,7 +77,7 @@ class MeanFaster:
     """So many times faster in the geometric mean over all items."""
 
     factor: float
-    engine: str = "manifold3d"
+    engine: str = MAIN_RIVAL
 
     @property
     def text(self) -> str:
@@ -81,11 +86,18 @@ class MeanFaster:
 
     def reached(self, items: Items) -> Reached:
         """Look what was measured."""
-        ratios = [found.value for item in items if (found := ratio(item, self.engine)) is not None]
+        ratios = [found for item in items if (found := ratio(item, self.engine)) is not None]
         if not ratios:
             return Reached(None, "—", None)
-        value = exp(mean(map(log, ratios)))
-        return Reached(value, f"{value:.3g} × over {len(ratios)}", value >= self.factor)
+        value = _geometric_mean([found.value for found in ratios])
+        worked = [found.cpu for found in ratios if found.cpu is not None]
+        both = Ratio(value, _geometric_mean(worked) if worked else None)
+        over = f"over {len(ratios)} of {len(items)}"
+        return Reached(value, f"{both.text} {over}", value >= self.factor)
+
+
+def _geometric_mean(numbers: list[float]) -> float:
+    return exp(mean(map(log, numbers)))
 
 
 @dataclass(frozen=True)
@@ -97,7 +109,7 @@ class Within:
     @property
     def text(self) -> str:
         """The wish in words."""
-        return f"< {self.seconds:g} s"
+        return f"< {seconds_text(self.seconds)}"
 
     def reached(self, items: Items) -> Reached:
         """Look what was measured."""
@@ -105,7 +117,70 @@ class Within:
         known = [value for value in times if value is not None]
         if not known:
             return Reached(None, "unfinished", False)
-        return Reached(max(known), f"{max(known):.3g} s", max(known) < self.seconds)
+        return Reached(max(known), seconds_text(max(known)), max(known) < self.seconds)
+
+
+@dataclass(frozen=True)
+class WorkWithin:
+    """Done in so much processor time, of all threads and processes; the median of each item."""
+
+    seconds: float
+
+    @property
+    def text(self) -> str:
+        """The wish in words."""
+        return f"≤ {seconds_text(self.seconds)} of processors"
+
+    def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
+        known = [value for item in items if (value := result_of(item, OURS).get("cpu"))]
+        if not known:
+            return Reached(None, "unfinished", False)
+        return Reached(max(known), seconds_text(max(known)), max(known) <= self.seconds)
+
+
+@dataclass(frozen=True)
+class StepWithin:
+    """The steps of a chain take so many seconds in the mean."""
+
+    seconds: float
+
+    @property
+    def text(self) -> str:
+        """The wish in words."""
+        return f"≤ {seconds_text(self.seconds)} a step"
+
+    def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
+        found = [result_of(item, OURS) for item in items]
+        times = [one["parts"]["steps"] / one["steps"] for one in found if one.get("steps")]
+        if not times:
+            return Reached(None, "—", None)
+        return Reached(max(times), seconds_text(max(times)), max(times) <= self.seconds)
+
+
+@dataclass(frozen=True)
+class ScratchWithin:
+    """The bytes for each triangle of the operands that neither they nor the answer take."""
+
+    bytes_each: float
+
+    @property
+    def text(self) -> str:
+        """The wish in words."""
+        return f"≤ {self.bytes_each:g} bytes a triangle beside operands and answer"
+
+    def reached(self, items: Items) -> Reached:
+        """Look what was measured."""
+        found = [(item["triangles"], result_of(item, OURS)) for item in items]
+        each = [
+            (one["memory_mb"] - one["answer_mb"]) * 1e6 / triangles
+            for triangles, one in found
+            if one.get("memory_mb") and "answer_mb" in one
+        ]
+        if not each:
+            return Reached(None, "—", None)
+        return Reached(max(each), f"{max(each):.0f} bytes", max(each) <= self.bytes_each)
 
 
 @dataclass(frozen=True)
@@ -151,7 +226,7 @@ class SteadySteps:
 
 @dataclass(frozen=True)
 class GrowthTarget:
-    """Time grows at most with this power of the number of triangles."""
+    """Processor time grows at most with this power of the number of triangles."""
 
     exponent: float
 
@@ -162,10 +237,10 @@ class GrowthTarget:
 
     def reached(self, items: Items) -> Reached:
         """Look what was measured."""
-        value = exponent(items, OURS)
+        value = exponent(items, OURS, "cpu")
         if value is None:
             return Reached(None, "—", None)
-        return Reached(value, f"n^{value:.2f}", value <= self.exponent)
+        return Reached(value, f"n^{value:.3f}", value <= self.exponent)
 
 
 @dataclass(frozen=True)
@@ -182,6 +257,9 @@ class DoublingTarget:
 
     def reached(self, items: Items) -> Reached:
         """Look what was measured."""
+        if any(result_of(item, OURS).get("state") == "stopped" for item in items):
+            # What ends at one size and not at the next has grown by more than anybody waits for.
+            return Reached(None, "unfinished", False)
         grown = [_growth(a, b) for a, b in pairwise(items)]
         known = [found for found in grown if found is not None]
         if not known:
@@ -250,12 +328,18 @@ def ratio(item: dict[str, Any], engine: str) -> Ratio | None:
     return None
 
 
-def exponent(items: Items, engine: str) -> float | None:
-    """Fit the power of the number of triangles that an engine's time grows with."""
+def exponent(items: Items, engine: str, time: str = "median") -> float | None:
+    """Fit the power of the number of triangles that an engine's time grows with.
+
+    Parameters
+    ----------
+    items : sequence of dict
+    engine : str
+    time : {"median", "cpu"}
+        Wall time or processor time.
+    """
     points = [
-        (item["triangles"], found)
-        for item in items
-        if (found := result_of(item, engine).get("median"))
+        (item["triangles"], found) for item in items if (found := result_of(item, engine).get(time))
     ]
     if len(points) < 2:
         return None

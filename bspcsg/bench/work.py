@@ -9,8 +9,12 @@ from typing import Any
 import numpy as np
 
 from .._types import MeshArrays
+from ..mesh.mesh import Mesh
+from ..verify.referee import Columns
 from .engines import Engine, Operation
-from .facts import area, size_of
+from .facts import area, mesh_volume, size_of
+from .meter import Usage
+from .shapes import generator
 
 #: Called with the number of steps that are done; of chains only.
 Tell = Callable[[int], None]
@@ -29,12 +33,23 @@ class Outcome:
         Of each step of a chain.
     solid : object
         The engine's, for its counters; None if it made none.
+    process : Usage, optional
+        What a process used that did the work instead of this one.
     """
 
     mesh: MeshArrays
     parts: dict[str, float] = field(default_factory=dict)
     step_seconds: list[float] = field(default_factory=list)
     solid: Any = None
+    process: Usage | None = None
+
+
+@dataclass(frozen=True)
+class Proof:
+    """The word of something that is no engine about an answer."""
+
+    agrees: bool
+    text: str
 
 
 @dataclass(frozen=True)
@@ -65,6 +80,10 @@ class Work(ABC):
         """Return the engine's counters of a run, if it has any."""
         return {} if outcome.solid is None else engine.counters(outcome.solid)
 
+    def proof(self, answer: MeshArrays) -> Proof | None:
+        """Check an answer where other engines cannot; None if they can."""
+        return None
+
 
 @dataclass(frozen=True)
 class Pair(Work):
@@ -88,6 +107,48 @@ class Pair(Work):
             return {}
         operands = [engine.solid(self.first), engine.solid(self.second)]
         return engine.counters(engine.combine(self.operation, operands))
+
+
+@dataclass(frozen=True)
+class PairAsBalls(Pair):
+    """Two meshes that lie between balls, so large that few engines answer.
+
+    Parameters
+    ----------
+    volume : float
+        That of the answer if both were the balls around them.
+    depth : float
+        How far within those balls the meshes are at most.
+    """
+
+    volume: float = 0.0
+    depth: float = 0.0
+
+    def counted(self, engine: Engine, outcome: Outcome) -> dict[str, int]:
+        """Return nothing: it would be done once more."""
+        return {}
+
+    def proof(self, answer: MeshArrays) -> Proof:
+        """Compare the volume with that of balls: walls are at most `depth` from theirs."""
+        found = mesh_volume(answer)
+        apart = abs(found.value - self.volume)
+        # Between a mesh and its ball is at most the ball's area times the depth.
+        balls = self.extent().area / (1 - self.depth) ** 2
+        allowed = balls * self.depth + found.error
+        return Proof(apart <= allowed, f"of balls {apart:.1e}, {allowed:.1e} allowed")
+
+
+@dataclass(frozen=True)
+class OverlappingPair(Pair):
+    """Two meshes that may overlap themselves: inside is where faces wind around at least once."""
+
+    #: Random points at which the answer is compared with what its operands say.
+    samples: int = 100
+
+    def proof(self, answer: MeshArrays) -> Proof:
+        """Count crossings of rays from random points in the first operand's box."""
+        wrong, settled = wrong_points(self.first, self.second, answer, self.samples)
+        return Proof(wrong == 0 < settled, f"wrong at {wrong} of {settled} points")
 
 
 @dataclass(frozen=True)
@@ -128,6 +189,22 @@ class Expression(Work):
         mesh = engine.arrays(made)
         laps.end("combine and mesh out")
         return Outcome(mesh, laps.seconds, solid=made)
+
+
+@dataclass(frozen=True)
+class OneMesh(Work):
+    """Meshes that overlap as one file holds them; engines that take none such unite the parts."""
+
+    parts: Sequence[MeshArrays]
+
+    def extent(self) -> SurfaceExtent:
+        """Add the parts up."""
+        return extent_of(self.parts)
+
+    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+        """Do it."""
+        made = engine.united(self.parts)
+        return Outcome(engine.arrays(made), solid=made)
 
 
 @dataclass(frozen=True)
@@ -224,6 +301,27 @@ def stepwise(
         steps.append(time.perf_counter() - began)
         tell(done)
     return solid, steps
+
+
+def wrong_points(
+    first: MeshArrays, second: MeshArrays, answer: MeshArrays, samples: int
+) -> tuple[int, int]:
+    """Return at how many random points a difference is wrong, and how many could be settled."""
+    meshes = [Columns(_mesh(arrays)) for arrays in (first, second, answer)]
+    low, high = first[0].min(axis=0), first[0].max(axis=0)
+    points = generator().uniform(low, high, (samples, 3))
+    wrong = settled = 0
+    for x, y, z in points.tolist():
+        found = [mesh.is_inside((x, y, z)) for mesh in meshes]
+        if None not in found:
+            settled += 1
+            wrong += (found[0] and not found[1]) != found[2]
+    return wrong, settled
+
+
+def _mesh(arrays: MeshArrays) -> Mesh:
+    vertices, faces = np.asarray(arrays[0], np.float64), np.asarray(arrays[1], np.int64)
+    return Mesh(vertices, faces, np.zeros((len(faces), 2), np.int64))
 
 
 def extent_of(meshes: Iterable[MeshArrays]) -> SurfaceExtent:

@@ -11,18 +11,23 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from math import ceil
 from pathlib import Path
-from statistics import median
+from statistics import mean, median
 from typing import Any
 
 from ..machine import forget_peak, held_mb, peak_mb
 from .cases import CASES, dome
 from .engines import ENGINES, Engine
 from .facts import facts_of
+from .targets import OURS
 from .work import Carving, Chain, Outcome, Tell, Work
 
 #: Steps are told at most so often, in seconds.
 _TELL_EVERY = 0.5
+
+#: A run repeats what takes less, in seconds; the cost of a call is its part of that.
+_LEAST_RUN = 0.02
 
 #: Half the steps around the thousandth, and the last steps, that the times of steps are taken over.
 _WINDOW = 100
@@ -115,59 +120,76 @@ class _Turns:
         self.engine, self.work, self.task, self.say = engine, work, task, say
         self.left = 1
         self._warm = False
+        self._calls = 1
 
     def take(self) -> None:
         """Do one run and say what came out; an engine that fails has no further ones."""
         name = self.engine.name
         self.say({"say": "begin", "engine": name})
         try:
-            seconds, cpu, outcome, memory = self._timed()
+            measured, outcome = self._timed()
         except MemoryError:
             self._fail("out of memory")
         except Exception as error:  # whatever an engine raises, the others go on
             self._fail(f"{type(error).__name__}: {error}")
         else:
             first = not self._warm
-            self._plan(seconds)
-            self.say(
-                {
-                    "say": "run",
-                    "engine": name,
-                    "seconds": seconds,
-                    "cpu": cpu,
-                    "memory_mb": memory,
-                    "peak_mb": peak_mb(),
-                    **self._details(outcome, first),
-                }
-            )
+            self._plan(measured["seconds"])
+            said = {"say": "run", "engine": name, **measured}
+            self.say(said | self._details(outcome, first))
 
-    def _timed(self) -> tuple[float, float, Outcome, float | None]:
-        prepared = self.work.prepare(self.engine)
+    def _timed(self) -> tuple[dict[str, Any], Outcome]:
+        """Do one run of some calls and return the cost of a call."""
         gc.collect()
         held = held_mb()
         counted = forget_peak()
-        began, used = time.perf_counter(), time.process_time()
+        calls = [self._call() for _ in range(self._calls - 1)]
+        last, outcome = self._called()
+        costs = {name: mean(call[name] for call in [*calls, last]) for name in last}
+        memory = peak_mb() - held if counted else None
+        return {**costs, "memory_mb": memory, "peak_mb": peak_mb(), **_of_process(outcome)}, outcome
+
+    def _call(self) -> dict[str, float]:
+        """Do it once and return the cost, with nothing left of the answer."""
+        return self._called()[0]
+
+    def _called(self) -> tuple[dict[str, float], Outcome]:
+        prepared = self.work.prepare(self.engine)
+        faults, began, used = _faults(), time.perf_counter(), time.process_time()
         outcome = self.work.run(self.engine, prepared, self._teller())
         seconds, cpu = time.perf_counter() - began, time.process_time() - used
-        memory = peak_mb() - held if counted else None
-        return sum(outcome.parts.values()) or seconds, cpu, outcome, memory
+        cost = {
+            "seconds": sum(outcome.parts.values()) or seconds,
+            "cpu": cpu,
+            "faults": _faults() - faults,
+        }
+        return cost, outcome
 
     def _plan(self, seconds: float) -> None:
-        """Settle after the first run how many more fit into the budget."""
+        """Settle after the first run how many more fit into the budget, and of how many calls."""
         if self._warm:
             self.left -= 1
             return
         self._warm = True
+        self._calls = max(ceil(_LEAST_RUN / seconds), 1)
         self.left = max(min(self.task.runs, int(self.task.budget / seconds) - 1), 0)
         self.say({"say": "plan", "engine": self.engine.name, "runs": self.left})
 
     def _details(self, outcome: Outcome, first: bool) -> dict[str, Any]:
         details: dict[str, Any] = {"parts": outcome.parts, "facts": asdict(facts_of(outcome.mesh))}
+        details["answer_mb"] = sum(array.nbytes for array in outcome.mesh) / 1e6
         if outcome.step_seconds:
+            details["steps"] = len(outcome.step_seconds)
             details["windows"] = _windows(outcome.step_seconds)
         if first:
             details["counters"] = self.work.counted(self.engine, outcome)
+            details |= self._proof(outcome)
         return details
+
+    def _proof(self, outcome: Outcome) -> dict[str, Any]:
+        """Let our own answers be checked where no other engine can."""
+        found = self.work.proof(outcome.mesh) if self.engine.name == OURS else None
+        return {} if found is None else {"proof": asdict(found)}
 
     def _fail(self, reason: str) -> None:
         self.left = 0
@@ -184,6 +206,20 @@ class _Turns:
                 self.say({"say": "step", "engine": self.engine.name, "done": done})
 
         return tell
+
+
+def _faults() -> int:
+    """Return how many pages of memory the process was given so far."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+
+
+def _of_process(outcome: Outcome) -> dict[str, float]:
+    """Return what was used by a process that did the work instead of this one."""
+    used = outcome.process
+    if used is None:
+        return {}
+    sizes = {"memory_mb": used.peak_mb, "peak_mb": used.peak_mb}
+    return {"seconds": used.seconds, "cpu": used.cpu, **sizes}
 
 
 def _windows(steps: list[float]) -> dict[str, float]:

@@ -1,5 +1,4 @@
-//! Fixed cases for counting instructions:
-//! `fixed_cases pair|small|cubes|chain|expression|rays|visits`.
+//! Fixed cases for counting instructions: `fixed_cases CASE`, one of [`CASES`].
 //!
 //! Everything happens on the main thread, inside [`measured`], so that a profiler which counts
 //! within that function alone sees neither the making of the meshes nor idle threads.
@@ -14,6 +13,7 @@ use bspcsg::extract::rounding::round;
 use bspcsg::geometry::spaces::dim3::Dim3;
 use bspcsg::merge::evaluate::evaluate;
 use bspcsg::merge::expression::{Expression, Term};
+use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::import::import;
@@ -25,7 +25,7 @@ use bspcsg::query::stab::node::Growth;
 use bspcsg::query::stab::StabTree;
 use bspcsg::tree::solid::Solid;
 
-use support::{applied, Numbers, Shape};
+use support::{applied, normalized, Numbers, Shape};
 
 /// Lattice steps to a unit of these models.
 const UNIT: i64 = 1_000_000_000;
@@ -36,55 +36,80 @@ struct Arrays {
     faces: Vec<[i64; 3]>,
 }
 
+/// What makes the meshes of a case and then measures, by the case's name.
+const CASES: [(&str, fn()); 12] = [
+    ("pair", || {
+        let [a, b] = spheres(6);
+        measured(|| pair(SetOp::Difference, &a, &b));
+    }),
+    ("small", || {
+        let [a, b] = spheres(2);
+        pair(SetOp::Difference, &a, &b);
+        measured(|| pair(SetOp::Difference, &a, &b));
+    }),
+    ("cubes", || {
+        let [a, b] = [0, UNIT / 2].map(|at| arrays(&Shape::cuboid([at; 3], [at + UNIT; 3])));
+        pair(SetOp::Union, &a, &b);
+        measured(|| pair(SetOp::Union, &a, &b));
+    }),
+    ("built", || {
+        let [a, b] = spheres(6).map(|mesh| built(&mesh));
+        measured(|| triangles(&applied(SetOp::Difference, &a, &b)));
+    }),
+    ("needles", || {
+        let [a, b] = bundles(40);
+        measured(|| triangles(&applied(SetOp::Difference, &a, &b)));
+    }),
+    ("overlap", || {
+        let balls = places(30).map(|at| sphere(at, 0.2, 1));
+        let one = balls.reduce(Shape::with).expect("some balls").unchecked();
+        measured(|| triangles(&normalized(&one, Rule::Positive)));
+    }),
+    ("chain", || {
+        let block = Shape::cuboid([0; 3], [UNIT; 3]);
+        let balls = places(200).map(|at| sphere(at, 0.03, 1));
+        let tools: Vec<Solid> = balls.map(|s| s.solid()).collect();
+        measured(|| chain(block.solid(), &tools));
+    }),
+    ("holes", || {
+        let plate = Shape::cuboid([0; 3], [8 * UNIT, 8 * UNIT, UNIT]).solid();
+        let tools: Vec<Solid> = (0..64).map(hole).collect();
+        measured(|| chain(plate, &tools));
+    }),
+    ("expression", || {
+        let boxes = places(64).map(|low| Shape::cuboid(low, low.map(|c| c + UNIT / 8)));
+        let solids: Vec<Solid> = boxes.map(|s| s.solid()).collect();
+        measured(|| expression(&solids));
+    }),
+    ("crowd", || {
+        let balls = places(24).map(|at| sphere(at.map(|c| c / 10), 1.0, 0));
+        let solids: Vec<Solid> = balls.map(|s| s.solid()).collect();
+        measured(|| expression(&solids));
+    }),
+    ("rays", || {
+        let scene = scene(6);
+        let [origins, directions] = camera(256);
+        measured(|| hits(&scene, &origins, &directions));
+    }),
+    ("visits", || {
+        let tree = StabTree::<Dim3, 3>::new(scene(3), Growth::Visits(16), None);
+        let tree = tree.expect("facets on the lattice");
+        let [origins, directions] = camera(64);
+        measured(|| visits(&tree, &origins, &directions));
+    }),
+];
+
 fn main() {
-    let case = std::env::args().nth(1).unwrap_or_default();
+    let asked = std::env::args().nth(1).unwrap_or_default();
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1);
     let started = alone.use_current_thread().build_global();
     started.expect("no pool before this one");
-    match case.as_str() {
-        "pair" => {
-            let [a, b] = spheres(6);
-            measured(|| pair(SetOp::Difference, &a, &b));
-        }
-        "small" => {
-            let [a, b] = spheres(2);
-            pair(SetOp::Difference, &a, &b);
-            measured(|| pair(SetOp::Difference, &a, &b));
-        }
-        "cubes" => {
-            let [a, b] = [0, UNIT / 2].map(|at| arrays(&Shape::cuboid([at; 3], [at + UNIT; 3])));
-            pair(SetOp::Union, &a, &b);
-            measured(|| pair(SetOp::Union, &a, &b));
-        }
-        "chain" => {
-            let block = Shape::cuboid([0; 3], [UNIT; 3]);
-            let balls = places(200).map(|at| sphere(at, 0.03, 1));
-            let tools: Vec<Solid> = balls.map(|s| s.solid()).collect();
-            measured(|| chain(block.solid(), &tools));
-        }
-        "expression" => {
-            let boxes = places(64).map(|low| Shape::cuboid(low, low.map(|c| c + UNIT / 8)));
-            let solids: Vec<Solid> = boxes.map(|s| s.solid()).collect();
-            measured(|| expression(&solids));
-        }
-        "rays" => {
-            let scene = scene(6);
-            let [origins, directions] = camera(256);
-            measured(|| hits(&scene, &origins, &directions));
-        }
-        "visits" => {
-            let tree = StabTree::<Dim3, 3>::new(scene(3), Growth::Visits(16), None);
-            let tree = tree.expect("facets on the lattice");
-            let [origins, directions] = camera(64);
-            measured(|| visits(&tree, &origins, &directions));
-        }
-        _ => {
-            eprintln!(
-                "fixed_cases: name a case: pair, small, cubes, chain, expression, rays, or visits"
-            );
-            std::process::exit(2);
-        }
-    }
+    let Some((_, case)) = CASES.iter().find(|(name, _)| *name == asked) else {
+        let names = CASES.map(|(name, _)| name).join(", ");
+        eprintln!("fixed_cases: name a case: {names}");
+        std::process::exit(2);
+    };
+    case();
 }
 
 /// Do the work that is counted.
@@ -126,11 +151,35 @@ fn pitch_exponent(pitch: Pitch) -> i32 {
 
 /// An operation with two meshes, arrays in to arrays out.
 fn pair(op: SetOp, a: &Arrays, b: &Arrays) -> usize {
-    let [a, b] = [a, b].map(|mesh| {
-        let source = import(&mesh.vertices, &mesh.faces, None).expect("a closed mesh");
-        Solid::of_source(Arc::new(source), false)
-    });
+    let [a, b] = [a, b].map(built);
     triangles(&applied(op, &a, &b))
+}
+
+fn built(mesh: &Arrays) -> Solid {
+    let source = import(&mesh.vertices, &mesh.faces, None).expect("a closed mesh");
+    Solid::of_source(Arc::new(source), false)
+}
+
+/// Two bundles of thin tetrahedra side by side, across each other.
+fn bundles(count: i64) -> [Solid; 2] {
+    let [x, y, z] = [[UNIT / 20, 0, 0], [0, UNIT / 20, 0], [0, 0, 20 * UNIT]];
+    [[x, y, z], [y, z, x]].map(|along| {
+        let needle = |k| {
+            let at = [k % 7, k / 7, k].map(|c| c * UNIT / 8 + k);
+            let corner = |by: &[i64; 3]| [0, 1, 2].map(|i| at[i] + by[i]);
+            let corners = [at, corner(&along[0]), corner(&along[1]), corner(&along[2])];
+            Shape::tetrahedron(corners).expect("a corner that stands out")
+        };
+        let all = (0..count).map(needle).reduce(Shape::with);
+        all.expect("some needles").unchecked()
+    })
+}
+
+/// One of 64 boxes through a plate, eight in a row.
+fn hole(number: i64) -> Solid {
+    let low = [number % 8 * UNIT, number / 8 * UNIT, -UNIT].map(|c| c + UNIT / 4);
+    let high = [low[0] + UNIT / 2, low[1] + UNIT / 2, 2 * UNIT];
+    Shape::cuboid(low, high).solid()
 }
 
 /// Differences one after the other, with the volume after each as sums kept in the nodes give it.

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 from bspcsg.bench import runner
-from bspcsg.bench.cases import CASES
+from bspcsg.bench.cases import CASES, SHORT
 from support.cli import Capture, ran
 
 #: A worker of which one engine kills the process, and another never ends.
@@ -61,7 +61,8 @@ def test_cases_are_measured_recorded_and_shown_again(capsys: Capture, tmp_path: 
         assert theirs["agrees"] and theirs["difference"] <= theirs["bound"]
         assert ours["facts"]["open_edges"] == 0 < ours["facts"]["triangles"]
     chain = record["cases"][1]["items"][0]["engines"]["bspcsg"]
-    assert set(chain["parts"]) == {"build", "steps", "mesh out"}
+    assert set(chain["parts"]) == {"build", "steps", "mesh out"} and chain["steps"] == 8
+    assert chain["cold"] == chain["seconds"][0] and chain["faults"] >= 0
     assert record["cases"][0]["items"][0]["engines"]["bspcsg"]["peak_mb"] > 20
     drawing = ElementTree.parse(plot_path)
     assert len(drawing.findall(".//{*}circle")) == 2 * len(CASES["sizes"].small)
@@ -69,10 +70,80 @@ def test_cases_are_measured_recorded_and_shown_again(capsys: Capture, tmp_path: 
     assert (code, again) == (0, out)
     code, printed, _ = ran(capsys, "bench", "--from", str(record_path), "--json")
     assert code == 0 and json.loads(printed) == record
+    code, details, _ = ran(capsys, "bench", "--from", str(record_path), "--details")
+    assert details.startswith(out) and "page faults" in details[len(out) :]
     code, counters, _ = ran(capsys, "bench", "--from", str(record_path), "--counters")
     assert counters.startswith(out) and "nodes" in counters[len(out) :]
     code, table, _ = ran(capsys, "bench", "--from", str(record_path), "--format", "md")
-    assert code == 0 and "| two cubes (small: 2 × 12) | ≥ 1 × manifold3d |" in table
+    assert code == 0 and "| two cubes (small: 2 × 12) | < 40 µs |" in table
+
+
+def _measured_at_once(monkeypatch: pytest.MonkeyPatch, stop_at: str = "") -> list[str]:
+    """Let cases have no items, and an interrupt come at one of them; return what is measured."""
+    measured: list[str] = []
+
+    def run_case(key: str, *_: object) -> dict[str, Any]:
+        if key == stop_at:
+            raise KeyboardInterrupt
+        measured.append(key)
+        return {"case": key, "title": key, "items": []}
+
+    monkeypatch.setattr(runner, "run_case", run_case)
+    return measured
+
+
+def test_what_was_measured_before_an_interrupt_stays_and_is_continued(
+    capsys: Capture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "r.json"
+    asked = ["bench", "--cliffs", "--against", "manifold3d", "-q", "-o", str(path)]
+    names = [name for name in CASES if name.startswith("dense-")]
+    measured = _measured_at_once(monkeypatch, stop_at=names[2])
+    assert ran(capsys, *asked)[0] == 130
+    assert [row["case"] for row in json.loads(path.read_text("utf-8"))["cases"]] == names[:2]
+    measured = _measured_at_once(monkeypatch)
+    assert ran(capsys, *asked, "--continue")[0] == 0
+    assert measured == names[2:]
+    assert [row["case"] for row in json.loads(path.read_text("utf-8"))["cases"]] == names
+    measured.clear()
+    assert ran(capsys, *asked, "--continue", names[5])[0] == 0
+    assert measured == [names[5]]
+    assert [row["case"] for row in json.loads(path.read_text("utf-8"))["cases"]] == names
+
+
+def test_records_of_other_places_are_not_continued(
+    capsys: Capture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _measured_at_once(monkeypatch)
+    path = tmp_path / "r.json"
+    asked = ["bench", "cubes", "-q", "-o", str(path), "--continue"]
+    assert ran(capsys, *asked)[0] == 0
+    record = json.loads(path.read_text("utf-8"))
+    for changed in ("machine", "versions"):
+        path.write_text(json.dumps({**record, changed: {}}))
+        code, _, err = ran(capsys, *asked)
+        assert code == 3 and "measure it again without --continue" in err
+    assert ran(capsys, "bench", "cubes", "--continue")[0] == 2
+
+
+def test_a_few_cases_are_measured_without_names(
+    capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    measured = _measured_at_once(monkeypatch)
+    assert ran(capsys, "bench", "-q")[0] == 0 and measured == list(SHORT)
+    measured.clear()
+    assert ran(capsys, "bench", "-q", "--all")[0] == 0 and measured == list(CASES)
+
+
+def test_an_answer_that_its_proof_refutes_fails(capsys: Capture, tmp_path: Path) -> None:
+    record = _record_of_growth(2.2)
+    ours = record["cases"][0]["items"][0]["engines"]["bspcsg"]
+    path = tmp_path / "r.json"
+    for agrees, code in ((True, 0), (False, 1)):
+        ours["proof"] = {"agrees": agrees, "text": "wrong at 3 of 9 points"}
+        path.write_text(json.dumps(record))
+        found, out, _ = ran(capsys, "bench", "--from", str(path))
+        assert found == code and ("bspcsg: wrong at 3 of 9 points (n)" in out) == (not agrees)
 
 
 def test_an_engine_that_crashes_or_hangs_is_left_out(

@@ -1,5 +1,8 @@
 """The parts of the bench: its meshes, its bounds, and what counts as reached."""
 
+import sys
+import tempfile
+import time
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -8,7 +11,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from bspcsg.bench import dense, real, shapes
+import bspcsg as b
+from bspcsg._types import MeshArrays
+from bspcsg.bench import dense, engines, meter, program, real, runner, shapes, table
+from bspcsg.bench.cases import CASES, SHORT
 from bspcsg.bench.cliffs import CLIFFS
 from bspcsg.bench.facts import facts_of, mesh_volume
 from bspcsg.bench.runner import judged
@@ -17,11 +23,15 @@ from bspcsg.bench.targets import (
     Faster,
     GrowthTarget,
     MeanFaster,
+    ScratchWithin,
     SteadySteps,
+    StepWithin,
     Within,
+    WorkWithin,
 )
-from bspcsg.bench.work import Expression, Pair
+from bspcsg.bench.work import Expression, OneMesh, OverlappingPair, Pair, PairAsBalls, Work
 from bspcsg.bench.worker import Task, perform
+from bspcsg.machine import machine
 from support.shapes import exact_volume
 
 
@@ -36,6 +46,7 @@ def test_all_shapes_are_closed() -> None:
     block, balls = shapes.dome(3)
     meshes = [block, *balls, *shapes.needles(20), *shapes.random_boxes(3)]
     meshes += [shapes.icosphere(1), *shapes.drilled_plate(2)[1], *shapes.drilled_cube(2)[1]]
+    meshes += [*shapes.milled_by_balls(30)[1], *shapes.milled_by_cylinders(30)[1]]
     for mesh in meshes:
         facts = facts_of(mesh)
         assert facts.open_edges == 0 and facts.euler_number == 2
@@ -46,16 +57,22 @@ def test_all_shapes_are_closed() -> None:
 def test_operands_of_dense_places_are_closed_and_twice_as_many(name: str, tmp_path: Path) -> None:
     less, more = (make(tmp_path) for make in CLIFFS[name].small.values())
     for work in (less, more):
-        assert isinstance(work, Pair | Expression)
-        groups = [[work.second]] if isinstance(work, Pair) else work.groups
-        first = work.first if isinstance(work, Pair) else work.base
-        for mesh in [first, *(mesh for group in groups for mesh in group)]:
+        for mesh in _operands(work):
             facts = facts_of(mesh)
             pieces = trimesh.Trimesh(*mesh, process=False).body_count
             assert facts.open_edges == 0 and facts.euler_number == 2 * pieces
             assert facts.volume > 0
     # Base and plate count once; a ball has whole rows.
     assert 1.5 <= more.extent().triangles / less.extent().triangles <= 8
+
+
+def _operands(work: Work) -> list[MeshArrays]:
+    if isinstance(work, OneMesh):
+        return list(work.parts)
+    if isinstance(work, Pair):
+        return [work.first, work.second]
+    assert isinstance(work, Expression)
+    return [work.base, *(mesh for group in work.groups for mesh in group)]
 
 
 def test_needles_of_a_bundle_are_apart() -> None:
@@ -162,6 +179,126 @@ def test_cost_may_grow_as_input_and_answer_and_a_little_more() -> None:
     # An answer that stays small is no reason to be faster than reading takes.
     assert DoublingTarget().reached([small, _sized(200, 10, 2.2)]).met
     assert DoublingTarget().reached([small]).met is None
+
+
+def test_a_size_at_which_we_are_stopped_is_a_cliff() -> None:
+    stopped = {"state": "stopped", "median": None, "cpu": None, "stopped_after": 30.0}
+    items = [_sized(100, 300, 1.0), {"triangles": 200, "engines": {"bspcsg": stopped}}]
+    assert DoublingTarget().reached(items).met is False
+
+
+def test_the_mean_says_over_how_many_and_what_processors_did() -> None:
+    items = [_item(1.0, 2.0), _item(1.0, 8.0), _item(1.0, 9.0, volume=1.0001)]
+    assert MeanFaster(4).reached(items).text == "4 × (processor 4 ×) over 2 of 3"
+
+
+def test_work_steps_and_scratch_are_held_against_what_is_allowed() -> None:
+    chain = _result(0.3, parts={"build": 5.0, "steps": 0.2}, steps=1000)
+    items = [{"triangles": 1_000_000, "engines": {"bspcsg": chain}}]
+    assert WorkWithin(0.3).reached(items).met and not WorkWithin(0.29).reached(items).met
+    assert StepWithin(0.2e-3).reached(items).met and not StepWithin(0.19e-3).reached(items).met
+    assert StepWithin(1).reached([_item(1.0, 1.0)]).met is None
+    chain |= {"memory_mb": 100.0, "answer_mb": 40.0}
+    assert ScratchWithin(60).reached(items).value == 60
+    assert not ScratchWithin(59).reached(items).met
+    assert WorkWithin(1).reached([{"engines": {}}]).met is False
+
+
+def test_huge_spheres_are_compared_with_balls() -> None:
+    work = CASES["huge"].small["2 × 2048"](Path())
+    assert isinstance(work, PairAsBalls)
+    first, second = b.Solid(*work.first), b.Solid(*work.second)
+    vertices, faces = (first - second).to_mesh()
+    assert work.proof((vertices, faces)).agrees
+    assert not work.proof((vertices * 1.1, faces)).agrees
+    corners = np.linalg.norm(work.first[0][work.first[1]].mean(axis=1), axis=1)
+    assert 1 - corners.min() <= work.depth
+
+
+def test_sets_that_overlap_themselves_are_checked_at_points() -> None:
+    first = shapes.joined(dense.turned_cubes(3))
+    work = OverlappingPair(first, shapes.box((0, 0, 0), (1, 1, 1)), samples=30)
+    vertices, faces = b.difference(b.Solid(*first), b.Solid(*work.second)).to_mesh()
+    assert work.proof((vertices, faces)).agrees
+    assert not work.proof(first).agrees
+
+
+def test_overlapping_pairs_overlap_and_others_do_not(shared_meshes: Path) -> None:
+    data = shared_meshes.parent
+    names = real.solid_names(data, real.SMALL)
+    overlapping = real.solid_names(data, real.SMALL, overlapping=True)
+    assert len(names) > 50 and len(overlapping) >= 20 and not {*names} & {*overlapping}
+    first, second = real.overlapping_pair(data, 3)
+    assert facts_of(first).open_edges == facts_of(second).open_edges == 0
+    assert np.linalg.norm(np.ptp(first[0], axis=0)) <= 2 * 3**0.5
+
+
+def test_the_command_line_is_metered_in_a_process_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    work = CASES["files-unchecked"].small["2 × 5 120"](Path())
+    assert isinstance(work, program.CommandLine)
+    ours = engines.ENGINES["bspcsg"]()
+    done = work.run(ours, work.prepare(ours), lambda _: None)
+    assert done.process is not None and 20 < done.process.peak_mb < 500
+    assert done.process.cpu > 0 and done.process.seconds > 0
+    assert work.proof(done.mesh).agrees
+    assert not work.proof(work.first).agrees
+    assert {path.name for path in work.folder.iterdir()} == {"a.stl", "b.stl", "c.stl"}
+    wrong = program.CommandLine(work.first, work.second, ("--no-such-option",))
+    with pytest.raises(engines.EngineError, match="help"):
+        wrong.run(ours, wrong.prepare(ours), lambda _: None)
+
+
+def test_a_meter_tells_exit_codes_and_memory_of_the_command_alone() -> None:
+    held = np.ones(30_000_000)
+    said = "import sys; a = b'x' * 50_000_000; sys.stderr.write('no'); sys.exit(3)"
+    found = meter.metered([sys.executable, "-c", said])
+    assert (found.code, found.said) == (3, "no")
+    assert 50 < found.peak_mb < held.nbytes / 1e6
+
+
+def test_items_that_do_not_fit_are_left_out_and_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    none_left = {**machine(), "memory_gb": 1.0}
+    monkeypatch.setattr(runner, "machine", lambda: none_left)
+    row = runner.run_case("huge", runner.Settings(["bspcsg"]), lambda _: None)
+    assert row["items"] == [] and list(row["too_large"]) == list(CASES["huge"].items)
+    record = {"cases": [row]}
+    assert "huge, 2 × 20 M: left out, needs 18 GB of memory" in "\n".join(table.remarks(record))
+    assert table.lines_of({**record}, titles=False)[1][2] == "—"
+
+
+def test_remarks_name_what_was_missed() -> None:
+    slow = _item(2.0, 1.0, triangles=100)
+    slow["engines"]["bspcsg"]["facts"]["triangles"] = 50
+    twice = _item(5.0, 6.0, triangles=200)
+    twice["engines"]["bspcsg"]["facts"]["triangles"] = 100
+    rows = [
+        {"case": "dense-cones", "title": "cones", "items": [slow, twice]},
+        {"case": "menger-3", "title": "sponge", "items": [_item(1.0, 8.5)]},
+        {"case": "menger-4", "title": "sponge", "items": [{"item": "x", "engines": {}}]},
+        {"case": "cubes", "title": "cubes", "small": True, "items": [_item(1.0, 1.0)]},
+    ]
+    assert table.remarks({"cases": rows}) == [
+        "Reached: 1 of 4 targets. Missed: dense-cones. No figure: menger-4.",
+        "Dense places: 1. Slower than manifold3d: 1 (dense-cones)."
+        " Cost grows more than allowed: 1 (dense-cones).",
+    ]
+
+
+def test_what_is_measured_without_names_are_cases() -> None:
+    assert {*SHORT} < {*CASES}
+
+
+def test_short_work_is_repeated_and_counted_by_call() -> None:
+    said: list[dict[str, Any]] = []
+    task = Task("cubes", "2 × 12", True, ["bspcsg"], runs=1, budget=9, shared=".")
+    began = time.perf_counter()
+    perform(task, said.append)
+    first, second = (line for line in said if line["say"] == "run")
+    assert second["seconds"] < first["seconds"] < time.perf_counter() - began
+    assert first["faults"] >= 0 < first["answer_mb"]
 
 
 def test_an_engine_that_uses_up_its_budget_has_one_run() -> None:

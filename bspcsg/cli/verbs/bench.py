@@ -21,8 +21,9 @@ _EPILOG = """\b
 Examples:
   bspcsg bench --list
   bspcsg bench spheres-328k cubes --against manifold3d,trueform
-  bspcsg bench -o bench.json --plot sizes.svg        (all cases: an hour or more)
+  bspcsg bench --all -o bench.json --plot sizes.svg        (an hour or more)
   bspcsg bench --cliffs --runs 1 --against manifold3d
+  bspcsg bench --all --continue -o bench.json              (after an interrupt)
   bspcsg bench --from bench.json --format md
 """
 
@@ -57,13 +58,13 @@ def _cases_from(context: click.Context, option: click.Parameter, begun: str) -> 
 
 
 def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str, ...]) -> list[str]:
-    """Return names of cases; none means all."""
+    """Return names of cases, each once."""
     from ...bench.cases import CASES
 
     for name in value:
         if name not in CASES:
             raise click.BadParameter(f"{name!r} is no case; see --list.", context, option)
-    return list(dict.fromkeys(value)) or list(CASES)
+    return list(dict.fromkeys(value))
 
 
 @click.command("bench", short_help="Time set operations beside other engines.", epilog=_EPILOG)
@@ -71,6 +72,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     "cases", nargs=-1, callback=_as_cases, metavar="[CASE]...", shell_complete=_cases_from
 )
 @click.option("--list", "listed", is_flag=True, help="Name the cases and what each is to reach.")
+@click.option("--all", "everything", is_flag=True, help="All cases: an hour or more.")
 @click.option("--cliffs", is_flag=True, help="Only dense places, each at two sizes.")
 @click.option(
     "--against",
@@ -135,6 +137,12 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     type=_PATH,
     help="Write the record there.",
 )
+@click.option(
+    "--continue",
+    "continued",
+    is_flag=True,
+    help="Keep what the record of -o has, and measure what it lacks and what is named.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the record instead of a table.")
 @click.option("--plot", "plot_path", type=_PATH, help="Draw time against size, as SVG.")
 @click.option("--from", "source", type=_PATH, help="Measure nothing; show this record.")
@@ -146,38 +154,80 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     show_default=True,
     help="How the table is printed.",
 )
+@click.option(
+    "--details", is_flag=True, help="Print first and later times, page faults and memory, too."
+)
 @click.option("--counters", is_flag=True, help="Print what our core counted, too.")
 @click.option("-q", "--quiet", is_flag=True, help="Do not say what is under way.")
 @click.option("--debug", is_flag=True, help="Show where an error comes from.")
-def bench(cases: list[str], listed: bool, cliffs: bool, **given: Any) -> int:
+def bench(
+    cases: list[str], listed: bool, everything: bool, cliffs: bool, continued: bool, **given: Any
+) -> int:
     """Time set operations beside other engines, and check each answer.
 
-    Engines take turns in one process, and the tables show medians. A call that takes longer than
-    the limit is stopped, and an engine that crashes is left out; the others go on.
+    Without names, a few cases are measured that take a minute or two. Engines take turns in one
+    process, and the tables show medians. A call that takes longer than the limit is stopped, and an
+    engine that crashes is left out; the others go on.
 
     The exit code is 1 if an answer differs from ours by more than rounding explains, if we fail, or
     if our cost in a dense place grows faster than input and answer.
     """
-    if cliffs:
-        cases = _dense(cases)
+    wanted = _wanted(cases, listed or everything, cliffs)
     if listed:
-        _tell_cases(cases, given["as_json"])
+        _tell_cases(wanted, given["as_json"])
         return output.DONE
     _refuse_early(given)
     source: Path | None = given["source"]
     from ...bench import record as records
 
-    record = records.read(source) if source else _measured(cases, given)
+    if source:
+        record = records.read(source)
+    else:
+        kept = _kept(given["record_path"]) if continued else []
+        record = _measured(_missing(wanted, cases, kept), kept, given)
     with _whole_record(source):
         text = json.dumps(record) + "\n" if given["as_json"] else _table(record, given["style"])
-        if given["counters"] and not given["as_json"]:
-            text += _counters(record) + "\n"
+        text += "" if given["as_json"] else _more_tables(record, given)
         plotted = _plot(record) if given["plot_path"] else ""
         found = _is_wrong(record) or _has_cliff(record)
         code = output.FOUND if found else output.DONE
     click.echo(text, nl=False)
     _write(record, plotted, given["record_path"], given["plot_path"])
     return code
+
+
+def _wanted(cases: list[str], everything: bool, cliffs: bool) -> list[str]:
+    """Return the cases that are meant by names and options."""
+    from ...bench.cases import CASES, SHORT
+
+    if cliffs:
+        return _dense(cases or list(CASES))
+    return cases or list(CASES if everything else SHORT)
+
+
+def _kept(path: Path | None) -> list[dict[str, Any]]:
+    """Return the rows of a record that is to be continued; none if there is none yet."""
+    from ...bench import record as records
+    from ...bench.cases import CASES
+
+    if path is None:
+        raise click.UsageError("--continue needs -o FILE, the record that it continues.")
+    if not path.exists():
+        return []
+    found = records.read(path)
+    with _whole_record(path):
+        other = records.other_place(found)
+        rows = [row for row in found["cases"] if row["case"] in CASES]
+    if other:
+        message = f"{path}: this record is from {other}; measure it again without --continue."
+        raise FormatError(message, "unreadable")
+    return rows
+
+
+def _missing(wanted: list[str], named: list[str], kept: list[dict[str, Any]]) -> list[str]:
+    """Return the cases to measure: those that are named, and those that a record lacks."""
+    there = {row["case"] for row in kept}
+    return [name for name in wanted if name in named or name not in there]
 
 
 def _dense(cases: list[str]) -> list[str]:
@@ -228,16 +278,20 @@ def _tell_cases(cases: list[str], as_json: bool) -> None:
         click.echo(table_text(["case", "what", "to reach"], rows))
 
 
-def _measured(cases: list[str], given: dict[str, Any]) -> dict[str, Any]:
+def _measured(
+    cases: list[str], kept: list[dict[str, Any]], given: dict[str, Any]
+) -> dict[str, Any]:
+    """Measure cases and return a record of them and of rows that are kept."""
     from ...bench import record as records
     from ...bench.runner import run_case
 
     settings = _settings(given)
     status.end()
     told = _silence if given["quiet"] else _tell
-    rows = []
+    rows = {row["case"]: row for row in kept}
     for name in cases:
-        rows.append(run_case(name, settings, told))
+        rows[name] = run_case(name, settings, told)
+        rows = _sorted(rows) if kept else rows
         if given["record_path"]:
             # What is measured stays, whatever happens later.
             records.write(_record(rows, given), given["record_path"])
@@ -245,10 +299,19 @@ def _measured(cases: list[str], given: dict[str, Any]) -> dict[str, Any]:
     return _record(rows, given)
 
 
-def _record(rows: list[dict[str, Any]], given: dict[str, Any]) -> dict[str, Any]:
+def _sorted(rows: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """Return rows in the order of the cases."""
+    from ...bench.cases import CASES
+
+    return {name: rows[name] for name in CASES if name in rows}
+
+
+def _record(rows: dict[str, dict[str, Any]], given: dict[str, Any]) -> dict[str, Any]:
     from ...bench import record as records
 
-    return records.record_of(rows, given["runs"], " ".join(["bspcsg", *sys.argv[1:]]))
+    return records.record_of(
+        list(rows.values()), given["runs"], " ".join(["bspcsg", *sys.argv[1:]])
+    )
 
 
 def _settings(given: dict[str, Any]) -> "Settings":
@@ -283,7 +346,21 @@ def _table(record: dict[str, Any], style: str) -> str:
     if style == "md":
         return table.markdown(record)
     head, *lines = table.lines_of(record, titles=False)
-    return f"{table_text(head, lines)}\n{table.about(record)}\n"
+    said = [table.about(record), *table.remarks(record)]
+    return "\n".join([table_text(head, lines), *said, ""])
+
+
+def _more_tables(record: dict[str, Any], given: dict[str, Any]) -> str:
+    found = [_details(record)] if given["details"] else []
+    found += [_counters(record)] if given["counters"] else []
+    return "".join(f"{text}\n" for text in found)
+
+
+def _details(record: dict[str, Any]) -> str:
+    from ...bench import table
+
+    head, *lines = table.detail_lines(record)
+    return table_text(head, lines, right=head[3:])
 
 
 def _counters(record: dict[str, Any]) -> str:
@@ -317,8 +394,8 @@ def _is_wrong(record: dict[str, Any]) -> bool:
 
     for row in record["cases"]:
         for item in row["items"]:
-            others = [*item["engines"].values(), item.get("at_once", {})]
             ours = result_of(item, OURS)
+            others = [*item["engines"].values(), item.get("at_once", {}), ours.get("proof", {})]
             if ours.get("state") in ("failed", "crashed") or _is_open(ours):
                 return True
             if any(found.get("agrees") is False for found in others):
@@ -327,16 +404,10 @@ def _is_wrong(record: dict[str, Any]) -> bool:
 
 
 def _has_cliff(record: dict[str, Any]) -> bool:
-    """Say whether our cost grows too fast in a case of full size that bounds its growth."""
-    from ...bench.cases import CASES
-    from ...bench.targets import DoublingTarget
+    """Say whether our cost grows too fast in a row of full size that bounds its growth."""
+    from ...bench.table import has_cliff
 
-    for row in record["cases"]:
-        for target in CASES[row["case"]].targets:
-            bounds = isinstance(target, DoublingTarget) and not row.get("small")
-            if bounds and target.reached(row["items"]).met is False:
-                return True
-    return False
+    return any(has_cliff(row) for row in record["cases"])
 
 
 def _is_open(found: dict[str, Any]) -> bool:

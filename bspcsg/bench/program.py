@@ -1,0 +1,86 @@
+"""The command line as work: two STL files in, one out, by a process of its own."""
+
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from .._types import MeshArrays
+from ..formats import stl
+from ..formats.raw import RawMesh
+from ..formats.source import Source
+from .engines import ENGINES, Engine, EngineError
+from .facts import mesh_volume
+from .meter import metered
+from .targets import MAIN_RIVAL
+from .work import Outcome, Proof, SurfaceExtent, Tell, Work, extent_of
+
+_BOOT = Path(__file__).with_name("boot.py")
+
+#: Largest distance by which a coordinate of a file moves, in parts of it.
+_SINGLE = 2.0**-24
+
+
+@dataclass(frozen=True)
+class CommandLine(Work):
+    """A difference of two files by `bspcsg difference`.
+
+    Parameters
+    ----------
+    first, second : (vertices, faces)
+    options : tuple of str
+    folder : Path
+        For the files; whoever starts a worker takes away what it leaves among temporary files.
+    """
+
+    first: MeshArrays
+    second: MeshArrays
+    options: tuple[str, ...] = ()
+    folder: Path = field(default_factory=lambda: Path(mkdtemp()))
+
+    def extent(self) -> SurfaceExtent:
+        """Add the operands up."""
+        return extent_of([self.first, self.second])
+
+    def prepare(self, engine: Engine) -> list[str]:
+        """Write the operands and return their names."""
+        paths = [self.folder / name for name in ("a.stl", "b.stl")]
+        for path, mesh in zip(paths, (self.first, self.second), strict=True):
+            if not path.exists():
+                path.write_bytes(b"".join(stl.binary(RawMesh(*mesh, path.stem))))
+        return [str(path) for path in paths]
+
+    def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
+        """Do it."""
+        answer = self.folder / "c.stl"
+        asked = ["difference", *prepared, "-o", str(answer), "-q", *self.options]
+        used = metered([*_ours(), *asked])
+        if used.code:
+            raise EngineError(used.said)
+        return Outcome(_read(answer), process=used)
+
+    def proof(self, answer: MeshArrays) -> Proof:
+        """Compare the volume with that of the main rival, which is given the same files."""
+        operands = [_read(Path(name)) for name in self.prepare(ENGINES[MAIN_RIVAL]())]
+        theirs = mesh_volume(ENGINES[MAIN_RIVAL]().boolean(operands[0], operands[1], "difference"))
+        ours, extent = mesh_volume(answer), self.extent()
+        apart = abs(ours.value - theirs.value)
+        # A vertex moves along three coordinates.
+        moved = extent.area * extent.size * 3**0.5 * 2 * _SINGLE
+        allowed = moved + ours.error + theirs.error
+        return Proof(apart <= allowed, f"of {MAIN_RIVAL} {apart:.1e}, {allowed:.1e} allowed")
+
+
+def _ours() -> list[str]:
+    """Return the start of a command line, on the core that this process has."""
+    root = Path(__file__).resolve().parents[2]
+    return [sys.executable, "-P", str(_BOOT), str(root), str(_core.__file__), "--"]
+
+
+def _read(path: Path) -> MeshArrays:
+    raw = stl.read(Source(path.name, path.read_bytes()))
+    return np.asarray(raw.vertices), np.asarray(raw.faces)
