@@ -8,6 +8,7 @@ The package loads its core when it is first imported, so that this must not be a
 import sys
 from importlib.machinery import ExtensionFileLoader
 from importlib.util import module_from_spec, spec_from_file_location
+from runpy import run_module
 
 
 def put_in_place(core: str) -> None:
@@ -27,10 +28,9 @@ if __name__ == "__main__":
     if core:
         put_in_place(core)
     if task == "--":
-        from bspcsg.cli.entry import main as program
-
         sys.argv = ["bspcsg", *arguments]
-        program()
+        # As `python -m bspcsg` does.
+        run_module("bspcsg", run_name="__main__")
     else:
         from bspcsg.bench.worker import main
 

@@ -363,6 +363,7 @@ CASES: dict[str, BenchCase] = {
         {f"2 × {8 * n * n}": _huge_spheres(n) for n in (16, 32)},
         (OURS,),
         alone=True,
+        limit=900.0,
         needs_gb={_huge_label(n): gb for n, gb in zip(_HUGE, _HUGE_GB, strict=True)},
     ),
     "files-checked": BenchCase(

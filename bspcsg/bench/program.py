@@ -2,13 +2,13 @@
 
 import sys
 from dataclasses import dataclass, field
+from importlib import import_module
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
 
 import numpy as np
 
-from .. import _core
 from .._types import MeshArrays
 from ..formats import stl
 from ..formats.raw import RawMesh
@@ -17,7 +17,7 @@ from .engines import ENGINES, Engine, EngineError
 from .facts import mesh_volume
 from .meter import metered
 from .targets import MAIN_RIVAL
-from .work import Outcome, Proof, SurfaceExtent, Tell, Work, extent_of
+from .work import Evidence, Outcome, SurfaceExtent, Tell, Work, extent_of
 
 _BOOT = Path(__file__).with_name("boot.py")
 
@@ -63,7 +63,7 @@ class CommandLine(Work):
             raise EngineError(used.said)
         return Outcome(_read(answer), process=used)
 
-    def proof(self, answer: MeshArrays) -> Proof:
+    def proof(self, answer: MeshArrays) -> Evidence:
         """Compare the volume with that of the main rival, which is given the same files."""
         operands = [_read(Path(name)) for name in self.prepare(ENGINES[MAIN_RIVAL]())]
         theirs = mesh_volume(ENGINES[MAIN_RIVAL]().boolean(operands[0], operands[1], "difference"))
@@ -72,13 +72,14 @@ class CommandLine(Work):
         # A vertex moves along three coordinates.
         moved = extent.area * extent.size * 3**0.5 * 2 * _SINGLE
         allowed = moved + ours.error + theirs.error
-        return Proof(apart <= allowed, f"of {MAIN_RIVAL} {apart:.1e}, {allowed:.1e} allowed")
+        return Evidence(apart <= allowed, f"of {MAIN_RIVAL} {apart:.1e}, {allowed:.1e} allowed")
 
 
 def _ours() -> list[str]:
     """Return the start of a command line, on the core that this process has."""
     root = Path(__file__).resolve().parents[2]
-    return [sys.executable, "-P", str(_BOOT), str(root), str(_core.__file__), "--"]
+    core = import_module("bspcsg._core").__file__
+    return [sys.executable, "-P", str(_BOOT), str(root), str(core), "--"]
 
 
 def _read(path: Path) -> MeshArrays:

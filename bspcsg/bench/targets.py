@@ -180,7 +180,8 @@ class ScratchWithin:
         ]
         if not each:
             return Reached(None, "—", None)
-        return Reached(max(each), f"{max(each):.0f} bytes", max(each) <= self.bytes_each)
+        met = _of_all(max(each) <= self.bytes_each, len(each), items)
+        return Reached(max(each), f"{max(each):.0f} bytes", met)
 
 
 @dataclass(frozen=True)
@@ -240,7 +241,13 @@ class GrowthTarget:
         value = exponent(items, OURS, "cpu")
         if value is None:
             return Reached(None, "—", None)
-        return Reached(value, f"n^{value:.3f}", value <= self.exponent)
+        timed = sum(bool(result_of(item, OURS).get("cpu")) for item in items)
+        return Reached(value, f"n^{value:.3f}", _of_all(value <= self.exponent, timed, items))
+
+
+def _of_all(met: bool, measured: int, items: Items) -> bool | None:
+    """Return whether a target is met; None where only some items say so."""
+    return None if met and measured < len(items) else met
 
 
 @dataclass(frozen=True)

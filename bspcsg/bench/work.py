@@ -34,7 +34,7 @@ class Outcome:
     solid : object
         The engine's, for its counters; None if it made none.
     process : Usage, optional
-        What a process used that did the work instead of this one.
+        The use of resources by a process that did the work instead of this one.
     """
 
     mesh: MeshArrays
@@ -45,7 +45,7 @@ class Outcome:
 
 
 @dataclass(frozen=True)
-class Proof:
+class Evidence:
     """The word of something that is no engine about an answer."""
 
     agrees: bool
@@ -80,7 +80,7 @@ class Work(ABC):
         """Return the engine's counters of a run, if it has any."""
         return {} if outcome.solid is None else engine.counters(outcome.solid)
 
-    def proof(self, answer: MeshArrays) -> Proof | None:
+    def proof(self, answer: MeshArrays) -> Evidence | None:
         """Check an answer where other engines cannot; None if they can."""
         return None
 
@@ -118,7 +118,7 @@ class PairAsBalls(Pair):
     volume : float
         That of the answer if both were the balls around them.
     depth : float
-        How far within those balls the meshes are at most.
+        The most by which the meshes are within those balls.
     """
 
     volume: float = 0.0
@@ -128,14 +128,14 @@ class PairAsBalls(Pair):
         """Return nothing: it would be done once more."""
         return {}
 
-    def proof(self, answer: MeshArrays) -> Proof:
+    def proof(self, answer: MeshArrays) -> Evidence:
         """Compare the volume with that of balls: walls are at most `depth` from theirs."""
         found = mesh_volume(answer)
         apart = abs(found.value - self.volume)
         # Between a mesh and its ball is at most the ball's area times the depth.
         balls = self.extent().area / (1 - self.depth) ** 2
         allowed = balls * self.depth + found.error
-        return Proof(apart <= allowed, f"of balls {apart:.1e}, {allowed:.1e} allowed")
+        return Evidence(apart <= allowed, f"of balls {apart:.1e}, {allowed:.1e} allowed")
 
 
 @dataclass(frozen=True)
@@ -145,10 +145,10 @@ class OverlappingPair(Pair):
     #: Random points at which the answer is compared with what its operands say.
     samples: int = 100
 
-    def proof(self, answer: MeshArrays) -> Proof:
+    def proof(self, answer: MeshArrays) -> Evidence:
         """Count crossings of rays from random points in the first operand's box."""
         wrong, settled = wrong_points(self.first, self.second, answer, self.samples)
-        return Proof(wrong == 0 < settled, f"wrong at {wrong} of {settled} points")
+        return Evidence(wrong == 0 < settled, f"wrong at {wrong} of {settled} points")
 
 
 @dataclass(frozen=True)

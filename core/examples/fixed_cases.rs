@@ -36,7 +36,7 @@ struct Arrays {
     faces: Vec<[i64; 3]>,
 }
 
-/// What makes the meshes of a case and then measures, by the case's name.
+/// The making of a case's meshes and the work that is measured, by the case's name.
 const CASES: [(&str, fn()); 12] = [
     ("pair", || {
         let [a, b] = spheres(6);

@@ -157,6 +157,9 @@ def test_times_and_their_growth() -> None:
     items = [_item(1e-6 * n**1.1, 1.0, triangles=n) for n in (10_000, 40_000, 160_000)]
     assert GrowthTarget(1.05).reached(items).value == pytest.approx(1.1)
     assert GrowthTarget(1.05).reached(items).met is False
+    missing = {"triangles": 640_000, "engines": {"bspcsg": {"state": "stopped"}}}
+    assert GrowthTarget(1.2).reached(items).met
+    assert GrowthTarget(1.2).reached([*items, missing]).met is None
     assert Within(1.0).reached(items).met
     chain = _result(1.0, windows={"thousandth": 0.002, "last": 0.005})
     steady = SteadySteps(2).reached([{"engines": {"bspcsg": chain}}])

@@ -94,7 +94,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     "--limit",
     metavar="SECONDS",
     type=click.FloatRange(0, min_open=True),
-    help="Seconds after which a call is stopped; by default 300, and 900 for the dome.",
+    help="Seconds after which a call is stopped; by default 120 to 900.",
 )
 @click.option(
     "--budget",
