@@ -23,6 +23,7 @@ from ..formats.threemf import scene as threemf
 from ..formats.threemf.properties import kept
 from ..formats.threemf.write import called
 from ..geometry import transform
+from ..mesh.mesh import Mesh
 from ..parameters import file_path
 from ..solid.solid import Solid
 from . import scripts
@@ -126,7 +127,7 @@ def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...
             raise FormatError(message, "write_mismatch")
 
     write_file(path, _TREES[suffix][1](scene), prove)
-    return (*_lost(given, scene), *_empty(describing.empty))
+    return (*_lost(given, scene), *_empty(describing.empty), *describing.changes)
 
 
 def _empty(count: int) -> tuple[Finding, ...]:
@@ -142,6 +143,8 @@ class _Describing:
     def __init__(self, in_single: bool) -> None:
         #: The number of parts without volume, which files have no place for.
         self.empty = 0
+        #: What single precision changes about meshes.
+        self.changes: list[Finding] = []
         self._in_single = in_single
         self._meshes: dict[int, tuple[Solid, RawMesh]] = {}
 
@@ -165,14 +168,16 @@ class _Describing:
 
     def _mesh(self, solid: Solid, name: str) -> RawMesh:
         if id(solid) not in self._meshes:
-            self._meshes[id(solid)] = (solid, _raw(solid, name, self._in_single))
+            mesh = solid.normalized().to_mesh()
+            if self._in_single:
+                mesh, found = single.settled(mesh)
+                told = (replace(one, message=f"“{name}”: {one.message}") for one in found)
+                self.changes.extend(told)
+            self._meshes[id(solid)] = (solid, _raw(mesh, name, self._in_single))
         return self._meshes[id(solid)][1]
 
 
-def _raw(solid: Solid, name: str, in_single: bool) -> RawMesh:
-    mesh = solid.normalized().to_mesh()
-    if in_single:
-        mesh, _ = single.settled(mesh)
+def _raw(mesh: Mesh, name: str, in_single: bool) -> RawMesh:
     vertices = mesh.vertices.astype(np.float32) if in_single else mesh.vertices
     said = mesh.attributes if mesh.carried is not None else None
     return RawMesh(vertices.astype(np.float64), mesh.faces, name, attributes=said)

@@ -6,6 +6,7 @@ from .._core import mesh_in_single
 from .._types import BoolArray, FloatArray, IndexArray
 from ..attributes.attributes import made
 from ..errors import Finding, core_errors
+from ..mesh.certificate import Certificate, certify
 from ..mesh.mesh import Mesh
 from ..mesh.weld import distinct
 from ..solid.solid import solid_of_mesh
@@ -88,11 +89,12 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
         result, more, _ = _rounded(_united(result))
         # The lattice on which surfaces are united does not hold single precision. Faces that it
         # leaves as they were may cross, so all are looked at.
-        proof = result.certificate
-        crossing = _either(np.array(proof.crossings), np.array(proof.flat))
+        crossing = _faulty(result.certificate)
         mended += more
     if not len(result.faces):
-        return mesh, ()
+        # All of it is thinner than the rounding, by which opposite sides come to lie in each other.
+        rounded = mesh.vertices.astype(np.float32).astype(np.float64)
+        result, mended, crossing = mesh, 0, _faulty(certify(rounded, mesh.faces))
     findings = [
         Finding("mended_in_single", "note", _MENDED.format(mended), (), mended),
         Finding(
@@ -122,6 +124,11 @@ def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
     result = Mesh(found["vertices"][used], faces, mesh.source[kept], carried)
     faulty = np.searchsorted(kept, _either(found["crossings"], found["flat"]))
     return result, found["mended"], faulty
+
+
+def _faulty(proof: Certificate) -> IndexArray:
+    """Return the numbers of the triangles that cross others or have no area, rising."""
+    return _either(np.array(proof.crossings), np.array(proof.flat))
 
 
 def _either(some: IndexArray, others: IndexArray) -> IndexArray:

@@ -181,6 +181,15 @@ def test_empty_parts_and_names_that_files_cannot_hold(tmp_path: Path, suffix: st
         assert caught.value.code == "too_large"
 
 
+def test_parts_that_single_precision_makes_cross_are_said(tmp_path: Path) -> None:
+    slab = b.box((1e-9, 1, 1)).translate(1, 0, 0)
+    made = b.Assembly("both", [b.Assembly("slab", slab), b.Assembly("twin", slab), b.cube(1)])
+    (finding,) = made.save(tmp_path / "x.glb")
+    assert (finding.code, finding.count) == ("crossing_in_single", 12)
+    assert finding.message.startswith("“slab”: in single precision 12 triangles")
+    assert made.save(tmp_path / "x.3mf") == ()
+
+
 def test_instances_take_the_room_of_one(tmp_path: Path) -> None:
     ball = b.Assembly("ball", b.sphere(1, segments=64))
     many = b.Assembly("many", [ball.translate(3 * k, 0, 0) for k in range(50)])
