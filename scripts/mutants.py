@@ -2,11 +2,13 @@
 
     scripts/mutants [NUMBER ...]
 
-The core is copied to `.fuzz/mutants` and built there. Ends with status 1 if a mutant survives, or
+The core is copied to `.fuzz/mutants` and built there. `--record` keeps what earlier runs said of
+other mutants. Ends with status 1 if a mutant survives, or
 if a line to change is not in the source any more.
 """
 
 import argparse
+import json
 import shutil
 import subprocess
 import sys
@@ -14,7 +16,7 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-from recording import REPOSITORY, keep
+from recording import RECORDS, REPOSITORY, commit, keep
 
 FOLDER = REPOSITORY / ".fuzz" / "mutants"
 
@@ -125,10 +127,25 @@ def main() -> int:
         verdict = verdict_on(mutant, core)
         seconds = time.perf_counter() - began
         print(f"{number:3} {mutant.what:60} {verdict:10} {seconds:6.0f} s", flush=True)
-        rows.append({"mutant": mutant.what, "tests": " ".join(mutant.tests), "verdict": verdict})
+        rows.append(
+            {
+                "mutant": mutant.what,
+                "tests": " ".join(mutant.tests),
+                "verdict": verdict,
+                "commit": commit(),
+            }
+        )
     if options.record:
-        print(keep("mutants", {"mutants": rows}))
+        print(keep("mutants", {"mutants": with_earlier(rows)}))
     return int(any(row["verdict"] != "noticed" for row in rows))
+
+
+def with_earlier(rows: list[dict[str, str]]) -> list[dict[str, str]]:
+    """Return rows with those of the record about mutants that have no row, in the list's order."""
+    path = RECORDS / "mutants.json"
+    earlier = json.loads(path.read_text("utf-8"))["mutants"] if path.is_file() else []
+    known = {row["mutant"]: row for row in [*earlier, *rows]}
+    return [known[mutant.what] for mutant in MUTANTS if mutant.what in known]
 
 
 def verdict_on(mutant: Mutant, core: Path) -> str:

@@ -18,7 +18,7 @@ def machine() -> dict[str, Any]:
     """Describe the machine and the versions that a figure belongs to."""
     return {
         "date": datetime.now(UTC).strftime("%Y-%m-%d"),
-        "commit": _commit(),
+        "commit": commit(),
         **this_machine(),
         "python": platform.python_version(),
         "manifold3d": version("manifold3d"),
@@ -34,6 +34,7 @@ def keep(name: str, result: dict[str, Any]) -> Path:
     return path
 
 
-def _commit() -> str:
+def commit() -> str:
+    """Return the short name of the repository's commit."""
     command = ["git", "-C", str(REPOSITORY), "rev-parse", "--short", "HEAD"]
     return subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()

@@ -11,7 +11,7 @@ import fuzz
 import fuzz_record
 from fuzz_guided import Guided, outcome_of
 from fuzz_record import Found, Outcome, add_to_record, totals
-from mutants import MUTANTS, Mutant
+from mutants import MUTANTS, Mutant, with_earlier
 from recording import REPOSITORY
 
 SAID = """INFO: seed corpus: files: 40
@@ -98,3 +98,15 @@ def test_mutants_change_one_place_of_the_source(mutant: Mutant) -> None:
     file, *names = mutant.tests
     tests = (REPOSITORY / "core" / "tests" / f"{file}.rs").read_text(encoding="utf-8")
     assert all(f"fn {name}(" in tests for name in names)
+
+
+def test_records_of_mutants_keep_what_earlier_runs_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first, second, third = (mutant.what for mutant in MUTANTS[:3])
+    earlier = [{"mutant": what, "verdict": "noticed"} for what in ("gone", second, third)]
+    (tmp_path / "mutants.json").write_text(json.dumps({"mutants": earlier}))
+    monkeypatch.setattr("mutants.RECORDS", tmp_path)
+    again = [{"mutant": what, "verdict": "SURVIVED"} for what in (third, first)]
+    told = [(row["mutant"], row["verdict"]) for row in with_earlier(again)]
+    assert told == [(first, "SURVIVED"), (second, "noticed"), (third, "SURVIVED")]
