@@ -23,6 +23,11 @@ pub fn manifold_mesh(solid: &Solid, context: &str) -> Mesh {
         mesh.vertices.len(),
         "{context}: unused vertices"
     );
+    assert_eq!(
+        fans(&after),
+        mesh.vertices.len(),
+        "{context}: a vertex has several fans"
+    );
     mesh
 }
 
