@@ -6,6 +6,11 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ._core import find_numpy
+
+# Here, where an interrupt waits for the end of the import, and not with the first array.
+find_numpy()
+
 #: Coordinates or other measures: float64, the shape is given where the name is used.
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -120,8 +120,8 @@ def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...
     given = scene
     scene = _Held().node(scene) if suffix == ".3mf" else glb.as_written(scene)
 
-    def prove(data: bytes) -> None:
-        found = _decoded(os.fspath(path), data, suffix)
+    def prove(file: BinaryIO) -> None:
+        found = _decoded(os.fspath(path), file.read(), suffix)
         if not are_alike(scene, found) or (suffix == ".3mf" and not say_alike(scene, found)):
             message = f"{os.fspath(path)}: the file that was written is not the assembly."
             raise FormatError(message, "write_mismatch")
@@ -143,7 +143,7 @@ class _Describing:
     def __init__(self, in_single: bool) -> None:
         #: The number of parts without volume, which files have no place for.
         self.empty = 0
-        #: What single precision changes about meshes.
+        #: The findings about meshes in single precision.
         self.changes: list[Finding] = []
         self._in_single = in_single
         self._meshes: dict[int, tuple[Solid, RawMesh]] = {}

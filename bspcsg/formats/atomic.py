@@ -1,16 +1,17 @@
 """Files that are either complete or not there."""
 
 import contextlib
+import io
 import os
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import TypeAlias
+from typing import BinaryIO, TypeAlias
 
 from ..errors import FormatError
 from ..parameters import file_path
 
-#: Takes what was written, and raises an error if it is not what it should be.
-Proof: TypeAlias = Callable[[bytes], None]
+#: Takes the file that was written, and raises an error if it is not what it should be.
+Proof: TypeAlias = Callable[[BinaryIO], None]
 
 
 def write_file(
@@ -26,7 +27,7 @@ def write_file(
     path : str or path
     chunks : iterable of bytes
     prove : callable, optional
-        Is given what the new file holds before it gets its name.
+        Is given the new file, to be read from its beginning, before that gets its name.
 
     Raises
     ------
@@ -52,7 +53,7 @@ def _drop(chunks: Iterable[bytes], prove: Proof | None) -> None:
     """Make what would be written, and prove it."""
     data = b"".join(chunks)
     if prove is not None:
-        prove(data)
+        prove(io.BytesIO(data))
 
 
 def _check_target(target: Path) -> None:
@@ -73,7 +74,8 @@ def _write_new(part: Path, target: Path, chunks: Iterable[bytes], prove: Proof |
             stream.flush()
             os.fsync(stream.fileno())
         if prove is not None:
-            prove(part.read_bytes())
+            with part.open("rb") as written:
+                prove(written)
         if target.exists():
             part.chmod(target.stat().st_mode & 0o7777)
         os.replace(part, target)

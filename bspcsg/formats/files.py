@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
@@ -203,14 +204,14 @@ class Encoded:
     findings : tuple of Finding
         The things that the format cannot keep.
     prove : callable
-        Takes the bytes that were written, and raises FormatError if they are not the mesh.
+        Takes the file that was written, and raises FormatError if it does not hold the mesh.
     files : dict of str to bytes
         The files that go beside it: its materials and pictures.
     """
 
     chunks: Iterator[bytes]
     findings: tuple[Finding, ...]
-    prove: Callable[[bytes], None]
+    prove: Callable[[BinaryIO], None]
     files: Mapping[str, bytes] = field(default_factory=dict)
 
 

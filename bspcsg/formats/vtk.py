@@ -5,7 +5,6 @@ meshio reads and writes files by name, so the bytes go through a temporary folde
 
 import contextlib
 import io
-import sys
 import tempfile
 import warnings
 import zlib
@@ -51,7 +50,7 @@ def reader(suffix: str) -> Callable[[Source], RawMesh]:
     """Return the reader for ``.vtk`` or ``.vtu``."""
 
     def read(source: Source) -> RawMesh:
-        return _surface(source, grid_of(source, suffix, _LARGEST))
+        return _surface(source, _grid_of(source, suffix))
 
     return read
 
@@ -73,8 +72,8 @@ def _meshio() -> Any:
     return meshio
 
 
-def grid_of(source: Source, suffix: str, largest: int = sys.maxsize) -> Any:
-    """Return the `meshio.Mesh` of a file, whose packed data may unpack to so many bytes.
+def _grid_of(source: Source, suffix: str) -> Any:
+    """Return the `meshio.Mesh` of a file, whose packed data may unpack to a bounded size.
 
     Raises
     ------
@@ -92,7 +91,7 @@ def grid_of(source: Source, suffix: str, largest: int = sys.maxsize) -> Any:
             with (
                 contextlib.redirect_stdout(said),
                 contextlib.redirect_stderr(said),
-                _bounded(largest),
+                _bounded(_LARGEST),
                 np.errstate(all="ignore"),
                 warnings.catch_warnings(action="ignore"),
             ):

@@ -41,6 +41,25 @@ for moment in ("import interrupting", "Lost()"):
         print("interrupted")
 """
 
+#: Interrupts itself where the core looks up numpy's functions.
+AT_FIRST_ARRAYS = """
+import signal, time
+import numpy
+from bspcsg.cli import entry
+signal.signal(signal.SIGINT, entry._end_in_order)
+start = numpy.lib.NumpyVersion.__init__
+def interrupted(self, *words):
+    signal.raise_signal(signal.SIGINT)
+    start(self, *words)
+numpy.lib.NumpyVersion.__init__ = interrupted
+try:
+    import bspcsg
+    bspcsg.cube(1).to_mesh()
+    time.sleep(60)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
 SLOW = "import time\ntime.sleep(60)\n"
 
 
@@ -117,3 +136,17 @@ def test_interrupts_that_come_at_a_bad_moment_come_again(tmp_path: Path) -> None
         "passed Lost()",
         "interrupted",
     ]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_interrupts_at_the_first_arrays_are_no_defect(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", AT_FIRST_ARRAYS],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(Path(b.__file__).parent.parent)},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "interrupted\n", "")

@@ -1,6 +1,7 @@
 """Files are proved before they get their names: damage of every kind keeps the old file."""
 
 import dataclasses
+import io
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 
 from bspcsg.errors import FormatError
+from bspcsg.formats.blocks import TOGETHER
 from bspcsg.formats.registry import MAKERS, Form
 from bspcsg.io import FORMATS, RawMesh, encoded, read, write
 from bspcsg.mesh.mesh import Mesh
@@ -137,19 +139,45 @@ def test_every_byte_of_the_triangles_is_read(suffix: str, text: bool) -> None:
     mesh = cube_mesh(0.1)
     made = encoded(mesh, "x", suffix, text)
     data = b"".join(made.chunks)
-    made.prove(data)
+    made.prove(io.BytesIO(data))
     found = 0
     for at in range(0, len(data), 7):
         changed = bytearray(data)
         changed[at] ^= 2
         try:
-            made.prove(bytes(changed))
+            made.prove(io.BytesIO(changed))
         except FormatError as error:
             assert error.code == "write_mismatch"
             found += 1
     assert found > len(data) // 7 * {".stl": 0.6, ".glb": 0.4, ".vtk": 0.4, ".vtu": 0.3}.get(
         suffix, 0.7
     )
+
+
+class Watched(io.BytesIO):
+    """A file that remembers how much of it was read at once."""
+
+    def __init__(self, data: bytes) -> None:
+        super().__init__(data)
+        self.pieces: list[int] = []
+
+    def read(self, count: int | None = -1, /) -> bytes:
+        data = super().read(count)
+        self.pieces.append(len(data))
+        return data
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".vtk"])
+def test_files_in_binary_are_read_once_and_in_pieces(suffix: str) -> None:
+    """What is read fits into a processor's cache: fresh memory takes longer than the proof."""
+    mesh = RawMesh(*icosphere(6))
+    made = encoded(mesh, "x", suffix)
+    file = Watched(b"".join(made.chunks))
+    made.prove(file)
+    size = file.seek(0, io.SEEK_END)
+    lines = 1 << 14
+    assert size < sum(file.pieces) < size + lines
+    assert max(file.pieces) <= 24 * TOGETHER < size / 4
 
 
 def test_the_first_triangle_that_differs_is_named(

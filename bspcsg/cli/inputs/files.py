@@ -1,12 +1,13 @@
 """Files by name or as streams: how inputs are read, and where an output goes."""
 
+import io
 import os
 import shlex
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import click
 
@@ -319,7 +320,7 @@ def put(
     path: Path,
     chunks: Iterable[bytes],
     overwrite: bool = True,
-    prove: Callable[[bytes], None] | None = None,
+    prove: Callable[[BinaryIO], None] | None = None,
 ) -> None:
     """Write bytes to a file, which appears complete or not at all, or to standard output.
 
@@ -335,7 +336,7 @@ def put(
         raise click.UsageError("this is no text for a terminal; use a pipe, or -o FILE.")
     if prove is not None:
         chunks = [b"".join(chunks)]
-        prove(chunks[0])
+        prove(io.BytesIO(chunks[0]))
     try:
         sys.stdout.buffer.writelines(chunks)
         sys.stdout.buffer.flush()

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import click
 
@@ -150,9 +150,10 @@ class _Conversion:
         made = encoded(shortened, shown(target.path), target.suffix, target.text)
         found: list[Losses] = []
 
-        def compare(data: bytes) -> None:
-            made.prove(data)
-            again = decoded(shown(target.path), data, target.suffix, made.files)
+        def compare(file: BinaryIO) -> None:
+            made.prove(file)
+            file.seek(0)
+            again = decoded(shown(target.path), file.read(), target.suffix, made.files)
             found.append(losses_between(raw, again))
 
         put(target.path, made.chunks, target.overwrite, compare)

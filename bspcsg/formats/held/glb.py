@@ -1,5 +1,7 @@
 """The content of files of GLB."""
 
+from typing import BinaryIO
+
 from ..glb.container import container_of
 from ..glb.file import TO_METRES
 from ..glb.nodes import shown
@@ -7,9 +9,9 @@ from ..source import Source
 from .layout import Held
 
 
-def objects(data: bytes) -> list[Held]:
+def objects(file: BinaryIO) -> list[Held]:
     """Return what the nodes show, in metres each."""
-    found, hidden = shown(container_of(Source("file", data)))
+    found, hidden = shown(container_of(Source("file", file.read())))
     if hidden or any((one.matrix != TO_METRES).any() for one in found):
         raise ValueError("a node is not where it should be")
     return [Held(one.vertices, one.faces, one.name) for one in found]

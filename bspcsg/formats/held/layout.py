@@ -1,13 +1,15 @@
 """Objects as they stand in a file, and blocks of numbers in one layout."""
 
+import os
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 import numpy.typing as npt
 
 from ..._core import numbers_in
 from ..._types import IndexArray
+from ..blocks import blocks
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +33,133 @@ class Held:
     def count(self) -> int:
         """Number of triangles."""
         return len(self.vertices) // 3 if self.faces is None else len(self.faces)
+
+    def has(self, vertices: npt.NDArray[Any], faces: IndexArray) -> bool:
+        """Say whether these are its very arrays."""
+        if self.faces is None or self.vertices.shape != vertices.shape:
+            return False
+        return bool((self.faces == faces).all() and (self.vertices == vertices).all())
+
+    def loaded(self) -> "Held":
+        """Return it with all of its numbers in memory, where they are."""
+        return self
+
+
+class Rows:
+    """Rows of three numbers in a file, which are read when they are asked for.
+
+    Blocks that stay in a processor's cache are read and compared in a fifth of the time that a
+    file takes in fresh memory.
+
+    Parameters
+    ----------
+    file : binary file
+    start : int
+        The first of their bytes.
+    row : dtype
+        Of one row.
+    count : int
+    """
+
+    def __init__(self, file: BinaryIO, start: int, row: Any, count: int) -> None:
+        self._file = file
+        self._start = start
+        self._row: np.dtype[Any] = np.dtype(row)
+        self._count = count
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return self._count
+
+    @property
+    def dtype(self) -> "np.dtype[Any]":
+        """The type of one number."""
+        base: np.dtype[Any] = self._row.base
+        return base
+
+    @property
+    def end(self) -> int:
+        """The first byte behind them."""
+        return self._start + self._count * int(self._row.itemsize)
+
+    def are(self, expected: npt.NDArray[Any]) -> bool:
+        """Say whether the rows are these."""
+        return all(self.hold(block, expected[block]) for block in blocks(self._count))
+
+    def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
+        """Say whether the rows of a block are these."""
+        return bool((self.numbers(block) == expected).all())
+
+    def numbers(self, block: slice) -> npt.NDArray[Any]:
+        """Return the rows of a block."""
+        return np.frombuffer(self.data(block), self._row)
+
+    def data(self, block: slice) -> bytes:
+        """Return the bytes of a block."""
+        start, stop, _ = block.indices(self._count)
+        size = self._row.itemsize
+        return piece(self._file, self._start + start * size, (stop - start) * size)
+
+
+@dataclass(frozen=True, eq=False)
+class HeldRows:
+    """One object whose numbers are still in the file.
+
+    Parameters
+    ----------
+    vertices, faces : Rows
+    name : str
+    """
+
+    vertices: Rows
+    faces: Rows
+    name: str = ""
+
+    @property
+    def count(self) -> int:
+        """Number of triangles."""
+        return len(self.faces)
+
+    def has(self, vertices: npt.NDArray[Any], faces: IndexArray) -> bool:
+        """Say whether the file holds these very arrays."""
+        if len(self.vertices) != len(vertices):
+            return False
+        return self.faces.are(faces) and self.vertices.are(vertices)
+
+    def loaded(self) -> Held:
+        """Return it with all of its numbers in memory."""
+        everything = slice(None)
+        vertices, faces = self.vertices.numbers(everything), self.faces.numbers(everything)
+        return Held(vertices, faces, self.name)
+
+
+def piece(file: BinaryIO, start: int, count: int) -> bytes:
+    """Return so many bytes of a file, and refuse one that ends before."""
+    file.seek(start)
+    data = file.read(count)
+    if len(data) != count:
+        raise ValueError(f"it ends at byte {start + len(data)}")
+    return data
+
+
+def size_of(file: BinaryIO) -> int:
+    """Return the number of bytes of a file."""
+    return file.seek(0, os.SEEK_END)
+
+
+#: More bytes than the lines between two blocks of numbers have.
+_LINES = 1 << 12
+
+
+def text_at(file: BinaryIO, start: int) -> bytes:
+    """Return bytes of a file, among which are all lines before the next block of numbers."""
+    file.seek(start)
+    return file.read(_LINES)
+
+
+def header_of(file: BinaryIO) -> bytes:
+    """Return the bytes of a file among which all of its header is."""
+    return text_at(file, 0)
 
 
 def after(key: bytes, line: bytes) -> str:

@@ -1,15 +1,29 @@
 """The content of files of STL, OBJ, OFF and PLY."""
 
 import re
+from typing import Any, BinaryIO
 
 import numpy as np
+import numpy.typing as npt
 
-from ..._core import numbers_in
-from .layout import OF_NUMBERS, Held, after, check_layout, rows_of, whole_numbers
+from ..._core import are_triangles, numbers_in
+from .layout import (
+    OF_NUMBERS,
+    Held,
+    HeldRows,
+    Rows,
+    after,
+    check_layout,
+    header_of,
+    rows_of,
+    size_of,
+    whole_numbers,
+)
 
 
-def binary_stl(data: bytes) -> list[Held]:
+def binary_stl(file: BinaryIO) -> list[Held]:
     """Return the triangles after the header and the count, which must be those that follow."""
+    data = file.read()
     count = int.from_bytes(data[80:84], "little")
     if len(data) != 84 + 50 * count:
         raise ValueError(f"it has {len(data)} bytes, which are not {count} triangles")
@@ -17,9 +31,9 @@ def binary_stl(data: bytes) -> list[Held]:
     return [Held(records[:, 3:].reshape(-1, 3))]
 
 
-def text_stl(data: bytes) -> list[Held]:
+def text_stl(file: BinaryIO) -> list[Held]:
     """Return the solids, one after another."""
-    found, at = [], 0
+    data, found, at = file.read(), [], 0
     while at < len(data):
         head = data.index(b"\n", at) + 1
         name = after(b"solid ", data[at : head - 1])
@@ -38,8 +52,9 @@ _FACET = (
 )
 
 
-def obj(data: bytes) -> list[Held]:
+def obj(file: BinaryIO) -> list[Held]:
     """Return the objects; all have the same vertices."""
+    data = file.read()
     if data.startswith(b"#"):
         data = data[data.index(b"\n") + 1 :]
     end = _first(data, 0)
@@ -65,14 +80,16 @@ def _first(data: bytes, start: int) -> int:
     return min(filter(None, found), default=len(data))
 
 
-def off(data: bytes) -> list[Held]:
+def off(file: BinaryIO) -> list[Held]:
     """Return the faces between the vertices."""
+    data = file.read()
     head = re.match(rb"OFF\n(?:#[^\n]*\n)?(\d+) (\d+) 0\n", data)
     return [_table(data, head)]
 
 
-def text_ply(data: bytes) -> list[Held]:
+def text_ply(file: BinaryIO) -> list[Held]:
     """Return the faces after the vertices."""
+    data = file.read()
     return [_table(data, _PLY.match(data))]
 
 
@@ -83,19 +100,30 @@ _PLY = re.compile(
 )
 
 
-def binary_ply(data: bytes) -> list[Held]:
+def binary_ply(file: BinaryIO) -> list[HeldRows]:
     """Return the records after the header."""
-    head = _PLY.match(data)
+    head = _PLY.match(header_of(file))
     if head is None:
         raise ValueError("its header is another one")
-    points, count = int(head[1]), int(head[2])
-    if len(data) != head.end() + 24 * points + 13 * count:
-        raise ValueError(f"it has {len(data)} bytes, which are not as many as its header says")
-    vertices = np.frombuffer(data, "<f8", 3 * points, head.end()).reshape(-1, 3)
-    records = np.frombuffer(data, np.dtype("u1,3<i4"), count, head.end() + 24 * points)
-    if not (records["f0"] == 3).all():
-        raise ValueError("a face has not three corners")
-    return [Held(vertices, records["f1"])]
+    vertices = Rows(file, head.end(), "3<f8", int(head[1]))
+    faces = _Faces(file, vertices.end, "u1,3<i4", int(head[2]))
+    if size_of(file) != faces.end:
+        raise ValueError(f"it has not the {faces.end} bytes that its header tells of")
+    return [HeldRows(vertices, faces)]
+
+
+class _Faces(Rows):
+    """Rows of three corners, each after a byte that says three."""
+
+    def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
+        return are_triangles(self.data(block), expected.astype(np.int64, copy=False))
+
+    def numbers(self, block: slice) -> npt.NDArray[Any]:
+        records = super().numbers(block)
+        if not (records["f0"] == 3).all():
+            raise ValueError("a face has not three corners")
+        corners: npt.NDArray[Any] = records["f1"]
+        return corners
 
 
 def _table(data: bytes, head: re.Match[bytes] | None) -> Held:

@@ -1,16 +1,16 @@
 """The content of archives of 3MF."""
 
-import io
 import zipfile
 from collections.abc import Iterator
+from typing import BinaryIO
 from xml.etree import ElementTree
 
 from .layout import Held, rows_of, whole_numbers
 
 
-def archive(data: bytes) -> list[Held]:
+def archive(file: BinaryIO) -> list[Held]:
     """Return the objects of the model in the archive, each of which is built once."""
-    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+    with zipfile.ZipFile(file) as archive:
         parts = {name: _read(archive, name) for name in archive.namelist()}
     model = parts["3D/3dmodel.model"]
     found, at = list(_objects(model)), model.index(b"</resources>")

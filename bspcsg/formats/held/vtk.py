@@ -1,14 +1,16 @@
 """The content of grids of VTK and VTU."""
 
 import re
-from typing import Any
+import zlib
+from binascii import a2b_base64
+from typing import Any, BinaryIO
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import vtk
-from ..source import Source
-from .layout import Held
+from ..blocks import blocks
+from .layout import Held, HeldRows, Rows, header_of, piece, size_of, text_at
 
 _HEAD = re.compile(
     rb"# vtk DataFile Version 5\.1\nwritten by [^\n]*\nBINARY\n"
@@ -20,47 +22,119 @@ _CELLS = re.compile(rb"\nCELLS (\d+) (\d+)\nOFFSETS vtktypeint64\n")
 _TRIANGLE = 5
 
 
-def legacy(data: bytes) -> list[Held]:
+def legacy(file: BinaryIO) -> list[HeldRows]:
     """Return the triangles of a VTK file, whose blocks hold big-endian numbers."""
-    if data == vtk.EMPTY[".vtk"]:
+    start = header_of(file)
+    if start == vtk.EMPTY[".vtk"]:
         return []
-    head = _HEAD.match(data)
+    head = _HEAD.match(start)
     if head is None:
         raise ValueError("its header is another one")
-    vertices, at = _block(data, head.end(), ">f8", 3 * int(head[1]))
-    cells = _CELLS.match(data, at)
+    vertices = Rows(file, head.end(), "3>f8", int(head[1]))
+    cells = _CELLS.match(text_at(file, vertices.end))
     if cells is None:
         raise ValueError("something else follows its points")
     count = int(cells[1]) - 1
-    offsets, at = _block(data, cells.end(), ">i8", count + 1)
-    at = _behind(b"\nCONNECTIVITY vtktypeint64\n", data, at)
-    corners, at = _block(data, at, ">i8", int(cells[2]))
-    kinds, at = _block(data, _behind(b"\nCELL_TYPES %d\n" % count, data, at), ">i4", count)
-    if data[at:] != b"\n" or len(corners) != 3 * count:
+    offsets = Rows(file, vertices.end + cells.end(), ">i8", count + 1)
+    at = _behind(b"\nCONNECTIVITY vtktypeint64\n", file, offsets.end)
+    faces = Rows(file, at, "3>i8", count)
+    kinds = Rows(file, _behind(b"\nCELL_TYPES %d\n" % count, file, faces.end), ">i4", count)
+    if _behind(b"\n", file, kinds.end) != size_of(file) or int(cells[2]) != 3 * count:
         raise ValueError(f"its {count} cells are not all it holds")
-    if (offsets != np.arange(0, 3 * count + 1, 3)).any() or (kinds != _TRIANGLE).any():
-        raise ValueError("a cell is no triangle")
-    return [Held(vertices.reshape(-1, 3), corners.reshape(-1, 3))]
+    _check_triangles(offsets, kinds)
+    return [HeldRows(vertices, faces)]
 
 
-def _block(data: bytes, at: int, kind: str, count: int) -> tuple[npt.NDArray[Any], int]:
-    """Return so many numbers, and where the bytes go on behind them."""
-    numbers = np.frombuffer(data, kind, count, at)
-    return numbers, at + numbers.nbytes
-
-
-def _behind(key: bytes, data: bytes, at: int) -> int:
-    if not data.startswith(key, at):
+def _behind(key: bytes, file: BinaryIO, at: int) -> int:
+    if piece(file, at, len(key)) != key:
         raise ValueError(f"“{key.decode().strip()}” is not where it should be")
     return at + len(key)
 
 
-def xml(data: bytes) -> list[Held]:
-    """Return the triangles of a VTU file, as meshio reads it."""
+def _check_triangles(offsets: Rows, kinds: Rows) -> None:
+    """Refuse cells that are no triangles, one after another."""
+    for block in blocks(len(offsets)):
+        found = offsets.numbers(block)
+        first = 3 * block.start
+        if (found != np.arange(first, first + 3 * len(found), 3)).any():
+            raise ValueError("a cell has not three corners")
+    if not all((kinds.numbers(block) == _TRIANGLE).all() for block in blocks(len(kinds))):
+        raise ValueError("a cell is no triangle")
+
+
+_GRID = re.compile(
+    rb'<\?xml version="1\.0"\?>\n<VTKFile type="UnstructuredGrid" version="0\.1"'
+    rb' byte_order="(Little|Big)Endian" compressor="vtkZLibDataCompressor">\n<!--[^>]*-->\n'
+    rb'<UnstructuredGrid>\n<Piece NumberOfPoints="(\d+)" NumberOfCells="(\d+)">\n<Points>\n'
+)
+
+#: The lines before arrays, and behind the last; with the kinds of their numbers.
+_ARRAYS = (
+    (b'<DataArray type="Float64" Name="Points" NumberOfComponents="3" format="binary">\n', "f8"),
+    (b'</Points>\n<Cells>\n<DataArray type="Int64" Name="connectivity" format="binary">\n', "i8"),
+    (b'<DataArray type="Int64" Name="offsets" format="binary">\n', "i8"),
+    (b'<DataArray type="Int64" Name="types" format="binary">\n', "i8"),
+)
+_END_OF_ARRAY = b"\n</DataArray>\n"
+_END = b"</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"
+
+
+def xml(file: BinaryIO) -> list[Held]:
+    """Return the triangles of a VTU file, whose arrays are packed."""
+    data = file.read()
     if data == vtk.EMPTY[".vtu"]:
         return []
-    found = vtk.grid_of(Source("file", data), ".vtu")
-    kinds = [block.type for block in found.cells]
-    if kinds != ["triangle"]:
-        raise ValueError(f"its cells are {kinds}")
-    return [Held(np.asarray(found.points), np.asarray(found.cells[0].data))]
+    grid = _GRID.match(data)
+    if grid is None:
+        raise ValueError("its header is another one")
+    points, count = int(grid[2]), int(grid[3])
+    arrays = _arrays(file, data, grid.end(), "<" if grid[1] == b"Little" else ">")
+    vertices, faces, offsets, kinds = arrays
+    if [len(vertices), len(faces), len(kinds)] != [3 * points, 3 * count, count]:
+        raise ValueError("its arrays are not as long as it says")
+    if not np.array_equal(offsets, np.arange(3, 3 * count + 1, 3)):
+        raise ValueError("a cell has not three corners")
+    if (kinds != _TRIANGLE).any():
+        raise ValueError("a cell is no triangle")
+    return [Held(vertices.reshape(-1, 3), faces.reshape(-1, 3))]
+
+
+def _arrays(file: BinaryIO, data: bytes, at: int, order: str) -> list[npt.NDArray[Any]]:
+    """Return the arrays of a VTU file, which go on to its end."""
+    found = []
+    for line, kind in _ARRAYS:
+        start = _behind(line, file, at)
+        end = data.index(_END_OF_ARRAY, start)
+        found.append(np.frombuffer(_unpacked(data[start:end], order), order + kind))
+        at = end + len(_END_OF_ARRAY)
+    if _behind(_END, file, at) != len(data):
+        raise ValueError("something follows its end")
+    return found
+
+
+def _unpacked(text: bytes, order: str) -> bytes:
+    """Return an array's bytes, which stand in pieces packed by zlib behind the lengths of these."""
+    end = _letters(_WORD)
+    count = int(np.frombuffer(_bytes(text[:end])[:_WORD], order + "u4")[0])
+    end = _letters(_WORD * (3 + count))
+    size, last, *lengths = np.frombuffer(_bytes(text[:end]), order + "u4")[1:].tolist()
+    packed, at, pieces = _bytes(text[end:]), 0, []
+    for length in lengths:
+        pieces.append(zlib.decompress(packed[at : at + length]))
+        at += length
+    if at != len(packed) or [len(one) for one in pieces] != [*[size] * (count - 1), last]:
+        raise ValueError("the pieces of an array are not as long as it says")
+    return b"".join(pieces)
+
+
+def _bytes(text: bytes) -> bytes:
+    return a2b_base64(text, strict_mode=True)
+
+
+#: Bytes of a length.
+_WORD = 4
+
+
+def _letters(count: int) -> int:
+    """Return how many letters of base 64 so many bytes take."""
+    return -(-count // 3) * 4

@@ -20,6 +20,7 @@ mod sets;
 mod surfaces;
 mod tree;
 
+use numpy::{PyArray1, PyArrayMethods};
 use pyo3::panic::PanicException;
 use pyo3::prelude::*;
 
@@ -40,6 +41,14 @@ fn set_threads(n: usize) {
 #[pyfunction]
 fn suited_pitch(py: Python<'_>, largest: f64, extent: f64) -> PyResult<i64> {
     run::here(py, || Ok(Pitch::suited(largest, extent)?.exponent()))
+}
+
+/// Looks up numpy's functions, which the first array would do.
+///
+/// Called while modules are imported, as an interrupt waits then: one during the look-up is a panic.
+#[pyfunction]
+fn find_numpy(py: Python<'_>) {
+    let _ = PyArray1::<f64>::zeros(py, 0, false).readonly();
 }
 
 /// Fails as a defect would: for the tests of what happens then.
@@ -79,10 +88,12 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(hulls::hull_faces, module)?)?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
     module.add_function(wrap_pyfunction!(run::watch, module)?)?;
+    module.add_function(wrap_pyfunction!(find_numpy, module)?)?;
     module.add_function(wrap_pyfunction!(normal_bits, module)?)?;
     module.add_function(wrap_pyfunction!(fail_on_purpose, module)?)?;
     module.add_function(wrap_pyfunction!(suited_pitch, module)?)?;
     module.add_function(wrap_pyfunction!(numbers::numbers_in, module)?)?;
+    module.add_function(wrap_pyfunction!(numbers::are_triangles, module)?)?;
     module.add_function(wrap_pyfunction!(surfaces::welded_points, module)?)?;
     module.add_function(wrap_pyfunction!(surfaces::surfaces_of, module)?)?;
     module.add_function(wrap_pyfunction!(surfaces::mesh_counts, module)?)?;

@@ -1,8 +1,12 @@
-//! The numbers of a text at once: Python's own way takes ten times as long.
+//! The numbers of a file at once: Python's own way takes ten times as long with those of a text, and
+//! numpy's four times as long with those of records that are not aligned.
 
-use numpy::PyArray1;
+use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+
+use super::arrays::rows;
+use super::errors::to_python;
 
 /// Largest number of digits that cannot pass 2^53, below which every whole number is a double.
 const SHORT: usize = 15;
@@ -16,6 +20,38 @@ pub fn numbers_in<'py>(py: Python<'py>, text: &[u8]) -> PyResult<Bound<'py, PyAr
     let found = py.detach(|| scanned(text));
     let values = found.map_err(|at| PyValueError::new_err(format!("no number at byte {at}")))?;
     Ok(PyArray1::from_vec(py, values))
+}
+
+/// True if the faces of a binary PLY are these triangles; each is a byte that says three, and three
+/// little-endian `i32`.
+///
+/// # Errors
+/// `Shape` if the triangles have not three corners each.
+#[pyfunction]
+pub fn are_triangles(
+    py: Python<'_>,
+    faces: &[u8],
+    triangles: PyReadonlyArray2<'_, i64>,
+) -> PyResult<bool> {
+    let expected = rows(&triangles, "triangles").map_err(|e| to_python(py, &e))?;
+    Ok(py.detach(|| same_triangles(faces, &expected)))
+}
+
+/// Bytes of a triangle in a binary PLY.
+const FACE: usize = 13;
+
+fn same_triangles(faces: &[u8], triangles: &[[i64; 3]]) -> bool {
+    let (faces, rest) = faces.as_chunks::<FACE>();
+    // All bits that differ: with no branch on the way, no face waits for the one before.
+    let mut bits = 0;
+    for (face, [a, b, c]) in faces.iter().zip(triangles) {
+        let corner = |k: usize| {
+            let bytes = [face[k], face[k + 1], face[k + 2], face[k + 3]];
+            i64::from(i32::from_le_bytes(bytes))
+        };
+        bits |= i64::from(face[0] ^ 3) | (corner(1) ^ a) | (corner(5) ^ b) | (corner(9) ^ c);
+    }
+    rest.is_empty() && faces.len() == triangles.len() && bits == 0
 }
 
 /// The numbers, or where one is not valid.
@@ -61,7 +97,7 @@ fn value(digits: &[u8]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::scanned;
+    use super::{same_triangles, scanned};
 
     #[test]
     fn numbers_among_words() {
@@ -76,5 +112,27 @@ mod tests {
     fn what_is_no_number_has_a_place() {
         assert_eq!(scanned(b"1 2-3"), Err(2));
         assert_eq!(scanned(b" ."), Err(1));
+    }
+    #[test]
+    fn triangles_of_records() {
+        let record = |count: u8, corners: [i32; 3]| {
+            let numbers = corners.into_iter().flat_map(i32::to_le_bytes);
+            std::iter::once(count).chain(numbers).collect::<Vec<u8>>()
+        };
+        let triangles = [[0, 1, 2], [70_000, 300, i64::from(i32::MAX)]];
+        let faces = [record(3, [0, 1, 2]), record(3, [70_000, 300, i32::MAX])].concat();
+        assert!(same_triangles(&faces, &triangles));
+        assert!(same_triangles(&[], &[]));
+        for at in 0..faces.len() {
+            let mut other = faces.clone();
+            other[at] ^= 1;
+            assert!(!same_triangles(&other, &triangles), "byte {at}");
+            assert!(!same_triangles(&faces[..at], &triangles), "{at} bytes");
+        }
+        assert!(!same_triangles(&faces, &triangles[..1]));
+        assert!(!same_triangles(
+            &record(3, [-1, 1, 2]),
+            &[[(1 << 32) - 1, 1, 2]]
+        ));
     }
 }
