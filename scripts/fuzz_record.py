@@ -88,11 +88,24 @@ def add_to_record(target: str, seed: int, outcome: Outcome) -> None:
     path.write_text(json.dumps(record, indent=1) + "\n")
 
 
+def cpu_hours() -> dict[str, float]:
+    """Return the processor time of all runs of each target."""
+    return {
+        target: round(sum(row["cpu_minutes"] for row in rows) / 60, 2)
+        for target, rows in _recorded()
+    }
+
+
+def _recorded() -> list[tuple[str, list[dict[str, Any]]]]:
+    """Return the targets by name, with the rows of their runs."""
+    record = json.loads((RECORDS / "fuzz.json").read_text("utf-8"))
+    return sorted(record["targets"].items())
+
+
 def totals() -> list[str]:
     """Return a line for each target: what all its runs add up to."""
-    record = json.loads((RECORDS / "fuzz.json").read_text("utf-8"))
     lines = []
-    for target, rows in sorted(record["targets"].items()):
+    for target, rows in _recorded():
         executions, hours = (sum(row[key] for row in rows) for key in ("executions", "cpu_minutes"))
         found = sum(row[kind] for row in rows for kind in KINDS)
         lines.append(

@@ -8,7 +8,6 @@ if a line to change is not in the source any more.
 """
 
 import argparse
-import json
 import shutil
 import subprocess
 import sys
@@ -16,7 +15,7 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-from recording import RECORDS, REPOSITORY, commit, keep
+from recording import REPOSITORY, keep_rows
 
 FOLDER = REPOSITORY / ".fuzz" / "mutants"
 
@@ -127,25 +126,10 @@ def main() -> int:
         verdict = verdict_on(mutant, core)
         seconds = time.perf_counter() - began
         print(f"{number:3} {mutant.what:60} {verdict:10} {seconds:6.0f} s", flush=True)
-        rows.append(
-            {
-                "mutant": mutant.what,
-                "tests": " ".join(mutant.tests),
-                "verdict": verdict,
-                "commit": commit(),
-            }
-        )
+        rows.append({"mutant": mutant.what, "tests": " ".join(mutant.tests), "verdict": verdict})
     if options.record:
-        print(keep("mutants", {"mutants": with_earlier(rows)}))
+        print(keep_rows("mutants", rows, "mutant", [mutant.what for mutant in MUTANTS]))
     return int(any(row["verdict"] != "noticed" for row in rows))
-
-
-def with_earlier(rows: list[dict[str, str]]) -> list[dict[str, str]]:
-    """Return rows with those of the record about mutants that have no row, in the list's order."""
-    path = RECORDS / "mutants.json"
-    earlier = json.loads(path.read_text("utf-8"))["mutants"] if path.is_file() else []
-    known = {row["mutant"]: row for row in [*earlier, *rows]}
-    return [known[mutant.what] for mutant in MUTANTS if mutant.what in known]
 
 
 def verdict_on(mutant: Mutant, core: Path) -> str:

@@ -18,7 +18,7 @@ def machine() -> dict[str, Any]:
     """Describe the machine and the versions that a figure belongs to."""
     return {
         "date": datetime.now(UTC).strftime("%Y-%m-%d"),
-        "commit": commit(),
+        "commit": _commit(),
         **this_machine(),
         "python": platform.python_version(),
         "manifold3d": version("manifold3d"),
@@ -34,7 +34,26 @@ def keep(name: str, result: dict[str, Any]) -> Path:
     return path
 
 
-def commit() -> str:
-    """Return the short name of the repository's commit."""
+def keep_rows(name: str, rows: list[dict[str, Any]], key: str, order: list[str]) -> Path:
+    """Keep rows, each with its commit, and those of earlier runs that no row here replaces.
+
+    Parameters
+    ----------
+    name : str
+        Of the record, and of the list in it.
+    rows : list of dict
+    key : str
+        The entry that tells rows apart.
+    order : list of str
+        What it may be.
+    """
+    path = RECORDS / f"{name}.json"
+    earlier = json.loads(path.read_text("utf-8"))[name] if path.is_file() else []
+    fresh = [{**row, "commit": _commit()} for row in rows]
+    known = {row[key]: row for row in [*earlier, *fresh]}
+    return keep(name, {name: [known[what] for what in order if what in known]})
+
+
+def _commit() -> str:
     command = ["git", "-C", str(REPOSITORY), "rev-parse", "--short", "HEAD"]
     return subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()

@@ -6,7 +6,7 @@
 import numpy as np
 import pytest
 
-from support import DEEP, probes
+from support import DEEP, measures, probes
 
 
 def count(small: int, full: int) -> int:
@@ -45,6 +45,24 @@ def test_nearly_identical_cubes() -> None:
 
 def test_decimals_meet() -> None:
     assert probes.decimals_meet() == []
+
+
+def test_points_on_half_spaces() -> None:
+    assert probes.points_on_half_spaces(count(100, 10_000), seed=8) == []
+    assert probes.corner_of_a_box() == []
+
+
+def test_shares_of_proofs_are_told_of_each_form() -> None:
+    failed, shares = measures.shares_of_proofs(500, turns=1)
+    assert failed == [] and {"stl", "stl as text", "ply", "vtu"} < set(shares)
+    assert all(0 <= share < 1 for share in shares.values())
+
+
+def test_a_share_beyond_the_bound_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(measures, "LARGE", 0)
+    monkeypatch.setattr(measures, "SHARE", -1.0)
+    failed, shares = measures.shares_of_proofs(500, turns=1)
+    assert len(failed) == len(shares)
 
 
 def test_chains_of_turned_cubes_stay_sound() -> None:

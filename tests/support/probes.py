@@ -45,6 +45,30 @@ def _is_box(solid: "b.Solid", like: "b.Solid") -> str:
     )
 
 
+def points_on_half_spaces(rounds: int, seed: int) -> list[Failure]:
+    """Whole numbers of a plane through a point of whole numbers: the point is on its border."""
+
+    def probe(rng: Rng) -> str:
+        normal, point = rng.integers(-20, 21, 3), rng.integers(-50, 51, 3)
+        if not normal.any():
+            normal[2] = 1
+        side = b.half_space(normal.tolist(), int(normal @ point))
+        return _wrong("the point's side", side.classify([point.tolist()]).tolist(), [0])
+
+    return failures(rounds, seed, probe)
+
+
+def corner_of_a_box() -> list[Failure]:
+    """A box within a half-space through three of its corners is their tetrahedron."""
+
+    def probe(_: Rng) -> str:
+        corners = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
+        cut = b.box((1, 1, 1)) & b.half_space((1, 1, 1), 1)
+        return _wrong("equality", cut.equals(b.Solid(*tetrahedron(corners))), True)
+
+    return failures(1, 0, probe)
+
+
 def glued_tetrahedra(rounds: int, seed: int) -> list[Failure]:
     """Two tetrahedra on one triangle: 5 vertices, 6 triangles, one part."""
 

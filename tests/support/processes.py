@@ -1,7 +1,7 @@
 """Programs that use the library before and after their process divides.
 
-Each runs as a process of its own, ``python -m support.processes NAME``, and ends with 0 if all went
-as it should.
+Each runs as a process of its own, ``python -m support.processes NAME [COUNT]``, and ends with 0 if
+all went as it should.
 """
 
 import importlib
@@ -287,13 +287,13 @@ def threads() -> None:
     assert ended(in_child(child)) == 0
 
 
-def many() -> None:
-    """A thousand jobs one after the other, and 64 at a time, through a pool that was forked."""
+def many(jobs: int = 1000) -> None:
+    """Many jobs one after the other, and 64 at a time, through a pool that was forked."""
     job(0).to_mesh()
     expected = [small_job(k).volume for k in range(15)]
     context = multiprocessing.get_context("fork")
     with context.Pool(1) as pool:
-        for k in range(1000):
+        for k in range(jobs):
             assert pool.apply(small_job, (k,)).volume == expected[k % 15], k
     kinds = [job(k) for k in range(35)]
     with context.Pool(64) as pool:
@@ -301,8 +301,8 @@ def many() -> None:
     assert all(f.equals(kinds[k % 35]) for k, f in enumerate(found))
 
 
-def memory() -> None:
-    """Print by how many 10^6 bytes the process has grown after 10^5 small operations."""
+def memory(count: int = 100_000) -> None:
+    """Print by how many 10^6 bytes the process has grown after so many small operations."""
 
     def operations(first: int, count: int) -> None:
         for k in range(first, first + count):
@@ -310,11 +310,11 @@ def memory() -> None:
 
     operations(0, 2000)
     before = held_mb()
-    operations(2000, 100_000)
+    operations(2000, count)
     sys.stdout.write(f"{held_mb() - before}\n")
 
 
-PROGRAMS: dict[str, Callable[[], None]] = {
+PROGRAMS: dict[str, Callable[..., None]] = {
     "fork": fork,
     "with-fork": method("fork"),
     "with-spawn": method("spawn"),
@@ -332,4 +332,4 @@ PROGRAMS: dict[str, Callable[[], None]] = {
 if __name__ == "__main__":
     # Under this name children find the jobs, too.
     module = importlib.import_module("support.processes")
-    module.PROGRAMS[sys.argv[1]]()
+    module.PROGRAMS[sys.argv[1]](*map(int, sys.argv[2:]))

@@ -11,8 +11,8 @@ import fuzz
 import fuzz_record
 from fuzz_guided import Guided, outcome_of
 from fuzz_record import Found, Outcome, add_to_record, totals
-from mutants import MUTANTS, Mutant, with_earlier
-from recording import REPOSITORY
+from mutants import MUTANTS, Mutant
+from recording import REPOSITORY, keep_rows
 
 SAID = """INFO: seed corpus: files: 40
 #41\tINITED cov: 1200 ft: 3400 corp: 30/9Kb
@@ -100,13 +100,19 @@ def test_mutants_change_one_place_of_the_source(mutant: Mutant) -> None:
     assert all(f"fn {name}(" in tests for name in names)
 
 
-def test_records_of_mutants_keep_what_earlier_runs_said(
+def test_records_keep_what_earlier_runs_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    first, second, third = (mutant.what for mutant in MUTANTS[:3])
-    earlier = [{"mutant": what, "verdict": "noticed"} for what in ("gone", second, third)]
+    order = ["first", "second", "third"]
+    earlier = [{"mutant": what, "verdict": "noticed"} for what in ("gone", "second", "third")]
     (tmp_path / "mutants.json").write_text(json.dumps({"mutants": earlier}))
-    monkeypatch.setattr("mutants.RECORDS", tmp_path)
-    again = [{"mutant": what, "verdict": "SURVIVED"} for what in (third, first)]
-    told = [(row["mutant"], row["verdict"]) for row in with_earlier(again)]
-    assert told == [(first, "SURVIVED"), (second, "noticed"), (third, "SURVIVED")]
+    monkeypatch.setattr("recording.RECORDS", tmp_path)
+    again = [{"mutant": what, "verdict": "SURVIVED"} for what in ("third", "first")]
+    path = keep_rows("mutants", again, "mutant", order)
+    rows = json.loads(path.read_text("utf-8"))["mutants"]
+    assert [row["verdict"] for row in rows] == ["SURVIVED", "noticed", "SURVIVED"]
+    assert [row["mutant"] for row in rows] == order and ["commit" in row for row in rows] == [
+        True,
+        False,
+        True,
+    ]

@@ -1,0 +1,132 @@
+"""Figures with bounds, each a function that returns what broke its bound and the figures."""
+
+import gc
+import os
+import subprocess
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TypeAlias
+
+import bspcsg as b
+from bspcsg.formats.atomic import write_file
+from bspcsg.formats.files import encoded, read, write
+from bspcsg.formats.registry import FORMATS
+
+from .degenerate import scene
+from .probes import Failure
+
+#: What went wrong, and figures by their names.
+Measured: TypeAlias = tuple[list[Failure], dict[str, float]]
+
+TESTS = Path(__file__).resolve().parents[1]
+
+#: The largest share of the processor time of writing that the proof may take.
+SHARE = 0.15
+
+#: Smaller files are written in a few milliseconds, most of which no triangle takes.
+LARGE = 300_000
+
+#: The most that memory may grow by, in 10^6 bytes.
+GROWTH = 20
+
+#: The codes of findings that tell of a crossing, in doubles and in single precision.
+SAID = frozenset({"crossing", "turned", "collapsed"})
+SAID_IN_SINGLE = frozenset({"crossing_in_single"})
+
+
+def crossings(rounds: int) -> Measured:
+    """Count the scenes of nearly coincident parts whose meshes cross, also in a binary STL.
+
+    A crossing that no finding tells of is a failure.
+    """
+    failed, counts = [], Counter[str]()
+    with TemporaryDirectory() as folder:
+        for seed in range(rounds):
+            try:
+                solid = scene(seed).normalized()
+                mesh = solid.to_mesh()
+            except (b.InvalidMeshError, b.LimitError):
+                continue
+            if len(mesh.faces) == 0:
+                continue
+            path = Path(folder) / "scene.stl"
+            found = write(mesh, path)
+            raw = read(path)
+            stored = b.Mesh(raw.vertices, raw.faces, mesh.source)
+            counts["meshes"] += 1
+            for place, told, one, codes in (
+                ("in doubles", solid.findings, mesh, SAID),
+                ("in a binary STL", found, stored, SAID_IN_SINGLE),
+            ):
+                crosses = bool(one.certificate.crossings or one.certificate.flat)
+                is_said = bool(codes & {finding.code for finding in told})
+                counts[f"{place}, said"] += crosses and is_said
+                counts[f"{place}, silent"] += crosses and not is_said
+                if crosses and not is_said:
+                    failed.append(Failure(seed, f"a crossing {place} that nothing tells of"))
+    return failed, dict(counts)
+
+
+def shares_of_proofs(triangles: int, turns: int = 5) -> Measured:
+    """Return the shares of the time of writing that the proofs take, format by format."""
+    mesh = b.sphere(1, segments=round(triangles**0.5)).rotate((10, 20, 30)).to_mesh()
+    failed, figures = [], {}
+    with TemporaryDirectory() as folder:
+        for suffix, known in FORMATS.items():
+            for text in (True, False):
+                if (known.text if text else known.binary) is None:
+                    continue
+                path = Path(folder) / f"ball{suffix}"
+                share = _share(mesh, path, text, turns)
+                name = f"{suffix[1:]}{' as text' if text and known.binary else ''}"
+                figures[name] = round(share, 3)
+                if share > SHARE and triangles >= LARGE:
+                    failed.append(Failure(triangles, f"{name}: {share:.1%}"))
+                path.unlink()
+    return failed, figures
+
+
+def _share(mesh: "b.Mesh", path: Path, text: bool, turns: int) -> float:
+    """Return the proof's share: the least time with it and the least without, taken in turns."""
+    least = {True: float("inf"), False: float("inf")}
+    for _ in range(turns):
+        for proves in least:
+            gc.collect()
+            began = time.process_time()
+            made = encoded(mesh, path, path.suffix, text)
+            write_file(path, made.chunks, made.prove if proves else None)
+            least[proves] = min(least[proves], time.process_time() - began)
+    return max(0.0, 1 - least[False] / least[True])
+
+
+def jobs_through_forks(rounds: int) -> Measured:
+    """Send so many jobs one after the other, and 64 at a time, through a forked pool."""
+    return _program("many", rounds)[0], {"one after the other": rounds, "at a time": 64}
+
+
+def growth(rounds: int) -> Measured:
+    """Return by how much memory grows with so many small operations."""
+    failed, said = _program("memory", rounds)
+    if failed:
+        return failed, {}
+    grown = float(said)
+    return [Failure(rounds, f"{grown} MB")] * (grown >= GROWTH), {"MB": round(grown, 1)}
+
+
+def _program(name: str, count: int) -> tuple[list[Failure], str]:
+    """Run one of `support.processes`; return what went wrong, and what it printed."""
+    path = os.pathsep.join([str(TESTS.parent), str(TESTS)])
+    with TemporaryDirectory() as folder:
+        ended = subprocess.run(
+            [sys.executable, "-m", "support.processes", name, str(count)],
+            cwd=folder,
+            env={**os.environ, "PYTHONPATH": path},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    failed = [Failure(count, ended.stderr.strip()[-300:])] if ended.returncode else []
+    return failed, ended.stdout
