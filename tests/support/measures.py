@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 import bspcsg as b
 from bspcsg.formats.atomic import write_file
-from bspcsg.formats.files import encoded, read, write
+from bspcsg.formats.files import decoded, encoded
 from bspcsg.formats.registry import FORMATS
 
 from .degenerate import scene
@@ -43,30 +43,28 @@ def crossings(rounds: int) -> Measured:
     A crossing that no finding tells of is a failure.
     """
     failed, counts = [], Counter[str]()
-    with TemporaryDirectory() as folder:
-        for seed in range(rounds):
-            try:
-                solid = scene(seed).normalized()
-                mesh = solid.to_mesh()
-            except (b.InvalidMeshError, b.LimitError):
-                continue
-            if len(mesh.faces) == 0:
-                continue
-            path = Path(folder) / "scene.stl"
-            found = write(mesh, path)
-            raw = read(path)
-            stored = b.Mesh(raw.vertices, raw.faces, mesh.source)
-            counts["meshes"] += 1
-            for place, told, one, codes in (
-                ("in doubles", solid.findings, mesh, SAID),
-                ("in a binary STL", found, stored, SAID_IN_SINGLE),
-            ):
-                crosses = bool(one.certificate.crossings or one.certificate.flat)
-                is_said = bool(codes & {finding.code for finding in told})
-                counts[f"{place}, said"] += crosses and is_said
-                counts[f"{place}, silent"] += crosses and not is_said
-                if crosses and not is_said:
-                    failed.append(Failure(seed, f"a crossing {place} that nothing tells of"))
+    for seed in range(rounds):
+        try:
+            solid = scene(seed).normalized()
+            mesh = solid.to_mesh()
+        except (b.InvalidMeshError, b.LimitError):
+            continue
+        if len(mesh.faces) == 0:
+            continue
+        made = encoded(mesh, "scene.stl", ".stl")
+        raw = decoded("scene.stl", b"".join(made.chunks), ".stl")
+        stored = b.Mesh(raw.vertices, raw.faces, mesh.source)
+        counts["meshes"] += 1
+        for place, told, one, codes in (
+            ("in doubles", solid.findings, mesh, SAID),
+            ("in a binary STL", made.findings, stored, SAID_IN_SINGLE),
+        ):
+            crosses = bool(one.certificate.crossings or one.certificate.flat)
+            is_said = bool(codes & {finding.code for finding in told})
+            counts[f"{place}, said"] += crosses and is_said
+            counts[f"{place}, silent"] += crosses and not is_said
+            if crosses and not is_said:
+                failed.append(Failure(seed, f"a crossing {place} that nothing tells of"))
     return failed, dict(counts)
 
 
