@@ -8,6 +8,7 @@ pub mod convert;
 mod filtered;
 mod gcd;
 mod int;
+pub mod leading;
 mod limbs;
 mod modular;
 mod ops;

@@ -43,12 +43,19 @@ fn leading_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]
     let head = u128::from(limb_at(num, num_bits - 63)) << 64;
     let quotient =
         low_limb((head | u128::from(limb_at(num, num_bits - 127))) / u128::from(divisor));
-    let exponent = num_bits - den_bits - 63;
+    nearly_to_f64(quotient, UNSURE, num_bits - den_bits - 63)
+}
+
+/// The double nearest to (number ± unsure) · 2^`exponent`, if all of these have the same.
+///
+/// The number has at least 62 bits.
+#[inline]
+pub(super) fn nearly_to_f64(number: u64, unsure: u64, exponent: i32) -> Option<f64> {
     // Bits below the last one kept.
-    let spare = 64 - f64::MANTISSA_DIGITS - quotient.leading_zeros();
-    let rest = quotient & ((1 << spare) - 1);
-    let sure = rest.abs_diff(1 << (spare - 1)) > UNSURE;
-    (sure && exponent > LEAST_NORMAL_EXPONENT).then(|| scaled_to_f64(quotient, true, exponent))
+    let spare = 64 - f64::MANTISSA_DIGITS - number.leading_zeros();
+    let rest = number & ((1 << spare) - 1);
+    let sure = rest.abs_diff(1 << (spare - 1)) > unsure;
+    (sure && exponent > LEAST_NORMAL_EXPONENT).then(|| scaled_to_f64(number, true, exponent))
 }
 
 /// The double nearest to a ratio of positive numbers.

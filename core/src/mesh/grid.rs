@@ -78,6 +78,7 @@ impl Pitch {
     }
 
     /// A length in steps, within three units in the last place.
+    #[inline]
     pub fn steps(self, x: f64) -> f64 {
         let power = power_of_ten(self.0.abs());
         if self.0 < 0 {
@@ -92,22 +93,17 @@ impl Pitch {
         (self.0 <= 0).then(|| power_of_ten(-self.0))
     }
 
+    #[inline]
     fn fits(self, x: f64) -> bool {
         self.steps(x).abs() < LIMIT
     }
 
     /// The nearest lattice coordinate, by the exact product; halves go away from zero.
+    #[inline]
     pub fn snap(self, x: f64) -> Result<i64> {
-        if !x.is_finite() {
-            let text = format!("a coordinate is {x}; coordinates must be finite");
-            return Err(Error::new(ErrorKind::NonFinite, text));
-        }
+        // Nor does what is not finite.
         if !self.fits(x) {
-            let text = format!(
-                "the coordinate {x:e} is beyond 2^53 steps of the pitch 10^{}; use a coarser pitch",
-                self.0
-            );
-            return Err(Error::new(ErrorKind::TooLarge, text));
+            return Err(self.refused(x));
         }
         let rounded = if self.0 <= 0 {
             snap_product(x, power_of_ten(-self.0))
@@ -117,13 +113,33 @@ impl Pitch {
         Ok(as_whole(rounded))
     }
 
+    #[cold]
+    fn refused(self, x: f64) -> Error {
+        if !x.is_finite() {
+            let text = format!("a coordinate is {x}; coordinates must be finite");
+            return Error::new(ErrorKind::NonFinite, text);
+        }
+        let text = format!(
+            "the coordinate {x:e} is beyond 2^53 steps of the pitch 10^{}; use a coarser pitch",
+            self.0
+        );
+        Error::new(ErrorKind::TooLarge, text)
+    }
+
     /// The double nearest to a lattice coordinate.
+    #[inline]
     pub fn coordinate(self, k: i64) -> f64 {
+        self.units(as_double(k))
+    }
+
+    /// The double nearest to a number of steps.
+    #[inline]
+    pub fn units(self, steps: f64) -> f64 {
         let power = power_of_ten(self.0.abs());
         if self.0 <= 0 {
-            as_double(k) / power
+            steps / power
         } else {
-            as_double(k) * power
+            steps * power
         }
     }
 
@@ -133,7 +149,7 @@ impl Pitch {
             return p.map(|k| self.coordinate(k));
         }
         let h = vertex.coordinates();
-        let (up, down) = self.units();
+        let (up, down) = self.step();
         let den: Int<8> = h.w.mul(&down);
         h.x.map(|x| {
             let num: Int<8> = x.mul(&up);
@@ -144,7 +160,7 @@ impl Pitch {
     /// The doubles nearest to the coordinates of a point of the plane.
     pub fn position_in_plane(self, point: &Point2) -> [f64; 2] {
         let (x, w) = point.coordinates();
-        let (up, down) = self.units();
+        let (up, down) = self.step();
         let den: Int<4> = w.mul(&down);
         x.map(|x| {
             let num: Int<5> = x.mul(&up);
@@ -153,7 +169,7 @@ impl Pitch {
     }
 
     /// The lattice step as a ratio of integers.
-    fn units(self) -> (Int<2>, Int<2>) {
+    fn step(self) -> (Int<2>, Int<2>) {
         let power = Int::from_i128(10i128.pow(u32::from(self.0.unsigned_abs())));
         if self.0 <= 0 {
             (Int::ONE, power)
@@ -173,20 +189,34 @@ impl Pitch {
 #[allow(clippy::cast_precision_loss, reason = "a small constant")]
 pub const LIMIT: f64 = (1u64 << COORDINATE_BITS) as f64;
 
+#[inline]
 fn power_of_ten(exponent: i8) -> f64 {
     POWERS_OF_TEN[usize::from(exponent.unsigned_abs())]
 }
 
 /// Rounds the exact product x·power to an integer; |x·power| < 2^53.
-#[allow(clippy::float_cmp)]
+#[inline]
 fn snap_product(x: f64, power: f64) -> f64 {
     let product = x * power;
-    let rounded = product.round();
-    let rest = product - rounded;
+    // Rounding to nearest away from zero, without the call that this is on some processors.
+    let whole = as_double(as_whole(product));
+    let part = product - whole;
     let doubt = product.abs() * f64::EPSILON;
-    if rest.abs() + doubt < 0.5 {
+    if part.abs() + doubt < 0.5 {
+        return whole;
+    }
+    let rounded = if part.abs() < 0.5 { whole } else { whole + part.signum() };
+    if (product - rounded).abs() + doubt < 0.5 {
         return rounded;
     }
+    snap_doubtful(x, power, product, rounded)
+}
+
+/// Rounds the exact product, which is near the middle between `rounded` and a neighbour.
+#[cold]
+#[allow(clippy::float_cmp)]
+fn snap_doubtful(x: f64, power: f64, product: f64, rounded: f64) -> f64 {
+    let rest = product - rounded;
     let error = x.mul_add(power, -product);
     let exact = rest + error;
     let tie_away = exact.abs() == 0.5 && (exact > 0.0) == (x > 0.0);

@@ -1,8 +1,9 @@
 //! Exact hits as doubles.
 
-use super::first::Found;
+use super::first::{Found, Nearest};
 use super::line::Ray;
-use super::scene::Scene;
+use super::narrow::Narrow;
+use super::scene::{in_lengths, Scene};
 use crate::arith::{ratio_to_f64, Int};
 
 /// The part of a facet in which a ray meets it.
@@ -45,11 +46,55 @@ pub fn hit<const D: usize>(scene: &Scene<D>, ray: &Ray<D>, found: &Found<D>) -> 
     }
 }
 
+/// The hit of the nearest facet: by narrow integers where they are enough.
+#[inline]
+pub fn nearest_hit<const D: usize>(
+    scene: &Scene<D>,
+    ray: &Ray<D>,
+    nearest: &Nearest<D>,
+) -> Option<Hit<D>> {
+    match narrow_hit(scene, ray, nearest) {
+        None => widely(scene, ray, nearest),
+        found => found,
+    }
+}
+
+#[cold]
+fn widely<const D: usize>(
+    scene: &Scene<D>,
+    ray: &Ray<D>,
+    nearest: &Nearest<D>,
+) -> Option<Hit<D>> {
+    Some(hit(scene, ray, &nearest.met(ray)?))
+}
+
+fn narrow_hit<const D: usize>(
+    scene: &Scene<D>,
+    ray: &Ray<D>,
+    nearest: &Nearest<D>,
+) -> Option<Hit<D>> {
+    let meeting = Narrow::of(ray, &nearest.corners)?;
+    let weights = meeting.weights()?;
+    let steps = meeting.parameter(scene.pitch())?;
+    Some(Hit {
+        number: scene.number(nearest.facet),
+        t: in_lengths(steps, ray.exponent()),
+        kind: of_zeros(meeting.zeros(), D),
+        weights,
+        point: scene.position(&nearest.corners, &weights),
+    })
+}
+
 fn kind<const D: usize, const N: usize>(weights: &[Int<N>; D]) -> Kind {
     let zeros = weights.iter().filter(|w| w.is_zero()).count();
+    of_zeros(zeros, D)
+}
+
+/// The part of a facet of so many corners where so many weights are zero.
+fn of_zeros(zeros: usize, corners: usize) -> Kind {
     match zeros {
         0 => Kind::Interior,
-        _ if zeros + 1 == D => Kind::Vertex,
+        _ if zeros + 1 == corners => Kind::Vertex,
         _ => Kind::Edge,
     }
 }

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::answer::{hit, Hit};
+use super::answer::{hit, nearest_hit, Hit};
 use super::crossings::{stretches, Stretch};
 use super::first::{alls, blocked, firsts, Found, Reach};
 use super::line::Ray;
@@ -85,7 +85,7 @@ impl Rays<'_> {
     /// `Shape`; `NonFinite`, `TooLarge` and `BadNormal` with the ray's number; `Cancelled`.
     pub fn first<const D: usize>(&self, scene: &Scene<D>) -> Result<Vec<Option<Hit<D>>>> {
         self.cast(scene, |_, rays| {
-            firsts(scene, rays, |ray, found| Some(hit(scene, ray, &found?)))
+            firsts(scene, rays, |ray, best| nearest_hit(scene, ray, &best?))
         })
     }
 
@@ -181,13 +181,15 @@ fn in_order<const D: usize, T: Send>(
         }
         Ok(answer(numbers, &rays))
     });
-    let answers: Vec<Result<Vec<T>>> = if in_pool() {
-        let chunks = order.par_chunks(CHUNK).with_min_len(CHUNKS);
-        chunks.map(chunk).collect()
-    } else {
-        order.chunks(CHUNK).map(chunk).collect()
-    };
     let mut all = Vec::with_capacity(order.len());
+    if !in_pool() {
+        for numbers in order.chunks(CHUNK) {
+            all.extend(chunk(numbers)?);
+        }
+        return Ok(all);
+    }
+    let chunks = order.par_chunks(CHUNK).with_min_len(CHUNKS);
+    let answers: Vec<Result<Vec<T>>> = chunks.map(chunk).collect();
     for answers in answers {
         all.extend(answers?);
     }

@@ -6,11 +6,12 @@
 //! t on each axis. Let u = 2^-24. A distance of a box's plane is a difference, times an inverse
 //! that was rounded once: off by less than 4u of itself, as if the plane had moved by 8u < 2^-21. An
 //! inverse that is cut at [`STEEP`] moves the ray by 2·2^-40. The start is found in doubles, off by
-//! less than 2^-49 of the way from the origin. [`Start::slack`] is more than the sum of all: a ray
+//! less than 2^-49 of the way from the origin. [`Starts::views`] has a slack of more than the sum of all, and
+//! than what their rounding to single precision takes away: a ray
 //! that meets a box goes through each of its slabs, all starts within the slack being tried.
 
-use super::cell::{above, below, Frame};
-use super::line::Ray;
+use super::cell::{above, Frame};
+use super::line::{Near, Ray};
 use super::treelet::{Wide, WIDTH};
 
 /// The largest inverse slope.
@@ -22,72 +23,96 @@ const BLUR: f64 = 1.0 / (1u64 << 20) as f64;
 /// The slack of the way to a start, for each unit of its length.
 const DRIFT: f64 = 1.0 / (1u64 << 49) as f64;
 
-/// A ray in the frame.
-#[derive(Clone, Copy, Debug)]
-pub struct Start<const D: usize> {
-    main: usize,
-    at: [f64; D],
-    slope: [f64; D],
-    /// The main distance from the origin.
-    skipped: f64,
-    slack: f64,
+/// More than what a place in the frame loses in single precision, for each unit of its size.
+const NARROWING: f64 = 1.0 / (1u64 << 23) as f64;
+
+/// Rays in the frame, side by side, where they enter its stretch of their main axis.
+struct Starts<const D: usize, const N: usize> {
+    at: [[f64; N]; D],
+    slope: [[f64; N]; D],
+    /// The main distances from the origins.
+    skipped: [f64; N],
+    slack: [f64; N],
 }
 
-impl<const D: usize> Start<D> {
-    /// A ray where it enters the frame's stretch of its main axis.
+impl<const D: usize, const N: usize> Starts<D, N> {
+    /// At least one ray and at most `N`, all of which go like the first; it fills what is left.
     #[inline]
-    pub fn of(ray: &Ray<D>, frame: &Frame<D>) -> Self {
-        let near = &ray.near;
-        let origin: [f64; D] = std::array::from_fn(|k| frame.inward(k, near.origin[k]));
-        let main = near.main;
-        let skipped = (-1.0 - near.heading * origin[main]).max(0.0);
-        let slope: [f64; D] = std::array::from_fn(|k| near.shear[k] * near.heading);
-        let far = origin.iter().fold(skipped, |far, c| far.max(c.abs()));
+    fn of(rays: &[Ray<D>], frame: &Frame<D>) -> Self {
+        let lead = &rays[0].near;
+        let (mut at, mut slope) = ([[0.0; N]; D], [[0.0; N]; D]);
+        for i in 0..N {
+            let near = rays.get(i).map_or(lead, |ray| &ray.near);
+            for k in 0..D {
+                at[k][i] = frame.inward(k, near.origin[k]);
+                slope[k][i] = near.shear[k] * near.heading;
+            }
+        }
+        let (mut skipped, mut far) = ([0.0; N], [0.0; N]);
+        for i in 0..N {
+            let gap = -1.0 - lead.heading * at[lead.main][i];
+            skipped[i] = if gap > 0.0 { gap } else { 0.0 };
+            far[i] = skipped[i];
+        }
+        for k in 0..D {
+            for i in 0..N {
+                let size = at[k][i].abs();
+                far[i] = if size > far[i] { size } else { far[i] };
+                at[k][i] += slope[k][i] * skipped[i];
+            }
+        }
+        let mut slack = [0.0; N];
+        for i in 0..N {
+            slack[i] = BLUR + DRIFT * far[i];
+        }
         Self {
-            main,
-            at: std::array::from_fn(|k| origin[k] + slope[k] * skipped),
+            at,
             slope,
             skipped,
-            slack: BLUR + DRIFT * far,
+            slack,
         }
     }
 
-    fn inverse(&self, axis: usize) -> f32 {
-        let slope = self.slope[axis];
-        if slope.abs() * STEEP < 1.0 {
-            (if slope < 0.0 { -STEEP } else { STEEP }) as f32
-        } else {
-            (1.0 / slope) as f32
-        }
+    /// Return the largest difference on an axis, at the start or one unit on.
+    #[inline]
+    fn spread(&self, axis: usize) -> f64 {
+        let range = |of: &[f64; N]| {
+            let (mut low, mut high) = (of[0], of[0]);
+            for c in of {
+                low = if *c < low { *c } else { low };
+                high = if *c > high { *c } else { high };
+            }
+            high - low
+        };
+        range(&self.at[axis]) + range(&self.slope[axis])
     }
 
-    /// Planes of boxes seen from all starts within the slack.
-    fn view(&self, axis: usize) -> View {
-        let (at, inverse) = (self.at[axis], self.inverse(axis));
-        let (low, high) = (below(at - self.slack), above(at + self.slack));
+    /// Planes of boxes seen from all starts within the slack: near and far ones, inverse slopes.
+    #[inline]
+    fn views(&self, axis: usize) -> [[f32; N]; 3] {
+        let backward = self.slope[axis][0] < 0.0;
+        let steepest = if backward { -STEEP } else { STEEP };
         // Seen from beyond, near planes are nearer and far planes farther.
-        let backward = self.slope[axis] < 0.0;
-        let (near, far) = if backward { (low, high) } else { (high, low) };
-        View {
-            near,
-            near_inverse: inverse,
-            far,
-            far_inverse: inverse,
+        let sign = if backward { -1.0 } else { 1.0 };
+        let mut views = [[0.0; N]; 3];
+        for i in 0..N {
+            let (at, slope) = (self.at[axis][i], self.slope[axis][i]);
+            let slack = (self.slack[i] + at.abs() * NARROWING) * sign;
+            let steep = slope.abs() * STEEP < 1.0;
+            views[0][i] = (at + slack) as f32;
+            views[1][i] = (at - slack) as f32;
+            views[2][i] = (if steep { steepest } else { 1.0 / slope }) as f32;
         }
+        views
     }
+}
 
-    /// Return whether slopes have the same signs and the same largest one.
-    fn goes_with(&self, other: &Self) -> bool {
-        let same = |k: usize| (self.slope[k] < 0.0) == (other.slope[k] < 0.0);
-        self.main == other.main && (0..D).all(same)
-    }
-
-    fn widen(&mut self, other: &Self, more: fn(f64, f64) -> f64) {
-        for k in 0..D {
-            self.at[k] = more(self.at[k], other.at[k]);
-            self.slope[k] = more(self.slope[k], other.slope[k]);
-        }
-    }
+/// Return whether slopes have the same signs and the same largest one.
+#[inline]
+fn alike<const D: usize>(a: &Ray<D>, b: &Ray<D>) -> bool {
+    let (a, b) = (&a.near, &b.near);
+    let falls = |near: &Near<D>, k: usize| near.shear[k] * near.heading < 0.0;
+    a.main == b.main && (0..D).all(|k| falls(a, k) == falls(b, k))
 }
 
 /// The places of planes of boxes along an axis, and the inverse slopes there.
@@ -100,41 +125,33 @@ struct View {
 }
 
 impl View {
-    /// The view around another, too, which looks the same way.
+    /// The view of all, who look the same way.
     #[inline]
-    fn with(&self, other: &Self, backward: bool) -> Self {
-        let (late, early) = if backward {
-            (least as Choice, most as Choice)
+    fn around<const N: usize>([near, far, inverse]: &[[f32; N]; 3], backward: bool) -> Self {
+        let (late, early): (Choice<N>, Choice<N>) = if backward {
+            (least, most)
         } else {
-            (most as Choice, least as Choice)
+            (most, least)
         };
         Self {
-            near: late(self.near, other.near),
-            near_inverse: early(self.near_inverse, other.near_inverse),
-            far: early(self.far, other.far),
-            far_inverse: late(self.far_inverse, other.far_inverse),
+            near: late(near),
+            near_inverse: early(inverse),
+            far: early(far),
+            far_inverse: late(inverse),
         }
     }
 }
 
-type Choice = fn(f32, f32) -> f32;
+type Choice<const N: usize> = fn(&[f32; N]) -> f32;
 
 #[inline]
-fn least(a: f32, b: f32) -> f32 {
-    if b < a {
-        b
-    } else {
-        a
-    }
+fn least<const N: usize>(of: &[f32; N]) -> f32 {
+    of.iter().fold(of[0], |a, b| if *b < a { *b } else { a })
 }
 
 #[inline]
-fn most(a: f32, b: f32) -> f32 {
-    if b > a {
-        b
-    } else {
-        a
-    }
+fn most<const N: usize>(of: &[f32; N]) -> f32 {
+    of.iter().fold(of[0], |a, b| if *b > a { *b } else { a })
 }
 
 /// Up to `N` rays of one octant, and the beam around them.
@@ -142,9 +159,8 @@ fn most(a: f32, b: f32) -> f32 {
 pub struct Bundle<const D: usize, const N: usize> {
     /// The side of a box that is met first: 1, the high one, where slopes are negative.
     first: [usize; D],
-    near: [[f32; N]; D],
-    far: [[f32; N]; D],
-    inverse: [[f32; N]; D],
+    /// By axis: near planes' and far planes' places seen from the rays, and inverse slopes.
+    views: [[[f32; N]; 3]; D],
     /// Beyond these distances nothing matters to a ray.
     limits: [f32; N],
     beam: [View; D],
@@ -155,63 +171,48 @@ pub struct Bundle<const D: usize, const N: usize> {
 impl<const D: usize, const N: usize> Bundle<D, N> {
     /// The bundle of rays, at least one and at most `N`, with the depths beyond which nothing
     /// matters; `None` if they do not go the same way or stray farther apart than `width`.
+    #[inline]
     pub fn of(
         rays: &[Ray<D>],
         frame: &Frame<D>,
         width: f64,
         depth: impl Fn(usize) -> f64,
     ) -> Option<Self> {
-        let lead = Start::of(rays.first()?, frame);
-        let mut bundle = Self::of_one(&lead, frame);
-        let (mut low, mut high) = (lead, lead);
-        for (i, ray) in rays.iter().enumerate() {
-            if i > 0 {
-                let start = Start::of(ray, frame);
-                if !start.goes_with(&lead) {
-                    return None;
-                }
-                bundle.add(i, &start);
-                low.widen(&start, f64::min);
-                high.widen(&start, f64::max);
-            }
+        let (lead, others) = rays.split_first()?;
+        if !others.iter().all(|ray| alike(lead, ray)) {
+            return None;
+        }
+        let starts = Starts::of(rays, frame);
+        if N > 1 && !(0..D).all(|k| starts.spread(k) <= width) {
+            return None;
+        }
+        let mut bundle = Self::seen(&starts, frame);
+        for i in 0..rays.len() {
             bundle.set_limit(i, depth(i));
         }
-        let spread = |k: usize| high.at[k] - low.at[k] + high.slope[k] - low.slope[k];
-        (0..D).all(|k| spread(k) <= width).then_some(bundle)
+        Some(bundle)
     }
 
-    fn of_one(lead: &Start<D>, frame: &Frame<D>) -> Self {
+    #[inline]
+    fn seen(starts: &Starts<D, N>, frame: &Frame<D>) -> Self {
         let mut bundle = Self {
             first: [0; D],
-            near: [[0.0; N]; D],
-            far: [[0.0; N]; D],
-            inverse: [[0.0; N]; D],
+            views: [[[0.0; N]; 3]; D],
             limits: [f32::NEG_INFINITY; N],
             beam: [View::default(); D],
             scale: frame.scale,
             skipped: [0.0; N],
         };
         for k in 0..D {
-            let view = lead.view(k);
-            bundle.first[k] = usize::from(lead.slope[k] < 0.0);
-            bundle.beam[k] = view;
-            bundle.near[k] = [view.near; N];
-            bundle.far[k] = [view.far; N];
-            bundle.inverse[k] = [view.near_inverse; N];
+            let backward = starts.slope[k][0] < 0.0;
+            bundle.first[k] = usize::from(backward);
+            bundle.views[k] = starts.views(k);
+            bundle.beam[k] = View::around(&bundle.views[k], backward);
         }
-        bundle.skipped[0] = lead.skipped - lead.slack;
+        for i in 0..N {
+            bundle.skipped[i] = starts.skipped[i] - starts.slack[i];
+        }
         bundle
-    }
-
-    fn add(&mut self, ray: usize, start: &Start<D>) {
-        for k in 0..D {
-            let view = start.view(k);
-            self.beam[k] = self.beam[k].with(&view, self.first[k] == 1);
-            self.near[k][ray] = view.near;
-            self.far[k][ray] = view.far;
-            self.inverse[k][ray] = view.near_inverse;
-        }
-        self.skipped[ray] = start.skipped - start.slack;
     }
 
     /// The distance beyond which nothing matters to any ray.
@@ -264,9 +265,10 @@ impl<const D: usize, const N: usize> Bundle<D, N> {
                 node.bounds[self.first[k]][k][lane],
                 node.bounds[1 - self.first[k]][k][lane],
             );
+            let [near, far, inverse] = &self.views[k];
             for i in 0..N {
-                let enter = (low - self.near[k][i]) * self.inverse[k][i];
-                let leave = (high - self.far[k][i]) * self.inverse[k][i];
+                let enter = (low - near[i]) * inverse[i];
+                let leave = (high - far[i]) * inverse[i];
                 from[i] = if enter > from[i] { enter } else { from[i] };
                 to[i] = if leave < to[i] { leave } else { to[i] };
             }

@@ -23,16 +23,40 @@ pub struct Found<const D: usize> {
 
 /// The nearest facet so far, its depth in doubles.
 #[derive(Clone, Copy, Debug)]
-pub struct Candidate<const D: usize> {
-    facet: u32,
-    corners: Facet<D>,
+pub struct Candidate {
+    /// The facet's index in the scene.
+    pub facet: u32,
     depth: Depth,
 }
 
-impl<const D: usize> Candidate<D> {
+impl Candidate {
     /// The most that the exact depth can be.
     pub fn high(&self) -> f64 {
         self.depth.high()
+    }
+}
+
+/// The facet that a ray meets first, and its corners.
+#[derive(Clone, Copy, Debug)]
+pub struct Nearest<const D: usize> {
+    /// The facet's index in the scene.
+    pub facet: u32,
+    /// In lattice steps.
+    pub corners: Facet<D>,
+}
+
+impl<const D: usize> Nearest<D> {
+    #[inline]
+    fn of(scene: &Scene<D>, best: &Candidate) -> Self {
+        Self {
+            facet: best.facet,
+            corners: scene.facets()[best.facet as usize],
+        }
+    }
+
+    /// The exact meeting with a ray.
+    pub fn met(&self, ray: &Ray<D>) -> Option<Found<D>> {
+        exact(ray, self.facet, &self.corners)
     }
 }
 
@@ -62,21 +86,21 @@ impl<'a, const D: usize> Query<'a, D> {
 
     /// The facet with the first point on the ray; of several there, the first of the input.
     pub fn first(&self) -> Option<Found<D>> {
-        firsts(self.scene, std::slice::from_ref(self.ray), |_, found| found).pop()?
+        let rays = std::slice::from_ref(self.ray);
+        firsts(self.scene, rays, |ray, nearest| nearest?.met(ray)).pop()?
     }
 
     /// Keeps the facet of a block that is nearer than the best, if any; the depth of the best.
     #[inline]
-    pub fn offer_block(&self, best: &mut Option<Candidate<D>>, block: &Block<D>) -> f64 {
+    pub fn offer_block(&self, best: &mut Option<Candidate>, block: &Block<D>) -> f64 {
         self.try_block(best, block, |_, _| {});
         best.map_or(f64::INFINITY, |best| best.high())
     }
 
     /// Tests a facet and keeps it if it is nearer than the best; the depth of its hit, if any.
     #[inline]
-    pub fn offer(&self, best: &mut Option<Candidate<D>>, facet: u32) -> Option<Depth> {
-        let corners = &self.scene.facets()[facet as usize];
-        let found = self.candidate(facet, corners, self.filter.probe(corners))?;
+    pub fn offer(&self, best: &mut Option<Candidate>, facet: u32) -> Option<Depth> {
+        let found = self.candidate(facet, self.probe(facet))?;
         *best = Some(best.map_or(found, |old| self.nearer(old, found)));
         Some(found.depth)
     }
@@ -85,13 +109,13 @@ impl<'a, const D: usize> Query<'a, D> {
     #[inline]
     pub fn try_block(
         &self,
-        best: &mut Option<Candidate<D>>,
+        best: &mut Option<Candidate>,
         block: &Block<D>,
         mut hit: impl FnMut(u32, Depth),
     ) {
         self.filter.probe_block(block, |lane, probe| {
-            let (facet, corners) = (block.facets()[lane], block.lane(lane));
-            if let Some(found) = self.candidate(facet, &corners, probe) {
+            let facet = block.facets()[lane];
+            if let Some(found) = self.candidate(facet, probe) {
                 hit(facet, found.depth);
                 *best = Some(best.map_or(found, |old| self.nearer(old, found)));
             }
@@ -99,8 +123,8 @@ impl<'a, const D: usize> Query<'a, D> {
     }
 
     /// The exact meeting with the nearest facet.
-    pub fn found(&self, nearest: &Candidate<D>) -> Option<Found<D>> {
-        exact(self.ray, nearest.facet, &nearest.corners)
+    pub fn found(&self, nearest: &Candidate) -> Option<Found<D>> {
+        Nearest::of(self.scene, nearest).met(self.ray)
     }
 
     /// All facets on the ray in the order of their first points, then of the input.
@@ -121,27 +145,26 @@ impl<'a, const D: usize> Query<'a, D> {
     }
 
     #[inline]
-    fn candidate(&self, facet: u32, corners: &Facet<D>, probe: Probe) -> Option<Candidate<D>> {
+    fn candidate(&self, facet: u32, probe: Probe) -> Option<Candidate> {
         let depth = match probe {
             Probe::Miss => return None,
             Probe::Hit(depth) => depth,
-            Probe::Doubt => self.exact_depth(corners)?,
+            Probe::Doubt => self.exact_depth(facet)?,
         };
-        let corners = *corners;
-        Some(Candidate {
-            facet,
-            corners,
-            depth,
-        })
+        Some(Candidate { facet, depth })
     }
 
     #[cold]
-    fn exact_depth(&self, corners: &Facet<D>) -> Option<Depth> {
-        Some(depth_of(self.ray, meet(self.ray, corners)?.at.to_f64()))
+    fn exact_depth(&self, facet: u32) -> Option<Depth> {
+        Some(depth_of(self.ray, self.meeting(facet)?.at.to_f64()))
+    }
+
+    fn meeting(&self, facet: u32) -> Option<Meeting<D>> {
+        meet(self.ray, &self.scene.facets()[facet as usize])
     }
 
     #[inline]
-    fn nearer(&self, old: Candidate<D>, new: Candidate<D>) -> Candidate<D> {
+    fn nearer(&self, old: Candidate, new: Candidate) -> Candidate {
         if new.depth.low() > old.depth.high() || new.facet == old.facet {
             old
         } else if new.depth.high() < old.depth.low() {
@@ -152,8 +175,8 @@ impl<'a, const D: usize> Query<'a, D> {
     }
 
     #[cold]
-    fn exactly_nearer(&self, old: Candidate<D>, new: Candidate<D>) -> Candidate<D> {
-        let order = match (meet(self.ray, &new.corners), meet(self.ray, &old.corners)) {
+    fn exactly_nearer(&self, old: Candidate, new: Candidate) -> Candidate {
+        let order = match (self.meeting(new.facet), self.meeting(old.facet)) {
             (Some(a), Some(b)) => a.at.cmp(&b.at),
             // Candidates do meet the ray.
             _ => Ordering::Equal,
@@ -203,7 +226,7 @@ impl<'a, const D: usize> Query<'a, D> {
 pub fn firsts<const D: usize, T>(
     scene: &Scene<D>,
     rays: &[Ray<D>],
-    answer: impl Fn(&Ray<D>, Option<Found<D>>) -> T,
+    answer: impl Fn(&Ray<D>, Option<Nearest<D>>) -> T,
 ) -> Vec<T> {
     let queries = queries(scene, rays);
     let mut best = vec![None; rays.len()];
@@ -213,11 +236,11 @@ pub fn firsts<const D: usize, T>(
         |_| f64::INFINITY,
         |ray, block| queries[ray].offer_block(&mut best[ray], block),
     );
-    let found = |query: &Query<'_, D>, best: Option<Candidate<D>>| query.found(&best?);
-    let nearest = queries.iter().zip(best);
-    nearest
-        .map(|(query, best)| answer(query.ray, found(query, best)))
-        .collect()
+    // All reads stand side by side, so that they wait for memory together.
+    let nearest = |best: Option<Candidate>| Some(Nearest::of(scene, &best?));
+    let nearest: Vec<Option<Nearest<D>>> = best.into_iter().map(nearest).collect();
+    let pairs = rays.iter().zip(nearest);
+    pairs.map(|(ray, nearest)| answer(ray, nearest)).collect()
 }
 
 /// All facets on each ray in the order of their first points, then of the input.

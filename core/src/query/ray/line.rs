@@ -33,12 +33,24 @@ impl<const D: usize> Ray<D> {
     ///
     /// # Errors
     /// `NonFinite` for a direction that is not finite, `BadNormal` for one of length zero.
+    #[inline]
     pub fn new(origin: [i64; D], direction: &[f64; D]) -> Result<Self> {
         if let Some(bad) = direction.iter().find(|c| !c.is_finite()) {
             let text = format!("a ray's direction has the component {bad}; it must be finite");
             return Err(Error::new(ErrorKind::NonFinite, text));
         }
-        let (direction, exponent) = integers(direction).ok_or_else(zero_direction)?;
+        if let Some((whole, exponent)) = exactly(direction) {
+            // Sizes and quotients are those of the integers, and no wide ones are converted.
+            let main = first_largest(direction, |c| c.abs());
+            let near = Near::along(&origin, direction, main);
+            return Ok(Self {
+                origin,
+                direction: whole,
+                exponent,
+                near,
+            });
+        }
+        let (direction, exponent) = rounded(direction).ok_or_else(zero_direction)?;
         Ok(Self::of(origin, direction, exponent))
     }
 
@@ -55,7 +67,8 @@ impl<const D: usize> Ray<D> {
     }
 
     fn of(origin: [i64; D], direction: [i128; D], exponent: i32) -> Self {
-        let near = Near::of(&origin, &direction);
+        let main = first_largest(&direction, |c| c.unsigned_abs());
+        let near = Near::along(&origin, &direction.map(|c| c as f64), main);
         Self {
             origin,
             direction,
@@ -81,18 +94,32 @@ impl<const D: usize> Ray<D> {
 }
 
 impl<const D: usize> Near<D> {
-    fn of(origin: &[i64; D], direction: &[i128; D]) -> Self {
-        let size = |i: &usize| direction[*i].unsigned_abs();
-        // The first of the largest, so that equal rays take equal ways.
-        let main = (0..D).rev().max_by_key(size).unwrap_or(0);
-        let lead = direction[main] as f64;
+    #[inline]
+    fn along(origin: &[i64; D], direction: &[f64; D], main: usize) -> Self {
+        let lead = direction[main];
         Self {
             origin: origin.map(|c| c as f64),
             main,
             heading: lead.signum(),
-            shear: direction.map(|c| c as f64 / lead),
+            // Of zeros the positive one, as of integers.
+            shear: direction.map(|c| (c + 0.0) / lead),
         }
     }
+}
+
+/// The first axis of the largest component, so that equal rays take equal ways.
+#[inline]
+fn first_largest<C: Copy, S: PartialOrd, const D: usize>(
+    direction: &[C; D],
+    size: impl Fn(C) -> S,
+) -> usize {
+    let mut main = 0;
+    for k in 1..D {
+        if size(direction[k]) > size(direction[main]) {
+            main = k;
+        }
+    }
+    main
 }
 
 fn zero_direction() -> Error {
@@ -100,8 +127,36 @@ fn zero_direction() -> Error {
     Error::new(ErrorKind::BadNormal, text)
 }
 
+/// The components times a power of two in integers without a common factor of two, and its
+/// exponent; none for zero, or if they take more than `DIRECTION_BITS`.
+#[inline]
+fn exactly<const D: usize>(direction: &[f64; D]) -> Option<([i128; D], i32)> {
+    let parts = direction.map(mantissa_and_exponent);
+    let (mut low, mut high) = (i32::MAX, i32::MIN);
+    for (m, e) in parts {
+        if m != 0 {
+            low = low.min(e + m.trailing_zeros() as i32);
+            high = high.max(e + bits(m));
+        }
+    }
+    let fits = low < high && high - low <= DIRECTION_BITS as i32;
+    fits.then(|| (parts.map(|(m, e)| scaled(m, e - low)), -low))
+}
+
+/// `m`·2^`shift`, which is an integer.
+#[inline]
+fn scaled(m: i64, shift: i32) -> i128 {
+    if m == 0 {
+        0
+    } else if shift < 0 {
+        i128::from(m >> -shift)
+    } else {
+        i128::from(m) << shift
+    }
+}
+
 /// The integers nearest to the components times a common power of two, and its exponent.
-fn integers<const D: usize>(direction: &[f64; D]) -> Option<([i128; D], i32)> {
+fn rounded<const D: usize>(direction: &[f64; D]) -> Option<([i128; D], i32)> {
     let parts = direction.map(mantissa_and_exponent);
     let top = |(m, e): &(i64, i32)| (*m != 0).then(|| e + bits(*m));
     let highest = parts.iter().filter_map(top).max()?;

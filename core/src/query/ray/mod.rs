@@ -7,7 +7,7 @@
 //!
 //! Layers, from the bottom: `bounds` < `line` < `facet` | `block` < `filter` | `cell` < `divide` <
 //! `treelet` < `closed` < `scene` < `bundle` | `order` | `view` < `walk` < `first` < `crossings` <
-//! `answer` < `batch`.
+//! `narrow` < `answer` < `batch`.
 //!
 //! # Example
 //! ```
@@ -37,6 +37,7 @@ mod divide;
 pub mod facet;
 pub mod filter;
 pub mod first;
+pub mod narrow;
 pub mod ratio;
 pub mod scene;
 pub mod treelet;

@@ -14,6 +14,9 @@ const FEW: usize = 256;
 /// A batch of which at least one in so many pairs of neighbours go alike is left in its order.
 const ALIKE: usize = 2;
 
+/// One in so many pairs is asked.
+const SAMPLE: usize = 16;
+
 /// The numbers of rays in the order to cast them; `None` for the order of the input.
 ///
 /// `ray` gives the origin and the direction, in lattice steps up to rounding.
@@ -28,14 +31,15 @@ pub fn sorted<const D: usize>(
     let count = u32::try_from(count).ok()?;
     let key = |i: u32| {
         let (origin, direction) = ray(i as usize);
-        (key(frame, &origin, &direction), i)
+        key(frame, &origin, &direction)
     };
-    let mut keys: Vec<(u32, u32)> = (0..count).map(key).collect();
     // Neighbours share all but the last bit on each axis.
-    let alike = |pair: &&[(u32, u32)]| (pair[0].0 ^ pair[1].0) >> D == 0;
-    if keys.windows(2).filter(alike).count() * ALIKE >= keys.len() {
+    let alike = |i: &u32| (key(*i) ^ key(*i + 1)) >> D == 0;
+    let pairs = (0..count - 1).step_by(SAMPLE);
+    if pairs.clone().filter(alike).count() * ALIKE >= pairs.len() {
         return None;
     }
+    let mut keys: Vec<(u32, u32)> = (0..count).map(|i| (key(i), i)).collect();
     keys.sort_unstable();
     Some(keys.into_iter().map(|(_, i)| i).collect())
 }

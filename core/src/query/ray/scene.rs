@@ -157,6 +157,7 @@ impl<const D: usize> Scene<D> {
     ///
     /// # Errors
     /// `NonFinite`, and `TooLarge` beyond 2^53 steps.
+    #[inline]
     pub fn snap(&self, point: &[f64; D]) -> Result<[i64; D]> {
         snap(self.pitch, point)
     }
@@ -171,7 +172,7 @@ impl<const D: usize> Scene<D> {
         let mut point = [0.0; D];
         for (corner, weight) in corners.iter().zip(weights) {
             for k in 0..D {
-                point[k] += weight * self.pitch.coordinate(corner[k] as i64);
+                point[k] += weight * self.pitch.units(corner[k]);
             }
         }
         point
@@ -180,9 +181,14 @@ impl<const D: usize> Scene<D> {
 
 /// A ray's parameter in model units per length of the given direction: correctly rounded.
 pub fn parameter(pitch: Pitch, at: &Ratio, exponent: i32) -> f64 {
+    in_lengths(at.scaled_to_f64(pitch.exponent()), exponent)
+}
+
+/// A parameter along a direction that was multiplied by 2^`exponent`, per length of the given one.
+pub fn in_lengths(parameter: f64, exponent: i32) -> f64 {
+    // Two steps, because the scale alone can leave the range of doubles.
     let half = exponent / 2;
-    let steps = at.scaled_to_f64(pitch.exponent());
-    steps * power_of_two(half) * power_of_two(exponent - half)
+    parameter * power_of_two(half) * power_of_two(exponent - half)
 }
 
 /// 2^`exponent`, of a normal number.
@@ -215,6 +221,7 @@ fn suited<const D: usize>(facets: &[Facet<D>]) -> Result<Pitch> {
 ///
 /// # Errors
 /// `NonFinite`, and `TooLarge` beyond 2^53 steps.
+#[inline]
 pub fn snap<const D: usize>(pitch: Pitch, point: &[f64; D]) -> Result<[i64; D]> {
     let mut snapped = [0; D];
     for (k, c) in point.iter().enumerate() {

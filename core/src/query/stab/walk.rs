@@ -61,7 +61,7 @@ pub(super) struct Walk<'a, S: Cast<D>, W, const D: usize> {
     pub(super) ray: &'a Ray<D>,
     pub(super) nodes: &'a [Node<S, D>],
     pub(super) growth: Growth,
-    pub(super) best: Option<Candidate<D>>,
+    pub(super) best: Option<Candidate>,
     /// All facets that the ray hits, once a long list has asked for them.
     pub(super) met: Option<Vec<(u32, Depth)>>,
     pub(super) trace: Trace,

@@ -1,0 +1,137 @@
+//! The meeting of a ray and a triangle in narrow integers, and its rounding.
+//!
+//! The same numbers as in `facet`, exact where they fit. Quotients are those of leading bits, which
+//! mostly decide how they are rounded; where they do not, and where numbers are wider, the integers
+//! of `facet` answer.
+//!
+//! # Widths
+//! Let corners relative to the origin be below 2^p, p ≤ 41, and the direction below 2^q. Components
+//! of their cross products are below 2^(2p + 1). A direction is split at 2^40: sums of three products
+//! with the lower parts are below 2^(2p + 43) ≤ 2^125, with the higher ones below 2^(2p + q − 37), and
+//! those of three weights below 2^(2p + q − 35) ≤ 2^126 for 2p + q ≤ 161. The determinant of the
+//! corners is below 2^(3p + 3) ≤ 2^126.
+
+use super::facet::{relative, Corners, Facet};
+use super::line::Ray;
+use crate::arith::leading::{Leading, Split, SPLIT_BITS};
+use crate::mesh::grid::Pitch;
+
+/// The largest p of the derivation above.
+const CORNER_BITS: u32 = 41;
+
+/// The largest 2p + q.
+const ALL_BITS: u32 = 161;
+
+/// The largest power of ten in a limb.
+const LARGEST_POWER: u64 = 19;
+
+/// Exact weights and height of a ray over a triangle that it meets across.
+pub struct Narrow<const D: usize> {
+    weights: [Split; D],
+    /// Their sum, positive.
+    sum: Leading,
+    height: i128,
+}
+
+impl<const D: usize> Narrow<D> {
+    /// The meeting; none if numbers are too wide, or the ray runs along the facet's plane or does not
+    /// meet it.
+    pub fn of(ray: &Ray<D>, facet: &Facet<D>) -> Option<Self> {
+        let v = relative(ray, facet);
+        if D != 3 || !fits(&v, ray) {
+            return None;
+        }
+        let normals: [[i128; D]; D] = std::array::from_fn(|i| cross(&v[(i + 1) % D], &v[(i + 2) % D]));
+        let direction = ray.direction();
+        let mut weights = normals.map(|normal| dot(direction, &normal));
+        let mut height = (0..D).fold(0i128, |sum, k| {
+            sum.wrapping_add(normals[0][k].wrapping_mul(i128::from(v[0][k])))
+        });
+        let mut sum = total(&weights);
+        if sum.is_negative() {
+            weights = weights.map(|w| w.negated());
+            sum = sum.negated();
+            height = -height;
+        }
+        let meets = height >= 0 && !sum.is_zero() && !weights.iter().any(Split::is_negative);
+        meets.then(|| Self {
+            weights,
+            sum: sum.leading(),
+            height,
+        })
+    }
+
+    /// The barycentric weights, rounded correctly.
+    #[inline]
+    pub fn weights(&self) -> Option<[f64; D]> {
+        let mut rounded = [0.0; D];
+        for (rounded, weight) in rounded.iter_mut().zip(&self.weights) {
+            if !weight.is_zero() {
+                *rounded = weight.leading().over(&self.sum)?;
+            }
+        }
+        Some(rounded)
+    }
+
+    /// The number of weights that are zero.
+    #[inline]
+    pub fn zeros(&self) -> usize {
+        self.weights.iter().filter(|w| w.is_zero()).count()
+    }
+
+    /// The parameter along the ray in model units, rounded correctly.
+    #[inline]
+    pub fn parameter(&self, pitch: Pitch) -> Option<f64> {
+        if self.height == 0 {
+            return Some(0.0);
+        }
+        let height = Leading::of(self.height.unsigned_abs());
+        let power = pitch.exponent().unsigned_abs();
+        if power > LARGEST_POWER {
+            return None;
+        }
+        let ten = 10u64.pow(power as u32);
+        if pitch.exponent() < 0 {
+            height.over(&self.sum.times(ten))
+        } else {
+            height.times(ten).over(&self.sum)
+        }
+    }
+}
+
+/// Return whether all numbers are as narrow as is supposed.
+#[inline]
+fn fits<const D: usize>(v: &Corners<D>, ray: &Ray<D>) -> bool {
+    let all = v.iter().flatten().fold(0, |all, c| all | c.unsigned_abs());
+    let corner = u64::BITS - all.leading_zeros();
+    let lead = ray.direction()[ray.near.main].unsigned_abs();
+    corner <= CORNER_BITS && 2 * corner + u128::BITS - lead.leading_zeros() <= ALL_BITS
+}
+
+#[inline]
+fn cross<const D: usize>(a: &[i64; D], b: &[i64; D]) -> [i128; D] {
+    std::array::from_fn(|k| {
+        let (i, j) = ((k + 1) % D, (k + 2) % D);
+        let product = |x: i64, y: i64| i128::from(x).wrapping_mul(i128::from(y));
+        product(a[i], b[j]).wrapping_sub(product(a[j], b[i]))
+    })
+}
+
+#[inline]
+fn dot<const D: usize>(direction: &[i128; D], normal: &[i128; D]) -> Split {
+    let (mut high, mut low) = (0i128, 0i128);
+    for (d, n) in direction.iter().zip(normal) {
+        high = high.wrapping_add((d >> SPLIT_BITS).wrapping_mul(*n));
+        low = low.wrapping_add((d & ((1 << SPLIT_BITS) - 1)).wrapping_mul(*n));
+    }
+    Split::new(high, low)
+}
+
+#[inline]
+fn total<const D: usize>(weights: &[Split; D]) -> Split {
+    let mut sum = weights[0];
+    for weight in &weights[1..] {
+        sum = sum.plus(weight);
+    }
+    sum
+}
