@@ -244,6 +244,9 @@ class RayScene:
     def first(
         self, origins: _Floats, directions: _Floats, threads: int = 0
     ) -> tuple[_Indices, _Floats, npt.NDArray[np.int8], _Floats, _Floats]: ...
+    def first_facets(
+        self, origins: _Floats, directions: _Floats, threads: int = 0
+    ) -> _Indices: ...
     def all(
         self, origins: _Floats, directions: _Floats, merge: bool = False, threads: int = 0
     ) -> tuple[_Indices, tuple[_Indices, _Floats, npt.NDArray[np.int8], _Floats, _Floats]]: ...

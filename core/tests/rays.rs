@@ -4,6 +4,8 @@
 use bspcsg::arith::bounds::COORDINATE_BITS;
 use bspcsg::arith::Sign;
 use bspcsg::mesh::grid::Pitch;
+use bspcsg::query::ray::answer::hit;
+use bspcsg::query::ray::batch::Rays;
 use bspcsg::query::ray::facet::meet;
 use bspcsg::query::ray::filter::{Filter, Probe};
 use bspcsg::query::ray::first::{blocked, firsts, Query, Reach};
@@ -32,6 +34,10 @@ fn point() -> impl Strategy<Value = [i64; 3]> {
 
 fn point_near(reach: i64) -> impl Strategy<Value = [i64; 3]> {
     [-reach..=reach, -reach..=reach, -reach..=reach]
+}
+
+fn wide_triangle(reach: i64) -> impl Strategy<Value = [[i64; 3]; 3]> {
+    [point_near(reach), point_near(reach), point_near(reach)]
 }
 
 fn triangle() -> impl Strategy<Value = [[i64; 3]; 3]> {
@@ -176,6 +182,34 @@ proptest! {
         let blocked = blocked(&scene, &rays, |_| Reach::Target);
         let alone = rays.iter().map(|ray| Query::new(&scene, ray).occluded(Reach::Target));
         prop_assert_eq!(&blocked, &alone.collect::<Vec<_>>());
+    }
+
+    /// What leading bits decide about a hit is what wide integers say, whatever their widths.
+    #[test]
+    fn narrow_integers_do_not_show(
+        triangle in prop_oneof![triangle(), wide_triangle(1 << 30), wide_triangle(1 << 41)],
+        origin in prop_oneof![point(), point_near(1 << 33)],
+        weights in [1i64..1000, 0i64..1000, 0i64..1000],
+        bend in prop::array::uniform3(-1.0f64..1.0),
+        pitch in prop_oneof![Just(-22i64), Just(-9), Just(0), Just(5), Just(22)],
+    ) {
+        let pitch = Pitch::new(pitch).expect("in range");
+        let corners = triangle.map(|corner| corner.map(|c| pitch.coordinate(c)));
+        let scene = Scene::new(&[corners], Some(pitch)).expect("fits");
+        let sum: i64 = weights.iter().sum();
+        let aim = |k: usize| (0..3).map(|i| corners[i][k] * weights[i] as f64).sum::<f64>();
+        let from = origin.map(|c| pitch.coordinate(c));
+        let along = |k: usize| (aim(k) / sum as f64 - from[k]) * (1.0 + bend[k] * 1e-9);
+        let heads = [0, 1, 2].map(along);
+        let rays = Rays { origins: &from, heads: &heads };
+        let Ok(ray) = Ray::new(scene.snap(&from).expect("fits"), &heads) else {
+            return Ok(());
+        };
+        let expected = Query::new(&scene, &ray).first().map(|found| hit(&scene, &ray, &found));
+        let found = rays.first(&scene).expect("a ray");
+        prop_assert_eq!(format!("{:?}", &found[0]), format!("{:?}", &expected));
+        let facet = expected.map_or(-1, |hit| i64::from(hit.number));
+        prop_assert_eq!(rays.facets(&scene).expect("a ray"), vec![facet]);
     }
 
     /// The tree changes nothing: first, all and shadow are what testing every facet gives.

@@ -330,6 +330,18 @@ class RayCaster:
             columns = self._scene.first(first.ravel(), second.ravel(), thread_count(threads))
         return self._hits(*columns)
 
+    def first_facet(self, origins: Any, directions: Any, *, threads: int = 0) -> IndexArray:
+        """Return the facet that each ray meets first, -1 for none: `first_hit` without the points.
+
+        Parameters
+        ----------
+        origins, directions, threads
+            As for `first_hit`, as are the errors.
+        """
+        first, second = ray_arrays(origins, directions, self.dimension)
+        with core_errors():
+            return self._scene.first_facets(first.ravel(), second.ravel(), thread_count(threads))
+
     def all_hits(
         self, origins: Any, directions: Any, *, merge: bool = False, threads: int = 0
     ) -> HitLists:

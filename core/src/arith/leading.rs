@@ -127,7 +127,10 @@ mod tests {
     fn numbers(bits: u32) -> impl Iterator<Item = i128> {
         let mut state = 0x9E37_79B9_7F4A_7C15_F39C_C060_5CED_C835_u128;
         std::iter::repeat_with(move || {
-            state = state.wrapping_mul(0xDA94_2042_E4DD_58B5_u128).rotate_left(41) ^ 0xB5;
+            state = state
+                .wrapping_mul(0xDA94_2042_E4DD_58B5_u128)
+                .rotate_left(41)
+                ^ 0xB5;
             let length = (state >> 100) as u32 % bits;
             ((state >> 1) & ((1 << length) - 1) | 1 << length).cast_signed()
         })
@@ -144,7 +147,7 @@ mod tests {
         let mut decided = 0;
         let parts: Vec<i128> = numbers(124).zip(numbers(60)).map(|(a, b)| a ^ b).collect();
         for pair in parts.chunks_exact(4) {
-            let [a, b, c, d] = [pair[0], pair[1], pair[2] >> 9, pair[3]];
+            let [a, b, c, d] = [pair[0], pair[1], pair[2] >> 9, pair[3] | 1];
             let exact = ratio_to_f64(&whole(a, b), &whole(c, d));
             let (n, m) = (Split::new(a, b).leading(), Split::new(c, d).leading());
             if let Some(nearest) = n.over(&m) {

@@ -10,6 +10,7 @@ const LEAST_EXPONENT: i32 = -1074;
 const LEAST_NORMAL_EXPONENT: i32 = -1022;
 
 /// The integers m and e of a finite double m·2^e; both are zero for zero.
+#[inline]
 pub fn mantissa_and_exponent(x: f64) -> (i64, i32) {
     const FRACTION: u64 = (1 << 52) - 1;
     let bits = x.abs().to_bits();
@@ -48,7 +49,7 @@ fn leading_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]
 
 /// The double nearest to (number ± unsure) · 2^`exponent`, if all of these have the same.
 ///
-/// The number has at least 62 bits.
+/// The number has at least 63 bits.
 #[inline]
 pub(super) fn nearly_to_f64(number: u64, unsure: u64, exponent: i32) -> Option<f64> {
     // Bits below the last one kept.

@@ -205,7 +205,11 @@ fn snap_product(x: f64, power: f64) -> f64 {
     if part.abs() + doubt < 0.5 {
         return whole;
     }
-    let rounded = if part.abs() < 0.5 { whole } else { whole + part.signum() };
+    let rounded = if part.abs() < 0.5 {
+        whole
+    } else {
+        whole + part.signum()
+    };
     if (product - rounded).abs() + doubt < 0.5 {
         return rounded;
     }

@@ -47,7 +47,6 @@ pub(super) type HitArrays<'py> = (
     Floats<'py>,
 );
 
-#[derive(Default)]
 pub(super) struct Columns {
     facet: Vec<i64>,
     t: Vec<f64>,
@@ -57,6 +56,16 @@ pub(super) struct Columns {
 }
 
 impl Columns {
+    fn with_room<const D: usize>(hits: usize) -> Self {
+        Self {
+            facet: Vec::with_capacity(hits),
+            t: Vec::with_capacity(hits),
+            kind: Vec::with_capacity(hits),
+            weights: Vec::with_capacity(hits * D),
+            points: Vec::with_capacity(hits * D),
+        }
+    }
+
     fn push<const D: usize>(&mut self, hit: &Hit<D>) {
         self.facet.push(i64::from(hit.number));
         self.t.push(hit.t);
@@ -78,7 +87,7 @@ impl Columns {
     }
 
     pub(super) fn of_first<const D: usize>(hits: &[Option<Hit<D>>]) -> Self {
-        let mut columns = Self::default();
+        let mut columns = Self::with_room::<D>(hits.len());
         for hit in hits {
             match hit {
                 Some(hit) => columns.push(hit),
@@ -89,7 +98,7 @@ impl Columns {
     }
 
     fn of_all<const D: usize>(hits: &[Vec<Hit<D>>]) -> Self {
-        let mut columns = Self::default();
+        let mut columns = Self::with_room::<D>(hits.iter().map(Vec::len).sum());
         hits.iter().flatten().for_each(|hit| columns.push(hit));
         columns
     }
@@ -214,6 +223,23 @@ impl RayScene {
             with_scene!(&self.facets, scene => Ok(Columns::of_first(&rays.first(scene)?)))
         })?;
         Ok(columns.arrays(py))
+    }
+
+    /// The first facet on each ray, −1 for none.
+    #[pyo3(signature = (origins, directions, threads=0))]
+    fn first_facets<'py>(
+        &self,
+        py: Python<'py>,
+        origins: PyReadonlyArray1<'py, f64>,
+        directions: PyReadonlyArray1<'py, f64>,
+        threads: usize,
+    ) -> PyResult<Indices<'py>> {
+        let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
+        let facets = self.run(py, threads, origins.len() * WEIGHT, || {
+            let rays = Rays { origins, heads };
+            with_scene!(&self.facets, scene => rays.facets(scene))
+        })?;
+        Ok(PyArray1::from_vec(py, facets))
     }
 
     /// The offsets of each ray's hits, and the hits; with `merge` the first of those at one point.

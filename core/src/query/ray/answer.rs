@@ -60,11 +60,7 @@ pub fn nearest_hit<const D: usize>(
 }
 
 #[cold]
-fn widely<const D: usize>(
-    scene: &Scene<D>,
-    ray: &Ray<D>,
-    nearest: &Nearest<D>,
-) -> Option<Hit<D>> {
+fn widely<const D: usize>(scene: &Scene<D>, ray: &Ray<D>, nearest: &Nearest<D>) -> Option<Hit<D>> {
     Some(hit(scene, ray, &nearest.met(ray)?))
 }
 

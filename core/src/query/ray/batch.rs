@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::answer::{hit, nearest_hit, Hit};
 use super::crossings::{stretches, Stretch};
-use super::first::{alls, blocked, firsts, Found, Reach};
+use super::first::{alls, blocked, candidates, firsts, Candidate, Found, Reach};
 use super::line::Ray;
 use super::order::sorted;
 use super::ratio::Ratio;
@@ -86,6 +86,18 @@ impl Rays<'_> {
     pub fn first<const D: usize>(&self, scene: &Scene<D>) -> Result<Vec<Option<Hit<D>>>> {
         self.cast(scene, |_, rays| {
             firsts(scene, rays, |ray, best| nearest_hit(scene, ray, &best?))
+        })
+    }
+
+    /// The place in the input of the first facet on each ray; −1 for none.
+    ///
+    /// # Errors
+    /// As for `first`.
+    pub fn facets<const D: usize>(&self, scene: &Scene<D>) -> Result<Vec<i64>> {
+        let number = |best: Candidate| i64::from(scene.number(best.facet));
+        self.cast(scene, |_, rays| {
+            let found = candidates(scene, rays).into_iter();
+            found.map(|best| best.map_or(-1, number)).collect()
         })
     }
 

@@ -31,9 +31,16 @@ pub struct Meeting<const D: usize> {
 }
 
 /// The facet's corners relative to the ray's origin.
+#[inline]
 pub fn relative<const D: usize>(ray: &Ray<D>, facet: &[[f64; D]; D]) -> Corners<D> {
-    // Corners are lattice points, which doubles hold exactly.
-    facet.map(|corner| std::array::from_fn(|i| corner[i] as i64 - ray.origin()[i]))
+    let mut v = [[0; D]; D];
+    for (v, corner) in v.iter_mut().zip(facet) {
+        for i in 0..D {
+            // Corners are lattice points, which doubles hold exactly.
+            v[i] = corner[i] as i64 - ray.origin()[i];
+        }
+    }
+    v
 }
 
 /// The first point where a ray meets a closed facet.

@@ -228,6 +228,16 @@ pub fn firsts<const D: usize, T>(
     rays: &[Ray<D>],
     answer: impl Fn(&Ray<D>, Option<Nearest<D>>) -> T,
 ) -> Vec<T> {
+    let best = candidates(scene, rays);
+    // All reads stand side by side, so that they wait for memory together.
+    let nearest = |best: Option<Candidate>| Some(Nearest::of(scene, &best?));
+    let nearest: Vec<Option<Nearest<D>>> = best.into_iter().map(nearest).collect();
+    let pairs = rays.iter().zip(nearest);
+    pairs.map(|(ray, nearest)| answer(ray, nearest)).collect()
+}
+
+/// The nearest facet on each ray.
+pub fn candidates<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Option<Candidate>> {
     let queries = queries(scene, rays);
     let mut best = vec![None; rays.len()];
     walk(
@@ -236,11 +246,7 @@ pub fn firsts<const D: usize, T>(
         |_| f64::INFINITY,
         |ray, block| queries[ray].offer_block(&mut best[ray], block),
     );
-    // All reads stand side by side, so that they wait for memory together.
-    let nearest = |best: Option<Candidate>| Some(Nearest::of(scene, &best?));
-    let nearest: Vec<Option<Nearest<D>>> = best.into_iter().map(nearest).collect();
-    let pairs = rays.iter().zip(nearest);
-    pairs.map(|(ray, nearest)| answer(ray, nearest)).collect()
+    best
 }
 
 /// All facets on each ray in the order of their first points, then of the input.

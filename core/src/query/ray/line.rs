@@ -97,12 +97,17 @@ impl<const D: usize> Near<D> {
     #[inline]
     fn along(origin: &[i64; D], direction: &[f64; D], main: usize) -> Self {
         let lead = direction[main];
+        let (mut near, mut shear) = ([0.0; D], [0.0; D]);
+        for k in 0..D {
+            near[k] = origin[k] as f64;
+            // Of zeros the positive one, as of integers.
+            shear[k] = (direction[k] + 0.0) / lead;
+        }
         Self {
-            origin: origin.map(|c| c as f64),
+            origin: near,
             main,
             heading: lead.signum(),
-            // Of zeros the positive one, as of integers.
-            shear: direction.map(|c| (c + 0.0) / lead),
+            shear,
         }
     }
 }
@@ -131,16 +136,24 @@ fn zero_direction() -> Error {
 /// exponent; none for zero, or if they take more than `DIRECTION_BITS`.
 #[inline]
 fn exactly<const D: usize>(direction: &[f64; D]) -> Option<([i128; D], i32)> {
-    let parts = direction.map(mantissa_and_exponent);
     let (mut low, mut high) = (i32::MAX, i32::MIN);
-    for (m, e) in parts {
+    let mut parts = [(0, 0); D];
+    for (part, c) in parts.iter_mut().zip(direction) {
+        let (m, e) = mantissa_and_exponent(*c);
+        *part = (m, e);
         if m != 0 {
             low = low.min(e + m.trailing_zeros() as i32);
             high = high.max(e + bits(m));
         }
     }
-    let fits = low < high && high - low <= DIRECTION_BITS as i32;
-    fits.then(|| (parts.map(|(m, e)| scaled(m, e - low)), -low))
+    if low > high || high - low > DIRECTION_BITS as i32 {
+        return None;
+    }
+    let mut whole = [0; D];
+    for (c, (m, e)) in whole.iter_mut().zip(parts) {
+        *c = scaled(m, e - low);
+    }
+    Some((whole, -low))
 }
 
 /// `m`·2^`shift`, which is an integer.

@@ -36,20 +36,29 @@ pub struct Narrow<const D: usize> {
 impl<const D: usize> Narrow<D> {
     /// The meeting; none if numbers are too wide, or the ray runs along the facet's plane or does not
     /// meet it.
+    #[inline]
     pub fn of(ray: &Ray<D>, facet: &Facet<D>) -> Option<Self> {
         let v = relative(ray, facet);
         if D != 3 || !fits(&v, ray) {
             return None;
         }
-        let normals: [[i128; D]; D] = std::array::from_fn(|i| cross(&v[(i + 1) % D], &v[(i + 2) % D]));
-        let direction = ray.direction();
-        let mut weights = normals.map(|normal| dot(direction, &normal));
-        let mut height = (0..D).fold(0i128, |sum, k| {
-            sum.wrapping_add(normals[0][k].wrapping_mul(i128::from(v[0][k])))
-        });
+        let mut weights = [Split::new(0, 0); D];
+        let mut height = 0i128;
+        for i in 0..D {
+            let normal = cross(&v[(i + 1) % D], &v[(i + 2) % D]);
+            weights[i] = dot(ray.direction(), &normal);
+            if i == 0 {
+                for k in 0..D {
+                    let term = normal[k].wrapping_mul(i128::from(v[0][k]));
+                    height = height.wrapping_add(term);
+                }
+            }
+        }
         let mut sum = total(&weights);
         if sum.is_negative() {
-            weights = weights.map(|w| w.negated());
+            for weight in &mut weights {
+                *weight = weight.negated();
+            }
             sum = sum.negated();
             height = -height;
         }
@@ -110,11 +119,13 @@ fn fits<const D: usize>(v: &Corners<D>, ray: &Ray<D>) -> bool {
 
 #[inline]
 fn cross<const D: usize>(a: &[i64; D], b: &[i64; D]) -> [i128; D] {
-    std::array::from_fn(|k| {
+    let product = |x: i64, y: i64| i128::from(x).wrapping_mul(i128::from(y));
+    let mut normal = [0; D];
+    for (k, c) in normal.iter_mut().enumerate() {
         let (i, j) = ((k + 1) % D, (k + 2) % D);
-        let product = |x: i64, y: i64| i128::from(x).wrapping_mul(i128::from(y));
-        product(a[i], b[j]).wrapping_sub(product(a[j], b[i]))
-    })
+        *c = product(a[i], b[j]).wrapping_sub(product(a[j], b[i]));
+    }
+    normal
 }
 
 #[inline]
