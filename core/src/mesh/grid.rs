@@ -194,22 +194,16 @@ fn power_of_ten(exponent: i8) -> f64 {
     POWERS_OF_TEN[usize::from(exponent.unsigned_abs())]
 }
 
+/// The largest double below a half.
+const BELOW_HALF: f64 = 0.5 - f64::EPSILON / 4.0;
+
 /// Rounds the exact product x·power to an integer; |x·power| < 2^53.
 #[inline]
 fn snap_product(x: f64, power: f64) -> f64 {
     let product = x * power;
-    // Rounding to nearest away from zero, without the call that this is on some processors.
-    let whole = as_double(as_whole(product));
-    let part = product - whole;
+    // To the nearest, halves away from zero, without a branch that goes either way as often.
+    let rounded = as_double(as_whole(product + BELOW_HALF.copysign(product)));
     let doubt = product.abs() * f64::EPSILON;
-    if part.abs() + doubt < 0.5 {
-        return whole;
-    }
-    let rounded = if part.abs() < 0.5 {
-        whole
-    } else {
-        whole + part.signum()
-    };
     if (product - rounded).abs() + doubt < 0.5 {
         return rounded;
     }
