@@ -93,6 +93,37 @@ fn order_of_fractions() {
     assert_eq!(third.scaled_to_f64(-1), 1.0 / 30.0);
 }
 
+/// Lists so long that a sample tells how to divide them, and one of which it tells nothing: all
+/// boxes have one centre.
+#[test]
+fn long_lists_do_not_show() {
+    let mut state = 1u64;
+    let mut next = |reach: i64| {
+        state = state.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(1);
+        (state >> 33).cast_signed() % reach
+    };
+    let spread: Vec<[[i64; 3]; 3]> = (0..20_000)
+        .map(|_| {
+            let at = [next(1000), next(1000), next(10)];
+            std::array::from_fn(|_| at.map(|c| c + next(20)))
+        })
+        .collect();
+    let around: Vec<[[i64; 3]; 3]> = (1..20_000)
+        .map(|k| [[-k, -k, -k], [k, k, k], [k, -k, 0]])
+        .collect();
+    for triangles in [spread, around] {
+        let scene = scene(&triangles);
+        for _ in 0..20 {
+            let ends = [[next(900), next(900), -50], [next(900), next(900), 60]];
+            let ray = Ray::between(ends[0], &ends[1]).expect("two points");
+            let met = (0u32..).zip(scene.facets());
+            let met = met.filter_map(|(i, f)| Some((meet(&ray, f)?.at, i))).min();
+            let found = Query::new(&scene, &ray).first().map(|found| found.facet);
+            assert_eq!(found, met.map(|m| m.1));
+        }
+    }
+}
+
 #[test]
 fn a_ray_through_the_common_vertex_of_many_names_the_first() {
     let fan: Vec<[[i64; 3]; 3]> = (0..6)

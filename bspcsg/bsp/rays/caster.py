@@ -453,7 +453,9 @@ class RayCaster:
         return self._facets.normals()
 
     def _hits(self, *columns: Any) -> Hits:
-        return hits_of(self._facets, columns, self._normals)
+        # For a few hits normals of all facets are not made.
+        many = len(columns[0]) >= len(self._facets.corners)
+        return hits_of(self._facets, columns, self._normals if many else None)
 
 
 def _restored(kind: type[RayCaster], facets: RayTargets, pitch: int) -> RayCaster:
@@ -466,7 +468,10 @@ def hits_of(facets: RayTargets, columns: Any, normals: FloatArray | None = None)
     """Return the core's columns as hits of these facets (for the modules of this package)."""
     facet, t, kind, weights, point = columns
     d, missed = facets.dimension, facet < 0
-    normal = _taken(facets.normals() if normals is None else normals, facet)
+    if normals is None:
+        normal = facets.normals(facet) if len(facets.corners) else np.zeros((len(facet), d))
+    else:
+        normal = _taken(normals, facet)
     normal[missed] = np.nan
     source = facets.source
     if source is not None:

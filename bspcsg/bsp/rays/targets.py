@@ -38,9 +38,16 @@ class RayTargets:
         """1, 2 or 3."""
         return int(self.corners.shape[2])
 
-    def normals(self) -> FloatArray:
-        """Return unit normals (n, d): +1, the right of a segment, or by the right-hand rule."""
-        edges = self.corners[:, 1:] - self.corners[:, :1]
+    def normals(self, facets: Any = slice(None)) -> FloatArray:
+        """Return unit normals (n, d): +1, the right of a segment, or by the right-hand rule.
+
+        Parameters
+        ----------
+        facets : slice or (n,) int64
+            Their facets; by default all.
+        """
+        corners = self.corners[facets]
+        edges = corners[:, 1:] - corners[:, :1]
         if self.dimension == 1:
             return np.ones((len(edges), 1))
         normals: FloatArray

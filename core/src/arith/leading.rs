@@ -56,7 +56,7 @@ impl Split {
     pub fn leading(&self) -> Leading {
         let (high, low) = (self.high.cast_unsigned(), self.low.cast_unsigned());
         let spare = high.leading_zeros();
-        if spare >= SPLIT_BITS + 1 {
+        if spare > SPLIT_BITS {
             return Leading::of(high << SPLIT_BITS | low);
         }
         Leading {

@@ -94,16 +94,16 @@ impl<const D: usize, const N: usize> Starts<D, N> {
         let steepest = if backward { -STEEP } else { STEEP };
         // Seen from beyond, near planes are nearer and far planes farther.
         let sign = if backward { -1.0 } else { 1.0 };
-        let mut views = [[0.0; N]; 3];
+        let (mut near, mut far, mut inverse) = ([0.0; N], [0.0; N], [0.0; N]);
         for i in 0..N {
             let (at, slope) = (self.at[axis][i], self.slope[axis][i]);
             let slack = (self.slack[i] + at.abs() * NARROWING) * sign;
             let steep = slope.abs() * STEEP < 1.0;
-            views[0][i] = (at + slack) as f32;
-            views[1][i] = (at - slack) as f32;
-            views[2][i] = (if steep { steepest } else { 1.0 / slope }) as f32;
+            near[i] = (at + slack) as f32;
+            far[i] = (at - slack) as f32;
+            inverse[i] = (if steep { steepest } else { 1.0 / slope }) as f32;
         }
-        views
+        [near, far, inverse]
     }
 }
 

@@ -58,6 +58,75 @@ pub fn divide<const D: usize>(items: &mut [Item], whole: &Span, level: u32) -> (
     (count, [around(below), around(above)])
 }
 
+/// Several divisions one after the other: regions as leaves of a small tree of cuts.
+pub struct Cuts<const D: usize> {
+    cuts: Vec<(Cut, [Way; 2])>,
+}
+
+/// What is on a side of a cut.
+#[derive(Clone, Copy)]
+enum Way {
+    Cut(usize),
+    Part(usize),
+}
+
+impl<const D: usize> Cuts<D> {
+    /// Up to so many parts of a long list, as a sample of it tells; `None` if it does not tell how
+    /// to divide.
+    pub fn of(items: &[Item], parts: usize) -> Option<Self> {
+        let mut sample: Vec<Item> = sample(items).copied().collect();
+        let mut open = vec![(0..sample.len(), around(&sample).surface::<D>(), None)];
+        let mut cuts: Vec<(Cut, [Way; 2])> = Vec::new();
+        while open.len() < parts {
+            let largest = open
+                .iter()
+                .enumerate()
+                .filter(|(_, part)| part.0.len() > PAIR);
+            let largest = largest.max_by(|a, b| a.1 .1.total_cmp(&b.1 .1));
+            let Some(place) = largest.map(|(place, _)| place) else {
+                break;
+            };
+            let (range, _, above) = open[place].clone();
+            let cut = best::<D>(&sample[range.clone()])?;
+            let count = partition(&mut sample[range.clone()], |item| cut.below(item));
+            let middle = range.start + count;
+            let number = cuts.len();
+            let surfaces = cut.spans.map(|span| span.surface::<D>());
+            cuts.push((cut, [Way::Part(place), Way::Part(open.len())]));
+            if let Some((from, side)) = above {
+                let (_, ways): &mut (Cut, [Way; 2]) = &mut cuts[from];
+                ways[side] = Way::Cut(number);
+            }
+            open[place] = (range.start..middle, surfaces[0], Some((number, 0)));
+            open.push((middle..range.end, surfaces[1], Some((number, 1))));
+        }
+        (!cuts.is_empty()).then_some(Self { cuts })
+    }
+
+    /// The items of each part, and the box around them.
+    pub fn divided(&self, items: &[Item]) -> Vec<(Vec<Item>, Span)> {
+        let mut parts = vec![(Vec::new(), Span::NOTHING); self.cuts.len() + 1];
+        for item in items {
+            let (part, span) = &mut parts[self.part(item)];
+            part.push(*item);
+            *span = span.with(&item.span);
+        }
+        parts
+    }
+
+    #[inline]
+    fn part(&self, item: &Item) -> usize {
+        let mut at = 0;
+        loop {
+            let (cut, ways) = &self.cuts[at];
+            match ways[usize::from(!cut.below(item))] {
+                Way::Cut(next) => at = next,
+                Way::Part(part) => return part,
+            }
+        }
+    }
+}
+
 fn around(items: &[Item]) -> Span {
     Span::around(items.iter().map(|item| &item.span))
 }
@@ -145,9 +214,13 @@ impl Bin {
     }
 }
 
+fn sample(items: &[Item]) -> impl Iterator<Item = &Item> {
+    items.iter().step_by((items.len() / SAMPLE).max(1))
+}
+
 /// The cut of least cost, as far as a sample tells; none if all its centres are the same.
 fn best<const D: usize>(items: &[Item]) -> Option<Cut> {
-    let sample = || items.iter().step_by((items.len() / SAMPLE).max(1));
+    let sample = || sample(items);
     let (mut low, mut high) = ([f32::INFINITY; D], [f32::NEG_INFINITY; D]);
     for item in sample() {
         for k in 0..D {

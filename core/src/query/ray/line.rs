@@ -41,7 +41,7 @@ impl<const D: usize> Ray<D> {
         }
         if let Some((whole, exponent)) = exactly(direction) {
             // Sizes and quotients are those of the integers, and no wide ones are converted.
-            let main = first_largest(direction, |c| c.abs());
+            let main = first_largest(direction, f64::abs);
             let near = Near::along(&origin, direction, main);
             return Ok(Self {
                 origin,
@@ -67,7 +67,7 @@ impl<const D: usize> Ray<D> {
     }
 
     fn of(origin: [i64; D], direction: [i128; D], exponent: i32) -> Self {
-        let main = first_largest(&direction, |c| c.unsigned_abs());
+        let main = first_largest(&direction, i128::unsigned_abs);
         let near = Near::along(&origin, &direction.map(|c| c as f64), main);
         Self {
             origin,

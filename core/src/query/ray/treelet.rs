@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use super::block::{Block, LANES};
 use super::cell::{Frame, Span};
-use super::divide::{divide, Item};
+use super::divide::{divide, Cuts, Item};
 use super::facet::Facet;
 use crate::interrupt::{poll, spend, Task};
 use crate::mesh::handle::NodeId;
@@ -26,6 +26,9 @@ pub const WIDTH: usize = 8;
 
 /// A list of at most so many facets becomes one treelet: some 100 µs of work, within 100 kB.
 const TREELET: usize = 1024;
+
+/// From so many facets on a sample tells how to divide, and each is looked at once.
+const LONG: usize = 16 * TREELET;
 
 /// A longer list than this is deferred where the tree is only begun.
 const INLINE: usize = LANES * WIDTH;
@@ -136,7 +139,8 @@ impl<const D: usize> Deferred<D> {
         poll();
         self.treelet.get_or_init(|| {
             let mut slot = self.pending.lock().unwrap_or_else(PoisonError::into_inner);
-            Making::new(facets, std::mem::take(&mut *slot)).finish()
+            let items = std::mem::take(&mut *slot);
+            Treelet::begun(facets, &items).unwrap_or_else(|| Making::new(facets, items).finish())
         })
     }
 
@@ -199,6 +203,30 @@ impl<const D: usize> Deferred<D> {
 }
 
 impl<const D: usize> Treelet<D> {
+    /// The root over a long list, all below it deferred; `None` for a short one, and for one that
+    /// nothing tells how to divide.
+    fn begun(facets: &[Facet<D>], items: &[Item]) -> Option<Self> {
+        if items.len() < LONG {
+            return None;
+        }
+        let mut treelet = Self::default();
+        let mut root = Wide::EMPTY;
+        let parts = Cuts::<D>::of(items, WIDTH)?.divided(items);
+        for (lane, (list, span)) in parts.into_iter().enumerate() {
+            root.set(lane, &span);
+            root.children[lane] = if list.len() <= LANES {
+                let facets_of = list.iter().map(|item| item.facet);
+                treelet.blocks.push(Block::of(facets, facets_of));
+                Child::Block(treelet.blocks.len() as u32 - 1)
+            } else {
+                treelet.deferred.push(Deferred::pending(list));
+                Child::Deferred(treelet.deferred.len() as u32 - 1)
+            };
+        }
+        treelet.nodes.push(root);
+        Some(treelet)
+    }
+
     /// This tree over facets that have moved, with the treelets below and their boxes.
     fn fitted(
         &self,
