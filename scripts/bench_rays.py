@@ -100,13 +100,17 @@ def build(mesh: Arrays) -> dict[str, float]:
 
 
 def other_questions(mesh: Arrays, case: Case) -> list[dict[str, Any]]:
-    """Time whether rays hit at all, and all of their hits, beside embree."""
+    """Time which facet rays hit first, whether they hit at all, and all hits, beside embree."""
     engine = embree(mesh)
     if engine is None:
         return []
     caster = bsp.RayCaster(mesh, deferred=False)
     rays = (case.origins, case.directions)
     pairs: dict[str, tuple[Callable[[], Any], Callable[[], Any]]] = {
+        "first facet": (
+            lambda: (caster.first_facet(*rays, threads=1) >= 0).sum(),
+            lambda: (engine.intersects_first(*rays) >= 0).sum(),
+        ),
         "occluded": (
             lambda: caster.occluded(rays[0], directions=rays[1], threads=1).sum(),
             lambda: engine.intersects_any(*rays).sum(),

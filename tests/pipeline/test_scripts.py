@@ -1,5 +1,6 @@
 """The measuring scripts run, at small counts, on the meshes of the repository."""
 
+import importlib.util
 import json
 from pathlib import Path
 
@@ -34,6 +35,16 @@ def test_rays_are_compared() -> None:
     done = script("bench_rays", "--quick")
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("bspcsg ") >= 3
+
+
+def test_systems_of_the_notes_are_measured() -> None:
+    done = script("lecture_peers", "--quick")
+    assert done.returncode == 0, done.stdout + done.stderr
+    headings = [line for line in done.stdout.splitlines() if line.startswith("### ")]
+    assert len(headings) == 5
+    # Systems that are not installed are left out, ours never are.
+    assert ("embree 4" in done.stdout) == (importlib.util.find_spec("embreex") is not None)
+    assert "bundles of neighbours" in done.stdout
 
 
 def test_probes_print_their_counts() -> None:

@@ -45,6 +45,32 @@ def test_no_ray_slips_through_a_closed_mesh() -> None:
     np.testing.assert_allclose(found.lengths() * np.linalg.norm(aims, axis=1), 2, atol=0.02)
 
 
+def test_first_facets_are_those_of_first_hits() -> None:
+    vertices, faces = icosphere(3)
+    caster = bsp.RayCaster((vertices, faces))
+    origins = np.random.default_rng(4).normal(size=(3000, 3)) * 2
+    directions = np.concatenate([vertices, -vertices, vertices])[:3000][: len(origins)]
+    origins = origins[: len(directions)]
+    facets = caster.first_facet(origins, directions)
+    assert facets.dtype == np.int64
+    np.testing.assert_array_equal(facets, caster.first_hit(origins, directions).facet)
+    assert 0 < (facets < 0).sum() < len(facets)
+    assert caster.first_facet(np.zeros((0, 3)), np.zeros((0, 3))).shape == (0,)
+    with pytest.raises(b.InvalidMeshError):
+        caster.first_facet([0, 0, 0], [0, 0, 0])
+
+
+def test_normals_of_few_hits_are_those_of_many() -> None:
+    rng = np.random.default_rng(6)
+    for dimension in (1, 2, 3):
+        facets = rng.normal(size=(200, dimension, dimension))
+        caster = bsp.RayCaster(facets)
+        rays = rng.normal(size=(2, 400, dimension))
+        many, few = caster.first_hit(*rays), caster.first_hit(*rays[:, :100])
+        assert few.hit.any()
+        assert many[:100].normal.tobytes() == few.normal.tobytes()
+
+
 def test_bytes_are_the_same_for_any_number_of_threads() -> None:
     vertices, faces = icosphere(4)
     rng = np.random.default_rng(2)

@@ -28,7 +28,7 @@ pub const WIDTH: usize = 8;
 const TREELET: usize = 1024;
 
 /// From so many facets on a sample tells how to divide, and each is looked at once.
-const LONG: usize = 16 * TREELET;
+const SAMPLED: usize = 16 * TREELET;
 
 /// A longer list than this is deferred where the tree is only begun.
 const INLINE: usize = LANES * WIDTH;
@@ -206,7 +206,7 @@ impl<const D: usize> Treelet<D> {
     /// The root over a long list, all below it deferred; `None` for a short one, and for one that
     /// nothing tells how to divide.
     fn begun(facets: &[Facet<D>], items: &[Item]) -> Option<Self> {
-        if items.len() < LONG {
+        if items.len() < SAMPLED {
             return None;
         }
         let mut treelet = Self::default();
