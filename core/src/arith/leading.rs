@@ -179,7 +179,10 @@ mod tests {
         let one = Leading::of(1);
         let odd = (1u128 << 53) + 1;
         assert_eq!(Leading::of(odd).over(&one), None);
-        assert_eq!(Leading::of(odd - 1).over(&one), Some((1u64 << 53) as f64));
+        assert_eq!(
+            Leading::of(odd - 1).over(&one),
+            Some(9_007_199_254_740_992.0)
+        );
     }
 
     #[test]

@@ -27,6 +27,15 @@ pub fn rows<'a, T: Element + Copy, const K: usize>(
     Ok(Cow::Owned(view.rows().into_iter().map(row).collect()))
 }
 
+/// The numbers of an array, row by row: its own memory, or a copy if they lie otherwise.
+pub fn flat<'a>(array: &'a PyReadonlyArray2<'_, f64>) -> Cow<'a, [f64]> {
+    let view = array.as_array();
+    match array.as_slice() {
+        Ok(flat) if view.is_standard_layout() => Cow::Borrowed(flat),
+        _ => Cow::Owned(view.iter().copied().collect()),
+    }
+}
+
 /// Triangles that name only vertices that exist.
 ///
 /// # Errors

@@ -164,6 +164,7 @@ impl Line2 {
 
     /// Order of two lines by the angle of their directions (−b, a), if these are less than a half
     /// turn apart: counterclockwise is greater.
+    #[inline]
     pub fn turn(&self, other: &Self) -> Ordering {
         let product = |m: i64, n: i64| i128::from(m) * i128::from(n);
         (product(self.b, other.a)).cmp(&product(self.a, other.b))
@@ -199,6 +200,7 @@ impl RoundedLine {
     }
 
     /// The side on which a point lies, exactly.
+    #[inline]
     pub fn side_of(&self, p: &Point2) -> Side {
         let [a, b, c] = self.rounded;
         let t = [a * p.approx[0], b * p.approx[1], c * p.approx[2]];
@@ -212,8 +214,13 @@ impl RoundedLine {
 
 impl Point2 {
     /// The lattice point (x, y).
+    #[inline]
     pub fn lattice(p: Lattice2) -> Self {
-        Self::homogeneous(p.map(Int::from_i64), Int::ONE)
+        Self {
+            x: [Int::from_i64(p[0]), Int::from_i64(p[1])],
+            w: Int::ONE,
+            approx: [as_double(p[0]), as_double(p[1]), 1.0],
+        }
     }
 
     /// The point where two lines meet, `None` if they are parallel.
@@ -230,12 +237,14 @@ impl Point2 {
         }
     }
 
+    #[inline]
     fn homogeneous(x: [Int<3>; 2], w: Int<2>) -> Self {
         let approx = [x[0].to_f64(), x[1].to_f64(), w.to_f64()];
         Self { x, w, approx }
     }
 
     /// The lattice coordinates, if it was made of them.
+    #[inline]
     pub fn as_lattice(&self) -> Option<Lattice2> {
         if self.w != Int::ONE {
             return None;
@@ -250,6 +259,7 @@ impl Point2 {
     }
 
     /// The coordinates in doubles, each within two units in the last place.
+    #[inline]
     pub fn approx(&self) -> [f64; 2] {
         [
             self.approx[0] / self.approx[2],
@@ -258,6 +268,7 @@ impl Point2 {
     }
 
     /// Order of two points by one coordinate.
+    #[inline]
     pub fn compare(&self, other: &Self, axis: usize) -> Ordering {
         let left = self.approx[axis] * other.approx[2];
         let right = other.approx[axis] * self.approx[2];
@@ -270,6 +281,7 @@ impl Point2 {
     }
 
     /// Order of two points by x, then y.
+    #[inline]
     pub fn order(&self, other: &Self) -> Ordering {
         self.compare(other, 0).then_with(|| self.compare(other, 1))
     }

@@ -1,5 +1,7 @@
 //! The locations of many points: a sweep passes them with the corners of a boundary.
 
+use std::cmp::Ordering;
+
 use super::input::Outlines;
 use super::sweep::Sweep;
 use crate::arith::convert::as_whole;
@@ -60,30 +62,23 @@ fn passed(boundary: &Boundary, points: &[Lattice2]) -> Result<Vec<Location>> {
     let is_near = |p: &Lattice2| (0..2).all(|i| low[i] <= p[i] && p[i] <= high[i]);
     let mut order: Vec<usize> = (0..points.len()).filter(|i| is_near(&points[*i])).collect();
     order.sort_unstable_by_key(|i| points[*i]);
-    let mut left = order.into_iter().peekable();
+    let mut left = order.into_iter().map(|i| (i, Point2::lattice(points[i])));
+    let mut next = left.next();
     let mut sweep = Sweep::new(&outlines, |number| number > 0);
     while let Some(event) = sweep.next() {
         poll();
-        let before = |i: &usize| {
-            Point2::lattice(points[*i])
-                .order(&event.corner.point)
-                .is_lt()
-        };
-        while let Some(i) = left.next_if(before) {
-            places[i] = sweep.location(&points[i]);
-        }
-        let equal = |i: &usize| {
-            Point2::lattice(points[*i])
-                .order(&event.corner.point)
-                .is_eq()
-        };
-        while let Some(i) = left.next_if(equal) {
-            places[i] = Location::On;
+        while let Some((i, point)) = &next {
+            places[*i] = match point.order(&event.corner.point) {
+                Ordering::Less => sweep.location(point),
+                Ordering::Equal => Location::On,
+                Ordering::Greater => break,
+            };
+            next = left.next();
         }
         sweep.pass(&event)?;
     }
-    for i in left {
-        places[i] = sweep.location(&points[i]);
+    for (i, point) in next.into_iter().chain(left) {
+        places[i] = sweep.location(&point);
     }
     Ok(places)
 }

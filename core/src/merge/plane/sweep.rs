@@ -8,7 +8,7 @@ use super::output::Output;
 use super::status::{Place, Status, Stretch};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::Side;
-use crate::geometry::spaces::dim2::{Lattice2, Line2, Point2, RoundedLine};
+use crate::geometry::spaces::dim2::{Line2, Point2, RoundedLine};
 use crate::interrupt::poll;
 use crate::tree::partition::{Label, Location};
 use crate::tree::plane::{Boundary, Corner};
@@ -162,8 +162,8 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
     }
 
     /// Locate a point that lies before the next stop.
-    pub(super) fn location(&self, point: &Lattice2) -> Location {
-        let place = self.status.place(&Point2::lattice(*point), None);
+    pub(super) fn location(&self, point: &Point2) -> Location {
+        let place = self.status.place(point, None);
         if place.first < place.last {
             return Location::On;
         }

@@ -1,7 +1,6 @@
 //! The class `ObjectTree`: an immutable partition tree with in and out leaves, of any dimension.
 
 use std::borrow::Cow;
-
 use std::sync::{Arc, OnceLock};
 
 use num_bigint::BigInt;
@@ -19,6 +18,7 @@ use crate::error::Result;
 use crate::merge::plane::bounded;
 use crate::merge::SetOp;
 use crate::mesh::grid::Pitch;
+use crate::python::arrays::flat;
 use crate::python::calls::errors::{blamed, to_python};
 use crate::python::calls::run::{here, run};
 use crate::python::hyperplanes::Row;
@@ -349,10 +349,12 @@ impl ObjectTree {
         py: Python<'py>,
         points: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
-        let points = rows(&points);
-        let size = self.set.size() + points.len();
-        let found = run(py, 0, size, || self.set.classify(&points, self.pitch))
-            .map_err(|e| self.blamed(py, e, &[self]))?;
+        let (columns, numbers) = (points.as_array().ncols(), flat(&points));
+        let size = self.set.size() + points.as_array().nrows();
+        let found = run(py, 0, size, || {
+            self.set.classify(&numbers, columns, self.pitch)
+        })
+        .map_err(|e| self.blamed(py, e, &[self]))?;
         let sign = |location: &Location| match location {
             Location::In => 1i8,
             Location::On => 0,

@@ -116,27 +116,22 @@ impl Set {
         Ok(list)
     }
 
-    /// Locate points, snapped to the lattice.
-    pub fn classify(&self, points: &[Vec<f64>], pitch: Pitch) -> Result<Vec<Location>> {
-        let snap = |row: &Vec<f64>| -> Result<Vec<i64>> {
-            if row.len() != self.dimension() {
-                return Err(shape(format!(
-                    "points must have {} numbers",
-                    self.dimension()
-                )));
-            }
-            row.iter().map(|x| pitch.snap(*x)).collect()
-        };
-        let points = points.iter().map(snap).collect::<Result<Vec<_>>>()?;
+    /// Locate points, given as rows of so many columns, snapped to the lattice.
+    pub fn classify(&self, points: &[f64], columns: usize, pitch: Pitch) -> Result<Vec<Location>> {
+        if !points.is_empty() && columns != self.dimension() {
+            return Err(shape(format!(
+                "points must have {} numbers",
+                self.dimension()
+            )));
+        }
+        let steps: Result<Vec<i64>> = points.iter().map(|x| pitch.snap(*x)).collect();
+        let steps = steps?;
         Ok(match self {
-            Self::Line(tree) => points.iter().map(|p| classify(tree, &p[0])).collect(),
-            Self::Plane(set) => {
-                let points: Vec<_> = points.iter().map(|p| [p[0], p[1]]).collect();
-                located(set, &points)?
-            }
+            Self::Line(tree) => steps.iter().map(|p| classify(tree, p)).collect(),
+            Self::Plane(set) => located(set, steps.as_chunks().0)?,
             Self::Space(tree) => {
-                let place = |p: &Vec<i64>| classify(tree, &Vertex::lattice([p[0], p[1], p[2]]));
-                points.iter().map(place).collect()
+                let place = |p: &[i64; 3]| classify(tree, &Vertex::lattice(*p));
+                steps.as_chunks().0.iter().map(place).collect()
             }
         })
     }
