@@ -108,8 +108,8 @@ def other_questions(mesh: Arrays, case: Case) -> list[dict[str, Any]]:
     rays = (case.origins, case.directions)
     pairs: dict[str, tuple[Callable[[], Any], Callable[[], Any]]] = {
         "first facet": (
-            lambda: (caster.first_facet(*rays, threads=1) >= 0).sum(),
-            lambda: (engine.intersects_first(*rays) >= 0).sum(),
+            lambda: np.count_nonzero(caster.first_facet(*rays, threads=1) >= 0),
+            lambda: np.count_nonzero(engine.intersects_first(*rays) >= 0),
         ),
         "occluded": (
             lambda: caster.occluded(rays[0], directions=rays[1], threads=1).sum(),
