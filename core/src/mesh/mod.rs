@@ -2,6 +2,7 @@
 
 pub mod cached;
 mod chain;
+pub mod disjoint;
 mod ears;
 pub mod facets;
 pub mod finding;

@@ -1,5 +1,6 @@
 //! The connected surfaces of a mesh, and what it has of each kind.
 
+use super::disjoint::DisjointSets;
 use super::handle::VertexId;
 use crate::interrupt::poll;
 
@@ -64,34 +65,21 @@ fn used(faces: &[[VertexId; 3]], vertex_count: usize) -> usize {
 ///
 /// Surfaces are numbered in the order of their lowest vertices.
 pub fn surfaces(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<u32> {
-    let mut lower: Vec<VertexId> = VertexId::all().take(vertex_count).collect();
-    for face in faces {
+    let mut sets = DisjointSets::of_one(vertex_count);
+    for [a, b, c] in faces {
         poll();
-        let roots = face.map(|vertex| root(&mut lower, vertex));
-        let lowest = roots.into_iter().fold(roots[0], VertexId::min);
-        for root in roots {
-            lower[root.place()] = lowest;
-        }
+        sets.join(a.0, b.0);
+        sets.join(b.0, c.0);
     }
     let mut number = vec![None; vertex_count];
     for &[vertex, ..] in faces {
-        number[root(&mut lower, vertex).place()] = Some(0);
+        number[sets.least(vertex.0) as usize] = Some(0);
     }
     for (next, number) in (0..).zip(number.iter_mut().flatten()) {
         *number = next;
     }
-    let number_of = |&[vertex, ..]: &[VertexId; 3]| number[root(&mut lower, vertex).place()];
+    let number_of = |&[vertex, ..]: &[VertexId; 3]| number[sets.least(vertex.0) as usize];
     faces.iter().filter_map(number_of).collect()
-}
-
-/// The lowest vertex that a vertex is known to be connected to; the way there is halved.
-fn root(lower: &mut [VertexId], vertex: VertexId) -> VertexId {
-    let mut at = vertex;
-    while lower[at.place()] != at {
-        lower[at.place()] = lower[lower[at.place()].place()];
-        at = lower[at.place()];
-    }
-    at
 }
 
 /// The edges at the lower of their vertices, in compressed rows.

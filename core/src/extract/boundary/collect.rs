@@ -294,6 +294,21 @@ fn lists(leaf: &Deferred, source: &Source, face: OrientedFace, complement: bool)
 /// Return whether a solid has no boundary: it is empty or all of space.
 ///
 /// A tree may list faces that meet none of their cells, so that the tree alone does not tell.
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::extract::boundary::collect::has_no_boundary;
+/// use bspcsg::mesh::import::import;
+/// use bspcsg::tree::solid::Solid;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let solid = Solid::of_source(Arc::new(import(&vertices, &faces, None)?), false);
+/// assert!(!has_no_boundary(&solid));
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 pub fn has_no_boundary(solid: &Solid) -> bool {
     if solid.root().constant().is_some() {
         return true;

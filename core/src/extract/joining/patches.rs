@@ -7,6 +7,23 @@ use crate::mesh::source::Source;
 ///
 /// Faces of different patches are never joined, so that each triangle lies in one face of those
 /// whose data differ. Whoever has no patches says nothing, and joins everything in a plane.
+///
+/// # Example
+/// ```
+/// use bspcsg::extract::joining::patches::Patches;
+/// use bspcsg::mesh::handle::{FaceId, Slot, SourceFace};
+/// use bspcsg::mesh::import::import;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let source = import(&vertices, &faces, None)?;
+/// // The last face is red, the others are white; of a second source nothing is said.
+/// let patches = Patches::new(vec![Some(vec![0, 0, 0, 1]), None]);
+/// let patch = |slot, id| patches.of(SourceFace::new(Slot(slot), FaceId(id)), &source);
+/// assert_eq!([patch(0, 2), patch(0, 3)], [0, 1]);
+/// assert_eq!(patch(1, 2), patch(1, 3));
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Patches(Vec<Option<Vec<u32>>>);
 

@@ -9,6 +9,7 @@ use crate::geometry::doubles::vector::{dot, less, normal};
 use crate::geometry::doubles::{side, Point};
 use crate::geometry::side::Side;
 use crate::interrupt::{poll, spend};
+use crate::mesh::disjoint::DisjointSets;
 use crate::mesh::handle::VertexId;
 
 /// The shell of a vertex without triangles.
@@ -166,15 +167,15 @@ fn may_hold(body: &[&Point; 4], point: &Point) -> bool {
 /// For each vertex the number of the connected part that it belongs to.
 fn connected(count: usize, triangles: &[[VertexId; 3]]) -> Vec<u32> {
     spend(triangles.len());
-    let mut parents: Vec<VertexId> = VertexId::all().take(count).collect();
+    let mut sets = DisjointSets::of_one(count);
     for [a, b, c] in triangles {
-        join(&mut parents, *a, *b);
-        join(&mut parents, *b, *c);
+        sets.join(a.0, b.0);
+        sets.join(b.0, c.0);
     }
     let mut numbers = vec![NONE; count];
     let mut next = 0;
     for v in triangles.as_flattened() {
-        let root = root(&mut parents, *v).place();
+        let root = sets.least(v.0) as usize;
         if numbers[root] == NONE {
             numbers[root] = next;
             next += 1;
@@ -182,21 +183,6 @@ fn connected(count: usize, triangles: &[[VertexId; 3]]) -> Vec<u32> {
         numbers[v.place()] = numbers[root];
     }
     numbers
-}
-
-/// Links two vertices; the lower root becomes that of both.
-fn join(parents: &mut [VertexId], v: VertexId, w: VertexId) {
-    let (p, q) = (root(parents, v), root(parents, w));
-    parents[p.max(q).place()] = p.min(q);
-}
-
-/// The vertex that stands for all linked to one; halves the way there.
-fn root(parents: &mut [VertexId], mut v: VertexId) -> VertexId {
-    while parents[v.place()] != v {
-        parents[v.place()] = parents[parents[v.place()].place()];
-        v = parents[v.place()];
-    }
-    v
 }
 
 #[cfg(test)]

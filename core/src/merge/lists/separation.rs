@@ -3,6 +3,7 @@
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
+use crate::geometry::doubles::vector::{cross, dot, less};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
@@ -32,6 +33,16 @@ fn plane_misses(plane: &Plane, low: &Lattice, high: &Lattice) -> bool {
 /// errs on no.
 ///
 /// Separating axes: the face's normal, and each of its edges projected along each axis.
+///
+/// # Example
+/// ```
+/// use bspcsg::merge::lists::separation::triangle_misses;
+///
+/// // Both boxes lie in that of the triangle.
+/// let triangle = [[0, 0, 0], [9, 0, 0], [0, 9, 0]];
+/// assert!(triangle_misses(&triangle, &[7, 7, 0], &[9, 9, 0]));
+/// assert!(!triangle_misses(&triangle, &[0, 0, 0], &[2, 2, 0]));
+/// ```
 pub fn triangle_misses(corners: &[Lattice; 3], low: &Lattice, high: &Lattice) -> bool {
     let (center, half) = middle(low, high, &corners[0]);
     let local = corners.map(|c| each_axis(|i| as_double(c[i] - corners[0][i]) - center[i]));
@@ -53,17 +64,7 @@ fn middle(low: &Lattice, high: &Lattice, origin: &Lattice) -> ([f64; 3], [f64; 3
 }
 
 fn separated(p: &[[f64; 3]; 3], half: &[f64; 3]) -> bool {
-    let e = each_axis(|i| {
-        let (a, b) = (p[i], p[(i + 1) % 3]);
-        [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
-    });
-    let cross = |a: &[f64; 3], b: &[f64; 3]| {
-        [
-            a[1] * b[2] - a[2] * b[1],
-            a[2] * b[0] - a[0] * b[2],
-            a[0] * b[1] - a[1] * b[0],
-        ]
-    };
+    let e = each_axis(|i| less(&p[(i + 1) % 3], &p[i]));
     let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let across = e
         .iter()
@@ -74,8 +75,7 @@ fn separated(p: &[[f64; 3]; 3], half: &[f64; 3]) -> bool {
 }
 
 fn apart(p: &[[f64; 3]; 3], half: &[f64; 3], axis: &[f64; 3]) -> bool {
-    let value = |c: &[f64; 3]| c[0] * axis[0] + c[1] * axis[1] + c[2] * axis[2];
-    let values = [value(&p[0]), value(&p[1]), value(&p[2])];
+    let values = [dot(&p[0], axis), dot(&p[1], axis), dot(&p[2], axis)];
     let low = values[0].min(values[1]).min(values[2]);
     let high = values[0].max(values[1]).max(values[2]);
     let reach: f64 = (0..3).map(|i| half[i] * axis[i].abs()).sum();

@@ -61,6 +61,23 @@ pub fn pairs(
 /// # Cost
 /// A crowd that halving does not separate is divided between two groups of operands again and
 /// again, each swept against the other; where sweeps separate nothing either, all are compared.
+///
+/// # Example
+/// ```
+/// use bspcsg::merge::pairs::{pairs_of_many, Boxed, Swept};
+///
+/// let boxes = [(0, [0; 3], [2; 3]), (1, [1; 3], [3; 3]), (1, [8; 3], [9; 3])];
+/// let boxed = |(number, (operand, low, high)): (u32, &(usize, _, _))| {
+///     Boxed::new(*operand, number, [low, high], 0)
+/// };
+/// let swept = |number: u32| {
+///     let (operand, low, high) = boxes[number as usize];
+///     Swept { operand, low, high, corners: None }
+/// };
+/// let mut found = Vec::new();
+/// pairs_of_many((0..).zip(&boxes).map(boxed).collect(), swept, |a, b| found.push([a, b]));
+/// assert_eq!(found, [[0, 1]]);
+/// ```
 pub fn pairs_of_many(
     elements: Vec<Boxed>,
     swept: impl Fn(u32) -> Swept,

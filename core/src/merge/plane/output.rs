@@ -2,6 +2,7 @@
 
 use crate::arith::convert::as_number;
 use crate::geometry::spaces::dim2::Line2;
+use crate::mesh::disjoint::DisjointSets;
 use crate::tree::partition::Label;
 use crate::tree::plane::{Boundary, Corner, Edge};
 
@@ -10,7 +11,7 @@ use crate::tree::plane::{Boundary, Corner, Edge};
 pub(super) struct Output {
     corners: Vec<Corner>,
     edges: Vec<Edge>,
-    faces: Faces,
+    faces: DisjointSets,
 }
 
 impl Output {
@@ -19,7 +20,7 @@ impl Output {
         Self {
             corners: Vec::new(),
             edges: Vec::new(),
-            faces: Faces(vec![0]),
+            faces: DisjointSets::of_one(1),
         }
     }
 
@@ -31,9 +32,7 @@ impl Output {
 
     /// A face that is not known to be any other.
     pub(super) fn face(&mut self) -> u32 {
-        let number = as_number(self.faces.0.len());
-        self.faces.0.push(number);
-        number
+        self.faces.push()
     }
 
     /// Makes two faces one.
@@ -63,30 +62,9 @@ impl Output {
     /// The boundary, at the end of the sweep.
     pub(super) fn into_boundary(mut self, outer: Label) -> Boundary {
         for edge in &mut self.edges {
-            edge.inside = self.faces.of(edge.inside);
-            edge.outside = self.faces.of(edge.outside);
+            edge.inside = self.faces.least(edge.inside);
+            edge.outside = self.faces.least(edge.outside);
         }
         Boundary::sorted(outer, self.corners, self.edges)
-    }
-}
-
-/// Disjoint sets of faces, each named by its smallest member.
-#[derive(Debug)]
-struct Faces(Vec<u32>);
-
-impl Faces {
-    /// The name of a face's set, the way there shortened for the next question.
-    fn of(&mut self, face: u32) -> u32 {
-        let mut at = face as usize;
-        while self.0[at] as usize != at {
-            self.0[at] = self.0[self.0[at] as usize];
-            at = self.0[at] as usize;
-        }
-        as_number(at)
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.of(a), self.of(b));
-        self.0[a.max(b) as usize] = a.min(b);
     }
 }

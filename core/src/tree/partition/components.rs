@@ -5,6 +5,7 @@ use super::node::{Label, PartitionTree};
 use crate::error::Result;
 use crate::geometry::spaces::space::Space;
 use crate::interrupt::poll;
+use crate::mesh::disjoint::DisjointSets;
 use crate::mesh::handle::NodeId;
 
 /// A piece of the boundary and the parts on its two sides.
@@ -30,59 +31,24 @@ pub struct Wall<S: Space> {
 /// `Internal` if a cut lies in the border of its own region.
 pub fn walls<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<Wall<S>>> {
     let flat = Flat::new(tree);
-    let mut parts = Parts::new(flat.len());
+    let mut parts = DisjointSets::of_one(flat.len());
     let mut walls = Vec::new();
     for contact in flat.contacts()? {
         poll();
         let (minus, plus) = (contact.minus, contact.plus);
         if flat.label(minus) == flat.label(plus) {
-            parts.join(minus, plus);
+            parts.join(minus.0, plus.0);
         } else if flat.label(minus) == Some(Label::In) {
             walls.push((contact.fragment, minus, plus));
         } else {
             walls.push((S::reversed(&contact.fragment), plus, minus));
         }
     }
+    let mut part = |leaf: NodeId| NodeId(parts.least(leaf.0));
     let numbered = |(fragment, inside, outside)| Wall {
         fragment,
-        inside: parts.of(inside),
-        outside: parts.of(outside),
+        inside: part(inside),
+        outside: part(outside),
     };
     Ok(walls.into_iter().map(numbered).collect())
-}
-
-/// Disjoint sets of leaves, each named by its smallest member.
-struct Parts {
-    parent: Vec<NodeId>,
-}
-
-impl Parts {
-    fn new(count: usize) -> Self {
-        Self {
-            parent: NodeId::all().take(count).collect(),
-        }
-    }
-
-    fn of(&self, leaf: NodeId) -> NodeId {
-        let mut at = leaf;
-        while self.parent[at.place()] != at {
-            at = self.parent[at.place()];
-        }
-        at
-    }
-
-    fn join(&mut self, a: NodeId, b: NodeId) {
-        let (a, b) = (self.halved(a), self.halved(b));
-        self.parent[a.max(b).place()] = a.min(b);
-    }
-
-    /// The name of a leaf's set, the way there shortened for the next question.
-    fn halved(&mut self, leaf: NodeId) -> NodeId {
-        let mut at = leaf;
-        while self.parent[at.place()] != at {
-            self.parent[at.place()] = self.parent[self.parent[at.place()].place()];
-            at = self.parent[at.place()];
-        }
-        at
-    }
 }

@@ -9,6 +9,7 @@ use super::Labels;
 use crate::arith::convert::as_number;
 use crate::geometry::cell::Cell;
 use crate::interrupt::poll;
+use crate::mesh::disjoint::DisjointSets;
 
 /// Stands for no anchor, and is above the numbers of all.
 const NONE: u32 = u32::MAX;
@@ -17,7 +18,7 @@ const NONE: u32 = u32::MAX;
 /// crosses have the same labels.
 pub(super) struct Known {
     numbers: HashMap<(u32, Name), u32>,
-    parents: Vec<u32>,
+    sets: DisjointSets,
     /// By anchor that stands for others.
     pub(super) labels: Vec<Option<Labels>>,
     /// By element that nothing crosses: one of its anchors.
@@ -34,7 +35,7 @@ impl Known {
         let count = scene.elements.len();
         let mut known = Self {
             numbers: HashMap::with_capacity_and_hasher(count, FxBuildHasher),
-            parents: Vec::with_capacity(count),
+            sets: DisjointSets::with_capacity(count),
             labels: Vec::with_capacity(count),
             anchors: Vec::with_capacity(count),
             cuts: Vec::new(),
@@ -74,7 +75,7 @@ impl Known {
         names.fold(NONE, |a, name| {
             let b = self.root_of(operand, name);
             if a != NONE {
-                self.parents[b.max(a) as usize] = a.min(b);
+                self.sets.join(a, b);
             }
             a.min(b)
         })
@@ -82,25 +83,16 @@ impl Known {
 
     /// The number of the anchor that stands for the one with this name.
     pub(super) fn root_of(&mut self, operand: usize, name: Name) -> u32 {
-        let next = as_number(self.parents.len());
+        let next = self.sets.end();
         let at = *self
             .numbers
             .entry((as_number(operand), name))
             .or_insert(next);
         if at == next {
-            self.parents.push(next);
+            self.sets.push();
             self.labels.push(None);
         }
-        self.root(at)
-    }
-
-    fn root(&mut self, mut at: u32) -> u32 {
-        while self.parents[at as usize] != at {
-            let above = self.parents[self.parents[at as usize] as usize];
-            self.parents[at as usize] = above;
-            at = above;
-        }
-        at
+        self.sets.least(at)
     }
 
     /// The cut elements at an anchor, with the part there and its labels.
@@ -137,7 +129,7 @@ impl Known {
     /// The labels of all other operands on an element that nothing crosses.
     pub(super) fn label_of(&mut self, scene: &Scene, i: usize, fate: &Fate) -> Option<Labels> {
         let element = &scene.elements[i];
-        let root = self.root(self.anchors[i]);
+        let root = self.sets.least(self.anchors[i]);
         self.known_or(root, || match (fate, &element.place) {
             (Fate::Uncut(anchors), _) => scene.count_at(element.operand, &anchors.first()?.place),
             (_, Place::Face(triangle)) => {
