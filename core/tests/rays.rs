@@ -215,7 +215,7 @@ proptest! {
         prop_assert_eq!(&blocked, &alone.collect::<Vec<_>>());
     }
 
-    /// What leading bits decide about a hit is what wide integers say, whatever their widths.
+    /// Leading bits decide about a hit as wide integers do, whatever their widths.
     #[test]
     fn narrow_integers_do_not_show(
         triangle in prop_oneof![triangle(), wide_triangle(1 << 30), wide_triangle(1 << 41)],

@@ -23,7 +23,7 @@ const BLUR: f64 = 1.0 / (1u64 << 20) as f64;
 /// The slack of the way to a start, for each unit of its length.
 const DRIFT: f64 = 1.0 / (1u64 << 49) as f64;
 
-/// More than what a place in the frame loses in single precision, for each unit of its size.
+/// A bound of what a place in the frame loses in single precision, for each unit of its size.
 const NARROWING: f64 = 1.0 / (1u64 << 23) as f64;
 
 /// Rays in the frame, side by side, where they enter its stretch of their main axis.

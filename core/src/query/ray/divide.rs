@@ -63,7 +63,7 @@ pub struct Cuts<const D: usize> {
     cuts: Vec<(Cut, [Way; 2])>,
 }
 
-/// What is on a side of a cut.
+/// The part, or the next cut, on a side of a cut.
 #[derive(Clone, Copy)]
 enum Way {
     Cut(usize),
