@@ -5,8 +5,9 @@ import os
 #: As `output.INTERRUPTED`, which is not imported yet.
 _INTERRUPTED = 130
 
-#: The file that Python's own code for imports says it is from.
-_IMPORTS = "<frozen importlib._bootstrap>"
+#: The file that Python's own code for imports says it is from, and numpy's for a question whose
+#: every exception numpy takes for a no.
+_BAD_MOMENTS = ("<frozen importlib._bootstrap>", "npy_ctypes_check")
 
 #: After so many seconds an interrupt that came at a bad moment comes again.
 _AGAIN = 0.01
@@ -26,20 +27,20 @@ def _end_quietly(*_: object) -> None:
 
 
 def _end_in_order(number: int, frame: FrameType | None) -> None:
-    """Raise `KeyboardInterrupt`, which closes files; later, if modules are being imported.
+    """Raise `KeyboardInterrupt`, which closes files; later, if it would be lost here.
 
-    An exception there is lost in a lock's callback, or ends the process where compiled modules
-    begin.
+    While modules are imported an exception is lost in a lock's callback, or ends the process where
+    compiled modules begin.
     """
-    if _is_importing(frame) and hasattr(signal, "setitimer"):
+    if _is_bad_moment(frame) and hasattr(signal, "setitimer"):
         _come_again()
     else:
         signal.default_int_handler(number, frame)
 
 
-def _is_importing(frame: FrameType | None) -> bool:
+def _is_bad_moment(frame: FrameType | None) -> bool:
     while frame is not None:
-        if frame.f_code.co_filename == _IMPORTS:
+        if frame.f_code.co_filename in _BAD_MOMENTS or frame.f_code.co_name in _BAD_MOMENTS:
             return True
         frame = frame.f_back
     return False

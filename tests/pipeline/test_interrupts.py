@@ -23,16 +23,24 @@ entry._replace = lambda *ways: (replace(*ways), os.write(2, b"."))
 entry.main()
 """
 
-#: Interrupts itself while a module is imported, and then where an exception gets lost.
+#: Interrupts itself while a module is imported, then where an exception gets lost, and then where
+#: numpy takes one for an answer.
 BADLY_TIMED = """
 import signal, sys, time
+import numpy as np
 from bspcsg.cli import entry
 signal.signal(signal.SIGINT, entry._end_in_order)
+def npy_ctypes_check(cls):
+    import signal
+    signal.raise_signal(signal.SIGINT)
+    return False
+interrupted = npy_ctypes_check
 sys.unraisablehook = entry._catch_lost
 class Lost:
     def __del__(self):
         signal.raise_signal(signal.SIGINT)
-for moment in ("import interrupting", "Lost()"):
+np._core._internal.npy_ctypes_check.__code__ = interrupted.__code__
+for moment in ("import interrupting", "Lost()", "np.dtype(Lost)"):
     try:
         exec(moment)
         print("passed", moment)
@@ -134,6 +142,8 @@ def test_interrupts_that_come_at_a_bad_moment_come_again(tmp_path: Path) -> None
         "passed import interrupting",
         "interrupted",
         "passed Lost()",
+        "interrupted",
+        "passed np.dtype(Lost)",
         "interrupted",
     ]
 
