@@ -32,6 +32,10 @@ const FINEST: usize = 32;
 /// So few triangles are compared all with all: telling them apart costs as much.
 const FEW: usize = 256;
 
+/// To so many times as many triangles others are added as they are: few are saved by telling apart
+/// those that are near.
+const MOST: usize = 4;
+
 /// The triangles that are not among some, ascending, but may meet one of them or a triangle of
 /// another party; with their parties, ascending.
 ///
@@ -43,7 +47,7 @@ pub fn in_company(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32) -> Ve
         return Vec::new();
     }
     let others = Others { some, count };
-    let mut near: Vec<(u32, u32)> = if count <= FEW {
+    let mut near: Vec<(u32, u32)> = if count <= FEW || MOST * (count - some.len()) <= some.len() {
         others.each().map(|t| (party(t), t)).collect()
     } else {
         others.near(faces, &party)

@@ -134,7 +134,7 @@ fn directions(elements: &[&Swept]) -> Vec<[f64; 3]> {
 }
 
 /// The direction in which elements are long.
-fn direction_along(elements: &[&Swept]) -> Option<[f64; 3]> {
+pub fn direction_along(elements: &[&Swept]) -> Option<[f64; 3]> {
     let mut long = [0.0f64; 3];
     let corners = elements.iter().filter_map(|e| e.corners.as_ref());
     for edge in corners.filter_map(longest_edge) {

@@ -5,6 +5,7 @@
 
 mod boxes;
 mod direction;
+mod divide;
 mod line;
 mod rim;
 mod sweep;
@@ -15,6 +16,7 @@ use std::cell::RefCell;
 use crate::geometry::plane::Lattice;
 use boxes::Space;
 pub use boxes::{shift_of, Boxed};
+use divide::{divided, Groups};
 use view::share_corner;
 
 /// An element as a sweep sees it: its operand, its box, and corners whose convex hull holds it.
@@ -86,14 +88,15 @@ pub fn pairs_of_many(
     let meet = RefCell::new(meet);
     let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
     boxes::pairs(elements, found, |crowd, space| {
-        let mut open = vec![crowd];
+        let mut open = vec![crowd.to_vec()];
         while let Some(crowd) = open.pop() {
-            match middle(crowd).filter(|_| crowd.len() > boxes::SOME) {
-                Some(at) => {
-                    sweep_groups(crowd.split_at(at), space, &swept, found);
-                    open.extend([&crowd[..at], &crowd[at..]]);
-                }
-                None => boxes::compare_all(crowd, space, &mut |i, j| found(i, j)),
+            let groups = (crowd.len() > boxes::SOME).then(|| divided(&crowd, &swept));
+            if let Some(Groups { elements, middle }) = groups.flatten() {
+                let (first, second) = elements.split_at(middle);
+                sweep_groups((first, second), space, &swept, found);
+                open.extend([first.to_vec(), second.to_vec()]);
+            } else {
+                boxes::compare_all(&crowd, space, &mut |i, j| found(i, j));
             }
         }
         Some(())
@@ -128,14 +131,6 @@ fn sweep_groups(
     if done.is_none() {
         boxes::compare_groups(first, second, space, meet);
     }
-}
-
-/// Return the start of the operand that divides elements best; `None` if there is only one.
-fn middle(crowd: &[Boxed]) -> Option<usize> {
-    let begins = |at: &usize| crowd[at - 1].operand != crowd[*at].operand;
-    let half = crowd.len() / 2;
-    let after = (half.max(1)..crowd.len()).find(begins);
-    after.or_else(|| (1..half).rev().find(begins))
 }
 
 #[cfg(test)]
@@ -252,10 +247,26 @@ mod tests {
         counted.any(|(k, p)| *owners.entry(p).or_insert(k) != k)
     }
 
+    /// The pairs that the search for many operands finds.
+    fn found_of_many(scene: &Scene) -> HashSet<(usize, usize)> {
+        let triangles = scene.triangles.iter();
+        let elements: Vec<Swept> = triangles.map(|(k, t)| swept(*k, t, scene.floor)).collect();
+        let boxed = |(k, e): (u32, &Swept)| Boxed::new(e.operand, k, [&e.low, &e.high], 0);
+        let boxes = (0..).zip(&elements).map(boxed).collect();
+        let mut found = HashSet::new();
+        let one = |k: u32| elements[k as usize].clone();
+        pairs_of_many(boxes, one, |i, j| {
+            found.insert((i.min(j) as usize, i.max(j) as usize));
+        });
+        found
+    }
+
     fn misses_nothing(scene: &Scene) -> bool {
-        let Some(found) = found(scene) else {
-            return touch(scene);
-        };
+        found(scene).map_or_else(|| touch(scene), |found| holds_all(scene, &found))
+    }
+
+    /// Return whether all pairs that meet are among some.
+    fn holds_all(scene: &Scene, found: &HashSet<(usize, usize)>) -> bool {
         let meet = |i: usize, j: usize| {
             let (a, b) = (&scene.triangles[i], &scene.triangles[j]);
             a.0 != b.0 && (pierces(&a.1, &b.1) || pierces(&b.1, &a.1))
@@ -317,6 +328,11 @@ mod tests {
         #[test]
         fn needles_of_several_operands_that_cross_are_found(scene in scene(4)) {
             prop_assert!(misses_nothing(&scene));
+        }
+
+        #[test]
+        fn needles_of_many_operands_that_cross_are_found(scene in scene(200)) {
+            prop_assert!(holds_all(&scene, &found_of_many(&scene)));
         }
     }
 }
