@@ -57,7 +57,6 @@ if TYPE_CHECKING:
     from .modelling.planar.lettering.text import text
     from .operations.setops import boolean, difference, intersection, union, xor
     from .parameters import set_threads
-    from .progress import progress
     from .script.run import run_script, show
     from .shapes.primitives import (
         box,
@@ -73,6 +72,7 @@ if TYPE_CHECKING:
     )
     from .solid.solid import Solid
     from .verify.check import CheckReport, Verdict, validate
+    from .watching import progress
 
 __all__ = [
     "Assembly",
@@ -160,7 +160,7 @@ _MODULES = {
     "modelling.planar.curves": "arc bezier",
     "modelling.planar.lettering.text": "text",
     "parameters": "set_threads",
-    "progress": "progress",
+    "watching": "progress",
     "shapes.primitives": "box cone cube cylinder extrude half_space prism revolve sphere torus",
     "script.run": "run_script show",
     "operations.setops": "boolean difference intersection union xor",

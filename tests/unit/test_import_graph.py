@@ -6,6 +6,7 @@ from pathlib import Path
 import networkx as nx
 import pytest
 
+import bspcsg
 from import_graph import (
     ROOT,
     circles,
@@ -98,3 +99,9 @@ def test_imports_inside_functions_have_a_reason() -> None:
         if has_deferred_imports(path)
     }
     assert {name for name in found if not name.startswith("bspcsg/cli/")} == set(DEFERRED)
+
+
+def test_no_module_hides_a_public_name() -> None:
+    # An import of `bspcsg.name` would put the module where the name was.
+    beside = {path.stem for path in (ROOT / "bspcsg").iterdir()}
+    assert beside & set(bspcsg.__all__) <= set(bspcsg._PARTS)
