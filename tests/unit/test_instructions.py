@@ -101,6 +101,8 @@ def test_steps_that_cannot_be_done_are_counted(code: int, said: str) -> None:
     check = (REPOSITORY / "scripts/check").read_text("utf-8")
     [step] = re.findall(r"(?ms)^skipped=0$.*?^}$", check)
     asked = f"{step}\nstep one true\nstep two bash -c 'exit {code}'\necho $skipped of 2"
-    done = subprocess.run(["bash", "-uc", asked], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        ["bash", "-uc", asked], capture_output=True, encoding="utf-8", check=False
+    )
     assert done.returncode == (1 if code == 1 else 0)
     assert said in done.stdout and (code != 77 or "SKIPPED" in done.stdout)
