@@ -233,6 +233,13 @@ def casting() -> None:
     assert ended(in_child(lambda: caster.first_hit(*few))) == 0
 
 
+def balls_side_by_side(segments: int) -> list[b.Solid]:
+    """Return balls of which each reaches into the next, with their trees built."""
+    balls = [b.sphere(10, segments=segments).translate((k * 0.37, k * 0.21, 0)) for k in range(5)]
+    assert all(ball.tree for ball in balls)
+    return balls
+
+
 def handler() -> None:
     """A signal handler forks in the middle of an operation."""
     parent, missed = os.getpid(), 42
@@ -246,12 +253,11 @@ def handler() -> None:
         if child:
             statuses.append(ended(child))
 
-    balls = [b.sphere(10, segments=64).translate((k * 0.37, k * 0.21, 0)) for k in range(5)]
-    trees = [ball.tree for ball in balls]
-    assert len(trees) == 5
     for action, expected in ((leave, 0), (come_back, signal.SIGABRT)):
         signal.signal(signal.SIGALRM, action)
-        for _ in range(20):
+        # Work that ends before the core asks for signals grows until it asks, on any machine.
+        for segments in (128, 192, 256, 384, 512):
+            balls = balls_side_by_side(segments)
             signal.setitimer(signal.ITIMER_REAL, 0.02)
             assert b.union(*balls).to_mesh().faces.size
             if os.getpid() != parent:
