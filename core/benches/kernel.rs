@@ -1,4 +1,5 @@
-//! Times of the kernel's steps: predicates, splits, the leaf merge, and extraction.
+//! Times of the kernel's steps: predicates, in integers and doubles, splits, the leaf merge, and
+//! extraction.
 
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -7,6 +8,9 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use bspcsg::extract::rounding::round;
+use bspcsg::geometry::doubles::extent::Extent;
+use bspcsg::geometry::doubles::meeting::meeting;
+use bspcsg::geometry::doubles::Triangle;
 use bspcsg::geometry::plane::{Lattice, Plane};
 use bspcsg::geometry::polygon::{straddle, Polygon};
 use bspcsg::geometry::spaces::dim3::Dim3;
@@ -45,6 +49,39 @@ fn meet(numbers: &mut Numbers) -> Vertex {
             return vertex;
         }
     }
+}
+
+/// A triangle near others: in a tilted plane but for rounding, or anywhere.
+#[allow(clippy::cast_precision_loss, reason = "31 bits")]
+fn triangle(numbers: &mut Numbers, is_in_plane: bool) -> Triangle {
+    [0; 3].map(|_| {
+        let [x, y, z] = numbers.point(REACH).map(|c| c as f64 / REACH as f64);
+        [x, y, if is_in_plane { 0.3 * x + 0.7 * y } else { z }]
+    })
+}
+
+/// Comparisons of boxes and of triangles, of which `extract::rounding::mend` bounds the number.
+fn triangles_in_doubles(c: &mut Criterion) {
+    let mut group = c.benchmark_group("triangles in doubles");
+    for (name, is_in_plane) in [("anywhere", false), ("in a plane but for rounding", true)] {
+        let triangles = many(|n| triangle(n, is_in_plane));
+        let extents: Vec<Extent> = triangles.iter().map(Extent::of).collect();
+        let mut turn = (0..COUNT - 1).cycle();
+        let mut next = move || turn.next().unwrap_or(0);
+        group.bench_function(format!("boxes, {name}"), |b| {
+            b.iter(|| {
+                let k = next();
+                black_box(&extents[k]).misses(&extents[k + 1])
+            });
+        });
+        group.bench_function(format!("meeting, {name}"), |b| {
+            b.iter(|| {
+                let k = next();
+                meeting(black_box(&triangles[k]), &triangles[k + 1])
+            });
+        });
+    }
+    group.finish();
 }
 
 fn predicates(c: &mut Criterion) {
@@ -177,8 +214,17 @@ fn extraction(c: &mut Criterion) {
 // The macro makes a public function without documentation.
 #[allow(missing_docs)]
 mod group {
-    use super::{criterion_group, extraction, leaf_merge, predicates, splits};
+    use super::{
+        criterion_group, extraction, leaf_merge, predicates, splits, triangles_in_doubles,
+    };
 
-    criterion_group!(kernel, predicates, splits, leaf_merge, extraction);
+    criterion_group!(
+        kernel,
+        predicates,
+        triangles_in_doubles,
+        splits,
+        leaf_merge,
+        extraction
+    );
 }
 criterion_main!(group::kernel);

@@ -91,6 +91,7 @@ FAULTS: dict[str, tuple[Callable[[dict[str, bytes]], object], str]] = {
 
 #: Of builders in a container, and on a Mac.
 HOMES = ["/".join(["", *names]) for names in (["root"], ["Users", "ann"])]
+WINDOWS_HOME = "\\".join(["C:", "Users", "ann"])
 
 
 @pytest.mark.parametrize("fault", FAULTS)
@@ -107,7 +108,7 @@ def test_faults_of_a_wheel_are_named(tmp_path: Path, fault: str) -> None:
             f"{HOMES[0]}/.cargo/registry/src/i/a.rs",
         ),
         (f"\0{HOMES[1]}/work/lib.rs\0".encode(), f"{HOMES[1]}/work/lib.rs"),
-        (rb"C:\Users\ann\.cargo\a.rs", r"C:\Users\ann\.cargo\a.rs"),
+        (f"{WINDOWS_HOME}\\.cargo\\a.rs".encode(), f"{WINDOWS_HOME}\\.cargo\\a.rs"),
         (rb"/opt/cargo/registry/src/index/a.rs", "/opt/cargo/registry/src/index/a.rs"),
         (rb"crates/index.crates.io-1/rayon/src/a.rs", None),
         (rb"/rustc/59807616/library/core/src/a.rs", None),

@@ -32,8 +32,8 @@ const FINEST: usize = 32;
 /// So few triangles are compared all with all: telling them apart costs as much.
 const FEW: usize = 256;
 
-/// To so many times as many triangles others are added as they are: few are saved by telling apart
-/// those that are near.
+/// The number of triangles asked about for each other one from which all others are compared: telling
+/// which are near costs more than it saves.
 const MOST: usize = 4;
 
 /// The triangles that are not among some, ascending, but may meet one of them or a triangle of
