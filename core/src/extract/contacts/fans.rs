@@ -85,6 +85,33 @@ impl std::error::Error for Error {}
 ///
 /// # Errors
 /// [`Error`] when the triangles are not closed, or not triangles of `vertex_count` vertices.
+///
+/// # Example
+/// ```
+/// use bspcsg::arith::Sign;
+/// use bspcsg::extract::contacts::fans::{split_fans, Radial};
+/// use bspcsg::mesh::handle::VertexId;
+///
+/// /// Nothing is asked: no edge has more than two triangles.
+/// struct Nothing;
+///
+/// impl Radial for Nothing {
+///     fn normal(&self, _: u32) -> [i128; 3] {
+///         [0; 3]
+///     }
+///     fn direction(&self, _: VertexId, _: VertexId) -> [Sign; 3] {
+///         [Sign::Zero; 3]
+///     }
+/// }
+///
+/// // Two tetrahedra that touch at vertex 0.
+/// let faces = |[a, b, c, d]: [u32; 4]| [[a, c, b], [a, b, d], [a, d, c], [b, c, d]];
+/// let triangles = [faces([0, 1, 2, 3]), faces([0, 4, 5, 6])].concat();
+/// let split = split_fans(&VertexId::rows(triangles), 7, &Nothing)?;
+/// assert_eq!(split.split_vertices, [VertexId(0)]);
+/// assert_eq!(split.origin.len(), 8);
+/// # Ok::<(), bspcsg::extract::contacts::fans::Error>(())
+/// ```
 pub fn split_fans<R: Radial>(
     triangles: &[[VertexId; 3]],
     vertex_count: u32,

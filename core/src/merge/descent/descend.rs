@@ -30,6 +30,29 @@ use crate::tree::node::Branch;
 const DEEPEST: u32 = 64;
 
 /// Counts of what an evaluation did.
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::merge::evaluate::evaluate;
+/// use bspcsg::merge::expression::{Expression, Term};
+/// use bspcsg::mesh::import::import;
+/// use bspcsg::tree::solid::Solid;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let at = |x: f64| vertices.map(|[a, b, c]| [a + x, b, c]);
+/// let solid = |x: f64| -> Result<Solid, bspcsg::error::Error> {
+///     Ok(Solid::of_source(Arc::new(import(&at(x), &faces, None)?), false))
+/// };
+/// let either = vec![Term::Operand(0), Term::Operand(1), Term::Or(vec![0, 1])];
+/// let (_, counters) = evaluate(&Expression::new(either)?, &[solid(0.0)?, solid(0.5)?])?;
+/// // Few faces in one place: a kernel took all eight at once.
+/// assert!(counters.named().contains(&("kernels", 1)));
+/// assert!(counters.named().contains(&("kernel_elements", 8)));
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 #[derive(Debug, Default)]
 pub struct Counters {
     /// Cells visited.

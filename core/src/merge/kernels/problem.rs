@@ -45,6 +45,37 @@ pub struct Solution {
 ///
 /// All kernels leave the same set. Each has positions that it does not know; a cell that one
 /// refuses is for the next one, or is halved.
+///
+/// # Example
+/// ```
+/// use bspcsg::geometry::cell::Cell;
+/// use bspcsg::merge::expression::{Expression, Term};
+/// use bspcsg::merge::kernels::problem::{CellProblem, Kernel, Solution};
+/// use bspcsg::merge::kernels::ALL;
+/// use bspcsg::merge::lists::list::Sources;
+/// use bspcsg::merge::rule::Rule;
+/// use bspcsg::tree::node::Node;
+///
+/// /// A kernel for cells without boundary.
+/// struct Empty;
+///
+/// impl Kernel for Empty {
+///     fn solve(&self, problem: &CellProblem) -> Option<Solution> {
+///         problem.operands.is_empty().then(|| Node::Leaf(0).into())
+///     }
+/// }
+///
+/// let problem = CellProblem {
+///     cell: &Cell::UNIVERSE,
+///     expression: &Expression::new(vec![Term::Or(Vec::new())])?,
+///     rule: Rule::Positive,
+///     operands: Vec::new(),
+///     sources: &Sources::new(Default::default()),
+/// };
+/// let solution = problem.solve_by(&[&Empty, ALL[0]]);
+/// assert!(matches!(solution.map(|s| s.node), Some(Node::Leaf(0))));
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
 pub trait Kernel {
     /// Return what the expression leaves in the cell; `None` if the cell is not for this kernel.
     fn solve(&self, problem: &CellProblem) -> Option<Solution>;
