@@ -37,6 +37,12 @@ def test_rays_are_compared() -> None:
     assert done.stdout.count("bspcsg ") >= 3
 
 
+def test_regions_are_compared() -> None:
+    done = script("bench_regions", "--quick")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.count("True") == 6
+
+
 def test_systems_of_the_notes_are_measured() -> None:
     done = script("lecture_peers", "--quick")
     assert done.returncode == 0, done.stdout + done.stderr
