@@ -9,7 +9,7 @@ pub fn gcd_u128(a: u128, b: u128) -> u128 {
     match u64::try_from(small) {
         Ok(0) => large,
         Ok(1) => 1,
-        Ok(short) => u128::from(gcd_u64(short, low_limb(large % small))),
+        Ok(short) => u128::from(gcd(short, low_limb(large % small))),
         Err(_) => gcd_long(small, large),
     }
 }
@@ -29,11 +29,11 @@ fn gcd_long(a: u128, b: u128) -> u128 {
     u128::from(gcd_odd(low_limb(a), low_limb(b))) << twos
 }
 
-/// The greatest common divisor of one-limb numbers; `a` is not zero.
+/// The greatest common divisor of one-limb numbers; `gcd(a, 0)` is `a`.
 #[inline]
-fn gcd_u64(a: u64, b: u64) -> u64 {
-    if b == 0 {
-        return a;
+pub fn gcd(a: u64, b: u64) -> u64 {
+    if a == 0 || b == 0 {
+        return a | b;
     }
     let twos = (a | b).trailing_zeros();
     gcd_odd(a >> a.trailing_zeros(), b >> b.trailing_zeros()) << twos

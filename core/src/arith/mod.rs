@@ -18,7 +18,7 @@ mod sign;
 mod sum;
 
 pub use filtered::Filtered;
-pub use gcd::gcd_u128;
+pub use gcd::{gcd, gcd_u128};
 pub use int::Int;
 pub use modular::{inv_mod, mul_mod, P1, P2};
 pub use ratio::ratio_to_f64;

@@ -2,6 +2,7 @@
 
 use super::handle::VertexId;
 use crate::arith::convert::as_number;
+use crate::arith::gcd;
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
@@ -194,13 +195,6 @@ fn primitive_direction(a: &Lattice, b: &Lattice) -> Option<([i64; 3], usize, i32
     let g = i64::try_from(g).ok()? * d[axis].signum();
     let sign = if d[axis] > 0 { 1 } else { -1 };
     Some((d.map(|c| c / g), axis, sign))
-}
-
-fn gcd(mut a: u64, mut b: u64) -> u64 {
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
-    a
 }
 
 fn moment(a: &Lattice, d: &[i64; 3]) -> [i128; 3] {

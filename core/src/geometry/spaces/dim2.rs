@@ -12,7 +12,7 @@ use crate::arith::bounds::{
     LINE_OFFSET_BITS, REACH,
 };
 use crate::arith::convert::as_double;
-use crate::arith::{gcd_u128, Int, Sign};
+use crate::arith::{gcd, gcd_u128, Int, Sign};
 use crate::geometry::plane::FILTER;
 use crate::geometry::side::{Orientation, Side, Split};
 
@@ -477,11 +477,4 @@ fn is_near(point: Lattice2) -> bool {
     point
         .iter()
         .all(|k| k.unsigned_abs() <= REACH.unsigned_abs())
-}
-
-fn gcd(mut a: u64, mut b: u64) -> u64 {
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
-    a
 }

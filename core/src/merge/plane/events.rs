@@ -19,7 +19,11 @@ pub(super) struct Stops {
 impl Stops {
     pub(super) fn of(corners: &[Corner]) -> Self {
         let mut keys: Vec<Key> = (0..).zip(corners).map(Key::of).collect();
-        keys.sort_unstable_by(|a, b| a.order(b, corners).then(a.number.cmp(&b.number)));
+        keys.sort_unstable();
+        if !keys.iter().all(|key| key.is_lattice) {
+            // Doubles leave hardly any out of order, which a stable sort makes use of.
+            keys.sort_by(|a, b| a.order(b, corners).then(a.number.cmp(&b.number)));
+        }
         let mut stops = Self {
             corners: Vec::with_capacity(keys.len()),
             places: vec![0; keys.len()],
@@ -38,43 +42,43 @@ impl Stops {
     }
 }
 
-/// A corner's place in doubles, and how far off they may be.
+/// A corner, in the order of its place in doubles, which is that of its place if it is a lattice
+/// point.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
-    at: [f64; 2],
-    slack: [f64; 2],
+    /// A number that grows with x, then y.
+    rank: u128,
     number: u32,
     is_lattice: bool,
 }
 
-/// Coordinates of constructed points are within two units in the last place.
-const SLACK: f64 = 4.0 * f64::EPSILON;
-
 impl Key {
     fn of((number, corner): (u32, &Corner)) -> Self {
-        let at = corner.point.approx();
-        let is_lattice = corner.point.as_lattice().is_some();
-        let slack = if is_lattice { 0.0 } else { SLACK };
+        let [x, y] = corner.point.approx().map(|x| u128::from(rank(x)));
         Self {
-            at,
-            slack: at.map(|x| x.abs() * slack),
+            rank: x << 64 | y,
             number,
-            is_lattice,
+            is_lattice: corner.point.as_lattice().is_some(),
         }
     }
 
+    /// The exact order of two corners.
     fn order(&self, other: &Self, corners: &[Corner]) -> Ordering {
-        for axis in [0, 1] {
-            let gap = self.at[axis] - other.at[axis];
-            let slack = self.slack[axis] + other.slack[axis];
-            if gap.abs() > slack {
-                return gap.total_cmp(&0.0);
-            }
-            if slack > 0.0 {
-                let [p, q] = [self, other].map(|key| &corners[key.number as usize].point);
-                return p.order(q);
-            }
+        if self.is_lattice && other.is_lattice {
+            return self.rank.cmp(&other.rank);
         }
-        Ordering::Equal
+        let [p, q] = [self, other].map(|key| &corners[key.number as usize].point);
+        p.order(q)
+    }
+}
+
+/// A number that grows with a double; both zeros have the same.
+fn rank(x: f64) -> u64 {
+    let bits = (x + 0.0).to_bits();
+    if bits >> 63 == 0 {
+        bits | 1 << 63
+    } else {
+        !bits
     }
 }
 

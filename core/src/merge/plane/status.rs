@@ -82,7 +82,14 @@ impl Status {
     ///
     /// # Cost
     /// Where their number changes, the stretches above are moved by four bytes each.
-    pub(super) fn exchange(&mut self, place: Place, others: impl Iterator<Item = Stretch>) {
+    pub(super) fn exchange(&mut self, place: Place, others: SmallVec<[Stretch; 2]>) {
+        let through = &self.order[place.first..place.last];
+        if through.len() == others.len() {
+            for (number, stretch) in through.iter().zip(others) {
+                self.stretches[*number as usize] = stretch;
+            }
+            return;
+        }
         self.free.extend(&self.order[place.first..place.last]);
         let mut numbers: SmallVec<[u32; 4]> = SmallVec::new();
         for stretch in others {

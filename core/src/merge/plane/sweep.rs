@@ -142,7 +142,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
         let leaving = self.settled(leaving, place, &event.corner, [face, upper.1]);
         let count = leaving.len();
-        self.status.exchange(place, leaving.into_iter());
+        self.status.exchange(place, leaving);
         self.look(place.first);
         if count > 0 {
             self.look(place.first + count);

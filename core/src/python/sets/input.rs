@@ -3,7 +3,7 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::spaces::axis::AxisSpace;
 use crate::geometry::spaces::dim1::{Dim1, Direction, Point1};
-use crate::geometry::spaces::dim2::{Dim2, Segment2};
+use crate::geometry::spaces::dim2::{Dim2, Lattice2, Segment2};
 use crate::geometry::spaces::dim3::Dim3;
 use crate::geometry::spaces::motion::Motion;
 use crate::merge::plane::Outlines;
@@ -164,12 +164,24 @@ pub fn segments(input: &Input, pitch: Pitch) -> Result<Vec<Facet<Dim2>>> {
 /// Rows (x, y, x', y') of segments that close, the inside on the left.
 pub fn outlines(rows: &[[f64; 4]], pitch: Pitch) -> Result<Outlines> {
     let mut outlines = Outlines::default();
-    for (source, row) in (0..).zip(rows) {
-        let [a, b, c, d] = row.map(|x| pitch.snap(x));
-        let push = || outlines.push([a?, b?], [c?, d?], 1);
-        push().map_err(|e| Error::at(e.kind(), vec![source], e.message()))?;
+    let mut known = ([f64::NAN; 2], [0; 2]);
+    for (source, &[a, b, c, d]) in (0..).zip(rows) {
+        let added = corner([a, b], known, pitch).and_then(|from| {
+            known = ([c, d], corner([c, d], known, pitch)?);
+            outlines.push(from, known.1, 1)
+        });
+        added.map_err(|e| Error::at(e.kind(), vec![source], e.message()))?;
     }
     Ok(outlines)
+}
+
+/// The lattice point of a corner. Most segments begin where the one before ends, which is known.
+#[allow(clippy::float_cmp, reason = "the same corner is given by the same doubles")]
+fn corner(at: [f64; 2], known: ([f64; 2], Lattice2), pitch: Pitch) -> Result<Lattice2> {
+    if at == known.0 {
+        return Ok(known.1);
+    }
+    Ok([pitch.snap(at[0])?, pitch.snap(at[1])?])
 }
 
 /// The faces of a closed mesh.
