@@ -176,7 +176,10 @@ pub fn outlines(rows: &[[f64; 4]], pitch: Pitch) -> Result<Outlines> {
 }
 
 /// The lattice point of a corner. Most segments begin where the one before ends, which is known.
-#[allow(clippy::float_cmp, reason = "the same corner is given by the same doubles")]
+#[allow(
+    clippy::float_cmp,
+    reason = "the same corner is given by the same doubles"
+)]
 fn corner(at: [f64; 2], known: ([f64; 2], Lattice2), pitch: Pitch) -> Result<Lattice2> {
     if at == known.0 {
         return Ok(known.1);
