@@ -152,7 +152,8 @@ fn mixed(cell: &Cell, states: &States, total: usize) -> f64 {
     while let Some((part, most)) = open.pop() {
         let counts = states.iter().map(|s| s.1.count_in(&part));
         let (present, sum) = counts.fold((0, 0), |(k, n), c| (k + usize::from(c > 0), n + c));
-        if let Some(cut) = part.cut().filter(|_| most > SAMPLE && sum > 0) {
+        // Parts of what has elements of one operand have no others.
+        if let Some(cut) = part.cut().filter(|_| most > SAMPLE && present > 1) {
             open.extend(Half::BOTH.map(|half| (part.half(cut, half), most / 2)));
             continue;
         }
