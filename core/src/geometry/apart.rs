@@ -1,44 +1,69 @@
 //! The test whether two triangles keep clear of each other, by signs of determinants in doubles.
 
+use super::axes::each_axis;
 use super::plane::Lattice;
+use crate::arith::convert::as_double;
 use crate::arith::{Filtered, Sign};
-use crate::geometry::winding::path::{near_determinant, NearCross};
-
-type Triangle = [Lattice; 3];
+use crate::geometry::winding::path::NearCross;
 
 type Sides = [Filtered<Sign>; 3];
+
+/// A lattice triangle in doubles, prepared to be compared with many.
+#[derive(Clone, Copy, Debug)]
+pub struct NearTriangle {
+    /// Coordinates below 2⁵³ are exact, so that differences are rounded once.
+    corners: [[f64; 3]; 3],
+    normal: NearCross,
+}
+
+impl NearTriangle {
+    /// Stands for what is not known to be apart from anything: no side of it is certain.
+    pub const UNKNOWN: Self = Self {
+        corners: [[f64::NAN; 3]; 3],
+        normal: NearCross::UNKNOWN,
+    };
+
+    /// A triangle by its corners.
+    pub fn of(corners: &[Lattice; 3]) -> Self {
+        let corners = each_axis(|k| each_axis(|i| as_double(corners[k][i])));
+        let [a, b, c] = &corners;
+        Self {
+            normal: NearCross::of_rounded(&less(b, a), &less(c, a)),
+            corners,
+        }
+    }
+
+    /// On which sides of its plane the corners of another lie.
+    #[inline]
+    fn sides_of(&self, other: &Self) -> Sides {
+        let base = &self.corners[0];
+        let [x, y, z] = &other.corners;
+        [
+            self.normal.sign_with_rounded(&less(x, base)),
+            self.normal.sign_with_rounded(&less(y, base)),
+            self.normal.sign_with_rounded(&less(z, base)),
+        ]
+    }
+}
 
 /// Return whether two lattice triangles certainly have no point in common; errs on no.
 ///
 /// They do not if one lies on one side of the other's plane, or else if the stretches in which they
 /// cover the line that both planes share are apart (Möller 1997; in signs alone as Guigue and
 /// Devillers 2003).
-pub fn are_apart(p: &Triangle, q: &Triangle) -> bool {
-    let of_p = sides(p, q);
+pub fn are_apart(p: &NearTriangle, q: &NearTriangle) -> bool {
+    let of_p = q.sides_of(p);
     if is_beside(of_p) {
         return true;
     }
-    let of_q = sides(q, p);
+    let of_q = p.sides_of(q);
     if is_beside(of_q) {
         return true;
     }
     match (alone(of_p), alone(of_q)) {
-        (Some(i), Some(k)) => stretches_are_apart(p, i, q, k),
+        (Some(i), Some(k)) => stretches_are_apart(&p.corners, i, &q.corners, k),
         _ => false,
     }
-}
-
-/// On which sides of a triangle's plane the corners of another lie.
-#[inline]
-fn sides(triangle: &Triangle, plane: &Triangle) -> Sides {
-    let [a, b, c] = plane;
-    let normal = NearCross::of(&less(b, a), &less(c, a));
-    let [x, y, z] = triangle;
-    [
-        normal.sign_with(&less(x, a)),
-        normal.sign_with(&less(y, a)),
-        normal.sign_with(&less(z, a)),
-    ]
 }
 
 /// Return whether all corners certainly lie on one side.
@@ -65,25 +90,31 @@ fn alone(sides: Sides) -> Option<usize> {
 ///
 /// Which of two edges of different triangles comes first is the sign of the volume they span, up to
 /// a sign that is the same for all four pairs.
-fn stretches_are_apart(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
+fn stretches_are_apart(p: &[[f64; 3]; 3], i: usize, q: &[[f64; 3]; 3], k: usize) -> bool {
     let (from, other) = (&p[i], &q[k]);
     let toward = less(other, from);
-    let edges = |t: &Triangle, at: usize| [1, 2].map(|step| less(&t[(at + step) % 3], &t[at]));
+    let edges = |t: &[[f64; 3]; 3], at: usize| {
+        let edge = |step: usize| less(&t[(at + step) % 3], &t[at]);
+        [edge(1), edge(2)]
+    };
     let (ours, theirs) = (edges(p, i), edges(q, k));
-    let order = |our: &Lattice, their: &Lattice| near_determinant(&toward, our, their);
+    let order = |our: &[f64; 3], their: &[f64; 3]| {
+        NearCross::of_rounded(our, their).sign_with_rounded(&toward)
+    };
     let first = order(&ours[0], &theirs[0]);
-    let same = |our: &Lattice| theirs.iter().all(|their| order(our, their) == first);
+    let same = |our: &[f64; 3]| theirs.iter().all(|their| order(our, their) == first);
     first.is_certain() && ours.iter().all(same)
 }
 
 #[inline]
-fn less(p: &Lattice, q: &Lattice) -> Lattice {
+fn less(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
     [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
 }
 
 /// Return whether some point of an edge of `p` lies in `q`, by exact determinants.
 #[cfg(test)]
-pub fn pierces(p: &Triangle, q: &Triangle) -> bool {
+pub fn pierces(p: &[Lattice; 3], q: &[Lattice; 3]) -> bool {
+    let less = |p: &Lattice, q: &Lattice| each_axis(|i| p[i] - q[i]);
     let volume = |a: &Lattice, b: &Lattice, c: &Lattice, d: &Lattice| {
         let (u, v, w) = (less(b, a), less(c, a), less(d, a));
         u[0] * (v[1] * w[2] - v[2] * w[1])
@@ -104,6 +135,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::geometry::winding::path::near_determinant;
 
     fn corner(reach: i64) -> impl Strategy<Value = Lattice> {
         [-reach..=reach, -reach..=reach, -reach..=reach]
@@ -118,7 +150,8 @@ mod tests {
             q in [corner(4), corner(4), corner(4)],
         ) {
             let meet = pierces(&p, &q) || pierces(&q, &p);
-            prop_assert!(!(meet && are_apart(&p, &q)));
+            let (near_p, near_q) = (NearTriangle::of(&p), NearTriangle::of(&q));
+            prop_assert!(!(meet && are_apart(&near_p, &near_q)));
         }
 
         /// In general position nothing small is in doubt.
@@ -127,13 +160,16 @@ mod tests {
             p in [corner(99), corner(99), corner(99)],
             q in [corner(99), corner(99), corner(99)],
         ) {
-            prop_assume!([sides(&p, &q), sides(&q, &p)].iter().flatten().all(Filtered::is_certain));
-            let edges = |t: &Triangle| [0, 1, 2].map(|i| (t[i], t[(i + 1) % 3]));
+            let (near_p, near_q) = (NearTriangle::of(&p), NearTriangle::of(&q));
+            let sides = [near_p.sides_of(&near_q), near_q.sides_of(&near_p)];
+            let less = |p: &Lattice, q: &Lattice| each_axis(|i| p[i] - q[i]);
+            prop_assume!(sides.iter().flatten().all(Filtered::is_certain));
+            let edges = |t: &[Lattice; 3]| [0, 1, 2].map(|i| (t[i], t[(i + 1) % 3]));
             let flat = edges(&p).iter().any(|(a, b)| edges(&q).iter().any(|(c, d)| {
                 !near_determinant(&less(b, a), &less(c, a), &less(d, a)).is_certain()
             }));
             prop_assume!(!flat);
-            prop_assert_eq!(are_apart(&p, &q), !(pierces(&p, &q) || pierces(&q, &p)));
+            prop_assert_eq!(are_apart(&near_p, &near_q), !(pierces(&p, &q) || pierces(&q, &p)));
         }
     }
 }

@@ -11,13 +11,14 @@ use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::extent::Extent;
 use crate::geometry::doubles::meeting::{
-    folds_over, has_no_area, interleave, meeting, passes, Meeting,
+    folds_over, has_no_area, interleave, meeting_of, passes, Meeting,
 };
-use crate::geometry::doubles::{Point, Triangle};
+use crate::geometry::doubles::{Facing, Point, Triangle};
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, Boxed, Swept};
 use crate::mesh::handle::VertexId;
+use crate::mesh::tasks::{each_chunk, CHUNK};
 use crate::mesh::topology::NONE;
 
 /// The faults that keep a mesh from being embedded.
@@ -53,19 +54,12 @@ pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32) -> Faults
     let next = elements.last().map_or(0, |other| other.0 + 1);
     let (own, flat) = parties(faces, some, next);
     elements.extend(own);
-    let mut search = Search {
-        faces,
-        crossings: Vec::new(),
-        doubtful: Vec::new(),
-    };
-    candidates(faces, &elements, |t, u| search.look_at(t, u));
-    search.settle();
-    search.crossings.sort_unstable();
-    search.crossings.dedup();
-    Faults {
-        crossings: search.crossings,
-        flat,
-    }
+    let candidate = |e: &(u32, u32)| Candidate::of(faces, *e);
+    let candidates: Vec<Candidate> = elements.iter().map(candidate).collect();
+    let mut crossings = Search::among(&candidates).settled(faces);
+    crossings.sort_unstable();
+    crossings.dedup();
+    Faults { crossings, flat }
 }
 
 /// Some triangles by parties, from a number on, and those that have no area: each is a party of its
@@ -90,36 +84,31 @@ pub fn all_faults(faces: &Faces) -> Faults {
 /// For directed edges the third corner of the triangle there, if there is one.
 type Apexes = HashMap<[VertexId; 2], Option<VertexId>>;
 
-/// A search for crossings.
-struct Search<'a> {
-    faces: &'a Faces<'a>,
-    crossings: Vec<[u32; 2]>,
-    /// Pairs that meet along edges: whether surfaces cross there depends on neighbours.
-    doubtful: Vec<([u32; 2], Meeting)>,
+/// Pairs that are looked at together, by several threads where there are any.
+const BATCH: usize = 8 * CHUNK;
+
+/// A triangle that is compared with others.
+struct Candidate {
+    party: u32,
+    triangle: u32,
+    vertices: [VertexId; 3],
+    facing: Facing,
 }
 
-impl Search<'_> {
-    fn look_at(&mut self, t: u32, u: u32) {
-        poll();
-        let pair = [t.min(u), t.max(u)];
-        let (p, q) = (self.faces.corners(pair[0]), self.faces.corners(pair[1]));
-        if let Some(edge) = self.common_edge(pair) {
-            if folds_over(&p, &q, edge) {
-                self.crossings.push(pair);
-            }
-            return;
-        }
-        match meeting(&p, &q) {
-            Meeting::Clear => {}
-            Meeting::Crossing | Meeting::Overlap => self.crossings.push(pair),
-            meeting => self.doubtful.push((pair, meeting)),
+impl Candidate {
+    fn of(faces: &Faces, (party, triangle): (u32, u32)) -> Self {
+        Self {
+            party,
+            triangle,
+            vertices: faces.triangles[triangle as usize],
+            facing: Facing::of(&faces.corners(triangle)),
         }
     }
 
-    /// The edge of the second triangle of a pair at which the two are mates, by its number.
-    fn common_edge(&self, [t, u]: [u32; 2]) -> Option<usize> {
-        let [a, b, c] = self.faces.triangles[t as usize];
-        let [d, e, f] = self.faces.triangles[u as usize];
+    /// The edge of another triangle at which the two are mates, by its number.
+    #[inline]
+    fn common_edge(&self, other: &Self) -> Option<usize> {
+        let ([a, b, c], [d, e, f]) = (self.vertices, other.vertices);
         let own = |from: VertexId, to: VertexId| {
             from == a && to == b || from == b && to == c || from == c && to == a
         };
@@ -131,56 +120,135 @@ impl Search<'_> {
             own(d, f).then_some(2)
         }
     }
+}
 
-    fn ends(&self, triangle: u32, edge: usize) -> [VertexId; 2] {
-        let corners = &self.faces.triangles[triangle as usize];
-        [corners[edge], corners[(edge + 1) % 3]]
+/// What pairs of triangles have in common.
+#[derive(Default)]
+struct Found {
+    crossings: Vec<[u32; 2]>,
+    /// Pairs that meet along edges: whether surfaces cross there depends on neighbours.
+    doubtful: Vec<([u32; 2], Meeting)>,
+}
+
+impl Found {
+    /// Looks at a pair of triangles.
+    fn look_at(&mut self, p: &Candidate, q: &Candidate) {
+        poll();
+        let [p, q] = if p.triangle < q.triangle {
+            [p, q]
+        } else {
+            [q, p]
+        };
+        let pair = [p.triangle, q.triangle];
+        if let Some(edge) = p.common_edge(q) {
+            if folds_over(&p.facing, &q.facing, edge) {
+                self.crossings.push(pair);
+            }
+            return;
+        }
+        match meeting_of(&p.facing, &q.facing) {
+            Meeting::Clear => {}
+            Meeting::Crossing | Meeting::Overlap => self.crossings.push(pair),
+            meeting => self.doubtful.push((pair, meeting)),
+        }
     }
 
-    /// Decides about the doubtful pairs, by the neighbours across the edges at which they meet.
-    fn settle(&mut self) {
-        let doubtful = std::mem::take(&mut self.doubtful);
+    /// The crossings, with those of the doubtful pairs that the neighbours across the edges at which
+    /// they meet show to be some.
+    fn settled(mut self, faces: &Faces) -> Vec<[u32; 2]> {
+        let ends = |triangle: u32, edge: usize| {
+            let corners = &faces.triangles[triangle as usize];
+            [corners[edge], corners[(edge + 1) % 3]]
+        };
         let edges = |(pair, meeting): &([u32; 2], Meeting)| match *meeting {
-            Meeting::FirstEdge(i) => vec![self.ends(pair[0], i)],
-            Meeting::SecondEdge(j) => vec![self.ends(pair[1], j)],
-            Meeting::Edges(i, j) => vec![self.ends(pair[0], i), self.ends(pair[1], j)],
+            Meeting::FirstEdge(i) => vec![ends(pair[0], i)],
+            Meeting::SecondEdge(j) => vec![ends(pair[1], j)],
+            Meeting::Edges(i, j) => vec![ends(pair[0], i), ends(pair[1], j)],
             _ => Vec::new(),
         };
-        let wanted = doubtful.iter().flat_map(edges).map(|[a, b]| [b, a]);
-        let apexes = self.apexes(wanted.map(|e| (e, None)).collect());
-        for (pair, meeting) in doubtful {
+        let wanted = self.doubtful.iter().flat_map(edges).map(|[a, b]| [b, a]);
+        let apexes = apexes(faces, wanted.map(|e| (e, None)).collect());
+        for (pair, meeting) in self.doubtful {
             let mate = |which: usize, edge: usize| {
-                let [a, b] = self.ends(pair[which], edge);
+                let [a, b] = ends(pair[which], edge);
                 let apex = apexes.get(&[b, a]).copied().flatten()?;
-                Some(self.faces.vertices[apex.place()])
+                Some(faces.vertices[apex.place()])
             };
-            let corners = pair.map(|t| self.faces.corners(t));
+            let corners = pair.map(|t| faces.corners(t));
             if crosses_at(meeting, &corners, mate) {
                 self.crossings.push(pair);
             }
         }
+        self.crossings
     }
+}
 
-    /// The apexes of the triangles at some directed edges.
-    fn apexes(&self, mut at: Apexes) -> Apexes {
-        if at.is_empty() {
-            return at;
-        }
-        let mut is_end = vec![false; self.faces.vertices.len()];
-        for v in at.keys().flatten() {
-            is_end[v.place()] = true;
-        }
-        for &[a, b, c] in self.faces.triangles {
-            for [from, to, apex] in [[a, b, c], [b, c, a], [c, a, b]] {
-                if is_end[from.place()]
-                    && is_end[to.place()]
-                    && let Some(found) = at.get_mut(&[from, to])
-                {
-                    *found = Some(apex);
-                }
+/// The apexes of the triangles at some directed edges.
+fn apexes(faces: &Faces, mut at: Apexes) -> Apexes {
+    if at.is_empty() {
+        return at;
+    }
+    let mut is_end = vec![false; faces.vertices.len()];
+    for v in at.keys().flatten() {
+        is_end[v.place()] = true;
+    }
+    for &[a, b, c] in faces.triangles {
+        for [from, to, apex] in [[a, b, c], [b, c, a], [c, a, b]] {
+            if is_end[from.place()]
+                && is_end[to.place()]
+                && let Some(found) = at.get_mut(&[from, to])
+            {
+                *found = Some(apex);
             }
         }
-        at
+    }
+    at
+}
+
+/// A search for crossings.
+struct Search<'a> {
+    /// By party.
+    candidates: &'a [Candidate],
+    /// Pairs that may meet and were not looked at yet.
+    waiting: Vec<[u32; 2]>,
+    found: Found,
+}
+
+impl<'a> Search<'a> {
+    /// What candidates of different parties have in common.
+    fn among(candidates: &'a [Candidate]) -> Found {
+        let mut search = Self {
+            candidates,
+            waiting: Vec::new(),
+            found: Found::default(),
+        };
+        each_pair(candidates, |i, j| search.add([i, j]));
+        search.look();
+        search.found
+    }
+
+    fn add(&mut self, pair: [u32; 2]) {
+        self.waiting.push(pair);
+        if self.waiting.len() == BATCH {
+            self.look();
+        }
+    }
+
+    /// Looks at the pairs that wait.
+    fn look(&mut self) {
+        let looked = each_chunk(&self.waiting, |_, pairs| {
+            let mut found = Found::default();
+            for [i, j] in pairs {
+                let candidate = |k: &u32| &self.candidates[*k as usize];
+                found.look_at(candidate(i), candidate(j));
+            }
+            found
+        });
+        for found in looked {
+            self.found.crossings.extend(found.crossings);
+            self.found.doubtful.extend(found.doubtful);
+        }
+        self.waiting.clear();
     }
 }
 
@@ -206,16 +274,16 @@ pub fn crosses_at(
     crossing.unwrap_or(true)
 }
 
-/// Calls `meet` for the pairs of different parties that may meet; triangles come by party.
-fn candidates(faces: &Faces, all: &[(u32, u32)], mut meet: impl FnMut(u32, u32)) {
-    let corners = |k: u32| faces.corners(all[k as usize].1);
-    let numbers = 0..as_number(all.len());
-    let extents: Vec<Extent> = numbers.clone().map(|k| Extent::of(&corners(k))).collect();
+/// Calls `meet` for the pairs of candidates of different parties that may meet, by their numbers.
+fn each_pair(candidates: &[Candidate], meet: impl FnMut(u32, u32)) {
+    let corners = |k: u32| candidates[k as usize].facing.triangle();
+    let numbers = 0..as_number(candidates.len());
+    let extents: Vec<Extent> = numbers.clone().map(|k| Extent::of(corners(k))).collect();
     let Some(whole) = extents.iter().copied().reduce(|a, b| a.joined(&b)) else {
         return;
     };
     let scale = Scale::of(&whole);
-    let party = |k: u32| all[k as usize].0 as usize;
+    let party = |k: u32| candidates[k as usize].party as usize;
     let boxed = |k: u32| {
         let (low, high) = scale.ends(&extents[k as usize]);
         Boxed::new(party(k), k, [&low, &high], Scale::BITS - 30)
@@ -227,12 +295,10 @@ fn candidates(faces: &Faces, all: &[(u32, u32)], mut meet: impl FnMut(u32, u32))
             operand: party(k),
             low,
             high,
-            corners: Some([scale.image(&a), scale.image(&b), scale.image(&c)]),
+            corners: Some([scale.image(a), scale.image(b), scale.image(c)]),
         }
     };
-    pairs_of_many(numbers.map(boxed).collect(), swept, |i, j| {
-        meet(all[i as usize].1, all[j as usize].1);
-    });
+    pairs_of_many(numbers.map(boxed).collect(), swept, meet);
 }
 
 /// The image of a box on integers; monotone, so that boxes that overlap do so there.

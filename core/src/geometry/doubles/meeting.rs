@@ -31,10 +31,15 @@ pub enum Meeting {
 
 /// Return what two triangles that have area have in common.
 pub fn meeting(p: &Triangle, q: &Triangle) -> Meeting {
+    meeting_of(&Facing::of(p), &Facing::of(q))
+}
+
+/// Return what two prepared triangles that have area have in common.
+pub fn meeting_of(p: &Facing, q: &Facing) -> Meeting {
     if are_clear(p, q) {
         Meeting::Clear
     } else {
-        meeting_by_sides(p, q)
+        meeting_by_sides(p.triangle(), q.triangle())
     }
 }
 
@@ -64,25 +69,45 @@ fn meeting_by_sides(p: &Triangle, q: &Triangle) -> Meeting {
 
 /// Return whether doubles alone show that two triangles have nothing or one corner in common: most
 /// pairs.
-fn are_clear(p: &Triangle, q: &Triangle) -> bool {
-    if p.iter().filter(|c| has_corner(q, c)).count() > 1 {
+fn are_clear(p: &Facing, q: &Facing) -> bool {
+    let [of_p, of_q] = common_corners(p.triangle(), q.triangle());
+    if of_p.iter().filter(|common| **common).count() > 1 {
         return false;
     }
-    let plane = Facing::of(q);
-    if lies_beside(p, &plane, q) || lies_beside(q, &Facing::of(p), p) {
+    if lies_beside(p.triangle(), of_p, q) || lies_beside(q.triangle(), of_q, p) {
         return true;
     }
-    let axis = plane.main_axis();
+    let axis = q.main_axis();
+    let (p, q) = (p.triangle(), q.triangle());
     lies_outside(p, q, axis) || lies_outside(q, p, axis)
+}
+
+/// Return for the corners of each of two triangles whether they are corners of the other.
+#[inline]
+fn common_corners(p: &Triangle, q: &Triangle) -> [[bool; 3]; 2] {
+    let mut common = [[false; 3]; 2];
+    for (i, corner) in p.iter().enumerate() {
+        for (j, other) in q.iter().enumerate() {
+            if is_same(corner, other) {
+                common[0][i] = true;
+                common[1][j] = true;
+            }
+        }
+    }
+    common
 }
 
 /// Return whether a triangle is clearly on one side of the plane of another, but for common
 /// corners.
-fn lies_beside(t: &Triangle, plane: &Facing, other: &Triangle) -> bool {
+#[inline]
+fn lies_beside(t: &Triangle, common: [bool; 3], plane: &Facing) -> bool {
     let mut own = Side::On;
-    for c in t.iter().filter(|c| !has_corner(other, c)) {
-        match plane.clear_side(c) {
-            Filtered::Certain(side) if side != Side::On && side != own.opposite() => own = side,
+    for (c, common) in t.iter().zip(common) {
+        if common {
+            continue;
+        }
+        match plane.clear_side_off(c) {
+            Filtered::Certain(side) if side != own.opposite() => own = side,
             _ => return false,
         }
     }
@@ -109,17 +134,17 @@ fn lies_outside(t: &Triangle, other: &Triangle, axis: usize) -> bool {
 
 /// Return whether a triangle lies on another that is its mate at an edge, given by its number in
 /// the second; both have area. If not, they have nothing but the edge in common.
-pub fn folds_over(p: &Triangle, q: &Triangle, edge: usize) -> bool {
+pub fn folds_over(p: &Facing, q: &Facing, edge: usize) -> bool {
     // Seen so that both face one way, they lie on different sides of the edge.
-    let clear = |t: &Triangle, axis: usize| clear_turn(seen_along(t, axis));
     let is_spread = |axis: usize| {
-        let own = clear(p, axis);
-        own.is_certain() && clear(q, axis) == own
+        let own = p.clear_turn(axis);
+        own.is_certain() && q.clear_turn(axis) == own
     };
-    if is_spread(0) || is_spread(1) || is_spread(2) || side(p, &q[(edge + 2) % 3]) != Side::On {
+    let apex = &q.triangle()[(edge + 2) % 3];
+    if is_spread(0) || is_spread(1) || is_spread(2) || p.side(apex) != Side::On {
         return false;
     }
-    let facing = |t: &Triangle, axis: usize| turn(seen_along(t, axis));
+    let facing = |t: &Facing, axis: usize| turn(seen_along(t.triangle(), axis));
     (0..3).all(|axis| facing(p, axis) == -facing(q, axis))
 }
 
@@ -304,7 +329,7 @@ mod tests {
                 }
                 let exact = meeting_by_sides(&p, &q);
                 assert_eq!(meeting(&p, &q), exact, "{p:?} {q:?}");
-                clear += usize::from(are_clear(&p, &q));
+                clear += usize::from(are_clear(&Facing::of(&p), &Facing::of(&q)));
                 met += usize::from(exact != Meeting::Clear);
             }
             assert!(clear > 4000 && met > 4000, "{clear} {met}");
@@ -324,7 +349,7 @@ mod tests {
                 }
                 let exact = meeting_by_sides(&p, &q);
                 for (turned, edge) in [(q, 0), ([d, b, a], 1), ([a, d, b], 2)] {
-                    let folds = folds_over(&p, &turned, edge);
+                    let folds = folds_over(&Facing::of(&p), &Facing::of(&turned), edge);
                     assert_eq!(folds, exact == Meeting::Overlap, "{p:?} {turned:?}");
                 }
                 folded += usize::from(exact == Meeting::Overlap);

@@ -42,47 +42,69 @@ const TRUSTED: std::ops::Range<f64> = 1e-200..1e200;
 /// two rows, 375 a determinant of three.
 const SPAN: i32 = 70;
 
-/// The plane of a triangle, prepared for questions about sides.
-pub struct Facing<'a> {
-    triangle: &'a Triangle,
+/// A triangle with its plane, prepared for questions about sides.
+#[derive(Clone, Copy, Debug)]
+pub struct Facing {
+    triangle: Triangle,
     minors: Point,
     sizes: Point,
 }
 
-impl<'a> Facing<'a> {
+impl Facing {
     /// The plane through a triangle's corners.
     #[inline]
-    pub fn of(triangle: &'a Triangle) -> Self {
+    pub fn of(triangle: &Triangle) -> Self {
         let [a, b, c] = triangle;
         let (u, v) = (difference(b, a), difference(c, a));
         let products = |j: usize, k: usize| (u[j] * v[k], u[k] * v[j]);
         let (x, y, z) = (products(1, 2), products(2, 0), products(0, 1));
         let size = |(left, right): (f64, f64)| left.abs() + right.abs();
         Self {
-            triangle,
+            triangle: *triangle,
             minors: [x.0 - x.1, y.0 - y.1, z.0 - z.1],
             sizes: [size(x), size(y), size(z)],
         }
+    }
+
+    /// The triangle.
+    #[inline]
+    pub fn triangle(&self) -> &Triangle {
+        &self.triangle
+    }
+
+    /// Sign of the turn of the corners as seen against the direction of an axis, where doubles
+    /// settle that there is one.
+    #[inline]
+    pub fn clear_turn(&self, axis: usize) -> Filtered<Sign> {
+        let (value, size) = (self.minors[axis], self.sizes[axis]);
+        let clear = value.abs() > TURN_BOUND * size && TRUSTED.contains(&size);
+        Filtered::when(clear, Sign::of(value))
     }
 
     /// The side on which a point lies: `Plus` is where the normal by the right-hand rule points;
     /// exact.
     #[inline]
     pub fn side(&self, d: &Point) -> Side {
-        let [a, b, c] = self.triangle;
+        let [a, b, c] = &self.triangle;
         self.clear_side(d).or_exact(|| exact_side([a, b, c, d]))
     }
 
     /// The side on which a point lies, where doubles settle it.
     #[inline]
     pub fn clear_side(&self, d: &Point) -> Filtered<Side> {
-        let [a, b, c] = self.triangle;
+        let [a, b, c] = &self.triangle;
         let level = |i: usize| a[i] == d[i] && b[i] == d[i] && c[i] == d[i];
         if level(0) || level(1) || level(2) {
             return Filtered::Certain(Side::On);
         }
+        self.clear_side_off(d)
+    }
+
+    /// The side off the plane on which a point lies, where doubles settle it.
+    #[inline]
+    pub fn clear_side_off(&self, d: &Point) -> Filtered<Side> {
         let (m, s) = (&self.minors, &self.sizes);
-        let w = difference(d, a);
+        let w = difference(d, &self.triangle[0]);
         let value = m[0] * w[0] + m[1] * w[1] + m[2] * w[2];
         let size = s[0] * w[0].abs() + s[1] * w[1].abs() + s[2] * w[2].abs();
         let clear = value.abs() > SIDE_BOUND * size && TRUSTED.contains(&size);

@@ -5,7 +5,7 @@
 //! surface it is counted against, the answer is doubtful.
 
 use super::crossing::change_between;
-use crate::arith::convert::as_double;
+use crate::arith::convert::{as_double, as_whole};
 use crate::arith::{Filtered, Int, Sign};
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::{Lattice, Plane};
@@ -31,21 +31,33 @@ pub struct Way {
     inverse: [f64; 3],
     /// By how much boxes are widened.
     slack: f64,
+    /// A box around the path, widened by as much.
+    low: Lattice,
+    high: Lattice,
 }
 
 impl Way {
     /// A path between points that are rounded by less than a step.
     pub fn new(from: [f64; 3], to: [f64; 3]) -> Self {
         let sizes = from.iter().chain(&to).map(|x| x.abs());
+        let slack = 2.0 + sizes.fold(0.0, f64::max) * WAY_SLACK;
         Self {
             from,
             inverse: each_axis(|i| 1.0 / (to[i] - from[i])),
-            slack: 2.0 + sizes.fold(0.0, f64::max) * WAY_SLACK,
+            slack,
+            low: each_axis(|i| as_whole((from[i].min(to[i]) - slack).floor())),
+            high: each_axis(|i| as_whole((from[i].max(to[i]) + slack).ceil())),
         }
     }
 
     /// Return whether the path may meet a box; errs on yes.
+    #[inline]
     pub fn may_meet(&self, low: &Lattice, high: &Lattice) -> bool {
+        let beyond = |i: usize| low[i] > self.high[i] || high[i] < self.low[i];
+        !(beyond(0) || beyond(1) || beyond(2)) && self.passes(low, high)
+    }
+
+    fn passes(&self, low: &Lattice, high: &Lattice) -> bool {
         let (mut first, mut last) = (0.0f64, 1.0f64);
         for i in 0..3 {
             let before = as_double(low[i]) - self.slack - self.from[i];
@@ -97,6 +109,7 @@ pub fn near_determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> Filtered<Sign>
 }
 
 /// A cross product in doubles, to be multiplied with many.
+#[derive(Clone, Copy, Debug)]
 pub struct NearCross {
     value: [f64; 3],
     /// The magnitudes of the products it is made of.
@@ -104,28 +117,49 @@ pub struct NearCross {
 }
 
 impl NearCross {
+    /// Has no certain sign with anything.
+    pub const UNKNOWN: Self = Self {
+        value: [f64::NAN; 3],
+        size: [f64::NAN; 3],
+    };
+
     /// The cross product of two rows.
     #[inline]
     pub fn of(b: &Lattice, c: &Lattice) -> Self {
-        let [q, r] = [b, c].map(|row| row.map(as_double));
+        Self::of_rounded(&rounded(b), &rounded(c))
+    }
+
+    /// The cross product of two rows of rounded differences.
+    #[inline]
+    pub fn of_rounded(q: &[f64; 3], r: &[f64; 3]) -> Self {
         let minor = |i: usize, j: usize| (q[i] * r[j], q[j] * r[i]);
         let minors = [minor(1, 2), minor(2, 0), minor(0, 1)];
         Self {
-            value: minors.map(|m| m.0 - m.1),
-            size: minors.map(|m| m.0.abs() + m.1.abs()),
+            value: each_axis(|i| minors[i].0 - minors[i].1),
+            size: each_axis(|i| minors[i].0.abs() + minors[i].1.abs()),
         }
     }
 
     /// The sign of its product with a row, where doubles tell it.
     #[inline]
     pub fn sign_with(&self, a: &Lattice) -> Filtered<Sign> {
-        let p = a.map(as_double);
+        self.sign_with_rounded(&rounded(a))
+    }
+
+    /// The sign of its product with a row of rounded differences, where doubles tell it.
+    #[inline]
+    pub fn sign_with_rounded(&self, p: &[f64; 3]) -> Filtered<Sign> {
         let value = p[0] * self.value[0] + p[1] * self.value[1] + p[2] * self.value[2];
         let size =
             p[0].abs() * self.size[0] + p[1].abs() * self.size[1] + p[2].abs() * self.size[2];
         let doubt = size * DETERMINANT_FILTER;
         Filtered::when(value.abs() > doubt, Sign::of(value))
     }
+}
+
+#[inline]
+fn rounded(row: &Lattice) -> [f64; 3] {
+    each_axis(|i| as_double(row[i]))
 }
 
 /// Sign of the determinant of three rows.

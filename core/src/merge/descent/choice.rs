@@ -46,6 +46,10 @@ pub const GROUPED: usize = 3;
 /// of a group's boundaries is less than all of them, and all of them cross each other.
 const MANY: usize = 16;
 
+/// The least share of a cell's elements that should lie in small parts in which several operands
+/// have some: others cost the kernel for general position little more than halving costs.
+const MIXED: f64 = 0.25;
+
 /// Parts of a cell that tell whether several operands have elements there are about this small.
 const SAMPLE: usize = 16;
 
@@ -120,14 +124,14 @@ impl Round {
 
     /// Return whether a cell of so many elements is for the kernel for general position.
     ///
-    /// That looks at all elements, halving only at where they are: so at least half of them should
-    /// lie in small parts of the cell where several operands have some.
+    /// That looks at all elements, halving only at where they are: so a share of at least `MIXED`
+    /// should lie in small parts of the cell where several operands have some.
     pub fn suits_general_position(&self, cell: &Cell, states: &States, total: usize) -> bool {
         if states.len() > MOST || total > self.refused / RETRY {
             return false;
         }
         if states.iter().all(|s| s.1.is_given()) {
-            return total <= FRESH && mixed(cell, states, total) >= 0.5;
+            return total <= FRESH && mixed(cell, states, total) >= MIXED;
         }
         total <= GENERAL && states.iter().all(|s| matches!(s.1, State::List(_)))
     }

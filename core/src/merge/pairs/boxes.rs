@@ -1,12 +1,14 @@
 //! Pairs of boxes that overlap, found by halving the space around them.
 
+use std::cmp::Reverse;
+
 use crate::arith::convert::as_number;
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::spend;
 
 /// Up to this many boxes are compared all with all: halving them costs about as much.
-const FEW: usize = 96;
+const FEW: usize = 256;
 
 /// Up to this many that halving does not separate are compared even so: a sweep costs about as much.
 pub const SOME: usize = 384;
@@ -14,10 +16,14 @@ pub const SOME: usize = 384;
 /// So many pairs of boxes are compared in the time of one unit of work.
 const PAIRS: usize = 16;
 
+/// So many boxes are compared with one at a time.
+const LANES: usize = 8;
+
 /// An element with its box in short integers.
 #[derive(Clone, Copy)]
 pub struct Boxed {
-    extent: ShortBox,
+    low: [i32; 3],
+    high: [i32; 3],
     /// Its operand.
     pub operand: u32,
     /// Its number.
@@ -26,9 +32,11 @@ pub struct Boxed {
 
 impl Boxed {
     /// An element of an operand, its number, and the ends of its box shortened by some bits.
-    pub fn new(operand: usize, number: u32, ends: [&Lattice; 2], shift: u32) -> Self {
+    #[allow(clippy::cast_possible_truncation, reason = "the shift leaves 31 bits")]
+    pub fn new(operand: usize, number: u32, [low, high]: [&Lattice; 2], shift: u32) -> Self {
         Self {
-            extent: ShortBox::new(ends, shift),
+            low: each_axis(|i| (low[i] >> shift) as i32),
+            high: each_axis(|i| (high[i] >> shift) as i32),
             operand: as_number(operand),
             number,
         }
@@ -40,10 +48,11 @@ pub fn shift_of(size: u64) -> u32 {
     (u64::BITS - size.leading_zeros()).saturating_sub(30)
 }
 
-/// The upper ends of a box and its lower ends, negated; or, turned, the lower ends and the upper
-/// ones, negated. Two boxes overlap if those of one, turned, nowhere exceed those of the other.
-#[derive(Clone, Copy)]
-struct ShortBox([i32; 8]);
+/// The ends of several boxes, axis by axis, so that all are compared with one box at once.
+struct Lanes {
+    low: [[i32; LANES]; 3],
+    high: [[i32; LANES]; 3],
+}
 
 /// The elements that reach into a box of space.
 struct Task {
@@ -89,68 +98,96 @@ pub fn pairs(
 /// Calls `meet` for the pairs that belong to a space, comparing all elements with all of other
 /// operands.
 pub fn compare_all(elements: &[Boxed], space: &Space, meet: &mut impl FnMut(u32, u32)) {
+    let lanes = Lanes::of(elements);
     let mut end = 0;
     for run in elements.chunk_by(|a, b| a.operand == b.operand) {
         let start = end;
         end += run.len();
         for one in &elements[start..end] {
             spend(1 + (elements.len() - end) / PAIRS);
-            let wanted = one.extent.turned();
-            for other in &elements[end..] {
-                if wanted.overlaps(&other.extent) && space.owns(one, other) {
+            Lanes::each_overlapping(&lanes, end, one, |at| {
+                let other = &elements[at];
+                if space.owns(one, other) {
                     meet(one.number, other.number);
                 }
-            }
+            });
         }
     }
 }
 
 /// Calls `meet` for the pairs of two groups that belong to a space, comparing all with all.
 pub fn compare_groups(first: &[Boxed], second: &[Boxed], space: &Space, meet: impl Fn(u32, u32)) {
+    let lanes = Lanes::of(second);
     for one in first {
         spend(1 + second.len() / PAIRS);
-        let wanted = one.extent.turned();
-        for other in second {
-            if wanted.overlaps(&other.extent) && space.owns(one, other) {
+        Lanes::each_overlapping(&lanes, 0, one, |at| {
+            let other = &second[at];
+            if space.owns(one, other) {
                 meet(one.number, other.number);
             }
-        }
+        });
     }
 }
 
-impl ShortBox {
-    #[allow(clippy::cast_possible_truncation, reason = "the shift leaves 31 bits")]
-    fn new([low, high]: [&Lattice; 2], shift: u32) -> Self {
-        let short = |x: i64| (x >> shift) as i32;
-        let [a, b, c] = low.map(short);
-        let [x, y, z] = high.map(short);
-        Self([x, y, z, 0, -a, -b, -c, 0])
+impl Lanes {
+    /// Boxes that overlap nothing.
+    const EMPTY: Self = Self {
+        low: [[i32::MAX; LANES]; 3],
+        high: [[i32::MIN; LANES]; 3],
+    };
+
+    /// The boxes of some elements in their order, the last lanes filled with empty boxes.
+    fn of(elements: &[Boxed]) -> Vec<Self> {
+        elements.chunks(LANES).map(Self::of_few).collect()
     }
 
-    fn low(&self, axis: usize) -> i32 {
-        -self.0[4 + axis]
+    fn of_few(elements: &[Boxed]) -> Self {
+        let mut lanes = Self::EMPTY;
+        for (lane, e) in elements.iter().enumerate() {
+            for i in 0..3 {
+                lanes.low[i][lane] = e.low[i];
+                lanes.high[i][lane] = e.high[i];
+            }
+        }
+        lanes
     }
 
-    fn high(&self, axis: usize) -> i32 {
-        self.0[axis]
+    /// Calls `found` with the numbers of the boxes that overlap one, from a number on.
+    fn each_overlapping(all: &[Self], from: usize, one: &Boxed, mut found: impl FnMut(usize)) {
+        let first = from / LANES;
+        for (block, lanes) in (first..).zip(&all[first.min(all.len())..]) {
+            let missed = lanes.missed_by(one);
+            if missed.iter().fold(!0, |all, one| all & one) == !0 {
+                continue;
+            }
+            for (at, missed) in (block * LANES..).zip(missed) {
+                if missed == 0 && at >= from {
+                    found(at);
+                }
+            }
+        }
     }
 
-    fn turned(&self) -> Self {
-        let [x, y, z, _, a, b, c, _] = self.0;
-        Self([-a, -b, -c, 0, -x, -y, -z, 0])
-    }
-
+    /// For each box all bits if it does not overlap one, else none: words as wide as the numbers
+    /// that are compared stay in their lanes.
     #[inline]
-    fn overlaps(&self, other: &Self) -> bool {
-        let exceeds = self.0.iter().zip(&other.0).map(|(a, b)| a > b);
-        !exceeds.fold(false, |any, one| any | one)
+    fn missed_by(&self, one: &Boxed) -> [u32; LANES] {
+        let word = |b: bool| if b { !0u32 } else { 0 };
+        let mut missed = [0; LANES];
+        for i in 0..3 {
+            for (lane, missed) in missed.iter_mut().enumerate() {
+                *missed |= word(self.low[i][lane] > one.high[i]);
+                *missed |= word(self.high[i][lane] < one.low[i]);
+            }
+        }
+        missed
     }
 }
 
 impl Space {
     fn around(elements: &[Boxed]) -> Self {
-        let low = |i: usize| elements.iter().map(|e| e.extent.low(i)).min();
-        let high = |i: usize| elements.iter().map(|e| e.extent.high(i)).max();
+        let low = |i: usize| elements.iter().map(|e| e.low[i]).min();
+        let high = |i: usize| elements.iter().map(|e| e.high[i]).max();
         Self {
             low: each_axis(|i| low(i).map_or(0, |x| x - 1)),
             high: each_axis(|i| high(i).unwrap_or(0)),
@@ -160,7 +197,7 @@ impl Space {
     /// Return whether a pair belongs here.
     pub fn owns(&self, a: &Boxed, b: &Boxed) -> bool {
         (0..3).all(|i| {
-            let corner = a.extent.low(i).max(b.extent.low(i));
+            let corner = a.low[i].max(b.low[i]);
             self.low[i] < corner && corner <= self.high[i]
         })
     }
@@ -168,22 +205,24 @@ impl Space {
 
 impl Task {
     /// Divides the elements among the halves of the space; false if no axis separates them.
+    ///
+    /// The longest axis that does is as good as the best one, and not all have to be counted.
     fn halve(&self, open: &mut Vec<Self>) -> bool {
-        let wide = |i: &usize| self.space.high[*i] - self.space.low[*i] > 1;
-        let counted = |i: usize| (self.counts(i), i);
-        let best = (0..3).filter(wide).map(counted);
-        let Some(([few, many], axis)) = best.min_by_key(|(counts, _)| counts[0] + counts[1]) else {
+        let length = |i: usize| self.space.high[i] - self.space.low[i];
+        let mut axes = [0, 1, 2];
+        axes.sort_by_key(|i| Reverse(length(*i)));
+        let wide = axes.into_iter().filter(|i| length(*i) > 1);
+        let separates = |[few, many]: [usize; 2]| 4 * (few + many) <= 5 * self.elements.len();
+        let mut counted = wide.map(|i| (i, self.counts(i)));
+        let Some((axis, [few, many])) = counted.find(|c| separates(c.1)) else {
             return false;
         };
-        if 4 * (few + many) > 5 * self.elements.len() {
-            return false;
-        }
         let at = self.middle(axis);
         let (mut below, mut above) = (self.space, self.space);
         below.high[axis] = at;
         above.low[axis] = at;
-        self.push(below, few, |e| e.extent.low(axis) <= at, open);
-        self.push(above, many, |e| e.extent.high(axis) > at, open);
+        self.push(below, few, |e| e.low[axis] <= at, open);
+        self.push(above, many, |e| e.high[axis] > at, open);
         true
     }
 
@@ -196,8 +235,8 @@ impl Task {
         let at = self.middle(axis);
         let count = |[below, above]: [u32; 2], e: &Boxed| {
             [
-                below + u32::from(e.extent.low(axis) <= at),
-                above + u32::from(e.extent.high(axis) > at),
+                below + u32::from(e.low[axis] <= at),
+                above + u32::from(e.high[axis] > at),
             ]
         };
         self.elements.iter().fold([0; 2], count).map(|n| n as usize)

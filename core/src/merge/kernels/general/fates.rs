@@ -7,11 +7,11 @@ use smallvec::SmallVec;
 use super::anchors::Anchor;
 use super::cutting::{contact, cut_up, Contact, Cutter, Cutting};
 use super::points::Points;
-use super::scene::{Element, Place, Scene};
+use super::scene::{Element, Scene};
 use super::segment::{Crossed, Crosser};
 use super::trace::Trace;
 use crate::arith::convert::as_number;
-use crate::geometry::apart::are_apart;
+use crate::geometry::apart::{are_apart, NearTriangle};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
@@ -71,10 +71,11 @@ impl Scene<'_> {
         let boxes = (0..).zip(&self.elements).map(boxed).collect();
         let swept = |number: u32| self.elements[number as usize].swept(self.cell);
         let mut found = vec![Neighbours::new(); self.elements.len()];
+        let near: Vec<NearTriangle> = self.elements.iter().map(Element::near).collect();
         pairs(boxes, swept, |a, b| {
             poll();
             let (i, j) = (a as usize, b as usize);
-            if !self.separated(i, j) {
+            if !are_apart(&near[i], &near[j]) {
                 found[i].push(b);
                 found[j].push(a);
             }
@@ -85,14 +86,6 @@ impl Scene<'_> {
             list.sort_unstable();
         }
         Some(found)
-    }
-
-    /// Return whether two elements certainly do not touch.
-    fn separated(&self, i: usize, j: usize) -> bool {
-        match (&self.elements[i].place, &self.elements[j].place) {
-            (Place::Face(a), Place::Face(b)) => are_apart(&a.corners, &b.corners),
-            _ => false,
-        }
     }
 
     fn fate(

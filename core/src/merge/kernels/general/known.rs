@@ -10,13 +10,21 @@ use crate::arith::convert::as_number;
 use crate::geometry::cell::Cell;
 use crate::interrupt::poll;
 use crate::mesh::disjoint::DisjointSets;
+use crate::mesh::handle::Slot;
 
 /// Stands for no anchor, and is above the numbers of all.
 const NONE: u32 = u32::MAX;
 
+/// Up to so many times as many vertices as elements are numbered in a table of all vertices: to
+/// clear a place there costs about a tenth of looking a name up, and half the elements have new ones.
+const SPARSE: usize = 4;
+
 /// Anchors with what is known of the other operands there. Those of an element that nothing
 /// crosses have the same labels.
 pub(super) struct Known {
+    /// For each operand the numbers of a mesh's vertices, if most of the mesh is in the cell.
+    of_vertices: Vec<Option<(Slot, Vec<u32>)>>,
+    /// The numbers of all others.
     numbers: HashMap<(u32, Name), u32>,
     sets: DisjointSets,
     /// By anchor that stands for others.
@@ -33,8 +41,14 @@ impl Known {
     pub(super) fn new(scene: &Scene, fates: &[Fate]) -> Self {
         // A closed surface has half as many vertices as triangles.
         let count = scene.elements.len();
+        let of_vertices: Vec<_> = (0..scene.corners.len())
+            .map(|operand| numbers_of_vertices(scene.of_operand(operand)))
+            .collect();
+        let listed = of_vertices.iter().all(Option::is_some);
+        let others = if listed { 0 } else { count };
         let mut known = Self {
-            numbers: HashMap::with_capacity_and_hasher(count, FxBuildHasher),
+            of_vertices,
+            numbers: HashMap::with_capacity_and_hasher(others, FxBuildHasher),
             sets: DisjointSets::with_capacity(count),
             labels: Vec::with_capacity(count),
             anchors: Vec::with_capacity(count),
@@ -84,10 +98,17 @@ impl Known {
     /// The number of the anchor that stands for the one with this name.
     pub(super) fn root_of(&mut self, operand: usize, name: Name) -> u32 {
         let next = self.sets.end();
-        let at = *self
-            .numbers
-            .entry((as_number(operand), name))
-            .or_insert(next);
+        let at = match (name, &mut self.of_vertices[operand]) {
+            (Name::Vertex(slot, vertex), Some((own, numbers))) if slot == *own => {
+                let number = &mut numbers[vertex.place()];
+                *number = next.min(*number);
+                *number
+            }
+            _ => {
+                let name = (as_number(operand), name);
+                *self.numbers.entry(name).or_insert(next)
+            }
+        };
         if at == next {
             self.sets.push();
             self.labels.push(None);
@@ -149,11 +170,21 @@ impl Known {
     }
 }
 
+/// No numbers yet for the vertices of the mesh that the first of an operand's elements is of, unless
+/// that mesh is much larger than what the cell has of it.
+fn numbers_of_vertices(elements: &[Element]) -> Option<(Slot, Vec<u32>)> {
+    let Place::Face(triangle) = &elements.first()?.place else {
+        return None;
+    };
+    let count = triangle.mesh_size();
+    (count <= SPARSE * elements.len()).then(|| (triangle.face.slot, vec![NONE; count]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::merge::scenes::crossing;
-    use crate::mesh::handle::{Slot, VertexId};
+    use crate::mesh::handle::VertexId;
 
     #[test]
     fn what_is_known_at_a_vertex_is_known_at_all_that_nothing_separates() {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::cutting::Face;
 use super::Labels;
 use crate::arith::convert::{as_double, as_whole};
+use crate::geometry::apart::NearTriangle;
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
@@ -155,6 +156,11 @@ impl Triangle<'_> {
         Name::Vertex(self.face.slot, self.vertices[corner])
     }
 
+    /// The number of vertices of the mesh that the face is of.
+    pub(super) fn mesh_size(&self) -> usize {
+        self.source.mesh().map_or(0, |mesh| mesh.vertices.len())
+    }
+
     /// The vertices at the ends of an edge that is given by its places.
     pub(super) fn ends_of(&self, edge: [&Lattice; 2]) -> Option<[VertexId; 2]> {
         let at = |place: &Lattice| self.corners.iter().position(|c| c == place);
@@ -211,6 +217,14 @@ impl<'a> Element<'a> {
         let (low, high) = (cell.low(), cell.high());
         let within = |p: &Lattice, i: usize| p[i].clamp(low[i] - 1, high[i] + 1) - low[i];
         [&self.low, &self.high].map(|p| each_axis(|i| within(p, i)))
+    }
+
+    /// The element to be compared with others; what is no whole face is apart from nothing.
+    pub(super) fn near(&self) -> NearTriangle {
+        match &self.place {
+            Place::Face(triangle) => NearTriangle::of(&triangle.corners),
+            Place::Plane(..) | Place::Piece(..) => NearTriangle::UNKNOWN,
+        }
     }
 
     /// The element as a sweep sees it.
