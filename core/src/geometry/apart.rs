@@ -141,6 +141,15 @@ mod tests {
         [-reach..=reach, -reach..=reach, -reach..=reach]
     }
 
+    #[test]
+    fn what_is_not_known_is_apart_from_nothing() {
+        let far = NearTriangle::of(&[[99, 0, 0], [99, 1, 0], [99, 0, 1]]);
+        let near = NearTriangle::of(&[[0, 0, 0], [0, 1, 0], [0, 0, 1]]);
+        assert!(are_apart(&near, &far));
+        let unknown = NearTriangle::UNKNOWN;
+        assert!(!are_apart(&unknown, &far) && !are_apart(&far, &unknown));
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 

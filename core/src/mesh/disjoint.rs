@@ -63,6 +63,14 @@ impl DisjointSets {
     #[inline]
     pub fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.least(a), self.least(b));
-        self.lower[a.max(b) as usize] = a.min(b);
+        self.join_named(a, b);
+    }
+
+    /// Makes two sets one, given by their names, and returns that one's.
+    #[inline]
+    pub fn join_named(&mut self, a: u32, b: u32) -> u32 {
+        let least = a.min(b);
+        self.lower[a.max(b) as usize] = least;
+        least
     }
 }

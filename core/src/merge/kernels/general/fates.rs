@@ -81,7 +81,7 @@ impl Scene<'_> {
             }
         })?;
         // The order in which pairs are found is not that of the elements.
-        for list in &mut found {
+        for list in found.iter_mut().filter(|list| list.len() > 1) {
             poll();
             list.sort_unstable();
         }

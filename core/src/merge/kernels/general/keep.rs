@@ -45,14 +45,13 @@ impl Element<'_> {
         labels: &[Labels],
         values: &mut Values<impl FnMut(Labels) -> bool>,
     ) -> [Stays; 2] {
-        let side = |others: &Labels| self.side(*others, values);
+        let mut side = |others: &Labels| self.side(*others, values);
+        if let [only] = labels {
+            return side(only).map_or([Stays::Nothing, Stays::Nothing], all_on);
+        }
         let sides: SmallVec<[Option<usize>; 4]> = labels.iter().map(side).collect();
-        let mut stays = [Stays::Nothing, Stays::Nothing];
         match sides[0] {
-            Some(first) if sides.iter().all(|s| *s == Some(first)) => {
-                stays[first] = Stays::All;
-                stays
-            }
+            Some(first) if sides.iter().all(|s| *s == Some(first)) => all_on(first),
             _ => stays_of_parts(fate, &sides),
         }
     }
@@ -100,6 +99,13 @@ impl<F: FnMut(Labels) -> bool> Values<F> {
         self.last = Some(((own, others), found));
         found
     }
+}
+
+/// All of an element on a side.
+fn all_on(side: usize) -> [Stays; 2] {
+    let mut stays = [Stays::Nothing, Stays::Nothing];
+    stays[side] = Stays::All;
+    stays
 }
 
 /// The parts by the sides on which they stay.

@@ -15,9 +15,9 @@ use crate::mesh::handle::Slot;
 /// Stands for no anchor, and is above the numbers of all.
 const NONE: u32 = u32::MAX;
 
-/// Up to so many times as many vertices as elements are numbered in a table of all vertices: to
-/// clear a place there costs about a tenth of looking a name up, and half the elements have new ones.
-const SPARSE: usize = 4;
+/// Up to so many times as many vertices as elements are numbered in a table of all vertices. An
+/// element looks three names up, each at the cost of clearing some fifty places of the table.
+const SPARSE: usize = 16;
 
 /// Anchors with what is known of the other operands there. Those of an element that nothing
 /// crosses have the same labels.
@@ -88,10 +88,11 @@ impl Known {
     fn unite(&mut self, operand: usize, names: impl Iterator<Item = Name>) -> u32 {
         names.fold(NONE, |a, name| {
             let b = self.root_of(operand, name);
-            if a != NONE {
-                self.sets.join(a, b);
+            if a == NONE {
+                b
+            } else {
+                self.sets.join_named(a, b)
             }
-            a.min(b)
         })
     }
 

@@ -214,6 +214,9 @@ impl<'a> Element<'a> {
     /// The ends of the element's box inside the cell, relative to its low corner: at most a step
     /// outside, even if the element misses the cell.
     pub(super) fn extent(&self, cell: &Cell) -> [Lattice; 2] {
+        if self.inside && matches!(self.place, Place::Face(_)) {
+            return [&self.low, &self.high].map(|p| each_axis(|i| p[i] - cell.low()[i]));
+        }
         let (low, high) = (cell.low(), cell.high());
         let within = |p: &Lattice, i: usize| p[i].clamp(low[i] - 1, high[i] + 1) - low[i];
         [&self.low, &self.high].map(|p| each_axis(|i| within(p, i)))
