@@ -122,7 +122,7 @@ impl Candidate {
     }
 }
 
-/// What pairs of triangles have in common.
+/// The meetings found between pairs of triangles.
 #[derive(Default)]
 struct Found {
     crossings: Vec<[u32; 2]>,
@@ -215,7 +215,7 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// What candidates of different parties have in common.
+    /// Find the meetings of candidates of different parties.
     fn among(candidates: &'a [Candidate]) -> Found {
         let mut search = Self {
             candidates,
