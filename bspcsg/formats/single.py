@@ -59,7 +59,8 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
     """Return a solid's mesh in single precision, crossing itself nowhere that could be mended.
 
     Rounding moves every corner, so that surfaces near each other may cross and thin triangles lose
-    their area; such are taken out by changes of the width of the rounding.
+    their area; such are taken out by changes of the width of the rounding. Where that would leave
+    nothing at all, surfaces are moved outwards by a spacing of single precision first.
 
     Parameters
     ----------
@@ -69,9 +70,9 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
     Returns
     -------
     mesh : Mesh
-        The given one if nothing had to be changed, or if single precision leaves nothing of it.
+        The given one if nothing had to be changed, or if nothing of it can be kept.
     findings : tuple of Finding
-        The number of triangles changed, and the places where surfaces still cross.
+        The number of triangles changed or moved, and the places where surfaces still cross.
 
     Raises
     ------
@@ -81,6 +82,26 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
     with np.errstate(over="ignore"):
         if not np.isfinite(mesh.vertices.astype(np.float32)).all():
             raise OverflowError
+    result, mended, crossing = _mended(mesh)
+    changed = _mending(mended)
+    if len(mesh.faces) and not len(result.faces):
+        result, changed, crossing = _kept(mesh)
+    left = tuple(finding for finding in (changed, _crossing(crossing)) if finding.count)
+    return (result if changed.count else mesh), left
+
+
+def _kept(mesh: Mesh) -> tuple[Mesh, Finding, IndexArray]:
+    """Return what can be kept of a mesh that rounding leaves nothing of, how, and what crosses."""
+    spacing = _spacing(mesh.vertices)
+    result, _, crossing = _mended(_thickened(mesh, spacing))
+    if len(result.faces):
+        return result, _thickening(len(result.faces), spacing), crossing
+    rounded = mesh.vertices.astype(np.float32).astype(np.float64)
+    return mesh, _mending(0), _faulty(certify(rounded, mesh.faces))
+
+
+def _mended(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
+    """Return a mesh in single precision, how many triangles were mended, and which still cross."""
     result, mended, crossing = _rounded(mesh)
     for _ in range(_ROUNDS):
         if not len(crossing) or not len(result.faces):
@@ -91,22 +112,7 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
         # leaves as they were may cross, so all are looked at.
         crossing = _faulty(result.certificate)
         mended += more
-    if not len(result.faces):
-        # All of it is thinner than the rounding, by which opposite sides come to lie in each other.
-        rounded = mesh.vertices.astype(np.float32).astype(np.float64)
-        result, mended, crossing = mesh, 0, _faulty(certify(rounded, mesh.faces))
-    findings = [
-        Finding("mended_in_single", "note", _MENDED.format(mended), (), mended),
-        Finding(
-            "crossing_in_single",
-            "warning",
-            _CROSSING.format(len(crossing)) + _REMEDY,
-            tuple(crossing[:_NAMED].tolist()),
-            len(crossing),
-        ),
-    ]
-    left = tuple(finding for finding in findings if finding.count)
-    return (result if mended else mesh), left
+    return result, mended, crossing
 
 
 #: Rounds of uniting what rounding made cross, and of rounding what that makes. One nearly always
@@ -115,7 +121,7 @@ _ROUNDS = 4
 
 
 def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
-    """Return a mesh in single precision, how many triangles were mended, and which still cross."""
+    """Return a mesh rounded and mended once, of how many triangles, and which of them cross."""
     with core_errors():
         found = mesh_in_single(mesh.vertices, mesh.faces)
     kept = found["kept"]
@@ -148,11 +154,51 @@ def _united(mesh: Mesh) -> Mesh:
     return Mesh(result.vertices, result.faces, origins, result.carried)
 
 
-_MENDED = (
-    "rounding to single precision makes surfaces cross or leaves triangles no area; {} triangles"
-    " were changed or left out by the width of that rounding."
-)
-_CROSSING = "in single precision {} triangles cross or overlap others"
+def _spacing(vertices: FloatArray) -> float:
+    """Return how far apart single precision has numbers as large as the largest coordinate."""
+    return float(np.spacing(np.float32(np.abs(vertices).max())))
+
+
+def _thickened(mesh: Mesh, spacing: float) -> Mesh:
+    """Return a mesh with each vertex moved so far that most volume is gained.
+
+    Opposite sides come to lie two spacings apart along an axis; rounding brings them nearer by one.
+    """
+    first, second, third = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    edges = np.stack([second - first, third - first])
+    # Shorter edges than doubles have squares for count, too.
+    edges /= np.abs(edges).max()
+    areas = np.cross(edges[0], edges[1])
+    gained = np.zeros_like(mesh.vertices)
+    for corners in mesh.faces.T:
+        np.add.at(gained, corners, areas)
+    longest = np.abs(gained).max(axis=1, keepdims=True)
+    ways = np.divide(gained, longest, np.zeros_like(gained), where=longest > 0)
+    most = float(np.finfo(np.float32).max)
+    moved = np.clip(mesh.vertices + spacing * ways, -most, most)
+    return Mesh(moved, mesh.faces, mesh.source, mesh.carried)
+
+
+def _mending(count: int) -> Finding:
+    message = (
+        f"rounding to single precision makes surfaces cross or leaves triangles no area; {count}"
+        " triangles were changed or left out by the width of that rounding."
+    )
+    return Finding("mended_in_single", "note", message, (), count)
+
+
+def _thickening(count: int, spacing: float) -> Finding:
+    message = (
+        "all of this is thinner than single precision, which leaves nothing of it; the surfaces of"
+        f" {count} triangles were moved outwards by {spacing:.2g}{_REMEDY}"
+    )
+    return Finding("thickened_in_single", "warning", message, (), count)
+
+
+def _crossing(where: IndexArray) -> Finding:
+    message = f"in single precision {len(where)} triangles cross or overlap others{_REMEDY}"
+    named = tuple(where[:_NAMED].tolist())
+    return Finding("crossing_in_single", "warning", message, named, len(where))
 
 
 def _merged(vertices: FloatArray, rounded: FloatArray, moved: BoolArray) -> tuple[Finding, ...]:

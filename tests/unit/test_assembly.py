@@ -181,12 +181,14 @@ def test_empty_parts_and_names_that_files_cannot_hold(tmp_path: Path, suffix: st
         assert caught.value.code == "too_large"
 
 
-def test_parts_that_single_precision_makes_cross_are_said(tmp_path: Path) -> None:
+def test_parts_of_which_single_precision_leaves_nothing_are_said(tmp_path: Path) -> None:
     slab = b.box((1e-9, 1, 1)).translate(1, 0, 0)
     made = b.Assembly("both", [b.Assembly("slab", slab), b.Assembly("twin", slab), b.cube(1)])
     (finding,) = made.save(tmp_path / "x.glb")
-    assert (finding.code, finding.count) == ("crossing_in_single", 12)
-    assert finding.message.startswith("“slab”: in single precision 12 triangles")
+    assert (finding.code, finding.count) == ("thickened_in_single", 12)
+    assert finding.message.startswith("“slab”: all of this is thinner than single precision")
+    parts = b.Assembly.load(tmp_path / "x.glb")
+    assert [part.solid.volume > 0 for part in parts] == [True, True, True]
     assert made.save(tmp_path / "x.3mf") == ()
 
 
