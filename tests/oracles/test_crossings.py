@@ -24,9 +24,15 @@ SCENES = 10_000 if DEEP else 250
 #: precision.
 FOUND = (490, 2354, 4777, 5732, 5925)
 
+#: Scenes in which rounding puts vertices in one place, and nothing else touches.
+MET = (5675, 6915)
+
 #: Scenes of which single precision leaves nothing: parts that touch along an edge, one of a volume
 #: of 1e-34, needles and sheets.
 THIN = (369, 599, 477, 1102, 1501)
+
+#: The codes of findings that name vertices in one place.
+CONTACTS = frozenset({"edge_contact", "vertex_contact", "rounded_contact"})
 
 #: So many of the scenes are rounded once, and no more.
 ROUNDED = 100
@@ -171,7 +177,7 @@ def fraction_faults(vertices: np.ndarray, faces: np.ndarray) -> set[tuple[int, i
 def delivered() -> dict[int, tuple["b.Solid", "b.Mesh"]]:
     """Return what scenes make, with their meshes, by their seeds."""
     found = {}
-    for seed in sorted({*range(SCENES), *FOUND, *THIN}):
+    for seed in sorted({*range(SCENES), *FOUND, *MET, *THIN}):
         try:
             solid = scene(seed).normalized()
             mesh = solid.to_mesh()
@@ -205,6 +211,21 @@ def test_delivered_meshes_do_not_cross(
         assert has_volume(mesh, solid.volume_exact, bound * (mesh.area + bound)), seed
     assert count > 0.7 * SCENES and mended > 0.05 * count and checked > 0.1 * count
     assert reported == crossing and crossing <= 0.01 * count
+
+
+def test_vertices_in_one_place_are_told(
+    delivered: dict[int, tuple["b.Solid", "b.Mesh"]],
+) -> None:
+    for seed, (solid, mesh) in delivered.items():
+        told = {finding.code: finding for finding in solid.findings}
+        _, counts = np.unique(mesh.vertices, axis=0, return_counts=True)
+        several = int(counts[counts > 1].sum())
+        assert bool(several) == bool(CONTACTS & set(told)), seed
+        if seed in MET:
+            finding = told["rounded_contact"]
+            assert finding.count == several > 0
+            assert len(np.unique(mesh.vertices[list(finding.where)], axis=0)) == several // 2
+    assert set(MET) <= set(delivered)
 
 
 def test_meshes_in_single_precision_do_not_cross(

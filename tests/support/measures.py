@@ -10,6 +10,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TypeAlias
 
+import numpy as np
+
 import bspcsg as b
 from bspcsg.formats.atomic import write_file
 from bspcsg.formats.files import decoded, encoded
@@ -36,6 +38,9 @@ GROWTH = 20
 SAID = frozenset({"crossing", "turned", "collapsed"})
 SAID_IN_SINGLE = frozenset({"crossing_in_single"})
 
+#: The codes of findings that name vertices in one place.
+CONTACTS = frozenset({"edge_contact", "vertex_contact", "rounded_contact"})
+
 #: The largest share of meshes that may cross, though a finding says so.
 MOST_SAID = 0.01
 
@@ -44,7 +49,8 @@ def crossings(rounds: int) -> Measured:
     """Count the scenes of nearly coincident parts whose meshes cross, also in a binary STL.
 
     Looked at is what was delivered: the mesh, and the triangles that the file holds, joined where
-    coordinates are equal. A crossing that no finding tells of is a failure, and so are too many.
+    coordinates are equal. A crossing that no finding tells of is a failure, and so are too many,
+    and vertices of the mesh that lie in one place without a finding.
     """
     failed, counts = [], Counter[str]()
     for seed in range(rounds):
@@ -59,6 +65,8 @@ def crossings(rounds: int) -> Measured:
         raw = decoded("scene.stl", b"".join(made.chunks), ".stl")
         stored = b.Mesh(raw.vertices, raw.faces, mesh.source)
         counts["meshes"] += 1
+        if _touches(mesh) and not CONTACTS & {finding.code for finding in solid.findings}:
+            failed.append(Failure(seed, "vertices in one place that nothing tells of"))
         for place, told, one, codes in (
             ("in doubles", solid.findings, mesh, SAID),
             ("in a binary STL", made.findings, stored, SAID_IN_SINGLE),
@@ -73,6 +81,10 @@ def crossings(rounds: int) -> Measured:
         if what.endswith("said") and count > MOST_SAID * counts["meshes"]:
             failed.append(Failure(rounds, f"{count} meshes of {counts['meshes']} cross {what}"))
     return failed, dict(counts)
+
+
+def _touches(mesh: "b.Mesh") -> bool:
+    return len(np.unique(mesh.vertices, axis=0)) < len(mesh.vertices)
 
 
 def shares_of_proofs(triangles: int, turns: int = 5) -> Measured:

@@ -25,7 +25,7 @@ pub struct ExactMesh {
 }
 
 /// The place of a vertex of an [`ExactMesh`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Corner {
     /// A vertex of a source.
     Source(Slot, VertexId),

@@ -6,4 +6,5 @@ pub mod mend;
 pub mod round;
 pub mod settle;
 mod terrains;
+mod touching;
 pub mod unfold;

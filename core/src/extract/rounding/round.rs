@@ -2,6 +2,7 @@
 
 use super::mend::Precision;
 use super::settle::{settle, Rounded, Settled};
+use super::touching::touching;
 use super::unfold::{turned, unfold};
 use crate::arith::convert::{as_number, as_place};
 use crate::error::Result;
@@ -78,6 +79,7 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
         .map(|f| f.orientation.is_opposite())
         .collect();
     tell_moved(&mut mesh, &settled.moved);
+    tell_touching(&mut mesh, &exact.vertices, !settled.mended.is_empty());
     let renumbered = if settled.mended.is_empty() {
         Vec::new()
     } else {
@@ -167,7 +169,6 @@ fn at_blurred(solid: &Solid, exact: &ExactMesh) -> Vec<u32> {
 /// Leaves out the triangles that mending removed, and vertices that no triangle uses any more;
 /// returns the new numbers of triangles.
 fn drop_removed(mesh: &mut Mesh) -> Vec<u64> {
-    let is_left = |t: &[VertexId; 3]| t[0] != t[1];
     let next = |next: &mut u64, t: &[VertexId; 3]| {
         *next += u64::from(is_left(t));
         Some(*next - u64::from(is_left(t)))
@@ -183,10 +184,7 @@ fn drop_removed(mesh: &mut Mesh) -> Vec<u64> {
 }
 
 fn drop_unused(mesh: &mut Mesh) {
-    let mut used = vec![false; mesh.vertices.len()];
-    for v in mesh.triangles.iter().flatten() {
-        used[v.place()] = true;
-    }
+    let used = used(mesh);
     let numbers = numbers_left(&used);
     for v in mesh.triangles.iter_mut().flatten() {
         *v = numbers[v.place()];
@@ -201,6 +199,19 @@ fn drop_unused(mesh: &mut Mesh) {
     let mut kept = used.iter();
     mesh.vertices
         .retain(|_| kept.next().copied().unwrap_or(false));
+}
+
+/// For each vertex whether a triangle has it that was not removed.
+fn used(mesh: &Mesh) -> Vec<bool> {
+    let mut used = vec![false; mesh.vertices.len()];
+    for v in mesh.triangles.iter().filter(|t| is_left(t)).flatten() {
+        used[v.place()] = true;
+    }
+    used
+}
+
+fn is_left(triangle: &[VertexId; 3]) -> bool {
+    triangle[0] != triangle[1]
 }
 
 fn position(solid: &Solid, exact: &ExactMesh, corner: Corner) -> [f64; 3] {
@@ -218,6 +229,17 @@ fn tell_moved(mesh: &mut Mesh, moved: &[VertexId]) {
     if !moved.is_empty() {
         let places: Vec<u64> = moved.iter().map(|v| u64::from(*v)).collect();
         let finding = Finding::about("moved", Severity::Note, &places, MOVED);
+        mesh.findings.push(finding);
+    }
+}
+
+/// Reports the vertices that rounding put where others are.
+fn tell_touching(mesh: &mut Mesh, corners: &[Corner], is_mended: bool) {
+    let used = if is_mended { used(mesh) } else { Vec::new() };
+    let is_used = |v: u32| !is_mended || used[v as usize];
+    let places = touching(&mesh.vertices, corners, is_used);
+    if !places.is_empty() {
+        let finding = Finding::about("rounded_contact", Severity::Note, &places, TOUCHING);
         mesh.findings.push(finding);
     }
 }
@@ -256,6 +278,8 @@ const SWAPPED: &str = "rounding to doubles turned triangles over; an edge of the
 const MOVED: &str =
     "surfaces would cross between the given corners and the lattice; these corners \
     were put on the lattice, less than a step away";
+const TOUCHING: &str = "rounding to doubles put these vertices where others are; there the mesh \
+    touches itself";
 const MENDED: &str = "rounding to doubles made surfaces cross or left triangles no area; these \
     triangles were changed by the width of the rounding";
 const COLLAPSED: &str = "rounding to doubles put two corners of these triangles in one place";
