@@ -40,6 +40,7 @@ fn holds_on_what_is_kept(name: &str, target: fn(&[u8])) {
 #[test]
 fn snapshot() {
     holds_around_its_seeds("snapshot", targets::snapshot);
+    holds_on_what_is_kept("snapshot", targets::snapshot);
 }
 
 #[test]

@@ -40,7 +40,7 @@ impl Pitch {
     pub fn new(exponent: i64) -> Result<Self> {
         i8::try_from(exponent)
             .ok()
-            .filter(|e| e.abs() <= EXACT_POWERS)
+            .filter(|e| (-EXACT_POWERS..=EXACT_POWERS).contains(e))
             .map(Self)
             .ok_or_else(|| {
                 let text = format!("the pitch 10^{exponent} is not between 10^-22 and 10^22");
@@ -239,4 +239,17 @@ fn snap_quotient(x: f64, power: f64) -> f64 {
 /// Snaps a point.
 pub fn snap_point(pitch: Pitch, p: &[f64; 3]) -> Result<Lattice> {
     Ok([pitch.snap(p[0])?, pitch.snap(p[1])?, pitch.snap(p[2])?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pitch_is_between_the_powers_that_doubles_hold() {
+        for exponent in i64::from(i8::MIN) - 1..=i64::from(i8::MAX) + 1 {
+            let pitch = Pitch::new(exponent);
+            assert_eq!(pitch.is_ok(), (-22..=22).contains(&exponent), "{exponent}");
+        }
+    }
 }
