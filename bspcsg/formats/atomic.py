@@ -3,9 +3,10 @@
 import contextlib
 import io
 import os
-from collections.abc import Callable, Iterable
+import sys
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import BinaryIO, TypeAlias
+from typing import Any, BinaryIO, TypeAlias
 
 from ..errors import FormatError
 from ..parameters import file_path
@@ -27,7 +28,8 @@ def write_file(
     path : str or path
     chunks : iterable of bytes
     prove : callable, optional
-        Is given the new file, to be read from its beginning, before that gets its name.
+        Is given the new file, to be read from its beginning, before that gets its name. The file is
+        written as it is read, and to its end before `prove` may find one.
 
     Raises
     ------
@@ -65,15 +67,23 @@ def _check_target(target: Path) -> None:
         raise FileNotFoundError(2, f"there is no folder {target.parent}")
 
 
+#: Bytes that are gathered before they are written: fewer take longer each, and chunks of more go
+#: out as they are.
+_PIECE = 1 << 18
+
+
 def _write_new(part: Path, target: Path, chunks: Iterable[bytes], prove: Proof | None) -> None:
     # Opened like any new file, so that the user's mask decides about its mode.
     handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
     try:
-        with open(handle, "wb", buffering=1 << 20) as stream:
-            stream.writelines(chunks)
+        with open(handle, "wb", buffering=_PIECE) as stream:
+            if prove is None:
+                stream.writelines(chunks)
+            else:
+                _write_and_prove(part, stream, chunks, prove)
             stream.flush()
-            os.fsync(stream.fileno())
-        if prove is not None:
+            is_as_proved = _flushed(stream.fileno())
+        if prove is not None and not is_as_proved:
             with part.open("rb") as written:
                 prove(written)
         if target.exists():
@@ -83,3 +93,94 @@ def _write_new(part: Path, target: Path, chunks: Iterable[bytes], prove: Proof |
         with contextlib.suppress(OSError):
             part.unlink()
         raise
+
+
+def _flushed(handle: int) -> bool:
+    """Have a file put on the disk; say whether it stayed as it was."""
+    before = os.fstat(handle)
+    os.fsync(handle)
+    after = os.fstat(handle)
+    return (before.st_size, before.st_mtime_ns) == (after.st_size, after.st_mtime_ns)
+
+
+def _write_and_prove(part: Path, stream: BinaryIO, chunks: Iterable[bytes], prove: Proof) -> None:
+    with part.open("rb", buffering=0) as back:
+        growing = _Growing(stream, iter(chunks), back)
+        try:
+            prove(io.BufferedReader(growing))
+        except Exception:
+            if growing.failure is not None:
+                raise growing.failure from None
+            raise
+        growing.finish()
+
+
+class _Growing(io.RawIOBase):
+    """A file that is written as far as it is read.
+
+    What was just written is still in the processor's cache when it is read back, and so is what it
+    was made of and is compared with: that takes less time than a second pass over both.
+
+    Parameters
+    ----------
+    stream : binary file
+        The place that the chunks are written to.
+    chunks : iterator of bytes
+    back : file
+        The same file, to be read.
+    """
+
+    def __init__(self, stream: BinaryIO, chunks: Iterator[bytes], back: io.FileIO) -> None:
+        self._stream, self._chunks, self._back = stream, chunks, back
+        self._size = 0
+        #: Whatever kept the chunks from being made or written.
+        self.failure: Exception | None = None
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET, /) -> int:
+        if whence == os.SEEK_END:
+            self.finish()
+        return self._back.seek(offset, whence)
+
+    def tell(self) -> int:
+        return self._back.tell()
+
+    def readinto(self, buffer: Any, /) -> int | None:
+        end = self._back.tell() + len(buffer)
+        if self._size < end:
+            self._write(end)
+        return self._back.readinto(buffer)
+
+    def readall(self) -> bytes:
+        self.finish()
+        return self._back.readall()
+
+    def finish(self) -> None:
+        """Write all that is left."""
+        # Chunks may be single lines: a loop over them takes as long as making them.
+        self._watched(lambda: self._stream.writelines(self._chunks))
+        self._size = sys.maxsize
+
+    def _write(self, end: int) -> None:
+        """Write so many bytes of the file, at least, if there are so many."""
+
+        def write() -> None:
+            while self._size < end and (chunk := next(self._chunks, None)) is not None:
+                self._stream.write(chunk)
+                self._size += len(chunk)
+
+        self._watched(write)
+
+    def _watched(self, write: Callable[[], None]) -> None:
+        """Write, and remember what went wrong."""
+        try:
+            write()
+            self._stream.flush()
+        except Exception as error:
+            self.failure = error
+            raise

@@ -12,9 +12,9 @@ import numpy.typing as npt
 TOGETHER = 1 << 14
 
 
-def blocks(count: int) -> Iterator[slice]:
+def blocks(count: int, together: int = TOGETHER) -> Iterator[slice]:
     """Yield the parts into which so many rows are divided."""
-    return (slice(start, start + TOGETHER) for start in range(0, count, TOGETHER))
+    return (slice(start, start + together) for start in range(0, count, together))
 
 
 def listed(values: npt.NDArray[Any]) -> Iterator[Any]:

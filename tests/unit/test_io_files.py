@@ -1,16 +1,20 @@
 """Suffixes, missing and unwritable files, atomic writing, and real files."""
 
 import csv
+import dataclasses
 import os
+import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 import pytest
 
 from bspcsg.errors import FormatError
 from bspcsg.formats.atomic import write_file
-from bspcsg.io import RawMesh, read, write
+from bspcsg.formats.registry import MAKERS
+from bspcsg.io import FORMATS, RawMesh, read, write
 from bspcsg.mesh.weld import welded
 from support.io import cube_mesh
 
@@ -81,6 +85,65 @@ def test_failure_leaves_the_old_file(tmp_path: Path) -> None:
         write_file(path, chunks())
     assert path.read_bytes() == b"old"
     assert os.listdir(tmp_path) == ["x.off"]
+
+
+def test_a_file_is_proved_while_it_is_written(tmp_path: Path) -> None:
+    path, made = tmp_path / "x", []
+
+    def chunks() -> Iterator[bytes]:
+        for number in range(5):
+            made.append(number)
+            yield bytes([number]) * 10_000
+
+    def prove(file: BinaryIO) -> None:
+        assert file.read(5) == bytes(5) and made == [0]
+        file.seek(25_000)
+        assert file.read(2) == bytes([2, 2]) and made[-1] < 4
+        assert file.seek(0, os.SEEK_END) == 50_000 and file.tell() == 50_000
+        file.seek(0)
+        assert file.read() == b"".join(bytes([number]) * 10_000 for number in range(5))
+
+    write_file(path, chunks(), prove)
+    assert made == list(range(5)) and path.stat().st_size == 50_000
+
+
+def test_what_no_proof_reads_is_written(tmp_path: Path) -> None:
+    write_file(tmp_path / "x", [b"a", b"b" * 100_000, b"c"], lambda file: None)
+    assert (tmp_path / "x").read_bytes() == b"a" + b"b" * 100_000 + b"c"
+
+
+@pytest.mark.parametrize("error", [OSError(28, "no room"), ValueError("no"), KeyboardInterrupt()])
+def test_what_stops_the_writing_is_no_fault_of_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException
+) -> None:
+    def chunks(mesh: object) -> Iterator[bytes]:
+        yield b"ply\n"
+        raise error
+
+    known = FORMATS[".ply"]
+    assert known.binary is not None
+    changed = dataclasses.replace(known, binary=dataclasses.replace(known.binary, encode=chunks))
+    monkeypatch.setitem(MAKERS, ".ply", lambda: changed)
+    kind = FormatError if isinstance(error, OSError) else type(error)
+    with pytest.raises(kind) as caught:
+        write(cube_mesh(), tmp_path / "x.ply")
+    assert getattr(caught.value, "code", "unwritable") == "unwritable"
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_file_that_changes_on_its_way_to_the_disk_is_proved_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def flip(handle: int) -> None:
+        # Longer than the clock of file systems takes for a step.
+        time.sleep(0.05)
+        os.lseek(handle, 300, os.SEEK_SET)
+        os.write(handle, b"\xff")
+
+    monkeypatch.setattr(os, "fsync", flip)
+    with pytest.raises(FormatError) as caught:
+        write(cube_mesh(), tmp_path / "x.ply")
+    assert caught.value.code == "write_mismatch" and not list(tmp_path.iterdir())
 
 
 def test_mode_and_link_are_kept(tmp_path: Path) -> None:

@@ -82,6 +82,11 @@ class Rows:
         """The first byte behind them."""
         return self._start + self._count * int(self._row.itemsize)
 
+    def check_end(self, end: int | None) -> None:
+        """Refuse a file of another size, if there is one that it must have."""
+        if end is not None and size_of(self._file) != end:
+            raise ValueError(f"it has not the {end} bytes that its header tells of")
+
     def are(self, expected: npt.NDArray[Any]) -> bool:
         """Say whether the rows are these."""
         return all(self.hold(block, expected[block]) for block in blocks(self._count))
@@ -109,11 +114,14 @@ class HeldRows:
     ----------
     vertices, faces : Rows
     name : str
+    end : int, optional
+        The size that the file must have, which is asked for behind all numbers.
     """
 
     vertices: Rows
     faces: Rows
     name: str = ""
+    end: int | None = None
 
     @property
     def count(self) -> int:
@@ -121,16 +129,23 @@ class HeldRows:
         return len(self.faces)
 
     def has(self, vertices: npt.NDArray[Any], faces: IndexArray) -> bool:
-        """Say whether the file holds these very arrays."""
+        """Say whether the file holds these very arrays, in its order."""
         if len(self.vertices) != len(vertices):
             return False
-        return self.faces.are(faces) and self.vertices.are(vertices)
+        found = self.vertices.are(vertices) and self.faces.are(faces)
+        self.check_end()
+        return found
 
     def loaded(self) -> Held:
         """Return it with all of its numbers in memory."""
         everything = slice(None)
         vertices, faces = self.vertices.numbers(everything), self.faces.numbers(everything)
+        self.check_end()
         return Held(vertices, faces, self.name)
+
+    def check_end(self) -> None:
+        """Refuse a file that is longer or shorter than it says."""
+        self.faces.check_end(self.end)
 
 
 def piece(file: BinaryIO, start: int, count: int) -> bytes:

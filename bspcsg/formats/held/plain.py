@@ -6,7 +6,7 @@ from typing import Any, BinaryIO
 import numpy as np
 import numpy.typing as npt
 
-from ..._core import are_triangles, numbers_in
+from ..._core import are_points, are_triangles, numbers_in
 from .layout import (
     OF_NUMBERS,
     Held,
@@ -16,7 +16,6 @@ from .layout import (
     check_layout,
     header_of,
     rows_of,
-    size_of,
     whole_numbers,
 )
 
@@ -105,11 +104,19 @@ def binary_ply(file: BinaryIO) -> list[HeldRows]:
     head = _PLY.match(header_of(file))
     if head is None:
         raise ValueError("its header is another one")
-    vertices = Rows(file, head.end(), "3<f8", int(head[1]))
+    vertices = _Points(file, head.end(), "3<f8", int(head[1]))
     faces = _Faces(file, vertices.end, "u1,3<i4", int(head[2]))
-    if size_of(file) != faces.end:
-        raise ValueError(f"it has not the {faces.end} bytes that its header tells of")
-    return [HeldRows(vertices, faces)]
+    held = HeldRows(vertices, faces, end=faces.end)
+    if not held.count:
+        held.check_end()
+    return [held]
+
+
+class _Points(Rows):
+    """Rows of three doubles."""
+
+    def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
+        return are_points(self.data(block), expected)
 
 
 class _Faces(Rows):

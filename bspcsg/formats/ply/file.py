@@ -3,7 +3,7 @@
 import itertools
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias, cast
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes, Values
 from ...errors import Finding, FormatError
 from ...mesh.mesh import Mesh
-from ..blocks import listed
+from ..blocks import TOGETHER, blocks, listed
 from ..raw import IndexPolygons, RawMesh, says_empty_set
 from ..said import said_of
 from ..source import Source, quoted, whole
@@ -348,31 +348,42 @@ def beyond(mesh: Mesh | RawMesh) -> str:
     return "too many vertices for PLY; write OBJ." if is_beyond else ""
 
 
+#: Rows written together: fewer take longer each, and of more what was written leaves the cache
+#: before it is read back.
+_TOGETHER = 2 * TOGETHER
+
+
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the little-endian form, in double precision."""
     yield _header(mesh, "binary_little_endian")
     vertex, face, lists = _columns(mesh)
-    if vertex:
-        kinds = [("xyz", "<f8", (3,)), *((f"p{k}", _little(v)) for k, (_, v) in enumerate(vertex))]
-        points = np.zeros(len(mesh.vertices), np.dtype(cast(Any, kinds)))
-        points["xyz"] = mesh.vertices
-        for k, (_, values) in enumerate(vertex):
-            points[f"p{k}"] = values
+    row = np.dtype([("xyz", "<f8", 3), *_fields(vertex)])
+    for block in blocks(len(mesh.vertices), _TOGETHER):
+        points = np.empty(len(mesh.vertices[block]), row)
+        points["xyz"] = mesh.vertices[block]
+        _fill(points, vertex, block)
         yield points.tobytes()
-    else:
-        yield mesh.vertices.astype("<f8").tobytes()
-    fields: list[Any] = [("count", "u1"), ("corners", "<i4", 3)]
-    fields += [(f"p{k}", _little(values)) for k, (_, values) in enumerate(face)]
+    further: list[Any] = _fields(face)
     for k, (_, values) in enumerate(lists):
-        fields += [(f"n{k}", "u1"), (f"l{k}", _little(values), values.shape[1:])]
-    records = np.zeros(len(mesh.faces), np.dtype(fields))
-    records["count"] = 3
-    records["corners"] = mesh.faces
-    for k, (_, values) in enumerate(face):
-        records[f"p{k}"] = values
-    for k, (_, values) in enumerate(lists):
-        records[f"n{k}"], records[f"l{k}"] = values.shape[1], values
-    yield records.tobytes()
+        further += [(f"n{k}", "u1"), (f"l{k}", _little(values), values.shape[1:])]
+    row = np.dtype([("count", "u1"), ("corners", "<i4", 3), *further])
+    for block in blocks(len(mesh.faces), _TOGETHER):
+        records = np.empty(len(mesh.faces[block]), row)
+        records["count"] = 3
+        records["corners"] = mesh.faces[block]
+        _fill(records, face, block)
+        for k, (_, values) in enumerate(lists):
+            records[f"n{k}"], records[f"l{k}"] = values.shape[1], values[block]
+        yield records.tobytes()
+
+
+def _fields(columns: _Columns) -> list[tuple[str, "np.dtype[Any]"]]:
+    return [(f"p{k}", _little(values)) for k, (_, values) in enumerate(columns)]
+
+
+def _fill(records: Values, columns: _Columns, block: slice) -> None:
+    for k, (_, values) in enumerate(columns):
+        records[f"p{k}"] = values[block]
 
 
 def _little(values: Values) -> "np.dtype[Any]":

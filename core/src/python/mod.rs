@@ -93,6 +93,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(fail_on_purpose, module)?)?;
     module.add_function(wrap_pyfunction!(suited_pitch, module)?)?;
     module.add_function(wrap_pyfunction!(numbers::numbers_in, module)?)?;
+    module.add_function(wrap_pyfunction!(numbers::are_points, module)?)?;
     module.add_function(wrap_pyfunction!(numbers::are_triangles, module)?)?;
     module.add_function(wrap_pyfunction!(surfaces::welded_points, module)?)?;
     module.add_function(wrap_pyfunction!(surfaces::surfaces_of, module)?)?;

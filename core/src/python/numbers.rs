@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::arrays::rows;
+use super::arrays::{flat, rows};
 use super::errors::to_python;
 
 /// Largest number of digits that cannot pass 2^53, below which every whole number is a double.
@@ -35,6 +35,23 @@ pub fn are_triangles(
 ) -> PyResult<bool> {
     let expected = rows(&triangles, "triangles").map_err(|e| to_python(py, &e))?;
     Ok(py.detach(|| same_triangles(faces, &expected)))
+}
+
+/// True if the vertices of a binary PLY are these points, bit by bit; each is three little-endian
+/// doubles.
+#[pyfunction]
+pub fn are_points(py: Python<'_>, vertices: &[u8], points: PyReadonlyArray2<'_, f64>) -> bool {
+    let expected = flat(&points);
+    py.detach(|| same_numbers(vertices, &expected))
+}
+
+fn same_numbers(found: &[u8], expected: &[f64]) -> bool {
+    let (found, rest) = found.as_chunks();
+    let pairs = found.iter().zip(expected);
+    let bits = pairs.fold(0, |bits, (a, b)| {
+        bits | u64::from_le_bytes(*a) ^ b.to_bits()
+    });
+    rest.is_empty() && found.len() == expected.len() && bits == 0
 }
 
 /// Bytes of a triangle in a binary PLY.
