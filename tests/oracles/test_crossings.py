@@ -220,7 +220,9 @@ def test_vertices_in_one_place_are_told(
         told = {finding.code: finding for finding in solid.findings}
         _, counts = np.unique(mesh.vertices, axis=0, return_counts=True)
         several = int(counts[counts > 1].sum())
-        assert bool(several) == bool(CONTACTS & set(told)), seed
+        assert not several or CONTACTS & set(told), seed
+        # Mending may part what was in one place.
+        assert several or not CONTACTS & set(told) or {"mended", "moved"} & set(told), seed
         if seed in MET:
             finding = told["rounded_contact"]
             assert finding.count == several > 0
