@@ -6,10 +6,11 @@ use super::descent::descend::{Counters, Descent};
 use super::expression::{Expression, Term};
 use super::lists::list::Sources;
 use super::rule::Rule;
-use super::simple::{simple_shells, simplicity, Simplicity};
+use super::simple::{overlaps_at, simple_shells, simplicity, Simplicity};
 use super::twins::without_twins;
 use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::plane::Lattice;
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::Source;
 use crate::tree::solid::Solid;
@@ -137,14 +138,24 @@ fn wrong_source(operand: &Solid, number: usize) -> Option<Error> {
 /// # Errors
 /// `Internal`.
 pub fn overlaps_itself(source: &Arc<Source>) -> Result<bool> {
-    Ok(!is_simple(&Solid::of_source(Arc::clone(source), false))?)
+    Ok(!is_simple(
+        &Solid::of_source(Arc::clone(source), false),
+        &[],
+    )?)
 }
 
-/// Return whether the elements of a solid are its reduced boundary; looks, if nobody has.
+/// Return whether the elements of a solid are its reduced boundary; looks, if nobody has, and first
+/// at places where the boundary seems to cross itself.
 ///
 /// # Errors
 /// `Internal`.
-pub fn is_simple(solid: &Solid) -> Result<bool> {
+pub fn is_simple(solid: &Solid, suspects: &[Lattice]) -> Result<bool> {
+    if let Some(known) = found_simple(solid)? {
+        return Ok(known);
+    }
+    if overlaps_at(solid, suspects) {
+        return Ok(*solid.simple().get_or_make(|| false));
+    }
     normalize(solid, Rule::Positive)?;
     Ok(solid.is_reduced())
 }
@@ -173,32 +184,52 @@ pub fn normalize(solid: &Solid, rule: Rule) -> Result<Solid> {
 /// # Errors
 /// `Internal`.
 pub fn settled(solid: &Solid) -> Result<Option<Solid>> {
-    if solid.is_reduced() {
-        return Ok(Some(solid.clone()));
-    }
     if let Some(known) = solid.united().get() {
         return Ok(Some(known.clone()));
     }
+    Ok((found_simple(solid)? == Some(true)).then(|| solid.clone()))
+}
+
+/// Whether a solid is simple, if that is known, or once the meshes that decide it have been checked.
+fn found_simple(solid: &Solid) -> Result<Option<bool>> {
+    if let Some(known) = solid.simple().get() {
+        return Ok(Some(*known));
+    }
+    if solid.is_reduced() {
+        return Ok(Some(true));
+    }
     let Some(doubts) = solid.doubts() else {
-        return Ok(None);
+        return checked(solid);
     };
     for mesh in doubts {
-        normalize(mesh, Rule::Positive)?;
-        if !mesh.is_reduced() {
+        if checked(mesh)? != Some(true) {
             return Ok(None);
         }
     }
-    let reduced = || solid.clone().with_reduced(true);
-    Ok(Some(solid.united().get_or_make(reduced).clone()))
+    Ok(Some(*solid.simple().get_or_make(|| true)))
+}
+
+/// Whether a solid is simple, if that is known or it is one mesh.
+fn checked(solid: &Solid) -> Result<Option<bool>> {
+    if let Some(known) = solid.simple().get() {
+        return Ok(Some(*known));
+    }
+    let sources = Sources::new(solid.sources().clone());
+    let simple = match simplicity(solid, &sources)? {
+        Simplicity::Simple => true,
+        Simplicity::Overlapping => false,
+        Simplicity::Unasked => return Ok(None),
+    };
+    Ok(Some(*solid.simple().get_or_make(|| simple)))
 }
 
 fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
     let sources = Sources::new(solid.sources().clone());
-    let found = simplicity(solid, &sources)?;
-    if found == Simplicity::Simple {
+    let simple = checked(solid)?;
+    if simple == Some(true) {
         return Ok(solid.clone().with_reduced(true));
     }
-    if found == Simplicity::Overlapping
+    if simple == Some(false)
         && rule != Rule::EvenOdd
         && let Some(united) = union_of_shells(solid, &sources)?
     {
@@ -207,7 +238,8 @@ fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
     let descent = Descent::new(&sources, rule, false, 1);
     let expression = Expression::new(vec![Term::Operand(0)])?;
     let root = descent.run(expression, vec![solid.root().clone()])?;
-    if descent.overlapping().is_empty() {
+    let simple = descent.overlapping().is_empty();
+    if *solid.simple().get_or_make(|| simple) {
         return Ok(solid.clone().with_reduced(true));
     }
     let table = sources.table().clone();

@@ -273,7 +273,7 @@ impl Tree {
     /// Return whether the elements are the reduced boundary; None if nobody has looked.
     #[getter]
     fn simple(&self) -> Option<bool> {
-        let known = self.solid.is_reduced() || self.solid.united().get().is_some();
+        let known = self.solid.is_reduced() || self.solid.simple().get().is_some();
         known.then(|| self.solid.is_reduced())
     }
 

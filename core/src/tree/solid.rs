@@ -48,6 +48,7 @@ pub struct Solid {
     claimed: bool,
     /// Solids of meshes nobody has checked: if all are simple, this solid is reduced.
     doubts: Option<Arc<[Solid]>>,
+    simple: Arc<Cached<bool>>,
     united: Arc<Cached<Solid>>,
 }
 
@@ -63,6 +64,7 @@ impl Solid {
             reduced,
             claimed: false,
             doubts: None,
+            simple: Arc::default(),
             united: Arc::default(),
         }
     }
@@ -208,8 +210,7 @@ impl Solid {
 
     /// Return whether the elements are known to be the reduced boundary (promise G2).
     pub fn is_reduced(&self) -> bool {
-        let stays = |united: &Self| Arc::ptr_eq(&united.root.node, &self.root.node);
-        self.reduced || self.united.get().is_some_and(stays)
+        self.reduced || self.simple.get() == Some(&true)
     }
 
     /// The same solid, its elements declared or found to be the reduced boundary.
@@ -218,12 +219,19 @@ impl Solid {
         self.reduced = reduced;
         self.claimed = false;
         self.doubts = None;
-        // Not the cache of the solid as it was: that is to hold this one.
+        // Not the caches of the solid as it was: nobody has looked at this one.
+        self.simple = Arc::default();
         self.united = Arc::default();
         self
     }
 
-    /// The solid united with itself, once somebody has computed it; shared by clones.
+    /// Whether the elements are the reduced boundary, once somebody has looked; shared by clones.
+    pub fn simple(&self) -> &Cached<bool> {
+        &self.simple
+    }
+
+    /// The solid united with itself, if it overlaps itself and somebody has computed that; shared by
+    /// clones.
     pub fn united(&self) -> &Cached<Self> {
         &self.united
     }

@@ -3,6 +3,7 @@
 pub mod company;
 pub mod crossings;
 pub mod mend;
+pub mod places;
 pub mod round;
 pub mod settle;
 mod terrains;

@@ -1,6 +1,7 @@
 //! From exact vertices to doubles: the only rounding, and what it did.
 
 use super::mend::Precision;
+use super::places::places;
 use super::settle::{settle, Rounded, Settled};
 use super::touching::touching;
 use super::unfold::{turned, unfold};
@@ -9,10 +10,12 @@ use crate::error::Result;
 use crate::extract::assemble::assemble_patches;
 use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::{numbers_left, Corner, ExactMesh, Mesh};
+use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
 use crate::merge::evaluate::is_simple;
 use crate::merge::lists::list::Sources;
 use crate::mesh::finding::{Finding, Severity};
+use crate::mesh::grid::snap_point;
 use crate::mesh::handle::{OrientedFace, VertexId};
 use crate::mesh::tasks::fill_chunks;
 use crate::tree::solid::Solid;
@@ -126,7 +129,12 @@ fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Result<Sett
     };
     let found = rounded.faults(&changed, party);
     let double = Precision::Double;
-    let settled = if found.is_empty() || is_simple(solid)? {
+    let seem_to_cross = || -> Vec<Lattice> {
+        let places = places(&rounded.faces(), &found);
+        let snapped = places.iter().map(|p| snap_point(solid.pitch(), p));
+        snapped.flatten().collect()
+    };
+    let settled = if found.is_empty() || is_simple(solid, &seem_to_cross())? {
         settle(
             &mut rounded,
             changed,

@@ -93,7 +93,8 @@ pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
 }
 
 impl Rounded {
-    fn faces(&self) -> Faces<'_> {
+    /// The triangles.
+    pub fn faces(&self) -> Faces<'_> {
         Faces {
             vertices: &self.vertices,
             triangles: &self.triangles,

@@ -7,6 +7,7 @@
 
 mod flats;
 mod looked;
+mod places;
 pub(super) mod star;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,6 +31,7 @@ use crate::tree::node::{Branch, Deferred, Group, Node};
 use crate::tree::solid::Solid;
 use flats::flat_pieces;
 use looked::Looked;
+pub use places::overlaps_at;
 use star::is_star_shaped;
 
 /// Lists at least this long are worth a task of their own.

@@ -1,0 +1,73 @@
+//! About where triangles cross each other.
+
+use std::cmp::Ordering;
+
+use super::company::Faces;
+use super::crossings::Faults;
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::vector::{dot, less, normal};
+use crate::geometry::doubles::{Point, Triangle};
+
+/// For each pair of triangles that cross, a point about in the middle of what they have in common.
+pub fn places(faces: &Faces, found: &Faults) -> Vec<Point> {
+    let place = |[t, u]: &[u32; 2]| middle(&faces.corners(*t), &faces.corners(*u));
+    found.crossings.iter().map(place).collect()
+}
+
+/// The middle of the stretch that two triangles have in common, rounded; some corner if they have
+/// none.
+fn middle(p: &Triangle, q: &Triangle) -> Point {
+    let mut ends: Vec<Point> = through(p, q).chain(through(q, p)).collect();
+    // All lie on one line, so they stand there in lexicographic order, and what is common to both
+    // stretches lies between the inner two.
+    ends.sort_by(|a, b| in_order(a, b));
+    match ends.len() {
+        0 => p[0],
+        n => mean(&ends[(n - 1) / 2], &ends[n / 2]),
+    }
+}
+
+/// The lexicographic order.
+fn in_order(a: &Point, b: &Point) -> Ordering {
+    let ordered = |i: usize| a[i].total_cmp(&b[i]);
+    ordered(0).then_with(|| ordered(1)).then_with(|| ordered(2))
+}
+
+/// The points in which the edges of a triangle pass through the plane of another.
+fn through<'a>(t: &'a Triangle, plane: &Triangle) -> impl Iterator<Item = Point> + 'a {
+    let across = normal(plane);
+    let heights = t.map(|c| dot(&less(&c, &plane[0]), &across));
+    (0..3).filter_map(move |i| {
+        let (from, to) = (i, (i + 1) % 3);
+        let (above, below) = (heights[from], heights[to]);
+        let passes = above > 0.0 && below <= 0.0 || above <= 0.0 && below > 0.0;
+        let share = above / (above - below);
+        passes.then(|| each_axis(|k| t[from][k] + share * (t[to][k] - t[from][k])))
+    })
+}
+
+fn mean(a: &Point, b: &Point) -> Point {
+    each_axis(|i| a[i] / 2.0 + b[i] / 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::handle::VertexId;
+
+    #[test]
+    fn a_place_lies_in_the_middle_of_what_two_triangles_have_in_common() {
+        let floor = [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0]];
+        let wall = [[1.0, 1.0, -1.0], [1.0, 5.0, -1.0], [1.0, 3.0, 3.0]];
+        let vertices = [floor, wall].concat();
+        let faces = Faces {
+            vertices: &vertices,
+            triangles: &VertexId::rows(vec![[0, 1, 2], [3, 4, 5]]),
+        };
+        let found = Faults {
+            crossings: vec![[0, 1]],
+            flat: Vec::new(),
+        };
+        assert_eq!(places(&faces, &found), [[1.0, 3.0, 0.0]]);
+    }
+}
