@@ -6,7 +6,7 @@ use super::descent::descend::{Counters, Descent};
 use super::expression::{Expression, Term};
 use super::lists::list::Sources;
 use super::rule::Rule;
-use super::simple::{overlaps_at, simple_shells, simplicity, Simplicity};
+use super::simple::{overlaps_at, simple_shells, simplicity, united_around, Simplicity};
 use super::twins::without_twins;
 use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
@@ -234,6 +234,17 @@ fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
         && let Some(united) = union_of_shells(solid, &sources)?
     {
         return Ok(united);
+    }
+    if simple == Some(false)
+        && rule == Rule::Positive
+        && let Some(root) = united_around(solid, &sources)?
+    {
+        return Ok(Solid::new(
+            root,
+            solid.pitch(),
+            sources.table().clone(),
+            true,
+        ));
     }
     let descent = Descent::new(&sources, rule, false, 1);
     let expression = Expression::new(vec![Term::Operand(0)])?;

@@ -5,6 +5,7 @@
 //! the faces of a cap are told to be clear of each other by its outline; such cells need no tree.
 //! The others are labelled, and so is one cell for each shell.
 
+mod clean;
 mod flats;
 mod looked;
 mod places;
@@ -29,6 +30,7 @@ use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node};
 use crate::tree::solid::Solid;
+pub use clean::united_around;
 use flats::flat_pieces;
 use looked::Looked;
 pub use places::overlaps_at;
@@ -50,6 +52,8 @@ struct Check<'a> {
     pieces: Vec<u32>,
     seen: Vec<AtomicBool>,
     overlap: AtomicBool,
+    /// By face, whether it may overlap another one; empty if that is not asked.
+    doubtful: Vec<AtomicBool>,
 }
 
 /// The answer of the check of a solid.
@@ -228,6 +232,7 @@ impl<'a> Check<'a> {
             pieces: flat_pieces(source, mesh),
             seen: (0..count).map(|_| AtomicBool::new(false)).collect(),
             overlap: AtomicBool::new(false),
+            doubtful: Vec::new(),
         }
     }
 
@@ -251,6 +256,10 @@ impl<'a> Check<'a> {
 
     fn leaf(&self, cell: &Cell, list: &List) {
         let faces: Vec<FaceId> = list.records.iter().map(|r| r.face).collect();
+        if !self.doubtful.is_empty() {
+            self.doubt(&faces);
+            return;
+        }
         let shells = || {
             faces
                 .iter()
@@ -271,9 +280,25 @@ impl<'a> Check<'a> {
 
     /// Return whether no two of the faces overlap, as far as a quick look can tell; errs on no.
     fn is_clean(&self, faces: &[FaceId]) -> bool {
+        let looked = self.look_at(faces);
+        (1..looked.len()).all(|i| looked[..i].iter().all(|other| looked[i].is_clear_of(other)))
+    }
+
+    /// Marks the faces that may overlap others of a few, as far as a quick look can tell.
+    fn doubt(&self, faces: &[FaceId]) {
+        let looked = self.look_at(faces);
+        for i in 1..looked.len() {
+            for j in (0..i).filter(|j| !looked[i].is_clear_of(&looked[*j])) {
+                for face in [faces[i], faces[j]] {
+                    self.doubtful[face.place()].store(true, Ordering::Relaxed);
+                }
+            }
+        }
+    }
+
+    fn look_at(&self, faces: &[FaceId]) -> Vec<Looked> {
         spend(faces.len());
         let look = |f: &FaceId| Looked::at(self.mesh, *f, &self.irregular, self.pieces[f.place()]);
-        let looked: Vec<Looked> = faces.iter().map(look).collect();
-        (1..looked.len()).all(|i| looked[..i].iter().all(|other| looked[i].is_clear_of(other)))
+        faces.iter().map(look).collect()
     }
 }

@@ -18,10 +18,14 @@ use crate::tree::solid::Solid;
 /// Lists are divided where places are, and one local tree is grown for each place at most.
 pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
     let sources = Sources::new(solid.sources().clone());
-    let mut open = vec![(solid.root().clone(), places.to_vec())];
+    let overlaps = |cell: &Cell, list: &List, _: &[(Lattice, ())]| {
+        list.len() <= STUCK && !LeafTree::new(list, cell, &sources).is_simple()
+    };
+    let places = places.iter().map(|p| (*p, ())).collect();
+    let mut open: Vec<(Branch, Vec<(Lattice, ())>)> = vec![(solid.root().clone(), places)];
     while let Some((branch, mut places)) = open.pop() {
         poll();
-        places.retain(|p| branch.cell.holds_box(p, p));
+        places.retain(|(p, ())| branch.cell.holds_box(p, p));
         if places.is_empty() {
             continue;
         }
@@ -29,7 +33,7 @@ pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
             Node::Leaf(_) => {}
             Node::Deferred(leaf) => {
                 let list = List::open(leaf, &branch, &sources);
-                if list_overlaps(&sources, branch.cell, list, places) {
+                if any_small_cell(&sources, (branch.cell, list), places, overlaps) {
                     return true;
                 }
             }
@@ -42,9 +46,14 @@ pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
     false
 }
 
-/// Return whether a small cell around one of the places in a cell shows that a list overlaps
-/// itself.
-fn list_overlaps(sources: &Sources, cell: Cell, list: List, places: Vec<Lattice>) -> bool {
+/// Calls `look` with the small cells around places in a cell, their elements, and the places there,
+/// until it returns true; returns whether it did. Cells are small where halving separates no more.
+pub(super) fn any_small_cell<P>(
+    sources: &Sources,
+    (cell, list): (Cell, List),
+    places: Vec<(Lattice, P)>,
+    mut look: impl FnMut(&Cell, &List, &[(Lattice, P)]) -> bool,
+) -> bool {
     let mut open = vec![(cell, list, places)];
     while let Some((cell, list, places)) = open.pop() {
         poll();
@@ -53,12 +62,12 @@ fn list_overlaps(sources: &Sources, cell: Cell, list: List, places: Vec<Lattice>
         }
         let stuck = || list.len() <= STUCK && list.reaching_out(&cell) * 8 > list.len() * 7;
         let Some(cut) = cell.cut().filter(|_| list.len() > LEAF && !stuck()) else {
-            if list.len() <= STUCK && !LeafTree::new(&list, &cell, sources).is_simple() {
+            if look(&cell, &list, &places) {
                 return true;
             }
             continue;
         };
-        let (below, above) = places.into_iter().partition(|p| p[cut.axis] < cut.at);
+        let (below, above) = places.into_iter().partition(|p| p.0[cut.axis] < cut.at);
         let (minus, plus) = list.divide(&cell, cut, sources);
         open.push((cell.half(cut, Half::Minus), minus, below));
         open.push((cell.half(cut, Half::Plus), plus, above));

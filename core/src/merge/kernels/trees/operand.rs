@@ -106,6 +106,14 @@ impl LeafTree {
         self.0.fragments.iter().map(|f| f.face.id)
     }
 
+    /// The winding number in front of a face, where its part in the cell begins; `None` if it has
+    /// none there.
+    pub fn number_before(&self, face: FaceId) -> Option<i32> {
+        let fragment = self.0.fragments.iter().find(|f| f.face.id == face)?;
+        let sides = self.0.tree.sides(fragment.polygon.clone());
+        sides.first().map(|s| s.plus)
+    }
+
     /// The winding number at a lattice point that lies on none of the pieces.
     pub fn label_at(&self, point: &Lattice) -> i32 {
         self.0.tree.label_at(point)
