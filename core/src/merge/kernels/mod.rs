@@ -5,6 +5,7 @@
 //! chooses.
 
 pub mod general;
+pub mod itself;
 pub(super) mod kept;
 pub mod orthogonal;
 pub mod problem;

@@ -6,7 +6,7 @@
 //! only about cells in which some face may overlap another.
 
 use std::borrow::Cow;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use super::places::any_small_cell;
 use super::{only_mesh, Check, STUCK};
@@ -16,14 +16,15 @@ use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
 use crate::interrupt::poll;
-use crate::merge::descent::choice::LEAF;
+use crate::merge::descent::choice::{CROWD, LEAF};
 use crate::merge::descent::join;
 use crate::merge::descent::state::TASK;
 use crate::merge::expression::{Expression, Term};
+use crate::merge::kernels::itself::{number_before, united, Fate};
 use crate::merge::kernels::problem::{CellProblem, Listed};
 use crate::merge::kernels::trees::LeafTree;
 use crate::merge::kernels::ALL;
-use crate::merge::lists::list::{List, Sources};
+use crate::merge::lists::list::{List, Record, Sources};
 use crate::merge::rule::Rule;
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::Source;
@@ -31,17 +32,6 @@ use crate::mesh::tasks::both;
 use crate::mesh::topology::NONE;
 use crate::tree::node::Branch;
 use crate::tree::solid::Solid;
-
-/// What the faces of a mesh are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Fate {
-    /// It may overlap others.
-    Doubtful,
-    /// It is clear of all others, and bounds the points inside.
-    Stays,
-    /// It is clear of all others, with points on both sides that are inside, or none.
-    Goes,
-}
 
 /// The faces of a mesh, to be united cell by cell.
 struct Uniting<'a> {
@@ -97,9 +87,10 @@ fn fates(
     let places: Vec<(Lattice, (u32, FaceId))> = (0..).zip(&firsts).map(place).collect();
     let mut stays = vec![false; firsts.len()];
     any_small_cell(sources, (cell, list), places, |cell, list, places| {
-        let leaf = LeafTree::new(list, cell, sources);
         for (_, (patch, face)) in places {
-            stays[*patch as usize] = leaf.number_before(*face) == Some(0);
+            let number = number_before(cell, list, sources, *face)
+                .or_else(|| LeafTree::new(list, cell, sources).number_before(*face));
+            stays[*patch as usize] = number == Some(0);
         }
         false
     });
@@ -138,15 +129,26 @@ fn patches(mates: &[u32], doubtful: &[bool]) -> (Vec<u32>, Vec<FaceId>) {
 }
 
 impl Uniting<'_> {
+    fn fate(&self, face: FaceId) -> Fate {
+        self.fates[face.place()]
+    }
+
     fn cell(&self, cell: Cell, list: List) -> Result<Branch> {
         poll();
-        let fate = |face: FaceId| self.fates[face.place()];
-        if list.records.iter().all(|r| fate(r.face) != Fate::Doubtful) {
+        let is_doubtful = |r: &&Record| self.fate(r.face) == Fate::Doubtful;
+        let doubtful = list.records.iter().filter(is_doubtful).count();
+        if doubtful == 0 {
             return Ok(self.settled(cell, list));
         }
         let total = list.len();
-        let stuck = || total <= STUCK && list.reaching_out(&cell) * 8 > total * 7;
-        let Some(cut) = cell.cut().filter(|_| total > LEAF && !stuck()) else {
+        let stuck = total <= STUCK && list.reaching_out(&cell) * 8 > total * 7;
+        let cut = cell.cut().filter(|_| !stuck);
+        if (cut.is_none() || doubtful <= LEAF && total <= CROWD)
+            && let Some(node) = united(&cell, &list, self.sources, |face| self.fate(face))
+        {
+            return Ok(Branch::of_node(cell, node));
+        }
+        let Some(cut) = cut.filter(|_| total > LEAF) else {
             return self.solved(cell, &list);
         };
         let (minus, plus) = list.divide(&cell, cut, self.sources);
@@ -159,8 +161,7 @@ impl Uniting<'_> {
     /// A cell in which every face stays or goes.
     fn settled(&self, cell: Cell, mut list: List) -> Branch {
         list.corner = i32::from(Rule::Positive.inside(list.corner));
-        list.records
-            .retain(|r| self.fates[r.face.place()] == Fate::Stays);
+        list.records.retain(|r| self.fate(r.face) == Fate::Stays);
         Branch::of_node(cell, list.close(false, self.sources))
     }
 

@@ -13,7 +13,7 @@ use crate::geometry::doubles::{seen_along, turn, Facing, Triangle};
 use crate::geometry::side::Side;
 use crate::interrupt::poll;
 use crate::merge::plane::{bounded, Outlines};
-use crate::mesh::handle::FaceId;
+use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::source::Source;
 use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
@@ -73,10 +73,10 @@ impl View {
         Self { plane, axis, way }
     }
 
-    /// Return whether a face lies in the plane and looks the same way.
-    fn shows(&self, face: &Triangle) -> bool {
-        let facing = Facing::of(&self.plane);
-        face.iter().all(|corner| facing.side(corner) == Side::On)
+    /// Return whether a face lies in the plane and looks the same way; its corners other than one are
+    /// known to lie there.
+    fn shows(&self, face: &Triangle, other: usize) -> bool {
+        Facing::of(&self.plane).side(&face[other]) == Side::On
             && turn(seen_along(face, self.axis)) == self.way
     }
 }
@@ -90,18 +90,25 @@ impl Flats<'_> {
         while let Some(face) = piece.get(at).copied() {
             poll();
             at += 1;
+            let known = self.mesh.vertices_of(face);
             for mate in self.mates_of(face).into_iter().flatten() {
-                let piece_of_mate = &mut self.pieces[mate.place()];
-                if *piece_of_mate == NONE
+                if self.pieces[mate.place()] == NONE
                     && view.way != Sign::Zero
-                    && view.shows(&doubles(self.mesh, mate))
+                    && view.shows(&doubles(self.mesh, mate), self.apex(mate, &known))
                 {
-                    *piece_of_mate = number;
+                    self.pieces[mate.place()] = number;
                     piece.push(mate);
                 }
             }
         }
         piece
+    }
+
+    /// The corner of a face across the edge at which it meets one with these vertices.
+    fn apex(&self, face: FaceId, known: &[VertexId; 3]) -> usize {
+        let corners = self.mesh.vertices_of(face);
+        let apex = corners.iter().position(|v| !known.contains(v));
+        apex.unwrap_or(0)
     }
 
     fn mates_of(&self, face: FaceId) -> [Option<FaceId>; 3] {

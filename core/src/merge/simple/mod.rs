@@ -135,13 +135,14 @@ pub fn simple_shells(solid: &Solid, sources: &Sources) -> Option<Vec<Branch>> {
     if !whole || !closed || leaf.len() != mesh.faces.len() {
         return None;
     }
-    let mut check = Check::new(source, mesh, sources);
+    let shells = shells(source, mesh.faces.len());
+    if shells.iter().all(|shell| *shell == 0) {
+        return None;
+    }
+    let mut check = Check::with_shells(source, mesh, sources, shells);
     let mut faces = vec![Vec::new(); check.seen.len()];
     for (face, shell) in FaceId::all().zip(&check.shells) {
         faces[*shell as usize].push(face);
-    }
-    if faces.len() < 2 {
-        return None;
     }
     for (seen, faces) in check.seen.iter_mut().zip(&faces) {
         *seen.get_mut() = is_outward(mesh, faces.iter().copied());
@@ -223,6 +224,15 @@ impl<'a> Check<'a> {
     /// A check in which no shell was labelled yet.
     fn new(source: &Source, mesh: &'a TriangleMesh, sources: &'a Sources) -> Self {
         let shells = shells(source, mesh.faces.len());
+        Self::with_shells(source, mesh, sources, shells)
+    }
+
+    fn with_shells(
+        source: &Source,
+        mesh: &'a TriangleMesh,
+        sources: &'a Sources,
+        shells: Vec<u32>,
+    ) -> Self {
         let count = shells.iter().map(|s| *s as usize + 1).max().unwrap_or(0);
         Self {
             sources,

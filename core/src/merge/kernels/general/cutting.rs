@@ -57,6 +57,12 @@ impl<'a> Face<'a> {
         !self.rims().iter().any(beyond)
     }
 
+    /// Return whether a segment in the plane of the face meets the face or its border; errs on yes.
+    pub fn is_reached_by(&self, segment: &Chord) -> bool {
+        let beyond = |rim: &Plane| segment.iter().all(|end| end.side_of(rim) == Side::Plus);
+        !self.rims().iter().any(beyond)
+    }
+
     /// Return whether a point in the plane of the face lies in it or on its border.
     fn holds(&self, point: &Vertex) -> bool {
         self.rims()

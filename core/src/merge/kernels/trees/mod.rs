@@ -20,7 +20,7 @@ use crate::tree::node::Work;
 use local_tree::LocalTree;
 pub use operand::LeafTree;
 use operand::Operand;
-use overlay::Fragment;
+pub(super) use overlay::{disjoint, Fragment};
 
 /// Pushes fragments through local trees.
 ///
@@ -29,10 +29,10 @@ use overlay::Fragment;
 pub struct LocalTrees;
 
 /// A piece of a fragment, with what is known of the operands on its two sides.
-struct Piece {
-    polygon: Polygon,
-    minus: Vec<bool>,
-    plus: Vec<bool>,
+pub(super) struct Piece {
+    pub(super) polygon: Polygon,
+    pub(super) minus: Vec<bool>,
+    pub(super) plus: Vec<bool>,
 }
 
 impl Kernel for LocalTrees {
@@ -124,7 +124,7 @@ impl Piece {
 }
 
 /// The pieces across which the expression changes, by orientation.
-fn keep(
+pub(super) fn keep(
     fragment: &Fragment,
     own: usize,
     pieces: Vec<Piece>,
