@@ -6,7 +6,7 @@ use super::descent::descend::{Counters, Descent};
 use super::expression::{Expression, Term};
 use super::lists::list::Sources;
 use super::rule::Rule;
-use super::simple::{overlaps_at, simple_shells, simplicity, united_around, Simplicity};
+use super::simple::{overlaps_at, simple_shells, simplicity, united_where_it_overlaps, Simplicity};
 use super::twins::without_twins;
 use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
@@ -237,7 +237,7 @@ fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
     }
     if simple == Some(false)
         && rule == Rule::Positive
-        && let Some(root) = united_around(solid, &sources)?
+        && let Some(root) = united_where_it_overlaps(solid, &sources)
     {
         return Ok(Solid::new(
             root,

@@ -5,7 +5,6 @@
 //! chooses.
 
 pub mod general;
-pub mod itself;
 pub(super) mod kept;
 pub mod orthogonal;
 pub mod problem;

@@ -5,14 +5,16 @@
 //! the faces of a cap are told to be clear of each other by its outline; such cells need no tree.
 //! The others are labelled, and so is one cell for each shell.
 
-mod clean;
+mod cuts;
 mod flats;
 mod looked;
 mod places;
+mod probes;
 pub(super) mod star;
+mod uniting;
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use super::descent::choice::LEAF;
 use super::kernels::trees::LeafTree;
@@ -30,17 +32,21 @@ use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node};
 use crate::tree::solid::Solid;
-pub use clean::united_around;
 use flats::flat_pieces;
 use looked::Looked;
 pub use places::overlaps_at;
 use star::is_star_shaped;
+pub use uniting::united_where_it_overlaps;
 
 /// Lists at least this long are worth a task of their own.
 const TASK: usize = 1024;
 
 /// Lists that no longer shrink are labelled at once, up to this length.
 const STUCK: usize = 256;
+
+/// So many pairs for each face are looked at one by one. More overlap in a few places, where local
+/// trees divide space instead.
+const MOST_PAIRS: usize = 64;
 
 struct Check<'a> {
     sources: &'a Sources,
@@ -52,8 +58,6 @@ struct Check<'a> {
     pieces: Vec<u32>,
     seen: Vec<AtomicBool>,
     overlap: AtomicBool,
-    /// By face, whether it may overlap another one; empty if that is not asked.
-    doubtful: Vec<AtomicBool>,
 }
 
 /// The answer of the check of a solid.
@@ -71,7 +75,7 @@ pub enum Simplicity {
 ///
 /// # Example
 /// ```
-/// use std::sync::Arc;
+/// use std::sync::{Arc, Mutex};
 ///
 /// use bspcsg::merge::lists::list::Sources;
 /// use bspcsg::merge::simple::{simplicity, Simplicity};
@@ -242,11 +246,17 @@ impl<'a> Check<'a> {
             pieces: flat_pieces(source, mesh),
             seen: (0..count).map(|_| AtomicBool::new(false)).collect(),
             overlap: AtomicBool::new(false),
-            doubtful: Vec::new(),
         }
     }
 
+    /// Looks for overlaps in a cell.
     fn cell(&self, cell: Cell, list: List) {
+        let look = |cell: &Cell, list: &List| self.leaf(cell, list);
+        self.small_cells(cell, list, &look);
+    }
+
+    /// Calls `look` with the small cells of a cell, until an overlap is found.
+    fn small_cells(&self, cell: Cell, list: List, look: &(impl Fn(&Cell, &List) + Sync)) {
         poll();
         if self.overlap.load(Ordering::Relaxed) {
             return;
@@ -255,21 +265,38 @@ impl<'a> Check<'a> {
         let stuck = || total <= STUCK && list.reaching_out(&cell) * 8 > total * 7;
         let cut = cell.cut().filter(|_| total > LEAF && !stuck());
         let Some(cut) = cut else {
-            self.leaf(&cell, &list);
+            look(&cell, &list);
             return;
         };
         let (minus, plus) = list.divide(&cell, cut, self.sources);
-        let below = || self.cell(cell.half(cut, Half::Minus), minus);
-        let above = || self.cell(cell.half(cut, Half::Plus), plus);
+        let below = || self.small_cells(cell.half(cut, Half::Minus), minus, look);
+        let above = || self.small_cells(cell.half(cut, Half::Plus), plus, look);
         both(total >= TASK, below, above);
+    }
+
+    /// The pairs of faces that may overlap, each both ways, ascending; `None` if they are many.
+    fn unclear_pairs(self, (cell, list): (Cell, List)) -> Option<Vec<[FaceId; 2]>> {
+        let found = Mutex::new(Vec::new());
+        let most = MOST_PAIRS * self.mesh.faces.len();
+        let look = |_: &Cell, list: &List| {
+            let pairs = self.unclear(list);
+            if let Ok(mut found) = found.lock() {
+                found.extend(pairs);
+                self.overlap.fetch_or(found.len() > most, Ordering::Relaxed);
+            }
+        };
+        self.small_cells(cell, list, &look);
+        let mut pairs = found
+            .into_inner()
+            .ok()
+            .filter(|found| found.len() <= most)?;
+        pairs.sort_unstable();
+        pairs.dedup();
+        Some(pairs)
     }
 
     fn leaf(&self, cell: &Cell, list: &List) {
         let faces: Vec<FaceId> = list.records.iter().map(|r| r.face).collect();
-        if !self.doubtful.is_empty() {
-            self.doubt(&faces);
-            return;
-        }
         let shells = || {
             faces
                 .iter()
@@ -294,16 +321,17 @@ impl<'a> Check<'a> {
         (1..looked.len()).all(|i| looked[..i].iter().all(|other| looked[i].is_clear_of(other)))
     }
 
-    /// Marks the faces that may overlap others of a few, as far as a quick look can tell.
-    fn doubt(&self, faces: &[FaceId]) {
-        let looked = self.look_at(faces);
+    /// The pairs of listed faces that may overlap, as far as a quick look can tell, each both ways.
+    fn unclear(&self, list: &List) -> Vec<[FaceId; 2]> {
+        let faces: Vec<FaceId> = list.records.iter().map(|r| r.face).collect();
+        let looked = self.look_at(&faces);
+        let mut pairs = Vec::new();
         for i in 1..looked.len() {
             for j in (0..i).filter(|j| !looked[i].is_clear_of(&looked[*j])) {
-                for face in [faces[i], faces[j]] {
-                    self.doubtful[face.place()].store(true, Ordering::Relaxed);
-                }
+                pairs.extend([[faces[i], faces[j]], [faces[j], faces[i]]]);
             }
         }
+        pairs
     }
 
     fn look_at(&self, faces: &[FaceId]) -> Vec<Looked> {

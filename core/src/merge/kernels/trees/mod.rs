@@ -20,7 +20,7 @@ use crate::tree::node::Work;
 use local_tree::LocalTree;
 pub use operand::LeafTree;
 use operand::Operand;
-pub(super) use overlay::{disjoint, Fragment};
+pub(in crate::merge) use overlay::{disjoint, Fragment};
 
 /// Pushes fragments through local trees.
 ///
@@ -29,10 +29,10 @@ pub(super) use overlay::{disjoint, Fragment};
 pub struct LocalTrees;
 
 /// A piece of a fragment, with what is known of the operands on its two sides.
-pub(super) struct Piece {
-    pub(super) polygon: Polygon,
-    pub(super) minus: Vec<bool>,
-    pub(super) plus: Vec<bool>,
+pub(in crate::merge) struct Piece {
+    pub(in crate::merge) polygon: Polygon,
+    pub(in crate::merge) minus: Vec<bool>,
+    pub(in crate::merge) plus: Vec<bool>,
 }
 
 impl Kernel for LocalTrees {
@@ -124,7 +124,7 @@ impl Piece {
 }
 
 /// The pieces across which the expression changes, by orientation.
-pub(super) fn keep(
+pub(in crate::merge) fn keep(
     fragment: &Fragment,
     own: usize,
     pieces: Vec<Piece>,

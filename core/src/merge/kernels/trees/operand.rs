@@ -106,12 +106,10 @@ impl LeafTree {
         self.0.fragments.iter().map(|f| f.face.id)
     }
 
-    /// The winding number in front of a face, where its part in the cell begins; `None` if it has
-    /// none there.
-    pub fn number_before(&self, face: FaceId) -> Option<i32> {
-        let fragment = self.0.fragments.iter().find(|f| f.face.id == face)?;
-        let sides = self.0.tree.sides(fragment.polygon.clone());
-        sides.first().map(|s| s.plus)
+    /// The winding numbers behind and in front of a polygon that no piece crosses.
+    pub fn sides_of(&self, polygon: Polygon) -> Option<[i32; 2]> {
+        let sides = self.0.tree.sides(polygon);
+        sides.first().map(|s| [s.minus, s.plus])
     }
 
     /// The winding number at a lattice point that lies on none of the pieces.
