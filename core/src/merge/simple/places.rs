@@ -33,7 +33,7 @@ pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
             Node::Leaf(_) => {}
             Node::Deferred(leaf) => {
                 let list = List::open(leaf, &branch, &sources);
-                if any_small_cell(&sources, (branch.cell, list), places, overlaps) {
+                if any_small_cell(&sources, &(branch.cell, list), places, overlaps) {
                     return true;
                 }
             }
@@ -50,11 +50,14 @@ pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
 /// until it returns true; returns whether it did. Cells are small where halving separates no more.
 pub(super) fn any_small_cell<P>(
     sources: &Sources,
-    (cell, list): (Cell, List),
+    within: &(Cell, List),
     places: Vec<(Lattice, P)>,
     mut look: impl FnMut(&Cell, &List, &[(Lattice, P)]) -> bool,
 ) -> bool {
-    let mut open = vec![(cell, list, places)];
+    if places.is_empty() {
+        return false;
+    }
+    let mut open = vec![(within.0, within.1.clone(), places)];
     while let Some((cell, list, places)) = open.pop() {
         poll();
         if places.is_empty() || list.is_empty() {

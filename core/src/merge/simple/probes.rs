@@ -4,6 +4,7 @@
 //! on which no other face lies.
 
 use std::borrow::Cow;
+use std::cell::OnceCell;
 
 use super::places::any_small_cell;
 use crate::arith::convert::{as_double, as_whole};
@@ -19,7 +20,7 @@ use crate::geometry::winding::path::Way;
 use crate::interrupt::poll;
 use crate::merge::kernels::general::Face;
 use crate::merge::kernels::trees::LeafTree;
-use crate::merge::lists::list::{List, Record, Sources};
+use crate::merge::lists::list::{List, Sources};
 
 /// A piece of surface that nothing crosses, and the jump of the winding number from its plus to its
 /// minus side.
@@ -38,7 +39,16 @@ struct Probe {
     place: Lattice,
 }
 
-/// For each piece the winding numbers on its sides; `None` if one holds no point that tells them.
+/// A small cell, in which winding numbers are counted.
+struct Count<'a> {
+    cell: &'a Cell,
+    list: &'a List,
+    sources: &'a Sources,
+    /// By record, its face, once a path comes near it.
+    faces: Vec<OnceCell<Option<Face<'static>>>>,
+}
+
+/// For each piece the winding numbers on its sides; `None` if they cannot be told.
 ///
 /// # Cost
 /// Lists are divided where pieces are, and each path is compared with the faces of a small cell.
@@ -49,22 +59,33 @@ pub(super) fn sides(
 ) -> Option<Vec<Sides>> {
     let mut found: Vec<Option<Sides>> = vec![None; pieces.len()];
     for attempt in 0..ATTEMPTS {
-        let open = (0..pieces.len()).filter(|i| found[*i].is_none());
-        let probes: Vec<(Lattice, (usize, Vertex))> = open
-            .filter_map(|i| {
-                let probe = Probe::inside(pieces[i].polygon, attempt)?;
-                Some((probe.place, (i, probe.point)))
-            })
-            .collect();
-        any_small_cell(sources, within.clone(), probes, |cell, list, probes| {
-            for (_, (i, point)) in probes {
-                found[*i] = sides_at(&pieces[*i], point, cell, list, sources);
-            }
-            false
-        });
+        probe(pieces, &mut found, within, sources, attempt);
     }
     grow_trees_for(pieces, &mut found, within, sources);
     found.into_iter().collect()
+}
+
+/// Tells the numbers of pieces by points inside.
+fn probe(
+    pieces: &[Probed],
+    found: &mut [Option<Sides>],
+    within: &(Cell, List),
+    sources: &Sources,
+    attempt: usize,
+) {
+    let open = (0..pieces.len()).filter(|i| found[*i].is_none());
+    let probes = open.filter_map(|i| {
+        let probe = Probe::inside(pieces[i].polygon, attempt)?;
+        Some((probe.place, (i, probe.point)))
+    });
+    let probes: Vec<(Lattice, (usize, Vertex))> = probes.collect();
+    any_small_cell(sources, within, probes, |cell, list, probes| {
+        let count = Count::new(cell, list, sources);
+        for (_, (i, point)) in probes {
+            found[*i] = count.sides_at(&pieces[*i], point);
+        }
+        false
+    });
 }
 
 /// Tells the numbers of pieces that are too thin to hold a point: a local tree is grown around each.
@@ -77,7 +98,7 @@ fn grow_trees_for(
     let open = (0..pieces.len()).filter(|i| found[*i].is_none());
     let middle = |i: usize| aim(pieces[i].polygon, 0).map(|x| as_whole(x.round()));
     let places: Vec<(Lattice, usize)> = open.map(|i| (middle(i), i)).collect();
-    any_small_cell(sources, within.clone(), places, |cell, list, places| {
+    any_small_cell(sources, within, places, |cell, list, places| {
         let leaf = LeafTree::new(list, cell, sources);
         for (_, i) in places {
             let part = pieces[*i].polygon.clone().clipped(cell);
@@ -90,51 +111,65 @@ fn grow_trees_for(
 /// So many points are tried inside a piece: its middle, and others nearer to a corner.
 const ATTEMPTS: usize = 4;
 
-/// The winding numbers on the sides of a piece, counted on the way to a point inside.
-fn sides_at(
-    piece: &Probed,
-    point: &Vertex,
-    cell: &Cell,
-    list: &List,
-    sources: &Sources,
-) -> Option<Sides> {
-    let reached = number_at(point, cell, list, sources)?;
-    Some(
-        match piece.polygon.support().side_of_corner(&cell.corner()) {
-            Half::Minus => [reached, reached - piece.weight],
-            Half::Plus => [reached + piece.weight, reached],
-        },
-    )
-}
-
-/// The winding number where the path from a cell's corner to a point arrives; `None` if the path is
-/// not generic.
-///
-/// A face in whose plane the point lies is not met before.
-fn number_at(point: &Vertex, cell: &Cell, list: &List, sources: &Sources) -> Option<i32> {
-    let from = cell.corner();
-    let way = Way::new(from.map(|x| 0.5 * as_double(x)), point.approx());
-    let mut number = list.corner;
-    for record in &list.records {
-        poll();
-        let (low, high) = sources.get(record.slot()).face_box(record.face);
-        if way.may_meet(&low, &high) {
-            number += change_across(record, &from, point, sources)?;
+impl<'a> Count<'a> {
+    fn new(cell: &'a Cell, list: &'a List, sources: &'a Sources) -> Self {
+        let faces = list.records.iter().map(|_| OnceCell::new()).collect();
+        Self {
+            cell,
+            list,
+            sources,
+            faces,
         }
     }
-    Some(number)
+
+    /// The winding numbers on the sides of a piece, counted on the way to a point inside.
+    fn sides_at(&self, piece: &Probed, point: &Vertex) -> Option<Sides> {
+        let reached = self.number_at(point)?;
+        let support = piece.polygon.support();
+        Some(match support.side_of_corner(&self.cell.corner()) {
+            Half::Minus => [reached, reached - piece.weight],
+            Half::Plus => [reached + piece.weight, reached],
+        })
+    }
+
+    /// The winding number where the path from the cell's corner to a point arrives; `None` if the
+    /// path is not generic.
+    fn number_at(&self, point: &Vertex) -> Option<i32> {
+        let from = self.cell.corner();
+        let way = Way::new(from.map(|x| 0.5 * as_double(x)), point.approx());
+        let mut number = self.list.corner;
+        for (i, record) in self.list.records.iter().enumerate() {
+            poll();
+            let (low, high) = self.sources.get(record.slot()).face_box(record.face);
+            if way.may_meet(&low, &high) {
+                let change = change_across(self.face(i)?, &from, point)?;
+                number += record.orientation().signed(change);
+            }
+        }
+        Some(number)
+    }
+
+    fn face(&self, record: usize) -> Option<&Face<'static>> {
+        let made = || {
+            let record = &self.list.records[record];
+            let source = self.sources.get(record.slot());
+            let corners = source.mesh()?.corners(record.face);
+            let polygon = Polygon::triangle(&corners, source.plane(record.face));
+            Some(Face::new(Cow::Owned(polygon)))
+        };
+        self.faces[record].get_or_init(made).as_ref()
+    }
 }
 
-/// The change of the winding number across a face on a path.
-fn change_across(record: &Record, from: &Lattice, to: &Vertex, sources: &Sources) -> Option<i32> {
-    let source = sources.get(record.slot());
-    let plane = source.plane(record.face);
-    if to.side_of(&plane) == Side::On {
+/// The change of the winding number across a face on a path; `None` if the path is not generic.
+///
+/// A face in whose plane the path ends is not met before, nor at the end.
+fn change_across(face: &Face, from: &Lattice, to: &Vertex) -> Option<i32> {
+    if to.side_of(face.polygon.support()) == Side::On {
         return Some(0);
     }
-    let polygon = Polygon::triangle(&source.mesh()?.corners(record.face), plane);
-    match Face::new(Cow::Owned(polygon)).on_path(from, to) {
-        Filtered::Certain(change) => Some(record.orientation().signed(change)),
+    match face.on_path(from, to) {
+        Filtered::Certain(change) => Some(change),
         Filtered::Doubtful => None,
     }
 }
