@@ -1,13 +1,14 @@
 """Dense places, each at two sizes: many faces meet there, and cost is to grow as answers do."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from .._types import MeshArrays
 from . import dense
 from .case import BenchCase
 from .targets import DoublingTarget, Faster
-from .work import Expression, OneMesh, Pair, Work
+from .work import Expression, OneMesh, OverlappingPair, Pair, Work
 
 #: Makes the work of an item from its size.
 _Maker = Callable[[int], Work]
@@ -137,6 +138,15 @@ CLIFFS: dict[str, BenchCase] = {
     ),
     "dense-one-mesh-of-touching-cubes": _doubled(
         "cubes that touch in one mesh, reduced", _one_mesh(dense.touching_cubes), 1000, 8
+    ),
+    "dense-tube": replace(
+        _doubled(
+            "tube through itself minus a box there, by rings",
+            lambda rings: OverlappingPair(*dense.tube_and_box(rings)),
+            400,
+            12,
+        ),
+        other_sets=True,
     ),
     "dense-spikes": _doubled("spikes from one point, united", _union(dense.spikes), 250, 4),
 }

@@ -19,6 +19,9 @@ from .shapes import (
     unit_vector,
 )
 
+#: Sides of a tube.
+_TUBE_SIDES = 24
+
 #: Turns what would be aligned with axes.
 _ASKEW = rotation((1, 2, 3), 0.4)
 
@@ -191,6 +194,32 @@ def _round_bar(sides: int) -> MeshArrays:
 
 def _in_single_precision(mesh: MeshArrays) -> MeshArrays:
     return mesh[0].astype(np.float32).astype(np.float64), mesh[1]
+
+
+def tube_and_box(rings: int) -> tuple[MeshArrays, MeshArrays]:
+    """Return a tube that passes through itself, and a box across the place where it does."""
+    return _loop(rings), turned(box((-0.3, -0.3, 0), (0.3, 0.3, 1)), _ASKEW)
+
+
+def _loop(rings: int) -> MeshArrays:
+    # The curve (t² − 1, t³ − t) passes through the origin at −1 and at 1.
+    t = np.linspace(-1.4, 1.4, rings)
+    x, y = t * t - 1, t**3 - t
+    ahead = np.hypot(2 * t, 3 * t * t - 1)
+    aside = np.stack([1 - 3 * t * t, 2 * t, 0 * t], axis=1) / ahead[:, None]
+    middle = np.stack([x, y, 0 * t], axis=1)
+    turn = 2 * np.pi * np.arange(_TUBE_SIDES) / _TUBE_SIDES + 0.1
+    out = aside[:, None] * np.cos(turn)[:, None] + np.outer(np.sin(turn), (0, 0, 1))
+    around = (middle[:, None] + 0.2 * out).reshape(-1, 3)
+    vertices = np.concatenate([around, middle[[0, -1]]])
+    ring, side = (a.ravel() for a in np.indices((rings - 1, _TUBE_SIDES)))
+    a, d = ring * _TUBE_SIDES + side, ring * _TUBE_SIDES + (side + 1) % _TUBE_SIDES
+    b, c = a + _TUBE_SIDES, d + _TUBE_SIDES
+    first, last = a[:_TUBE_SIDES], d[:_TUBE_SIDES]
+    top = (rings - 1) * _TUBE_SIDES
+    ends = [np.full(_TUBE_SIDES, len(around) + k) for k in range(2)]
+    rows = [(a, d, c), (a, c, b), (first, ends[0], last), (first + top, last + top, ends[1])]
+    return vertices, np.concatenate([np.stack(row, axis=1) for row in rows])
 
 
 def spikes(count: int) -> list[MeshArrays]:

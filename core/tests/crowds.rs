@@ -4,18 +4,23 @@ mod support;
 
 use std::sync::Arc;
 
+use bspcsg::arith::convert::as_whole;
 use bspcsg::arith::Int;
+use bspcsg::extract::rounding::round::mesh;
+use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::expression::{Expression, Term};
 use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::grid::Pitch;
 use bspcsg::mesh::half_space::half_space;
 use bspcsg::mesh::handle::VertexId;
+use bspcsg::query::classify::Location;
+use bspcsg::tree::node::Node;
 use bspcsg::tree::solid::Solid;
 
 use support::{
-    applied, assert_same_set, combined, complement, inside, manifold_mesh, normalized, volume,
-    Numbers, Shape,
+    applied, assert_same_set, combined, complement, double, inside, located, manifold_mesh,
+    normalized, volume, Numbers, Shape,
 };
 
 /// An expression over operands 0 … count − 1 with nested operations, each operand named once.
@@ -244,4 +249,90 @@ fn a_shell_that_is_turned_around_takes_away() {
     // Inside the inner one the numbers of the outer and the inner cancel.
     let points = [[15, 15, 15], [25, 25, 25], [5, 5, 5], [50, 50, 50]];
     assert_eq!(inside(&united, &points), [false, true, true, true]);
+}
+
+/// A sphere with some corners in any places, so that its faces cross each other.
+fn crumpled(numbers: &mut Numbers, size: i64) -> Shape {
+    let mut shape = Shape::sphere([0; 3], double(size), 2);
+    for vertex in shape.vertices.iter_mut().step_by(9) {
+        *vertex = numbers.point(size);
+    }
+    shape
+}
+
+/// A tube of so many rings that passes through itself once.
+fn eight(rings: i64) -> Shape {
+    let sides = 12;
+    let at = |ring: i64, side: i64| {
+        let turn = std::f64::consts::TAU * double(ring) / double(rings);
+        let around = std::f64::consts::TAU * double(side) / double(sides) + 0.1;
+        let ahead = [-turn.sin(), (2.0 * turn).cos()];
+        let length = ahead[0].hypot(ahead[1]);
+        let out = 0.2 * around.cos() / length;
+        let place = [
+            turn.cos() - out * ahead[1],
+            turn.sin() * turn.cos() + out * ahead[0],
+            0.2 * around.sin(),
+        ];
+        place.map(|x| as_whole(1e6 * x))
+    };
+    let number = |ring: i64, side: i64| ring % rings * sides + side % sides;
+    let places = || (0..rings).flat_map(|ring| (0..sides).map(move |side| (ring, side)));
+    let faces = places().flat_map(|(ring, side)| {
+        let [a, b] = [number(ring, side), number(ring + 1, side)];
+        let [c, d] = [number(ring + 1, side + 1), number(ring, side + 1)];
+        [[a, d, c], [a, c, b]]
+    });
+    Shape {
+        vertices: places().map(|(ring, side)| at(ring, side)).collect(),
+        faces: faces.collect(),
+    }
+}
+
+#[test]
+fn a_shell_that_crosses_itself_bounds_what_it_winds_around() {
+    let mut numbers = Numbers::new(38);
+    for round in 0..24 {
+        let size = if round % 2 == 0 { 12 } else { 4000 };
+        let raw = crumpled(&mut numbers, size).unchecked();
+        let united = normalized(&raw, Rule::Positive);
+        assert!(united.is_reduced());
+        manifold_mesh(&united, &format!("round {round}"));
+        let points: Vec<Lattice> = (0..200).map(|_| numbers.point(size)).collect();
+        let found = located(&raw, &points)
+            .into_iter()
+            .zip(located(&united, &points));
+        for (raw, united) in found.filter(|(raw, _)| *raw != Location::Boundary) {
+            assert_eq!(raw, united, "round {round}");
+        }
+    }
+}
+
+/// Some faces are cut where a mesh overlaps itself; what is left of all is one list, not a tree.
+#[test]
+fn what_crosses_itself_in_one_place_costs_no_tree() {
+    for rings in [60, 120] {
+        let shape = eight(rings);
+        let united = normalized(&shape.unchecked(), Rule::Positive);
+        let Node::Deferred(leaf) = &*united.root().node else {
+            panic!("{rings} rings are divided");
+        };
+        assert!(leaf.len() <= shape.faces.len() && leaf.parts.len() < shape.faces.len() / 4);
+        manifold_mesh(&united, &format!("{rings} rings"));
+    }
+}
+
+/// Only where surfaces cross on the lattice the mesh stays as it is, and one such place is enough.
+#[test]
+fn a_mesh_says_that_it_crosses_itself_without_being_united() {
+    let bars = Shape::cuboid([-100, -3, -3], [100, 3, 3])
+        .with(Shape::cuboid([-80, -90, -2], [-70, 95, 2]));
+    let bars = bars.unchecked();
+    let tool = Shape::cuboid([80, -20, -20], [130, 20, 20]).unchecked();
+    let result = applied(SetOp::Difference, &bars, &tool);
+    assert!(bars.simple().get().is_none(), "no cell showed it");
+    mesh(&result).expect("bounded");
+    assert_eq!(bars.simple().get(), Some(&false));
+    assert_eq!(result.simple().get(), Some(&false));
+    assert!(bars.united().get().is_none() && result.united().get().is_none());
 }

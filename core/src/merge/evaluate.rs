@@ -190,7 +190,8 @@ pub fn settled(solid: &Solid) -> Result<Option<Solid>> {
     Ok((found_simple(solid)? == Some(true)).then(|| solid.clone()))
 }
 
-/// Whether a solid is simple, if that is known, or once the meshes that decide it have been checked.
+/// Return whether a solid is simple, if that is known, or once the meshes that decide it have been
+/// checked.
 fn found_simple(solid: &Solid) -> Result<Option<bool>> {
     if let Some(known) = solid.simple().get() {
         return Ok(Some(*known));
@@ -209,7 +210,7 @@ fn found_simple(solid: &Solid) -> Result<Option<bool>> {
     Ok(Some(*solid.simple().get_or_make(|| true)))
 }
 
-/// Whether a solid is simple, if that is known or it is one mesh.
+/// Return whether a solid is simple, if that is known or it is one mesh.
 fn checked(solid: &Solid) -> Result<Option<bool>> {
     if let Some(known) = solid.simple().get() {
         return Ok(Some(*known));

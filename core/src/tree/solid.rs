@@ -225,7 +225,8 @@ impl Solid {
         self
     }
 
-    /// Whether the elements are the reduced boundary, once somebody has looked; shared by clones.
+    /// The answer to whether the elements are the reduced boundary, once somebody has looked; shared
+    /// by clones.
     pub fn simple(&self) -> &Cached<bool> {
         &self.simple
     }

@@ -20,7 +20,7 @@ fn middle(p: &Triangle, q: &Triangle) -> Point {
     let mut ends: Vec<Point> = through(p, q).chain(through(q, p)).collect();
     // All lie on one line, so they stand there in lexicographic order, and what is common to both
     // stretches lies between the inner two.
-    ends.sort_by(|a, b| in_order(a, b));
+    ends.sort_by(in_order);
     match ends.len() {
         0 => p[0],
         n => mean(&ends[(n - 1) / 2], &ends[n / 2]),

@@ -20,7 +20,7 @@ pub(super) struct Tangle<'a> {
     pairs: Vec<[u32; 2]>,
 }
 
-/// What is left of a face, disjoint from all others of its plane, and its pieces.
+/// The rest of a face, disjoint from all others of its plane, and its pieces.
 pub(super) struct CutUp {
     pub(super) fragment: Fragment,
     pub(super) pieces: Vec<Polygon>,

@@ -70,7 +70,7 @@ impl CutUp {
         self.pieces.iter().map(probed)
     }
 
-    /// What stays of the fragment, given the numbers of its pieces.
+    /// Keep the pieces of the fragment that bound the points inside, given their numbers.
     fn kept(self, sides: &[Sides]) -> Vec<Kept> {
         let piece = |(polygon, sides): (Polygon, &Sides)| {
             let [minus, plus] = sides.map(|w| vec![Rule::Positive.inside(w)]);
@@ -94,7 +94,9 @@ impl Patches {
             firsts: Vec::new(),
         };
         let mut is_left = vec![true; count];
-        some.iter().for_each(|f| is_left[f.place()] = false);
+        for face in some {
+            is_left[face.place()] = false;
+        }
         for first in 0..count {
             if std::mem::replace(&mut is_left[first], false) {
                 patches.spread(first, mates, &mut is_left);
