@@ -45,15 +45,15 @@ impl Joints {
         Ok(Self(next))
     }
 
-    /// The number of closed curves.
-    pub(super) fn loops(&self, segments: &[Segment]) -> usize {
+    /// The segments of each closed curve.
+    pub(super) fn loops<'s>(&self, segments: &'s [Segment]) -> Vec<Vec<&'s Segment>> {
         let mut seen = vec![false; segments.len()];
         let mut follow = |start: usize| {
             let mut at = Some(start);
-            let mut found = false;
+            let mut found = Vec::new();
             while let Some(i) = at.filter(|i| !seen[*i]) {
                 seen[i] = true;
-                found = true;
+                found.push(&segments[i]);
                 at = self.0[i];
             }
             found
@@ -64,7 +64,8 @@ impl Joints {
                 follow(i);
             }
         }
-        (0..segments.len()).filter(|i| follow(*i)).count()
+        let curves = (0..segments.len()).map(follow);
+        curves.filter(|curve| !curve.is_empty()).collect()
     }
 
     /// The segments with those joined that continue each other on one line.
@@ -165,7 +166,7 @@ impl Segment {
 
 /// Return whether a closed curve of segments turns left around what it encloses, as seen from the
 /// plus side of the polygon's plane.
-pub(super) fn turns_left(polygon: &Polygon, segments: &[Segment]) -> Result<bool, Special> {
+pub(super) fn turns_left(polygon: &Polygon, segments: &[&Segment]) -> Result<bool, Special> {
     let axis = polygon.support().main_axis();
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let origin = segments[0].from.at.approx();
@@ -230,7 +231,7 @@ mod tests {
     fn a_ring_is_one_closed_curve_and_a_gap_in_it_is_special() {
         let mut ring = path(&SQUARE);
         let joints = Joints::of(&ring).ok().expect("all are continued");
-        assert_eq!(joints.loops(&ring), 1);
+        assert_eq!(joints.loops(&ring).len(), 1);
         ring.pop();
         assert!(Joints::of(&ring).is_err());
     }
@@ -239,9 +240,13 @@ mod tests {
     fn curves_turn_left_or_right_as_seen_from_above() {
         let floor = triangle([[0, 0, 0], [9, 0, 0], [0, 9, 0]]);
         let mut corners = SQUARE;
-        assert_eq!(turns_left(&floor, &path(&corners)).ok(), Some(true));
+        let turns = |corners: &[Lattice]| {
+            let curve = path(corners);
+            turns_left(&floor, &curve.iter().collect::<Vec<&Segment>>()).ok()
+        };
+        assert_eq!(turns(&corners), Some(true));
         corners.reverse();
-        assert_eq!(turns_left(&floor, &path(&corners)).ok(), Some(false));
+        assert_eq!(turns(&corners), Some(false));
     }
 
     #[test]

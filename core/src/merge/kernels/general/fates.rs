@@ -190,7 +190,7 @@ impl Cut {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::merge::scenes::crossing;
+    use crate::merge::scenes::{crossing, cuboids, tetrahedron, Shared};
 
     #[test]
     fn faces_that_nothing_crosses_stay_whole() {
@@ -206,5 +206,35 @@ mod tests {
         let alone = Scene::new(&shared.cell, &operands[..1], &shared.sources);
         let fates = alone.fates(usize::MAX).expect("nothing meets");
         assert!(fates.iter().all(|fate| matches!(fate, Fate::Untouched)));
+    }
+
+    /// For each element of a tetrahedron whether boxes divide it by a trace, into how many edges
+    /// inside.
+    fn traced(boxes: &[[[i64; 3]; 2]]) -> Vec<usize> {
+        let floor = tetrahedron([[-90, -95, 0], [290, -85, 0], [-80, 310, 0], [-70, -70, 300]]);
+        let shared = Shared::of(&[floor, cuboids(boxes.iter().copied())]);
+        let operands = shared.operands();
+        let scene = Scene::new(&shared.cell, &operands, &shared.sources);
+        let fates = scene.fates(usize::MAX).unwrap_or_default();
+        let edges = |fate: &Fate| match fate {
+            Fate::Cut(cut) => match &cut.parts {
+                Parts::Sides(trace) => trace.outline(&cut.polygon, true).len(),
+                Parts::Pieces(_) => 0,
+            },
+            _ => 0,
+        };
+        fates.iter().take(4).map(edges).collect()
+    }
+
+    #[test]
+    fn several_curves_on_a_face_are_one_trace() {
+        let side_by_side = [[[1, 2, -5], [9, 11, 5]], [[20, 3, -5], [31, 14, 5]]];
+        assert_eq!(traced(&side_by_side), [8, 0, 0, 0]);
+    }
+
+    #[test]
+    fn curves_that_are_not_nested_by_turns_are_no_trace() {
+        let nested = [[[1, 2, -9], [19, 21, 9]], [[5, 6, -5], [9, 11, 5]]];
+        assert_eq!(traced(&nested), [0, 0, 0, 0]);
     }
 }

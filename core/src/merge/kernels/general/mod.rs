@@ -12,6 +12,7 @@ mod fates;
 mod keep;
 mod known;
 mod labels;
+mod nesting;
 mod points;
 mod scene;
 mod segment;

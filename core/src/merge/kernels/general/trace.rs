@@ -9,8 +9,9 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use super::curves::{may_cross, turns_left, Joints};
+use super::curves::{may_cross, Joints};
 use super::cutting::Special;
+use super::nesting::View;
 use super::points::Points;
 use super::segment::{Crossed, Crosser, Segment};
 use crate::geometry::outline::{order_along, BareEdge};
@@ -24,7 +25,7 @@ pub(super) struct Trace {
     /// Marks of the corners that lie inside that operand.
     corners: SmallVec<[bool; 6]>,
     /// With the inside on their left.
-    segments: Vec<Segment>,
+    pub(super) segments: Vec<Segment>,
     /// The ends at which they leave the border and come back to it, counterclockwise.
     ends: Vec<BorderEnd>,
 }
@@ -45,13 +46,27 @@ impl Trace {
         crossers: &[Crosser],
         points: &mut Points,
     ) -> Option<Self> {
-        let (segments, ends, corners) = divided(crossed, crossers, points).ok()?;
-        Some(Self {
-            operand: crossers[0].operand,
-            corners,
-            segments,
-            ends,
-        })
+        divided(crossed, crossers, points).ok()
+    }
+
+    /// Return for each corner whether it lies inside; closed curves must be nested by turns.
+    fn nested(&self, polygon: &Polygon, joints: &Joints) -> Result<SmallVec<[bool; 6]>, Special> {
+        let curves = joints.loops(&self.segments);
+        let view = View::of(polygon);
+        let first = match self.ends.first() {
+            Some(end) => !end.enters,
+            None => view.border_is_inside(&curves)?,
+        };
+        let corners = corners_inside(polygon.corners().len(), first, &self.ends);
+        if curves.len() > usize::from(self.ends.is_empty()) {
+            let border = [false, true].map(|inside| {
+                let mut edges = Vec::new();
+                self.border(polygon, &corners, inside, &mut edges);
+                edges
+            });
+            view.check(&self.segments, &border, &curves)?;
+        }
+        Ok(corners)
     }
 
     /// Return whether a corner lies inside the operand.
@@ -63,16 +78,22 @@ impl Trace {
     pub(super) fn outline(&self, polygon: &Polygon, inside: bool) -> Vec<BareEdge> {
         let mut edges = Vec::with_capacity(self.segments.len() + self.ends.len() + 3);
         edges.extend(self.segments.iter().map(|s| s.bordering(inside)));
-        self.border(polygon, inside, &mut edges);
+        self.border(polygon, &self.corners, inside, &mut edges);
         edges
     }
 
     /// The arcs of the border that lie inside the operand, or outside.
-    fn border(&self, polygon: &Polygon, inside: bool, edges: &mut Vec<BareEdge>) {
+    pub(super) fn border(
+        &self,
+        polygon: &Polygon,
+        labels: &[bool],
+        inside: bool,
+        edges: &mut Vec<BareEdge>,
+    ) {
         let corners = polygon.corners();
         let mut ends = self.ends.iter().peekable();
         for (i, corner) in corners.iter().enumerate() {
-            let (mut from, mut within) = (&corner.at, self.corners[i]);
+            let (mut from, mut within) = (&corner.at, labels[i]);
             let mut arc = |from: &Arc<Vertex>, to: &Arc<Vertex>, within: bool| {
                 if within == inside {
                     edges.push(BareEdge {
@@ -107,13 +128,7 @@ impl Segment {
     }
 }
 
-type Divided = (Vec<Segment>, Vec<BorderEnd>, SmallVec<[bool; 6]>);
-
-fn divided(
-    crossed: &Crossed,
-    crossers: &[Crosser],
-    points: &mut Points,
-) -> Result<Divided, Special> {
+fn divided(crossed: &Crossed, crossers: &[Crosser], points: &mut Points) -> Result<Trace, Special> {
     if crossers.iter().any(|c| c.operand != crossers[0].operand) {
         return Err(Special);
     }
@@ -127,16 +142,18 @@ fn divided(
     }
     let ends = border_ends(crossed.polygon, &segments)?;
     let joints = Joints::of(&segments)?;
-    let loops = joints.loops(&segments);
-    if loops > usize::from(ends.is_empty()) || may_cross(&segments) {
+    if may_cross(&segments) {
         return Err(Special);
     }
-    let first = match ends.first() {
-        Some(end) => !end.enters,
-        None => !turns_left(crossed.polygon, &segments)?,
+    let mut trace = Trace {
+        operand: crossers[0].operand,
+        corners: SmallVec::new(),
+        segments,
+        ends,
     };
-    let corners = corners_inside(crossed.polygon.corners().len(), first, &ends);
-    Ok((joints.joined(segments)?, ends, corners))
+    trace.corners = trace.nested(crossed.polygon, &joints)?;
+    trace.segments = joints.joined(trace.segments)?;
+    Ok(trace)
 }
 
 /// The ends on the border, counterclockwise; they must enter and leave by turns.
