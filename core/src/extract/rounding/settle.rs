@@ -6,6 +6,7 @@ use super::company::{in_company, Faces};
 use super::crossings::{faults, Faults};
 use super::mend::{Mending, Precision};
 use crate::arith::convert::as_number;
+use crate::extract::mesh::edges;
 use crate::geometry::doubles::Point;
 use crate::mesh::handle::VertexId;
 
@@ -53,9 +54,10 @@ pub fn settle(
         if moved.is_empty() {
             break;
         }
-        changed = merged(&changed, &mesh.stars(&moved));
+        let touched = mesh.stars(&moved);
+        changed = merged(&changed, &touched);
         settled.moved = merged(&settled.moved, &moved);
-        found = faults(&mesh.faces(), &changed, &party);
+        found = mesh.faults_after(&found, &changed, &touched, &party);
     }
     for _ in 0..ROUNDS {
         if found.is_empty() {
@@ -68,7 +70,7 @@ pub fn settle(
         settled.mended = merged(&settled.mended, &touched);
         changed = merged(&changed, &touched);
         changed.retain(|t| !mesh.is_removed(*t));
-        found = faults(&mesh.faces(), &changed, &party);
+        found = mesh.faults_after(&found, &changed, &touched, &party);
     }
     settled.compared = changed.len();
     settled.left = found;
@@ -107,6 +109,53 @@ impl Rounded {
             return Faults::default();
         }
         faults(&self.faces(), changed, &party)
+    }
+
+    /// Return the faults that `faults` would, if these were found before some triangles were touched:
+    /// only what these and their mates have to do with is compared anew.
+    fn faults_after(
+        &self,
+        found: &Faults,
+        changed: &[u32],
+        touched: &[u32],
+        party: impl Fn(u32) -> u32,
+    ) -> Faults {
+        // Whether surfaces cross in an edge depends on the mate there.
+        let anew = merged(touched, &self.mates(touched));
+        let is_anew = |t: &u32| anew.binary_search(t).is_ok();
+        let is_changed = |t: &u32| changed.binary_search(t).is_ok();
+        let is_wanted =
+            |[t, u]: &[u32; 2]| is_changed(t) || is_changed(u) || party(*t) != party(*u);
+        let mut faults = faults(&self.faces(), &anew, |_| 0);
+        faults.crossings.retain(is_wanted);
+        faults.flat.retain(is_changed);
+        let same = found
+            .crossings
+            .iter()
+            .filter(|pair| !pair.iter().any(is_anew));
+        let same_flat = found.flat.iter().filter(|t| !is_anew(t));
+        Faults {
+            crossings: merged(&faults.crossings, &same.copied().collect::<Vec<[u32; 2]>>()),
+            flat: merged(&faults.flat, &same_flat.copied().collect::<Vec<u32>>()),
+        }
+    }
+
+    /// The triangles across the edges of some.
+    fn mates(&self, some: &[u32]) -> Vec<u32> {
+        let corners = some.iter().map(|t| self.triangles[*t as usize]);
+        let wanted: HashSet<[VertexId; 2]> = corners.flat_map(edges).map(|[a, b]| [b, a]).collect();
+        let mut is_end = vec![false; self.vertices.len()];
+        for v in wanted.iter().flatten() {
+            is_end[v.place()] = true;
+        }
+        let has =
+            |edge: &[VertexId; 2]| edge.iter().all(|v| is_end[v.place()]) && wanted.contains(edge);
+        let numbered = (0u32..).zip(&self.triangles);
+        let mates = numbered.filter(|(_, corners)| edges(**corners).iter().any(has));
+        mates
+            .map(|(t, _)| t)
+            .filter(|t| !self.is_removed(*t))
+            .collect()
     }
 
     /// Return whether all triangles are of one party.
@@ -282,6 +331,37 @@ fn merged<T: Copy + Ord>(a: &[T], b: &[T]) -> Vec<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Tetrahedra in a row, each a little into the next.
+    fn row(count: u32) -> Rounded {
+        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let places = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]];
+        let at = |k: u32| places.map(|[x, y, z]| [x + 3.5 * f64::from(k), y, z]);
+        let triangles = (0..count).flat_map(|k| faces.map(|t| t.map(|v| v + 4 * k)));
+        Rounded {
+            vertices: (0..count).flat_map(at).collect(),
+            triangles: VertexId::rows(triangles),
+        }
+    }
+
+    #[test]
+    fn what_was_touched_is_compared_anew_and_gives_what_all_would() {
+        let party = |t: u32| t / 8;
+        for some in [vec![], (4..12).collect(), (0..24).collect::<Vec<u32>>()] {
+            for vertex in 0..24 {
+                for by in [-0.75, 0.75, 9.0] {
+                    let mut mesh = row(6);
+                    let before = mesh.faults(&some, party);
+                    assert!(!before.is_empty());
+                    mesh.vertices[vertex as usize][0] += by;
+                    let touched = mesh.stars(&[VertexId(vertex)]);
+                    let changed = merged(&some, &touched);
+                    let after = mesh.faults_after(&before, &changed, &touched, party);
+                    assert_eq!(after, mesh.faults(&changed, party), "{vertex} {by}");
+                }
+            }
+        }
+    }
 
     /// A tip that rounding put a little below a face, although it lies above.
     #[test]
