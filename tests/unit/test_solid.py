@@ -422,6 +422,16 @@ def test_a_mesh_that_is_wrongly_trusted_is_named() -> None:
     assert (b.Solid(vertices, faces) & b.cube(2.5)).volume > 8
 
 
+def test_operands_in_one_place_are_combined_without_dividing_space() -> None:
+    for count in (20, 40):
+        turns = [(17.0 * k, 29.0 * k, 43.0 * k) for k in range(count)]
+        cubes = [b.cube(2, center=True).rotate(turn) for turn in turns]
+        counts = b.union(*cubes).tree.stats()
+        assert counts["cells"] <= 2 * count, counts
+        # One part is left of each face that is not covered.
+        assert counts["parts"] <= 12 * count, counts
+
+
 def test_exact_volumes_refuse_to_be_too_long() -> None:
     ball = b.sphere(1, segments=24)
     rest = ball - ball.rotate((10, 20, 30)).translate((0.1, 0.2, 0.3))

@@ -1,7 +1,7 @@
 //! Closed triangle meshes, exact and in doubles.
 
-use super::vertices::VertexTable;
 use crate::geometry::plane::normal;
+use crate::geometry::vertices::VertexTable;
 use crate::merge::lists::list::Sources;
 use crate::mesh::finding::Finding;
 use crate::mesh::handle::{OrientedFace, Slot, VertexId};

@@ -15,4 +15,5 @@ mod residue;
 pub mod side;
 pub mod spaces;
 pub mod vertex;
+pub mod vertices;
 pub mod winding;

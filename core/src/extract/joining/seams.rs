@@ -6,8 +6,9 @@ use rustc_hash::FxHashMap as HashMap;
 
 use super::planes::PlaneGroup;
 use crate::extract::triangulate::Planar;
-use crate::extract::vertices::{Projection, VertexTable};
+use crate::extract::vertices::Projection;
 use crate::geometry::line::LineKey;
+use crate::geometry::vertices::VertexTable;
 use crate::interrupt::poll;
 
 /// Numbered points by the line they lie on.

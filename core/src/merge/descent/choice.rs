@@ -20,6 +20,11 @@ const GENERAL: usize = 64;
 /// More are halved, to be shared among threads.
 const FRESH: usize = 1 << 13;
 
+/// The same, for results of groups of operands in one place: the only step that takes one of them
+/// apart is the one that combines it with the other. Where they were halved, walls that both have
+/// would meet in special ways in a larger cell, and each wall makes parts of faces.
+const GROUPS: usize = 1 << 13;
+
 /// States that together hold at most this many for each operand are worked on at once, if all faces
 /// are perpendicular to axes.
 ///
@@ -64,6 +69,8 @@ pub struct Round {
     crowded: bool,
     /// The number of elements that the kernel for general position refused.
     refused: usize,
+    /// True if operands are results of groups that the kernel did not refuse yet.
+    groups: bool,
 }
 
 impl Round {
@@ -75,6 +82,13 @@ impl Round {
         operands: usize::MAX / 8,
         crowded: false,
         refused: usize::MAX,
+        groups: false,
+    };
+
+    /// The same, where operands are results of groups that were in one place.
+    pub const OF_GROUPS: Self = Self {
+        groups: true,
+        ..Self::START
     };
 
     /// After a halving of a cell with so many elements of so many operands.
@@ -98,7 +112,11 @@ impl Round {
 
     /// The kernel for general position refused so many elements.
     pub fn refused(&mut self, total: usize) {
-        self.refused = total;
+        if self.groups && total > GENERAL {
+            self.groups = false;
+        } else {
+            self.refused = total;
+        }
     }
 
     /// Return whether halving has stopped separating: a round kept nearly all elements, and nearly
@@ -132,6 +150,9 @@ impl Round {
         }
         if states.iter().all(|s| s.1.is_given()) {
             return total <= FRESH && mixed(cell, states, total) >= MIXED;
+        }
+        if self.groups {
+            return total <= GROUPS && states.iter().all(|s| s.1.is_undivided());
         }
         total <= GENERAL && states.iter().all(|s| matches!(s.1, State::List(_)))
     }

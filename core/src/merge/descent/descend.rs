@@ -292,7 +292,7 @@ impl<'a> Descent<'a> {
         );
         let states = vec![(0, State::Tree(left?)), (1, State::Tree(right?))];
         let pair = Self::new(self.sources, self.rule, self.share, states.len());
-        let result = pair.cell(cell, Arc::new(whole), states, Round::START);
+        let result = pair.cell(cell, Arc::new(whole), states, Round::OF_GROUPS);
         self.counters.add(&pair.counters);
         for (group, overlaps) in [ours, theirs].iter().zip(&pair.overlaps) {
             if overlaps.load(Ordering::Relaxed) {

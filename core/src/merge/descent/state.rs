@@ -106,6 +106,15 @@ impl State {
         }
     }
 
+    /// Return whether all its boundary in the cell stands in one list.
+    pub fn is_undivided(&self) -> bool {
+        match self {
+            Self::List(_) => true,
+            Self::Tree(branch) => matches!(&*branch.node, Node::Deferred(_)),
+            Self::Constant(_) | Self::Bins(_) => false,
+        }
+    }
+
     /// The number of elements in a deferred leaf of this very cell.
     pub fn len_to_open(&self, cell: &Cell) -> usize {
         match self {

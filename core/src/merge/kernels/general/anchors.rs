@@ -5,12 +5,15 @@
 
 use std::sync::Arc;
 
-use super::scene::{Element, Name, Place, Triangle};
+use super::scene::{Element, Name, Place, Scene, Triangle};
 use crate::arith::convert::as_double;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::{Carrier, Corner, Polygon};
 use crate::geometry::vertex::Vertex;
+use crate::geometry::vertices::VertexTable;
+use crate::mesh::handle::{Slot, VertexId};
+use crate::tree::node::Part;
 
 /// A point of an operand's boundary inside the cell.
 #[derive(Clone)]
@@ -26,34 +29,75 @@ pub(super) enum Spot {
     Exact(Arc<Vertex>),
 }
 
+/// Names the corners of parts, equal points alike whatever part they are corners of.
+pub(super) struct Names<'a> {
+    parts: &'a [(&'a Arc<Part>, Slot)],
+    points: VertexTable,
+}
+
+impl<'a> Names<'a> {
+    /// Of a scene's parts.
+    pub(super) fn of(scene: &'a Scene) -> Self {
+        Self {
+            parts: &scene.parts,
+            points: VertexTable::default(),
+        }
+    }
+
+    fn anchor(&mut self, part: usize, vertex: &Arc<Vertex>) -> Anchor {
+        let (part, slot) = self.parts[part];
+        let own = vertex.as_lattice().and_then(|p| vertex_at(part, p));
+        let name = match own {
+            Some(vertex) => Name::Vertex(slot, vertex),
+            None => Name::Point(self.points.number(vertex)),
+        };
+        let place = Spot::Exact(Arc::clone(vertex));
+        Anchor { name, place }
+    }
+}
+
+/// The vertex of the face a part is left of that is in a place.
+fn vertex_at(part: &Part, place: &Lattice) -> Option<VertexId> {
+    let mesh = part.source.mesh()?;
+    let corner = mesh.corners(part.face).iter().position(|c| c == place)?;
+    Some(mesh.vertices_of(part.face)[corner])
+}
+
 impl Element<'_> {
     /// The corners inside the cell that other elements of the operand may share.
-    pub(super) fn anchors(&self, cell: &Cell) -> Vec<Anchor> {
+    pub(super) fn anchors(&self, cell: &Cell, names: &mut Names) -> Vec<Anchor> {
         match &self.place {
             Place::Face(triangle) => self
                 .vertices_in(cell)
                 .map(|i| Anchor::at_vertex(triangle, i))
                 .collect(),
-            Place::Piece(_, shape) => {
+            Place::Piece(part, shape) => {
                 let corners = shape.polygon.corners().iter().map(|c| &c.at);
                 corners
                     .filter(|v| is_well_inside(v, cell))
-                    .map(Anchor::of_corner)
+                    .map(|v| names.anchor(*part, v))
                     .collect()
             }
             Place::Plane(..) => Vec::new(),
         }
     }
 
-    /// The points in which a face's own edges leave the cell: its neighbours share them.
-    pub(super) fn anchors_at_walls(&self, clipped: &Polygon) -> Vec<Anchor> {
-        let Place::Face(triangle) = &self.place else {
-            return Vec::new();
-        };
+    /// The points in which edges of an element leave the cell: its neighbours share them.
+    pub(super) fn anchors_at_walls(&self, clipped: &Polygon, names: &mut Names) -> Vec<Anchor> {
         let corners = clipped.corners();
         let n = corners.len();
-        let at_wall = |i: usize| Anchor::at_wall(triangle, &corners[(i + n - 1) % n], &corners[i]);
-        (0..n).filter_map(at_wall).collect()
+        match &self.place {
+            Place::Face(triangle) => {
+                let at_wall =
+                    |i: usize| Anchor::at_wall(triangle, &corners[(i + n - 1) % n], &corners[i]);
+                (0..n).filter_map(at_wall).collect()
+            }
+            Place::Piece(part, _) => {
+                let mut at_corner = |c: &Corner| names.anchor(*part, &c.at);
+                corners.iter().map(&mut at_corner).collect()
+            }
+            Place::Plane(..) => Vec::new(),
+        }
     }
 }
 
@@ -62,13 +106,6 @@ impl Anchor {
         Self {
             name: triangle.name(corner),
             place: Spot::Lattice(triangle.corners[corner]),
-        }
-    }
-
-    fn of_corner(vertex: &Arc<Vertex>) -> Self {
-        Self {
-            name: Name::Corner(Arc::as_ptr(vertex) as usize),
-            place: Spot::Exact(Arc::clone(vertex)),
         }
     }
 
@@ -107,8 +144,42 @@ fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::plane::Plane;
     use crate::merge::kernels::general::scene::Scene;
-    use crate::merge::scenes::crossing;
+    use crate::merge::scenes::{crossing, tetrahedra};
+    use crate::mesh::cached::Cached;
+    use crate::mesh::handle::FaceId;
+
+    /// A part without an outline of a solid's first face.
+    fn part() -> Arc<Part> {
+        let solid = &tetrahedra()[0];
+        Arc::new(Part {
+            source: Arc::clone(solid.sources().get(Slot(0))),
+            face: FaceId::ONLY,
+            home: Cell::UNIVERSE,
+            edges: Box::default(),
+            flux: Cached::new(),
+        })
+    }
+
+    #[test]
+    fn equal_corners_have_one_name_however_they_are_made() {
+        let part = part();
+        let mut names = Names {
+            parts: &[(&part, Slot(0))],
+            points: VertexTable::default(),
+        };
+        let mut name = |vertex: Vertex| names.anchor(0, &Arc::new(vertex)).name;
+        let wall = |axis: usize, at: i64| Arc::new(Plane::axis_cut(axis, at));
+        let met = |at: Lattice| Vertex::meet(&wall(0, at[0]), &wall(1, at[1]), &wall(2, at[2]));
+        let first = name(met([7, 5, 3]).expect("a corner"));
+        assert!(first == name(met([7, 5, 3]).expect("a corner")));
+        assert!(first != name(met([7, 5, 9]).expect("a corner")));
+        // A vertex of the face has the name that whole faces give it.
+        let mesh = part.source.mesh().expect("a mesh");
+        let (corner, vertex) = (mesh.corners(part.face)[1], mesh.vertices_of(part.face)[1]);
+        assert!(name(Vertex::lattice(corner)) == Name::Vertex(Slot(0), vertex));
+    }
 
     /// In a small cell at its corner a solid has that corner, and edges that leave the cell.
     #[test]
@@ -117,12 +188,15 @@ mod tests {
         let (operands, cell) = (shared.operands(), Cell::around(&[0; 3], &[3; 3]));
         let scene = Scene::new(&cell, &operands[..1], &shared.sources);
         let faces = &scene.elements[..3];
-        assert!(faces.iter().all(|face| face.anchors(&cell).len() == 1));
-        let at_walls = |face: &Element| {
+        let mut names = Names::of(&scene);
+        assert!(faces
+            .iter()
+            .all(|face| face.anchors(&cell, &mut names).len() == 1));
+        let mut at_walls = |face: &Element| {
             let clipped = face.polygon_in(&cell).expect("it meets the cell");
-            face.anchors_at_walls(&clipped)
+            face.anchors_at_walls(&clipped, &mut names)
         };
-        let walls: Vec<Vec<Anchor>> = faces.iter().map(at_walls).collect();
+        let walls: Vec<Vec<Anchor>> = faces.iter().map(&mut at_walls).collect();
         assert!(walls.iter().all(|anchors| anchors.len() == 2));
         let shared = |a: &[Anchor], b: &[Anchor]| {
             a.iter()

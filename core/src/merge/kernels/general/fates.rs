@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use super::anchors::Anchor;
+use super::anchors::{Anchor, Names};
 use super::cutting::{contact, cut_up, Contact, Cutter, Cutting};
 use super::points::Points;
 use super::scene::{Element, Scene};
@@ -53,9 +53,9 @@ impl Scene<'_> {
     /// piece by more than so many.
     pub(super) fn fates(&self, cutters: usize) -> Option<Vec<Fate>> {
         let neighbours = self.neighbours()?;
-        let mut points = Points::default();
+        let (mut points, mut names) = (Points::default(), Names::of(self));
         (0..self.elements.len())
-            .map(|i| self.fate(i, &neighbours[i], &mut points, cutters))
+            .map(|i| self.fate(i, &neighbours[i], (&mut points, &mut names), cutters))
             .collect()
     }
 
@@ -92,14 +92,14 @@ impl Scene<'_> {
         &self,
         i: usize,
         neighbours: &[u32],
-        points: &mut Points,
+        (points, names): (&mut Points, &mut Names),
         cutters: usize,
     ) -> Option<Fate> {
         let element = &self.elements[i];
         if neighbours.is_empty() && element.vertices_in(self.cell).next().is_some() {
             return Some(Fate::Untouched);
         }
-        let anchors = element.anchors(self.cell);
+        let anchors = element.anchors(self.cell, names);
         if !anchors.is_empty() && neighbours.is_empty() {
             return Some(Fate::Uncut(anchors));
         }
@@ -107,7 +107,7 @@ impl Scene<'_> {
             return Some(Fate::Absent);
         };
         let anchors = if anchors.is_empty() {
-            element.anchors_at_walls(&polygon)
+            element.anchors_at_walls(&polygon, names)
         } else {
             anchors
         };

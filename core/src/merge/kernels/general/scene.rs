@@ -132,8 +132,8 @@ impl<'a> Scene<'a> {
 pub(super) enum Name {
     /// A vertex of a source.
     Vertex(Slot, VertexId),
-    /// A corner of a part: pieces that share the corner share the object at this address.
-    Corner(usize),
+    /// A corner of a part that is no vertex of its face, by its number.
+    Point(u32),
     /// The point in which an edge of a source leaves the cell: the edge's ends, and twice the axis
     /// of the wall, with one more for the upper one.
     Crossing(Slot, [VertexId; 2], u8),

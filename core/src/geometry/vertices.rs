@@ -1,0 +1,178 @@
+//! Exact vertex identity: one number for each point, whatever it was made from.
+
+use std::hash::BuildHasher;
+use std::sync::Arc;
+
+use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
+
+use crate::arith::convert::{as_double, as_number, as_whole};
+use crate::geometry::plane::Lattice;
+use crate::geometry::vertex::{Vertex, NEAR};
+
+/// Numbered points; equal points have equal numbers.
+#[derive(Debug, Default)]
+pub struct VertexTable {
+    points: Vec<Arc<Vertex>>,
+    /// The points in doubles, each coordinate within three units in the last place.
+    places: Vec<[f64; 3]>,
+    /// By fingerprint the last point that has it.
+    last: HashMap<u64, u32>,
+    /// For each point the one before it that has the same fingerprint, or [`NONE`].
+    previous: Vec<u32>,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl VertexTable {
+    /// The number of a point, found by its place in doubles and confirmed exactly.
+    pub fn number(&mut self, vertex: &Arc<Vertex>) -> u32 {
+        let place = vertex.approx();
+        self.find_at(vertex, &place).unwrap_or_else(|| {
+            let lattice = lattice_place(vertex, &place);
+            let lattice = lattice.map(|p| Arc::new(Vertex::lattice(p)));
+            self.add(lattice.unwrap_or_else(|| Arc::clone(vertex)))
+        })
+    }
+
+    /// The number of a lattice point.
+    pub fn number_at(&mut self, place: Lattice) -> u32 {
+        let vertex = Vertex::lattice(place);
+        let place = vertex.approx();
+        let known = self.find_at(&vertex, &place);
+        known.unwrap_or_else(|| self.add(Arc::new(vertex)))
+    }
+
+    /// The number of a point that is in the table.
+    pub fn find(&self, vertex: &Vertex) -> Option<u32> {
+        self.find_at(vertex, &vertex.approx())
+    }
+
+    fn find_at(&self, vertex: &Vertex, place: &[f64; 3]) -> Option<u32> {
+        let [low, high] = [Blur::lowest(place), Blur::highest(place)];
+        if low == high {
+            return self.among(low.fingerprint(), vertex);
+        }
+        let corner = |i: usize| Blur::mixed(&low, &high, i);
+        (0..8).find_map(|i| self.among(corner(i).fingerprint(), vertex))
+    }
+
+    fn add(&mut self, vertex: Arc<Vertex>) -> u32 {
+        let place = vertex.approx();
+        let next = as_number(self.points.len());
+        let before = self.last.insert(Blur::of(&place).fingerprint(), next);
+        self.previous.push(before.unwrap_or(NONE));
+        self.points.push(vertex);
+        self.places.push(place);
+        next
+    }
+
+    /// The point that is this vertex, among those with one fingerprint.
+    fn among(&self, fingerprint: u64, vertex: &Vertex) -> Option<u32> {
+        let before = |id: &u32| Some(self.previous[*id as usize]).filter(|p| *p != NONE);
+        let last = self.last.get(&fingerprint).copied();
+        std::iter::successors(last, before).find(|id| self.point(*id).same(vertex))
+    }
+
+    /// The point with this number.
+    pub fn point(&self, id: u32) -> &Arc<Vertex> {
+        &self.points[id as usize]
+    }
+
+    /// The point with this number in doubles.
+    pub fn place(&self, id: u32) -> &[f64; 3] {
+        &self.places[id as usize]
+    }
+
+    /// Return whether there are no points.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Return the number of points.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+}
+
+/// The lattice point that a constructed one is, if it is: questions about these are cheap.
+fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
+    if vertex.as_lattice().is_some() {
+        return None;
+    }
+    let nearest = place.map(|c| as_whole(c.round()));
+    let near = |i: usize| (place[i] - as_double(nearest[i])).abs() <= place[i].abs() * NEAR;
+    ((0..3).all(near) && vertex.is_at(&nearest)).then_some(nearest)
+}
+
+/// A place in doubles with all but some forty leading bits rounded away.
+///
+/// The digits of a double above zero are ordered as it is, so that two doubles of one coordinate
+/// differ by less than [`Blur::DOUBT`] in them; nearly always they round alike.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Blur([u64; 3]);
+
+impl Blur {
+    /// The number of bits that are rounded away.
+    const BITS: u32 = 12;
+
+    /// Six units in the last place, twice that beside a power of two; the next power of two.
+    const DOUBT: u64 = 16;
+
+    const HALF: u64 = 1 << (Self::BITS - 1);
+
+    fn of(place: &[f64; 3]) -> Self {
+        Self(place.map(|c| (digits(c) + Self::HALF) >> Self::BITS))
+    }
+
+    /// Those of the smallest doubles in magnitude that may stand for the same point.
+    fn lowest(place: &[f64; 3]) -> Self {
+        Self(place.map(|c| (digits(c) + Self::HALF - Self::DOUBT) >> Self::BITS))
+    }
+
+    /// Those of the largest such doubles.
+    fn highest(place: &[f64; 3]) -> Self {
+        Self(place.map(|c| (digits(c) + Self::HALF + Self::DOUBT) >> Self::BITS))
+    }
+
+    /// Each coordinate from one of two, as the bits of a number tell.
+    fn mixed(low: &Self, high: &Self, bits: usize) -> Self {
+        let pick = |i: usize| {
+            if bits >> i & 1 == 0 {
+                low.0[i]
+            } else {
+                high.0[i]
+            }
+        };
+        Self([0, 1, 2].map(pick))
+    }
+
+    fn fingerprint(&self) -> u64 {
+        FxBuildHasher.hash_one(self)
+    }
+}
+
+/// The bits of a finite double, zero without a sign.
+fn digits(c: f64) -> u64 {
+    (c + 0.0).to_bits()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::plane::Plane;
+
+    #[test]
+    fn a_point_has_one_number_however_it_is_made() {
+        let mut table = VertexTable::default();
+        let wall = |axis: usize, at: i64| Arc::new(Plane::axis_cut(axis, at));
+        // Where three planes meet, and the same as a lattice point.
+        let met = Vertex::meet(&wall(0, 6), &wall(1, 4), &wall(2, 2)).expect("a corner");
+        let first = table.number(&Arc::new(met));
+        assert_eq!(table.number_at([3, 2, 1]), first);
+        assert_ne!(table.number_at([3, 2, 2]), first);
+        assert_eq!(
+            (table.len(), table.find(&Vertex::lattice([0; 3]))),
+            (2, None)
+        );
+    }
+}
