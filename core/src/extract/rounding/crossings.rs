@@ -6,15 +6,13 @@
 use rustc_hash::FxHashMap as HashMap;
 
 use super::company::{in_company, Faces};
+use super::image::Image;
 use super::terrains::terrains;
-use crate::arith::convert::{as_double, as_number, as_whole};
-use crate::geometry::axes::each_axis;
-use crate::geometry::doubles::extent::Extent;
+use crate::arith::convert::as_number;
 use crate::geometry::doubles::meeting::{
     folds_over, has_no_area, interleave, meeting_of, passes, Meeting,
 };
 use crate::geometry::doubles::{Facing, Point, Triangle};
-use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, Boxed, Swept};
 use crate::mesh::handle::VertexId;
@@ -276,62 +274,26 @@ pub fn crosses_at(
 
 /// Calls `meet` for the pairs of candidates of different parties that may meet, by their numbers.
 fn each_pair(candidates: &[Candidate], meet: impl FnMut(u32, u32)) {
-    let corners = |k: u32| candidates[k as usize].facing.triangle();
+    let corners = |k: u32| *candidates[k as usize].facing.triangle();
     let numbers = 0..as_number(candidates.len());
-    let extents: Vec<Extent> = numbers.clone().map(|k| Extent::of(corners(k))).collect();
-    let Some(whole) = extents.iter().copied().reduce(|a, b| a.joined(&b)) else {
+    let Some(image) = Image::of(numbers.len(), corners) else {
         return;
     };
-    let scale = Scale::of(&whole);
     let party = |k: u32| candidates[k as usize].party as usize;
     let boxed = |k: u32| {
-        let (low, high) = scale.ends(&extents[k as usize]);
-        Boxed::new(party(k), k, [&low, &high], Scale::BITS - 30)
+        let (low, high) = image.ends(k);
+        Boxed::new(party(k), k, [&low, &high], Image::BITS - 30)
     };
     let swept = |k: u32| {
-        let [a, b, c] = corners(k);
-        let (low, high) = scale.ends(&extents[k as usize]);
+        let (low, high) = image.ends(k);
         Swept {
             operand: party(k),
             low,
             high,
-            corners: Some([scale.image(a), scale.image(b), scale.image(c)]),
+            corners: Some(corners(k).map(|p| image.place(&p))),
         }
     };
     pairs_of_many(numbers.map(boxed).collect(), swept, meet);
-}
-
-/// The image of a box on integers; monotone, so that boxes that overlap do so there.
-struct Scale {
-    low: Point,
-    factor: f64,
-}
-
-impl Scale {
-    /// Of the images' coordinates.
-    const BITS: u32 = 40;
-
-    fn of(all: &Extent) -> Self {
-        let size = (0..3).fold(0.0f64, |m, i| m.max(all.high[i] - all.low[i]));
-        let factor = as_double(1u64 << Self::BITS) / size;
-        Self {
-            low: all.low,
-            // A mesh in one place, or too small to be told apart, has one image.
-            factor: if factor.is_finite() { factor } else { 0.0 },
-        }
-    }
-
-    fn image(&self, p: &Point) -> Point {
-        each_axis(|i| (p[i] - self.low[i]) * self.factor)
-    }
-
-    fn ends(&self, extent: &Extent) -> (Lattice, Lattice) {
-        let whole = |p: &Point| {
-            let image = self.image(p);
-            each_axis(|i| as_whole(image[i]))
-        };
-        (whole(&extent.low), whole(&extent.high))
-    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,159 @@
+//! The image of triangles on integers, turned so that many of them are flat along an axis there.
+//!
+//! Boxes around what is flat along an axis overlap little, but those around triangles that lie askew
+//! overlap all that is near. What has walls at right angles mostly lies askew as a whole.
+
+use crate::arith::convert::{as_double, as_number, as_whole};
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::extent::Extent;
+use crate::geometry::doubles::vector::{cross, dot, normal};
+use crate::geometry::doubles::{Point, Triangle};
+use crate::geometry::plane::Lattice;
+
+/// So many triangles tell how all of them lie.
+const SAMPLE: usize = 64;
+
+/// Axes are turned if they suit one in so many triangles.
+const SUITED: usize = 4;
+
+/// Directions this close, as a cosine or its complement, count as one, or as perpendicular: what is
+/// off by this share of its length is as good as flat in a sweep.
+const CLOSE: f64 = 1e-6;
+
+/// A linear image of triangles.
+///
+/// Boxes that overlap do so in it: where it is turned, they are widened by more than its rounding.
+pub struct Image {
+    /// A point near the triangles, and the directions that become axes; `None` if they are axes.
+    frame: Option<(Point, [Point; 3])>,
+    /// The triangles' extents along the axes.
+    extents: Vec<Extent>,
+    low: Point,
+    factor: f64,
+}
+
+impl Image {
+    /// The bits of coordinates.
+    pub const BITS: u32 = 40;
+
+    /// The image of some triangles; `None` if there are none.
+    pub fn of(count: usize, corners: impl Fn(u32) -> Triangle) -> Option<Self> {
+        let numbers = 0..as_number(count);
+        let step = count.div_ceil(SAMPLE).max(1);
+        let normals = numbers.clone().step_by(step).map(|k| normal(&corners(k)));
+        let axes = axes(&normals.filter_map(unit).collect::<Vec<Point>>());
+        let frame = axes.map(|axes| (corners(0)[0], axes));
+        let extent = |k: u32| Extent::of(&corners(k).map(|p| turned(frame.as_ref(), &p)));
+        let extents: Vec<Extent> = numbers.map(extent).collect();
+        let whole = extents.iter().copied().reduce(|a, b| a.joined(&b))?;
+        let size = (0..3).fold(0.0f64, |m, i| m.max(whole.high[i] - whole.low[i]));
+        let factor = as_double(1u64 << Self::BITS) / size;
+        Some(Self {
+            frame,
+            extents,
+            low: whole.low,
+            // A mesh in one place, or too small to be told apart, has one image.
+            factor: if factor.is_finite() { factor } else { 0.0 },
+        })
+    }
+
+    /// The image of a point.
+    pub fn place(&self, p: &Point) -> Point {
+        self.scaled(&turned(self.frame.as_ref(), p))
+    }
+
+    /// The ends of the box around a triangle.
+    pub fn ends(&self, triangle: u32) -> (Lattice, Lattice) {
+        let whole = |p: &Point, wider: i64| {
+            let image = self.scaled(p);
+            each_axis(|i| as_whole(image[i]) + wider)
+        };
+        let extent = &self.extents[triangle as usize];
+        // Turning rounds by some units in the last place of the size, which are far below a step.
+        let wider = i64::from(self.frame.is_some());
+        (whole(&extent.low, -wider), whole(&extent.high, wider))
+    }
+
+    fn scaled(&self, p: &Point) -> Point {
+        each_axis(|i| (p[i] - self.low[i]) * self.factor)
+    }
+}
+
+fn turned(frame: Option<&(Point, [Point; 3])>, p: &Point) -> Point {
+    frame.map_or(*p, |(origin, axes)| {
+        let from = each_axis(|i| p[i] - origin[i]);
+        each_axis(|i| dot(&axes[i], &from))
+    })
+}
+
+fn unit(v: Point) -> Option<Point> {
+    let size = dot(&v, &v).sqrt();
+    (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
+}
+
+/// Three directions at right angles, along the first two of which most of some normals lie; `None` if
+/// they suit few of them, or are axes.
+fn axes(normals: &[Point]) -> Option<[Point; 3]> {
+    let is_along = |a: &Point, b: &Point| dot(a, b).abs() > 1.0 - CLOSE;
+    let count = |a: &Point| normals.iter().filter(|b| is_along(a, b)).count();
+    // Of equally good ones the first.
+    let best = |some: Vec<&Point>| some.into_iter().rev().max_by_key(|a| count(a)).copied();
+    let first = best(normals.iter().collect())?;
+    let is_across = |a: &&Point| dot(a, &first).abs() < CLOSE;
+    let second = best(normals.iter().filter(is_across).collect())?;
+    let suited = count(&first) + count(&second);
+    let is_axis = |a: &Point| a.iter().any(|x| x.abs() > 1.0 - CLOSE);
+    if SUITED * suited < normals.len() || is_axis(&first) && is_axis(&second) {
+        return None;
+    }
+    Some([first, second, cross(&first, &second)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::plane::Lattice;
+
+    /// The sides of boxes beside each other, turned about an axis.
+    fn boxes(count: u32, angle: f64) -> Vec<Triangle> {
+        let (sin, cos) = angle.sin_cos();
+        let turn = |[x, y, z]: Point| [cos * x - sin * y, sin * x + cos * y, z];
+        let side = |k: u32| {
+            let x = f64::from(k);
+            let [a, b, c] = [[x, 0.0, 0.0], [x, 9.0, 0.0], [x, 0.0, 9.0]];
+            let d = [x + 0.5, 0.0, 0.0];
+            [[a, b, c], [a, d, c]].map(|t| t.map(turn))
+        };
+        (0..count).flat_map(side).collect()
+    }
+
+    fn overlaps(triangles: &[Triangle]) -> usize {
+        let image = Image::of(triangles.len(), |k| triangles[k as usize]).expect("triangles");
+        let ends: Vec<(Lattice, Lattice)> = (0..as_number(triangles.len()))
+            .map(|k| image.ends(k))
+            .collect();
+        let meet = |a: &(Lattice, Lattice), b: &(Lattice, Lattice)| {
+            (0..3).all(|i| a.0[i] <= b.1[i] && b.0[i] <= a.1[i])
+        };
+        let after = |k: usize| ends[..k].iter().filter(|a| meet(a, &ends[k])).count();
+        (0..ends.len()).map(after).sum()
+    }
+
+    #[test]
+    fn boxes_that_lie_askew_overlap_no_more_than_those_that_do_not() {
+        let straight = overlaps(&boxes(30, 0.0));
+        assert_eq!(straight, 30);
+        assert_eq!(overlaps(&boxes(30, 0.5)), straight);
+    }
+
+    #[test]
+    fn what_is_round_stays_as_it_is() {
+        let normals: Vec<Point> = (0..30)
+            .map(|k| {
+                let (y, x) = f64::from(k).sin_cos();
+                [0.6 * x, 0.6 * y, 0.8]
+            })
+            .collect();
+        assert!(axes(&normals).is_none());
+    }
+}
