@@ -5,7 +5,7 @@ import numpy as np
 from .._core import mesh_in_single
 from .._types import BoolArray, FloatArray, IndexArray
 from ..attributes.attributes import made
-from ..errors import Finding, InvalidMeshError, core_errors
+from ..errors import Finding, core_errors
 from ..mesh.certificate import Certificate, certify
 from ..mesh.mesh import Mesh
 from ..mesh.weld import distinct
@@ -106,13 +106,8 @@ def _mended(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
     for _ in range(_ROUNDS):
         if not len(crossing) or not len(result.faces):
             break
-        try:
-            united = _united(result)
-        except InvalidMeshError:
-            # What cannot be united is delivered with its crossings named.
-            break
         mended += len(crossing)
-        result, more, _ = _rounded(united)
+        result, more, _ = _rounded(_united(result))
         # The lattice on which surfaces are united does not hold single precision. Faces that it
         # leaves as they were may cross, so all are looked at.
         crossing = _faulty(result.certificate)

@@ -275,13 +275,15 @@ def test_no_crossing_in_single_precision_is_silent(
         assert crossings_are_told(mesh), seed
 
 
-#: Scenes that single precision makes cross so that uniting them fails.
-NOT_UNITED = [7910, 8279, 9895]
+#: Scenes in which single precision puts surfaces that cross into the same edges.
+IN_EDGES = [7910, 8279, 9895]
 
 
-@pytest.mark.parametrize("seed", NOT_UNITED)
-def test_what_cannot_be_united_is_told(seed: int) -> None:
-    assert crossings_are_told(scene(seed).normalized().to_mesh())
+@pytest.mark.parametrize("seed", IN_EDGES)
+def test_surfaces_that_cross_in_edges_are_united(seed: int) -> None:
+    mesh = scene(seed).normalized().to_mesh()
+    assert [finding.code for finding in settled(mesh)[1]] == ["mended_in_single"]
+    assert crossings_are_told(mesh)
 
 
 def test_what_is_thinner_than_single_precision_keeps_a_volume(

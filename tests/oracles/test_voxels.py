@@ -12,7 +12,15 @@ import pytest
 import bspcsg as b
 from support import DEEP
 from support.checks import assert_sound
-from support.shapes import Grid, cells_as_boxes, cube, moved
+from support.shapes import (
+    Grid,
+    box_of_squares,
+    cells_as_boxes,
+    cube,
+    flipped,
+    joined,
+    moved,
+)
 
 OPERATIONS = [
     (or_, np.logical_or),
@@ -92,3 +100,20 @@ def test_expressions_of_four_operands() -> None:
         assert_matches((a | c) - (d ^ e), (p | q) & ~(r ^ s))
         assert_matches((a - c) ^ (d & ~e), (p & ~q) ^ (r & ~s))
         assert_matches(~(~a | ~c) - d | e & a, ((p & q) & ~r) | (s & p))
+
+
+@pytest.mark.parametrize("seed", range(500 if DEEP else 40))
+def test_boxes_of_one_mesh_that_meet_in_edges_of_both(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    numbers = np.zeros((24, 24, 24), dtype=np.int64)
+    boxes = []
+    for weight in rng.choice((1, 1, 1, -1), size=int(rng.integers(2, 5))):
+        low, high = np.sort(rng.choice(25, size=(2, 3), replace=False), axis=0)
+        numbers[tuple(slice(low[i], high[i]) for i in range(3))] += weight
+        box = box_of_squares(low.tolist(), high.tolist())
+        boxes.append(box if weight > 0 else flipped(box))
+    solid = b.Solid(*joined(*boxes))
+    assert solid.volume == (numbers > 0).sum()
+    united = solid.normalized()
+    assert united.volume == united.to_mesh().volume == (numbers > 0).sum()
+    assert united.equals(solid)

@@ -162,6 +162,25 @@ def cells_as_boxes(grid: Grid) -> Arrays:
     return joined(*[cuboid(cell, cell + 1) for cell in np.argwhere(grid)])
 
 
+def box_of_squares(low: Sequence[int], high: Sequence[int]) -> Arrays:
+    """Return a box of whole corners whose sides are divided into unit squares."""
+    sizes = [high[i] - low[i] for i in range(3)]
+    points: list[npt.NDArray[np.int64]] = []
+    for axis in range(3):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        for end in (0, 1):
+            at = np.zeros((sizes[u], sizes[v], 1, 3), dtype=np.int64)
+            at[..., u] = np.arange(sizes[u])[:, None, None]
+            at[..., v] = np.arange(sizes[v])[None, :, None]
+            at[..., axis] = end * sizes[axis]
+            steps = np.zeros((6, 3), dtype=np.int64)
+            turns = [(0, 0), (1, 0), (1, 1), (0, 0), (1, 1), (0, 1)]
+            steps[:, [u, v]] = turns if end else [(b, a) for a, b in turns]
+            points.append((at + steps).reshape(-1, 3))
+    vertices, numbers = np.unique(np.concatenate(points), axis=0, return_inverse=True)
+    return (vertices + np.asarray(low)).astype(np.float64), numbers.reshape(-1, 3)
+
+
 def exact_volume(mesh: Arrays, pitch: int = -9) -> Fraction:
     """Return the signed volume of the mesh snapped to the lattice of step 10^pitch, exactly."""
     step = Fraction(10) ** pitch

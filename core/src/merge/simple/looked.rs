@@ -8,13 +8,14 @@ use crate::geometry::doubles::meeting::{meeting, Meeting};
 use crate::geometry::doubles::Triangle;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Side;
-use crate::mesh::handle::FaceId;
+use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 
 /// A face prepared for quick looks at pairs.
 pub(super) struct Looked {
     corners: [Lattice; 3],
+    vertices: [VertexId; 3],
     low: Lattice,
     high: Lattice,
     /// The corners that are irregular vertices.
@@ -45,6 +46,7 @@ impl Looked {
         let size = longest(&u) * longest(&v);
         Self {
             corners,
+            vertices: mesh.vertices_of(face),
             low,
             high,
             irregular: mesh.vertices_of(face).map(|v| irregular[v.place()]),
@@ -82,10 +84,12 @@ impl Looked {
     }
 
     /// Return whether more than two faces may meet in the common edge: surfaces can cross there
-    /// although no two faces do.
+    /// although no two faces do. An edge whose ends are other vertices of the same places has two
+    /// faces of its own.
     fn shares_irregular_edge(&self, other: &Self) -> bool {
-        let common = |i: &usize| other.corners.contains(&self.corners[*i]);
-        (0..3).filter(common).all(|i| self.irregular[i])
+        let common = || (0..3).filter(|i| other.corners.contains(&self.corners[*i]));
+        let is_twin = |i: usize| !other.vertices.contains(&self.vertices[i]);
+        common().any(is_twin) || common().all(|i| self.irregular[i])
     }
 
     /// Return whether the other face's corners that are not shared lie strictly on one side of this

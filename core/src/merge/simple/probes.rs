@@ -124,17 +124,17 @@ impl<'a> Count<'a> {
 
     /// The winding numbers on the sides of a piece, counted on the way to a point inside.
     fn sides_at(&self, piece: &Probed, point: &Vertex) -> Option<Sides> {
-        let reached = self.number_at(point)?;
         let support = piece.polygon.support();
+        let reached = self.number_at(point, support)?;
         Some(match support.side_of_corner(&self.cell.corner()) {
             Half::Minus => [reached, reached - piece.weight],
             Half::Plus => [reached + piece.weight, reached],
         })
     }
 
-    /// The winding number where the path from the cell's corner to a point arrives; `None` if the
-    /// path is not generic.
-    fn number_at(&self, point: &Vertex) -> Option<i32> {
+    /// The winding number where the path from the cell's corner to a point of a piece's plane
+    /// arrives; `None` if the path is not generic.
+    fn number_at(&self, point: &Vertex, plane: &Plane) -> Option<i32> {
         let from = self.cell.corner();
         let way = Way::new(from.map(|x| 0.5 * as_double(x)), point.approx());
         let mut number = self.list.corner;
@@ -142,7 +142,7 @@ impl<'a> Count<'a> {
             poll();
             let (low, high) = self.sources.get(record.slot()).face_box(record.face);
             if way.may_meet(&low, &high) {
-                let change = change_across(self.face(i)?, &from, point)?;
+                let change = change_across(self.face(i)?, &from, point, plane)?;
                 number += record.orientation().signed(change);
             }
         }
@@ -161,12 +161,16 @@ impl<'a> Count<'a> {
     }
 }
 
-/// The change of the winding number across a face on a path; `None` if the path is not generic.
+/// The change of the winding number across a face on a path that ends inside a piece of a plane;
+/// `None` if the path is not generic.
 ///
-/// A face in whose plane the path ends is not met before, nor at the end.
-fn change_across(face: &Face, from: &Lattice, to: &Vertex) -> Option<i32> {
-    if to.side_of(face.polygon.support()) == Side::On {
-        return Some(0);
+/// A face in whose plane the path ends is not met before. If it touches the piece there, what it
+/// bounds may hold the end of the path and nothing else near the piece.
+fn change_across(face: &Face, from: &Lattice, to: &Vertex, plane: &Plane) -> Option<i32> {
+    let support = face.polygon.support();
+    if to.side_of(support) == Side::On {
+        let is_beside = face.rims().iter().any(|rim| to.side_of(rim) == Side::Plus);
+        return (is_beside || support.coincides(plane).is_some()).then_some(0);
     }
     match face.on_path(from, to) {
         Filtered::Certain(change) => Some(change),
@@ -218,7 +222,7 @@ fn aim(piece: &Polygon, attempt: usize) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::merge::scenes::{cuboids, triangle, Shared};
+    use crate::merge::scenes::{cuboid, cuboids, tetrahedron, triangle, Shared};
 
     #[test]
     fn numbers_are_counted_on_both_sides() {
@@ -231,6 +235,23 @@ mod tests {
         };
         let found = sides(&[probed], &within, &scene.sources);
         assert_eq!(found, Some(vec![[2, 1]]));
+    }
+
+    /// A pyramid stands with its tip near the middle of half a lid.
+    #[test]
+    fn a_tip_that_touches_a_piece_does_not_hide_the_rest() {
+        let pyramid = [[-30, -37, 10], [64, -25, 10], [-33, 60, 10], [10, 10, 31]];
+        let mut scene = Shared::of(&[cuboid([-5, -9, -60], [31; 3]), tetrahedron(pyramid)]);
+        let below = scene.lists.pop().expect("two lists");
+        let mut list = scene.lists.remove(0);
+        list.records.extend(below.records);
+        let half = triangle([[0, 0, 31], [31, 0, 31], [0, 31, 31]]);
+        let probed = Probed {
+            polygon: &half,
+            weight: 1,
+        };
+        let found = sides(&[probed], &(scene.cell, list), &scene.sources);
+        assert_eq!(found, Some(vec![[1, 0]]));
     }
 
     #[test]
