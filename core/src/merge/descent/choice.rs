@@ -2,6 +2,7 @@
 
 use super::state::{State, States};
 use crate::arith::convert::as_double;
+use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
@@ -64,9 +65,6 @@ pub struct Round {
     depth: u32,
     start: usize,
     stuck: bool,
-    /// The number of operands that mattered when the round began.
-    operands: usize,
-    crowded: bool,
     /// The number of elements that the kernel for general position refused.
     refused: usize,
     /// True if operands are results of groups that the kernel did not refuse yet.
@@ -79,8 +77,6 @@ impl Round {
         depth: 0,
         start: usize::MAX / 8,
         stuck: false,
-        operands: usize::MAX / 8,
-        crowded: false,
         refused: usize::MAX,
         groups: false,
     };
@@ -91,9 +87,9 @@ impl Round {
         ..Self::START
     };
 
-    /// After a halving of a cell with so many elements of so many operands.
+    /// After a halving of a cell with so many elements into two with some.
     #[must_use]
-    pub fn next(self, total: usize, operands: usize) -> Self {
+    pub fn next(self, total: usize) -> Self {
         if self.depth + 1 < ROUND {
             return Self {
                 depth: self.depth + 1,
@@ -104,8 +100,6 @@ impl Round {
             depth: 0,
             start: total,
             stuck: total * 8 > self.start * 7,
-            operands,
-            crowded: operands * 8 > self.operands * 7,
             ..self
         }
     }
@@ -129,17 +123,6 @@ impl Round {
         self.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
     }
 
-    /// Return whether so many operands are in one place that no kernel should be asked.
-    pub fn is_overcrowded(&self, cell: &Cell, states: &States) -> bool {
-        states.len() >= MANY && self.is_crowded(cell, states)
-    }
-
-    /// Return whether operands are in one place: a round of halvings left nearly all of them in the
-    /// cell, or many of the boxes around their boundaries overlap.
-    pub fn is_crowded(&self, cell: &Cell, states: &States) -> bool {
-        states.len() >= GROUPED && (self.crowded || many_overlap(cell, states))
-    }
-
     /// Return whether a cell of so many elements is for the kernel for general position.
     ///
     /// That looks at all elements, halving only at where they are: so a share of at least `MIXED`
@@ -158,10 +141,24 @@ impl Round {
     }
 }
 
-/// Return whether one of three pairs of operands has overlapping boxes, as far as a sample shows.
-fn many_overlap(cell: &Cell, states: &States) -> bool {
+/// Return whether so many operands are in one place that no kernel should be asked.
+pub fn is_overcrowded(cell: &Cell, states: &States) -> bool {
+    states.len() >= MANY && is_crowded(cell, states)
+}
+
+/// Return whether operands are in one place: one of three pairs of them has boxes that overlap in
+/// the cell, as far as a sample shows.
+pub fn is_crowded(cell: &Cell, states: &States) -> bool {
+    if states.len() < GROUPED {
+        return false;
+    }
     let some = states.iter().step_by(states.len().div_ceil(MOST));
-    let boxes: Vec<[Lattice; 2]> = some.map(|s| s.1.bounds(cell)).collect();
+    let (least, most) = (cell.low(), cell.high());
+    let inside = |[low, high]: [Lattice; 2]| {
+        let low = each_axis(|i| low[i].max(least[i]));
+        [low, each_axis(|i| high[i].min(most[i]))]
+    };
+    let boxes: Vec<[Lattice; 2]> = some.map(|s| inside(s.1.bounds(cell))).collect();
     let overlap =
         |[a, b]: &[Lattice; 2], [c, d]: &[Lattice; 2]| (0..3).all(|i| a[i] <= d[i] && c[i] <= b[i]);
     let partners = |i: usize| boxes[..i].iter().filter(|b| overlap(b, &boxes[i])).count();
@@ -191,11 +188,26 @@ fn mixed(cell: &Cell, states: &States, total: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::merge::scenes::crossing;
+    use crate::merge::scenes::{crossing, cuboid};
+
+    #[test]
+    fn operands_are_in_one_place_if_their_boxes_overlap_in_the_cell() {
+        let cell = Cell::around(&[0; 3], &[63; 3]);
+        let crowded = |cell: &Cell, step: i64| {
+            let solid = |k: i64| cuboid([1 + step * k; 3], [9 + step * k; 3]);
+            let tree = |k: i64| State::Tree(solid(k).root().clone());
+            let states: States = (0..).zip((0..5).map(tree)).collect();
+            is_crowded(cell, &states)
+        };
+        assert!(crowded(&cell, 1));
+        assert!(!crowded(&cell, 10));
+        // Beyond the cell it does not matter.
+        assert!(!crowded(&Cell::around(&[0; 3], &[1; 3]), 3));
+    }
 
     #[test]
     fn three_halvings_that_keep_nearly_all_elements_are_stuck() {
-        let after = |round: Round, total| (0..ROUND).fold(round, |r, _| r.next(total, 2));
+        let after = |round: Round, total| (0..ROUND).fold(round, |r, _| r.next(total));
         let first = after(Round::START, 100);
         assert!(!first.stuck);
         assert!(after(first, 95).stuck);

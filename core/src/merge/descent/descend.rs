@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::choice::{Round, CROWD, GROUPED, LEAF, ORTHOGONAL, STUCK};
+use super::choice::{is_crowded, is_overcrowded, Round, CROWD, GROUPED, LEAF, ORTHOGONAL, STUCK};
 use super::join;
-use super::state::{find, has_constant, nested, State, States, MANY, TASK};
+use super::state::{find, has_constant, has_surface, nested, State, States, MANY, TASK};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::side::Half;
@@ -244,7 +244,7 @@ impl<'a> Descent<'a> {
         {
             return Ok(branch);
         }
-        if round.is_overcrowded(&cell, &states)
+        if is_overcrowded(&cell, &states)
             && let Some(parted) = self.parted(&expression)
         {
             return self.grouped(cell, parted, states, 0);
@@ -261,13 +261,12 @@ impl<'a> Descent<'a> {
                 return Ok(branch);
             }
             round.refused(total);
-            if round.is_crowded(&cell, &states)
+            if is_crowded(&cell, &states)
                 && let Some(parted) = self.parted(&expression)
             {
                 return self.grouped(cell, parted, states, 0);
             }
         }
-        let round = round.next(total, states.len());
         self.halves(cell, cut, &expression, states, round, total)
     }
 
@@ -364,6 +363,12 @@ impl<'a> Descent<'a> {
             below.push((k, minus));
             above.push((k, plus));
         }
+        // Cutting off what is empty tells nothing about how the rest separates.
+        let round = if has_surface(&below) && has_surface(&above) {
+            round.next(total)
+        } else {
+            round
+        };
         let visit = |half: Half, states: States| {
             self.cell(cell.half(cut, half), Arc::clone(expression), states, round)
         };

@@ -5,8 +5,10 @@ use std::sync::Arc;
 use super::cutting::Special;
 use super::segment::{End, Segment};
 use crate::arith::convert::as_double;
+use crate::geometry::outline::order_along;
 use crate::geometry::polygon::{bounds, Polygon};
 use crate::geometry::side::Side;
+use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 
 /// The segment that continues each.
@@ -45,15 +47,20 @@ impl Joints {
         Ok(Self(next))
     }
 
-    /// The segments of each closed curve.
-    pub(super) fn loops<'s>(&self, segments: &'s [Segment]) -> Vec<Vec<&'s Segment>> {
+    /// The segment that continues one.
+    pub(super) fn next(&self, segment: usize) -> Option<usize> {
+        self.0[segment]
+    }
+
+    /// The segments of each closed curve, by number.
+    pub(super) fn loops(&self, segments: &[Segment]) -> Vec<Vec<usize>> {
         let mut seen = vec![false; segments.len()];
         let mut follow = |start: usize| {
             let mut at = Some(start);
             let mut found = Vec::new();
             while let Some(i) = at.filter(|i| !seen[*i]) {
                 seen[i] = true;
-                found.push(&segments[i]);
+                found.push(i);
                 at = self.0[i];
             }
             found
@@ -68,8 +75,8 @@ impl Joints {
         curves.filter(|curve| !curve.is_empty()).collect()
     }
 
-    /// The segments with those joined that continue each other on one line.
-    pub(super) fn joined(self, segments: Vec<Segment>) -> Result<Vec<Segment>, Special> {
+    /// The segments with those joined that continue each other on one line, and what continues them.
+    pub(super) fn joined(self, segments: Vec<Segment>) -> Result<(Vec<Segment>, Self), Special> {
         let mut continued = vec![false; segments.len()];
         let mut any = false;
         for (i, next) in self.0.iter().enumerate() {
@@ -86,7 +93,7 @@ impl Joints {
             }
         }
         if !any {
-            return Ok(segments);
+            return Ok((segments, self));
         }
         let last = |mut i: usize| {
             while let Some(next) = self.0[i].filter(|next| continued[*next]) {
@@ -95,25 +102,30 @@ impl Joints {
             segments[i].to.clone()
         };
         let firsts = (0..segments.len()).filter(|i| !continued[*i]);
-        Ok(firsts
+        let joined: Vec<Segment> = firsts
             .map(|i| Segment {
                 from: segments[i].from.clone(),
                 to: last(i),
                 plane: Arc::clone(&segments[i].plane),
-                plus: segments[i].plus,
+                ..segments[i]
             })
-            .collect())
+            .collect();
+        let joints = Self::of(&joined)?;
+        Ok((joined, joints))
     }
 }
 
-/// Return whether two segments that do not follow each other may meet.
-pub(super) fn may_cross(segments: &[Segment]) -> bool {
+/// Calls for each two segments that do not follow each other and may meet, until that fails.
+pub(super) fn each_near_pair(
+    segments: &[Segment],
+    mut found: impl FnMut(usize, usize) -> Result<(), Special>,
+) -> Result<(), Special> {
     let (count, inner) = (
         segments.len(),
         segments.iter().any(|s| s.from.edge.is_none()),
     );
-    if count == 1 || count == 2 && inner {
-        return false;
+    if count < 2 || count == 2 && inner {
+        return Ok(());
     }
     let boxes: Vec<([f64; 3], [f64; 3])> = segments
         .iter()
@@ -127,12 +139,16 @@ pub(super) fn may_cross(segments: &[Segment]) -> bool {
         let ((low, high), (least, most)) = (&boxes[a], &boxes[b]);
         (0..3).any(|i| low[i] > most[i] || least[i] > high[i])
     };
-    order.iter().enumerate().any(|(k, a)| {
+    for (k, a) in order.iter().enumerate() {
+        poll();
         let others = order[k + 1..].iter().take_while(|b| !beyond(*a, **b));
-        others
-            .filter(|b| !apart(*a, **b))
-            .any(|b| !segments[*a].is_clear_of(&segments[*b]))
-    })
+        for b in others.filter(|b| !apart(*a, **b)) {
+            if !segments[*a].is_clear_of(&segments[*b]) {
+                found(*a, *b)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The axis along which boxes reach farthest.
@@ -145,6 +161,31 @@ fn widest(boxes: &[([f64; 3], [f64; 3])]) -> usize {
     (0..3)
         .max_by(|i, j| extent(*i).total_cmp(&extent(*j)))
         .unwrap_or(0)
+}
+
+/// Sorts points of a segment in its direction.
+pub(super) fn sort_between<T>(
+    [a, b]: [&Arc<Vertex>; 2],
+    items: &mut [T],
+    at: impl Fn(&T) -> &Arc<Vertex>,
+) {
+    if items.len() < 2 {
+        return;
+    }
+    let (p, q) = (a.approx(), b.approx());
+    let extent = |i: usize| (q[i] - p[i]).abs();
+    let axis = (0..3)
+        .max_by(|i, j| extent(*i).total_cmp(&extent(*j)))
+        .unwrap_or(0);
+    let forward = order_along(a, b, axis);
+    items.sort_by(|x, y| {
+        let order = order_along(at(x), at(y), axis);
+        if forward.is_lt() {
+            order
+        } else {
+            order.reverse()
+        }
+    });
 }
 
 impl Segment {
@@ -166,16 +207,20 @@ impl Segment {
 
 /// Return whether a closed curve of segments turns left around what it encloses, as seen from the
 /// plus side of the polygon's plane.
-pub(super) fn turns_left(polygon: &Polygon, segments: &[&Segment]) -> Result<bool, Special> {
+pub(super) fn turns_left(
+    polygon: &Polygon,
+    segments: &[Segment],
+    curve: &[usize],
+) -> Result<bool, Special> {
     let axis = polygon.support().main_axis();
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    let origin = segments[0].from.at.approx();
+    let origin = segments[curve[0]].from.at.approx();
     let place = |end: &End| {
         let p = end.at.approx();
         [p[u] - origin[u], p[v] - origin[v]]
     };
     let (mut area, mut reach, mut size) = (0.0f64, 0.0f64, 0.0f64);
-    for segment in segments {
+    for segment in curve.iter().map(|i| &segments[*i]) {
         poll();
         let (p, q) = (place(&segment.from), place(&segment.to));
         area += p[0] * q[1] - p[1] * q[0];
@@ -186,7 +231,7 @@ pub(super) fn turns_left(polygon: &Polygon, segments: &[&Segment]) -> Result<boo
     // Coordinates are off by less than 4 units in the last place of `size`, each of two products
     // by twice that times `reach`; sums of n terms are rounded n times, and `reach` is at most
     // twice `size`.
-    let n = as_double(segments.len());
+    let n = as_double(curve.len());
     let doubt = n * (n + 32.0) * 4.0 * f64::EPSILON * reach * size;
     if area.abs() <= doubt {
         return Err(Special);
@@ -197,8 +242,8 @@ pub(super) fn turns_left(polygon: &Polygon, segments: &[&Segment]) -> Result<boo
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arith::convert::as_number;
     use crate::geometry::plane::{Lattice, Plane};
-    use crate::geometry::vertex::Vertex;
     use crate::merge::scenes::triangle;
 
     /// The segments from each of some points in a plane to the next.
@@ -218,7 +263,9 @@ mod tests {
             Segment {
                 from: end(&vertices[i]),
                 to: end(&vertices[next]),
+                operand: 1,
                 plane: Arc::new(plane.expect("two points and one above")),
+                number: as_number(i),
                 plus: false,
             }
         };
@@ -240,10 +287,7 @@ mod tests {
     fn curves_turn_left_or_right_as_seen_from_above() {
         let floor = triangle([[0, 0, 0], [9, 0, 0], [0, 9, 0]]);
         let mut corners = SQUARE;
-        let turns = |corners: &[Lattice]| {
-            let curve = path(corners);
-            turns_left(&floor, &curve.iter().collect::<Vec<&Segment>>()).ok()
-        };
+        let turns = |corners: &[Lattice]| turns_left(&floor, &path(corners), &[0, 1, 2, 3]).ok();
         assert_eq!(turns(&corners), Some(true));
         corners.reverse();
         assert_eq!(turns(&corners), Some(false));
@@ -252,7 +296,8 @@ mod tests {
     #[test]
     fn a_bow_tie_may_cross_itself_and_a_square_does_not() {
         let [a, b, c, d] = SQUARE;
-        assert!(!may_cross(&path(&SQUARE)));
-        assert!(may_cross(&path(&[a, c, b, d])));
+        let may_cross = |corners| each_near_pair(&path(corners), |_, _| Err(Special)).is_err();
+        assert!(!may_cross(&SQUARE));
+        assert!(may_cross(&[a, c, b, d]));
     }
 }

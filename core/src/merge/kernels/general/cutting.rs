@@ -348,10 +348,16 @@ pub enum Contact {
 pub fn contact(polygon: &Polygon, face: &Face<'_>) -> Contact {
     let theirs = face.polygon.sides(polygon.support());
     let crossed = straddle(&theirs) == (true, true);
-    if !crossed && theirs.iter().filter(|s| **s == Side::On).count() > 1 {
-        return Contact::Special;
-    }
     let ours = polygon.sides(face.polygon.support());
+    if !crossed && theirs.iter().filter(|s| **s == Side::On).count() > 1 {
+        let apart = straddle(&ours) != (true, true) && !ours.contains(&Side::On);
+        let flat = theirs.iter().all(|s| *s == Side::On);
+        return if apart || flat && lie_apart(polygon, &face.polygon) {
+            Contact::None
+        } else {
+            Contact::Special
+        };
+    }
     let mut corners = ours.iter().zip(polygon.corners());
     if corners.any(|(side, corner)| *side == Side::On && face.holds(&corner.at)) {
         return Contact::Special;
@@ -360,6 +366,16 @@ pub fn contact(polygon: &Polygon, face: &Face<'_>) -> Contact {
         return Contact::Crossing(ours, theirs);
     }
     Contact::None
+}
+
+/// Return whether an edge of one polygon has the other strictly beyond it; both lie in one plane.
+fn lie_apart(polygon: &Polygon, other: &Polygon) -> bool {
+    let beyond_an_edge = |a: &Polygon, b: &Polygon| {
+        let rims = a.corners().iter().map(|c| c.edge.rim(a.support()));
+        let beyond = |rim: Plane| b.corners().iter().all(|c| c.at.side_of(&rim) == Side::Plus);
+        rims.into_iter().any(beyond)
+    };
+    beyond_an_edge(polygon, other) || beyond_an_edge(other, polygon)
 }
 
 #[cfg(test)]
@@ -411,5 +427,19 @@ mod tests {
         let polygon = triangle([[0, 0, 0], [8, 0, 0], [0, 8, 0]]);
         let flat = Face::new(Cow::Owned(triangle([[1, 1, 0], [2, 1, 0], [1, 2, 0]])));
         assert!(matches!(contact(&polygon, &flat), Contact::Special));
+    }
+
+    #[test]
+    fn faces_in_the_plane_of_the_polygon_that_lie_apart_from_it_are_none() {
+        let polygon = triangle([[0, 0, 0], [8, 0, 0], [0, 8, 0]]);
+        let meets = |corners| contact(&polygon, &Face::new(Cow::Owned(triangle(corners))));
+        let flat = [[9, 1, 0], [12, 1, 0], [9, 4, 0]];
+        assert!(matches!(meets(flat), Contact::None));
+        let touching = [[8, 0, 0], [12, 1, 0], [9, 4, 0]];
+        assert!(matches!(meets(touching), Contact::Special));
+        let upright = [[9, 1, 0], [9, 4, 0], [9, 2, 5]];
+        assert!(matches!(meets(upright), Contact::None));
+        let across = [[4, -1, 0], [4, 2, 0], [4, 1, 5]];
+        assert!(matches!(meets(across), Contact::Special));
     }
 }

@@ -42,7 +42,7 @@ pub(super) struct Cut {
 
 /// The parts into which an element is divided.
 pub(super) enum Parts {
-    /// The parts outside one operand, and those inside.
+    /// Parts by the operands inside which they lie.
     Sides(Trace),
     /// Convex pieces, by the faces of any operands.
     Pieces(Cutting),
@@ -181,7 +181,7 @@ impl Cut {
             Parts::Pieces(cutting) => cutting.pieces.iter().position(has),
             Parts::Sides(trace) => {
                 let corner = self.polygon.corners().iter().position(|c| is_it(&c.at))?;
-                Some(usize::from(trace.holds_corner(corner)))
+                trace.part_at_corner(corner)
             }
         }
     }
@@ -208,33 +208,62 @@ mod tests {
         assert!(fates.iter().all(|fate| matches!(fate, Fate::Untouched)));
     }
 
-    /// For each element of a tetrahedron whether boxes divide it by a trace, into how many edges
-    /// inside.
-    fn traced(boxes: &[[[i64; 3]; 2]]) -> Vec<usize> {
+    /// For each face of a tetrahedron the edges of the part inside all of some operands, 0 if it is
+    /// divided piece by piece or not at all.
+    fn traced(operands: &[&[[[i64; 3]; 2]]]) -> Vec<usize> {
         let floor = tetrahedron([[-90, -95, 0], [290, -85, 0], [-80, 310, 0], [-70, -70, 300]]);
-        let shared = Shared::of(&[floor, cuboids(boxes.iter().copied())]);
+        let others = operands.iter().map(|o| cuboids(o.iter().copied()));
+        let shared = Shared::of(&std::iter::once(floor).chain(others).collect::<Vec<_>>());
         let operands = shared.operands();
         let scene = Scene::new(&shared.cell, &operands, &shared.sources);
         let fates = scene.fates(usize::MAX).unwrap_or_default();
         let edges = |fate: &Fate| match fate {
             Fate::Cut(cut) => match &cut.parts {
-                Parts::Sides(trace) => trace.outline(&cut.polygon, true).len(),
-                Parts::Pieces(_) => 0,
+                Parts::Sides(trace) => {
+                    let inside = trace.parts.iter().map(|p| *p == trace.operands && *p != 0);
+                    let inside: Vec<bool> = inside.collect();
+                    let some = inside.contains(&true);
+                    some.then(|| trace.outline(&cut.polygon, &inside).len())
+                }
+                Parts::Pieces(_) => None,
             },
-            _ => 0,
+            _ => None,
         };
-        fates.iter().take(4).map(edges).collect()
+        fates
+            .iter()
+            .take(4)
+            .map(|fate| edges(fate).unwrap_or(0))
+            .collect()
     }
 
     #[test]
     fn several_curves_on_a_face_are_one_trace() {
         let side_by_side = [[[1, 2, -5], [9, 11, 5]], [[20, 3, -5], [31, 14, 5]]];
-        assert_eq!(traced(&side_by_side), [8, 0, 0, 0]);
+        assert_eq!(traced(&[&side_by_side]), [8, 0, 0, 0]);
+        let in_a_row = [[[1, 2, -5], [9, 11, 5]], [[20, 2, -5], [31, 11, 5]]];
+        assert_eq!(traced(&[&in_a_row]), [8, 0, 0, 0]);
     }
 
     #[test]
-    fn curves_that_are_not_nested_by_turns_are_no_trace() {
+    fn curves_of_several_operands_may_cross() {
+        let first = [[[1, 2, -5], [9, 11, 5]]];
+        let second = [[[4, 5, -6], [31, 14, 7]]];
+        assert_eq!(traced(&[&first, &second]), [4, 0, 0, 0]);
+        // Inside both in two places.
+        let third = [[[4, 5, -6], [6, 14, 7]], [[7, 5, -6], [8, 14, 7]]];
+        assert_eq!(traced(&[&first, &third]), [8, 0, 0, 0]);
+    }
+
+    #[test]
+    fn a_curve_inside_one_of_another_operand_has_labels_of_both() {
+        let outer = [[[1, 2, -9], [19, 21, 9]]];
+        let inner = [[[5, 6, -5], [9, 11, 5]]];
+        assert_eq!(traced(&[&outer, &inner]), [4, 0, 0, 0]);
+    }
+
+    #[test]
+    fn curves_of_one_operand_that_are_not_nested_by_turns_are_no_trace() {
         let nested = [[[1, 2, -9], [19, 21, 9]], [[5, 6, -5], [9, 11, 5]]];
-        assert_eq!(traced(&nested), [0, 0, 0, 0]);
+        assert_eq!(traced(&[&nested]), [0, 0, 0, 0]);
     }
 }

@@ -115,11 +115,12 @@ fn stays_of_parts(fate: Fate, sides: &[Option<usize>]) -> [Stays; 2] {
     };
     match cut.parts {
         Parts::Sides(trace) => [0, 1].map(|side| {
-            let stays = |inside: &bool| sides[usize::from(*inside)] == Some(side);
-            let inside = [false, true].into_iter().find(stays);
-            inside.map_or(Stays::Nothing, |i| {
-                Stays::Outline(trace.outline(&cut.polygon, i))
-            })
+            let stays: SmallVec<[bool; 4]> = sides.iter().map(|s| *s == Some(side)).collect();
+            if stays.contains(&true) {
+                Stays::Outline(trace.outline(&cut.polygon, &stays))
+            } else {
+                Stays::Nothing
+            }
         }),
         Parts::Pieces(cutting) => {
             let mut found = [Vec::new(), Vec::new()];

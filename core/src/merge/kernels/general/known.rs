@@ -153,10 +153,14 @@ impl Known {
         let element = &scene.elements[i];
         let root = self.sets.least(self.anchors[i]);
         self.known_or(root, || match (fate, &element.place) {
-            (Fate::Uncut(anchors), _) => scene.count_at(element.operand, &anchors.first()?.place),
+            (Fate::Uncut(anchors), _) => {
+                let count = |anchor: &Anchor| scene.count_at(element.operand, &anchor.place);
+                anchors.iter().find_map(count)
+            }
             (_, Place::Face(triangle)) => {
-                let corner = element.vertices_in(scene.cell).next()?;
-                scene.count_at_lattice(element.operand, &triangle.corners[corner])
+                let corners = &triangle.corners;
+                let count = |i: usize| scene.count_at_lattice(element.operand, &corners[i]);
+                element.vertices_in(scene.cell).find_map(count)
             }
             _ => None,
         })

@@ -14,6 +14,7 @@ use super::{Labels, OnPieces};
 use crate::arith::convert::as_double;
 use crate::arith::Filtered;
 use crate::geometry::plane::Lattice;
+use crate::geometry::polygon::Corner;
 use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::path::{triangle_on_path, Way};
 use crate::interrupt::poll;
@@ -41,13 +42,16 @@ impl Scene<'_> {
 
     /// A part of a cut element, and its labels.
     fn start(&self, operand: usize, cut: &Cut, known: &mut Known) -> Option<(usize, Labels)> {
-        if let Some(anchor) = cut.anchors.first() {
-            let label = known.label(self, operand, anchor)?;
-            return Some((cut.part_at(anchor)?, label));
+        // A path to one corner may run through an edge, as all to a wall at the cell's corner do.
+        if !cut.anchors.is_empty() {
+            let label = |anchor| Some((cut.part_at(anchor)?, known.label(self, operand, anchor)?));
+            return cut.anchors.iter().find_map(label);
         }
-        let base = &cut.polygon.corners()[0].at;
-        let part = cut.part_with(|at| Arc::ptr_eq(at, base))?;
-        Some((part, self.count(operand, base)?))
+        let label = |corner: &Corner| {
+            let part = cut.part_with(|at| Arc::ptr_eq(at, &corner.at))?;
+            Some((part, self.count(operand, &corner.at)?))
+        };
+        cut.polygon.corners().iter().find_map(label)
     }
 
     /// Labels the parts of a cut element from one of them, and of all cut elements that share
@@ -142,10 +146,9 @@ fn spread(parts: &Parts, first: usize, start: Labels) -> Option<OnPieces> {
     match parts {
         Parts::Pieces(cutting) => spread_along_ties(cutting, first, start),
         Parts::Sides(trace) => {
-            let bit: Labels = 1 << trace.operand;
-            let inside = first == 1;
-            let agrees = (start & bit != 0) == inside;
-            agrees.then(|| OnPieces::from_buf([start & !bit, start | bit]))
+            let agrees = start & trace.operands == trace.parts[first];
+            let others = start & !trace.operands;
+            agrees.then(|| trace.parts.iter().map(|part| others | part).collect())
         }
     }
 }

@@ -6,6 +6,7 @@
 //! contacts, operands that overlap themselves — is left to the local trees.
 
 mod anchors;
+mod border;
 mod curves;
 mod cutting;
 mod fates;
@@ -16,7 +17,9 @@ mod nesting;
 mod points;
 mod scene;
 mod segment;
+mod stops;
 mod trace;
+mod walls;
 
 use smallvec::SmallVec;
 

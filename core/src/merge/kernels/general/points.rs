@@ -8,9 +8,14 @@ use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Carrier, Polygon};
 use crate::geometry::vertex::Vertex;
 
-/// The points known so far, by edge and by the number of the element that it crosses.
+/// The points known so far.
 #[derive(Default)]
-pub(super) struct Points(HashMap<(EdgeName, u32), Point>);
+pub(super) struct Points {
+    /// By edge and by the number of the element that it crosses.
+    on_edges: HashMap<(EdgeName, u32), Point>,
+    /// The common points of three elements, by their numbers.
+    of_three: HashMap<[u32; 3], Arc<Vertex>>,
+}
 
 struct Point {
     at: Arc<Vertex>,
@@ -53,7 +58,7 @@ impl Points {
     ) -> Option<Arc<Vertex>> {
         let carrier = &polygon.corners()[edge].edge;
         let name = (EdgeName::of(carrier, polygon.support()), number);
-        if let Some(known) = self.0.get(&name) {
+        if let Some(known) = self.on_edges.get(&name) {
             return Some(Arc::clone(&known.at));
         }
         let at = Arc::new(carrier.meet(polygon.support(), plane)?);
@@ -65,7 +70,21 @@ impl Points {
             at: Arc::clone(&at),
             _planes: planes,
         };
-        self.0.insert(name, known);
+        self.on_edges.insert(name, known);
+        Some(at)
+    }
+
+    /// The point that the planes of three elements, given with their numbers, have in common;
+    /// `None` if they have none or more.
+    pub(super) fn of_three(&mut self, elements: [(&Arc<Plane>, u32); 3]) -> Option<Arc<Vertex>> {
+        let mut name = elements.map(|e| e.1);
+        name.sort_unstable();
+        if let Some(known) = self.of_three.get(&name) {
+            return Some(Arc::clone(known));
+        }
+        let [a, b, c] = elements.map(|e| e.0);
+        let at = Arc::new(Vertex::meet(a, b, c)?);
+        self.of_three.insert(name, Arc::clone(&at));
         Some(at)
     }
 }

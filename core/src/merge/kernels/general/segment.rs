@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::cutting::{Cutter, Face, Special};
 use super::points::Points;
+use super::Labels;
 use crate::arith::Sign;
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::{Lattice, Plane};
@@ -16,8 +17,12 @@ use crate::geometry::winding::path::determinant;
 pub(super) struct Segment {
     pub(super) from: End,
     pub(super) to: End,
+    /// The other operand.
+    pub(super) operand: usize,
     /// The plane of the face in which it lies.
     pub(super) plane: Arc<Plane>,
+    /// The number of that face.
+    pub(super) number: u32,
     /// True if that operand's inside is on the plus side of the plane.
     pub(super) plus: bool,
 }
@@ -42,6 +47,13 @@ pub(super) struct Crosser<'a> {
     pub(super) ours: Sides,
     /// On which sides of the element's plane its corners lie.
     pub(super) theirs: Sides,
+}
+
+impl Segment {
+    /// The bit of its operand in labels.
+    pub(super) fn bit(&self) -> Labels {
+        1 << self.operand
+    }
 }
 
 impl<'a> Crosser<'a> {
@@ -102,7 +114,9 @@ impl Crossed<'_> {
         Ok(Some(Segment {
             from,
             to,
+            operand: other.operand,
             plane,
+            number: other.number,
             plus,
         }))
     }

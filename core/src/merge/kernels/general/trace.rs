@@ -1,46 +1,39 @@
-//! The trace of one other operand on an element: where that one's surface crosses it.
+//! The trace of other operands on an element: where their surfaces cross it.
 //!
-//! The trace divides the element into a part inside the operand and one outside. The segments of
-//! the trace and the arcs of the border between them are the outlines of both: nothing has to be
-//! cut. What is not certain to be simple — loops beside other curves, curves that may cross, ends
-//! that find no continuation — is left to the autopartition of `cutting`.
+//! The trace divides the element into parts inside and outside of these operands. Its walls and the
+//! arcs of the border between them are the outlines of the parts: nothing has to be cut. What is not
+//! certain is left to the autopartition of `cutting`: curves of one operand that may cross, ends that
+//! find no continuation, curves that do not agree about what lies between them.
 
 use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use super::curves::{may_cross, Joints};
+use super::border::Border;
+use super::curves::Joints;
 use super::cutting::Special;
 use super::nesting::View;
 use super::points::Points;
 use super::segment::{Crossed, Crosser, Segment};
-use crate::geometry::outline::{order_along, BareEdge};
+use super::stops::Stops;
+use super::walls::{Wall, Walls};
+use super::Labels;
+use crate::geometry::outline::BareEdge;
 use crate::geometry::polygon::{Carrier, Polygon};
-use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 
-/// An element divided by the surface of one other operand.
+/// An element divided by the surfaces of other operands.
 pub(super) struct Trace {
-    pub(super) operand: usize,
-    /// Marks of the corners that lie inside that operand.
-    corners: SmallVec<[bool; 6]>,
-    /// With the inside on their left.
-    pub(super) segments: Vec<Segment>,
-    /// The ends at which they leave the border and come back to it, counterclockwise.
-    ends: Vec<BorderEnd>,
-}
-
-/// The end of a segment on the element's border.
-struct BorderEnd {
-    edge: usize,
-    at: Arc<Vertex>,
-    /// True if the border beyond lies inside the operand.
-    enters: bool,
+    /// The bits of these operands.
+    pub(super) operands: Labels,
+    /// Inside which of them the parts lie, ascending.
+    pub(super) parts: SmallVec<[Labels; 2]>,
+    walls: Walls,
+    border: Border,
 }
 
 impl Trace {
-    /// The trace of the crossers' operand; `None` if it has none, or none that is certain to be
-    /// simple.
+    /// The trace of what may cross an element; `None` if it is not certain.
     pub(super) fn new(
         crossed: &Crossed,
         crossers: &[Crosser],
@@ -49,172 +42,117 @@ impl Trace {
         divided(crossed, crossers, points).ok()
     }
 
-    /// Return for each corner whether it lies inside; closed curves must be nested by turns.
-    fn nested(&self, polygon: &Polygon, joints: &Joints) -> Result<SmallVec<[bool; 6]>, Special> {
-        let curves = joints.loops(&self.segments);
-        let view = View::of(polygon);
-        let first = match self.ends.first() {
-            Some(end) => !end.enters,
-            None => view.border_is_inside(&curves)?,
-        };
-        let corners = corners_inside(polygon.corners().len(), first, &self.ends);
-        if curves.len() > usize::from(self.ends.is_empty()) {
-            let border = [false, true].map(|inside| {
-                let mut edges = Vec::new();
-                self.border(polygon, &corners, inside, &mut edges);
-                edges
-            });
-            view.check(&self.segments, &border, &curves)?;
-        }
-        Ok(corners)
+    /// The part that has a corner of the element.
+    pub(super) fn part_at_corner(&self, corner: usize) -> Option<usize> {
+        self.part(self.border.corners[corner])
     }
 
-    /// Return whether a corner lies inside the operand.
-    pub(super) fn holds_corner(&self, corner: usize) -> bool {
-        self.corners[corner]
+    fn part(&self, labels: Labels) -> Option<usize> {
+        self.parts.binary_search(&labels).ok()
     }
 
-    /// The outline of the part inside the operand, or of that outside.
-    pub(super) fn outline(&self, polygon: &Polygon, inside: bool) -> Vec<BareEdge> {
-        let mut edges = Vec::with_capacity(self.segments.len() + self.ends.len() + 3);
-        edges.extend(self.segments.iter().map(|s| s.bordering(inside)));
-        self.border(polygon, &self.corners, inside, &mut edges);
+    /// The outline of some of the parts together.
+    pub(super) fn outline(&self, polygon: &Polygon, stays: &[bool]) -> Vec<BareEdge> {
+        let holds = |labels: Labels| self.part(labels).is_some_and(|i| stays[i]);
+        let mut edges = Vec::with_capacity(self.walls.segments.len() + 3);
+        self.add_walls(holds, &mut edges);
+        self.add_border(polygon, holds, &mut edges);
         edges
     }
 
-    /// The arcs of the border that lie inside the operand, or outside.
-    pub(super) fn border(
+    /// Adds the walls that have some parts on one side, those that continue each other as one edge.
+    fn add_walls(&self, holds: impl Fn(Labels) -> bool, edges: &mut Vec<BareEdge>) {
+        let mut last = None;
+        for wall in self.walls.walls() {
+            let [left, right] = wall.sides.unwrap_or_default().map(&holds);
+            if left == right {
+                last = None;
+                continue;
+            }
+            let edge = self.walls.segments[wall.segment].bordering(&wall, left);
+            let current = Some((wall.segment, left));
+            add(edges, edge, last == current, left);
+            last = current;
+        }
+    }
+
+    /// Adds the arcs of the border at some parts, those that continue each other as one edge.
+    fn add_border(
         &self,
         polygon: &Polygon,
-        labels: &[bool],
-        inside: bool,
+        holds: impl Fn(Labels) -> bool,
         edges: &mut Vec<BareEdge>,
     ) {
-        let corners = polygon.corners();
-        let mut ends = self.ends.iter().peekable();
-        for (i, corner) in corners.iter().enumerate() {
-            let (mut from, mut within) = (&corner.at, labels[i]);
-            let mut arc = |from: &Arc<Vertex>, to: &Arc<Vertex>, within: bool| {
-                if within == inside {
-                    edges.push(BareEdge {
-                        from: Arc::clone(from),
-                        to: Arc::clone(to),
-                        carrier: corner.edge.clone(),
-                    });
-                }
-            };
-            while let Some(end) = ends.next_if(|end| end.edge == i) {
-                arc(from, &end.at, within);
-                (from, within) = (&end.at, end.enters);
+        let mut last = None;
+        for arc in self.border.arcs(polygon) {
+            if !holds(arc.labels) {
+                last = None;
+                continue;
             }
-            arc(from, &corners[(i + 1) % corners.len()].at, within);
+            let edge = BareEdge {
+                from: Arc::clone(arc.from),
+                to: Arc::clone(arc.to),
+                carrier: polygon.corners()[arc.edge].edge.clone(),
+            };
+            add(edges, edge, last == Some(arc.edge), true);
+            last = Some(arc.edge);
         }
     }
 }
 
+/// Adds an edge, or makes the last one longer by it, onward or backward.
+fn add(edges: &mut Vec<BareEdge>, edge: BareEdge, continues: bool, onward: bool) {
+    match edges.last_mut() {
+        Some(last) if continues && onward => last.to = edge.to,
+        Some(last) if continues => last.from = edge.from,
+        _ => edges.push(edge),
+    }
+}
+
 impl Segment {
-    /// As an edge of the part inside the operand, or of that outside.
-    fn bordering(&self, inside: bool) -> BareEdge {
-        let (from, to) = if inside {
-            (&self.from.at, &self.to.at)
+    /// A wall of it as an edge of a part on its left, or on its right.
+    fn bordering(&self, wall: &Wall, left: bool) -> BareEdge {
+        let (from, to) = if left {
+            (wall.from, wall.to)
         } else {
-            (&self.to.at, &self.from.at)
+            (wall.to, wall.from)
         };
         BareEdge {
             from: Arc::clone(from),
             to: Arc::clone(to),
-            carrier: Carrier::Cut(Arc::clone(&self.plane), self.plus == inside),
+            carrier: Carrier::Cut(Arc::clone(&self.plane), self.plus == left),
         }
     }
 }
 
 fn divided(crossed: &Crossed, crossers: &[Crosser], points: &mut Points) -> Result<Trace, Special> {
-    if crossers.iter().any(|c| c.operand != crossers[0].operand) {
-        return Err(Special);
-    }
     let mut segments = Vec::with_capacity(crossers.len());
     for crosser in crossers {
         poll();
         segments.extend(crossed.segment(crosser, points)?);
     }
-    if segments.is_empty() {
-        return Err(Special);
-    }
-    let ends = border_ends(crossed.polygon, &segments)?;
-    let joints = Joints::of(&segments)?;
-    if may_cross(&segments) {
-        return Err(Special);
-    }
-    let mut trace = Trace {
-        operand: crossers[0].operand,
-        corners: SmallVec::new(),
-        segments,
-        ends,
-    };
-    trace.corners = trace.nested(crossed.polygon, &joints)?;
-    trace.segments = joints.joined(trace.segments)?;
-    Ok(trace)
+    let (segments, joints) = Joints::of(&segments)?.joined(segments)?;
+    let mut border = Border::new(crossed.polygon, &segments)?;
+    let stops = Stops::of(crossed, &segments, points)?;
+    let operands = segments.iter().fold(0, |all, s| all | s.bit());
+    let mut walls = Walls::new(segments, joints, stops);
+    View::of(crossed.polygon).label(&mut walls, &mut border)?;
+    let parts = parts(&walls, &border);
+    Ok(Trace {
+        operands,
+        parts,
+        walls,
+        border,
+    })
 }
 
-/// The ends on the border, counterclockwise; they must enter and leave by turns.
-fn border_ends(polygon: &Polygon, segments: &[Segment]) -> Result<Vec<BorderEnd>, Special> {
-    let mut ends = Vec::new();
-    for segment in segments {
-        for (end, enters) in [(&segment.from, false), (&segment.to, true)] {
-            if let Some(edge) = end.edge {
-                let at = Arc::clone(&end.at);
-                ends.push(BorderEnd { edge, at, enters });
-            }
-        }
-    }
-    ends.sort_by_key(|end| end.edge);
-    for on_edge in ends.chunk_by_mut(|a, b| a.edge == b.edge) {
-        if on_edge.len() > 1 {
-            sort_along(polygon, on_edge);
-        }
-    }
-    let n = ends.len();
-    let by_turns = (0..n).all(|i| ends[i].enters != ends[(i + 1) % n].enters);
-    let apart = |i: usize| ends[i].edge != ends[i + 1].edge || !ends[i].at.same(&ends[i + 1].at);
-    if by_turns && (1..n).all(|i| apart(i - 1)) {
-        Ok(ends)
-    } else {
-        Err(Special)
-    }
-}
-
-/// Sorts points of one edge in its direction.
-fn sort_along(polygon: &Polygon, ends: &mut [BorderEnd]) {
-    let corners = polygon.corners();
-    let edge = ends[0].edge;
-    let (a, b) = (&corners[edge].at, &corners[(edge + 1) % corners.len()].at);
-    let (p, q) = (a.approx(), b.approx());
-    let extent = |i: usize| (q[i] - p[i]).abs();
-    let axis = (0..3)
-        .max_by(|i, j| extent(*i).total_cmp(&extent(*j)))
-        .unwrap_or(0);
-    let forward = order_along(a, b, axis);
-    ends.sort_by(|x, y| {
-        let order = order_along(&x.at, &y.at, axis);
-        if forward.is_lt() {
-            order
-        } else {
-            order.reverse()
-        }
-    });
-}
-
-fn corners_inside(count: usize, first: bool, ends: &[BorderEnd]) -> SmallVec<[bool; 6]> {
-    let mut inside = SmallVec::with_capacity(count);
-    let mut within = first;
-    let mut ends = ends.iter().peekable();
-    for i in 0..count {
-        inside.push(within);
-        while let Some(end) = ends.next_if(|end| end.edge == i) {
-            within = end.enters;
-        }
-    }
-    inside
+/// The labels beside all walls and along the border, ascending.
+fn parts(walls: &Walls, border: &Border) -> SmallVec<[Labels; 2]> {
+    let sides = walls.walls().filter_map(|wall| wall.sides).flatten();
+    let mut parts: SmallVec<[Labels; 2]> = sides.chain(border.corners.iter().copied()).collect();
+    parts.sort_unstable();
+    parts.dedup();
+    parts
 }
 
 #[cfg(test)]
@@ -224,6 +162,7 @@ mod tests {
     use super::super::cutting::{contact, Contact, Face};
     use super::*;
     use crate::geometry::plane::{Lattice, Plane};
+    use crate::geometry::vertex::Vertex;
 
     fn polygon(corners: &[Lattice; 3]) -> Polygon {
         let [a, b, c] = corners;
@@ -269,14 +208,14 @@ mod tests {
         ];
         let trace = trace(&crossed, wall).expect("one curve from border to border");
         let corner = Vertex::lattice([4, 4, 0]);
-        assert_eq!(trace.segments.len(), 1);
-        assert_eq!(trace.ends.len(), 2);
-        assert!(trace
-            .ends
+        assert_eq!(trace.walls.segments.len(), 1);
+        let arcs = trace.border.arcs(&crossed);
+        assert_eq!(arcs.len(), 5);
+        assert!(arcs
             .iter()
-            .any(|end| end.edge == 2 && end.at.same(&corner)));
-        assert_ne!(trace.holds_corner(0), trace.holds_corner(1));
-        assert_eq!(trace.holds_corner(1), trace.holds_corner(2));
+            .any(|arc| arc.edge == 2 && arc.from.same(&corner)));
+        assert_ne!(trace.part_at_corner(0), trace.part_at_corner(1));
+        assert_eq!(trace.part_at_corner(1), trace.part_at_corner(2));
     }
 
     /// Both faces at the edge lie over the polygon: their curve only touches its border.
