@@ -387,11 +387,9 @@ impl Polygon {
 
     fn has_beyond_an_edge(&self, other: &Self) -> bool {
         self.corners.iter().any(|corner| {
-            let plane = corner.edge.plane(&self.support);
-            other
-                .corners
-                .iter()
-                .all(|c| c.at.side_of(&plane) != Side::Minus)
+            let rim = corner.edge.rim(&self.support);
+            let mut corners = other.corners.iter();
+            corners.all(|c| c.at.side_of(&rim) != Side::Minus)
         })
     }
 

@@ -27,7 +27,7 @@ pub struct Fragment {
 /// whether any did overlap.
 pub fn disjoint(fragments: Vec<Fragment>) -> (Vec<Fragment>, bool) {
     let mut overlap = false;
-    let mut planes: Vec<Vec<Fragment>> = Vec::new();
+    let mut planes: Vec<Vec<Placed>> = Vec::new();
     let mut names: Vec<Arc<Plane>> = Vec::new();
     for fragment in fragments {
         poll();
@@ -40,36 +40,55 @@ pub fn disjoint(fragments: Vec<Fragment>) -> (Vec<Fragment>, bool) {
         });
         overlap |= add(&mut planes[at], fragment);
     }
-    let mut all: Vec<Fragment> = planes
-        .into_iter()
-        .flatten()
-        .filter(|f| f.weight != 0)
-        .collect();
+    let placed = planes.into_iter().flatten().map(|p| p.fragment);
+    let mut all: Vec<Fragment> = placed.filter(|f| f.weight != 0).collect();
     all.sort_by_key(|f| f.face);
     (all, overlap)
 }
 
+/// A fragment with a box around it.
+struct Placed {
+    fragment: Fragment,
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Placed {
+    fn of(fragment: Fragment) -> Self {
+        let (low, high) = fragment.polygon.bounds();
+        Self {
+            fragment,
+            low,
+            high,
+        }
+    }
+
+    /// Return whether two fragments of one plane have no area in common.
+    fn lies_beside(&self, other: &Self) -> bool {
+        let clear = (0..3).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i]);
+        clear || self.fragment.polygon.lies_beside(&other.fragment.polygon)
+    }
+}
+
 /// Adds a fragment to disjoint fragments of its plane; says whether it overlapped any.
-fn add(placed: &mut Vec<Fragment>, new: Fragment) -> bool {
-    let mut rest = vec![new];
+fn add(placed: &mut Vec<Placed>, new: Fragment) -> bool {
+    let mut rest = vec![Placed::of(new)];
     let mut carved = Vec::new();
     let mut overlap = false;
     let mut i = 0;
     while i < placed.len() && !rest.is_empty() {
         poll();
-        let touched = rest
-            .iter()
-            .any(|r| !placed[i].polygon.lies_beside(&r.polygon));
-        if touched {
-            let old = placed.remove(i);
-            let (remaining, met) = combine(&old, rest, &mut carved);
-            rest = remaining;
+        if rest.iter().any(|r| !placed[i].lies_beside(r)) {
+            let old = placed.remove(i).fragment;
+            let pieces = rest.into_iter().map(|r| r.fragment).collect();
+            let (remaining, met) = combine(&old, pieces, &mut carved);
+            rest = remaining.into_iter().map(Placed::of).collect();
             overlap |= met;
         } else {
             i += 1;
         }
     }
-    placed.append(&mut carved);
+    placed.extend(carved.into_iter().map(Placed::of));
     placed.append(&mut rest);
     overlap
 }
