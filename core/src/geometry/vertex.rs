@@ -272,7 +272,7 @@ impl Vertex {
     }
 
     /// Twice a coordinate, where the point was constructed with one on the lattice or halfway.
-    fn doubled(&self, axis: usize) -> Option<i64> {
+    pub fn doubled(&self, axis: usize) -> Option<i64> {
         match &self.place {
             Place::Lattice(p) => Some(2 * p[axis]),
             Place::OnEdge(edge, cut) => {

@@ -85,8 +85,7 @@ impl Grid {
     /// From the number of lines below a point to that of lines not above it.
     fn place(&self, axis: usize, point: &Vertex) -> Range<usize> {
         let lines = &self.lines[axis];
-        if let Some(p) = point.as_lattice() {
-            let at = 2 * p[axis];
+        if let Some(at) = point.doubled(axis) {
             return lines.partition_point(|l| *l < at)..lines.partition_point(|l| *l <= at);
         }
         let least = 2.0 * point.bounds().0[axis];
