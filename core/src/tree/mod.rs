@@ -4,6 +4,7 @@ pub mod flux;
 pub mod fragments;
 pub mod node;
 pub mod partition;
+pub mod pieces;
 pub mod plane;
 pub mod share;
 pub mod solid;

@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use super::share::Share;
+use crate::arith::convert::as_whole;
 use crate::geometry::cell::Cell;
 use crate::geometry::flux::fixed::Flux;
 use crate::geometry::outline;
 use crate::geometry::outline::{BareEdge, OutlineEdge};
+use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::{bounds, Polygon};
 use crate::geometry::side::Orientation;
 use crate::mesh::cached::Cached;
@@ -188,6 +190,8 @@ pub struct Part {
     pub home: Cell,
     /// The outline, counterclockwise on the face; no two edges overlap or continue each other.
     pub edges: Box<[BareEdge]>,
+    /// The lattice points next to the corners of a box around it: walls lie halfway between them.
+    pub around: [Lattice; 2],
     /// The flux through the part, once somebody has asked.
     pub flux: Cached<Flux>,
 }
@@ -213,11 +217,17 @@ impl Part {
         home: Cell,
         edges: Vec<impl Into<BareEdge>>,
     ) -> Self {
+        let edges: Box<[BareEdge]> = edges.into_iter().map(Into::into).collect();
+        let (low, high) = bounds(edges.iter().map(|edge| &*edge.from));
         Self {
             source,
             face,
             home,
-            edges: edges.into_iter().map(Into::into).collect(),
+            edges,
+            around: [
+                low.map(|x| as_whole((x - 0.5).ceil())),
+                high.map(|x| as_whole((x + 0.5).floor())),
+            ],
             flux: Cached::new(),
         }
     }

@@ -16,6 +16,7 @@ use crate::merge::lists::list::Sources;
 use crate::mesh::handle::{FaceId, SourceFace};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Deferred, Group, Node, Part, PartElement, Work};
+use crate::tree::pieces::pieces;
 
 /// The part of one element that stays with one orientation.
 #[derive(Debug)]
@@ -103,7 +104,8 @@ impl Kept {
         match &self.what {
             What::Whole => source.clip(self.face.id, cell).into_iter().collect(),
             What::Part(part) => {
-                let clipped = part.pieces().into_iter().filter_map(|p| p.clipped(cell));
+                let pieces = pieces(part);
+                let clipped = pieces.iter().filter_map(|p| p.clipped(cell));
                 clipped.collect()
             }
             What::Pieces(pieces, _) => Cow::Borrowed(pieces),

@@ -3,11 +3,9 @@
 use std::sync::{Arc, OnceLock};
 
 use super::separation::misses;
-use crate::arith::convert::as_whole;
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::plane::Lattice;
-use crate::geometry::polygon::Polygon;
 use crate::geometry::side::{Half, Orientation};
 use crate::geometry::winding::crossing::{plane_change, polygon_change, triangle_change, Segment};
 use crate::interrupt::spend;
@@ -15,6 +13,7 @@ use crate::mesh::cached::Cached;
 use crate::mesh::handle::{FaceId, Slot};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Branch, Deferred, Group, Node, PartElement, Work};
+use crate::tree::pieces::{pieces, Piece};
 use crate::tree::table::Table;
 
 /// Coordinates relative to a cell, coarse enough for 32 bits.
@@ -107,14 +106,13 @@ pub struct PartRecord {
     high: [i32; 3],
     /// The part.
     pub element: PartElement,
-    pieces: OnceLock<Arc<[Polygon]>>,
+    pieces: OnceLock<Arc<[Piece]>>,
 }
 
 impl PartRecord {
     /// The convex pieces.
-    pub fn pieces(&self) -> &[Polygon] {
-        let derived = || self.element.part.pieces().into();
-        self.pieces.get_or_init(derived)
+    pub fn pieces(&self) -> &[Piece] {
+        self.pieces.get_or_init(|| pieces(&self.element.part))
     }
 }
 
@@ -325,7 +323,9 @@ impl List {
         };
         for p in self.parts.iter().filter(widened) {
             spend(p.pieces().len());
-            let across: i32 = p.pieces().iter().map(|q| polygon_change(q, &segment)).sum();
+            let pieces = p.pieces().iter();
+            let changes = pieces.map(|q| polygon_change(&q.polygon, &segment));
+            let across: i32 = changes.sum();
             change += p.element.orientation.signed(across);
         }
         change
@@ -394,10 +394,8 @@ impl Frame {
         }
     }
 
-    fn part_record(&self, element: PartElement, pieces: OnceLock<Arc<[Polygon]>>) -> PartRecord {
-        let (low, high) = element.part.bounds();
-        let low = each_axis(|i| self.index(i, as_whole((low[i] - 0.5).ceil())));
-        let high = each_axis(|i| self.index(i, as_whole((high[i] + 0.5).floor())));
+    fn part_record(&self, element: PartElement, pieces: OnceLock<Arc<[Piece]>>) -> PartRecord {
+        let [low, high] = element.part.around.map(|p| self.indices(&p));
         PartRecord {
             low,
             high,

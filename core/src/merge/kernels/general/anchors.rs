@@ -144,22 +144,18 @@ fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::outline::BareEdge;
     use crate::geometry::plane::Plane;
     use crate::merge::kernels::general::scene::Scene;
     use crate::merge::scenes::{crossing, tetrahedra};
-    use crate::mesh::cached::Cached;
     use crate::mesh::handle::FaceId;
 
     /// A part without an outline of a solid's first face.
     fn part() -> Arc<Part> {
         let solid = &tetrahedra()[0];
-        Arc::new(Part {
-            source: Arc::clone(solid.sources().get(Slot(0))),
-            face: FaceId::ONLY,
-            home: Cell::UNIVERSE,
-            edges: Box::default(),
-            flux: Cached::new(),
-        })
+        let source = Arc::clone(solid.sources().get(Slot(0)));
+        let edges: Vec<BareEdge> = Vec::new();
+        Arc::new(Part::new(source, FaceId::ONLY, Cell::UNIVERSE, edges))
     }
 
     #[test]

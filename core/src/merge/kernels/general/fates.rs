@@ -32,6 +32,24 @@ pub(super) enum Fate {
     Cut(Box<Cut>),
 }
 
+/// The points and names that all elements share.
+struct Made<'a> {
+    points: Points,
+    names: Names<'a>,
+    /// The most others by which an element is divided piece by piece.
+    cutters: usize,
+}
+
+/// The others that an element meets.
+enum Meeting<'a> {
+    /// Nothing, if it meets the cell at all.
+    Apart,
+    /// Not even the cell.
+    Absent,
+    /// These others, perhaps none, in its part inside the cell.
+    Near(Box<Polygon>, Vec<Crosser<'a>>),
+}
+
 /// A divided element.
 pub(super) struct Cut {
     /// All of it inside the cell.
@@ -52,11 +70,49 @@ impl Scene<'_> {
     /// The fates of all elements; `None` if two meet in a special way, or one is divided piece by
     /// piece by more than so many.
     pub(super) fn fates(&self, cutters: usize) -> Option<Vec<Fate>> {
-        let neighbours = self.neighbours()?;
-        let (mut points, mut names) = (Points::default(), Names::of(self));
-        (0..self.elements.len())
-            .map(|i| self.fate(i, &neighbours[i], (&mut points, &mut names), cutters))
-            .collect()
+        let near = self.neighbours()?.into_iter().enumerate();
+        // A cell in which anything is special is refused before anything is divided.
+        let meetings: Option<Vec<Meeting>> = near.map(|(i, near)| self.meeting(i, &near)).collect();
+        let mut made = Made {
+            points: Points::default(),
+            names: Names::of(self),
+            cutters,
+        };
+        let meetings = meetings?.into_iter().enumerate();
+        let fate = |(i, meeting)| match meeting {
+            Meeting::Apart => self.fate_apart(i, &mut made),
+            Meeting::Absent => Some(Fate::Absent),
+            Meeting::Near(polygon, crossers) => self.fate(i, *polygon, &crossers, &mut made),
+        };
+        meetings.map(fate).collect()
+    }
+
+    /// The others that an element meets; `None` if it meets another one in a special way.
+    fn meeting(&self, i: usize, neighbours: &[u32]) -> Option<Meeting<'_>> {
+        if neighbours.is_empty() {
+            return Some(Meeting::Apart);
+        }
+        let Some(polygon) = self.elements[i].polygon_in(self.cell) else {
+            return Some(Meeting::Absent);
+        };
+        let crossers = self.crossers(&polygon, neighbours)?;
+        Some(Meeting::Near(Box::new(polygon), crossers))
+    }
+
+    /// The fate of an element without neighbours.
+    fn fate_apart(&self, i: usize, made: &mut Made) -> Option<Fate> {
+        let element = &self.elements[i];
+        if element.vertices_in(self.cell).next().is_some() {
+            return Some(Fate::Untouched);
+        }
+        let anchors = element.anchors(self.cell, &mut made.names);
+        if !anchors.is_empty() {
+            return Some(Fate::Uncut(anchors));
+        }
+        match element.polygon_in(self.cell) {
+            Some(polygon) => self.fate(i, polygon, &[], made),
+            None => Some(Fate::Absent),
+        }
     }
 
     /// For each element those of other operands that may meet it inside the cell; `None` if they
@@ -71,7 +127,7 @@ impl Scene<'_> {
         let boxes = (0..).zip(&self.elements).map(boxed).collect();
         let swept = |number: u32| self.elements[number as usize].swept(self.cell);
         let mut found = vec![Neighbours::new(); self.elements.len()];
-        let near: Vec<NearTriangle> = self.elements.iter().map(Element::near).collect();
+        let near: Vec<NearTriangle> = self.elements.iter().map(|e| self.near(e)).collect();
         pairs(boxes, swept, |a, b| {
             poll();
             let (i, j) = (a as usize, b as usize);
@@ -91,27 +147,15 @@ impl Scene<'_> {
     fn fate(
         &self,
         i: usize,
-        neighbours: &[u32],
-        (points, names): (&mut Points, &mut Names),
-        cutters: usize,
+        polygon: Polygon,
+        crossers: &[Crosser],
+        made: &mut Made,
     ) -> Option<Fate> {
         let element = &self.elements[i];
-        if neighbours.is_empty() && element.vertices_in(self.cell).next().is_some() {
-            return Some(Fate::Untouched);
+        let mut anchors = element.anchors(self.cell, &mut made.names);
+        if anchors.is_empty() {
+            anchors = element.anchors_at_walls(&polygon, &mut made.names);
         }
-        let anchors = element.anchors(self.cell, names);
-        if !anchors.is_empty() && neighbours.is_empty() {
-            return Some(Fate::Uncut(anchors));
-        }
-        let Some(polygon) = element.polygon_in(self.cell) else {
-            return Some(Fate::Absent);
-        };
-        let anchors = if anchors.is_empty() {
-            element.anchors_at_walls(&polygon, names)
-        } else {
-            anchors
-        };
-        let crossers = self.crossers(&polygon, neighbours)?;
         if !anchors.is_empty() && crossers.is_empty() {
             return Some(Fate::Uncut(anchors));
         }
@@ -119,7 +163,7 @@ impl Scene<'_> {
             polygon: &polygon,
             number: as_number(i),
         };
-        let parts = Parts::of(&crossed, &crossers, points, cutters)?;
+        let parts = Parts::of(&crossed, crossers, &mut made.points, made.cutters)?;
         Some(Fate::Cut(Box::new(Cut {
             polygon,
             parts,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::cutting::Face;
 use super::Labels;
-use crate::arith::convert::{as_double, as_whole};
+use crate::arith::convert::as_double;
 use crate::geometry::apart::NearTriangle;
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
@@ -97,19 +97,33 @@ impl<'a> Scene<'a> {
             let slot = sources.slot(&p.element.part.source);
             self.parts.push((&p.element.part, slot));
             let inside = self.cell.holds(&p.element.part.home);
-            for piece in p.pieces() {
+            for piece in p.pieces().iter().filter(|p| p.may_meet(self.cell)) {
                 poll();
-                let (low, high) = piece.bounds();
+                let [low, high] = piece.around;
                 self.elements.push(Element {
                     operand,
                     weight: p.element.orientation.signed(1),
-                    place: Place::Piece(part, Box::new(Face::new(Cow::Borrowed(piece)))),
+                    place: Place::Piece(part, Box::new(Face::new(Cow::Borrowed(&piece.polygon)))),
                     inside,
-                    low: low.map(|x| as_whole(x.floor())),
-                    high: high.map(|x| as_whole(x.ceil())),
+                    low,
+                    high,
                 });
             }
         }
+    }
+
+    /// An element to be compared with others: what keeps clear of a face does so of its pieces. The
+    /// face of a half-space is apart from nothing.
+    pub(super) fn near(&self, element: &Element) -> NearTriangle {
+        let corners = match &element.place {
+            Place::Face(triangle) => Some(triangle.corners),
+            Place::Piece(part, _) => {
+                let part = self.parts[*part].0;
+                part.source.mesh().map(|mesh| mesh.corners(part.face))
+            }
+            Place::Plane(..) => None,
+        };
+        corners.map_or(NearTriangle::UNKNOWN, |c| NearTriangle::of(&c))
     }
 
     /// The labels at the cell's low corner.
@@ -220,14 +234,6 @@ impl<'a> Element<'a> {
         let (low, high) = (cell.low(), cell.high());
         let within = |p: &Lattice, i: usize| p[i].clamp(low[i] - 1, high[i] + 1) - low[i];
         [&self.low, &self.high].map(|p| each_axis(|i| within(p, i)))
-    }
-
-    /// The element to be compared with others; what is no whole face is apart from nothing.
-    pub(super) fn near(&self) -> NearTriangle {
-        match &self.place {
-            Place::Face(triangle) => NearTriangle::of(&triangle.corners),
-            Place::Plane(..) | Place::Piece(..) => NearTriangle::UNKNOWN,
-        }
     }
 
     /// The element as a sweep sees it.

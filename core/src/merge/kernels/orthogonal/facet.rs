@@ -90,7 +90,7 @@ impl<'a> Facets<'a> {
         self.parts.push((&record.element.part, slot));
         let weight = record.element.orientation.signed(1);
         for piece in record.pieces() {
-            let facet = Facet::of_piece(operand, weight, part, piece)?;
+            let facet = Facet::of_piece(operand, weight, part, &piece.polygon)?;
             self.all.extend(Some(facet).filter(|f| f.may_meet(cell)));
         }
         Some(())

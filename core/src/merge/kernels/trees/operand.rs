@@ -71,7 +71,7 @@ fn fragments(list: &List, cell: &Cell, sources: &Sources) -> Vec<Fragment> {
         let weight = p.element.orientation.signed(1);
         let part = &p.element.part;
         let face = SourceFace::new(sources.slot(&part.source), part.face);
-        let clipped = p.pieces().iter().filter_map(|q| q.clone().clipped(cell));
+        let clipped = p.pieces().iter().filter_map(|q| q.clipped(cell));
         found.extend(clipped.map(|polygon| Fragment {
             polygon,
             weight,
